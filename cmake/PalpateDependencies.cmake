@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+# Every library Palpate stands on, found once, with the reason it was chosen.
+
+find_package(Threads REQUIRED)
+# Eigen: value types and small dense algebra; header-only, so the runtime carries nothing with it.
+# NO_MODULE, and before ITK, whose own FindEigen3 would shadow it.
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+# HDF5 C interface: the asset; ParaView, h5py and MATLAB read the same file. HighFive is not in Debian 12.
+set(HDF5_PREFER_PARALLEL FALSE)
+find_package(HDF5 1.10 REQUIRED COMPONENTS C)
+# OpenSSL's libcrypto: SHA-256 with the CPU's SHA instructions; a 100 MB compliance must be hashed while loading.
+find_package(OpenSSL 3 REQUIRED COMPONENTS Crypto)
+# CLI11 (options and help), spdlog over fmt (talk on stderr), nlohmann-json (results): small, typed, in Debian.
+find_package(PkgConfig REQUIRED)
+find_package(CLI11 2.1 REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(fmt REQUIRED)
+find_package(nlohmann_json 3 REQUIRED)
+
+if(PALPATE_TOOLS)
+    # toml++: case files; keeps line and column of every value for error messages.
+    find_package(tomlplusplus 3 REQUIRED)
+    # ITK: the reference implementation of volume reading, DICOM geometry and segmentation filters.
+    find_package(ITK 5.2 REQUIRED COMPONENTS
+        ITKCommon ITKIOImageBase ITKIONRRD ITKIONIFTI ITKIOMeta ITKIOGDCM ITKImageIntensity ITKThresholding
+        ITKConnectedComponents ITKLabelMap ITKBinaryMathematicalMorphology ITKMathematicalMorphology
+        ITKDistanceMap ITKSmoothing ITKRegionGrowing ITKImageGrid ITKImageFunction ITKImageStatistics)
+    # CGAL Mesh_3: multi-domain Delaunay refinement with sliver removal, from any labelling function.
+    find_package(CGAL 5.5 REQUIRED)
+    # CHOLMOD (supernodal Cholesky), METIS (ordering), LAPACK (dpotri): condensation at the machine's limit.
+    find_path(PALPATE_CHOLMOD_INCLUDE cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
+    find_library(PALPATE_CHOLMOD_LIBRARY cholmod REQUIRED)
+    find_path(PALPATE_METIS_INCLUDE metis.h REQUIRED)
+    find_library(PALPATE_METIS_LIBRARY metis REQUIRED)
+    find_library(PALPATE_OPENBLAS_LIBRARY openblas REQUIRED)
+    find_library(PALPATE_LAPACKE_LIBRARY lapacke REQUIRED)
+endif()
+
+if(PALPATE_TOOLS OR PALPATE_VISUAL)
+    # VTK: surface filters, pictures for the report, the trainer's scene; ITK's users know it.
+    find_package(VTK 9.1 REQUIRED COMPONENTS
+        CommonCore CommonDataModel CommonTransforms FiltersCore FiltersGeneral FiltersGeometry FiltersModeling
+        FiltersSources FiltersVerdict ImagingCore IOGeometry IOHDF IOImage IOLegacy IOPLY IOXML
+        InteractionStyle RenderingAnnotation RenderingCore RenderingFreeType RenderingOpenGL2 RenderingUI
+        ChartsCore ViewsContext2D)
+endif()
+
+if(PALPATE_TESTS)
+    find_package(GTest REQUIRED)
+    include(GoogleTest)
+    # Debian's own interpreter: it sees python3-h5py.
+    find_program(Python3_EXECUTABLE python3 PATHS /usr/bin NO_DEFAULT_PATH)
+    find_package(Python3 REQUIRED COMPONENTS Interpreter)
+    if(DEFINED ENV{PALPATE_DATA})
+        set(palpate_data_default "$ENV{PALPATE_DATA}")
+    else()
+        set(palpate_data_default "${PROJECT_SOURCE_DIR}/../shared/data")
+    endif()
+    set(PALPATE_DATA "${palpate_data_default}" CACHE PATH "Real volumes for tests; tests that need them are skipped where they are absent")
+    set(PALPATE_TEST_ENVIRONMENT "PALPATE_DATA=${PALPATE_DATA};PALPATE_BIN=${CMAKE_BINARY_DIR}/bin;PALPATE_SOURCE=${PROJECT_SOURCE_DIR};PALPATE_BUILD=${CMAKE_BINARY_DIR}")
+endif()

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: Apache-2.0
+# One target per folder: palpate_library(), palpate_executable(), palpate_test(), all with the house's warnings.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
+if(NOT CMAKE_BUILD_TYPE)
+    set(CMAKE_BUILD_TYPE Release)
+endif()
+
+find_program(PALPATE_CCACHE ccache)
+if(PALPATE_CCACHE)
+    # Precompiled headers need the sloppiness named in ccache's manual, "Precompiled headers".
+    set(palpate_launcher ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${PALPATE_CCACHE})
+    set(CMAKE_C_COMPILER_LAUNCHER ${palpate_launcher})
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${palpate_launcher})
+endif()
+
+# What every target of ours is compiled with; never exported.
+add_library(palpate_house INTERFACE)
+target_compile_options(palpate_house INTERFACE -Wall -Wextra -Wconversion -Werror -fno-math-errno)
+if(PALPATE_ASSERTIONS)
+    target_compile_options(palpate_house INTERFACE -UNDEBUG)
+endif()
+if(PALPATE_SANITIZERS)
+    add_compile_options(-fsanitize=${PALPATE_SANITIZERS} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+    add_link_options(-fsanitize=${PALPATE_SANITIZERS})
+endif()
+
+# palpate_library(<folder/name> SOURCES ... [LINKS ...] [PRIVATE_LINKS ...] [INSTALL])
+# Makes target palpate_<name> with alias Palpate::<name>. Headers are included as "<folder>/<name>/x.hpp".
+function(palpate_library path)
+    cmake_parse_arguments(arg "INSTALL" "" "SOURCES;LINKS;PRIVATE_LINKS" ${ARGN})
+    get_filename_component(name ${path} NAME)
+    set(target palpate_${name})
+    add_library(${target} STATIC ${arg_SOURCES})
+    add_library(Palpate::${name} ALIAS ${target})
+    set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+    target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                                                $<INSTALL_INTERFACE:include/palpate>)
+    target_compile_features(${target} PUBLIC cxx_std_20)
+    target_link_libraries(${target} PUBLIC ${arg_LINKS} PRIVATE ${arg_PRIVATE_LINKS} $<BUILD_INTERFACE:palpate_house>)
+    if(arg_INSTALL)
+        set_property(GLOBAL APPEND PROPERTY PALPATE_INSTALLED_LIBRARIES ${target})
+        file(GLOB headers CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.hpp")
+        install(FILES ${headers} DESTINATION include/palpate/${path})
+    endif()
+endfunction()
+
+# palpate_executable(<name> SOURCES ... LINKS ...): lands in build/<preset>/bin and is installed.
+function(palpate_executable name)
+    cmake_parse_arguments(arg "" "" "SOURCES;LINKS" ${ARGN})
+    add_executable(${name} ${arg_SOURCES})
+    target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
+    target_link_libraries(${name} PRIVATE ${arg_LINKS} palpate_house)
+    install(TARGETS ${name} RUNTIME DESTINATION bin)
+endfunction()
+
+# palpate_test(<room> SOURCES ... LINKS ... [LABEL unit|realtime|slow|...]): GoogleTest cases, each a ctest
+# named <room>.<Suite>.<case>. PALPATE_DATA and PALPATE_BIN reach the test through its environment.
+function(palpate_test room)
+    cmake_parse_arguments(arg "" "LABEL;TIMEOUT" "SOURCES;LINKS" ${ARGN})
+    if(NOT arg_LABEL)
+        set(arg_LABEL unit)
+    endif()
+    if(NOT arg_TIMEOUT)
+        set(arg_TIMEOUT 120)
+    endif()
+    string(REPLACE "." "_" target "test_${room}")
+    if(NOT arg_LABEL STREQUAL "unit")
+        set(target ${target}_${arg_LABEL})
+    endif()
+    add_executable(${target} ${arg_SOURCES})
+    target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
+    target_link_libraries(${target} PRIVATE ${arg_LINKS} GTest::gtest_main palpate_house)
+    set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
+    gtest_discover_tests(${target} TEST_PREFIX "${room}." DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
+        PROPERTIES LABELS ${arg_LABEL} TIMEOUT ${arg_TIMEOUT} ENVIRONMENT "${PALPATE_TEST_ENVIRONMENT}")
+endfunction()
+
+# palpate_command_test(<file.py> [LABEL ...]): a Python unittest that drives the executables in PALPATE_BIN.
+function(palpate_command_test file)
+    cmake_parse_arguments(arg "" "LABEL;TIMEOUT" "" ${ARGN})
+    if(NOT arg_LABEL)
+        set(arg_LABEL command)
+    endif()
+    if(NOT arg_TIMEOUT)
+        set(arg_TIMEOUT 300)
+    endif()
+    get_filename_component(name ${file} NAME_WE)
+    string(REGEX REPLACE "^test_" "" name ${name})
+    add_test(NAME commands.${name} COMMAND ${Python3_EXECUTABLE} -m unittest -v ${file}
+             WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+    # A file in which every case was skipped is reported as skipped.
+    set_tests_properties(commands.${name} PROPERTIES LABELS ${arg_LABEL} TIMEOUT ${arg_TIMEOUT}
+        ENVIRONMENT "${PALPATE_TEST_ENVIRONMENT}" SKIP_REGULAR_EXPRESSION "skipped 'PALPATE")
+endfunction()

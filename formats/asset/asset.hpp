@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+
+#include "formats/model/body.hpp"
+
+namespace palpate {
+
+/// Whether a reader recomputes every SHA-256 (0.5 s per GB) or trusts the bytes.
+enum class Digests { check, skip };
+
+/// Writes a case as one asset (formats/asset/SPEC.md) that ParaView opens too. Not atomic by itself: callers
+/// write to a temporary name and rename. Throws InvalidInput if the parts do not belong together,
+/// SystemFailure if the file cannot be written whole.
+void write_asset(const std::filesystem::path& path, const Case& patient_case);
+
+/// Reads and validates an asset. Shapes are checked against the file's size before anything is allocated,
+/// every index against its range, every number for finiteness; compliances are mapped, not copied. Throws
+/// InvalidInput naming the file, the dataset and the remedy.
+Case read_asset(const std::filesystem::path& path, Digests digests = Digests::check);
+
+}  // namespace palpate

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "formats/model/body.hpp"
+
+namespace palpate {
+
+/// SHA-256 as 64 lower-case hexadecimal digits.
+std::string sha256(std::span<const std::byte> bytes);
+
+/// SHA-256 of a file's content; throws InvalidInput if it cannot be read.
+std::string sha256_file(const std::filesystem::path& path);
+
+/// Digest of a surface's vertices and triangles; ties an OBB tree to its surface.
+std::string surface_digest(const TriangleMesh& surface);
+
+/// Digest of what a compliance follows from: nodes, tetrahedra, regions, materials and fixed nodes.
+std::string mechanics_digest(const DeformableBody& body);
+
+}  // namespace palpate

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "formats/model/compliance.hpp"
+#include "formats/model/obb_tree.hpp"
+#include "formats/model/tet_mesh.hpp"
+#include "formats/model/triangle_mesh.hpp"
+
+namespace palpate {
+
+/// Isotropic linear elasticity.
+struct Material {
+    double youngs_modulus = 0;  ///< N/mm² (MPa); 1 kPa is 1e-3 N/mm²
+    double poissons_ratio = 0;  ///< in (-1, 0.5)
+};
+
+/// The material of one region of a tetrahedral mesh.
+struct RegionMaterial {
+    std::int32_t region = 0;  ///< label value as in TetMesh::regions
+    Material material;
+};
+
+/// A body that does not give way.
+struct RigidBody {
+    std::string name;
+    TriangleMesh surface;
+    ObbTree obb_tree;  ///< over `surface`
+};
+
+/// An elastic body held at its fixed nodes, ready to be touched.
+struct DeformableBody {
+    std::string name;
+    TetMesh mesh;
+    std::vector<RegionMaterial> materials;    ///< one per region that occurs in the mesh
+    std::vector<std::int32_t> fixed_nodes;    ///< mesh nodes with zero displacement, ascending
+    BoundarySurface boundary;                 ///< boundary_surface(mesh)
+    std::vector<std::int32_t> contact_nodes;  ///< mesh node of each compliance block, ascending: the boundary
+                                              ///< nodes that are not fixed
+    DenseCompliance compliance;               ///< over contact_nodes
+    Certificate certificate;
+    ObbTree obb_tree;  ///< over boundary.surface at rest
+};
+
+/// How the tool feels and what it may do.
+struct HapticSettings {
+    double tool_radius = 1.0;  ///< mm
+    double coupling_stiffness =
+        0.5;                      ///< N/mm between tool and device on rigid bodies; 0.5 is a Touch's limit
+    double max_force = 3.3;       ///< N, a Touch's limit
+    double max_force_rate = 0.5;  ///< N per tick (1 ms)
+};
+
+/// Everything a trainer needs to touch one patient.
+struct Case {
+    std::string name;
+    std::vector<RigidBody> rigid_bodies;
+    std::vector<DeformableBody> deformable_bodies;
+    HapticSettings haptics;
+    std::string
+        provenance;  ///< JSON: tool and library versions, options, input digests; no identity, no paths
+};
+
+}  // namespace palpate

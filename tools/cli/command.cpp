@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/cli/command.hpp"
+
+#include <chrono>
+#include <iostream>
+#include <new>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+#include <sys/resource.h>
+#include <thread>
+
+#include "formats/model/errors.hpp"
+#include "formats/model/label_map.hpp"
+#include "tools/cli/slicer_xml.hpp"
+
+namespace palpate::cli {
+namespace {
+
+void set_up_logging(const std::string& program, bool quiet, bool verbose) {
+    auto logger =
+        std::make_shared<spdlog::logger>(program, std::make_shared<spdlog::sinks::stderr_sink_mt>());
+    logger->set_pattern("%n: %v");
+    logger->set_level(quiet ? spdlog::level::err : verbose ? spdlog::level::debug : spdlog::level::info);
+    spdlog::set_default_logger(logger);
+}
+
+std::int64_t peak_memory_bytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return std::int64_t{usage.ru_maxrss} * 1024;  // Linux reports KiB
+}
+
+void print_lines(const nlohmann::json& value, const std::string& prefix) {
+    for (const auto& [key, item] : value.items()) {
+        const std::string name = prefix.empty() ? key : prefix + "." + key;
+        if (item.is_object())
+            print_lines(item, name);
+        else if (item.is_string())
+            std::cout << name << ' ' << item.get<std::string>() << '\n';
+        else
+            std::cout << name << ' ' << item.dump() << '\n';
+    }
+}
+
+std::string help_footer(const CommandText& text) {
+    std::string footer = "Examples:\n";
+    for (const std::string& example : text.examples) footer += "  " + example + "\n";
+    if (!text.notes.empty()) footer += "\n" + text.notes + "\n";
+    return footer +
+           "\nPositions are LPS mm. Exit codes: 0 ok, 1 failed, 2 usage, 3 invalid input, "
+           "4 quality contract not met, 130 interrupted.";
+}
+
+}  // namespace
+
+std::string version() {
+    return PALPATE_VERSION;
+}
+
+Command::Command(CommandText text) : text_(std::move(text)), app_(text_.summary, "palpate " + text_.name) {
+    app_.option_defaults()->always_capture_default(false);
+    app_.footer(help_footer(text_));
+    app_.set_version_flag("--version", "palpate " + version());
+    const std::string group = "Every command";
+    app_.add_option("--json", json_path_, "write the result as JSON to this file, '-' for stdout")
+        ->group(group);
+    app_.add_flag("--quiet", quiet_, "say nothing but errors")->group(group);
+    app_.add_flag("--verbose", verbose_, "say more")->group(group);
+    app_.add_flag("--force", force_, "replace existing outputs")->group(group);
+    app_.add_flag("--xml", xml_, "print the Slicer Execution Model description and exit")->group(group);
+    app_.add_option("--threads", threads_, "threads to use [default: all cores]")->group(group);
+}
+
+CLI::Option* Command::remember(Parameter::Kind kind, CLI::Option* option, const std::string& help) {
+    parameters_.push_back({kind, option, help});
+    return option;
+}
+
+CLI::Option* Command::input(const std::string& names, std::filesystem::path& value, const std::string& help) {
+    return remember(Parameter::Kind::input_file, app_.add_option(names, value, help), help);
+}
+
+CLI::Option* Command::output(const std::string& names, std::filesystem::path& value,
+                             const std::string& help) {
+    return remember(Parameter::Kind::output_file, app_.add_option(names, value, help), help);
+}
+
+CLI::Option* Command::flag(const std::string& names, bool& value, const std::string& help) {
+    return remember(Parameter::Kind::flag, app_.add_flag(names, value, help), help);
+}
+
+int Command::parse(int argc, char** argv) {
+    // --xml must work without the required arguments.
+    for (int i = 1; i < argc; ++i)
+        if (std::string_view(argv[i]) == "--xml") {
+            std::cout << slicer_xml(*this);
+            return ExitCode::ok;
+        }
+    try {
+        app_.parse(argc, argv);
+        return -1;
+    } catch (const CLI::CallForHelp&) {
+        std::cout << app_.help();
+        return ExitCode::ok;
+    } catch (const CLI::CallForVersion&) {
+        std::cout << "palpate " << version() << '\n';
+        return ExitCode::ok;
+    } catch (const CLI::ExtrasError& error) {
+        std::vector<std::string> known;
+        for (const CLI::Option* option : app_.get_options()) known.push_back(option->get_name());
+        std::cerr << "palpate-" << text_.name << ": " << error.what();
+        for (const std::string& extra : app_.remaining()) {
+            const auto near = nearest_names(extra, known);
+            if (extra.starts_with("-") && !near.empty())
+                std::cerr << "; did you mean " << near.front() << "?";
+        }
+        std::cerr << '\n';
+    } catch (const CLI::ParseError& error) {
+        std::cerr << "palpate-" << text_.name << ": " << error.what() << "; see 'palpate " << text_.name
+                  << " --help'\n";
+    }
+    return ExitCode::usage;
+}
+
+void Command::emit(nlohmann::json result, double seconds) const {
+    result["schema"] = "palpate." + text_.name + "/1";
+    result["version"] = version();
+    result["seconds"] = seconds;
+    result["peak_memory_bytes"] = peak_memory_bytes();
+    if (json_path_.empty())
+        print_lines(result, "");
+    else if (json_path_ == "-")
+        std::cout << result.dump(2) << '\n';
+    else
+        write_text_file(json_path_, result.dump(2) + "\n", true);
+}
+
+int Command::run(int argc, char** argv, const std::function<nlohmann::json(Session&)>& job) {
+    if (const int code = parse(argc, argv); code >= 0) return code;
+    const std::string program = "palpate-" + text_.name;
+    set_up_logging(program, quiet_, verbose_);
+    remove_staged_files_on_interrupt();
+    const auto start = std::chrono::steady_clock::now();
+    const auto say = [&](const std::exception& error) {
+        std::cerr << program << ": " << error.what() << '\n';
+    };
+    try {
+        if (threads_ < 0) throw UsageError({"--threads", std::to_string(threads_), "1 or more", ""});
+        for (const Parameter& parameter : parameters_)
+            if (parameter.kind == Parameter::Kind::input_file)
+                for (const std::string& path : parameter.option->results())
+                    if (!std::filesystem::exists(path))
+                        throw InvalidInput({path, "no such file or folder", "", "check the path"});
+        Session session;
+        session.threads =
+            threads_ > 0 ? threads_ : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+        session.force = force_;
+        session.progress = Progress(quiet_);
+        nlohmann::json result = job(session);
+        session.progress.finish();
+        emit(std::move(result),
+             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+        std::cout.flush();
+        return std::cout ? ExitCode::ok : ExitCode::failed;
+    } catch (const UsageError& error) {
+        say(error);
+        return ExitCode::usage;
+    } catch (const InvalidInput& error) {
+        say(error);
+        return ExitCode::invalid_input;
+    } catch (const QualityNotMet& error) {
+        say(error);
+        return ExitCode::quality_not_met;
+    } catch (const std::bad_alloc&) {
+        std::cerr << program << ": out of memory; use a coarser mesh or a machine with more memory\n";
+    } catch (const std::exception& error) {
+        say(error);
+    }
+    return ExitCode::failed;
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// `palpate <command> ...` runs `palpate-<command> ...` from the same folder.
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <string>
+#include <unistd.h>
+#include <vector>
+
+#include "formats/model/label_map.hpp"
+#include "tools/cli/command.hpp"
+
+namespace {
+
+std::filesystem::path own_folder() {
+    return std::filesystem::read_symlink("/proc/self/exe").parent_path();
+}
+
+std::vector<std::string> installed_commands() {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(own_folder())) {
+        const std::string name = entry.path().filename().string();
+        if (name.starts_with("palpate-")) names.push_back(name.substr(8));
+    }
+    std::ranges::sort(names);
+    return names;
+}
+
+void print_usage(std::ostream& stream) {
+    stream << "palpate " << palpate::cli::version()
+           << ": turns a patient's CT or MRI into an organ that a hand can feel\n\n"
+              "Usage: palpate <command> [options]\n       palpate <command> --help\n\nCommands:\n";
+    for (const std::string& name : installed_commands()) stream << "  " << name << '\n';
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc < 2) {
+        print_usage(std::cerr);
+        return palpate::cli::ExitCode::usage;
+    }
+    const std::string name = argv[1];
+    if (name == "--help" || name == "-h" || name == "help") {
+        print_usage(std::cout);
+        return palpate::cli::ExitCode::ok;
+    }
+    if (name == "--version") {
+        std::cout << "palpate " << palpate::cli::version() << '\n';
+        return palpate::cli::ExitCode::ok;
+    }
+    const std::filesystem::path program = own_folder() / ("palpate-" + name);
+    if (name.starts_with("-") || name.find('/') != std::string::npos || !std::filesystem::exists(program)) {
+        std::cerr << "palpate: no command '" << name << "'";
+        const auto near = palpate::nearest_names(name, installed_commands());
+        for (std::size_t i = 0; i < near.size(); ++i) std::cerr << (i == 0 ? "; nearest: " : ", ") << near[i];
+        std::cerr << '\n';
+        return palpate::cli::ExitCode::usage;
+    }
+    execv(program.c_str(), argv + 1);
+    std::perror(program.c_str());
+    return palpate::cli::ExitCode::failed;
+}

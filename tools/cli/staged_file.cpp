@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/cli/staged_file.hpp"
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <climits>
+#include <csignal>
+#include <cstring>
+#include <fcntl.h>
+#include <fstream>
+#include <unistd.h>
+
+#include "formats/model/errors.hpp"
+
+namespace palpate::cli {
+namespace {
+
+// Paths the signal handler may unlink: fixed memory, published by the atomic flag.
+struct Slot {
+    std::array<char, PATH_MAX> path;
+    std::atomic<bool> used{false};
+};
+std::array<Slot, 16> slots;
+
+extern "C" void remove_and_exit(int) {
+    for (Slot& slot : slots)
+        if (slot.used.load()) unlink(slot.path.data());
+    constexpr char message[] = "\ninterrupted; nothing was left behind\n";
+    [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, message, sizeof(message) - 1);
+    _exit(130);
+}
+
+int claim_slot(const std::string& path) {
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+        if (slots[i].used.load() || path.size() >= slots[i].path.size()) continue;
+        std::memcpy(slots[i].path.data(), path.c_str(), path.size() + 1);
+        slots[i].used.store(true);
+        return static_cast<int>(i);
+    }
+    return -1;
+}
+
+void flush_to_disk(const std::filesystem::path& path, const std::filesystem::path& target) {
+    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    const bool flushed = file >= 0 && fsync(file) == 0;
+    const int error = errno;
+    if (file >= 0) close(file);
+    if (!flushed)
+        throw SystemFailure({.culprit = target.string(),
+                             .found = std::string("could not be written: ") + std::strerror(error),
+                             .expected = "",
+                             .next_step = "check free space and permissions of its folder"});
+}
+
+}  // namespace
+
+StagedFile::StagedFile(std::filesystem::path target, bool replace) : target_(std::move(target)) {
+    const std::filesystem::path folder = target_.has_parent_path() ? target_.parent_path() : ".";
+    if (std::filesystem::is_directory(target_))
+        throw InvalidInput({target_.string(), "is a folder", "a file name", "name the file to write"});
+    if (!replace && std::filesystem::exists(target_))
+        throw InvalidInput({target_.string(), "exists already", "", "choose another name or pass --force"});
+    if (!std::filesystem::is_directory(folder))
+        throw InvalidInput({target_.string(), "its folder does not exist", "",
+                            "make it first: mkdir -p " + folder.string()});
+    temporary_ = folder / (".part" + std::to_string(getpid()) + "-" + target_.filename().string());
+    slot_ = claim_slot(temporary_.string());
+}
+
+StagedFile::~StagedFile() {
+    std::error_code ignored;
+    std::filesystem::remove(temporary_, ignored);
+    if (slot_ >= 0) slots[static_cast<std::size_t>(slot_)].used.store(false);
+}
+
+void StagedFile::commit() {
+    flush_to_disk(temporary_, target_);
+    std::filesystem::rename(temporary_, target_);
+    flush_to_disk(target_.has_parent_path() ? target_.parent_path() : ".", target_);
+}
+
+void remove_staged_files_on_interrupt() {
+    struct sigaction action {};
+    action.sa_handler = remove_and_exit;
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+}
+
+void write_text_file(const std::filesystem::path& target, const std::string& text, bool replace) {
+    StagedFile staged(target, replace);
+    std::ofstream stream(staged.path(), std::ios::binary);
+    stream << text;
+    stream.close();
+    if (!stream)
+        throw SystemFailure(
+            {target.string(), "could not be written", "", "check free space and permissions of its folder"});
+    staged.commit();
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+
+namespace palpate::cli {
+
+/// An output that appears whole or not at all: written under a temporary name in the target's folder, flushed
+/// to disk and renamed by commit(), removed otherwise, also on SIGINT and SIGTERM.
+class StagedFile {
+  public:
+    /// Throws InvalidInput if `target` exists and `replace` is false, if its folder is missing, or if it is a
+    /// folder itself.
+    StagedFile(std::filesystem::path target, bool replace);
+    StagedFile(const StagedFile&) = delete;
+    StagedFile& operator=(const StagedFile&) = delete;
+    ~StagedFile();
+
+    /// Where to write; ends in the target's name, so that writers that look at the extension find it.
+    const std::filesystem::path& path() const { return temporary_; }
+
+    /// Flushes and renames; throws SystemFailure if the file is missing or cannot be flushed.
+    void commit();
+
+  private:
+    std::filesystem::path target_;
+    std::filesystem::path temporary_;
+    int slot_ = -1;
+};
+
+/// Makes SIGINT and SIGTERM remove all staged files and exit with 130. Called once by Command::run().
+void remove_staged_files_on_interrupt();
+
+/// Writes `text` to `target` through a StagedFile.
+void write_text_file(const std::filesystem::path& target, const std::string& text, bool replace);
+
+}  // namespace palpate::cli
