@@ -71,7 +71,7 @@ int main(int argc, char** argv) {
         .option("--material", materials, "material of a region: REGION:YOUNGS_MODULUS,POISSONS_RATIO",
                 "kPa, 1")
         ->required();
-    command.option("--fixed", fixed, "rule that fixes surface nodes; several add up", "mm")->required();
+    command.option("--fixed", fixed, "rule that fixes surface nodes; several add up", "mm");
     command.option("--name", name, "name of the body; the mesh file's name by default");
     command.output("-o,--output", output, "condensed body (.body.h5)")->required();
     return command.run(argc, argv, [&](cli::Session& session) {
