@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <fstream>
 #include <itkGDCMImageIO.h>
 #include <itkImageFileReader.h>
 #include <itkMetaDataObject.h>
@@ -14,6 +15,9 @@
 #include <itkMultiThreaderBase.h>
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
+#include <itk_zlib.h>
+#include <memory>
+#include <sstream>
 
 #include "formats/model/errors.hpp"
 #include "tools/imaging/itk_image.hpp"
@@ -30,7 +34,11 @@ itk::ImageIOBase::Pointer image_io_of(const std::filesystem::path& path) {
                                                               itk::MetaImageIO::New().GetPointer(),
                                                               itk::NiftiImageIO::New().GetPointer()};
     for (const auto& io : candidates)
-        if (io->CanReadFile(path.c_str())) return io;
+        if (io->CanReadFile(path.c_str())) {
+            // The other NIfTI layout and its parent Analyze do not say reliably which way the patient lies.
+            if (io == candidates[2] && (path.extension() == ".hdr" || path.extension() == ".img")) break;
+            return io;
+        }
     if (itk::GDCMImageIO::New()->CanReadFile(path.c_str()))
         throw InvalidInput(
             {path.string(), "is a single DICOM file", "", "name the folder that holds the whole series"});
@@ -72,6 +80,58 @@ std::map<std::string, std::string> header_of(const itk::MetaDataDictionary& dict
     for (const std::string& key : dictionary.GetKeys())
         if (std::string text; itk::ExposeMetaData(dictionary, key, text)) header[key] = text;
     return header;
+}
+
+// Bytes of a file, unpacked if it is gzip; what follows damage is not counted.
+std::uint64_t readable_bytes(const std::filesystem::path& path) {
+    const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
+    std::vector<char> block(1 << 18);
+    std::uint64_t total = 0;
+    for (int count = 0; file && (count = gzread(file.get(), block.data(), 1 << 18)) > 0;)
+        total += static_cast<std::uint64_t>(count);
+    return total;
+}
+
+// Whether a MetaImage's data file is as long as its header says.
+bool meta_data_is_long_enough(const std::filesystem::path& path, std::size_t bytes) {
+    std::ifstream stream(path, std::ios::binary);
+    std::string line;
+    while (std::getline(stream, line)) {
+        std::istringstream words(line);
+        std::string key, equals, value;
+        words >> key >> equals >> value;
+        if (key == "CompressedDataSize") bytes = std::stoull(value);
+        if (key != "ElementDataFile") continue;
+        std::error_code absent;
+        if (value == "LOCAL")
+            return std::filesystem::file_size(path) >= bytes + static_cast<std::size_t>(stream.tellg());
+        const auto data_bytes = std::filesystem::file_size(path.parent_path() / value, absent);
+        return !absent && data_bytes >= bytes;
+    }
+    return false;
+}
+
+// Reads twice over different contents: what a failed decompression leaves unread keeps what was there.
+bool reads_every_byte(itk::ImageIOBase& io, std::size_t bytes) {
+    itk::ImageIORegion whole(io.GetNumberOfDimensions());
+    for (unsigned axis = 0; axis < io.GetNumberOfDimensions(); ++axis)
+        whole.SetSize(axis, io.GetDimensions(axis));
+    io.SetIORegion(whole);
+    std::vector<char> over_zeros(bytes, '\0'), over_ones(bytes, '\xff');
+    io.Read(over_zeros.data());
+    io.Read(over_ones.data());
+    return over_zeros == over_ones;
+}
+
+// ITK's NIfTI and MetaImage readers silently fill what a short or damaged file lacks with zeros or leftovers.
+bool holds_all_voxels(itk::ImageIOBase& io, const std::filesystem::path& path) {
+    const auto bytes = static_cast<std::size_t>(io.GetImageSizeInBytes());
+    constexpr std::size_t nifti_header_bytes = 352;
+    if (dynamic_cast<itk::NiftiImageIO*>(&io) != nullptr)
+        return readable_bytes(path) >= bytes + nifti_header_bytes;
+    if (dynamic_cast<itk::MetaImageIO*>(&io) != nullptr)
+        return meta_data_is_long_enough(path, bytes) && reads_every_byte(io, bytes);
+    return true;
 }
 
 }  // namespace
@@ -135,6 +195,9 @@ ReadImage read_image_file(const std::filesystem::path& path, const NoteSink& not
         if (note && dynamic_cast<itk::NrrdImageIO*>(io.GetPointer()) != nullptr &&
             space == result.header.end())
             note(path.string() + ": the header names no patient space; taken as LPS");
+        if (!holds_all_voxels(*io, path))
+            throw InvalidInput({path.string(), "holds fewer voxels than its header claims", "",
+                                "check that the file is whole"});
         auto reader = itk::ImageFileReader<ItkImage<float>>::New();
         reader->SetImageIO(io);
         reader->SetFileName(path.string());
