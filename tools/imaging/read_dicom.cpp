@@ -31,7 +31,7 @@ std::vector<std::string> largest_series(const std::filesystem::path& folder, con
         throw InvalidInput({folder.string(), "holds no DICOM image series", "",
                             "name the folder that holds the slices, or a NRRD, MetaImage or NIfTI file"});
     if (note && series.size() > 1)
-        note(fmt::format("{}: {} series; reading the largest, {} slices", folder.string(), series.size(),
+        note(fmt::format("the folder holds {} series; reading the largest, {} slices", series.size(),
                          largest.size()));
     return largest;
 }

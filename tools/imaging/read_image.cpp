@@ -100,7 +100,7 @@ bool meta_data_is_long_enough(const std::filesystem::path& path, std::size_t byt
         std::istringstream words(line);
         std::string key, equals, value;
         words >> key >> equals >> value;
-        if (key == "CompressedDataSize") bytes = std::stoull(value);
+        if (key == "CompressedDataSize") std::istringstream(value) >> bytes;
         if (key != "ElementDataFile") continue;
         std::error_code absent;
         if (value == "LOCAL")
@@ -166,8 +166,7 @@ void check_geometry(ImageGrid& grid, const std::filesystem::path& path, const No
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(grid.direction, Eigen::ComputeFullU | Eigen::ComputeFullV);
     grid.direction = svd.matrixU() * svd.matrixV().transpose();
     if (note)
-        note(fmt::format("{}: directions were {:.2g} off orthonormality and were made orthonormal",
-                         path.string(), deviation));
+        note(fmt::format("directions were {:.2g} off orthonormality and were made orthonormal", deviation));
 }
 
 void check_finite(const Volume& volume, const std::filesystem::path& path) {
@@ -194,7 +193,7 @@ ReadImage read_image_file(const std::filesystem::path& path, const NoteSink& not
         const auto space = result.header.find("NRRD_space");
         if (note && dynamic_cast<itk::NrrdImageIO*>(io.GetPointer()) != nullptr &&
             space == result.header.end())
-            note(path.string() + ": the header names no patient space; taken as LPS");
+            note("the header names no patient space; taken as LPS");
         if (!holds_all_voxels(*io, path))
             throw InvalidInput({path.string(), "holds fewer voxels than its header claims", "",
                                 "check that the file is whole"});
