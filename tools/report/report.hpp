@@ -16,9 +16,9 @@ struct ReportInputs {
     const Case& patient_case;
     const Volume* volume = nullptr;
     const LabelMap* labels = nullptr;
-    std::optional<nlohmann::json> touch;  ///< result of `palpate touch --json`
-    std::string force_curve_svg;          ///< picture made by `palpate touch --curve`; empty if none
-    std::vector<StageRecord> stages;
+    std::optional<nlohmann::json> touch{};  ///< result of `palpate touch --json`
+    std::string force_curve_svg{};          ///< picture made by `palpate touch --curve`; empty if none
+    std::vector<StageRecord> stages{};
 };
 
 /// Reads stage records from [{"stage", "seconds", "peak_memory_bytes", "status"}, ...]; throws InvalidInput

@@ -16,6 +16,9 @@ class VirtualDisplay {
     VirtualDisplay& operator=(const VirtualDisplay&) = delete;
     ~VirtualDisplay();
 
+    /// Process id of our own Xvfb; -1 if DISPLAY answered.
+    pid_t server() const { return server_; }
+
   private:
     pid_t server_ = -1;
     std::string former_;
