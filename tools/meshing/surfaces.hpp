@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstdint>
+#include <span>
+
+#include "formats/model/image_grid.hpp"
+#include "formats/model/label_map.hpp"
+#include "formats/model/triangle_mesh.hpp"
+
+namespace palpate {
+
+/// Extracts the surface around everything of `isovalue` or more (HU for CT), facing outwards. Beyond the
+/// image everything counts as low, so the surface is closed there too; values within 1e-4 of the volume's
+/// range above the isovalue count as just that far above it, so no triangle collapses onto a voxel. The
+/// result is a closed manifold. Throws InvalidInput if no voxel, or none but NaN, reaches the isovalue.
+/// Source: Schroeder, Maynard, Geveci 2015 (flying edges). Cost: 1 s for 350 000 triangles of 7 million
+/// voxels.
+TriangleMesh isosurface(const Volume& volume, double isovalue);
+
+/// Lowers every value further than `reach` voxels (counted along axes) from the voxels of the given labels to
+/// the volume's smallest value: what is not that structure, such as a table, has no surface then.
+/// Throws InvalidInput if the grids differ.
+void keep_near_labels(Volume& volume, const LabelMap& map, std::span<const std::int32_t> values, int reach);
+
+/// Extracts the surface of labels taken together: their indicator smoothed by a Gaussian of `smoothing` mm
+/// (below 0: the largest voxel edge), at the level that keeps the number of voxels inside. Closed and facing
+/// outwards. Throws InvalidInput if a label has no voxel.
+TriangleMesh label_surface(const LabelMap& map, std::span<const std::int32_t> values, double smoothing = -1);
+
+/// Keeps the pieces, connected through vertices, of `min_triangles` or more, or the one of the largest area
+/// only. Throws InvalidInput if nothing is left.
+TriangleMesh keep_large_pieces(const TriangleMesh& surface, std::int64_t min_triangles);
+TriangleMesh keep_largest_piece(const TriangleMesh& surface);
+
+/// Reduces a closed manifold surface to `max_triangles` or the few less that the last collapse leaves, by
+/// collapsing the edges that change shape and volume least (Lindstrom, Turk 1998). It stays a closed manifold
+/// of the same topology; no triangle turns over. A surface that is small enough already comes back as it is.
+/// Throws InvalidInput if the surface is not a manifold. Cost: O(n log n).
+TriangleMesh decimate(const TriangleMesh& surface, std::int64_t max_triangles);
+
+/// How far two surfaces are apart, mm, over the vertices and triangle centres of both.
+struct SurfaceDistance {
+    double mean = 0, percentile_95 = 0, maximum = 0;
+};
+
+/// Measures the distance of two surfaces both ways. Cost: O((m + n) log(m + n)).
+SurfaceDistance surface_distance(const TriangleMesh& a, const TriangleMesh& b);
+
+}  // namespace palpate
