@@ -87,6 +87,8 @@ void keep_plain(hid_t creation, bool with_links) {
 }  // namespace
 
 Hdf5Writer::Hdf5Writer(const std::filesystem::path& path) : file_name_(path.string()) {
+    // Where the disk was full, HDF5 1.10 would crash while closing the file once more on exit.
+    H5dont_atexit();
     const QuietErrors quiet;
     const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
     keep_plain(creation, true);

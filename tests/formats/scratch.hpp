@@ -36,6 +36,7 @@ inline std::vector<char> read_bytes(const std::filesystem::path& path) {
 }
 
 inline void write_bytes(const std::filesystem::path& path, const std::vector<char>& bytes) {
+    std::filesystem::remove(path);  // truncating in place would make ext4 wait for the disk
     std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
