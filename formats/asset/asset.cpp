@@ -6,6 +6,7 @@
 #include <set>
 
 #include "formats/asset/body_io.hpp"
+#include "formats/asset/digest.hpp"
 #include "formats/asset/validate.hpp"
 #include "formats/asset/vtk_grid.hpp"
 #include "formats/model/errors.hpp"
@@ -76,7 +77,7 @@ void write_asset(const std::filesystem::path& path, const Case& patient_case) {
         write_rigid_body(writer, rigid_path(i), patient_case.rigid_bodies[i]);
     for (std::size_t i = 0; i < patient_case.deformable_bodies.size(); ++i) {
         const DeformableBody& body = patient_case.deformable_bodies[i];
-        write_condensed_body(writer, deformable_path(i), body);
+        write_condensed_body(writer, deformable_path(i), body, mechanics_digest(body));
         write_obb_tree(writer, deformable_path(i) + "/obb_tree", body.obb_tree, body.boundary.surface);
     }
     writer.group("/palpate/haptics");

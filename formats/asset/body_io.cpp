@@ -116,7 +116,7 @@ void write_obb_tree(Hdf5Writer& writer, const std::string& path, const ObbTree& 
     writer.group(path);
     writer.attribute(path, "surface_sha256", surface_digest(surface));
     writer.dataset(path + "/axes",
-                   std::span<const float>(columns.axes.data()->data(), 9 * columns.axes.size()),
+                   std::span(reinterpret_cast<const float*>(columns.axes.data()), 9 * columns.axes.size()),
                    {columns.axes.size(), 3, 3});
     write_rows<float>(writer, path + "/centers", columns.centers, "mm");
     write_rows<float>(writer, path + "/half_extents", columns.half_extents, "mm");
@@ -169,7 +169,8 @@ RigidBody read_rigid_body(const Hdf5File& file, const std::string& path) {
     return body;
 }
 
-void write_condensed_body(Hdf5Writer& writer, const std::string& path, const DeformableBody& body) {
+void write_condensed_body(Hdf5Writer& writer, const std::string& path, const DeformableBody& body,
+                          const std::string& mechanics) {
     writer.group(path);
     writer.attribute(path, "name", body.name);
     write_rows<double>(writer, path + "/rest_positions", body.mesh.rest_positions, "mm");
@@ -189,7 +190,7 @@ void write_condensed_body(Hdf5Writer& writer, const std::string& path, const Def
     const std::size_t dofs = body.compliance.dof_count();
     writer.dataset(path + "/compliance", std::span(body.compliance.entries.get(), dofs * dofs), {dofs, dofs},
                    "mm/N");
-    writer.attribute(path + "/compliance", "mechanics_sha256", mechanics_digest(body));
+    writer.attribute(path + "/compliance", "mechanics_sha256", mechanics);
     writer.group(path + "/certificate");
     visit_certificate(body.certificate, [&](const char* name, const auto& value) {
         writer.attribute(path + "/certificate", name, value);

@@ -22,8 +22,9 @@ ObbTree read_obb_tree(const Hdf5File& file, const std::string& path, const Trian
 void write_rigid_body(Hdf5Writer& writer, const std::string& path, const RigidBody& body);
 RigidBody read_rigid_body(const Hdf5File& file, const std::string& path);
 
-/// Everything but the OBB tree.
-void write_condensed_body(Hdf5Writer& writer, const std::string& path, const DeformableBody& body);
+/// Everything but the OBB tree. `mechanics` is the digest of what the compliance was condensed from.
+void write_condensed_body(Hdf5Writer& writer, const std::string& path, const DeformableBody& body,
+                          const std::string& mechanics);
 DeformableBody read_condensed_body(const Hdf5File& file, const std::string& path);
 
 /// The certificate's figures by their names in the file; the same list serves writing and reading.

@@ -36,7 +36,8 @@ enum Message : unsigned {  // IV.A.2
     attribute = 0x0C,
     continuation = 0x10,
     symbol_table = 0x11,
-    attribute_info = 0x15
+    attribute_info = 0x15,
+    reference_count = 0x16
 };
 
 struct ElementType {
@@ -128,6 +129,8 @@ class Parser {
                 refuse("lacks its type, its shape or its storage");
             if (!header.links.empty()) refuse("is a dataset with links");
             object.values = Hdf5Array{header.type->scalar, header.type->size, *header.shape, {}};
+            if (header.type->scalar == ScalarType::variable_text && !path.starts_with("/VTKHDF/FieldData/"))
+                refuse("is text of variable length", "text of fixed length");
             const std::uint64_t size = byte_count(*object.values);
             const auto [start, stored] = *header.storage;
             if (stored != size) refuse("stores " + std::to_string(stored) + " bytes", std::to_string(size));
@@ -219,6 +222,8 @@ class Parser {
                 refuse("is filtered (compressed)", "contiguous data without filters");
             case symbol_table:
                 refuse("is a group of the old kind", "a group of version 2");
+            case reference_count:
+                refuse("is linked to twice");
             default:
                 refuse("has a header message of unknown type " + std::to_string(type));
         }
@@ -273,6 +278,7 @@ class Parser {
             matches({0, 0, 64, 0, 52, 11, 0, 52, 0xFF, 0x03, 0, 0}))
             return {ScalarType::float64, 8};
         if (kind == 3 && size > 0) return {ScalarType::text, size};
+        if (kind == 9 && (bits[0] & 0x0FU) == 1 && size == 16) return {ScalarType::variable_text, size};
         refuse("has a type of class " + std::to_string(kind) + " and size " + std::to_string(size),
                "uint8, int32, int64, float32, float64 (little-endian) or text of fixed length");
     }
@@ -323,6 +329,8 @@ class Parser {
         if (!plain_name(name)) refuse("has an attribute without a plain name");
         ByteCursor type_bytes(body.take(type_size)), space_bytes(body.take(space_size));
         const ElementType type = read_type(type_bytes);
+        if (type.scalar == ScalarType::variable_text)
+            refuse("has attribute '" + name + "' of variable length", "text of fixed length");
         Hdf5Array array{type.scalar, type.size, read_shape(space_bytes), {}};
         array.bytes = body.take(byte_count(array));
         if (!header.attributes.emplace(name, std::move(array)).second)

@@ -9,8 +9,10 @@
 
 namespace palpate {
 
-/// The element types that an asset may use; all little-endian, text of fixed length.
-enum class ScalarType { uint8, int32, int64, float32, float64, text };
+/// The element types that an asset may use; all little-endian. `text` is of fixed length; `variable_text`
+/// occurs below /VTKHDF/FieldData alone, for VTK 9.1, which reads no other: it is neither read nor part of
+/// the manifest.
+enum class ScalarType { uint8, int32, int64, float32, float64, text, variable_text };
 
 template <typename T>
 constexpr ScalarType scalar_type() {

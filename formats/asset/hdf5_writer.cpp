@@ -114,6 +114,7 @@ std::int64_t Hdf5Writer::require(std::int64_t result) const {
 }
 
 void Hdf5Writer::group(const std::string& path) {
+    if (path.size() <= 1) return;
     const QuietErrors quiet;
     for (std::size_t slash = path.find('/', 1);; slash = path.find('/', slash + 1)) {
         const std::string part = path.substr(0, slash);
@@ -127,27 +128,29 @@ void Hdf5Writer::group(const std::string& path) {
     }
 }
 
+void Hdf5Writer::create_dataset(const std::string& path, std::int64_t type, const Hdf5Shape& shape,
+                                const void* values) {
+    group(path.substr(0, path.rfind('/')));
+    const QuietErrors quiet;
+    const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    keep_plain(creation, false);
+    H5Pset_layout(creation, H5D_CONTIGUOUS);
+    H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY);
+    if (H5Tis_variable_str(type) == 0) H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER);
+    const Handle space(make_space(shape), H5Sclose);
+    const Handle made(H5Dcreate2(file_, path.c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
+                      H5Dclose);
+    require(made);
+    if (values) require(H5Dwrite(made, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
+}
+
 void Hdf5Writer::write_dataset(const std::string& path, ScalarType type, std::size_t element_size,
                                std::span<const std::byte> bytes, const Hdf5Shape& shape,
                                std::string_view unit) {
-    group(path.substr(0, path.rfind('/')));
-    const std::string digest = sha256(bytes);
-    {
-        const QuietErrors quiet;
-        const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-        keep_plain(creation, false);
-        H5Pset_layout(creation, H5D_CONTIGUOUS);
-        H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY);
-        H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER);
-        const Handle element(make_type(type, element_size, bytes), H5Tclose);
-        const Handle space(make_space(shape), H5Sclose);
-        const Handle made(H5Dcreate2(file_, path.c_str(), element, space, H5P_DEFAULT, creation, H5P_DEFAULT),
-                          H5Dclose);
-        require(made);
-        if (!bytes.empty()) require(H5Dwrite(made, element, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()));
-    }
-    manifest_[path] = digest;
-    attribute(path, "sha256", digest);
+    const Handle element(make_type(type, element_size, bytes), H5Tclose);
+    create_dataset(path, element, shape, bytes.empty() ? nullptr : bytes.data());
+    manifest_[path] = sha256(bytes);
+    attribute(path, "sha256", manifest_[path]);
     if (!unit.empty()) attribute(path, "unit", unit);
 }
 
@@ -159,6 +162,14 @@ void Hdf5Writer::texts(const std::string& path, const std::vector<std::string>& 
     for (std::size_t i = 0; i < values.size(); ++i)
         std::memcpy(bytes.data() + i * width, values[i].data(), values[i].size());
     write_dataset(path, ScalarType::text, width, bytes, shape, "");
+}
+
+void Hdf5Writer::variable_texts(const std::string& path, const std::vector<std::string>& values) {
+    const Handle element(H5Tcopy(H5T_C_S1), H5Tclose);
+    H5Tset_size(element, H5T_VARIABLE);
+    std::vector<const char*> pointers;
+    for (const std::string& value : values) pointers.push_back(value.c_str());
+    create_dataset(path, element, {values.size()}, pointers.empty() ? nullptr : pointers.data());
 }
 
 void Hdf5Writer::attribute(const std::string& path, const std::string& name, std::string_view text) {

@@ -31,6 +31,8 @@ class Hdf5Writer {
     }
     /// Writes texts, each padded with zeros to the longest; `shape` is {} for one text, {n} for n of them.
     void texts(const std::string& path, const std::vector<std::string>& values, const Hdf5Shape& shape);
+    /// Writes texts of variable length, without a digest; see ScalarType::variable_text.
+    void variable_texts(const std::string& path, const std::vector<std::string>& values);
 
     /// Adds an attribute to a group or dataset: a scalar, or a list with `shape` {n}.
     template <typename T>
@@ -51,6 +53,8 @@ class Hdf5Writer {
                        std::span<const std::byte> bytes, const Hdf5Shape& shape, std::string_view unit);
     void write_attribute(const std::string& path, const std::string& name, ScalarType type,
                          std::size_t element_size, std::span<const std::byte> bytes, const Hdf5Shape& shape);
+    void create_dataset(const std::string& path, std::int64_t type, const Hdf5Shape& shape,
+                        const void* values);
     [[noreturn]] void fail() const;
     std::int64_t require(std::int64_t result) const;
 

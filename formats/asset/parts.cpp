@@ -2,6 +2,7 @@
 #include "formats/asset/parts.hpp"
 
 #include "formats/asset/body_io.hpp"
+#include "formats/asset/digest.hpp"
 #include "formats/asset/validate.hpp"
 
 namespace palpate {
@@ -32,7 +33,7 @@ void write_body_part(const std::filesystem::path& path, const DeformableBody& bo
     check_body(body, path.string() + ": " + body.name);
     Hdf5Writer writer(path);
     write_header(writer, "body");
-    write_condensed_body(writer, body_path, body);
+    write_condensed_body(writer, body_path, body, mechanics_digest(body));
     writer.finish("/palpate");
 }
 

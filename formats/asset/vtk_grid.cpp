@@ -45,10 +45,6 @@ void write_list(Hdf5Writer& writer, const std::string& name, const std::vector<T
     writer.dataset("/VTKHDF/" + name, std::span(values), {values.size()});
 }
 
-void write_texts(Hdf5Writer& writer, const std::string& name, const std::vector<std::string>& values) {
-    writer.texts("/VTKHDF/" + name, values, {values.size()});
-}
-
 }  // namespace
 
 void write_vtk_grid(Hdf5Writer& writer, const Case& patient_case) {
@@ -88,9 +84,9 @@ void write_vtk_grid(Hdf5Writer& writer, const Case& patient_case) {
     write_list(writer, "Types", grid.types);
     write_list(writer, "CellData/region", grid.regions);
     write_list(writer, "CellData/body", grid.bodies);
-    write_texts(writer, "FieldData/SPACE", {"LPS"});
-    write_texts(writer, "FieldData/body_names", body_names);
-    write_texts(writer, "FieldData/region_names", region_names);
+    writer.variable_texts("/VTKHDF/FieldData/SPACE", {"LPS"});
+    writer.variable_texts("/VTKHDF/FieldData/body_names", body_names);
+    writer.variable_texts("/VTKHDF/FieldData/region_names", region_names);
     write_list(writer, "FieldData/region_values", region_values);
     write_list(writer, "FieldData/region_bodies", region_bodies);
 }

@@ -13,7 +13,8 @@
 // The god-object of radius r on the rest surface has its centre at p, at rest where the tool would be if the
 // body were rigid. Contact points k are
 //   - the feet: the surface points x_k on which the god-object rests, with n_k = (p - x_k) / |p - x_k|, and
-//   - the surface vertices x_k in the tool's way from p to d: with a = (p - d) / |p - d|, those at a distance
+//   - the free surface vertices x_k in the tool's way from p to d: with a = (p - d) / |p - d|, those at a
+//   distance
 //     rho < r from the axis through d along a, below p, and facing a. The tool meets such a vertex where its
 //     sphere passes: n_k = (sqrt(r² - rho²) a - t_k) / r, where t_k is the vertex' offset from the axis,
 //     |t_k| = rho.
@@ -22,8 +23,8 @@
 // half-space beyond the sphere's tangent plane,
 //     -n_k . (x_k + u_k - d) >= r   <=>   -n_k . u_k >= delta_k,    delta_k = r + n_k . (x_k - d).
 // For a foot in equilibrium delta = |p - d|. A vertex at the rim (rho -> r) has n_k square to the axis and
-// delta_k -> 0: it enters and leaves the contact without a jump. (Prescribing the way along a for all points
-// instead demands |p - d| - r at the rim at once, and drags walls along that the tool only slides past.)
+// delta_k -> 0. (Prescribing the way along a for all points instead demands |p - d| - r at the rim at once,
+// and drags walls along that the tool only slides past.)
 //
 // The tool pushes point k by -n_k f_k, f_k >= 0, spread over its vertices i by their weights w_ki (1 for a
 // vertex). With the compliance C, u_k = -sum_l f_l sum_ij w_ki w_lj C_ij n_l, fixed vertices giving nothing,
@@ -31,9 +32,17 @@
 //     A f - delta >= 0,  f >= 0,  f . (A f - delta) = 0,    A_kl = sum_ij w_ki w_lj n_k . C_ij n_l.
 // A is symmetric positive semi-definite. The device feels sum_k f_k n_k.
 //
-// No point is stiffer than the virtual coupling: if A_kk is below 1 / coupling_stiffness (a foot on fixed
-// vertices has A_kk = 0), the difference is put in series and written into the contact. A wholly fixed foot
-// so feels like a rigid body, and the stiffness between the two is continuous.
+// Two compliances are put in series with a point's own, c_k on the diagonal of A, and written into the
+// contact:
+//   - No point is stiffer than the virtual coupling: if A_kk is below 1 / coupling_stiffness (a foot on fixed
+//   vertices
+//     has A_kk = 0), the difference. A wholly fixed foot feels like a rigid body, and the way there is
+//     continuous.
+//   - A vertex enters at the rim, where tissue drawn towards the axis may press on the tool at once. In the
+//   outer part
+//     of the footprint, where cos = n_k . a < 1/2 (rho > 0.87 r), it bears the less the nearer the rim:
+//     A_kk (1 / (2 cos) - 1), which is 0 at cos = 1/2 and grows without bound towards the rim. Forces so
+//     change continuously while the tool slides over the mesh.
 
 namespace palpate {
 namespace {
@@ -48,6 +57,13 @@ constexpr std::int64_t foot_key = std::int64_t{1} << 32;  // keys below are vert
 
 Vector3d normal_of(const Contact& contact) noexcept {
     return Eigen::Map<const Vector3f>(contact.normal.data()).cast<double>();
+}
+
+// Takes force off a vertex that is about to leave the footprint.
+double rim_compliance(const Contact& contact, const Vector3d& axis, double own) noexcept {
+    if (contact.triangle >= 0) return 0;
+    const double cosine = std::max(1e-6, normal_of(contact).dot(axis));
+    return own * std::max(0.0, 0.5 / cosine - 1);
 }
 
 }  // namespace
@@ -120,6 +136,7 @@ std::size_t DeformableContact::collect(const CollisionSurface& surface, const Go
     for (std::size_t s = 0; s < found; ++s)
         for (const std::int32_t v : triangles_[static_cast<std::size_t>(surface.mesh_triangle(slots[s]))]) {
             const auto vertex = static_cast<std::size_t>(v);
+            if (blocks_[vertex] < 0) continue;
             const Vector3d offset = vertices_[vertex].cast<double>() - device;
             const double height = offset.dot(axis);
             const Vector3d lateral = offset - height * axis;
@@ -173,6 +190,7 @@ DeformableContact::Outcome DeformableContact::solve(const CollisionSurface& surf
     const std::span<Contact> free_part = std::span(contacts).subspan(static_cast<std::size_t>(contact_count));
     const std::size_t n = collect(surface, god_object, device, free_part, outcome.status);
     const std::span<Contact> points = free_part.first(n);
+    const Vector3d axis = (god_object.position() - device).normalized();
 
     std::array<std::size_t, max_contacts> warm;
     std::size_t warm_count = 0;
@@ -187,9 +205,10 @@ DeformableContact::Outcome DeformableContact::solve(const CollisionSurface& surf
             lcp_.matrix()(static_cast<Index>(k), static_cast<Index>(l)) = lcp_.matrix()(
                 static_cast<Index>(l), static_cast<Index>(k)) = compliance_between(points[k], points[l]);
         const double own = compliance_between(points[k], points[k]);
-        const double coupling = std::max(0.0, coupling_compliance_ - own);
-        points[k].coupling_compliance = static_cast<float>(coupling);
-        lcp_.matrix()(static_cast<Index>(k), static_cast<Index>(k)) = own + coupling;
+        const double series =
+            std::max(0.0, coupling_compliance_ - own) + rim_compliance(points[k], axis, own);
+        points[k].series_compliance = static_cast<float>(series);
+        lcp_.matrix()(static_cast<Index>(k), static_cast<Index>(k)) = own + series;
     }
 
     outcome.residual = lcp_.solve(n, std::span(warm).first(warm_count));

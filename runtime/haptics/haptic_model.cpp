@@ -112,7 +112,7 @@ Vector3d HapticModel::touch_rigid(std::size_t body, const Vector3d& device, doub
     Eigen::Map<Eigen::Vector3f>(contact.normal.data()) = (force / force.norm()).cast<float>();
     contact.gap = static_cast<float>(depth);
     contact.force = static_cast<float>(force.norm());
-    contact.coupling_compliance = static_cast<float>(1 / settings_.coupling_stiffness);
+    contact.series_compliance = static_cast<float>(1 / settings_.coupling_stiffness);
     return force;
 }
 
