@@ -8,7 +8,7 @@ set_up release
 
 bin=$root/build/release/bin
 mkdir -p "$root/build/demo"
-"$root/sample_data/unpack.sh" "$root/build/sample_data"
+"$root/sample_data/unpack.py" "$root/build/sample_data"
 started=$SECONDS
 for name in nasopharynx liver; do
     "$bin/palpate" build "$root/pipelines/cases/$name.toml" -o "$root/build/demo/$name.vtkhdf" \

@@ -35,15 +35,15 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-std::optional<Label> find_label(const LabelMap& map, std::string_view key) {
-    for (const Label& label : map.names)
+std::optional<Label> find_label(std::span<const Label> labels, std::string_view key) {
+    for (const Label& label : labels)
         if (label.name == key) return label;
-    for (const Label& label : map.names)
+    for (const Label& label : labels)
         if (lower(label.name) == lower(key)) return label;
     std::int32_t value = 0;
     const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), value);
     if (error == std::errc{} && end == key.data() + key.size())
-        for (const Label& label : map.names)
+        for (const Label& label : labels)
             if (label.value == value) return label;
     return std::nullopt;
 }
@@ -63,10 +63,10 @@ std::vector<std::string> nearest_names(std::string_view key, const std::vector<s
     return names;
 }
 
-Label require_label(const LabelMap& map, std::string_view key, const std::string& culprit) {
-    if (const auto label = find_label(map, key)) return *label;
+Label require_label(std::span<const Label> labels, std::string_view key, const std::string& culprit) {
+    if (const auto label = find_label(labels, key)) return *label;
     std::vector<std::string> names;
-    for (const Label& label : map.names) names.push_back(label.name);
+    for (const Label& label : labels) names.push_back(label.name);
     std::string near;
     for (const std::string& name : nearest_names(key, names))
         near += (near.empty() ? "'" : ", '") + name + "'";
@@ -74,7 +74,7 @@ Label require_label(const LabelMap& map, std::string_view key, const std::string
         {.culprit = culprit,
          .found = "no label '" + std::string(key) + "'",
          .expected = "",
-         .next_step = near.empty() ? "the map has no labels; segment first" : "nearest names: " + near});
+         .next_step = near.empty() ? "there are no labels; segment first" : "nearest names: " + near});
 }
 
 std::array<float, 3> default_label_colour(std::int32_t value) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,13 +26,19 @@ struct LabelMap {
 };
 
 /// Finds a label by name (exact, then ignoring case) or, if `key` is a number, by value.
-std::optional<Label> find_label(const LabelMap& map, std::string_view key);
+std::optional<Label> find_label(std::span<const Label> labels, std::string_view key);
+inline std::optional<Label> find_label(const LabelMap& map, std::string_view key) {
+    return find_label(map.names, key);
+}
 
 /// Returns up to three names of `candidates` nearest to `key` by edit distance, best first.
 std::vector<std::string> nearest_names(std::string_view key, const std::vector<std::string>& candidates);
 
 /// Finds a label as find_label() does; throws InvalidInput naming `culprit` and the nearest names.
-Label require_label(const LabelMap& map, std::string_view key, const std::string& culprit);
+Label require_label(std::span<const Label> labels, std::string_view key, const std::string& culprit);
+inline Label require_label(const LabelMap& map, std::string_view key, const std::string& culprit) {
+    return require_label(map.names, key, culprit);
+}
 
 /// Distinct colours for labels without one of their own, by label value.
 std::array<float, 3> default_label_colour(std::int32_t value);

@@ -24,7 +24,7 @@ RegionMaterial parse_material(const std::string& text, const TetMesh& mesh, cons
         !number(comma + 1, text.size(), ratio))
         throw UsageError({"--material " + text, "cannot be read", "REGION:YOUNGS_MODULUS_KPA,POISSONS_RATIO",
                           "for example liver:6.3,0.45"});
-    const Label region = require_label({.names = mesh.region_names}, text.substr(0, colon), mesh_name);
+    const Label region = require_label(mesh.region_names, text.substr(0, colon), mesh_name);
     return {region.value, {.youngs_modulus = modulus_kpa * 1e-3, .poissons_ratio = ratio}};
 }
 

@@ -19,7 +19,8 @@ RecipeValue recipe_value(const json& value, const std::string& culprit) {
     if (value.is_number()) return value.get<double>();
     if (value.is_string()) return value.get<std::string>();
     std::vector<double> numbers;
-    for (const auto& [key, number] : value.flatten().items()) {
+    const json flat = value.flatten();
+    for (const json& number : flat) {
         if (!value.is_array() || !number.is_number())
             throw InvalidInput({culprit, value.dump(), "a number, numbers, a text, true or false", ""});
         numbers.push_back(number.get<double>());

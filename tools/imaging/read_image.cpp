@@ -138,6 +138,7 @@ bool holds_all_voxels(itk::ImageIOBase& io, const std::filesystem::path& path) {
 
 std::string reason_of(const itk::ExceptionObject& error) {
     std::string text = error.GetDescription();
+    if (text.starts_with("ITK ERROR: ")) text.erase(0, 11);
     if (const auto prefix = text.find("): "); prefix != std::string::npos) text.erase(0, prefix + 3);
     std::ranges::replace(text, '\n', ' ');
     while (text.ends_with(' ')) text.pop_back();
@@ -205,8 +206,8 @@ ReadImage read_image_file(const std::filesystem::path& path, const NoteSink& not
         result.volume.values.assign(voxels.begin(), voxels.end());
         return result;
     } catch (const itk::ExceptionObject& error) {
-        throw InvalidInput({path.string(), std::string("cannot be read: ") + reason_of(error), "",
-                            "check that the file is whole"});
+        throw InvalidInput({path.string(), "cannot be read: " + reason_of(error), "",
+                            "check that the file is whole and its directions are orthonormal"});
     }
 }
 

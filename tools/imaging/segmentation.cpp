@@ -2,8 +2,7 @@
 #include "tools/imaging/segmentation.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <fmt/format.h>
+#include <optional>
 
 #include "formats/model/errors.hpp"
 #include "tools/imaging/image_files.hpp"

@@ -75,19 +75,26 @@ Eigen::MatrixXd push_directions(const TetMesh& mesh, const std::vector<Interface
     return directions;
 }
 
-// Adds the largest of `step`, its half, its quarter, ... that leaves every tetrahedron half its volume.
+// Adds `step`, halved as often as it takes at the nodes of every tetrahedron whose smallest dihedral angle
+// would fall below nine tenths of what it is.
 void move_nodes(TetMesh& mesh, const Eigen::VectorXd& step) {
     const std::vector<Eigen::Vector3d> before = mesh.rest_positions;
-    std::vector<double> volumes(mesh.tetrahedra.size());
-    for (std::size_t t = 0; t < volumes.size(); ++t) volumes[t] = six_volume(mesh, t);
-    for (double fraction = 1; fraction > 0.01; fraction /= 2) {
+    std::vector<double> lowest(mesh.tetrahedra.size()), fraction(before.size(), 1.0);
+    for (std::size_t t = 0; t < lowest.size(); ++t) lowest[t] = 0.9 * flatness_deg(mesh, t);
+    for (int halvings = 0; halvings < 8; ++halvings) {
         for (std::size_t node = 0; node < before.size(); ++node)
             mesh.rest_positions[node] =
-                before[node] + fraction * step.segment<3>(3 * static_cast<Eigen::Index>(node));
+                before[node] + fraction[node] * step.segment<3>(3 * static_cast<Eigen::Index>(node));
+        std::vector<bool> halve(before.size(), false);
         bool sound = true;
-        for (std::size_t t = 0; t < volumes.size() && sound; ++t)
-            sound = six_volume(mesh, t) > 0.5 * volumes[t];
+        for (std::size_t t = 0; t < lowest.size(); ++t) {
+            if (six_volume(mesh, t) > 0 && flatness_deg(mesh, t) >= lowest[t]) continue;
+            sound = false;
+            for (const std::int32_t node : mesh.tetrahedra[t]) halve[static_cast<std::size_t>(node)] = true;
+        }
         if (sound) return;
+        for (std::size_t node = 0; node < before.size(); ++node)
+            if (halve[node]) fraction[node] *= 0.5;
     }
     mesh.rest_positions = before;
 }

@@ -65,6 +65,11 @@ double radius_ratio(const std::array<Eigen::Vector3d, 4>& p, double volume) {
 
 }  // namespace
 
+double flatness_deg(const TetMesh& mesh, std::size_t t) {
+    const auto [low, high] = std::ranges::minmax(dihedral_angles_deg(corners_of(mesh, t)));
+    return std::min(low, 180 - high);
+}
+
 SurfaceQuality measure(const TriangleMesh& surface) {
     SurfaceQuality quality;
     std::vector<DirectedEdge> edges;

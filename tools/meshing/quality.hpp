@@ -57,6 +57,9 @@ struct MeshQuality {
 /// Measures a tetrahedral mesh of one tetrahedron or more. Cost: O(n log n), 0.1 s for 50 000 tetrahedra.
 MeshQuality measure(const TetMesh& mesh);
 
+/// Returns how far the dihedral angles of tetrahedron `t` stay from 0° and 180° at least, degrees.
+double flatness_deg(const TetMesh& mesh, std::size_t t);
+
 /// Numbers the pieces of a mesh that are connected through faces: one entry per tetrahedron, pieces in order
 /// of their first tetrahedron.
 std::vector<std::int32_t> face_components(const TetMesh& mesh);

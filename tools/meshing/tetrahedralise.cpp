@@ -9,6 +9,7 @@
 #include "tools/meshing/body_repair.hpp"
 #include "tools/meshing/cgal_mesher.hpp"
 #include "tools/meshing/fidelity.hpp"
+#include "tools/meshing/lift_flat_tetrahedra.hpp"
 #include "tools/meshing/outside_labels.hpp"
 #include "tools/meshing/smoothed_labels.hpp"
 #include "tools/meshing/surface_seeds.hpp"
@@ -109,6 +110,7 @@ TetMesh tetrahedralise(const LabelMap& map, std::span<const std::int32_t> region
     progress("repair", 0.9);
     split_hinges(mesh);
     remove_crumbs(mesh, sizing.min_component_volume);
+    lift_flat_tetrahedra(mesh, sizing.min_dihedral_deg, finest);
     std::vector<RegionVolume> targets;
     for (const std::int32_t value : labels.values) targets.push_back({value, 0});
     for (const std::uint8_t region : labels.regions)

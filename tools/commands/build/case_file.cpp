@@ -132,7 +132,9 @@ nlohmann::json to_json(const toml::node& node) {
 // A structure's other keys are the recipe's parameters; `palpate segment` knows which exist and refuses the
 // rest.
 StructureSpec structure(Reader reader) {
-    StructureSpec spec{reader.required<std::string>("name"), reader.required<std::string>("recipe"), {}};
+    StructureSpec spec;
+    spec.name = reader.required<std::string>("name");
+    spec.recipe = reader.required<std::string>("recipe");
     for (const auto& [key, node] : reader.raw())
         if (key.str() != "name" && key.str() != "recipe")
             spec.parameters[std::string(key.str())] = to_json(node);
@@ -216,8 +218,8 @@ CaseFile read_case_file(const std::filesystem::path& path) {
                                                      {"max_force_rate_n_per_ms", "--max-force-rate"}});
     result.quality =
         options(root.table("quality"), {{"min_dihedral_deg", "--min-dihedral-deg"},
-                                        {"max_dihedral_deg", "--max-dihedral-deg"},
-                                        {"max_volume_error_percent", "--max-volume-error-percent"}});
+                                        {"max_volume_error_percent", "--max-volume-error-percent"},
+                                        {"min_dice", "--min-dice"}});
     root.refuse_unknown();
     if (result.rigid.empty() && result.deformable.empty())
         root.fail(document, "deformable", "is missing", "at least one [[rigid]] or [[deformable]] body");

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/visual/overlay.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <vtkActor2D.h>
+#include <vtkCellArray.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataMapper2D.h>
+#include <vtkProperty2D.h>
+#include <vtkRenderer.h>
+#include <vtkTextActor.h>
+#include <vtkTextProperty.h>
+
+namespace palpate {
+namespace {
+
+constexpr double bar_width = 240, bar_height = 10;
+constexpr auto help_text =
+    "left drag  move the tool      wheel, W S  deeper, back      arrows  step\n"
+    "right drag  turn the view      + -  zoom      C  cut away      B  bone      R  reset      H  help      "
+    "Q  quit";
+
+void place(vtkTextActor* actor, double x, double y, int size, bool right, bool top, vtkRenderer* renderer) {
+    actor->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
+    actor->SetPosition(x, y);
+    vtkTextProperty* text = actor->GetTextProperty();
+    text->SetFontFamilyToArial();
+    text->SetFontSize(size);
+    text->SetColor(0.93, 0.95, 0.97);
+    text->SetLineSpacing(1.25);
+    if (right) text->SetJustificationToRight();
+    if (top) text->SetVerticalJustificationToTop();
+    renderer->AddActor2D(actor);
+}
+
+void make_bar(vtkActor2D* actor, vtkPoints* points, double opacity, vtkRenderer* renderer) {
+    vtkNew<vtkCellArray> cells;
+    cells->InsertNextCell({0, 1, 2, 3});
+    vtkNew<vtkPolyData> data;
+    data->SetPoints(points);
+    data->SetPolys(cells);
+    vtkNew<vtkPolyDataMapper2D> mapper;
+    mapper->SetInputData(data);
+    actor->SetMapper(mapper);
+    actor->GetProperty()->SetColor(1, 1, 1);
+    actor->GetProperty()->SetOpacity(opacity);
+    actor->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
+    actor->SetPosition(0.017, 0.885);
+    renderer->AddActor2D(actor);
+}
+
+void set_length(vtkPoints* points, double length) {
+    points->SetNumberOfPoints(4);
+    points->SetPoint(0, 0, 0, 0);
+    points->SetPoint(1, length, 0, 0);
+    points->SetPoint(2, length, bar_height, 0);
+    points->SetPoint(3, 0, bar_height, 0);
+    points->Modified();
+}
+
+}  // namespace
+
+Overlay::Overlay(const std::string& title, double max_force, vtkRenderer* renderer) : max_force_(max_force) {
+    vtkNew<vtkPoints> whole;
+    set_length(whole, bar_width);
+    set_length(bar_points_, 0);
+    make_bar(bar_frame_, whole, 0.18, renderer);
+    make_bar(bar_, bar_points_, 1, renderer);
+    place(force_, 0.017, 0.975, 30, false, true, renderer);
+    place(figures_, 0.017, 0.865, 16, false, true, renderer);
+    place(title_, 0.983, 0.975, 18, true, true, renderer);
+    place(help_, 0.017, 0.025, 14, false, false, renderer);
+    title_->SetInput(title.c_str());
+    help_->SetInput(help_text);
+    help_->GetTextProperty()->SetOpacity(0.75);
+}
+
+void Overlay::update(const VisualFrame& frame, double frames_per_second) {
+    using namespace std::chrono_literals;
+    const double newtons = frame.force.norm();
+    const double share = std::min(1.0, newtons / max_force_);
+    set_length(bar_points_, bar_width * share);
+    bar_->GetProperty()->SetColor(share < 0.5 ? 0.35 + 1.3 * share : 1,
+                                  share < 0.5 ? 0.82 : 1.64 - 1.64 * share, 0.3);
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last_ < 200ms) return;
+    last_ = now;
+    force_->SetInput(fmt::format("{:.2f} N", newtons).c_str());
+    figures_->SetInput(fmt::format("depth {:.1f} mm\n{:.0f} ticks/s, {} overruns\n{:.0f} frames/s",
+                                   std::max(0.0, frame.depth), frame.tick_rate_hz, frame.overruns,
+                                   frames_per_second)
+                           .c_str());
+}
+
+void Overlay::show_help(bool on) {
+    help_->SetVisibility(on);
+}
+
+}  // namespace palpate

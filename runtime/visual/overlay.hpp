@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <chrono>
+#include <string>
+#include <vtkActor2D.h>
+#include <vtkNew.h>
+#include <vtkPoints.h>
+#include <vtkRenderer.h>
+#include <vtkTextActor.h>
+
+#include "runtime/visual/visual_frame.hpp"
+
+namespace palpate {
+
+/// The figures and key hints that lie over the scene. Texts are set anew five times a second: often enough to
+/// read, seldom enough to cost nothing.
+class Overlay {
+  public:
+    Overlay(const std::string& title, double max_force, vtkRenderer* renderer);
+
+    void update(const VisualFrame& frame, double frames_per_second);
+    void show_help(bool on);
+
+  private:
+    double max_force_;  // N
+    std::chrono::steady_clock::time_point last_{};
+    vtkNew<vtkTextActor> force_, figures_, title_, help_;
+    vtkNew<vtkPoints> bar_points_;
+    vtkNew<vtkActor2D> bar_, bar_frame_;
+};
+
+}  // namespace palpate

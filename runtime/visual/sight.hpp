@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+
+#include "formats/model/body.hpp"
+
+namespace palpate {
+
+/// From where a target is looked at first.
+struct Sight {
+    Eigen::Vector3d target = Eigen::Vector3d::Zero();        ///< p_P, mm
+    Eigen::Vector3d toward_eye = -Eigen::Vector3d::UnitY();  ///< unit
+    double field = 100;                                      ///< mm, height of what is seen at the target
+    bool blocked = false;                                    ///< a body stands between target and eye
+
+    Eigen::Vector3d eye(double view_angle_deg) const;
+};
+
+/// Chooses a sight of a place on a surface: down its normal, tilted towards the patient's head (or front, for
+/// a normal along the body's axis) so that the tool does not hide what it touches; wide enough for the first
+/// deformable body, at most 260 mm. Linear in all triangles.
+Sight choose_sight(const Case& patient_case, const Eigen::Vector3d& point, const Eigen::Vector3d& normal);
+
+}  // namespace palpate

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/visual/train_window.hpp"
+
+#include <X11/Xlib.h>
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <string>
+#include <vtkCallbackCommand.h>
+#include <vtkCamera.h>
+#include <vtkNew.h>
+#include <vtkPNGWriter.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderWindowInteractor.h>
+#include <vtkRenderer.h>
+#include <vtkWindowToImageFilter.h>
+
+#include "formats/model/errors.hpp"
+#include "runtime/visual/overlay.hpp"
+#include "runtime/visual/scene.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double view_angle_deg = 30;
+constexpr double step = 0.5;        // mm a key press
+constexpr double wheel_step = 1;    // mm a notch
+constexpr double zoom_step = 1.15;  // a key press
+constexpr double turn_deg = 0.35;   // a pixel
+
+// VTK aborts where no display answers; this asks first.
+void require_display() {
+    Display* display = XOpenDisplay(nullptr);
+    if (display == nullptr)
+        throw SystemFailure(
+            {.culprit = "DISPLAY",
+             .found = "no X display answers, and the window needs one",
+             .expected = "",
+             .next_step = "log in to a desktop, set DISPLAY, or try 'xvfb-run palpate train ...'"});
+    XCloseDisplay(display);
+}
+
+}  // namespace
+
+struct TrainWindow::Parts {
+    Parts(const Case& patient_case, const WindowSettings& window_settings)
+        : settings(window_settings),
+          hand(window_settings.start),
+          scene(patient_case, window_settings.sight, window_settings.rigid_budget, renderer),
+          overlay(patient_case.name, patient_case.haptics.max_force, renderer),
+          cut(window_settings.sight.blocked) {
+        renderer->GradientBackgroundOn();
+        renderer->SetBackground(0.07, 0.09, 0.11);
+        renderer->SetBackground2(0.20, 0.25, 0.30);
+        window->AddRenderer(renderer);
+        window->SetSize(settings.width, settings.height);
+        window->SetWindowName(("Palpate: " + patient_case.name).c_str());
+        window->SetMultiSamples(0);  // software rendering pays for every sample
+        interactor->SetRenderWindow(window);
+        interactor->SetInteractorStyle(nullptr);
+        events->SetClientData(this);
+        events->SetCallback([](vtkObject*, unsigned long event, void* self, void*) {
+            static_cast<Parts*>(self)->handle(event);
+        });
+        for (const unsigned long event :
+             {vtkCommand::LeftButtonPressEvent, vtkCommand::LeftButtonReleaseEvent,
+              vtkCommand::RightButtonPressEvent, vtkCommand::RightButtonReleaseEvent,
+              vtkCommand::MouseMoveEvent, vtkCommand::MouseWheelForwardEvent,
+              vtkCommand::MouseWheelBackwardEvent, vtkCommand::KeyPressEvent, vtkCommand::ExitEvent})
+            interactor->AddObserver(event, events);
+        reset();
+        interactor->Initialize();
+    }
+
+    void reset() {
+        hand = settings.start;
+        const Vector3d eye = settings.sight.eye(view_angle_deg);
+        vtkCamera* camera = renderer->GetActiveCamera();
+        camera->SetViewAngle(view_angle_deg);
+        camera->SetFocalPoint(settings.sight.target.data());
+        camera->SetPosition(eye.data());
+        const bool from_above = std::abs(settings.sight.toward_eye.z()) > 0.9;
+        camera->SetViewUp(0, from_above ? -1 : 0, from_above ? 0 : 1);
+        camera->OrthogonalizeViewUp();
+    }
+
+    // Unit directions of the view: to the right, up, towards the eye.
+    std::array<Vector3d, 3> view_axes() {
+        vtkCamera* camera = renderer->GetActiveCamera();
+        camera->OrthogonalizeViewUp();
+        const Vector3d eye = -Vector3d(camera->GetDirectionOfProjection());
+        const Vector3d up = Vector3d(camera->GetViewUp());
+        return {up.cross(eye), up, eye};
+    }
+
+    // Millimetres in the view plane through the hand that one pixel spans.
+    double pixel_size() {
+        vtkCamera* camera = renderer->GetActiveCamera();
+        const double distance = std::abs((Vector3d(camera->GetPosition()) - hand).dot(view_axes()[2]));
+        return 2 * distance * std::tan(camera->GetViewAngle() * std::numbers::pi / 360) /
+               window->GetSize()[1];
+    }
+
+    void handle(unsigned long event) {
+        switch (event) {
+            case vtkCommand::LeftButtonPressEvent:
+                dragging = true;
+                break;
+            case vtkCommand::LeftButtonReleaseEvent:
+                dragging = false;
+                break;
+            case vtkCommand::RightButtonPressEvent:
+                turning = true;
+                break;
+            case vtkCommand::RightButtonReleaseEvent:
+                turning = false;
+                break;
+            case vtkCommand::MouseMoveEvent:
+                pointer_moved();
+                break;
+            case vtkCommand::MouseWheelForwardEvent:
+                hand -= view_axes()[2] * wheel_step;
+                break;
+            case vtkCommand::MouseWheelBackwardEvent:
+                hand += view_axes()[2] * wheel_step;
+                break;
+            case vtkCommand::KeyPressEvent:
+                key_pressed(interactor->GetKeySym());
+                break;
+            default:
+                closed = true;
+                break;
+        }
+    }
+
+    void pointer_moved() {
+        const int* now = interactor->GetEventPosition();
+        const int* before = interactor->GetLastEventPosition();
+        const double dx = now[0] - before[0], dy = now[1] - before[1];
+        if (dragging) {
+            const auto [right, up, eye] = view_axes();
+            hand += (right * dx + up * dy) * pixel_size();
+        } else if (turning) {
+            vtkCamera* camera = renderer->GetActiveCamera();
+            camera->Azimuth(-turn_deg * dx);
+            camera->Elevation(-turn_deg * dy);
+            camera->OrthogonalizeViewUp();
+        }
+    }
+
+    void key_pressed(const char* symbol) {
+        std::string key = symbol ? symbol : "";
+        if (key.size() == 1) key[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(key[0])));
+        const auto [right, up, eye] = view_axes();
+        const std::map<std::string, Vector3d> moves{{"Left", -right}, {"Right", right}, {"Up", up},
+                                                    {"Down", -up},    {"w", -eye},      {"s", eye}};
+        if (const auto move = moves.find(key); move != moves.end()) hand += step * move->second;
+        if (key == "plus" || key == "equal" || key == "KP_Add") renderer->GetActiveCamera()->Dolly(zoom_step);
+        if (key == "minus" || key == "KP_Subtract") renderer->GetActiveCamera()->Dolly(1 / zoom_step);
+        if (key == "c") cut = !cut;
+        if (key == "b") scene.show_rigid(rigid_shown = !rigid_shown);
+        if (key == "h") overlay.show_help(help_shown = !help_shown);
+        if (key == "r") reset();
+        if (key == "q" || key == "Escape") closed = true;
+    }
+
+    WindowSettings settings;
+    Vector3d hand;
+    vtkNew<vtkRenderer> renderer;
+    vtkNew<vtkRenderWindow> window;
+    vtkNew<vtkRenderWindowInteractor> interactor;
+    vtkNew<vtkCallbackCommand> events;
+    Scene scene;
+    Overlay overlay;
+    bool cut;
+    bool rigid_shown = true;
+    bool help_shown = true;
+    bool dragging = false;
+    bool turning = false;
+    bool closed = false;
+    std::int64_t frames = 0;
+    double frame_seconds = 0;  // of a frame, averaged over some thirty
+    std::chrono::steady_clock::time_point last_frame{};
+};
+
+TrainWindow::TrainWindow(const Case& patient_case, const WindowSettings& settings) {
+    require_display();
+    parts_ = std::make_unique<Parts>(patient_case, settings);
+}
+
+TrainWindow::~TrainWindow() = default;
+
+void TrainWindow::show(const VisualFrame& frame) {
+    Parts& p = *parts_;
+    p.interactor->ProcessEvents();
+    if (p.closed) return;
+    p.scene.update(frame);
+    // Open far enough in front of the target for the tool, which stands in what was cut away.
+    const Vector3d eye = p.view_axes()[2];
+    p.scene.cut_away(p.cut, p.settings.sight.target + eye * (0.06 * p.settings.sight.field), eye);
+    p.overlay.update(frame, frames_per_second());
+    p.renderer->ResetCameraClippingRange();
+    p.window->Render();
+    ++p.frames;
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - p.last_frame).count();
+    p.last_frame = now;
+    if (p.frames == 2) p.frame_seconds = seconds;
+    if (p.frames > 2) p.frame_seconds += (seconds - p.frame_seconds) / 30;
+}
+
+bool TrainWindow::closed() const {
+    return parts_->closed;
+}
+
+Vector3d TrainWindow::hand() const {
+    return parts_->hand;
+}
+
+std::int64_t TrainWindow::frames() const {
+    return parts_->frames;
+}
+
+double TrainWindow::frames_per_second() const {
+    return parts_->frame_seconds > 0 ? 1 / parts_->frame_seconds : 0;
+}
+
+void TrainWindow::save_picture(const std::filesystem::path& path) {
+    vtkNew<vtkWindowToImageFilter> grab;
+    grab->SetInput(parts_->window);
+    grab->ReadFrontBufferOff();
+    vtkNew<vtkPNGWriter> writer;
+    writer->SetInputConnection(grab->GetOutputPort());
+    writer->SetFileName(path.c_str());
+    writer->Write();
+    if (writer->GetErrorCode() != 0)
+        throw SystemFailure(
+            {path.string(), "the picture could not be written", "", "check free space and permissions"});
+}
+
+}  // namespace palpate

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <memory>
+
+#include "formats/model/body.hpp"
+#include "runtime/visual/sight.hpp"
+#include "runtime/visual/visual_frame.hpp"
+
+namespace palpate {
+
+struct WindowSettings {
+    int width = 1280;                                 ///< pixels
+    int height = 720;                                 ///< pixels
+    std::int64_t rigid_budget = 60'000;               ///< triangles of all rigid bodies on the screen
+    Eigen::Vector3d start = Eigen::Vector3d::Zero();  ///< where the hand is first, p_P, mm
+    Sight sight;                                      ///< where the eye is first
+};
+
+/// The trainer's window: draws the scene and turns mouse and keyboard into a place for the hand. One thread,
+/// the one that made it; it never waits for another.
+class TrainWindow {
+  public:
+    /// Opens the window. Throws SystemFailure if no X display answers.
+    TrainWindow(const Case& patient_case, const WindowSettings& settings);
+    TrainWindow(const TrainWindow&) = delete;
+    TrainWindow& operator=(const TrainWindow&) = delete;
+    ~TrainWindow();
+
+    /// Handles what mouse and keyboard did, then draws one frame.
+    void show(const VisualFrame& frame);
+
+    bool closed() const;               ///< Q, Escape or the window's own button
+    Eigen::Vector3d hand() const;      ///< where the hand is meant to be, p_P, mm
+    std::int64_t frames() const;       ///< drawn so far
+    double frames_per_second() const;  ///< of the last second or so
+
+    /// Writes what the window shows as PNG. Throws SystemFailure if that fails.
+    void save_picture(const std::filesystem::path& path);
+
+  private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace palpate

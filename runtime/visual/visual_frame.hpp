@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+namespace palpate {
+
+/// What the window shows at one moment, taken from the haptic thread's latest tick.
+struct VisualFrame {
+    Eigen::Vector3d device_position = Eigen::Vector3d::Zero();  ///< p_P, mm
+    Eigen::Vector3d tool_position = Eigen::Vector3d::Zero();    ///< p_P, mm
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();            ///< on the device, frame P, N
+    double depth = 0;                                           ///< below the rest surface, mm
+    double tick_rate_hz = 0;
+    std::int64_t overruns = 0;
+    /// Of every surface vertex of every deformable body, mm.
+    std::vector<std::vector<Eigen::Vector3f>> displacements;
+};
+
+}  // namespace palpate

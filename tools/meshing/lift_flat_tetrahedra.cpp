@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/meshing/lift_flat_tetrahedra.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "tools/meshing/quality.hpp"
+#include "tools/meshing/tet_faces.hpp"
+
+namespace palpate {
+namespace {
+
+class Lifter {
+  public:
+    Lifter(TetMesh& mesh, double max_surface_move)
+        : mesh_(mesh),
+          start_(mesh.rest_positions),
+          stars_(mesh.rest_positions.size()),
+          reach_(mesh.rest_positions.size(), std::numeric_limits<double>::infinity()) {
+        for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+            for (const std::int32_t node : mesh.tetrahedra[t])
+                stars_[static_cast<std::size_t>(node)].push_back(t);
+        const std::vector<TetFace> faces = sorted_faces(mesh);
+        for (std::size_t i = 0; i < faces.size();) {
+            const bool shared = i + 1 < faces.size() && faces[i + 1].sorted_nodes == faces[i].sorted_nodes;
+            if (!shared || mesh.regions[faces[i].tet] != mesh.regions[faces[i + 1].tet])
+                for (const std::int32_t node : faces[i].sorted_nodes)
+                    reach_[static_cast<std::size_t>(node)] = max_surface_move;
+            i += shared ? 2 : 1;
+        }
+    }
+
+    // One pass over all tetrahedra flatter than the bound, flattest first; tells whether anything moved.
+    bool pass(double bound_deg) {
+        std::vector<std::pair<double, std::size_t>> flat;
+        for (std::size_t t = 0; t < mesh_.tetrahedra.size(); ++t)
+            if (const double angle = flatness_deg(mesh_, t); angle < bound_deg) flat.emplace_back(angle, t);
+        std::ranges::sort(flat);
+        bool moved = false;
+        for (const auto& [angle, t] : flat)
+            for (const std::int32_t node : mesh_.tetrahedra[t])
+                moved |= improve(static_cast<std::size_t>(node));
+        return moved;
+    }
+
+  private:
+    double flattest_around(std::size_t node) const {
+        double flattest = 180;
+        for (const std::size_t t : stars_[node]) {
+            if (!(six_volume(mesh_, t) > 0)) return 0;
+            flattest = std::min(flattest, flatness_deg(mesh_, t));
+        }
+        return flattest;
+    }
+
+    double shortest_edge(std::size_t node) const {
+        double shortest = std::numeric_limits<double>::max();
+        for (const std::size_t t : stars_[node])
+            for (const std::int32_t other : mesh_.tetrahedra[t])
+                if (static_cast<std::size_t>(other) != node)
+                    shortest = std::min(shortest, (mesh_.rest_positions[static_cast<std::size_t>(other)] -
+                                                   mesh_.rest_positions[node])
+                                                      .norm());
+        return shortest;
+    }
+
+    // A pattern search: the 26 neighbours on a lattice that gets finer.
+    bool improve(std::size_t node) {
+        Eigen::Vector3d& position = mesh_.rest_positions[node];
+        const double edge = shortest_edge(node), before = flattest_around(node);
+        double best = before;
+        Eigen::Vector3d best_position = position;
+        for (const double step : {0.2 * edge, 0.05 * edge, 0.0125 * edge}) {
+            const Eigen::Vector3d center = best_position;
+            for (int k = -1; k <= 1; ++k)
+                for (int j = -1; j <= 1; ++j)
+                    for (int i = -1; i <= 1; ++i) {
+                        position = center + step * Eigen::Vector3d(i, j, k);
+                        if ((position - start_[node]).norm() > reach_[node]) continue;
+                        if (const double now = flattest_around(node); now > best) {
+                            best = now;
+                            best_position = position;
+                        }
+                    }
+        }
+        position = best_position;
+        return best > before;
+    }
+
+    TetMesh& mesh_;
+    std::vector<Eigen::Vector3d> start_;
+    std::vector<std::vector<std::size_t>> stars_;
+    std::vector<double> reach_;
+};
+
+}  // namespace
+
+void lift_flat_tetrahedra(TetMesh& mesh, double bound_deg, double max_surface_move) {
+    constexpr int max_passes = 10;
+    Lifter lifter(mesh, max_surface_move);
+    for (int pass = 0; pass < max_passes && lifter.pass(bound_deg); ++pass) {
+    }
+}
+
+}  // namespace palpate
