@@ -57,7 +57,7 @@ Case read_case(const Hdf5File& file) {
 }  // namespace
 
 void write_asset(const std::filesystem::path& path, const Case& patient_case) {
-    const std::string where = path.string();
+    const std::string where = "case '" + patient_case.name + "'";
     check_case(patient_case, where);
     for (const RigidBody& body : patient_case.rigid_bodies) {
         check_name(body.name, where);

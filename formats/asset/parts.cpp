@@ -14,8 +14,8 @@ constexpr const char* body_path = "/palpate/body";
 }  // namespace
 
 void write_obb_part(const std::filesystem::path& path, const ObbTree& tree, const TriangleMesh& surface) {
-    check_surface(surface, path.string());
-    check_obb_tree(tree, surface.triangles.size(), path.string());
+    check_surface(surface, "surface");
+    check_obb_tree(tree, surface.triangles.size(), "OBB tree");
     Hdf5Writer writer(path);
     write_header(writer, "obb_tree");
     write_obb_tree(writer, tree_path, tree, surface);
@@ -30,7 +30,7 @@ ObbTree read_obb_part(const std::filesystem::path& path, const TriangleMesh& sur
 }
 
 void write_body_part(const std::filesystem::path& path, const DeformableBody& body) {
-    check_body(body, path.string() + ": " + body.name);
+    check_body(body, "body '" + body.name + "'");
     Hdf5Writer writer(path);
     write_header(writer, "body");
     write_condensed_body(writer, body_path, body, mechanics_digest(body));

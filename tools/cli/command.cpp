@@ -196,6 +196,7 @@ int Command::run(int argc, char** argv, const std::function<nlohmann::ordered_js
         emit(std::move(result),
              std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
         std::cout.flush();
+        if (session.shortfall) throw QualityNotMet(*session.shortfall);
         return std::cout ? ExitCode::ok : ExitCode::failed;
     } catch (const UsageError& error) {
         say(error);

@@ -5,9 +5,11 @@
 #include <fmt/format.h>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "formats/model/errors.hpp"
 #include "tools/cli/progress.hpp"
 #include "tools/cli/staged_file.hpp"
 
@@ -51,6 +53,8 @@ struct Session {
     bool force = false;  ///< --force: existing outputs may be replaced
     bool quiet = false;  ///< --quiet
     Progress progress;   ///< talks on stderr, silent with --quiet
+    /// Set by a job whose result is worth printing though a contract is not met: exit code 4.
+    std::optional<ErrorDetail> shortfall;
 
     /// Opens an output that appears whole at commit() or not at all; an existing file without --force throws
     /// InvalidInput.

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
+#include "formats/asset/asset.hpp"
+#include "tools/cli/command.hpp"
+
+namespace {
+using namespace palpate;
+using Json = nlohmann::ordered_json;
+
+Json row_of(const RigidBody& body) {
+    return {{"name", body.name},
+            {"kind", "rigid"},
+            {"nodes", body.surface.vertices.size()},
+            {"tetrahedra", 0},
+            {"triangles", body.surface.triangles.size()},
+            {"surface_nodes", body.surface.vertices.size()},
+            {"fixed_nodes", 0},
+            {"contact_nodes", 0},
+            {"compliance_mb", 0.0},
+            {"obb_nodes", body.obb_tree.nodes.size()}};
+}
+
+Json row_of(const DeformableBody& body) {
+    const auto dofs = static_cast<double>(body.compliance.dof_count());
+    return {{"name", body.name},
+            {"kind", "deformable"},
+            {"nodes", body.mesh.rest_positions.size()},
+            {"tetrahedra", body.mesh.tetrahedra.size()},
+            {"triangles", body.boundary.surface.triangles.size()},
+            {"surface_nodes", body.boundary.nodes.size()},
+            {"fixed_nodes", body.fixed_nodes.size()},
+            {"contact_nodes", body.contact_nodes.size()},
+            {"compliance_mb", dofs * dofs * sizeof(float) * 1e-6},
+            {"obb_nodes", body.obb_tree.nodes.size()}};
+}
+
+void add_regions(Json& rows, const DeformableBody& body) {
+    for (std::size_t i = 0; i < body.materials.size(); ++i) {
+        const auto& [region, material] = body.materials[i];
+        double volume = 0;  // mm³
+        for (std::size_t t = 0; t < body.mesh.tetrahedra.size(); ++t)
+            if (body.mesh.regions[t] == region) volume += six_volume(body.mesh, t) / 6;
+        rows.push_back({{"body", body.name},
+                        {"region", body.mesh.region_names[i].name},
+                        {"label", region},
+                        {"youngs_modulus_kpa", material.youngs_modulus * 1e3},
+                        {"poissons_ratio", material.poissons_ratio},
+                        {"tetrahedra", std::ranges::count(body.mesh.regions, region)},
+                        {"volume_ml", volume * 1e-3}});
+    }
+}
+
+Json row_of(const std::string& name, const Certificate& certificate) {
+    return {{"body", name},
+            {"residual", certificate.residual},
+            {"residual_double", certificate.residual_double},
+            {"asymmetry", certificate.asymmetry},
+            {"reciprocity", certificate.reciprocity},
+            {"smallest_eigenvalue_mm_per_n", certificate.smallest_eigenvalue},
+            {"largest_eigenvalue_mm_per_n", certificate.largest_eigenvalue},
+            {"condition_number", certificate.condition_number},
+            {"sampled_columns", certificate.sampled_columns},
+            {"free_dofs", certificate.free_dofs}};
+}
+
+// Provenance is free text to the asset; what is JSON is shown as such.
+Json provenance_of(const std::string& text) {
+    const Json json = Json::parse(text, nullptr, false);
+    return json.is_discarded() ? Json(text) : json;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    cli::Command command(
+        {.name = "inspect",
+         .summary = "Summarises what is in an asset.",
+         .examples = {"palpate inspect liver.vtkhdf", "palpate inspect liver.vtkhdf --json -"},
+         .notes = "All digests are checked; 'palpate verify' checks the mechanics too."});
+    std::filesystem::path asset;
+    command.input("asset", asset, "asset (.vtkhdf)")->required();
+    return command.run(argc, argv, [&](cli::Session&) {
+        const Case patient_case = read_asset(asset);
+        Json bodies = Json::array(), regions = Json::array(), certificates = Json::array();
+        for (const RigidBody& body : patient_case.rigid_bodies) bodies.push_back(row_of(body));
+        for (const DeformableBody& body : patient_case.deformable_bodies) {
+            bodies.push_back(row_of(body));
+            add_regions(regions, body);
+            certificates.push_back(row_of(body.name, body.certificate));
+        }
+        const HapticSettings& haptics = patient_case.haptics;
+        return Json{{"name", patient_case.name},
+                    {"bytes", std::filesystem::file_size(asset)},
+                    {"bodies", bodies},
+                    {"regions", regions},
+                    {"certificates", certificates},
+                    {"haptics",
+                     {{"tool_radius_mm", haptics.tool_radius},
+                      {"coupling_stiffness_n_per_mm", haptics.coupling_stiffness},
+                      {"max_force_n", haptics.max_force},
+                      {"max_force_rate_n_per_ms", haptics.max_force_rate}}},
+                    {"provenance", provenance_of(patient_case.provenance)}};
+    });
+}

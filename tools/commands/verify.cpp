@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cstdint>
+
+#include "formats/asset/asset.hpp"
+#include "formats/model/errors.hpp"
+#include "tools/cli/command.hpp"
+#include "tools/fem/certificate.hpp"
+
+namespace {
+using namespace palpate;
+using Json = nlohmann::ordered_json;
+
+constexpr double residual_limit = 1e-6;
+// float32 round-off of a box 1 m from the origin; far below what a hand or a tool radius could notice.
+constexpr double enclosure_limit_mm = 1e-4;
+// Other columns than the certificate's own.
+constexpr std::uint64_t verify_seed = 90210;
+
+// The checks made so far, as the rows of a table.
+class Checks {
+  public:
+    void add(const std::string& what, const std::string& check, bool ok, const Json& figure,
+             const std::string& expected) {
+        rows_.push_back({{"of", what},
+                         {"check", check},
+                         {"status", ok ? "ok" : "failed"},
+                         {"figure", figure},
+                         {"expected", expected}});
+        if (!ok) failed_.push_back(what + ": " + check);
+    }
+
+    const Json& rows() const { return rows_; }
+    const std::vector<std::string>& failed() const { return failed_; }
+
+  private:
+    Json rows_ = Json::array();
+    std::vector<std::string> failed_;
+};
+
+// Largest distance in mm by which a triangle's corner lies outside a box on the way to its leaf.
+double worst_escape(const ObbTree& tree, const TriangleMesh& surface) {
+    std::vector<std::int32_t> parent(tree.nodes.size(), -1);
+    for (std::size_t i = 0; i < tree.nodes.size(); ++i)
+        if (tree.nodes[i].count == 0) {
+            const auto child = static_cast<std::size_t>(tree.nodes[i].first);
+            parent[child] = parent[child + 1] = static_cast<std::int32_t>(i);
+        }
+    double worst = 0;
+    const auto check_box = [&](const ObbNode& box, const Triangle& triangle) {
+        for (const std::int32_t v : triangle) {
+            const Eigen::Vector3d offset =
+                surface.vertices[static_cast<std::size_t>(v)] - box.center.cast<double>();
+            const Eigen::Vector3d local = box.axes.cast<double>() * offset;
+            worst = std::max(worst, (local.cwiseAbs() - box.half_extents.cast<double>()).maxCoeff());
+        }
+    };
+    for (std::size_t leaf = 0; leaf < tree.nodes.size(); ++leaf)
+        for (std::int32_t k = 0; k < tree.nodes[leaf].count; ++k) {
+            const auto entry = static_cast<std::size_t>(tree.nodes[leaf].first + k);
+            const Triangle& triangle =
+                surface.triangles[static_cast<std::size_t>(tree.triangle_order[entry])];
+            for (auto i = static_cast<std::int32_t>(leaf); i >= 0; i = parent[static_cast<std::size_t>(i)])
+                check_box(tree.nodes[static_cast<std::size_t>(i)], triangle);
+        }
+    return worst;
+}
+
+void check_tree(Checks& checks, const std::string& name, const ObbTree& tree, const TriangleMesh& surface) {
+    const double escape = worst_escape(tree, surface);
+    checks.add(name, "boxes enclose their triangles, mm outside", escape <= enclosure_limit_mm, escape,
+               fmt::format("at most {:g}", enclosure_limit_mm));
+}
+
+void check_mechanics(Checks& checks, const DeformableBody& body, std::int32_t columns) {
+    try {
+        const Certificate fresh = recertify(body, columns, verify_seed);
+        checks.add(body.name, "stiffness is positive definite", true, fresh.free_dofs,
+                   "free degrees of freedom");
+        checks.add(body.name, "compliance is symmetric, max |C - C^T| / max |C|", fresh.asymmetry == 0,
+                   fresh.asymmetry, "0");
+        checks.add(body.name, "compliance is positive definite, smallest eigenvalue in mm/N",
+                   fresh.smallest_eigenvalue > 0, fresh.smallest_eigenvalue, "above 0");
+        checks.add(body.name, fmt::format("residual of {} re-solved columns", columns),
+                   fresh.residual <= residual_limit, fresh.residual,
+                   fmt::format("at most {:g}", residual_limit));
+    } catch (const InvalidInput& error) {
+        checks.add(body.name, "stiffness is positive definite", false, error.what(), "enough fixed nodes");
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    cli::Command command(
+        {.name = "verify",
+         .summary = "Rechecks everything that an asset claims, the mechanics by solving them again.",
+         .examples = {"palpate verify liver.vtkhdf",
+                      "palpate verify liver.vtkhdf --columns 64 --json liver.verify.json"},
+         .notes =
+             "An asset that cannot be read or is damaged gives exit code 3, a failed check on a readable one "
+             "4.\n"
+             "Positive definiteness is by Cholesky in double, so memory is twice the stored compliance."});
+    std::filesystem::path asset;
+    std::int32_t columns = certificate_columns;
+    command.input("asset", asset, "asset (.vtkhdf)")->required();
+    command.option("--columns", columns, "columns of each compliance to solve again")
+        ->check(CLI::Range(1, 100000));
+    return command.run(argc, argv, [&](cli::Session& session) {
+        session.progress.step("read and check digests", 0);
+        const Case patient_case = read_asset(asset);
+        Checks checks;
+        checks.add("asset", "every digest and the manifest", true, std::filesystem::file_size(asset),
+                   "bytes");
+        checks.add("asset", "every index in range, every number finite", true, "", "");
+        for (const RigidBody& body : patient_case.rigid_bodies)
+            check_tree(checks, body.name, body.obb_tree, body.surface);
+        for (const DeformableBody& body : patient_case.deformable_bodies) {
+            session.progress.step("solve " + body.name + " again", 0.5);
+            checks.add(body.name, "compliance, mesh, material and boundary belong together", true,
+                       body.contact_nodes.size(), "contact nodes");
+            check_tree(checks, body.name, body.obb_tree, body.boundary.surface);
+            check_mechanics(checks, body, columns);
+        }
+        if (!checks.failed().empty())
+            session.shortfall =
+                ErrorDetail{asset.string(),
+                            fmt::format("{} of {} checks failed, first '{}'", checks.failed().size(),
+                                        checks.rows().size(), checks.failed().front()),
+                            "none", "build the case again"};
+        return Json{{"name", patient_case.name},
+                    {"verdict", checks.failed().empty() ? "ok" : "failed"},
+                    {"checks", checks.rows()}};
+    });
+}
