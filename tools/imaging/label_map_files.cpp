@@ -3,7 +3,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <itkObject.h>
-#include <set>
+#include <optional>
 #include <sstream>
 
 #include "formats/model/errors.hpp"

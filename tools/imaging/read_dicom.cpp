@@ -2,6 +2,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <fmt/format.h>
+#include <gdcmTrace.h>
 #include <itkGDCMImageIO.h>
 #include <itkGDCMSeriesFileNames.h>
 #include <itkImageSeriesReader.h>
@@ -31,7 +32,7 @@ std::vector<std::string> largest_series(const std::filesystem::path& folder, con
         throw InvalidInput({folder.string(), "holds no DICOM image series", "",
                             "name the folder that holds the slices, or a NRRD, MetaImage or NIfTI file"});
     if (note && series.size() > 1)
-        note(fmt::format("{}: {} series; reading the largest, {} slices", folder.string(), series.size(),
+        note(fmt::format("the folder holds {} series; reading the largest, {} slices", series.size(),
                          largest.size()));
     return largest;
 }
@@ -113,6 +114,10 @@ double even_gap(const std::vector<Slice>& slices, const ImageGrid& plane,
 }  // namespace
 
 Volume read_dicom_folder(const std::filesystem::path& folder, const NoteSink& note) {
+    // GDCM prints what it meets in files that belong to no image series; faults of the series are thrown
+    // below.
+    gdcm::Trace::ErrorOff();
+    gdcm::Trace::WarningOff();
     const std::vector<std::string> files = largest_series(folder, note);
     if (files.size() < 2)
         throw InvalidInput({folder.string(), "holds a single DICOM slice", "a series of 2 slices or more",

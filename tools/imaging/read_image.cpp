@@ -100,7 +100,7 @@ bool meta_data_is_long_enough(const std::filesystem::path& path, std::size_t byt
         std::istringstream words(line);
         std::string key, equals, value;
         words >> key >> equals >> value;
-        if (key == "CompressedDataSize") bytes = std::stoull(value);
+        if (key == "CompressedDataSize") std::istringstream(value) >> bytes;
         if (key != "ElementDataFile") continue;
         std::error_code absent;
         if (value == "LOCAL")
@@ -138,6 +138,7 @@ bool holds_all_voxels(itk::ImageIOBase& io, const std::filesystem::path& path) {
 
 std::string reason_of(const itk::ExceptionObject& error) {
     std::string text = error.GetDescription();
+    if (text.starts_with("ITK ERROR: ")) text.erase(0, 11);
     if (const auto prefix = text.find("): "); prefix != std::string::npos) text.erase(0, prefix + 3);
     std::ranges::replace(text, '\n', ' ');
     while (text.ends_with(' ')) text.pop_back();
@@ -166,8 +167,7 @@ void check_geometry(ImageGrid& grid, const std::filesystem::path& path, const No
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(grid.direction, Eigen::ComputeFullU | Eigen::ComputeFullV);
     grid.direction = svd.matrixU() * svd.matrixV().transpose();
     if (note)
-        note(fmt::format("{}: directions were {:.2g} off orthonormality and were made orthonormal",
-                         path.string(), deviation));
+        note(fmt::format("directions were {:.2g} off orthonormality and were made orthonormal", deviation));
 }
 
 void check_finite(const Volume& volume, const std::filesystem::path& path) {
@@ -194,7 +194,7 @@ ReadImage read_image_file(const std::filesystem::path& path, const NoteSink& not
         const auto space = result.header.find("NRRD_space");
         if (note && dynamic_cast<itk::NrrdImageIO*>(io.GetPointer()) != nullptr &&
             space == result.header.end())
-            note(path.string() + ": the header names no patient space; taken as LPS");
+            note("the header names no patient space; taken as LPS");
         if (!holds_all_voxels(*io, path))
             throw InvalidInput({path.string(), "holds fewer voxels than its header claims", "",
                                 "check that the file is whole"});
@@ -206,8 +206,8 @@ ReadImage read_image_file(const std::filesystem::path& path, const NoteSink& not
         result.volume.values.assign(voxels.begin(), voxels.end());
         return result;
     } catch (const itk::ExceptionObject& error) {
-        throw InvalidInput({path.string(), std::string("cannot be read: ") + reason_of(error), "",
-                            "check that the file is whole"});
+        throw InvalidInput({path.string(), "cannot be read: " + reason_of(error), "",
+                            "check that the file is whole and its directions are orthonormal"});
     }
 }
 

@@ -56,7 +56,7 @@ std::vector<Eigen::Matrix3d> all_directions() {
 void expect_same_place(const ImageGrid& found, const ImageGrid& expected) {
     ASSERT_EQ(found.size, expected.size);
     for (const Eigen::Vector3d& index : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(3, 0, 0),
-                                        Eigen::Vector3d(0, 4, 0), Eigen::Vector3d(0, 0, 5)})
+                                         Eigen::Vector3d(0, 4, 0), Eigen::Vector3d(0, 0, 5)})
         EXPECT_LT((found.point_of(index) - expected.point_of(index)).norm(), header_tolerance);
 }
 

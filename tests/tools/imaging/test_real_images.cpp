@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <cstdlib>
+#include <gtest/gtest.h>
+
+#include "formats/model/errors.hpp"
+#include "tests/tools/imaging/hand_written_images.hpp"
+#include "tools/imaging/image_files.hpp"
+#include "tools/imaging/label_statistics.hpp"
+#include "tools/imaging/segmentation.hpp"
+
+namespace palpate {
+namespace {
+
+// The folder or file of a real data set; empty if it is absent.
+std::filesystem::path real_data(const std::string& name) {
+    const char* root = std::getenv("PALPATE_DATA");
+    if (root == nullptr) return {};
+    const auto path = std::filesystem::path(root) / name;
+    return std::filesystem::exists(path) ? path : std::filesystem::path();
+}
+
+// Defines `variable` as the data set's path, or skips the test.
+#define REQUIRE_REAL_DATA(variable, name)                   \
+    const std::filesystem::path variable = real_data(name); \
+    if (variable.empty()) GTEST_SKIP() << "PALPATE_DATA: " << name << " is absent"
+
+double mean_within(const Volume& volume, const LabelMap& labels, std::int32_t value) {
+    double sum = 0, count = 0;
+    for (std::size_t i = 0; i < labels.labels.size(); ++i)
+        if (labels.labels[i] == value) {
+            sum += volume.values[i];
+            ++count;
+        }
+    return sum / count;
+}
+
+TEST(RealImages, a_nifti_ct_and_its_labels_lie_on_one_grid_with_the_liver_on_the_right) {
+    REQUIRE_REAL_DATA(folder, "abdomen_ct_totalseg3mm");
+    const Volume ct = read_volume(folder / "ct.nii.gz");
+    const LabelMap labels = read_label_map(folder / "seg_totalseg.nii.gz");
+    ASSERT_TRUE(same_grid(ct.grid, labels.grid));
+    const Label liver = require_label(labels, "label_5", "labels"),
+                spleen = require_label(labels, "1", "labels");
+    // Liver without contrast: 40 to 70 HU.
+    EXPECT_NEAR(mean_within(ct, labels, liver.value), 55, 15);
+    std::map<std::int32_t, Eigen::Vector3d> centroids;
+    for (const LabelStatistics& label : label_statistics(labels))
+        centroids[label.label.value] = label.centroid;
+    EXPECT_LT(centroids[liver.value][0], centroids[spleen.value][0]);  // x grows to the left
+}
+
+TEST(RealImages, a_dicom_series_without_identifiers_fits_its_nifti_labels) {
+    REQUIRE_REAL_DATA(folder, "abdomen_dicom_ts20");
+    const Volume ct = read_volume(folder / "dicom");
+    EXPECT_EQ(ct.grid.size, (std::array<std::int32_t, 3>{512, 512, 20}));
+    EXPECT_DOUBLE_EQ(ct.grid.spacing[2], 2);
+    const LabelMap labels = read_label_map(folder / "seg_totalseg.nii.gz");
+    const std::vector<StructureRecipe> structures{parse_structure("liver: recipe=import label=5")};
+    const LabelMap on_ct = segment(&ct, &labels, structures);
+    // Liver with contrast: 80 to 140 HU; a flipped axis would mix in lung or fat.
+    EXPECT_NEAR(mean_within(ct, on_ct, 1), 110, 30);
+}
+
+TEST(RealImages, of_several_dicom_series_the_largest_is_read_and_said_so) {
+    REQUIRE_REAL_DATA(folder, "abdomen_dicom_seg_dcmqi");
+    std::string notes;
+    const Volume ct = read_volume(folder, [&](std::string_view note) { notes += note; });
+    EXPECT_EQ(ct.grid.size[2], 3);
+    EXPECT_NE(notes.find("3 series"), std::string::npos);
+    const LabelMap liver = read_label_map(folder / "liver_seg.nrrd");
+    EXPECT_TRUE(same_grid(ct.grid, liver.grid));
+}
+
+TEST(RealImages, a_missing_dicom_slice_is_refused_with_its_place) {
+    REQUIRE_REAL_DATA(folder, "abdomen_dicom_ts20");
+    const testing::TemporaryFolder copy;
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "dicom"))
+        files.push_back(entry.path());
+    std::ranges::sort(files);
+    for (std::size_t i = 0; i < files.size(); ++i)
+        if (i != 7) std::filesystem::copy_file(files[i], copy / files[i].filename());
+    try {
+        read_volume(copy.path());
+        FAIL() << "was read";
+    } catch (const InvalidInput& error) {
+        const std::string message = error.what();
+        EXPECT_NE(message.find("4.000 mm between the slices at"), std::string::npos) << message;
+        EXPECT_NE(message.find("expected 2.000 mm"), std::string::npos) << message;
+    }
+    std::filesystem::copy_file(files[0], copy / "again.dcm");
+    EXPECT_THROW(read_volume(copy.path()), InvalidInput);
+}
+
+TEST(RealImages, bone_of_a_head_is_the_threshold_without_head_rest_and_table) {
+    REQUIRE_REAL_DATA(folder, "head_ct_cranium");
+    const Volume ct = read_volume(folder / "head_ct_cranium.nrrd");
+    const LabelMap all = read_label_map(folder / "head_ct_cranium_mask_bone.nrrd");
+    const std::vector<StructureRecipe> structures{parse_structure("skull: recipe=bone")};
+    const LabelMap map = segment(&ct, nullptr, structures);
+    std::size_t bone = 0, in_mask = 0;
+    for (std::size_t i = 0; i < map.labels.size(); ++i) {
+        bone += map.labels[i];
+        in_mask += map.labels[i] && all.labels[i];
+    }
+    EXPECT_EQ(bone, in_mask);
+    const LabelStatistics skull = label_statistics(map)[0];
+    // An adult's cranium with upper jaw and first vertebra: about 0.4 to 0.8 l at this threshold.
+    EXPECT_GT(skull.volume_ml, 400);
+    EXPECT_LT(skull.volume_ml, 800);
+    // The head rest's shell is up to 240 mm wide, the head below 160.
+    EXPECT_LT(skull.box.sizes()[0], 160);
+}
+
+TEST(RealImages, the_wall_of_the_nasopharynx_is_one_piece_around_the_air_below_the_skull_base) {
+    REQUIRE_REAL_DATA(folder, "head_ct_cranium");
+    const Volume ct = read_volume(folder / "head_ct_cranium.nrrd");
+    const std::vector<StructureRecipe> structures{
+        parse_structure("skull: recipe=bone"), parse_structure("airway: recipe=airway seeds_mm=125,-142,19"),
+        parse_structure("wall: recipe=nasopharynx center_mm=126,-136,16 radius_mm=26 thickness_mm=8"),
+        parse_structure("tumour: recipe=sphere inside=wall center_mm=110,-133,22 radius_mm=5.5")};
+    const LabelMap map = segment(&ct, nullptr, structures);
+    const auto statistics = label_statistics(map);
+    const LabelStatistics &skull = statistics[0], &airway = statistics[1], &wall = statistics[2],
+                          &tumour = statistics[3];
+    EXPECT_EQ(airway.components, 1U);
+    EXPECT_EQ(wall.components, 1U);
+    EXPECT_EQ(tumour.components, 1U);
+    EXPECT_NEAR(mean_within(ct, map, 3), 20, 60);  // muscle and mucosa, some fat
+    // The nose lies before the skull, the wall before its vertebra and below its base: y to posterior, z up.
+    EXPECT_LT(airway.box.min()[1], skull.box.min()[1] + 10);
+    EXPECT_LT(wall.centroid[1], skull.centroid[1]);
+    EXPECT_LT(wall.box.max()[2], 45);
+    EXPECT_GT(tumour.volume_ml, 0.5 * 4.0 / 3 * M_PI * std::pow(5.5, 3) / 1000);
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "formats/model/errors.hpp"
+#include "sample_data/phantoms.hpp"
+#include "tests/tools/imaging/hand_written_images.hpp"
+#include "tools/imaging/image_files.hpp"
+#include "tools/imaging/label_names.hpp"
+#include "tools/imaging/label_statistics.hpp"
+#include "tools/imaging/recipes.hpp"
+#include "tools/imaging/segmentation.hpp"
+
+namespace palpate {
+namespace {
+
+double dice(const LabelMap& a, const std::string& name_a, const LabelMap& b, const std::string& name_b) {
+    const auto value_a = require_label(a, name_a, "a").value, value_b = require_label(b, name_b, "b").value;
+    std::size_t both = 0, sum = 0;
+    for (std::size_t i = 0; i < a.labels.size(); ++i) {
+        const bool in_a = a.labels[i] == value_a, in_b = b.labels[i] == value_b;
+        both += in_a && in_b;
+        sum += std::size_t{in_a} + std::size_t{in_b};
+    }
+    return 2.0 * static_cast<double>(both) / static_cast<double>(sum);
+}
+
+LabelMap run(const Volume* volume, const LabelMap* prior, const std::vector<std::string>& texts) {
+    std::vector<StructureRecipe> structures;
+    for (const std::string& text : texts) structures.push_back(parse_structure(text));
+    return segment(volume, prior, structures);
+}
+
+template <typename Call>
+std::string refusal_of(Call&& call) {
+    try {
+        call();
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "nothing was refused";
+}
+
+const std::vector<std::string> head_recipes{
+    "skull: recipe=bone", "airway: recipe=airway seeds_mm=0,-5,-40 opening_mm=4",
+    "wall: recipe=nasopharynx center_mm=0,-5,-40 radius_mm=20 thickness_mm=6"};
+
+struct Imaging {
+    std::string name;
+    PhantomOptions options;
+};
+
+std::vector<Imaging> imagings() {
+    const Eigen::Matrix3d turn =
+        Eigen::AngleAxisd(0.4, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+    const Eigen::Matrix3d flip = Eigen::Vector3d(1, -1, 1).asDiagonal();
+    return {{"plain", {}},
+            {"flipped and oblique", {.direction = turn * flip}},
+            {"anisotropic", {.spacing = {1.5, 1.5, 3}}},
+            {"noise and partial volume", {.samples_per_axis = 2, .noise_hu = 25}}};
+}
+
+// Voxels of 2 mm on structures of 5 ... 12 mm: half a voxel at the surface already costs a tenth.
+constexpr double coarse_dice = 0.85;
+constexpr double thick_dice = 0.93;
+
+TEST(Recipes, find_skull_airway_and_wall_of_a_head_however_it_was_imaged) {
+    for (const auto& [name, options] : imagings()) {
+        SCOPED_TRACE(name);
+        const Phantom head = head_phantom(options);
+        const LabelMap map = run(&head.volume, nullptr, head_recipes);
+        EXPECT_GT(dice(map, "skull", head.truth, "skull"), coarse_dice);
+        EXPECT_GT(dice(map, "airway", head.truth, "airway"), coarse_dice);
+        EXPECT_GT(dice(map, "wall", head.truth, "wall"), coarse_dice);
+        for (const LabelStatistics& label : label_statistics(map)) EXPECT_EQ(label.components, 1U);
+    }
+}
+
+TEST(Recipes, bone_leaves_the_table_behind) {
+    const Phantom abdomen = abdomen_phantom();
+    const LabelMap map = run(&abdomen.volume, nullptr, {"bone: recipe=bone"});
+    const auto statistics = label_statistics(map);
+    EXPECT_LT(statistics[0].box.max()[1], 45);  // the table begins at 50 mm
+    LabelMap bones = abdomen.truth;
+    for (std::uint16_t& label : bones.labels)
+        if (label == 5) label = 4;  // ribs to spine
+    EXPECT_GT(dice(map, "bone", bones, "spine"), thick_dice);
+}
+
+TEST(Recipes, airway_without_a_seed_is_the_largest_inner_air) {
+    const Phantom head = head_phantom();
+    const LabelMap seeded = run(&head.volume, nullptr, {head_recipes[1]});
+    const LabelMap largest = run(&head.volume, nullptr, {"airway: recipe=airway opening_mm=4"});
+    EXPECT_EQ(seeded.labels, largest.labels);
+}
+
+TEST(Recipes, threshold_with_region_and_cleaning_finds_a_liver) {
+    const Phantom abdomen = abdomen_phantom({.samples_per_axis = 2, .noise_hu = 10});
+    const LabelMap map = run(&abdomen.volume, nullptr,
+                             {"liver: recipe=threshold lower_hu=80 upper_hu=150 open_mm=2 close_mm=2 "
+                              "keep_largest=yes center_mm=-14,-6,0 radius_mm=40"});
+    EXPECT_GT(dice(map, "liver", abdomen.truth, "liver"), coarse_dice);
+    EXPECT_EQ(label_statistics(map)[0].components, 1U);
+}
+
+TEST(Recipes, a_sphere_takes_only_voxels_of_the_structure_it_lies_in) {
+    const Phantom abdomen = abdomen_phantom();
+    const LabelMap map = run(nullptr, &abdomen.truth,
+                             {"liver: recipe=import", "vessels: recipe=import",
+                              "ball: recipe=sphere inside=liver center_mm=-14,-6,-10 radius_mm=12"});
+    std::size_t offset = 0;
+    for (std::int32_t k = 0; k < map.grid.size[2]; ++k)
+        for (std::int32_t j = 0; j < map.grid.size[1]; ++j)
+            for (std::int32_t i = 0; i < map.grid.size[0]; ++i, ++offset) {
+                const double distance =
+                    (map.grid.point_of(Eigen::Vector3d(i, j, k)) - Eigen::Vector3d(-14, -6, -10)).norm();
+                const bool liver = abdomen.truth.labels[offset] == 1;
+                EXPECT_EQ(map.labels[offset] == 3, liver && distance <= 12);
+                EXPECT_EQ(map.labels[offset] == 2, abdomen.truth.labels[offset] == 3);
+            }
+}
+
+TEST(Recipes, import_resamples_from_another_grid) {
+    const Phantom fine = abdomen_phantom({.spacing = {1.5, 1.5, 1.5}});
+    const Phantom turned = abdomen_phantom({.direction = imagings()[1].options.direction});
+    const LabelMap map = run(&turned.volume, &fine.truth, {"organ: recipe=import label=liver"});
+    EXPECT_TRUE(same_grid(map.grid, turned.volume.grid));
+    EXPECT_GT(dice(map, "organ", turned.truth, "liver"), thick_dice);
+}
+
+TEST(Segment, later_structures_take_background_only_and_values_follow_the_order) {
+    const Phantom head = head_phantom();
+    const LabelMap map =
+        run(&head.volume, nullptr,
+            {"skull: recipe=bone", "tissue: recipe=threshold lower_hu=-200 keep_largest=yes"});
+    const LabelMap skull = run(&head.volume, nullptr, {"skull: recipe=bone"});
+    for (std::size_t i = 0; i < map.labels.size(); ++i) EXPECT_EQ(map.labels[i] == 1, skull.labels[i] == 1);
+    ASSERT_EQ(map.names.size(), 2U);
+    EXPECT_EQ(map.names[1].name, "tissue");
+    EXPECT_EQ(map.names[1].value, 2);
+}
+
+TEST(Segment, reports_each_structure_before_it_is_made) {
+    const Phantom abdomen = abdomen_phantom();
+    const std::vector<StructureRecipe> structures{parse_structure("liver: recipe=import"),
+                                                  parse_structure("ribs: recipe=import")};
+    std::string said;
+    segment(nullptr, &abdomen.truth, structures,
+            [&](std::string_view name, double fraction) { said += fmt::format("{} {}; ", name, fraction); });
+    EXPECT_EQ(said, "liver 0; ribs 0.5; ");
+}
+
+TEST(Segment, refusals_name_the_structure_and_what_to_change) {
+    const Phantom head = head_phantom();
+    const auto refusal = [&](const std::vector<std::string>& texts) {
+        return refusal_of([&] { run(&head.volume, &head.truth, texts); });
+    };
+    EXPECT_EQ(refusal({"skull: recipe=bone threshold_hu=3000"}),
+              "structure 'skull': is empty; lower threshold_hu or min_component_ml; are the values in HU?");
+    EXPECT_EQ(refusal({"x: recipe=import label=skul"}),
+              "structure 'x': no label 'skul'; nearest names: 'skull', 'wall', 'airway'");
+    EXPECT_NE(refusal({"w: recipe=nasopharynx"}).find("no label 'airway'"), std::string::npos);
+    EXPECT_NE(refusal({"skull: recipe=import", "t: recipe=sphere center_mm=0,0,0 radius_mm=2"})
+                  .find("has no 'inside'"),
+              std::string::npos);
+    EXPECT_NE(refusal({"a: recipe=airway seeds_mm=0,4,14"}).find("seed: (0, 4, 14) mm"), std::string::npos);
+    EXPECT_NE(refusal({"a: recipe=bone", "a: recipe=airway"}).find("occurs twice"), std::string::npos);
+    EXPECT_NE(refusal({"a: recipe=bone radius_mm=3"}).find("has no 'center_mm'"), std::string::npos);
+    EXPECT_NE(refusal_of([&] { run(nullptr, &head.truth, {"skull: recipe=bone"}); }).find("no volume"),
+              std::string::npos);
+    EXPECT_NE(refusal_of([&] { run(&head.volume, nullptr, {"skull: recipe=import"}); }).find("no label map"),
+              std::string::npos);
+    EXPECT_THROW(run(nullptr, nullptr, {"skull: recipe=bone"}), InvalidInput);
+    EXPECT_THROW(run(&head.volume, nullptr, {}), InvalidInput);
+}
+
+TEST(RecipeParameters, unknown_names_and_wrong_kinds_are_refused_with_the_nearest_name) {
+    EXPECT_NE(refusal_of([] {
+                  parse_structure("s: recipe=bone treshold_hu=3");
+              }).find("recipe 'bone' has no parameter 'treshold_hu'; nearest names: 'threshold_hu'"),
+              std::string::npos);
+    EXPECT_NE(refusal_of([] { parse_structure("s: recipe=bones"); }).find("nearest names: 'bone'"),
+              std::string::npos);
+    EXPECT_NE(refusal_of([] { recipe_parameters("boen"); }).find("'bone'"), std::string::npos);
+    EXPECT_THROW(parse_structure("s: recipe=bone threshold_hu=high"), InvalidInput);
+    EXPECT_THROW(parse_structure("s: recipe=bone open_mm=-1"), InvalidInput);
+    EXPECT_THROW(parse_structure("s: recipe=bone keep_largest=perhaps"), InvalidInput);
+    EXPECT_THROW(parse_structure("s: recipe=bone center_mm=1,2 radius_mm=3"), InvalidInput);
+    EXPECT_THROW(check_recipe({"s", "bone", {{"threshold_hu", std::string("226")}}}), InvalidInput);
+    for (const char* text : {"", "bone", ": recipe=bone", "s: threshold_hu=3", "s: recipe=bone fast",
+                             "s: recipe=bone open_mm=1 open_mm=2"})
+        EXPECT_THROW(parse_structure(text), UsageError) << text;
+}
+
+TEST(RecipeParameters, are_read_by_kind) {
+    const StructureRecipe structure =
+        parse_structure("a: recipe=airway seeds_mm=1,2,3;4,5,6 fill_holes=yes threshold_hu=-5e2");
+    EXPECT_EQ(std::get<std::vector<double>>(structure.parameters.at("seeds_mm")),
+              (std::vector<double>{1, 2, 3, 4, 5, 6}));
+    EXPECT_EQ(std::get<bool>(structure.parameters.at("fill_holes")), true);
+    EXPECT_EQ(std::get<double>(structure.parameters.at("threshold_hu")), -500);
+}
+
+TEST(LabelNames, rename_listed_values_and_drop_the_rest) {
+    LabelMap map = abdomen_phantom().truth;
+    rename_labels(map, parse_label_names("2=lesion,1=organ"));
+    ASSERT_EQ(map.names.size(), 2U);
+    EXPECT_EQ(map.names[0].name, "organ");
+    EXPECT_EQ(std::ranges::max(map.labels), 2);
+    EXPECT_THROW(rename_labels(map, parse_label_names("9=x")), InvalidInput);
+    for (const char* text : {"liver", "=liver", "1=", "1=a,1=b", "1=a,2=a", "0=a", "1x=a"})
+        EXPECT_THROW(parse_label_names(text), UsageError) << text;
+}
+
+TEST(Phantom, refuses_options_that_make_no_image) {
+    EXPECT_THROW(head_phantom({.spacing = {1, 0, 1}}), InvalidInput);
+    EXPECT_THROW(head_phantom({.samples_per_axis = 0}), InvalidInput);
+    EXPECT_THROW(abdomen_phantom({.noise_hu = -1}), InvalidInput);
+}
+
+TEST(Phantom, the_tumour_is_enclosed_by_the_liver) {
+    const LabelMap truth = abdomen_phantom().truth;
+    const auto& grid = truth.grid;
+    for (std::int32_t k = 1; k + 1 < grid.size[2]; ++k)
+        for (std::int32_t j = 1; j + 1 < grid.size[1]; ++j)
+            for (std::int32_t i = 1; i + 1 < grid.size[0]; ++i)
+                if (truth.labels[grid.offset(i, j, k)] == 2) {
+                    for (const std::size_t neighbour :
+                         {grid.offset(i - 1, j, k), grid.offset(i + 1, j, k), grid.offset(i, j - 1, k),
+                          grid.offset(i, j + 1, k), grid.offset(i, j, k - 1), grid.offset(i, j, k + 1)})
+                        EXPECT_TRUE(truth.labels[neighbour] == 1 || truth.labels[neighbour] == 2);
+                }
+}
+
+}  // namespace
+}  // namespace palpate

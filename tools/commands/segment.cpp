@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <filesystem>
+#include <fstream>
+
+#include "formats/model/errors.hpp"
+#include "tools/cli/command.hpp"
+#include "tools/imaging/image_files.hpp"
+#include "tools/imaging/label_statistics.hpp"
+#include "tools/imaging/segmentation.hpp"
+
+namespace {
+
+using namespace palpate;
+using nlohmann::json;
+
+// A JSON value as a recipe takes it; arrays of points are flattened.
+RecipeValue recipe_value(const json& value, const std::string& culprit) {
+    if (value.is_boolean()) return value.get<bool>();
+    if (value.is_number()) return value.get<double>();
+    if (value.is_string()) return value.get<std::string>();
+    std::vector<double> numbers;
+    const json flat = value.flatten();
+    for (const json& number : flat) {
+        if (!value.is_array() || !number.is_number())
+            throw InvalidInput({culprit, value.dump(), "a number, numbers, a text, true or false", ""});
+        numbers.push_back(number.get<double>());
+    }
+    return numbers;
+}
+
+std::vector<StructureRecipe> read_recipes(const std::filesystem::path& path) {
+    std::ifstream stream(path);
+    const json document = json::parse(stream, nullptr, false);
+    const auto refuse = [&](const std::string& found) {
+        return InvalidInput({path.string(), found,
+                             "[{\"name\": ..., \"recipe\": ..., \"parameters\": {...}}]",
+                             "see 'palpate segment --help'"});
+    };
+    if (!document.is_array()) throw refuse("is not a JSON array");
+    std::vector<StructureRecipe> structures;
+    for (const json& item : document) {
+        if (!item.is_object()) throw refuse("holds " + item.dump());
+        for (const auto& [key, value] : item.items())
+            if (key != "name" && key != "recipe" && key != "parameters")
+                throw refuse("has an unknown key '" + key + "'");
+        if (!item.contains("name") || !item["name"].is_string()) throw refuse("a structure has no name");
+        if (!item.contains("recipe") || !item["recipe"].is_string())
+            throw refuse("a structure has no recipe");
+        StructureRecipe structure{item["name"], item["recipe"], {}};
+        const json parameters = item.value("parameters", json::object());
+        if (!parameters.is_object()) throw refuse("parameters of '" + structure.name + "' are no object");
+        for (const auto& [key, value] : parameters.items())
+            structure.parameters[key] = recipe_value(value, path.string() + ": " + key);
+        structures.push_back(std::move(structure));
+    }
+    return structures;
+}
+
+std::string recipe_help() {
+    std::string text =
+        "A structure takes background only, in the order given; a sphere takes voxels of the structure it\n"
+        "lies inside. Write points as x,y,z and several as x,y,z;x,y,z. A recipe file is a JSON array of\n"
+        "{\"name\", \"recipe\", \"parameters\"}.\n\nRecipes and their parameters:\n";
+    for (const std::string& recipe : recipe_names()) {
+        text += "  " + recipe + "\n";
+        for (const RecipeParameterInfo& info : recipe_parameters(recipe)) {
+            text += fmt::format("    {:<17} {}", info.name, info.meaning);
+            if (!info.unit.empty()) text += " [" + info.unit + "]";
+            if (!info.default_value.empty()) text += " (default " + info.default_value + ")";
+            text += "\n";
+        }
+    }
+    return text;
+}
+
+json describe(const LabelMap& map) {
+    const auto numbers = [](const Eigen::Vector3d& v) { return json{v[0], v[1], v[2]}; };
+    json labels = json::array();
+    for (const LabelStatistics& label : label_statistics(map))
+        labels.push_back({{"name", label.label.name},
+                          {"value", label.label.value},
+                          {"voxels", label.voxels},
+                          {"volume_ml", label.volume_ml},
+                          {"components", label.components},
+                          {"box_min_mm", numbers(label.box.min())},
+                          {"box_max_mm", numbers(label.box.max())},
+                          {"centroid_mm", numbers(label.centroid)}});
+    return {{"labels", labels}};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    cli::Command command(
+        {.name = "segment",
+         .summary = "Makes a label map of named structures from a volume, by recipes",
+         .examples =
+             {"palpate segment --volume volume.nrrd --structure 'skull: recipe=bone threshold_hu=226' -o "
+              "labels.seg.nrrd",
+              "palpate segment --labels prior.seg.nrrd --structure 'liver: recipe=import' --structure "
+              "'tumour: recipe=sphere inside=liver center_mm=80,90,140 radius_mm=12' -o labels.seg.nrrd"},
+         .notes = recipe_help()});
+    std::filesystem::path volume_path, labels_path, recipes_path, output;
+    std::vector<std::string> texts;
+    command.input("--volume", volume_path, "CT volume in HU, any format that 'palpate import' reads");
+    command.input("--labels", labels_path, "label map that the recipe 'import' takes structures from");
+    command.input("--recipes", recipes_path, "structures as JSON, before those of --structure");
+    command.option("--structure", texts, "one structure, 'name: recipe=... parameter=value ...'");
+    command.output("-o,--output", output, "label map (.seg.nrrd)")->required();
+    return command.run(argc, argv, [&](cli::Session& session) -> json {
+        std::vector<StructureRecipe> structures;
+        if (!recipes_path.empty()) structures = read_recipes(recipes_path);
+        for (const std::string& text : texts) structures.push_back(parse_structure(text));
+        if (structures.empty())
+            throw UsageError({"--structure", "none given", "at least one, or --recipes", ""});
+        if (volume_path.empty() && labels_path.empty())
+            throw UsageError({"--volume", "not given, nor --labels", "at least one of them", ""});
+        set_imaging_threads(session.threads);
+        auto staged = session.stage(output);
+        session.progress.step("reading", 0);
+        std::optional<Volume> volume;
+        std::optional<LabelMap> prior;
+        if (!volume_path.empty()) volume = read_volume(volume_path);
+        if (!labels_path.empty()) prior = read_label_map(labels_path);
+        const LabelMap map = segment(volume ? &*volume : nullptr, prior ? &*prior : nullptr, structures,
+                                     [&](std::string_view name, double fraction) {
+                                         session.progress.step(std::string("segmenting ") + std::string(name),
+                                                               0.1 + 0.8 * fraction);
+                                     });
+        session.progress.step("writing", 0.9);
+        write_label_map(staged.path(), map);
+        staged.commit();
+        return describe(map);
+    });
+}

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "formats/model/label_map.hpp"
+
+namespace palpate {
+
+/// What a label map holds of one label.
+struct LabelStatistics {
+    Label label;
+    std::size_t voxels = 0;
+    double volume_ml = 0;
+    std::size_t components = 0;         ///< face-connected
+    Eigen::AlignedBox3d box;            ///< of the voxel centres in P, mm
+    Eigen::Vector3d centroid{0, 0, 0};  ///< of the voxel centres in P, mm
+};
+
+/// One entry per name of the map, in its order.
+std::vector<LabelStatistics> label_statistics(const LabelMap& map);
+
+}  // namespace palpate

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/imaging/recipes.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <limits>
+#include <set>
+
+#include "formats/model/errors.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr double tissue_above_hu = -300;
+constexpr double seed_reach = 2;  // mm: a seed may miss narrow air by a voxel or two
+
+// Pieces with a voxel on an edge of the grid's box, where two of its faces meet.
+std::set<std::uint32_t> pieces_at_edges(const Components& pieces, const ImageGrid& grid) {
+    std::set<std::uint32_t> found;
+    const auto& size = grid.size;
+    const auto at_end = [&](std::int32_t index, std::size_t axis) {
+        return index == 0 || index == size[axis] - 1;
+    };
+    for (std::int32_t k = 0; k < size[2]; ++k)
+        for (std::int32_t j = 0; j < size[1]; ++j)
+            for (std::int32_t i = 0; i < size[0]; ++i)
+                if (at_end(i, 0) + at_end(j, 1) + at_end(k, 2) >= 2)
+                    found.insert(pieces.labels[grid.offset(i, j, k)]);
+    found.erase(0);
+    return found;
+}
+
+Mask outside_air(const Mask& air, double opening_mm) {
+    const Mask wide = open(air, opening_mm);
+    const Components pieces = components_of(wide);
+    const std::set<std::uint32_t> outer = pieces_at_edges(pieces, air.grid);
+    const Mask outside = select(wide, pieces, [&](std::uint32_t n) { return outer.contains(n); });
+    // Back to where the opening took air away, and one voxel more so that no skin of air stays behind.
+    return intersect(air, dilate(outside, opening_mm + air.grid.spacing.maxCoeff()));
+}
+
+// The piece nearest to a seed, at most seed_reach away.
+std::uint32_t piece_at(const Components& pieces, const ImageGrid& grid, const Eigen::Vector3d& seed) {
+    const Eigen::Vector3d center = grid.index_of(seed);
+    const Eigen::Vector3d reach = seed_reach * grid.spacing.cwiseInverse();
+    double nearest = seed_reach * seed_reach;
+    std::uint32_t piece = 0;
+    for (auto k = static_cast<std::int32_t>(center[2] - reach[2]); k <= center[2] + reach[2]; ++k)
+        for (auto j = static_cast<std::int32_t>(center[1] - reach[1]); j <= center[1] + reach[1]; ++j)
+            for (auto i = static_cast<std::int32_t>(center[0] - reach[0]); i <= center[0] + reach[0]; ++i) {
+                if (!grid.contains(i, j, k) || pieces.labels[grid.offset(i, j, k)] == 0) continue;
+                const double squared = (grid.point_of(Eigen::Vector3d(i, j, k)) - seed).squaredNorm();
+                if (squared > nearest) continue;
+                nearest = squared;
+                piece = pieces.labels[grid.offset(i, j, k)];
+            }
+    return piece;
+}
+
+Mask touching(const Mask& mask, const Mask& other) {
+    const auto& grid = mask.grid;
+    const auto& size = grid.size;
+    const Components pieces = components_of(mask);
+    std::set<std::uint32_t> found;
+    const auto meets = [&](std::int32_t i, std::int32_t j, std::int32_t k) {
+        return grid.contains(i, j, k) && other.voxels[grid.offset(i, j, k)];
+    };
+    for (std::int32_t k = 0; k < size[2]; ++k)
+        for (std::int32_t j = 0; j < size[1]; ++j)
+            for (std::int32_t i = 0; i < size[0]; ++i)
+                if (const std::uint32_t piece = pieces.labels[grid.offset(i, j, k)];
+                    piece && (meets(i - 1, j, k) || meets(i + 1, j, k) || meets(i, j - 1, k) ||
+                              meets(i, j + 1, k) || meets(i, j, k - 1) || meets(i, j, k + 1)))
+                    found.insert(piece);
+    return select(mask, pieces, [&](std::uint32_t n) { return found.contains(n); });
+}
+
+}  // namespace
+
+Mask threshold(const Volume& volume, double lower_hu, double upper_hu) {
+    Mask mask{volume.grid, std::vector<std::uint8_t>(volume.values.size())};
+    std::ranges::transform(volume.values, mask.voxels.begin(),
+                           [&](float value) { return value >= lower_hu && value <= upper_hu; });
+    return mask;
+}
+
+Mask bone(const Volume& volume, double threshold_hu, double separation_mm) {
+    constexpr double any = std::numeric_limits<double>::infinity();
+    const Mask body = keep_largest(open(threshold(volume, tissue_above_hu, any), separation_mm));
+    return intersect(threshold(volume, threshold_hu, any), dilate(body, separation_mm));
+}
+
+Mask airway(const Volume& volume, std::span<const Eigen::Vector3d> seeds, double threshold_hu,
+            double opening_mm) {
+    Mask air{volume.grid, std::vector<std::uint8_t>(volume.values.size())};
+    std::ranges::transform(volume.values, air.voxels.begin(),
+                           [&](float value) { return value < threshold_hu; });
+    const Mask inner = subtract(air, outside_air(air, opening_mm));
+    if (seeds.empty()) return keep_largest(inner);
+    const Components pieces = components_of(inner);
+    std::set<std::uint32_t> seeded;
+    for (const Eigen::Vector3d& seed : seeds) {
+        const std::uint32_t piece = piece_at(pieces, volume.grid, seed);
+        if (piece == 0)
+            throw InvalidInput({"seed", fmt::format("({}, {}, {}) mm", seed[0], seed[1], seed[2]),
+                                fmt::format("inner air within {} mm", seed_reach),
+                                "move the seed into the passage, or lower opening_mm if the passage counts "
+                                "as outside"});
+        seeded.insert(piece);
+    }
+    return select(inner, pieces, [&](std::uint32_t n) { return seeded.contains(n); });
+}
+
+Mask soft_wall(const Volume& volume, const Mask& air, const Mask& taken, const Region& region,
+               double thickness_mm, double lower_hu, double upper_hu, double smoothing_mm) {
+    const Mask shell = subtract(subtract(clip(dilate(air, thickness_mm), region), air), taken);
+    const Mask soft = intersect(threshold(volume, lower_hu, upper_hu), shell);
+    const Mask smooth = open(close(soft, smoothing_mm), smoothing_mm);
+    return keep_largest(touching(intersect(fill_holes(smooth), shell), air));
+}
+
+}  // namespace palpate
