@@ -43,6 +43,8 @@ if(PALPATE_TOOLS OR PALPATE_VISUAL)
         FiltersSources FiltersVerdict ImagingCore IOGeometry IOHDF IOImage IOLegacy IOPLY IOXML
         InteractionStyle RenderingAnnotation RenderingCore RenderingFreeType RenderingOpenGL2 RenderingUI
         ChartsCore ViewsContext2D)
+    # Xlib, which VTK draws through: asks whether a display answers, where VTK would abort.
+    find_package(X11 REQUIRED)
 endif()
 
 if(PALPATE_TESTS)

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: Apache-2.0
+# Writes what every target links, "target: library;library...", to link_edges.txt; tests/house/link_edges.py holds it
+# against the house's rules.
+function(palpate_targets_below folder result)
+    get_property(targets DIRECTORY ${folder} PROPERTY BUILDSYSTEM_TARGETS)
+    get_property(subfolders DIRECTORY ${folder} PROPERTY SUBDIRECTORIES)
+    foreach(subfolder IN LISTS subfolders)
+        palpate_targets_below(${subfolder} more)
+        list(APPEND targets ${more})
+    endforeach()
+    set(${result} ${targets} PARENT_SCOPE)
+endfunction()
+
+palpate_targets_below(${PROJECT_SOURCE_DIR} palpate_targets)
+set(palpate_edges "")
+foreach(target IN LISTS palpate_targets)
+    get_target_property(type ${target} TYPE)
+    if(type STREQUAL "INTERFACE_LIBRARY")
+        get_target_property(libraries ${target} INTERFACE_LINK_LIBRARIES)
+    elseif(type STREQUAL "UTILITY")
+        continue()
+    else()
+        get_target_property(libraries ${target} LINK_LIBRARIES)
+    endif()
+    string(APPEND palpate_edges "${target}: ${libraries}\n")
+endforeach()
+file(WRITE "${CMAKE_BINARY_DIR}/link_edges.txt" "${palpate_edges}")

@@ -21,7 +21,10 @@ endif()
 
 # What every target of ours is compiled with; never exported.
 add_library(palpate_house INTERFACE)
-target_compile_options(palpate_house INTERFACE -Wall -Wextra -Wconversion -Werror -fno-math-errno)
+# GCC 12 is wrong about std::string (-Wrestrict, GCC bug 105651) and about Eigen views by std::vector
+# (-Wfree-nonheap-object).
+target_compile_options(palpate_house INTERFACE -Wall -Wextra -Wconversion -Werror -Wno-restrict -Wno-free-nonheap-object
+                       -fno-math-errno)
 if(PALPATE_ASSERTIONS)
     target_compile_options(palpate_house INTERFACE -UNDEBUG)
 endif()

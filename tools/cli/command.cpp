@@ -30,15 +30,49 @@ std::int64_t peak_memory_bytes() {
     return std::int64_t{usage.ru_maxrss} * 1024;  // Linux reports KiB
 }
 
-void print_lines(const nlohmann::json& value, const std::string& prefix) {
+std::string cell_text(const nlohmann::ordered_json& value) {
+    if (value.is_string()) return value.get<std::string>();
+    if (value.is_number_float()) return fmt::format("{:.4g}", value.get<double>());
+    return value.dump();
+}
+
+bool is_table(const nlohmann::ordered_json& value) {
+    return value.is_array() && !value.empty() &&
+           std::ranges::all_of(value, [](const auto& row) { return row.is_object(); });
+}
+
+// Rows of scalars under their keys, columns as wide as their widest cell; nested values are left to --json.
+void print_table(const nlohmann::ordered_json& rows, const std::string& name) {
+    std::vector<std::string> keys;
+    for (const auto& [key, cell] : rows.front().items())
+        if (cell.is_primitive()) keys.push_back(key);
+    std::cout << '\n' << name << '\n';
+    std::vector<std::size_t> widths;
+    for (const std::string& key : keys) {
+        std::size_t width = key.size();
+        for (const auto& row : rows)
+            width = std::max(width, cell_text(row.value(key, nlohmann::ordered_json())).size());
+        widths.push_back(width);
+        std::cout << fmt::format("  {:<{}}", key, width);
+    }
+    for (const auto& row : rows) {
+        std::cout << '\n';
+        for (std::size_t k = 0; k < keys.size(); ++k)
+            std::cout << fmt::format("  {:<{}}", cell_text(row.value(keys[k], nlohmann::ordered_json())),
+                                     widths[k]);
+    }
+    std::cout << "\n\n";
+}
+
+void print_lines(const nlohmann::ordered_json& value, const std::string& prefix) {
     for (const auto& [key, item] : value.items()) {
         const std::string name = prefix.empty() ? key : prefix + "." + key;
         if (item.is_object())
             print_lines(item, name);
-        else if (item.is_string())
-            std::cout << name << ' ' << item.get<std::string>() << '\n';
+        else if (is_table(item))
+            print_table(item, name);
         else
-            std::cout << name << ' ' << item.dump() << '\n';
+            std::cout << name << ' ' << cell_text(item) << '\n';
     }
 }
 
@@ -122,7 +156,7 @@ int Command::parse(int argc, char** argv) {
     return ExitCode::usage;
 }
 
-void Command::emit(nlohmann::json result, double seconds) const {
+void Command::emit(nlohmann::ordered_json result, double seconds) const {
     result["schema"] = "palpate." + text_.name + "/1";
     result["version"] = version();
     result["seconds"] = seconds;
@@ -135,7 +169,7 @@ void Command::emit(nlohmann::json result, double seconds) const {
         write_text_file(json_path_, result.dump(2) + "\n", true);
 }
 
-int Command::run(int argc, char** argv, const std::function<nlohmann::json(Session&)>& job) {
+int Command::run(int argc, char** argv, const std::function<nlohmann::ordered_json(Session&)>& job) {
     if (const int code = parse(argc, argv); code >= 0) return code;
     const std::string program = "palpate-" + text_.name;
     set_up_logging(program, quiet_, verbose_);
@@ -155,12 +189,14 @@ int Command::run(int argc, char** argv, const std::function<nlohmann::json(Sessi
         session.threads =
             threads_ > 0 ? threads_ : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
         session.force = force_;
+        session.quiet = quiet_;
         session.progress = Progress(quiet_);
-        nlohmann::json result = job(session);
+        nlohmann::ordered_json result = job(session);
         session.progress.finish();
         emit(std::move(result),
              std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
         std::cout.flush();
+        if (session.shortfall) throw QualityNotMet(*session.shortfall);
         return std::cout ? ExitCode::ok : ExitCode::failed;
     } catch (const UsageError& error) {
         say(error);
@@ -171,6 +207,8 @@ int Command::run(int argc, char** argv, const std::function<nlohmann::json(Sessi
     } catch (const QualityNotMet& error) {
         say(error);
         return ExitCode::quality_not_met;
+    } catch (const Interrupted&) {
+        return ExitCode::interrupted;
     } catch (const std::bad_alloc&) {
         std::cerr << program << ": out of memory; use a coarser mesh or a machine with more memory\n";
     } catch (const std::exception& error) {

@@ -5,9 +5,11 @@
 #include <fmt/format.h>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "formats/model/errors.hpp"
 #include "tools/cli/progress.hpp"
 #include "tools/cli/staged_file.hpp"
 
@@ -25,6 +27,9 @@ enum ExitCode : int {
     quality_not_met = 4,
     interrupted = 130
 };
+
+/// A child process was interrupted, so this command is too (exit code 130).
+struct Interrupted {};
 
 /// What a command says of itself.
 struct CommandText {
@@ -46,7 +51,10 @@ struct Parameter {
 struct Session {
     int threads = 1;     ///< --threads
     bool force = false;  ///< --force: existing outputs may be replaced
+    bool quiet = false;  ///< --quiet
     Progress progress;   ///< talks on stderr, silent with --quiet
+    /// Set by a job whose result is worth printing though a contract is not met: exit code 4.
+    std::optional<ErrorDetail> shortfall;
 
     /// Opens an output that appears whole at commit() or not at all; an existing file without --force throws
     /// InvalidInput.
@@ -95,7 +103,7 @@ class Command {
     /// Parses, runs `job`, writes its JSON result to stdout (as lines "name value", or as JSON with --json),
     /// and returns the exit code. `job` returns an object; run() adds schema, version, seconds and peak
     /// memory.
-    int run(int argc, char** argv, const std::function<nlohmann::json(Session&)>& job);
+    int run(int argc, char** argv, const std::function<nlohmann::ordered_json(Session&)>& job);
 
     const CommandText& text() const { return text_; }
     const std::vector<Parameter>& parameters() const { return parameters_; }
@@ -103,7 +111,7 @@ class Command {
   private:
     CLI::Option* remember(Parameter::Kind kind, CLI::Option* option, const std::string& help);
     int parse(int argc, char** argv);
-    void emit(nlohmann::json result, double seconds) const;
+    void emit(nlohmann::ordered_json result, double seconds) const;
 
     CommandText text_;
     CLI::App app_;

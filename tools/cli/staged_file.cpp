@@ -9,6 +9,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <fstream>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "formats/model/errors.hpp"
@@ -23,7 +24,13 @@ struct Slot {
 };
 std::array<Slot, 16> slots;
 
+std::atomic<pid_t> child_to_interrupt{0};
+
 extern "C" void remove_and_exit(int) {
+    if (const pid_t child = child_to_interrupt.load(); child > 0) {
+        kill(child, SIGTERM);
+        waitpid(child, nullptr, 0);
+    }
     for (Slot& slot : slots)
         if (slot.used.load()) unlink(slot.path.data());
     constexpr char message[] = "\ninterrupted; nothing was left behind\n";
@@ -85,6 +92,10 @@ void remove_staged_files_on_interrupt() {
     action.sa_handler = remove_and_exit;
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
+}
+
+void pass_interrupts_to(pid_t child) {
+    child_to_interrupt.store(child);
 }
 
 void write_text_file(const std::filesystem::path& target, const std::string& text, bool replace) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
+#include <string>
+#include <sys/types.h>
 
 namespace palpate::cli {
 
@@ -29,6 +31,10 @@ class StagedFile {
 
 /// Makes SIGINT and SIGTERM remove all staged files and exit with 130. Called once by Command::run().
 void remove_staged_files_on_interrupt();
+
+/// From now on an interrupt is passed on to this child, which is waited for before this process ends; 0 for
+/// none.
+void pass_interrupts_to(pid_t child);
 
 /// Writes `text` to `target` through a StagedFile.
 void write_text_file(const std::filesystem::path& target, const std::string& text, bool replace);

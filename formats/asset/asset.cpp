@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/asset/asset.hpp"
+
+#include <algorithm>
+#include <future>
+#include <set>
+
+#include "formats/asset/body_io.hpp"
+#include "formats/asset/digest.hpp"
+#include "formats/asset/validate.hpp"
+#include "formats/asset/vtk_grid.hpp"
+#include "formats/model/errors.hpp"
+
+namespace palpate {
+namespace {
+
+std::string rigid_path(std::size_t i) {
+    return "/palpate/bodies/rigid/" + std::to_string(i);
+}
+
+std::string deformable_path(std::size_t i) {
+    return "/palpate/bodies/deformable/" + std::to_string(i);
+}
+
+void check_case(const Case& patient_case, const std::string& where) {
+    check_name(patient_case.name, where + ": /palpate");
+    check_haptics(patient_case.haptics, where + ": /palpate/haptics");
+    if (patient_case.rigid_bodies.empty() && patient_case.deformable_bodies.empty())
+        throw InvalidInput({where, "has no bodies", "at least one", "pack a rigid or a deformable body"});
+    std::set<std::string> names;
+    const auto claim = [&](const std::string& name) {
+        if (!names.insert(name).second)
+            throw InvalidInput({where, "has two bodies '" + name + "'", "", "give each body its own name"});
+    };
+    for (const RigidBody& body : patient_case.rigid_bodies) claim(body.name);
+    for (const DeformableBody& body : patient_case.deformable_bodies) claim(body.name);
+}
+
+Case read_case(const Hdf5File& file) {
+    Case patient_case;
+    patient_case.name = file.text_attribute("/palpate", "name");
+    for (std::size_t i = 0; file.contains(rigid_path(i)); ++i)
+        patient_case.rigid_bodies.push_back(read_rigid_body(file, rigid_path(i)));
+    for (std::size_t i = 0; file.contains(deformable_path(i)); ++i) {
+        DeformableBody body = read_condensed_body(file, deformable_path(i));
+        body.obb_tree = read_obb_tree(file, deformable_path(i) + "/obb_tree", body.boundary.surface);
+        patient_case.deformable_bodies.push_back(std::move(body));
+    }
+    visit_haptics(patient_case.haptics, [&](const char* name, double& value) {
+        value = file.attribute<double>("/palpate/haptics", name);
+    });
+    patient_case.provenance = file.texts("/palpate/provenance", {}).front();
+    check_case(patient_case, file.name());
+    return patient_case;
+}
+
+}  // namespace
+
+void write_asset(const std::filesystem::path& path, const Case& patient_case) {
+    const std::string where = path.string();
+    check_case(patient_case, where);
+    for (const RigidBody& body : patient_case.rigid_bodies) {
+        check_name(body.name, where);
+        check_surface(body.surface, where + ": " + body.name);
+        check_obb_tree(body.obb_tree, body.surface.triangles.size(), where + ": " + body.name + "/obb_tree");
+    }
+    for (const DeformableBody& body : patient_case.deformable_bodies) {
+        check_body(body, where + ": " + body.name);
+        check_obb_tree(body.obb_tree, body.boundary.surface.triangles.size(),
+                       where + ": " + body.name + "/obb_tree");
+    }
+
+    Hdf5Writer writer(path);
+    write_header(writer, "case");
+    writer.attribute("/palpate", "name", patient_case.name);
+    for (std::size_t i = 0; i < patient_case.rigid_bodies.size(); ++i)
+        write_rigid_body(writer, rigid_path(i), patient_case.rigid_bodies[i]);
+    for (std::size_t i = 0; i < patient_case.deformable_bodies.size(); ++i) {
+        const DeformableBody& body = patient_case.deformable_bodies[i];
+        write_condensed_body(writer, deformable_path(i), body, mechanics_digest(body));
+        write_obb_tree(writer, deformable_path(i) + "/obb_tree", body.obb_tree, body.boundary.surface);
+    }
+    writer.group("/palpate/haptics");
+    visit_haptics(patient_case.haptics,
+                  [&](const char* name, double value) { writer.attribute("/palpate/haptics", name, value); });
+    writer.texts("/palpate/provenance", {patient_case.provenance}, {});
+    write_vtk_grid(writer, patient_case);
+    writer.finish("/palpate");
+}
+
+Case read_asset(const std::filesystem::path& path, Digests digests) {
+    const Hdf5File file(path);
+    check_header(file, "case");
+    if (digests == Digests::skip) return read_case(file);
+    // A wrong digest explains whatever else is wrong, so it is reported first.
+    auto checked = std::async(std::launch::async, [&] { file.check_digests("/palpate"); });
+    try {
+        Case patient_case = read_case(file);
+        checked.get();
+        return patient_case;
+    } catch (const InvalidInput&) {
+        if (checked.valid()) checked.get();
+        throw;
+    }
+}
+
+}  // namespace palpate

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/asset/body_io.hpp"
+
+#include <Eigen/Core>
+#include <cstring>
+
+#include "formats/asset/columns.hpp"
+#include "formats/asset/digest.hpp"
+#include "formats/asset/validate.hpp"
+#include "formats/model/errors.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr std::int32_t schema = 1;
+constexpr auto any = Hdf5File::any;
+
+// Rows of the asset's arrays are the in-memory values, byte for byte.
+static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double));
+
+template <typename Scalar, typename Row>
+void write_rows(Hdf5Writer& writer, const std::string& path, const std::vector<Row>& rows,
+                std::string_view unit = "") {
+    constexpr std::size_t width = sizeof(Row) / sizeof(Scalar);
+    const std::span<const Scalar> values(reinterpret_cast<const Scalar*>(rows.data()), rows.size() * width);
+    if constexpr (width == 1)
+        writer.dataset(path, values, {rows.size()}, unit);
+    else
+        writer.dataset(path, values, {rows.size(), width}, unit);
+}
+
+// Reads `count` rows, or as many as there are.
+template <typename Scalar, typename Row>
+std::vector<Row> read_rows(const Hdf5File& file, const std::string& path, std::int64_t count = any) {
+    constexpr std::int64_t width = sizeof(Row) / sizeof(Scalar);
+    std::vector<std::int64_t> shape{count};
+    if (width > 1) shape.push_back(width);
+    const std::span<const Scalar> values = file.dataset<Scalar>(path, shape);
+    std::vector<Row> rows(values.size() / width);
+    if (!rows.empty()) std::memcpy(static_cast<void*>(rows.data()), values.data(), values.size_bytes());
+    return rows;
+}
+
+void write_labels(Hdf5Writer& writer, const std::string& prefix, const std::vector<Label>& labels) {
+    const LabelColumns columns = columns_of(labels);
+    write_rows<std::int32_t>(writer, prefix + "_values", columns.values);
+    writer.texts(prefix + "_names", columns.names, {columns.names.size()});
+    write_rows<float>(writer, prefix + "_colours", columns.colours);
+}
+
+std::vector<Label> read_labels(const Hdf5File& file, const std::string& prefix) {
+    const auto values = read_rows<std::int32_t, std::int32_t>(file, prefix + "_values");
+    const auto count = static_cast<std::int64_t>(values.size());
+    const auto names = file.texts(prefix + "_names", {count});
+    const auto colours = read_rows<float, std::array<float, 3>>(file, prefix + "_colours", count);
+    std::vector<Label> labels;
+    for (std::size_t i = 0; i < values.size(); ++i) labels.push_back({values[i], names[i], colours[i]});
+    return labels;
+}
+
+// Surface vertices are mesh nodes; indices are checked here because copying needs them.
+BoundarySurface read_boundary(const Hdf5File& file, const std::string& path, const TetMesh& mesh) {
+    BoundarySurface boundary;
+    boundary.nodes = read_rows<std::int32_t, std::int32_t>(file, path + "/surface_nodes");
+    for (const std::int32_t node : boundary.nodes) {
+        if (node < 0 || static_cast<std::size_t>(node) >= mesh.rest_positions.size())
+            file.refuse(path + "/surface_nodes", "has index " + std::to_string(node),
+                        "0 to " + std::to_string(mesh.rest_positions.size()) + " exclusive");
+        boundary.surface.vertices.push_back(mesh.rest_positions[static_cast<std::size_t>(node)]);
+    }
+    boundary.surface.triangles = read_rows<std::int32_t, Triangle>(file, path + "/surface_triangles");
+    return boundary;
+}
+
+DenseCompliance map_compliance(const Hdf5File& file, const std::string& path, std::size_t node_count) {
+    const auto dofs = static_cast<std::int64_t>(3 * node_count);
+    const std::span<const float> entries = file.dataset<float>(path, {dofs, dofs});
+    return {static_cast<std::int32_t>(node_count),
+            std::shared_ptr<const float>(file.mapping().owner(), entries.data())};
+}
+
+}  // namespace
+
+void write_header(Hdf5Writer& writer, const std::string& kind) {
+    writer.group("/palpate");
+    writer.attribute("/palpate", "schema", schema);
+    writer.attribute("/palpate", "kind", kind);
+    writer.attribute("/palpate", "units", "mm, N, s");
+    writer.attribute("/palpate", "space", "LPS");
+}
+
+void check_header(const Hdf5File& file, const std::string& kind) {
+    if (!file.contains("/palpate"))
+        throw InvalidInput({file.name(), "is an HDF5 file, but not one of palpate's", "a group /palpate",
+                            "give an asset (.vtkhdf) or a part that palpate wrote"});
+    const auto found_schema = file.attribute<std::int32_t>("/palpate", "schema");
+    if (found_schema > schema)
+        throw InvalidInput({file.name(), "has schema " + std::to_string(found_schema),
+                            "at most " + std::to_string(schema),
+                            "use a newer palpate, or make the file again with this one"});
+    if (found_schema != schema) file.refuse("/palpate", "has schema " + std::to_string(found_schema), "1");
+    const std::string found_kind = file.text_attribute("/palpate", "kind");
+    if (found_kind != kind)
+        throw InvalidInput(
+            {file.name(), "holds a " + found_kind, "a " + kind,
+             "'palpate pack' makes a case (.vtkhdf) from bodies (.body.h5) and OBB trees (.obb.h5)"});
+    if (file.text_attribute("/palpate", "units") != "mm, N, s")
+        file.refuse("/palpate", "has other units", "mm, N, s");
+    if (file.text_attribute("/palpate", "space") != "LPS")
+        file.refuse("/palpate", "is in another frame", "LPS");
+}
+
+void write_obb_tree(Hdf5Writer& writer, const std::string& path, const ObbTree& tree,
+                    const TriangleMesh& surface) {
+    const ObbColumns columns = columns_of(tree.nodes);
+    writer.group(path);
+    writer.attribute(path, "surface_sha256", surface_digest(surface));
+    writer.dataset(path + "/axes",
+                   std::span(reinterpret_cast<const float*>(columns.axes.data()), 9 * columns.axes.size()),
+                   {columns.axes.size(), 3, 3});
+    write_rows<float>(writer, path + "/centers", columns.centers, "mm");
+    write_rows<float>(writer, path + "/half_extents", columns.half_extents, "mm");
+    write_rows<std::int32_t>(writer, path + "/first", columns.first);
+    write_rows<std::int32_t>(writer, path + "/count", columns.count);
+    write_rows<std::int32_t>(writer, path + "/triangle_order", tree.triangle_order);
+}
+
+ObbTree read_obb_tree(const Hdf5File& file, const std::string& path, const TriangleMesh& surface) {
+    if (file.text_attribute(path, "surface_sha256") != surface_digest(surface))
+        throw InvalidInput({file.name() + ": " + path, "was built over another surface", "",
+                            "run 'palpate obb' on the surface again"});
+    const auto centers = read_rows<float, std::array<float, 3>>(file, path + "/centers");
+    const auto count = static_cast<std::int64_t>(centers.size());
+    const auto axes = file.dataset<float>(path + "/axes", {count, 3, 3});
+    const auto half_extents = read_rows<float, std::array<float, 3>>(file, path + "/half_extents", count);
+    const auto first = file.dataset<std::int32_t>(path + "/first", {count});
+    const auto counts = file.dataset<std::int32_t>(path + "/count", {count});
+    ObbTree tree;
+    tree.nodes.resize(centers.size());
+    for (std::size_t i = 0; i < centers.size(); ++i) {
+        ObbNode& node = tree.nodes[i];
+        node.axes = Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(axes.data() + 9 * i);
+        node.center = Eigen::Vector3f(centers[i].data());
+        node.half_extents = Eigen::Vector3f(half_extents[i].data());
+        node.first = first[i];
+        node.count = counts[i];
+    }
+    tree.triangle_order = read_rows<std::int32_t, std::int32_t>(file, path + "/triangle_order");
+    check_obb_tree(tree, surface.triangles.size(), file.name() + ": " + path);
+    return tree;
+}
+
+void write_rigid_body(Hdf5Writer& writer, const std::string& path, const RigidBody& body) {
+    writer.group(path);
+    writer.attribute(path, "name", body.name);
+    write_rows<double>(writer, path + "/vertices", body.surface.vertices, "mm");
+    write_rows<std::int32_t>(writer, path + "/triangles", body.surface.triangles);
+    write_obb_tree(writer, path + "/obb_tree", body.obb_tree, body.surface);
+}
+
+RigidBody read_rigid_body(const Hdf5File& file, const std::string& path) {
+    RigidBody body;
+    body.name = file.text_attribute(path, "name");
+    check_name(body.name, file.name() + ": " + path);
+    body.surface.vertices = read_rows<double, Eigen::Vector3d>(file, path + "/vertices");
+    body.surface.triangles = read_rows<std::int32_t, Triangle>(file, path + "/triangles");
+    check_surface(body.surface, file.name() + ": " + path);
+    body.obb_tree = read_obb_tree(file, path + "/obb_tree", body.surface);
+    return body;
+}
+
+void write_condensed_body(Hdf5Writer& writer, const std::string& path, const DeformableBody& body,
+                          const std::string& mechanics) {
+    writer.group(path);
+    writer.attribute(path, "name", body.name);
+    write_rows<double>(writer, path + "/rest_positions", body.mesh.rest_positions, "mm");
+    write_rows<std::int32_t>(writer, path + "/tetrahedra", body.mesh.tetrahedra);
+    write_rows<std::int32_t>(writer, path + "/regions", body.mesh.regions);
+    write_labels(writer, path + "/region", body.mesh.region_names);
+    write_rows<std::int32_t>(writer, path + "/outside_labels", body.mesh.outside_labels);
+    write_labels(writer, path + "/outside", body.mesh.outside_names);
+    const MaterialColumns materials = columns_of(body.materials);
+    write_rows<std::int32_t>(writer, path + "/material_regions", materials.regions);
+    write_rows<double>(writer, path + "/materials", materials.values, "N/mm^2, 1");
+    write_rows<std::int32_t>(writer, path + "/fixed_nodes", body.fixed_nodes);
+    write_rows<std::int32_t>(writer, path + "/surface_nodes", body.boundary.nodes);
+    write_rows<std::int32_t>(writer, path + "/surface_triangles", body.boundary.surface.triangles);
+    write_rows<std::int32_t>(writer, path + "/contact_nodes", body.contact_nodes);
+
+    const std::size_t dofs = body.compliance.dof_count();
+    writer.dataset(path + "/compliance", std::span(body.compliance.entries.get(), dofs * dofs), {dofs, dofs},
+                   "mm/N");
+    writer.attribute(path + "/compliance", "mechanics_sha256", mechanics);
+    writer.group(path + "/certificate");
+    visit_certificate(body.certificate, [&](const char* name, const auto& value) {
+        writer.attribute(path + "/certificate", name, value);
+    });
+}
+
+DeformableBody read_condensed_body(const Hdf5File& file, const std::string& path) {
+    DeformableBody body;
+    body.name = file.text_attribute(path, "name");
+    body.mesh.rest_positions = read_rows<double, Eigen::Vector3d>(file, path + "/rest_positions");
+    body.mesh.tetrahedra = read_rows<std::int32_t, Tetrahedron>(file, path + "/tetrahedra");
+    body.mesh.regions = read_rows<std::int32_t, std::int32_t>(file, path + "/regions");
+    body.mesh.region_names = read_labels(file, path + "/region");
+    body.mesh.outside_labels = read_rows<std::int32_t, std::int32_t>(file, path + "/outside_labels");
+    body.mesh.outside_names = read_labels(file, path + "/outside");
+    const auto regions = read_rows<std::int32_t, std::int32_t>(file, path + "/material_regions");
+    const auto materials = read_rows<double, std::array<double, 2>>(
+        file, path + "/materials", static_cast<std::int64_t>(regions.size()));
+    for (std::size_t i = 0; i < regions.size(); ++i)
+        body.materials.push_back({regions[i], {materials[i][0], materials[i][1]}});
+    body.fixed_nodes = read_rows<std::int32_t, std::int32_t>(file, path + "/fixed_nodes");
+    body.boundary = read_boundary(file, path, body.mesh);
+    body.contact_nodes = read_rows<std::int32_t, std::int32_t>(file, path + "/contact_nodes");
+    body.compliance = map_compliance(file, path + "/compliance", body.contact_nodes.size());
+    visit_certificate(body.certificate, [&](const char* name, auto& value) {
+        value = file.attribute<std::remove_reference_t<decltype(value)>>(path + "/certificate", name);
+    });
+    if (file.text_attribute(path + "/compliance", "mechanics_sha256") != mechanics_digest(body))
+        throw InvalidInput({file.name() + ": " + path + "/compliance",
+                            "was condensed from another mesh, material or boundary", "",
+                            "run 'palpate condense' on the mesh again"});
+    check_body(body, file.name() + ": " + path);
+    return body;
+}
+
+}  // namespace palpate

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/asset/parts.hpp"
+
+#include "formats/asset/body_io.hpp"
+#include "formats/asset/digest.hpp"
+#include "formats/asset/validate.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr const char* tree_path = "/palpate/obb_tree";
+constexpr const char* body_path = "/palpate/body";
+
+}  // namespace
+
+void write_obb_part(const std::filesystem::path& path, const ObbTree& tree, const TriangleMesh& surface) {
+    check_surface(surface, path.string());
+    check_obb_tree(tree, surface.triangles.size(), path.string());
+    Hdf5Writer writer(path);
+    write_header(writer, "obb_tree");
+    write_obb_tree(writer, tree_path, tree, surface);
+    writer.finish("/palpate");
+}
+
+ObbTree read_obb_part(const std::filesystem::path& path, const TriangleMesh& surface) {
+    const Hdf5File file(path);
+    check_header(file, "obb_tree");
+    file.check_digests("/palpate");
+    return read_obb_tree(file, tree_path, surface);
+}
+
+void write_body_part(const std::filesystem::path& path, const DeformableBody& body) {
+    check_body(body, path.string() + ": " + body.name);
+    Hdf5Writer writer(path);
+    write_header(writer, "body");
+    write_condensed_body(writer, body_path, body, mechanics_digest(body));
+    writer.finish("/palpate");
+}
+
+DeformableBody read_body_part(const std::filesystem::path& path) {
+    const Hdf5File file(path);
+    check_header(file, "body");
+    file.check_digests("/palpate");
+    return read_condensed_body(file, body_path);
+}
+
+}  // namespace palpate

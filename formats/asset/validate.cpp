@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/asset/validate.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <initializer_list>
+#include <iterator>
+#include <span>
+#include <utility>
+
+#include "formats/model/errors.hpp"
+
+namespace palpate {
+namespace {
+
+[[noreturn]] void refuse(const std::string& where, const std::string& found,
+                         const std::string& expected = "") {
+    throw InvalidInput(
+        {where, found, expected, "the file is damaged or its parts do not fit; make it again"});
+}
+
+template <std::size_t n>
+void check_indices(const std::vector<std::array<std::int32_t, n>>& cells, std::size_t vertex_count,
+                   const std::string& where) {
+    for (std::size_t i = 0; i < cells.size(); ++i)
+        for (const std::int32_t index : cells[i])
+            if (index < 0 || static_cast<std::size_t>(index) >= vertex_count)
+                refuse(where, "entry " + std::to_string(i) + " has index " + std::to_string(index),
+                       "0 to " + std::to_string(vertex_count) + " exclusive");
+}
+
+void check_ascending(const std::vector<std::int32_t>& nodes, std::size_t node_count,
+                     const std::string& where) {
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+        if (nodes[i] < 0 || static_cast<std::size_t>(nodes[i]) >= node_count ||
+            (i > 0 && nodes[i] <= nodes[i - 1]))
+            refuse(where, "entry " + std::to_string(i) + " is " + std::to_string(nodes[i]),
+                   "ascending node indices below " + std::to_string(node_count));
+}
+
+void check_points(const std::vector<Eigen::Vector3d>& points, const std::string& where) {
+    for (std::size_t i = 0; i < points.size(); ++i)
+        if (!points[i].allFinite()) refuse(where, "point " + std::to_string(i) + " is not finite");
+}
+
+void check_labels(const std::vector<Label>& labels, const std::string& where) {
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+        check_name(labels[i].name, where);
+        if (labels[i].value < 1 || labels[i].value > 65535 ||
+            (i > 0 && labels[i].value <= labels[i - 1].value))
+            refuse(where, "label value " + std::to_string(labels[i].value), "ascending values, 1 to 65535");
+        for (const float channel : labels[i].colour)
+            if (!(channel >= 0 && channel <= 1)) refuse(where, "a colour is out of range", "0 to 1");
+    }
+}
+
+bool has_label(const std::vector<Label>& labels, std::int32_t value) {
+    return std::ranges::binary_search(labels, value, {}, &Label::value);
+}
+
+void check_mesh(const TetMesh& mesh, const std::string& where) {
+    check_points(mesh.rest_positions, where + "/rest_positions");
+    if (mesh.tetrahedra.empty()) refuse(where + "/tetrahedra", "is empty");
+    check_indices(mesh.tetrahedra, mesh.rest_positions.size(), where + "/tetrahedra");
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+        if (!(six_volume(mesh, t) > 0))
+            refuse(where + "/tetrahedra", "tetrahedron " + std::to_string(t) + " is flat or inside out");
+    if (mesh.regions.size() != mesh.tetrahedra.size())
+        refuse(where + "/regions", std::to_string(mesh.regions.size()) + " values",
+               std::to_string(mesh.tetrahedra.size()));
+
+    check_labels(mesh.region_names, where + "/region_names");
+    std::vector<std::int32_t> occurring = mesh.regions;
+    std::ranges::sort(occurring);
+    occurring.erase(std::ranges::unique(occurring).begin(), occurring.end());
+    if (!std::ranges::equal(occurring, mesh.region_names, {}, {}, &Label::value))
+        refuse(where + "/region_names", "does not name exactly the values that occur in regions");
+
+    check_labels(mesh.outside_names, where + "/outside_names");
+    if (!mesh.outside_labels.empty() && mesh.outside_labels.size() != mesh.rest_positions.size())
+        refuse(where + "/outside_labels", std::to_string(mesh.outside_labels.size()) + " values",
+               "none or " + std::to_string(mesh.rest_positions.size()));
+    for (const std::int32_t label : mesh.outside_labels)
+        if (label != -1 && label != 0 && !has_label(mesh.outside_names, label))
+            refuse(where + "/outside_labels", "value " + std::to_string(label) + " has no name");
+}
+
+void check_materials(const DeformableBody& body, const std::string& where) {
+    if (!std::ranges::equal(body.materials, body.mesh.region_names, {}, &RegionMaterial::region,
+                            &Label::value))
+        refuse(where, "does not have one material for each region, ascending");
+    for (const auto& [region, material] : body.materials) {
+        const auto [youngs_modulus, poissons_ratio] = material;
+        if (!(youngs_modulus > 0 && std::isfinite(youngs_modulus) && poissons_ratio > -1 &&
+              poissons_ratio < 0.5))
+            refuse(where,
+                   "region " + std::to_string(region) + " has Young's modulus " +
+                       std::to_string(youngs_modulus) + " N/mm² and Poisson's ratio " +
+                       std::to_string(poissons_ratio),
+                   "a positive modulus and a ratio between -1 and 0.5");
+    }
+}
+
+void check_boundary(const DeformableBody& body, const std::string& where) {
+    const BoundarySurface boundary = boundary_surface(body.mesh);
+    if (body.boundary.nodes != boundary.nodes ||
+        body.boundary.surface.triangles != boundary.surface.triangles ||
+        body.boundary.surface.vertices != boundary.surface.vertices)
+        refuse(where + "/surface_triangles", "is not the boundary of the tetrahedra");
+
+    check_ascending(body.fixed_nodes, body.mesh.rest_positions.size(), where + "/fixed_nodes");
+    if (body.fixed_nodes.empty()) refuse(where + "/fixed_nodes", "is empty", "nodes that hold the body");
+    std::vector<std::int32_t> contact_nodes;
+    std::ranges::set_difference(boundary.nodes, body.fixed_nodes, std::back_inserter(contact_nodes));
+    if (body.contact_nodes != contact_nodes)
+        refuse(where + "/contact_nodes", "is not the boundary nodes without the fixed ones");
+}
+
+// A float is finite unless all bits of its exponent are set; as integers, the test runs on whole vectors.
+bool all_finite(std::span<const float> values) {
+    constexpr std::uint32_t exponent = 0x7F800000U;
+    std::uint32_t found = 0;
+    for (const float value : values)
+        found |= (std::bit_cast<std::uint32_t>(value) & exponent) == exponent ? 1U : 0U;
+    return found == 0;
+}
+
+void check_compliance(const DeformableBody& body, const std::string& where) {
+    const DenseCompliance& compliance = body.compliance;
+    if (compliance.node_count < 1 ||
+        static_cast<std::size_t>(compliance.node_count) != body.contact_nodes.size() || !compliance.entries)
+        refuse(where, "has " + std::to_string(compliance.node_count) + " nodes",
+               std::to_string(body.contact_nodes.size()) + " contact nodes, at least one");
+    const std::size_t dofs = compliance.dof_count();
+    if (!all_finite({compliance.entries.get(), dofs * dofs}))
+        refuse(where, "has an entry that is not finite");
+    for (std::size_t dof = 0; dof < dofs; ++dof)
+        if (!(compliance.row(dof)[dof] > 0))
+            refuse(where, "diagonal entry " + std::to_string(dof) + " is not positive");
+}
+
+void check_certificate(const Certificate& certificate, const std::string& where) {
+    for (const double value : {certificate.residual, certificate.residual_double, certificate.asymmetry,
+                               certificate.smallest_eigenvalue, certificate.largest_eigenvalue,
+                               certificate.condition_number, certificate.reciprocity})
+        if (!std::isfinite(value)) refuse(where, "has a figure that is not finite");
+}
+
+void check_box(const ObbNode& node, std::size_t index, const std::string& where) {
+    constexpr float tolerance = 1e-4F;  // far above float32 round-off, far below what a query would notice
+    const bool orthonormal =
+        ((node.axes * node.axes.transpose() - Eigen::Matrix3f::Identity()).array().abs() < tolerance).all();
+    if (!orthonormal || !node.center.allFinite() || !node.half_extents.allFinite() ||
+        (node.half_extents.array() < 0).any())
+        refuse(where, "box " + std::to_string(index) + " is not an oriented box");
+}
+
+}  // namespace
+
+void check_name(const std::string& name, const std::string& where) {
+    constexpr std::size_t longest = 255;
+    const bool printable = std::ranges::all_of(name, [](unsigned char c) { return c >= 0x20 && c != 0x7f; });
+    if (name.empty() || name.size() > longest || !printable)
+        refuse(where, "has a name that is empty, long or not printable",
+               "1 to 255 bytes without control characters");
+}
+
+void check_haptics(const HapticSettings& haptics, const std::string& where) {
+    for (const auto& [name, value] : std::initializer_list<std::pair<const char*, double>>{
+             {"tool_radius", haptics.tool_radius},
+             {"coupling_stiffness", haptics.coupling_stiffness},
+             {"max_force", haptics.max_force},
+             {"max_force_rate", haptics.max_force_rate}})
+        if (!(value > 0 && std::isfinite(value)))
+            refuse(where, std::string(name) + " is " + std::to_string(value), "a positive number");
+}
+
+void check_surface(const TriangleMesh& surface, const std::string& where) {
+    check_points(surface.vertices, where + "/vertices");
+    if (surface.triangles.empty()) refuse(where + "/triangles", "is empty");
+    check_indices(surface.triangles, surface.vertices.size(), where + "/triangles");
+}
+
+void check_obb_tree(const ObbTree& tree, std::size_t triangle_count, const std::string& where) {
+    if (tree.nodes.empty()) refuse(where, "has no nodes");
+    if (tree.triangle_order.size() != triangle_count)
+        refuse(where + "/triangle_order", std::to_string(tree.triangle_order.size()) + " entries",
+               std::to_string(triangle_count));
+    std::vector<char> seen(triangle_count);
+    for (const std::int32_t triangle : tree.triangle_order) {
+        if (triangle < 0 || static_cast<std::size_t>(triangle) >= triangle_count ||
+            std::exchange(seen[static_cast<std::size_t>(triangle)], 1) != 0)
+            refuse(where + "/triangle_order", "is not a permutation of the triangles");
+    }
+
+    constexpr int unreached = -1;
+    std::vector<int> depth(tree.nodes.size(), unreached);
+    depth[0] = 0;
+    std::ranges::fill(seen, 0);  // now: entries of triangle_order that a leaf holds
+    std::size_t held = 0;
+    for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+        const ObbNode& node = tree.nodes[i];
+        check_box(node, i, where);
+        const std::string box = "box " + std::to_string(i);
+        if (depth[i] == unreached) refuse(where, box + " has no parent before it");
+        if (depth[i] > deepest_obb_tree)
+            refuse(where, "is too deep", std::to_string(deepest_obb_tree) + " levels");
+        if (node.first < 0 || node.count < 0) refuse(where, box + " has a negative range");
+        const auto first = static_cast<std::size_t>(node.first);
+        if (node.count == 0) {
+            if (first <= i || first + 1 >= tree.nodes.size() || depth[first] != unreached ||
+                depth[first + 1] != unreached)
+                refuse(where, box + " has children out of place");
+            depth[first] = depth[first + 1] = depth[i] + 1;
+            continue;
+        }
+        const auto count = static_cast<std::size_t>(node.count);
+        if (first + count > triangle_count) refuse(where, box + " has triangles beyond the last");
+        for (std::size_t entry = first; entry < first + count; ++entry)
+            if (std::exchange(seen[entry], 1) != 0)
+                refuse(where, box + " shares a triangle with another leaf");
+        held += count;
+    }
+    if (held != triangle_count) refuse(where, "leaves out triangles");
+}
+
+void check_body(const DeformableBody& body, const std::string& where) {
+    check_name(body.name, where);
+    check_mesh(body.mesh, where);
+    check_materials(body, where + "/materials");
+    check_boundary(body, where);
+    check_compliance(body, where + "/compliance");
+    check_certificate(body.certificate, where + "/certificate");
+}
+
+}  // namespace palpate

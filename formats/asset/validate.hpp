@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "formats/model/body.hpp"
+
+namespace palpate {
+
+/// What must hold of values before they are written and after they were read: every index in range, every
+/// number finite, all parts of one another. Each function throws InvalidInput whose culprit starts with
+/// `where` (a file and the object in it).
+
+/// Finite vertices, at least one triangle, vertex indices in range. O(triangles).
+void check_surface(const TriangleMesh& surface, const std::string& where);
+
+/// A binary tree whose siblings are neighbours, children after parents, at most `deepest_obb_tree` levels;
+/// boxes finite with orthonormal axes; leaves that share out all triangles, each once. O(nodes + triangles).
+void check_obb_tree(const ObbTree& tree, std::size_t triangle_count, const std::string& where);
+
+/// Levels below the root that a traversal must be ready for.
+inline constexpr int deepest_obb_tree = 64;
+
+/// Everything about an elastic body but its OBB tree, its boundary recomputed. O(tetrahedra log + entries of
+/// the compliance).
+void check_body(const DeformableBody& body, const std::string& where);
+
+/// Positive, finite settings.
+void check_haptics(const HapticSettings& haptics, const std::string& where);
+
+/// A name that a person can read and a terminal can print: 1 to 255 bytes without control characters.
+void check_name(const std::string& name, const std::string& where);
+
+}  // namespace palpate

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/asset/vtk_grid.hpp"
+
+#include <array>
+
+namespace palpate {
+namespace {
+
+constexpr std::uint8_t vtk_triangle = 5;
+constexpr std::uint8_t vtk_tetra = 10;
+
+struct Grid {
+    std::vector<std::array<float, 3>> points;
+    std::vector<std::int64_t> connectivity;
+    std::vector<std::int64_t> offsets{0};
+    std::vector<std::uint8_t> types;
+    std::vector<std::int32_t> regions;
+    std::vector<std::int32_t> bodies;
+
+    template <std::size_t n>
+    void add_body(std::int32_t body, std::uint8_t type, const std::vector<Eigen::Vector3d>& positions,
+                  const std::vector<std::array<std::int32_t, n>>& cells) {
+        const auto base = static_cast<std::int64_t>(points.size());
+        for (const Eigen::Vector3d& p : positions) {
+            const Eigen::Vector3f rounded = p.cast<float>();
+            points.push_back({rounded.x(), rounded.y(), rounded.z()});
+        }
+        for (const auto& cell : cells) {
+            for (const std::int32_t index : cell) connectivity.push_back(base + index);
+            offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
+        }
+        types.insert(types.end(), cells.size(), type);
+        bodies.insert(bodies.end(), cells.size(), body);
+        regions.resize(bodies.size(), 0);
+    }
+};
+
+void write_count(Hdf5Writer& writer, const std::string& name, std::size_t count) {
+    const auto value = static_cast<std::int64_t>(count);
+    writer.dataset("/VTKHDF/" + name, std::span(&value, 1), {1});  // VTK refuses a scalar here
+}
+
+template <typename T>
+void write_list(Hdf5Writer& writer, const std::string& name, const std::vector<T>& values) {
+    writer.dataset("/VTKHDF/" + name, std::span(values), {values.size()});
+}
+
+}  // namespace
+
+void write_vtk_grid(Hdf5Writer& writer, const Case& patient_case) {
+    Grid grid;
+    std::vector<std::string> body_names, region_names;
+    std::vector<std::int32_t> region_values, region_bodies;
+    for (const RigidBody& body : patient_case.rigid_bodies) {
+        grid.add_body(static_cast<std::int32_t>(body_names.size()), vtk_triangle, body.surface.vertices,
+                      body.surface.triangles);
+        body_names.push_back(body.name);
+    }
+    for (const DeformableBody& body : patient_case.deformable_bodies) {
+        const auto index = static_cast<std::int32_t>(body_names.size());
+        const std::size_t first = grid.regions.size();
+        grid.add_body(index, vtk_tetra, body.mesh.rest_positions, body.mesh.tetrahedra);
+        std::copy(body.mesh.regions.begin(), body.mesh.regions.end(),
+                  grid.regions.begin() + static_cast<std::ptrdiff_t>(first));
+        for (const Label& region : body.mesh.region_names) {
+            region_values.push_back(region.value);
+            region_names.push_back(region.name);
+            region_bodies.push_back(index);
+        }
+        body_names.push_back(body.name);
+    }
+
+    writer.group("/VTKHDF");
+    writer.attribute("/VTKHDF", "Version", std::vector<std::int32_t>{1, 0});
+    writer.attribute("/VTKHDF", "Type", "UnstructuredGrid");
+    write_count(writer, "NumberOfPoints", grid.points.size());
+    write_count(writer, "NumberOfCells", grid.types.size());
+    write_count(writer, "NumberOfConnectivityIds", grid.connectivity.size());
+    writer.dataset("/VTKHDF/Points",
+                   std::span<const float>(grid.points.data()->data(), 3 * grid.points.size()),
+                   {grid.points.size(), 3}, "mm");
+    write_list(writer, "Connectivity", grid.connectivity);
+    write_list(writer, "Offsets", grid.offsets);
+    write_list(writer, "Types", grid.types);
+    write_list(writer, "CellData/region", grid.regions);
+    write_list(writer, "CellData/body", grid.bodies);
+    writer.variable_texts("/VTKHDF/FieldData/SPACE", {"LPS"});
+    writer.variable_texts("/VTKHDF/FieldData/body_names", body_names);
+    writer.variable_texts("/VTKHDF/FieldData/region_names", region_names);
+    write_list(writer, "FieldData/region_values", region_values);
+    write_list(writer, "FieldData/region_bodies", region_bodies);
+}
+
+}  // namespace palpate

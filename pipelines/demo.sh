@@ -1,0 +1,22 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# From two real volumes to two organs that can be felt: build/demo/{nasopharynx,liver}.{vtkhdf,html}.
+# Needs Debian 12 with root or sudo; installs what is missing, builds, and does nothing twice.
+set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/set_up.sh"
+set_up release
+
+bin=$root/build/release/bin
+mkdir -p "$root/build/demo"
+"$root/sample_data/unpack.sh" "$root/build/sample_data"
+started=$SECONDS
+for name in nasopharynx liver; do
+    "$bin/palpate" build "$root/pipelines/cases/$name.toml" -o "$root/build/demo/$name.vtkhdf" \
+        --json "$root/build/demo/$name.json"
+    "$bin/palpate" verify "$root/build/demo/$name.vtkhdf" --json "$root/build/demo/$name.verify.json"
+done
+for name in nasopharynx liver; do
+    python3 "$root/pipelines/summary.py" "$root/build/demo/$name.json" "$root/build/demo/$name.verify.json"
+done
+echo "Both cases took $((SECONDS - started)) s after the build."
+echo "Touch one: build/release/bin/palpate train build/demo/liver.vtkhdf"

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: Apache-2.0
+# Sourced by pipelines/demo.sh and tests/run.sh: installs what packages.txt lists and builds presets.
+# Every step does nothing when there is nothing to do.
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+export CCACHE_BASEDIR="$root"
+
+install_packages() {
+    local wanted missing=() package as_root=()
+    wanted=$(sed 's/#.*//' "$root/packages.txt")
+    for package in $wanted; do
+        [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing+=("$package")
+    done
+    [ ${#missing[@]} -gt 0 ] || return 0
+    echo "Installing ${#missing[@]} Debian packages" >&2
+    if [ "$(id -u)" -ne 0 ]; then
+        command -v sudo >/dev/null || { echo "set_up: installing needs root or sudo" >&2; return 1; }
+        as_root=(sudo)
+    fi
+    "${as_root[@]}" apt-get update -q
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${missing[@]}"
+}
+
+build_preset() { # preset
+    cmake --preset "$1" -S "$root" >"$root/build/$1.configure.log" 2>&1 || { cat "$root/build/$1.configure.log" >&2; return 1; }
+    cmake --build "$root/build/$1"
+}
+
+set_up() { # preset ...
+    local preset
+    install_packages
+    mkdir -p "$root/build"
+    for preset in "$@"; do
+        echo "Building preset $preset" >&2
+        (cd "$root" && build_preset "$preset")
+    done
+}

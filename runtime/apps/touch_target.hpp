@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+
+#include "formats/model/body.hpp"
+#include "runtime/devices/hand_path.hpp"
+#include "runtime/haptics/haptic_model.hpp"
+
+namespace palpate {
+
+/// A place on a body that the tool can reach.
+struct TouchTarget {
+    std::size_t body = 0;       ///< as in HapticModel
+    std::int32_t triangle = 0;  ///< of its surface
+    TouchPoint place;
+};
+
+/// Chooses where a script touches. `body_name` empty: the first deformable body, else the first rigid one.
+/// Without `near`: among the body's free triangles from which the tool can back out 5 mm (or, in a narrow
+/// cavity, as far as any allows), the one farthest from the fixed nodes, where the body gives way most; on a
+/// rigid body, the one farthest from the surface's centroid. With `near` (p_P, mm): the surface point nearest
+/// to it. Throws UsageError for an unknown name, InvalidInput if the tool reaches no triangle.
+TouchTarget choose_touch_target(const Case& patient_case, const HapticModel& model,
+                                const std::string& body_name, const std::optional<Eigen::Vector3d>& near);
+
+}  // namespace palpate

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "formats/model/obb_tree.hpp"
+#include "formats/model/triangle_mesh.hpp"
+#include "runtime/collision/triangle_queries.hpp"
+
+namespace palpate {
+
+/// The nearest surface point.
+struct ClosestPoint {
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();        ///< p_P, mm
+    Eigen::Vector3d barycentric = Eigen::Vector3d::Zero();  ///< weights of the triangle's vertices
+    double distance = 0;                                    ///< mm
+    std::int32_t triangle = 0;                              ///< index in the mesh
+    std::int32_t slot = 0;  ///< position in the tree's order: the hint for the next query
+    Feature feature = Feature::face;
+};
+
+/// The first touch of a moving sphere.
+struct SweepContact {
+    double fraction = 0;                               ///< of the way, 0 ... 1
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< touched point, p_P, mm
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, from the point to the sphere's centre
+    std::int32_t triangle = 0;                         ///< index in the mesh
+    std::int32_t slot = 0;  ///< position in the tree's order: the hint for the next query
+};
+
+/// A triangle surface ready for queries at 1 kHz: triangles lie in the order of the tree's leaves, tree nodes
+/// fill one cache line each. Vertices are rounded once to float32 (1.5e-5 mm at 300 mm), the same for every
+/// triangle that shares them, so the surface stays closed; every query then computes in double. All queries
+/// are noexcept, thread-safe and realtime-safe: no allocation, a fixed stack.
+class CollisionSurface {
+  public:
+    /// `name` is for messages. Throws InvalidInput if the tree was not built over this mesh or is deeper than
+    /// the queries' stack. Linear in the mesh.
+    CollisionSurface(const TriangleMesh& mesh, const ObbTree& tree, const std::string& name);
+
+    /// Finds the surface point nearest to p (mm) within max_distance (mm); nullopt if there is none. `hint`:
+    /// a slot from an earlier query nearby, -1 for none; it changes the cost, not the distance.
+    std::optional<ClosestPoint> closest_point(const Eigen::Vector3d& p, double max_distance,
+                                              std::int32_t hint = -1) const noexcept;
+
+    /// Finds where a sphere of `radius` >= 0 (mm), its centre moving from `from` to `to`, first touches the
+    /// surface. A triangle overlapped at the start counts, at fraction 0, only if the motion goes deeper into
+    /// it.
+    std::optional<SweepContact> sweep_sphere(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                                             double radius, std::int32_t hint = -1) const noexcept;
+
+    /// Writes the slots of the triangles within `radius` of segment a-b (mm) to `slots` and returns how many
+    /// there are, which may be more than fit; the order is that of the tree. Boxes decide, so a few lie
+    /// slightly farther.
+    std::size_t slots_near(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius,
+                           std::span<std::int32_t> slots) const noexcept;
+
+    /// Tells whether p (mm) is outside; the surface must be closed (unchecked). Among the triangles that
+    /// share the nearest point, the one most square to p decides.
+    bool is_outside(const Eigen::Vector3d& p) const noexcept;
+
+    std::int32_t triangle_count() const noexcept { return static_cast<std::int32_t>(triangles_.size()); }
+    std::int32_t mesh_triangle(std::int32_t slot) const noexcept {
+        return triangles_[static_cast<std::size_t>(slot)].mesh_triangle;
+    }
+    /// The corners of a slot's triangle, mm.
+    TriangleCorners corners(std::int32_t slot) const noexcept;
+
+  private:
+    struct FlatTriangle {
+        float corners[9];
+        std::int32_t mesh_triangle;
+    };
+    struct alignas(64) Node {
+        float axes[9];  // row-major: rows are the box's axes
+        float center[3];
+        float half_extents[3];
+        std::int32_t link;  // inner: index of the left child; leaf: -1 - index into leaves_
+    };
+    struct Leaf {
+        std::int32_t first;
+        std::int32_t count;
+    };
+    static constexpr int max_depth = 96;
+
+    void take_nodes(const ObbTree& tree, double scale, const std::string& name);
+    static float squared_distance_bound(const Node& node, const Eigen::Vector3f& p) noexcept;
+    static bool may_touch(const Node& node, const Eigen::Vector3f& middle, const Eigen::Vector3f& half,
+                          float radius) noexcept;
+
+    std::vector<Node> nodes_;
+    std::vector<Leaf> leaves_;
+    std::vector<FlatTriangle> triangles_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/collision/triangle_queries.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::array<std::array<std::size_t, 2>, 3> edges{{{0, 1}, {1, 2}, {2, 0}}};
+
+TrianglePoint make_point(const Vector3d& p, const TriangleCorners& t, const Vector3d& barycentric,
+                         Feature feature) noexcept {
+    TrianglePoint result;
+    result.barycentric = barycentric;
+    result.point = barycentric[0] * t[0] + barycentric[1] * t[1] + barycentric[2] * t[2];
+    result.squared_distance = (p - result.point).squaredNorm();
+    result.feature = feature;
+    return result;
+}
+
+TrianglePoint closest_point_on_edges(const Vector3d& p, const TriangleCorners& t) noexcept {
+    TrianglePoint best;
+    best.squared_distance = std::numeric_limits<double>::infinity();
+    for (const auto& [i, j] : edges) {
+        const Vector3d edge = t[j] - t[i];
+        const double squared_length = edge.squaredNorm();
+        const double s =
+            squared_length > 0 ? std::clamp((p - t[i]).dot(edge) / squared_length, 0.0, 1.0) : 0.0;
+        Vector3d barycentric = Vector3d::Zero();
+        barycentric[static_cast<Eigen::Index>(i)] = 1 - s;
+        barycentric[static_cast<Eigen::Index>(j)] = s;
+        const TrianglePoint here =
+            make_point(p, t, barycentric, s > 0 && s < 1 ? Feature::edge : Feature::vertex);
+        if (here.squared_distance < best.squared_distance) best = here;
+    }
+    return best;
+}
+
+// The smaller root of |from + s way - axis(s)|² = r², written as a s² + 2 b s + c = 0 with a > 0; nothing if
+// the motion does not approach (b >= 0) or misses. Outside (c > 0) both roots are positive; the form c / (-b
+// + root) loses no digits where contact is near.
+std::optional<double> first_root(double a, double b, double c) noexcept {
+    if (!(b < 0) || !(a > 0)) return std::nullopt;
+    const double discriminant = b * b - a * c;
+    if (discriminant < 0) return std::nullopt;
+    return std::max(0.0, c / (-b + std::sqrt(discriminant)));
+}
+
+}  // namespace
+
+TrianglePoint closest_point_on_triangle(const Vector3d& p, const TriangleCorners& t) noexcept {
+    const Vector3d ab = t[1] - t[0], ac = t[2] - t[0], ap = p - t[0];
+    const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+    if (d1 <= 0 && d2 <= 0) return make_point(p, t, {1, 0, 0}, Feature::vertex);
+    const Vector3d bp = p - t[1];
+    const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+    if (d3 >= 0 && d4 <= d3) return make_point(p, t, {0, 1, 0}, Feature::vertex);
+    const Vector3d cp = p - t[2];
+    const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+    if (d6 >= 0 && d5 <= d6) return make_point(p, t, {0, 0, 1}, Feature::vertex);
+
+    // Twice the signed areas of (p, b, c), (p, c, a), (p, a, b) in the triangle's plane, times twice its
+    // area.
+    const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+    const double sum = va + vb + vc;
+    // Relative to the edges, 1e-14 is where these differences are rounding only: no area, no face.
+    if (!(va > 0 && vb > 0 && vc > 0) || sum <= 1e-14 * ab.squaredNorm() * ac.squaredNorm())
+        return closest_point_on_edges(p, t);
+    return make_point(p, t, {va / sum, vb / sum, vc / sum}, Feature::face);
+}
+
+std::optional<TriangleContact> sweep_sphere_triangle(const Vector3d& from, const Vector3d& way, double radius,
+                                                     double limit, const TriangleCorners& t) noexcept {
+    const TrianglePoint start = closest_point_on_triangle(from, t);
+    const double distance = std::sqrt(start.squared_distance);
+    if (distance - radius > limit * way.norm()) return std::nullopt;
+
+    const Vector3d cross = (t[1] - t[0]).cross(t[2] - t[0]);
+    const double twice_area = cross.norm();
+    Vector3d face_normal = twice_area > 0 ? Vector3d(cross / twice_area) : Vector3d::Zero();
+    if (face_normal.dot(from - t[0]) < 0) face_normal = -face_normal;
+
+    if (distance <= radius) {
+        if (distance > 0) {
+            const Vector3d normal = (from - start.point) / distance;
+            if (way.dot(normal) >= 0) return std::nullopt;
+            return TriangleContact{0, start.point, normal};
+        }
+        // The centre lies on the triangle: whichever way leads through it is deeper.
+        const double along = way.dot(face_normal);
+        if (along == 0) return std::nullopt;
+        return TriangleContact{0, start.point, along < 0 ? face_normal : Vector3d(-face_normal)};
+    }
+
+    TriangleContact best{limit, Vector3d::Zero(), Vector3d::Zero()};
+    bool found = false;
+    const auto consider = [&](double fraction, const Vector3d& point) {
+        if (fraction > best.fraction || (found && fraction == best.fraction)) return;
+        const Vector3d offset = from + fraction * way - point;
+        const double length = offset.norm();
+        best = {fraction, point, length > 0 ? Vector3d(offset / length) : face_normal};
+        found = true;
+    };
+
+    const double height = face_normal.dot(from - t[0]);
+    const double descent = -face_normal.dot(way);
+    if (descent > 0 && height >= radius) {
+        const double fraction = (height - radius) / descent;
+        const Vector3d point = from + fraction * way - radius * face_normal;
+        // A point within rounding of an edge is on the face: no gap between a face and its neighbour.
+        const double slack = -1e-12 * twice_area;
+        const auto inside = [&](std::size_t i, std::size_t j) {
+            return (t[j] - t[i]).cross(point - t[i]).dot(cross) >= slack * twice_area;
+        };
+        if (inside(0, 1) && inside(1, 2) && inside(2, 0)) {
+            consider(fraction, point);
+            if (found) best.normal = face_normal;
+            return found ? std::optional(best) : std::nullopt;
+        }
+    }
+
+    const double speed_squared = way.squaredNorm();
+    for (const auto& [i, j] : edges) {
+        const Vector3d edge = t[j] - t[i], m = from - t[i];
+        const double ee = edge.squaredNorm(), ew = edge.dot(way), em = edge.dot(m);
+        const auto corner = first_root(speed_squared, m.dot(way), m.squaredNorm() - radius * radius);
+        if (corner) consider(*corner, t[i]);
+        if (!(ee > 0)) continue;
+        // The part of the motion and of the start across the edge.
+        const Vector3d across_way = way - edge * (ew / ee), across = m - edge * (em / ee);
+        const auto side = first_root(across_way.squaredNorm(), across.dot(across_way),
+                                     across.squaredNorm() - radius * radius);
+        if (!side) continue;
+        const double along = (em + *side * ew) / ee;
+        if (along >= 0 && along <= 1) consider(*side, t[i] + along * edge);
+    }
+    return found ? std::optional(best) : std::nullopt;
+}
+
+}  // namespace palpate

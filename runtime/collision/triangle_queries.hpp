@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+
+namespace palpate {
+
+/// What of a triangle a point lies on.
+enum class Feature : std::uint8_t { face, edge, vertex };
+
+using TriangleCorners = std::array<Eigen::Vector3d, 3>;  ///< mm
+
+/// The point of a triangle nearest to a query point.
+struct TrianglePoint {
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();        ///< mm
+    Eigen::Vector3d barycentric = Eigen::Vector3d::Zero();  ///< weights of the corners, >= 0, sum 1
+    double squared_distance = 0;                            ///< mm²
+    Feature feature = Feature::face;
+};
+
+/// Finds the point of triangle `t` nearest to p (Ericson, Real-Time Collision Detection, 2005, 5.1.5);
+/// triangles without area count as their edges. Realtime-safe.
+TrianglePoint closest_point_on_triangle(const Eigen::Vector3d& p, const TriangleCorners& t) noexcept;
+
+/// The first touch of a moving sphere and one triangle.
+struct TriangleContact {
+    double fraction = 0;                               ///< of the way, 0 ... limit
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< touched point, mm
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, from the point to the sphere's centre
+};
+
+/// Finds the smallest s in [0, limit] at which the sphere of `radius` (mm) about from + s * way touches
+/// triangle `t`. The sphere touches where its centre enters the sum of triangle and ball, whose boundary is
+/// two plates, three cylinders about the edges and three balls about the corners; each is intersected
+/// exactly. If the sphere overlaps the triangle at s = 0, that is the touch if `way` leads deeper, otherwise
+/// there is none: the distance to a convex set that does not fall at first never falls. Realtime-safe.
+std::optional<TriangleContact> sweep_sphere_triangle(const Eigen::Vector3d& from, const Eigen::Vector3d& way,
+                                                     double radius, double limit,
+                                                     const TriangleCorners& t) noexcept;
+
+}  // namespace palpate

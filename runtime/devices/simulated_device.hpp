@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <string>
+
+#include "runtime/devices/hand_path.hpp"
+#include "runtime/realtime/device.hpp"
+
+namespace palpate {
+
+/// A device in a hand of infinite stiffness: it is where its path says, whatever the force.
+class SimulatedDevice final : public Device {
+  public:
+    SimulatedDevice(HandPath path, DeviceLimits limits) : path_(std::move(path)), limits_(limits) {}
+
+    std::string name() const override { return "simulated, scripted hand"; }
+    DeviceLimits limits() const override { return limits_; }
+    DeviceState read(double time) noexcept override;
+    void write(const std::array<double, 3>&) noexcept override {}
+
+  private:
+    HandPath path_;
+    DeviceLimits limits_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/haptics/contact_lcp.hpp"
+
+#include <algorithm>
+#include <bitset>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+using Eigen::Index;
+
+constexpr double tolerance = 1e-9;  // mm: a violation below this is rounding
+constexpr double dependent =
+    1e-5;  // a pivot below this part of its diagonal is float32 noise of the compliance
+
+}  // namespace
+
+// Extends the factor L L' of the active rows' submatrix by `row`; false if the row depends on them.
+bool ContactLcp::append(std::size_t row) noexcept {
+    const auto r = static_cast<Index>(row);
+    const auto n = static_cast<Index>(count_);
+    double pivot = A_(r, r);
+    for (Index i = 0; i < n; ++i) {
+        double value = A_(static_cast<Index>(order_[static_cast<std::size_t>(i)]), r);
+        for (Index j = 0; j < i; ++j) value -= L_(i, j) * L_(n, j);
+        L_(n, i) = value / L_(i, i);
+        pivot -= L_(n, i) * L_(n, i);
+    }
+    if (!(pivot > dependent * A_(r, r))) return false;
+    L_(n, n) = std::sqrt(pivot);
+    order_[count_++] = row;
+    return true;
+}
+
+void ContactLcp::remove(std::size_t position) noexcept {
+    const std::size_t old_count = count_;
+    count_ = position;
+    for (std::size_t i = position + 1; i < old_count; ++i) append(order_[i]);
+}
+
+// candidate = A_PP^-1 delta_P on the active rows P, in the factor's order.
+void ContactLcp::solve_active() noexcept {
+    const auto n = static_cast<Index>(count_);
+    for (Index i = 0; i < n; ++i) {
+        double value = delta_[static_cast<Index>(order_[static_cast<std::size_t>(i)])];
+        for (Index j = 0; j < i; ++j) value -= L_(i, j) * candidate_[j];
+        candidate_[i] = value / L_(i, i);
+    }
+    for (Index i = n - 1; i >= 0; --i) {
+        double value = candidate_[i];
+        for (Index j = i + 1; j < n; ++j) value -= L_(j, i) * candidate_[j];
+        candidate_[i] = value / L_(i, i);
+    }
+}
+
+// Goes from the feasible f towards the active rows' own solution, dropping each row whose force would pull.
+void ContactLcp::make_feasible() noexcept {
+    while (count_ > 0) {
+        solve_active();
+        double step = 1;
+        std::size_t blocking = count_;
+        for (std::size_t i = 0; i < count_; ++i) {
+            const double now = f_[static_cast<Index>(order_[i])];
+            const double wanted = candidate_[static_cast<Index>(i)];
+            if (wanted > 0) continue;
+            const double reach = now > 0 ? now / (now - wanted) : 0;
+            if (blocking < count_ && reach >= step) continue;
+            step = reach;
+            blocking = i;
+        }
+        for (std::size_t i = 0; i < count_; ++i) {
+            double& force = f_[static_cast<Index>(order_[i])];
+            force += step * (candidate_[static_cast<Index>(i)] - force);
+        }
+        if (blocking == count_) return;
+        f_[static_cast<Index>(order_[blocking])] = 0;
+        remove(blocking);
+    }
+}
+
+double ContactLcp::solve(std::size_t rows, std::span<const std::size_t> active) noexcept {
+    const auto n = static_cast<Index>(rows);
+    count_ = 0;
+    f_.head(n).setZero();
+    for (const std::size_t row : active) append(row);
+    // From f = 0 the first step may drop warm rows one by one; what remains is feasible and optimal on
+    // itself.
+    make_feasible();
+
+    std::bitset<max_contacts> set_aside;
+    double worst = 0;
+    for (std::size_t round = 0; round < 4 * rows + 8; ++round) {
+        std::bitset<max_contacts> is_active;
+        for (std::size_t i = 0; i < count_; ++i) is_active.set(order_[i]);
+        double lowest = -tolerance;
+        std::size_t entering = rows;
+        worst = 0;
+        for (Index k = 0; k < n; ++k) {
+            double w = -delta_[k];
+            for (std::size_t i = 0; i < count_; ++i) {
+                const auto row = static_cast<Index>(order_[i]);
+                w += A_(k, row) * f_[row];
+            }
+            const auto row = static_cast<std::size_t>(k);
+            worst = std::max(worst, is_active.test(row) ? std::abs(w) : -w);
+            if (is_active.test(row) || set_aside.test(row) || w >= lowest) continue;
+            lowest = w;
+            entering = row;
+        }
+        if (entering == rows) break;
+        if (!append(entering)) {
+            set_aside.set(entering);
+            continue;
+        }
+        make_feasible();
+        if (f_[static_cast<Index>(entering)] > 0)
+            set_aside.reset();
+        else
+            set_aside.set(entering);
+    }
+    return worst;
+}
+
+}  // namespace palpate

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/haptics/tick_result.hpp"
+
+#include <utility>
+
+namespace palpate {
+
+std::string status_text(std::uint32_t status) {
+    constexpr std::array<std::pair<std::uint32_t, const char*>, 6> names{
+        {{invalid_position, "invalid_position"},
+         {force_limited, "force_limited"},
+         {rate_limited, "rate_limited"},
+         {contacts_cut, "contacts_cut"},
+         {contact_unsolved, "contact_unsolved"},
+         {starts_inside, "starts_inside"}}};
+    std::string text;
+    for (const auto& [flag, name] : names) {
+        if (!(status & flag)) continue;
+        if (!text.empty()) text += '+';
+        text += name;
+    }
+    return status == tick_ok ? "ok" : text;
+}
+
+}  // namespace palpate

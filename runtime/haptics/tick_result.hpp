@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <type_traits>
+
+namespace palpate {
+
+/// Most contact points of one tick; more set TickStatus::contacts_cut.
+inline constexpr std::size_t max_contacts = 64;
+
+/// What was unusual about a tick; flags add up.
+enum TickStatus : std::uint32_t {
+    tick_ok = 0,
+    invalid_position = 1U << 0,  ///< NaN or disconnected: force ramps to zero
+    force_limited = 1U << 1,     ///< cut to HapticSettings::max_force
+    rate_limited = 1U << 2,      ///< cut to HapticSettings::max_force_rate
+    contacts_cut = 1U << 3,      ///< more contact points than max_contacts: the shallowest were left out
+    contact_unsolved = 1U << 4,  ///< contact forces leave a residual: see TickResult::residual
+    starts_inside = 1U << 5,     ///< a body is not felt until the tool has been clear of it once
+};
+
+/// Names the flags of a status, separated by '+', "ok" for none.
+std::string status_text(std::uint32_t status);
+
+/// One contact point, with all that is needed to compute its force again offline.
+struct Contact {
+    std::int32_t body = 0;      ///< 0 ... HapticModel::body_count() - 1: rigid bodies first
+    std::int32_t triangle = 0;  ///< of the body's surface; -1 if the point is a vertex
+    std::array<std::int32_t, 3> vertices{-1, -1, -1};  ///< of the body's surface; -1: unused
+    std::array<float, 3> weights{0, 0, 0};             ///< the point is the weighted sum of the vertices
+    std::array<float, 3> normal{0, 0, 0};              ///< n: unit, from tissue to tool
+    float gap = 0;    ///< delta, mm: how far the point must give way along -n
+    float force = 0;  ///< f >= 0, N: the tool pushes the tissue by -n f, the tissue the tool by n f
+    float series_compliance = 0;  ///< c, mm/N, in series with the body's own at this point
+};
+
+/// What one tick saw and did. Plain bytes: crosses threads and goes to disk as it is.
+struct TickResult {
+    std::int64_t tick = 0;                           ///< 0 for the first
+    double time = 0;                                 ///< s since the loop started
+    std::array<double, 3> device_position{0, 0, 0};  ///< p_P, mm
+    std::array<double, 3> tool_position{0, 0, 0};    ///< the device's, held outside rigid bodies; p_P, mm
+    std::array<double, 3> force{0, 0, 0};            ///< on the device, frame P, N
+    double depth = 0;        ///< of the device below the deepest touched rest surface, mm
+    double residual = 0;     ///< worst violation of the contact conditions, mm
+    std::int32_t body = -1;  ///< the deepest touched body, -1 for none
+    std::int32_t contact_count = 0;
+    std::uint32_t status = tick_ok;              ///< TickStatus flags
+    std::uint32_t overruns = 0;                  ///< periods skipped so far
+    std::int64_t tick_ns = 0;                    ///< read, contact, force, write
+    std::int64_t wake_latency_ns = 0;            ///< woken this long after the deadline
+    std::array<Contact, max_contacts> contacts;  ///< the first contact_count are valid
+
+    std::span<const Contact> active_contacts() const noexcept {
+        return {contacts.data(), static_cast<std::size_t>(contact_count)};
+    }
+};
+static_assert(std::is_trivially_copyable_v<TickResult>);
+
+}  // namespace palpate

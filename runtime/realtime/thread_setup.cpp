@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/realtime/thread_setup.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+
+namespace palpate {
+namespace {
+
+SetupResult outcome(int error, const std::string& done, const std::string& remedy) {
+    if (error == 0) return {true, done};
+    return {false, done + " was refused: " + std::strerror(error) + "; " + remedy};
+}
+
+}  // namespace
+
+SetupResult request_fifo_priority(int priority) {
+    sched_param parameter{};
+    parameter.sched_priority = priority;
+    return outcome(pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter),
+                   "SCHED_FIFO priority " + std::to_string(priority),
+                   "allow it with 'rtprio' in /etc/security/limits.conf");
+}
+
+SetupResult lock_memory() {
+    return outcome(mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno, "locking memory",
+                   "allow it with 'memlock' in /etc/security/limits.conf");
+}
+
+SetupResult pin_to_core(int core) {
+    cpu_set_t cores;
+    CPU_ZERO(&cores);
+    if (core < 0 || core >= CPU_SETSIZE) return {false, "core " + std::to_string(core) + " does not exist"};
+    CPU_SET(static_cast<std::size_t>(core), &cores);
+    return outcome(pthread_setaffinity_np(pthread_self(), sizeof(cores), &cores),
+                   "running on core " + std::to_string(core), "choose a core that this process may use");
+}
+
+}  // namespace palpate

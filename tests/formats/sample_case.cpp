@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/formats/sample_case.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <numeric>
+#include <utility>
+
+namespace palpate::sample {
+namespace {
+
+Eigen::Vector3d centroid(const TriangleMesh& surface, std::int32_t triangle) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const std::int32_t v : surface.triangles[static_cast<std::size_t>(triangle)])
+        sum += surface.vertices[static_cast<std::size_t>(v)];
+    return sum / 3;
+}
+
+ObbNode box_around(const TriangleMesh& surface, const std::vector<std::int32_t>& order, std::size_t first,
+                   std::size_t count) {
+    Eigen::AlignedBox3d box;
+    for (std::size_t i = first; i < first + count; ++i)
+        for (const std::int32_t v : surface.triangles[static_cast<std::size_t>(order[i])])
+            box.extend(surface.vertices[static_cast<std::size_t>(v)]);
+    const double padding = 1e-4;  // mm: above float32 round-off of coordinates below 1 m
+    return {.axes = Eigen::Matrix3f::Identity(),
+            .center = box.center().cast<float>(),
+            .half_extents = (box.sizes() / 2 + Eigen::Vector3d::Constant(padding)).cast<float>(),
+            .first = static_cast<std::int32_t>(first),
+            .count = static_cast<std::int32_t>(count)};
+}
+
+}  // namespace
+
+TetMesh cube_mesh(int cells, double edge) {
+    TetMesh mesh;
+    const int n = cells + 1;
+    for (int k = 0; k < n; ++k)
+        for (int j = 0; j < n; ++j)
+            for (int i = 0; i < n; ++i)
+                mesh.rest_positions.push_back(edge / cells * Eigen::Vector3d(i, j, k));
+    const auto node = [&](const Eigen::Vector3i& c) { return c.x() + n * (c.y() + n * c.z()); };
+    // Kuhn's six tetrahedra: one path along the axes from corner 000 to 111 for each order of the axes.
+    constexpr std::array<std::array<int, 3>, 6> paths{
+        {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
+    const Eigen::Vector3d middle = Eigen::Vector3d::Constant(edge / 2);
+    for (int k = 0; k < cells; ++k)
+        for (int j = 0; j < cells; ++j)
+            for (int i = 0; i < cells; ++i)
+                for (std::size_t p = 0; p < paths.size(); ++p) {
+                    Eigen::Vector3i corner(i, j, k);
+                    Tetrahedron tet{node(corner), 0, 0, 0};
+                    for (std::size_t step = 0; step < 3; ++step) {
+                        ++corner[paths[p][step]];
+                        tet[step + 1] = node(corner);
+                    }
+                    if (p >= 3) std::swap(tet[1], tet[2]);  // odd orders of the axes are mirrored
+                    Eigen::Vector3d center = Eigen::Vector3d::Zero();
+                    for (const std::int32_t v : tet)
+                        center += mesh.rest_positions[static_cast<std::size_t>(v)] / 4;
+                    mesh.tetrahedra.push_back(tet);
+                    mesh.regions.push_back((center - middle).norm() < edge / 4 ? 2 : 1);
+                }
+    mesh.region_names = {{.value = 1, .name = "tissue", .colour = default_label_colour(1)}};
+    if (std::ranges::count(mesh.regions, 2) > 0)
+        mesh.region_names.push_back({.value = 2, .name = "tumour", .colour = default_label_colour(2)});
+    return mesh;
+}
+
+TriangleMesh sphere_surface(const Eigen::Vector3d& center, double radius, int levels) {
+    TriangleMesh mesh;
+    mesh.vertices = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+    mesh.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+    for (int level = 0; level < levels; ++level) {
+        std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> middles;
+        const auto middle = [&](std::int32_t a, std::int32_t b) {
+            const auto [entry, added] =
+                middles.try_emplace(std::minmax(a, b), static_cast<std::int32_t>(mesh.vertices.size()));
+            if (added)
+                mesh.vertices.push_back(
+                    (mesh.vertices[static_cast<std::size_t>(a)] + mesh.vertices[static_cast<std::size_t>(b)])
+                        .normalized());
+            return entry->second;
+        };
+        std::vector<Triangle> finer;
+        for (const auto [a, b, c] : mesh.triangles) {
+            const std::int32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+            finer.insert(finer.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
+        }
+        mesh.triangles = std::move(finer);
+    }
+    for (Eigen::Vector3d& vertex : mesh.vertices) vertex = center + radius * vertex;
+    return mesh;
+}
+
+ObbTree median_tree(const TriangleMesh& surface, std::size_t leaf_size) {
+    ObbTree tree;
+    tree.triangle_order.resize(surface.triangles.size());
+    std::iota(tree.triangle_order.begin(), tree.triangle_order.end(), 0);
+    tree.nodes.push_back(box_around(surface, tree.triangle_order, 0, tree.triangle_order.size()));
+    for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+        const auto first = static_cast<std::size_t>(tree.nodes[i].first);
+        const auto count = static_cast<std::size_t>(tree.nodes[i].count);
+        if (count <= leaf_size) continue;
+        Eigen::Index axis = 0;
+        tree.nodes[i].half_extents.maxCoeff(&axis);
+        const auto begin = std::next(tree.triangle_order.begin(), static_cast<std::ptrdiff_t>(first));
+        std::nth_element(
+            begin, std::next(begin, static_cast<std::ptrdiff_t>(count / 2)),
+            std::next(begin, static_cast<std::ptrdiff_t>(count)), [&](std::int32_t a, std::int32_t b) {
+                const double left = centroid(surface, a)[axis], right = centroid(surface, b)[axis];
+                return left < right || (left == right && a < b);
+            });
+        tree.nodes[i].first = static_cast<std::int32_t>(tree.nodes.size());
+        tree.nodes[i].count = 0;
+        tree.nodes.push_back(box_around(surface, tree.triangle_order, first, count / 2));
+        tree.nodes.push_back(box_around(surface, tree.triangle_order, first + count / 2, count - count / 2));
+    }
+    return tree;
+}
+
+DenseCompliance kernel_compliance(const TetMesh& mesh, const std::vector<std::int32_t>& nodes, double length,
+                                  double scale) {
+    DenseCompliance compliance;
+    compliance.node_count = static_cast<std::int32_t>(nodes.size());
+    const std::size_t dofs = compliance.dof_count();
+    const std::shared_ptr<float[]> entries(new float[dofs * dofs]());
+    for (std::size_t a = 0; a < nodes.size(); ++a)
+        for (std::size_t b = 0; b < nodes.size(); ++b) {
+            const double distance = (mesh.rest_positions[static_cast<std::size_t>(nodes[a])] -
+                                     mesh.rest_positions[static_cast<std::size_t>(nodes[b])])
+                                        .norm();
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                entries[(3 * a + axis) * dofs + 3 * b + axis] =
+                    static_cast<float>(scale * std::exp(-distance / length));
+        }
+    compliance.entries = std::shared_ptr<const float>(entries, entries.get());
+    return compliance;
+}
+
+DeformableBody elastic_cube(int cells) {
+    const double edge = 20;
+    DeformableBody body;
+    body.name = "wall";
+    body.mesh = cube_mesh(cells, edge);
+    for (const Label& region : body.mesh.region_names)
+        body.materials.push_back({region.value, {region.value == 1 ? 5e-3 : 40e-3, 0.45}});
+    body.boundary = boundary_surface(body.mesh);
+    body.mesh.outside_labels.assign(body.mesh.rest_positions.size(), -1);
+    body.mesh.outside_names = {{.value = 7, .name = "bone", .colour = default_label_colour(7)}};
+    for (const std::int32_t node : body.boundary.nodes) {
+        const bool held = body.mesh.rest_positions[static_cast<std::size_t>(node)].z() == 0;
+        body.mesh.outside_labels[static_cast<std::size_t>(node)] = held ? 7 : 0;
+        (held ? body.fixed_nodes : body.contact_nodes).push_back(node);
+    }
+    body.compliance = kernel_compliance(body.mesh, body.contact_nodes, edge / 4, 1.0);
+    body.certificate = {.residual = 3e-8,
+                        .residual_double = 2e-13,
+                        .asymmetry = 0,
+                        .smallest_eigenvalue = 0.1,
+                        .largest_eigenvalue = 12,
+                        .condition_number = 120,
+                        .reciprocity = 1e-7,
+                        .sampled_columns = 16,
+                        .free_dofs = static_cast<std::int64_t>(
+                            3 * (body.mesh.rest_positions.size() - body.fixed_nodes.size()))};
+    body.obb_tree = median_tree(body.boundary.surface, 4);
+    return body;
+}
+
+Case sample_case(int cells) {
+    Case patient_case;
+    patient_case.name = "sample";
+    RigidBody skull;
+    skull.name = "skull";
+    skull.surface = sphere_surface({40, 10, 10}, 15, 3);
+    skull.obb_tree = median_tree(skull.surface, 4);
+    patient_case.rigid_bodies.push_back(std::move(skull));
+    patient_case.deformable_bodies.push_back(elastic_cube(cells));
+    patient_case.haptics = {
+        .tool_radius = 1.5, .coupling_stiffness = 0.4, .max_force = 3.0, .max_force_rate = 0.25};
+    patient_case.provenance = R"({"palpate":"0.1.0"})";
+    return patient_case;
+}
+
+}  // namespace palpate::sample

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstddef>
+
+#include "formats/model/body.hpp"
+
+namespace palpate::sample {
+
+/// A cube [0, edge]³ mm of cells³ small cubes, six tetrahedra each; region 1 "tissue", and region 2 "tumour"
+/// for the tetrahedra whose centroid lies within a quarter edge of the middle.
+TetMesh cube_mesh(int cells, double edge);
+
+/// A sphere of radius `radius` mm about `center`, from a subdivided octahedron: 8 * 4^levels triangles.
+TriangleMesh sphere_surface(const Eigen::Vector3d& center, double radius, int levels);
+
+/// A tree of axis-aligned boxes, split at the median of the longest axis down to `leaf_size` triangles.
+ObbTree median_tree(const TriangleMesh& surface, std::size_t leaf_size);
+
+/// The made-up compliance delta_ij * scale * exp(-|p_a - p_b| / length) of the given nodes: symmetric bit for
+/// bit and positive definite, but not the inverse of any stiffness. `length` is in mm, `scale` in mm/N.
+DenseCompliance kernel_compliance(const TetMesh& mesh, const std::vector<std::int32_t>& nodes, double length,
+                                  double scale);
+
+/// An elastic cube of edge 20 mm held at z = 0, with kernel_compliance(), whose parts belong together.
+DeformableBody elastic_cube(int cells);
+
+/// A made-up patient: a rigid sphere "skull" beside the elastic cube "wall".
+Case sample_case(int cells = 2);
+
+}  // namespace palpate::sample

@@ -1,0 +1,444 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <csignal>
+#include <cstring>
+#include <functional>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <limits>
+#include <sys/resource.h>
+
+#include "formats/asset/asset.hpp"
+#include "formats/asset/body_io.hpp"
+#include "formats/asset/digest.hpp"
+#include "formats/asset/parts.hpp"
+#include "tests/formats/sample_case.hpp"
+#include "tests/formats/scratch.hpp"
+
+namespace palpate {
+namespace {
+
+using sample::refusal;
+using sample::Scratch;
+using ::testing::HasSubstr;
+
+// Cells enough for a tumour and an interior.
+constexpr int cells = 4;
+
+// What write_body_part() does, without its checks: digests are right, values need not be.
+void write_unchecked(const std::filesystem::path& path, const DeformableBody& body) {
+    Hdf5Writer writer(path);
+    write_header(writer, "body");
+    write_condensed_body(writer, "/palpate/body", body, mechanics_digest(body));
+    writer.finish("/palpate");
+}
+
+void expect_same(const ObbTree& a, const ObbTree& b) {
+    ASSERT_EQ(a.nodes.size(), b.nodes.size());
+    for (std::size_t i = 0; i < a.nodes.size(); ++i) {
+        EXPECT_EQ(a.nodes[i].axes, b.nodes[i].axes);
+        EXPECT_EQ(a.nodes[i].center, b.nodes[i].center);
+        EXPECT_EQ(a.nodes[i].half_extents, b.nodes[i].half_extents);
+        EXPECT_EQ(a.nodes[i].first, b.nodes[i].first);
+        EXPECT_EQ(a.nodes[i].count, b.nodes[i].count);
+    }
+    EXPECT_EQ(a.triangle_order, b.triangle_order);
+}
+
+void expect_same(const std::vector<Label>& a, const std::vector<Label>& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        EXPECT_EQ(a[i].value, b[i].value);
+        EXPECT_EQ(a[i].name, b[i].name);
+        EXPECT_EQ(a[i].colour, b[i].colour);
+    }
+}
+
+void expect_same(const DeformableBody& a, const DeformableBody& b) {
+    EXPECT_EQ(a.name, b.name);
+    EXPECT_EQ(a.mesh.rest_positions, b.mesh.rest_positions);
+    EXPECT_EQ(a.mesh.tetrahedra, b.mesh.tetrahedra);
+    EXPECT_EQ(a.mesh.regions, b.mesh.regions);
+    expect_same(a.mesh.region_names, b.mesh.region_names);
+    EXPECT_EQ(a.mesh.outside_labels, b.mesh.outside_labels);
+    expect_same(a.mesh.outside_names, b.mesh.outside_names);
+    EXPECT_EQ(mechanics_digest(a), mechanics_digest(b));
+    EXPECT_EQ(a.boundary.nodes, b.boundary.nodes);
+    EXPECT_EQ(surface_digest(a.boundary.surface), surface_digest(b.boundary.surface));
+    EXPECT_EQ(a.contact_nodes, b.contact_nodes);
+    ASSERT_EQ(a.compliance.node_count, b.compliance.node_count);
+    EXPECT_EQ(std::memcmp(a.compliance.entries.get(), b.compliance.entries.get(),
+                          a.compliance.dof_count() * a.compliance.dof_count() * sizeof(float)),
+              0);
+    EXPECT_EQ(a.certificate.residual, b.certificate.residual);
+    EXPECT_EQ(a.certificate.condition_number, b.certificate.condition_number);
+    EXPECT_EQ(a.certificate.sampled_columns, b.certificate.sampled_columns);
+    EXPECT_EQ(a.certificate.free_dofs, b.certificate.free_dofs);
+}
+
+TEST(Asset, reading_returns_what_was_written) {
+    const Scratch scratch;
+    const Case written = sample::sample_case(cells);
+    write_asset(scratch / "case.vtkhdf", written);
+    const Case read = read_asset(scratch / "case.vtkhdf");
+    EXPECT_EQ(read.name, written.name);
+    EXPECT_EQ(read.provenance, written.provenance);
+    EXPECT_EQ(read.haptics.tool_radius, written.haptics.tool_radius);
+    EXPECT_EQ(read.haptics.coupling_stiffness, written.haptics.coupling_stiffness);
+    EXPECT_EQ(read.haptics.max_force, written.haptics.max_force);
+    EXPECT_EQ(read.haptics.max_force_rate, written.haptics.max_force_rate);
+    ASSERT_EQ(read.rigid_bodies.size(), 1U);
+    EXPECT_EQ(read.rigid_bodies[0].name, "skull");
+    EXPECT_EQ(surface_digest(read.rigid_bodies[0].surface), surface_digest(written.rigid_bodies[0].surface));
+    expect_same(read.rigid_bodies[0].obb_tree, written.rigid_bodies[0].obb_tree);
+    ASSERT_EQ(read.deformable_bodies.size(), 1U);
+    expect_same(read.deformable_bodies[0], written.deformable_bodies[0]);
+    expect_same(read.deformable_bodies[0].obb_tree, written.deformable_bodies[0].obb_tree);
+}
+
+TEST(Asset, may_lack_provenance_outside_labels_and_rigid_bodies) {
+    const Scratch scratch;
+    Case written = sample::sample_case(1);
+    written.provenance.clear();
+    written.rigid_bodies.clear();
+    written.deformable_bodies[0].mesh.outside_labels.clear();
+    written.deformable_bodies[0].mesh.outside_names.clear();
+    write_asset(scratch / "case.vtkhdf", written);
+    const Case read = read_asset(scratch / "case.vtkhdf");
+    EXPECT_EQ(read.provenance, "");
+    EXPECT_TRUE(read.deformable_bodies[0].mesh.outside_labels.empty());
+}
+
+TEST(Asset, a_name_outside_ascii_survives) {
+    const Scratch scratch;
+    Case written = sample::sample_case(1);
+    written.rigid_bodies[0].name = "Schädel";
+    write_asset(scratch / "case.vtkhdf", written);
+    EXPECT_EQ(read_asset(scratch / "case.vtkhdf").rigid_bodies[0].name, "Schädel");
+}
+
+TEST(Asset, equal_cases_give_equal_bytes) {
+    const Scratch scratch;
+    write_asset(scratch / "a.vtkhdf", sample::sample_case(cells));
+    write_asset(scratch / "b.vtkhdf", sample::sample_case(cells));
+    EXPECT_EQ(sha256_file(scratch / "a.vtkhdf"), sha256_file(scratch / "b.vtkhdf"));
+}
+
+TEST(Asset, compliance_outlives_everything_else_that_was_read) {
+    const Scratch scratch;
+    write_asset(scratch / "case.vtkhdf", sample::sample_case(cells));
+    const DenseCompliance kept = read_asset(scratch / "case.vtkhdf").deformable_bodies[0].compliance;
+    std::filesystem::remove(scratch / "case.vtkhdf");
+    EXPECT_EQ(kept.row(0)[0], 1.0F);  // the kernel at distance 0
+}
+
+TEST(Asset, a_flipped_byte_of_the_compliance_is_named) {
+    const Scratch scratch;
+    const auto path = scratch / "case.vtkhdf";
+    write_asset(path, sample::sample_case(cells));
+    std::vector<char> bytes = sample::read_bytes(path);
+    const Hdf5File file(path);
+    const auto data = file.objects().at("/palpate/bodies/deformable/0/compliance").values->bytes;
+    bytes[static_cast<std::size_t>(data.data() - file.mapping().bytes().data()) + 400] ^= 1;
+    sample::write_bytes(scratch / "flipped.vtkhdf", bytes);
+    const std::string message = refusal([&] { read_asset(scratch / "flipped.vtkhdf"); });
+    EXPECT_THAT(message,
+                HasSubstr("flipped.vtkhdf: /palpate/bodies/deformable/0/compliance: does not match"));
+    EXPECT_NO_THROW(read_asset(scratch / "flipped.vtkhdf", Digests::skip));
+}
+
+TEST(Asset, changed_attributes_are_covered_by_the_manifest) {
+    const Scratch scratch;
+    const auto path = scratch / "part.body.h5";
+    {
+        Hdf5Writer writer(path);
+        write_header(writer, "body");
+        const DeformableBody body = sample::elastic_cube(1);
+        write_condensed_body(writer, "/palpate/body", body, mechanics_digest(body));
+        writer.finish("/palpate");
+    }
+    const Hdf5File file(path);
+    std::map<std::string, std::string> manifest;
+    for (const auto& [name, object] : file.objects()) {
+        if (object.values) manifest[name] = sha256(object.values->bytes);
+        for (const auto& [key, value] : object.attributes)
+            if (in_manifest(key)) manifest[name + '@' + key] = sha256(value.bytes);
+    }
+    EXPECT_EQ(manifest_digest(manifest), file.text_attribute("/palpate", "manifest_sha256"));
+    EXPECT_TRUE(manifest.contains("/palpate/body/certificate@residual"));
+    manifest["/palpate/body/certificate@residual"] = sha256(std::string_view("another"));
+    EXPECT_NE(manifest_digest(manifest), file.text_attribute("/palpate", "manifest_sha256"));
+}
+
+TEST(Asset, a_newer_schema_is_named_with_what_to_do) {
+    const Scratch scratch;
+    Hdf5Writer writer(scratch / "newer.vtkhdf");
+    writer.group("/palpate");
+    writer.attribute("/palpate", "schema", std::int32_t{2});
+    writer.finish("/palpate");
+    const std::string message = refusal([&] { read_asset(scratch / "newer.vtkhdf"); });
+    EXPECT_THAT(message, HasSubstr("newer.vtkhdf: has schema 2 (expected at most 1); use a newer palpate"));
+}
+
+TEST(Asset, a_part_is_not_a_case) {
+    const Scratch scratch;
+    write_body_part(scratch / "wall.body.h5", sample::elastic_cube(1));
+    EXPECT_THAT(refusal([&] { read_asset(scratch / "wall.body.h5"); }),
+                HasSubstr("holds a body (expected a case); 'palpate pack'"));
+}
+
+TEST(Asset, an_hdf5_file_of_another_program_is_refused) {
+    const Scratch scratch;
+    Hdf5Writer writer(scratch / "other.h5");
+    writer.group("/elsewhere");
+    writer.finish("/elsewhere");
+    EXPECT_THAT(refusal([&] { read_asset(scratch / "other.h5"); }), HasSubstr("not one of palpate's"));
+}
+
+TEST(Asset, a_full_disk_is_a_system_failure) {
+    const Scratch scratch;
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit small{.rlim_cur = 50'000, .rlim_max = before.rlim_max};  // bytes: some of the asset
+    setrlimit(RLIMIT_FSIZE, &small);
+    EXPECT_THROW(write_asset(scratch / "case.vtkhdf", sample::sample_case(cells)), SystemFailure);
+    setrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, handler);
+}
+
+TEST(Asset, a_missing_folder_is_a_system_failure) {
+    const Scratch scratch;
+    EXPECT_THROW(write_asset(scratch / "none/case.vtkhdf", sample::sample_case(1)), SystemFailure);
+}
+
+TEST(Asset, writing_refuses_parts_that_do_not_belong_together) {
+    const Scratch scratch;
+    Case two_of_one_name = sample::sample_case(1);
+    two_of_one_name.rigid_bodies[0].name = "wall";
+    EXPECT_THAT(refusal([&] { write_asset(scratch / "a", two_of_one_name); }),
+                HasSubstr("two bodies 'wall'"));
+    Case empty = sample::sample_case(1);
+    empty.rigid_bodies.clear();
+    empty.deformable_bodies.clear();
+    EXPECT_THAT(refusal([&] { write_asset(scratch / "a", empty); }), HasSubstr("has no bodies"));
+    Case other_tree = sample::sample_case(1);
+    other_tree.rigid_bodies[0].obb_tree = other_tree.deformable_bodies[0].obb_tree;
+    EXPECT_THAT(refusal([&] { write_asset(scratch / "a", other_tree); }), HasSubstr("triangle_order"));
+    Case weak = sample::sample_case(1);
+    weak.haptics.max_force = 0;
+    EXPECT_THAT(refusal([&] { write_asset(scratch / "a", weak); }), HasSubstr("max_force is 0"));
+    EXPECT_FALSE(std::filesystem::exists(scratch / "a"));
+}
+
+TEST(Parts, reading_a_body_returns_what_was_written) {
+    const Scratch scratch;
+    const DeformableBody written = sample::elastic_cube(cells);
+    write_body_part(scratch / "wall.body.h5", written);
+    expect_same(read_body_part(scratch / "wall.body.h5"), written);
+}
+
+TEST(Parts, reading_an_obb_tree_returns_what_was_written) {
+    const Scratch scratch;
+    const TriangleMesh sphere = sample::sphere_surface({0, 0, 0}, 10, 2);
+    const ObbTree tree = sample::median_tree(sphere, 2);
+    write_obb_part(scratch / "skull.obb.h5", tree, sphere);
+    expect_same(read_obb_part(scratch / "skull.obb.h5", sphere), tree);
+}
+
+TEST(Parts, an_obb_tree_of_another_surface_is_refused) {
+    const Scratch scratch;
+    TriangleMesh sphere = sample::sphere_surface({0, 0, 0}, 10, 2);
+    write_obb_part(scratch / "skull.obb.h5", sample::median_tree(sphere, 2), sphere);
+    sphere.vertices[7].x() += 1e-12;
+    EXPECT_THAT(refusal([&] { read_obb_part(scratch / "skull.obb.h5", sphere); }),
+                HasSubstr("was built over another surface; run 'palpate obb'"));
+}
+
+TEST(Parts, a_compliance_of_another_modulus_mesh_or_boundary_is_refused) {
+    const Scratch scratch;
+    const DeformableBody body = sample::elastic_cube(cells);
+    for (const auto& change : std::vector<std::function<void(DeformableBody&)>>{
+             [](DeformableBody& b) { b.materials[0].material.youngs_modulus *= 1 + 1e-15; },
+             [](DeformableBody& b) { b.mesh.rest_positions.back().x() += 1e-9; },
+             [](DeformableBody& b) { b.mesh.regions[0] = 2; },
+             [](DeformableBody& b) { b.fixed_nodes.pop_back(); }}) {
+        DeformableBody changed = body;
+        change(changed);
+        {
+            Hdf5Writer writer(scratch / "mixed.body.h5");
+            write_header(writer, "body");
+            write_condensed_body(writer, "/palpate/body", changed, mechanics_digest(body));
+            writer.finish("/palpate");
+        }
+        EXPECT_THAT(refusal([&] { read_body_part(scratch / "mixed.body.h5"); }),
+                    HasSubstr("was condensed from another mesh, material or boundary"));
+    }
+}
+
+struct Fault {
+    const char* name;
+    std::function<void(DeformableBody&)> make;
+    const char* message;
+};
+
+void PrintTo(const Fault& fault, std::ostream* stream) {
+    *stream << fault.name;
+}
+
+class FaultyBody : public ::testing::TestWithParam<Fault> {};
+
+TEST_P(FaultyBody, is_refused_though_its_digests_are_right) {
+    const Scratch scratch;
+    DeformableBody body = sample::elastic_cube(cells);
+    GetParam().make(body);
+    write_unchecked(scratch / "faulty.body.h5", body);
+    const std::string message = refusal([&] { read_body_part(scratch / "faulty.body.h5"); });
+    EXPECT_THAT(message, HasSubstr("faulty.body.h5: /palpate/body"));
+    EXPECT_THAT(message, HasSubstr(GetParam().message));
+}
+
+void set_entry(DeformableBody& body, std::size_t row, std::size_t column, float value) {
+    const_cast<float*>(body.compliance.row(row))[column] = value;
+}
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, FaultyBody,
+    ::testing::Values(
+        Fault{"position_nan", [](auto& b) { b.mesh.rest_positions[3].y() = nan; }, "rest_positions: point 3"},
+        Fault{"tet_index_negative", [](auto& b) { b.mesh.tetrahedra[5][1] = -1; },
+              "tetrahedra: entry 5 has index -1"},
+        Fault{"tet_index_large", [](auto& b) { b.mesh.tetrahedra[5][1] = 125; },
+              "tetrahedra: entry 5 has index 125"},
+        Fault{"tet_inverted", [](auto& b) { std::swap(b.mesh.tetrahedra[0][0], b.mesh.tetrahedra[0][1]); },
+              "tetrahedron 0 is flat or inside out"},
+        Fault{"regions_short", [](auto& b) { b.mesh.regions.pop_back(); },
+              "regions: 383 values (expected 384)"},
+        Fault{"region_unnamed", [](auto& b) { b.mesh.regions[0] = 9; }, "region_names: does not name"},
+        Fault{"region_name_control", [](auto& b) { b.mesh.region_names[0].name = "a\x1b[2J"; },
+              "not printable"},
+        Fault{"region_name_empty", [](auto& b) { b.mesh.region_names[0].name = ""; }, "empty"},
+        Fault{"label_value_zero", [](auto& b) { b.mesh.outside_names[0].value = 0; }, "label value 0"},
+        Fault{"colour_nan", [](auto& b) { b.mesh.region_names[0].colour[1] = NAN; }, "colour"},
+        Fault{"outside_short", [](auto& b) { b.mesh.outside_labels.pop_back(); },
+              "outside_labels: 124 values"},
+        Fault{"outside_unnamed", [](auto& b) { b.mesh.outside_labels[0] = 8; }, "value 8 has no name"},
+        Fault{"material_missing", [](auto& b) { b.materials.pop_back(); }, "one material for each region"},
+        Fault{"modulus_zero", [](auto& b) { b.materials[0].material.youngs_modulus = 0; },
+              "Young's modulus 0"},
+        Fault{"modulus_nan", [](auto& b) { b.materials[0].material.youngs_modulus = nan; },
+              "Young's modulus"},
+        Fault{"poisson_half", [](auto& b) { b.materials[0].material.poissons_ratio = 0.5; },
+              "Poisson's ratio 0.5"},
+        Fault{"fixed_unsorted", [](auto& b) { std::swap(b.fixed_nodes[0], b.fixed_nodes[1]); },
+              "fixed_nodes: entry 1"},
+        Fault{"fixed_range", [](auto& b) { b.fixed_nodes.back() = 125; }, "fixed_nodes: entry"},
+        Fault{"fixed_none", [](auto& b) { b.fixed_nodes.clear(); }, "fixed_nodes: is empty"},
+        Fault{"surface_turned",
+              [](auto& b) {
+                  std::swap(b.boundary.surface.triangles[0][0], b.boundary.surface.triangles[0][1]);
+              },
+              "is not the boundary"},
+        Fault{"surface_node_range", [](auto& b) { b.boundary.nodes[0] = 1'000'000; },
+              "surface_nodes: has index 1000000"},
+        Fault{"contact_shifted", [](auto& b) { b.contact_nodes[0] = b.fixed_nodes[0]; },
+              "contact_nodes: is not"},
+        Fault{"compliance_nan", [](auto& b) { set_entry(b, 7, 2, NAN); },
+              "compliance: has an entry that is not finite"},
+        Fault{"compliance_infinite", [](auto& b) { set_entry(b, 7, 2, INFINITY); }, "not finite"},
+        Fault{"compliance_diagonal", [](auto& b) { set_entry(b, 7, 7, 0); },
+              "diagonal entry 7 is not positive"},
+        Fault{"compliance_size", [](auto& b) { --b.compliance.node_count; }, "compliance: is float32"},
+        Fault{"certificate_nan", [](auto& b) { b.certificate.residual = nan; }, "certificate: has a figure"}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+struct TreeFault {
+    const char* name;
+    std::function<void(ObbTree&)> make;
+    const char* message;
+};
+
+void PrintTo(const TreeFault& fault, std::ostream* stream) {
+    *stream << fault.name;
+}
+
+class FaultyTree : public ::testing::TestWithParam<TreeFault> {};
+
+TEST_P(FaultyTree, is_refused_though_its_digests_are_right) {
+    const Scratch scratch;
+    const TriangleMesh sphere = sample::sphere_surface({0, 0, 0}, 10, 2);
+    ObbTree tree = sample::median_tree(sphere, 2);
+    GetParam().make(tree);
+    Hdf5Writer writer(scratch / "faulty.obb.h5");
+    write_header(writer, "obb_tree");
+    write_obb_tree(writer, "/palpate/obb_tree", tree, sphere);
+    writer.finish("/palpate");
+    EXPECT_THAT(refusal([&] { read_obb_part(scratch / "faulty.obb.h5", sphere); }),
+                HasSubstr(GetParam().message));
+}
+
+ObbNode& first_leaf(ObbTree& tree) {
+    return *std::ranges::find_if(tree.nodes, [](const ObbNode& node) { return node.count > 0; });
+}
+
+// A list of leaves of one triangle each hanging off a spine: as deep as a binary tree can be.
+void make_spine(ObbTree& tree) {
+    const ObbNode box = tree.nodes[0];
+    const auto triangles = static_cast<std::int32_t>(tree.triangle_order.size());
+    tree.nodes.assign(1, box);
+    for (std::int32_t t = 0; t + 1 < triangles; ++t) {
+        tree.nodes.back().first = static_cast<std::int32_t>(tree.nodes.size());
+        tree.nodes.back().count = 0;
+        tree.nodes.push_back(box);
+        tree.nodes.back().first = t;
+        tree.nodes.back().count = 1;
+        tree.nodes.push_back(box);
+    }
+    tree.nodes.back().first = triangles - 1;
+    tree.nodes.back().count = 1;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, FaultyTree,
+    ::testing::Values(
+        TreeFault{"empty", [](auto& t) { t.nodes.clear(); }, "has no nodes"},
+        TreeFault{"order_short", [](auto& t) { t.triangle_order.pop_back(); }, "127 entries (expected 128)"},
+        TreeFault{"order_repeats", [](auto& t) { t.triangle_order[0] = t.triangle_order[1]; },
+                  "not a permutation"},
+        TreeFault{"order_range", [](auto& t) { t.triangle_order[0] = -5; }, "not a permutation"},
+        TreeFault{"cycle", [](auto& t) { t.nodes[1].first = 0; }, "children out of place"},
+        TreeFault{"self", [](auto& t) { t.nodes[1].first = 1; }, "children out of place"},
+        TreeFault{"children_shared", [](auto& t) { t.nodes[2].first = t.nodes[1].first; },
+                  "children out of place"},
+        TreeFault{"children_beyond", [](auto& t) { t.nodes[0].first = 1 << 30; }, "children out of place"},
+        TreeFault{"orphan", [](auto& t) { t.nodes.push_back(t.nodes.back()); }, "has no parent"},
+        TreeFault{"leaf_beyond", [](auto& t) { first_leaf(t).first = 1 << 30; }, "beyond the last"},
+        TreeFault{"leaf_overlaps", [](auto& t) { first_leaf(t).first += 1; }, "shares a triangle"},
+        TreeFault{"leaf_short", [](auto& t) { first_leaf(t).count -= 1; }, "leaves out triangles"},
+        TreeFault{"count_negative", [](auto& t) { first_leaf(t).count = -1; }, "negative range"},
+        TreeFault{"axes_skewed", [](auto& t) { t.nodes[3].axes(0, 1) = 0.5F; },
+                  "box 3 is not an oriented box"},
+        TreeFault{"axes_nan", [](auto& t) { t.nodes[3].axes(0, 1) = NAN; }, "box 3 is not an oriented box"},
+        TreeFault{"center_infinite", [](auto& t) { t.nodes[3].center[1] = INFINITY; },
+                  "box 3 is not an oriented box"},
+        TreeFault{"extents_negative", [](auto& t) { t.nodes[3].half_extents[1] = -1; },
+                  "box 3 is not an oriented box"},
+        TreeFault{"too_deep", make_spine, "is too deep"}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+TEST(Digest, of_abc_is_the_standards_example) {
+    // FIPS 180-4, example of SHA-256.
+    EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+TEST(Digest, of_a_file_is_that_of_its_bytes) {
+    const Scratch scratch;
+    sample::write_bytes(scratch / "abc", {'a', 'b', 'c'});
+    EXPECT_EQ(sha256_file(scratch / "abc"), sha256("abc"));
+    EXPECT_THAT(refusal([&] { sha256_file(scratch / "none"); }), HasSubstr("cannot be read"));
+    EXPECT_THAT(refusal([&] { sha256_file(scratch / "."); }), HasSubstr("cannot be read"));
+}
+
+}  // namespace
+}  // namespace palpate

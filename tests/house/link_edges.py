@@ -1,0 +1,113 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Fails if a target links what the house forbids, directly or through others, or a runtime executable loads it.
+
+Reads <build folder>/link_edges.txt (lines "target: library;library") and, where they exist, the executables in
+<build folder>/bin.
+"""
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+# What each room may link directly: rooms of ours, and families of other libraries.
+ROOMS = {
+    "model": {"eigen"},
+    "asset": {"model", "hdf5", "openssl"},
+    "imaging": {"model", "itk"},
+    "meshing": {"model", "cgal", "vtk"},
+    "obb": {"model"},
+    "fem": {"model", "eigen", "linear_algebra"},
+    "linear_algebra": {"cholmod", "metis", "lapack"},
+    "report": {"model", "asset", "vtk", "json", "fmt"},
+    "cli": {"model", "cli11", "spdlog", "fmt", "json", "toml", "threads"},
+    "build": {"model", "asset", "cli", "json", "toml"},
+    "realtime": {"threads"},
+    "collision": {"model"},
+    "haptics": {"model", "collision", "realtime"},
+    "devices": {"model", "realtime"},
+    "visual": {"model", "realtime", "haptics", "vtk"},
+}
+COMMANDS = {"model", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "build", "json", "fmt"}
+APPS = {"model", "asset", "cli", "realtime", "collision", "haptics", "devices", "json", "fmt"}
+EXECUTABLES = {
+    "palpate": {"cli", "model"},
+    "palpate-touch": APPS,
+    "palpate-train": APPS | {"visual"},
+}
+HEAVY = {"itk", "cgal", "cholmod", "metis", "vtk"}
+LEAN = {"palpate_realtime", "palpate_collision", "palpate_haptics", "palpate_devices", "palpate-touch"}
+FAMILIES = {
+    "eigen": r"Eigen3::", "hdf5": r"hdf5|HDF5|/libhdf5|libsz|libz\.|libdl|libm\.|^dl$|^m$", "openssl": r"OpenSSL::",
+    "itk": r"ITK|itk", "cgal": r"CGAL", "vtk": r"VTK::", "cholmod": r"cholmod", "metis": r"libmetis",
+    "lapack": r"lapacke|openblas", "cli11": r"CLI11::", "spdlog": r"spdlog", "fmt": r"fmt::", "json": r"nlohmann_json",
+    "toml": r"tomlplusplus", "threads": r"Threads::", "house": r"palpate_house",
+}
+FORBIDDEN_SONAMES = r"libITK|libitk|libCGAL|libcholmod|libmetis|libvtk"
+
+
+def family(library):
+    """'model' for Palpate::model or palpate_model, 'itk' for ITKCommon, ..."""
+    if match := re.fullmatch(r"(?:Palpate::|palpate_)(\w+)", library):
+        return match.group(1)
+    for name, pattern in FAMILIES.items():
+        if re.search(pattern, library):
+            return name
+    return library
+
+
+def read_edges(path):
+    edges = {}
+    for line in path.read_text().splitlines():
+        target, _, libraries = line.partition(": ")
+        cleaned = re.sub(r"\$<(?:BUILD_INTERFACE|LINK_ONLY|INSTALL_INTERFACE):([^>]*)>", r"\1", libraries)
+        names = [name for name in cleaned.split(";") if name and "NOTFOUND" not in name]
+        edges[target] = {family(name) for name in names} - {"house", "optimized", "debug"}
+    return edges
+
+
+def allowed_for(target):
+    if target.startswith("palpate_"):
+        return ROOMS.get(target[len("palpate_"):])
+    if target in EXECUTABLES:
+        return EXECUTABLES[target]
+    return COMMANDS if target.startswith("palpate-") else None
+
+
+def closure(start, edges):
+    seen, stack = set(), [start]
+    while stack:
+        for name in edges.get(stack.pop(), ()):
+            if name not in seen:
+                seen.add(name)
+                stack.append("palpate_" + name)
+    return seen
+
+
+def main(build):
+    edges = read_edges(build / "link_edges.txt")
+    errors = []
+    for target, linked in edges.items():
+        if target == "palpate_house" or not target.startswith("palpate"):
+            continue  # tests and benchmarks may link both sides
+        allowed = allowed_for(target)
+        if allowed is None:
+            errors.append(f"{target}: no rule; add the room to link_edges.py and to the design")
+            continue
+        errors += [f"{target} links {name}, which its room may not" for name in sorted(linked - allowed)]
+    for target in sorted(LEAN & edges.keys()):
+        heavy = closure(target, edges) & HEAVY
+        errors += [f"{target} reaches {name} through what it links" for name in sorted(heavy)]
+    touch = build / "bin" / "palpate-touch"
+    if touch.exists():
+        loaded = subprocess.run(["ldd", touch], capture_output=True, text=True, check=True).stdout
+        errors += [f"palpate-touch loads {line.split()[0]}" for line in loaded.splitlines()
+                   if re.search(FORBIDDEN_SONAMES, line)]
+    for error in errors:
+        print(error)
+    print(f"{len(edges)} targets read, {len(errors)} forbidden edges")
+    return 1 if errors else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1])))

@@ -1,0 +1,25 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Installs what is missing, builds the release and both sanitizer presets, and runs all tests but the slow ones.
+# Closes with ctest's own summary; skipped tests are printed with their reason.
+set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/../pipelines/set_up.sh"
+set_up release asan tsan
+cd "$root"
+
+status=0
+run_preset() { # preset
+    echo; echo "== Tests of preset $1"
+    ctest --preset "$1" --output-junit "$root/build/$1/tests.xml" 2>&1 | tee "$root/build/$1/tests.log" || status=1
+    python3 tests/skip_reasons.py "build/$1/tests.xml"
+}
+run_preset asan
+run_preset tsan
+run_preset release
+# The skip reasons stand between ctest's summary and the end; say the summary of all three last.
+echo
+for preset in asan tsan release; do
+    echo "$preset:"
+    grep -E '^[0-9]+% tests passed|^No tests were found' "build/$preset/tests.log"
+done
+exit $status

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/runtime/elastic_cube.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include "tests/formats/sample_case.hpp"
+
+namespace palpate::sample {
+
+Material soft_tissue() {
+    return {.youngs_modulus = 5e-3, .poissons_ratio = 0.45};
+}
+
+Eigen::MatrixXd dense_stiffness(const TetMesh& mesh, const Material& material) {
+    const double E = material.youngs_modulus, nu = material.poissons_ratio;
+    const double lambda = E * nu / ((1 + nu) * (1 - 2 * nu)), mu = E / (2 * (1 + nu));
+    const auto dofs = static_cast<Eigen::Index>(3 * mesh.rest_positions.size());
+    Eigen::MatrixXd K = Eigen::MatrixXd::Zero(dofs, dofs);
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+        // Rows of the inverse of [1 x y z] give the gradients of the four shape functions.
+        Eigen::Matrix4d corners;
+        for (Eigen::Index c = 0; c < 4; ++c)
+            corners.row(c) << 1,
+                mesh.rest_positions[static_cast<std::size_t>(mesh.tetrahedra[t][static_cast<std::size_t>(c)])]
+                    .transpose();
+        const Eigen::Matrix4d shape = corners.inverse();
+        const double volume = six_volume(mesh, t) / 6;
+        for (Eigen::Index a = 0; a < 4; ++a)
+            for (Eigen::Index b = 0; b < 4; ++b) {
+                const Eigen::Vector3d g = shape.col(a).tail<3>(), h = shape.col(b).tail<3>();
+                const Eigen::Matrix3d block = volume * (lambda * g * h.transpose() + mu * h * g.transpose() +
+                                                        mu * g.dot(h) * Eigen::Matrix3d::Identity());
+                K.block<3, 3>(3 * mesh.tetrahedra[t][static_cast<std::size_t>(a)],
+                              3 * mesh.tetrahedra[t][static_cast<std::size_t>(b)]) += block;
+            }
+    }
+    return K;
+}
+
+DeformableBody true_elastic_cube(int cells) {
+    DeformableBody body = elastic_cube(cells);
+    Eigen::MatrixXd K = dense_stiffness(body.mesh, soft_tissue());
+    for (const std::int32_t node : body.fixed_nodes)
+        for (Eigen::Index dof = 3 * node; dof < 3 * node + 3; ++dof) {
+            K.row(dof).setZero();
+            K.col(dof).setZero();
+            K(dof, dof) = 1;
+        }
+    const Eigen::MatrixXd inverse = K.llt().solve(Eigen::MatrixXd::Identity(K.rows(), K.cols()));
+    const std::size_t dofs = body.compliance.dof_count();
+    const std::shared_ptr<float[]> entries(new float[dofs * dofs]);
+    const auto mesh_dof = [&](std::size_t dof) {
+        return 3 * body.contact_nodes[dof / 3] + static_cast<std::int32_t>(dof % 3);
+    };
+    for (std::size_t i = 0; i < dofs; ++i)
+        for (std::size_t j = 0; j < dofs; ++j)
+            entries[i * dofs + j] = static_cast<float>(
+                inverse(std::min(mesh_dof(i), mesh_dof(j)), std::max(mesh_dof(i), mesh_dof(j))));
+    body.compliance.entries = std::shared_ptr<const float>(entries, entries.get());
+    return body;
+}
+
+}  // namespace palpate::sample

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+
+#include "formats/model/body.hpp"
+
+namespace palpate::sample {
+
+/// Assembles K of linear tetrahedra (dense, all nodes, N/mm), x, y, z of node 0 first; one isotropic
+/// material.
+Eigen::MatrixXd dense_stiffness(const TetMesh& mesh, const Material& material);
+
+/// The elastic cube of sample::elastic_cube() with its true compliance: the inverse of dense_stiffness()
+/// without the fixed nodes, restricted to the contact nodes. 5 kPa, Poisson's ratio 0.45.
+DeformableBody true_elastic_cube(int cells);
+
+/// The material of true_elastic_cube().
+Material soft_tissue();
+
+}  // namespace palpate::sample

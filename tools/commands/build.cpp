@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "formats/model/errors.hpp"
+#include "tools/cli/command.hpp"
+#include "tools/commands/build/case_file.hpp"
+#include "tools/commands/build/stages.hpp"
+
+namespace {
+using namespace palpate;
+
+nlohmann::ordered_json to_json(const std::vector<build::StageRecord>& records) {
+    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+    for (const build::StageRecord& record : records)
+        rows.push_back({{"stage", record.name},
+                        {"status", record.ran ? "run" : "up to date"},
+                        {"seconds", record.seconds},
+                        {"peak_memory_mb", static_cast<double>(record.peak_memory_bytes) / 1e6},
+                        {"result", record.result}});
+    return rows;
+}
+
+void require_our_output(const build::StageRunner& runner, const std::string& stage,
+                        const std::filesystem::path& output) {
+    if (std::filesystem::exists(output) && !runner.made_by_us(stage, output))
+        throw InvalidInput({output.string(), "exists and was not made from these parts", "",
+                            "choose another name or pass --force"});
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    std::filesystem::path case_path, volume, labels, parts, output;
+    cli::Command command(
+        {.name = "build",
+         .summary = "Builds one patient's asset and report from a case file, running only the stages whose "
+                    "inputs changed.",
+         .examples = {"palpate build pipelines/cases/liver.toml -o liver.vtkhdf",
+                      "palpate build nasopharynx.toml --volume patient7.nrrd -o patient7.vtkhdf"},
+         .notes = "Beside OUTPUT.vtkhdf it writes OUTPUT.html and the folder OUTPUT.parts with every "
+                  "intermediate result."});
+    command.input("case", case_path, "case file (.toml)")->required();
+    command.input("--volume", volume, "CT or MRI to use instead of the case file's input.volume");
+    command.input("--labels", labels, "label map to use instead of the case file's input.labels");
+    command.output("-o,--output", output, "asset (.vtkhdf)")->required();
+    command.output("--parts", parts, "folder for intermediate results; OUTPUT.parts by default");
+    return command.run(argc, argv, [&](cli::Session& session) {
+        build::CaseFile case_file = build::read_case_file(case_path);
+        if (!volume.empty()) case_file.volume = volume;
+        if (!labels.empty()) case_file.labels = labels;
+        if (parts.empty()) parts = std::filesystem::path(output).replace_extension(".parts");
+        const build::BuildPaths paths{parts, output,
+                                      std::filesystem::path(output).replace_extension(".html")};
+        const build::StageRunner runner(std::filesystem::read_symlink("/proc/self/exe").parent_path(), parts,
+                                        session.threads, session.quiet);
+        if (!session.force) {
+            require_our_output(runner, "pack", paths.asset);
+            require_our_output(runner, "report", paths.report);
+        }
+        std::vector<build::StageRecord> records;
+        for (const build::Stage& stage : build::stages_to_asset(case_file, paths))
+            records.push_back(runner.run(stage));
+        records.push_back(runner.run(build::touch_stage(paths)));
+        records.push_back(
+            runner.run(build::report_stage(case_file, paths, records, runner.result_path("touch"))));
+        return nlohmann::ordered_json{
+            {"asset", paths.asset.string()}, {"report", paths.report.string()}, {"stages", to_json(records)}};
+    });
+}

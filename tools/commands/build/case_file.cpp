@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/commands/build/case_file.hpp"
+
+#include <fmt/format.h>
+#include <set>
+#include <toml++/toml.h>
+
+#include "formats/model/errors.hpp"
+#include "formats/model/label_map.hpp"
+
+namespace palpate::build {
+namespace {
+
+// Reads one table and remembers which keys it was asked for, so that the others can be refused.
+class Reader {
+  public:
+    Reader(const toml::table& table, std::string file, std::string where)
+        : table_(table), file_(std::move(file)), where_(std::move(where)) {}
+
+    template <typename T>
+    std::optional<T> optional(const std::string& key) {
+        known_.insert(key);
+        const toml::node* node = table_.get(key);
+        if (node == nullptr) return std::nullopt;
+        if (const auto value = node->value<T>()) return value;
+        fail(*node, key, "has the wrong type", std::is_same_v<T, std::string> ? "text" : "a number");
+    }
+
+    template <typename T>
+    T required(const std::string& key) {
+        if (auto value = optional<T>(key)) return *value;
+        fail(table_, key, "is missing", "");
+    }
+
+    // A sub-table; an empty one if it is absent.
+    Reader table(const std::string& key) {
+        known_.insert(key);
+        static const toml::table empty;
+        const toml::node* node = table_.get(key);
+        if (node == nullptr) return {empty, file_, where_ + "." + key};
+        if (!node->is_table()) fail(*node, key, "has the wrong type", "a table");
+        return {*node->as_table(), file_, where_ + "." + key};
+    }
+
+    // The tables of an array of tables, [[key]].
+    std::vector<Reader> tables(const std::string& key) {
+        known_.insert(key);
+        std::vector<Reader> readers;
+        const toml::node* node = table_.get(key);
+        if (node == nullptr) return readers;
+        if (!node->is_array()) fail(*node, key, "has the wrong type", "an array of tables, [[" + key + "]]");
+        for (const toml::node& item : *node->as_array()) {
+            if (!item.is_table())
+                fail(item, key, "has the wrong type", "an array of tables, [[" + key + "]]");
+            readers.emplace_back(*item.as_table(), file_, where_ + key);
+        }
+        return readers;
+    }
+
+    std::vector<double> numbers(const std::string& key, std::size_t count) {
+        known_.insert(key);
+        const toml::array* array = table_.get_as<toml::array>(key);
+        std::vector<double> values;
+        if (array != nullptr)
+            for (const toml::node& item : *array)
+                if (const auto value = item.value<double>()) values.push_back(*value);
+        if (values.size() != count)
+            fail(table_, key, "cannot be read", std::to_string(count) + " numbers in mm");
+        return values;
+    }
+
+    bool has(const std::string& key) const { return table_.contains(key); }
+    const toml::table& raw() const { return table_; }
+
+    // Every key that nobody asked for is an error.
+    void refuse_unknown() const {
+        for (const auto& [key, node] : table_) {
+            const std::string name(key.str());
+            if (known_.contains(name)) continue;
+            const auto near = nearest_names(name, {known_.begin(), known_.end()});
+            std::string hint;
+            for (const std::string& candidate : near)
+                hint += (hint.empty() ? "did you mean " : ", ") + candidate;
+            fail(node, name, "is not known here", "", hint);
+        }
+    }
+
+    [[noreturn]] void fail(const toml::node& node, const std::string& key, const std::string& found,
+                           const std::string& expected, const std::string& next_step = "") const {
+        const auto line = node.source().begin.line;
+        const std::string place = line > 0 ? fmt::format("{}:{}", file_, line) : file_;
+        throw InvalidInput({place,
+                            fmt::format("key '{}'{} {}", key, where_.empty() ? "" : " of " + where_, found),
+                            expected, next_step});
+    }
+
+  private:
+    const toml::table& table_;
+    std::string file_, where_;
+    std::set<std::string> known_;
+};
+
+std::string joined(const std::vector<double>& values) {
+    return fmt::format("{}", fmt::join(values, ","));
+}
+
+// { touching = "skull" } or { sphere_mm = [x, y, z, r] } ... as palpate condense --fixed takes it.
+std::string fixed_rule(Reader rule) {
+    std::string text;
+    if (const auto label = rule.optional<std::string>("touching")) text = "touching:" + *label;
+    for (const auto& [key, count] :
+         std::map<std::string, std::size_t>{{"box", 6}, {"sphere", 4}, {"plane", 6}})
+        if (rule.has(key + "_mm")) text = key + ":" + joined(rule.numbers(key + "_mm", count));
+    if (text.empty() || rule.raw().size() != 1)
+        rule.fail(
+            rule.raw(), "fixed", "has a rule that is not understood",
+            "one of { touching = \"label\" }, { box_mm = [6] }, { sphere_mm = [4] }, { plane_mm = [6] }");
+    return text;
+}
+
+nlohmann::json to_json(const toml::node& node) {
+    if (const auto text = node.value_exact<std::string>()) return *text;
+    if (const auto flag = node.value_exact<bool>()) return *flag;
+    if (const auto integer = node.value_exact<std::int64_t>()) return *integer;
+    if (const auto number = node.value_exact<double>()) return *number;
+    nlohmann::json list = nlohmann::json::array();
+    if (const toml::array* array = node.as_array())
+        for (const toml::node& item : *array) list.push_back(to_json(item));
+    return list;
+}
+
+// A structure's other keys are the recipe's parameters; `palpate segment` knows which exist and refuses the
+// rest.
+StructureSpec structure(Reader reader) {
+    StructureSpec spec{reader.required<std::string>("name"), reader.required<std::string>("recipe"), {}};
+    for (const auto& [key, node] : reader.raw())
+        if (key.str() != "name" && key.str() != "recipe")
+            spec.parameters[std::string(key.str())] = to_json(node);
+    return spec;
+}
+
+RigidSpec rigid(Reader reader) {
+    RigidSpec spec;
+    spec.name = reader.required<std::string>("name");
+    spec.label = reader.optional<std::string>("label").value_or(spec.name);
+    spec.isovalue = reader.optional<double>("isovalue_hu");
+    spec.max_triangles = reader.optional<std::int64_t>("max_triangles");
+    reader.refuse_unknown();
+    return spec;
+}
+
+// Optional numbers `key` of a table, under the option names that a command knows them by.
+std::map<std::string, double> options(Reader reader,
+                                      const std::map<std::string, std::string>& option_of_key) {
+    std::map<std::string, double> values;
+    for (const auto& [key, option] : option_of_key)
+        if (const auto value = reader.optional<double>(key)) values[option] = *value;
+    reader.refuse_unknown();
+    return values;
+}
+
+DeformableSpec deformable(Reader reader) {
+    DeformableSpec spec;
+    spec.name = reader.required<std::string>("name");
+    spec.sizing = options(reader.table("mesh"), {{"cell_size_mm", "--cell-size"},
+                                                 {"facet_size_mm", "--facet-size"},
+                                                 {"facet_distance_mm", "--facet-distance"}});
+    for (Reader rule : reader.tables("fixed")) spec.fixed.push_back(fixed_rule(rule));
+    for (Reader region : reader.tables("region")) {
+        spec.regions.push_back(
+            {region.required<std::string>("label"), region.required<double>("youngs_modulus_kpa"),
+             region.required<double>("poissons_ratio"), region.optional<double>("cell_size_mm")});
+        region.refuse_unknown();
+    }
+    if (spec.regions.empty())
+        reader.fail(reader.raw(), "region", "is missing", "[[deformable.region]] with a label");
+    reader.refuse_unknown();
+    return spec;
+}
+
+toml::table parse(const std::filesystem::path& path) {
+    try {
+        return toml::parse_file(path.string());
+    } catch (const toml::parse_error& error) {
+        const auto line = error.source().begin.line;
+        throw InvalidInput({line > 0 ? fmt::format("{}:{}", path.string(), line) : path.string(),
+                            std::string(error.description()), "", "see README, 'The case file'"});
+    }
+}
+
+}  // namespace
+
+CaseFile read_case_file(const std::filesystem::path& path) {
+    const toml::table document = parse(path);
+    Reader root(document, path.string(), "");
+    if (const auto schema = root.required<std::int64_t>("schema"); schema != 1)
+        root.fail(*document.get("schema"), "schema", "is " + std::to_string(schema), "1",
+                  schema > 1 ? "use a newer palpate" : "");
+    CaseFile result;
+    result.name = root.required<std::string>("name");
+    const auto resolved =
+        [&](const std::optional<std::string>& text) -> std::optional<std::filesystem::path> {
+        if (!text) return std::nullopt;
+        return path.parent_path() / *text;
+    };
+    Reader input = root.table("input");
+    result.volume = resolved(input.optional<std::string>("volume"));
+    result.labels = resolved(input.optional<std::string>("labels"));
+    input.refuse_unknown();
+    for (const Reader& table : root.tables("structure")) result.structures.push_back(structure(table));
+    for (const Reader& table : root.tables("rigid")) result.rigid.push_back(rigid(table));
+    for (const Reader& table : root.tables("deformable")) result.deformable.push_back(deformable(table));
+    result.haptics = options(root.table("haptics"), {{"tool_radius_mm", "--tool-radius"},
+                                                     {"coupling_stiffness_n_per_mm", "--coupling-stiffness"},
+                                                     {"max_force_n", "--max-force"},
+                                                     {"max_force_rate_n_per_ms", "--max-force-rate"}});
+    result.quality =
+        options(root.table("quality"), {{"min_dihedral_deg", "--min-dihedral-deg"},
+                                        {"max_dihedral_deg", "--max-dihedral-deg"},
+                                        {"max_volume_error_percent", "--max-volume-error-percent"}});
+    root.refuse_unknown();
+    if (result.rigid.empty() && result.deformable.empty())
+        root.fail(document, "deformable", "is missing", "at least one [[rigid]] or [[deformable]] body");
+    return result;
+}
+
+}  // namespace palpate::build

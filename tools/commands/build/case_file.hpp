@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpate::build {
+
+/// A structure to segment: a recipe of `palpate segment` with its parameters as that command takes them.
+struct StructureSpec {
+    std::string name;
+    std::string recipe;
+    nlohmann::json parameters = nlohmann::json::object();
+};
+
+/// A rigid body: the surface of a label, or of a grey isovalue near a label.
+struct RigidSpec {
+    std::string name;
+    std::string label;
+    std::optional<double> isovalue;  ///< HU
+    std::optional<std::int64_t> max_triangles;
+};
+
+/// One region of a deformable body.
+struct RegionSpec {
+    std::string label;
+    double youngs_modulus_kpa = 0;
+    double poissons_ratio = 0;
+    std::optional<double> cell_size_mm;
+};
+
+/// A deformable body: regions meshed together, fixed by rules of `palpate condense --fixed`.
+struct DeformableSpec {
+    std::string name;
+    std::vector<RegionSpec> regions;
+    std::vector<std::string> fixed;        ///< "touching:skull", "sphere:x,y,z,r", ...
+    std::map<std::string, double> sizing;  ///< options of `palpate mesh` by name, mm or degrees
+};
+
+/// A case file, schema 1: what to build for one patient. Paths are absolute or relative to the case file.
+struct CaseFile {
+    std::string name;
+    std::optional<std::filesystem::path> volume;  ///< CT or MRI
+    std::optional<std::filesystem::path> labels;  ///< label map that structures are imported from
+    std::vector<StructureSpec> structures;
+    std::vector<RigidSpec> rigid;
+    std::vector<DeformableSpec> deformable;
+    std::map<std::string, double> haptics;  ///< options of `palpate pack` by name
+    std::map<std::string, double> quality;  ///< contract options of `palpate mesh` by name
+};
+
+/// Reads a case file. Throws InvalidInput naming file, line and key for a syntax error, an unknown key (with
+/// the nearest known ones), a missing or wrongly typed value, or another schema.
+CaseFile read_case_file(const std::filesystem::path& path);
+
+}  // namespace palpate::build

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace palpate::build {
+
+/// One step of a build: a palpate command that turns input files into output files.
+struct Stage {
+    std::string name;                            ///< "mesh wall"; unique in a build
+    std::string command;                         ///< "mesh" runs palpate-mesh
+    std::vector<std::string> arguments;          ///< without --json, --force and --threads
+    std::vector<std::filesystem::path> inputs;   ///< files (or folders) whose content decides about a rerun
+    std::vector<std::filesystem::path> outputs;  ///< files that must be there afterwards
+};
+
+/// What a stage took, this time or when it last ran.
+struct StageRecord {
+    std::string name;
+    bool ran = false;  ///< false: up to date, nothing was done
+    double seconds = 0;
+    std::int64_t peak_memory_bytes = 0;
+    nlohmann::ordered_json result;  ///< the command's JSON result
+};
+
+/// Runs stages in order, each only if its program, arguments or the content of an input changed since its
+/// record in `folder`, or an output is missing or altered. Each leaves the command's result as `<stage>.json`
+/// and its record as `<stage>.stage.json`, blanks written as '-'.
+class StageRunner {
+  public:
+    /// `programs` holds the palpate-<command> executables.
+    StageRunner(std::filesystem::path programs, std::filesystem::path folder, int threads, bool quiet);
+
+    /// Throws what the child's exit code means (InvalidInput, QualityNotMet, ...) after the child itself has
+    /// said why; finished stages stay recorded.
+    StageRecord run(Stage stage) const;
+
+    /// Where a stage leaves its command's JSON result; later stages may name it as an input.
+    std::filesystem::path result_path(const std::string& stage_name) const;
+
+    /// True if this file is the recorded output of a stage in this folder.
+    bool made_by_us(const std::string& stage_name, const std::filesystem::path& output) const;
+
+  private:
+    std::filesystem::path record_path(const std::string& stage_name) const;
+
+    std::filesystem::path programs_, folder_;
+    int threads_;
+    bool quiet_;
+};
+
+}  // namespace palpate::build

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/commands/build/stages.hpp"
+
+#include <fmt/format.h>
+
+#include "formats/asset/digest.hpp"
+#include "tools/cli/command.hpp"
+
+namespace palpate::build {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void add_options(std::vector<std::string>& arguments, const std::map<std::string, double>& options) {
+    for (const auto& [option, value] : options) {
+        arguments.push_back(option);
+        arguments.push_back(fmt::format("{}", value));
+    }
+}
+
+void add(std::vector<std::string>& arguments, std::initializer_list<std::string> more) {
+    arguments.insert(arguments.end(), more);
+}
+
+Stage import_stage(const std::string& role, const std::filesystem::path& input,
+                   const std::filesystem::path& output) {
+    Stage stage{"import " + role, "import", {input.string()}, {input}, {output}};
+    if (role == "labels") stage.arguments.emplace_back("--labels");
+    add(stage.arguments, {"-o", output.string()});
+    return stage;
+}
+
+Stage segment_stage(const CaseFile& case_file, const std::filesystem::path& parts) {
+    Json recipes = Json::array();
+    for (const StructureSpec& structure : case_file.structures)
+        recipes.push_back(
+            {{"name", structure.name}, {"recipe", structure.recipe}, {"parameters", structure.parameters}});
+    const std::filesystem::path recipe_file = parts / "recipes.json", output = parts / "labels.seg.nrrd";
+    cli::write_text_file(recipe_file, recipes.dump(2) + "\n", true);
+
+    Stage stage{"segment", "segment", {"--recipes", recipe_file.string()}, {recipe_file}, {output}};
+    if (case_file.volume) {
+        add(stage.arguments, {"--volume", (parts / "volume.nrrd").string()});
+        stage.inputs.push_back(parts / "volume.nrrd");
+    }
+    if (case_file.labels) {
+        add(stage.arguments, {"--labels", (parts / "prior.seg.nrrd").string()});
+        stage.inputs.push_back(parts / "prior.seg.nrrd");
+    }
+    add(stage.arguments, {"-o", output.string()});
+    return stage;
+}
+
+Stage surface_stage(const RigidSpec& body, const std::filesystem::path& parts) {
+    const std::filesystem::path labels = parts / "labels.seg.nrrd", output = parts / (body.name + ".vtp");
+    Stage stage{"surface " + body.name,
+                "surface",
+                {"--labels", labels.string(), "--label", body.label},
+                {labels},
+                {output}};
+    if (body.isovalue) {
+        add(stage.arguments,
+            {"--volume", (parts / "volume.nrrd").string(), "--isovalue", fmt::format("{}", *body.isovalue)});
+        stage.inputs.push_back(parts / "volume.nrrd");
+    }
+    if (body.max_triangles) add(stage.arguments, {"--max-triangles", std::to_string(*body.max_triangles)});
+    add(stage.arguments, {"-o", output.string()});
+    return stage;
+}
+
+Stage mesh_stage(const DeformableSpec& body, const std::map<std::string, double>& quality,
+                 const std::filesystem::path& parts) {
+    const std::filesystem::path labels = parts / "labels.seg.nrrd", output = parts / (body.name + ".vtu");
+    Stage stage{"mesh " + body.name, "mesh", {"--labels", labels.string()}, {labels}, {output}};
+    for (const RegionSpec& region : body.regions) {
+        add(stage.arguments, {"--region", region.label});
+        if (region.cell_size_mm)
+            add(stage.arguments,
+                {"--region-cell-size", fmt::format("{}={}", region.label, *region.cell_size_mm)});
+    }
+    add_options(stage.arguments, body.sizing);
+    add_options(stage.arguments, quality);
+    add(stage.arguments, {"-o", output.string()});
+    return stage;
+}
+
+Stage obb_stage(const std::string& name, const std::filesystem::path& mesh) {
+    const std::filesystem::path output = mesh.parent_path() / (name + ".obb.h5");
+    return {"obb " + name, "obb", {mesh.string(), "-o", output.string()}, {mesh}, {output}};
+}
+
+Stage condense_stage(const DeformableSpec& body, const std::filesystem::path& parts) {
+    const std::filesystem::path mesh = parts / (body.name + ".vtu"),
+                                output = parts / (body.name + ".body.h5");
+    Stage stage{"condense " + body.name, "condense", {mesh.string(), "--name", body.name}, {mesh}, {output}};
+    for (const RegionSpec& region : body.regions)
+        add(stage.arguments, {"--material", fmt::format("{}:{},{}", region.label, region.youngs_modulus_kpa,
+                                                        region.poissons_ratio)});
+    for (const std::string& rule : body.fixed) add(stage.arguments, {"--fixed", rule});
+    add(stage.arguments, {"-o", output.string()});
+    return stage;
+}
+
+// What made the asset: digests of the inputs and the parameters, no file names of the patient's.
+Json provenance(const CaseFile& case_file, const std::vector<Stage>& stages) {
+    Json inputs = Json::object();
+    if (case_file.volume && !std::filesystem::is_directory(*case_file.volume))
+        inputs["volume_sha256"] = sha256_file(*case_file.volume);
+    if (case_file.labels) inputs["labels_sha256"] = sha256_file(*case_file.labels);
+    Json steps = Json::array();
+    for (const Stage& stage : stages) {
+        if (stage.command == "import") continue;
+        std::string line = stage.command;
+        for (const std::string& argument : stage.arguments)
+            line += " " + (argument.find('/') == std::string::npos
+                               ? argument
+                               : std::filesystem::path(argument).filename().string());
+        steps.push_back(line);
+    }
+    Json structures = Json::array();
+    for (const StructureSpec& structure : case_file.structures)
+        structures.push_back(
+            {{"name", structure.name}, {"recipe", structure.recipe}, {"parameters", structure.parameters}});
+    return {{"inputs", inputs}, {"structures", structures}, {"steps", steps}};
+}
+
+Stage pack_stage(const CaseFile& case_file, const BuildPaths& paths, const std::vector<Stage>& before) {
+    const std::filesystem::path provenance_file = paths.parts / "provenance.json";
+    cli::write_text_file(provenance_file, provenance(case_file, before).dump(2) + "\n", true);
+    Stage stage{"pack",
+                "pack",
+                {"--name", case_file.name, "--provenance", provenance_file.string()},
+                {provenance_file},
+                {paths.asset}};
+    const auto body = [&](const std::string& kind, const std::string& name, const std::string& extension) {
+        const auto part = paths.parts / (name + extension), tree = paths.parts / (name + ".obb.h5");
+        add(stage.arguments, {kind, name + "=" + part.string() + "," + tree.string()});
+        stage.inputs.push_back(part);
+        stage.inputs.push_back(tree);
+    };
+    for (const RigidSpec& rigid : case_file.rigid) body("--rigid", rigid.name, ".vtp");
+    for (const DeformableSpec& deformable : case_file.deformable)
+        body("--deformable", deformable.name, ".body.h5");
+    add_options(stage.arguments, case_file.haptics);
+    add(stage.arguments, {"-o", paths.asset.string()});
+    return stage;
+}
+
+}  // namespace
+
+std::vector<Stage> stages_to_asset(const CaseFile& case_file, const BuildPaths& paths) {
+    std::vector<Stage> stages;
+    if (case_file.volume)
+        stages.push_back(import_stage("volume", *case_file.volume, paths.parts / "volume.nrrd"));
+    if (case_file.labels)
+        stages.push_back(import_stage("labels", *case_file.labels, paths.parts / "prior.seg.nrrd"));
+    stages.push_back(segment_stage(case_file, paths.parts));
+    for (const RigidSpec& body : case_file.rigid) {
+        stages.push_back(surface_stage(body, paths.parts));
+        stages.push_back(obb_stage(body.name, paths.parts / (body.name + ".vtp")));
+    }
+    for (const DeformableSpec& body : case_file.deformable) {
+        stages.push_back(mesh_stage(body, case_file.quality, paths.parts));
+        stages.push_back(obb_stage(body.name, paths.parts / (body.name + ".vtu")));
+        stages.push_back(condense_stage(body, paths.parts));
+    }
+    stages.push_back(pack_stage(case_file, paths, stages));
+    return stages;
+}
+
+Stage touch_stage(const BuildPaths& paths) {
+    const std::filesystem::path curve = paths.parts / "force.svg", log = paths.parts / "touch.csv";
+    return {"touch",
+            "touch",
+            {paths.asset.string(), "--script", "press", "--seconds", "4", "--curve", curve.string(), "--log",
+             log.string()},
+            {paths.asset},
+            {curve, log}};
+}
+
+Stage report_stage(const CaseFile& case_file, const BuildPaths& paths,
+                   const std::vector<StageRecord>& records, const std::filesystem::path& touch_result) {
+    Json rows = Json::array();
+    for (const StageRecord& record : records)
+        rows.push_back({{"stage", record.name},
+                        {"seconds", record.seconds},
+                        {"peak_memory_bytes", record.peak_memory_bytes}});
+    const std::filesystem::path stages_file = paths.parts / "stages.json", curve = paths.parts / "force.svg",
+                                labels = paths.parts / "labels.seg.nrrd",
+                                volume = paths.parts / "volume.nrrd";
+    cli::write_text_file(stages_file, rows.dump(2) + "\n", true);
+    Stage stage{"report",
+                "report",
+                {paths.asset.string(), "--labels", labels.string(), "--touch", touch_result.string(),
+                 "--curve", curve.string(), "--stages", stages_file.string()},
+                {paths.asset, labels, touch_result, curve, stages_file},
+                {paths.report}};
+    if (case_file.volume) {
+        add(stage.arguments, {"--volume", volume.string()});
+        stage.inputs.push_back(volume);
+    }
+    add(stage.arguments, {"-o", paths.report.string()});
+    return stage;
+}
+
+}  // namespace palpate::build

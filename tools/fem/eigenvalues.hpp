@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <functional>
+
+namespace palpate {
+
+/// Estimates the largest eigenvalue of a symmetric positive definite map of `size` unknowns by 60 steps of
+/// power iteration from a fixed start vector; `apply` replaces v by the map's image. A Rayleigh quotient, so
+/// never above the true value.
+double largest_eigenvalue(Eigen::Index size, const std::function<void(Eigen::VectorXd&)>& apply);
+
+}  // namespace palpate

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tools/report/quality.hpp"
+
+namespace palpate {
+
+/// One stage of a build.
+struct StageRecord {
+    std::string stage;                   ///< e.g. "mesh wall"
+    double seconds = 0;                  ///< wall time
+    std::int64_t peak_memory_bytes = 0;  ///< 0 if it did not run
+    std::string status;                  ///< "run" or "up to date"
+};
+
+/// Draws a histogram as inline SVG; `unit` follows the numbers on the axis.
+std::string histogram_svg(const Histogram& histogram, const std::string& axis, const std::string& unit);
+
+/// Draws one bar per stage as inline SVG: length is time, the text beside it time and peak memory.
+std::string stages_svg(const std::vector<StageRecord>& stages);
+
+}  // namespace palpate

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/report/report.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "tools/report/html.hpp"
+#include "tools/report/page_style.hpp"
+#include "tools/report/sections.hpp"
+#include "tools/report/virtual_display.hpp"
+
+namespace palpate {
+namespace {
+
+std::string verdict(const std::vector<MeasuredBody>& bodies) {
+    if (bodies.empty()) return "";
+    std::string failures;
+    double residual = 0, angle = 180;
+    for (const MeasuredBody& measured : bodies) {
+        residual = std::max(residual, measured.body.certificate.residual);
+        angle = std::min(angle, measured.mesh.min_dihedral_deg);
+        for (const Check& check : measured.checks)
+            if (!check.holds)
+                failures +=
+                    fmt::format("<div>{}: {} is {}, must be {}</div>", html::escaped(measured.body.name),
+                                check.name, check.value, check.limit);
+    }
+    if (!failures.empty())
+        return "<div class=\"verdict failed\"><strong>✗ Not verified</strong><div>" + failures +
+               "</div></div>\n";
+    return fmt::format(
+        "<div class=\"verdict\"><strong>✓ Verified</strong><div>The asset’s digests match and every figure "
+        "of "
+        "the certificate is within its limit. Worst residual {} (limit 1e-6), smallest dihedral angle "
+        "{:.1f}°.</div></div>\n",
+        html::significant(residual, 2), angle);
+}
+
+std::string card(std::string_view name, std::string_view value, std::string_view unit = "") {
+    return fmt::format("<div><dt>{}</dt><dd>{}{}</dd></div>\n", name, value,
+                       unit.empty() ? "" : fmt::format(" <small>{}</small>", unit));
+}
+
+std::string cards(const ReportInputs& inputs, const std::vector<MeasuredBody>& bodies) {
+    std::size_t tetrahedra = 0, contact_nodes = 0, triangles = 0;
+    double volume = 0;
+    for (const MeasuredBody& measured : bodies) {
+        tetrahedra += measured.body.mesh.tetrahedra.size();
+        contact_nodes += measured.body.contact_nodes.size();
+        for (const double region : measured.mesh.region_volumes) volume += region;
+    }
+    for (const RigidBody& body : inputs.patient_case.rigid_bodies) triangles += body.surface.triangles.size();
+    const auto whole = [](std::size_t value) { return html::grouped(static_cast<std::int64_t>(value)); };
+    std::string result = card("Deformable volume", html::significant(volume / 1000), "ml") +
+                         card("Tetrahedra", whole(tetrahedra)) + card("Contact nodes", whole(contact_nodes)) +
+                         card("Rigid triangles", whole(triangles));
+    if (!inputs.stages.empty()) {
+        double seconds = 0;
+        for (const StageRecord& stage : inputs.stages) seconds += stage.seconds;
+        result += card("Built in", fmt::format("{:.1f}", seconds), "s");
+    }
+    return "<dl class=\"cards\">\n" + result + "</dl>\n";
+}
+
+}  // namespace
+
+std::string html_report(const ReportInputs& inputs) {
+    const VirtualDisplay display;
+    const Case& patient_case = inputs.patient_case;
+    std::vector<MeasuredBody> bodies;
+    for (const DeformableBody& body : patient_case.deformable_bodies) {
+        MeshSummary mesh = summarise(body.mesh);
+        std::vector<Check> checks = checks_of(body, mesh);
+        bodies.push_back({body, std::move(mesh), std::move(checks)});
+    }
+    const std::string name = html::escaped(patient_case.name);
+    std::string navigation;
+    for (const auto& [anchor, title] : {std::pair{"slices", "Slices"},
+                                        {"bodies", "Bodies"},
+                                        {"mesh", "Meshes"},
+                                        {"mechanics", "Materials"},
+                                        {"certificate", "Certificate"},
+                                        {"touch", "Touch"},
+                                        {"stages", "Stages"},
+                                        {"provenance", "Provenance"}})
+        navigation += fmt::format("<a href=\"#{}\">{}</a>", anchor, title);
+    return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+           "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>" +
+           name + " – Palpate report</title>\n<style>" + std::string(page_style) +
+           "</style>\n</head>\n<body>\n<main>\n<header>\n<p class=\"kind\">Palpate report</p>\n<h1>" + name +
+           "</h1>\n" + verdict(bodies) + cards(inputs, bodies) + "</header>\n<nav>" + navigation +
+           "</nav>\n" + slices_section(inputs) + bodies_section(patient_case) +
+           mesh_section(patient_case, bodies) + mechanics_section(patient_case) +
+           certificate_section(bodies) + touch_section(inputs) + stages_section(inputs.stages) +
+           provenance_section(patient_case.provenance) +
+           "<footer>Lengths in mm, positions in the patient frame: L left, P posterior, S superior (LPS). "
+           "Not a "
+           "medical device; not for diagnosis or treatment.</footer>\n</main>\n</body>\n</html>\n";
+}
+
+}  // namespace palpate

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/report/scene.hpp"
+
+#include <algorithm>
+#include <vtkActor.h>
+#include <vtkCamera.h>
+#include <vtkCellArray.h>
+#include <vtkDoubleArray.h>
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkPolyDataNormals.h>
+#include <vtkProperty.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+#include <vtkSmartPointer.h>
+#include <vtkWindowToImageFilter.h>
+
+namespace palpate {
+namespace {
+
+using Colour = std::array<float, 3>;
+constexpr Colour bone{0.90F, 0.85F, 0.74F};
+constexpr Colour untouchable{0.62F, 0.66F, 0.70F};
+constexpr Colour fixed_dot{0.10F, 0.16F, 0.26F};
+
+vtkSmartPointer<vtkPoints> points_of(const std::vector<Eigen::Vector3d>& positions) {
+    auto points = vtkSmartPointer<vtkPoints>::New();
+    points->SetNumberOfPoints(static_cast<vtkIdType>(positions.size()));
+    for (std::size_t i = 0; i < positions.size(); ++i)
+        points->SetPoint(static_cast<vtkIdType>(i), positions[i].data());
+    return points;
+}
+
+vtkSmartPointer<vtkPolyData> poly_data(const std::vector<Eigen::Vector3d>& positions,
+                                       const std::vector<Triangle>& triangles) {
+    auto data = vtkSmartPointer<vtkPolyData>::New();
+    data->SetPoints(points_of(positions));
+    vtkNew<vtkCellArray> cells;
+    for (const Triangle& t : triangles) {
+        const std::array<vtkIdType, 3> corners{t[0], t[1], t[2]};
+        cells->InsertNextCell(3, corners.data());
+    }
+    data->SetPolys(cells);
+    return data;
+}
+
+vtkSmartPointer<vtkActor> actor_of(vtkPolyData* data, const Colour& colour, double opacity) {
+    vtkNew<vtkPolyDataMapper> mapper;
+    mapper->SetInputData(data);
+    mapper->ScalarVisibilityOff();
+    auto actor = vtkSmartPointer<vtkActor>::New();
+    actor->SetMapper(mapper);
+    vtkProperty* property = actor->GetProperty();
+    property->SetColor(colour[0], colour[1], colour[2]);
+    property->SetOpacity(opacity);
+    property->SetSpecular(0.12);
+    property->SetSpecularPower(20);
+    property->SetAmbient(0.12);
+    property->SetDiffuse(0.88);
+    return actor;
+}
+
+vtkSmartPointer<vtkActor> surface_actor(const std::vector<Eigen::Vector3d>& positions,
+                                        const std::vector<Triangle>& triangles, const Colour& colour,
+                                        double opacity) {
+    vtkNew<vtkPolyDataNormals> normals;
+    normals->SetInputData(poly_data(positions, triangles));
+    normals->SplittingOff();
+    normals->ConsistencyOff();
+    normals->Update();
+    return actor_of(normals->GetOutput(), colour, opacity);
+}
+
+vtkSmartPointer<vtkActor> dots(const TetMesh& mesh, const std::vector<std::int32_t>& nodes) {
+    vtkNew<vtkPoints> points;
+    vtkNew<vtkCellArray> vertices;
+    for (const std::int32_t node : nodes) {
+        const vtkIdType id =
+            points->InsertNextPoint(mesh.rest_positions[static_cast<std::size_t>(node)].data());
+        vertices->InsertNextCell(1, &id);
+    }
+    vtkNew<vtkPolyData> data;
+    data->SetPoints(points);
+    data->SetVerts(vertices);
+    auto actor = actor_of(data, fixed_dot, 1);
+    actor->GetProperty()->SetPointSize(5);
+    actor->GetProperty()->SetRenderPointsAsSpheres(true);
+    return actor;
+}
+
+TriangleMesh region_surface(const TetMesh& mesh, std::int32_t region) {
+    TetMesh part;
+    part.rest_positions = mesh.rest_positions;
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+        if (mesh.regions[t] == region) part.tetrahedra.push_back(mesh.tetrahedra[t]);
+    return boundary_surface(part).surface;
+}
+
+// The outer region's surface is glass, what it encloses is solid.
+void add_regions(vtkRenderer* renderer, const DeformableBody& body, double outer_opacity) {
+    std::vector<std::pair<std::size_t, Label>> by_size;
+    for (const Label& label : body.mesh.region_names)
+        by_size.emplace_back(std::ranges::count(body.mesh.regions, label.value), label);
+    std::ranges::stable_sort(by_size, std::ranges::greater{}, &std::pair<std::size_t, Label>::first);
+    for (std::size_t i = 1; i < by_size.size(); ++i) {
+        const TriangleMesh inner = region_surface(body.mesh, by_size[i].second.value);
+        renderer->AddActor(surface_actor(inner.vertices, inner.triangles, by_size[i].second.colour, 1));
+    }
+
+    std::vector<Triangle> touchable, other;
+    for (const Triangle& t : body.boundary.surface.triangles) {
+        const bool contact = std::ranges::all_of(t, [&](std::int32_t vertex) {
+            return std::ranges::binary_search(body.contact_nodes,
+                                              body.boundary.nodes[static_cast<std::size_t>(vertex)]);
+        });
+        (contact ? touchable : other).push_back(t);
+    }
+    const Colour colour = by_size.empty() ? bone : by_size.front().second.colour;
+    const double opacity = by_size.size() > 1 ? outer_opacity : 1;
+    const auto& positions = body.boundary.surface.vertices;
+    renderer->AddActor(surface_actor(positions, touchable, colour, opacity));
+    renderer->AddActor(surface_actor(positions, other, untouchable, opacity));
+}
+
+// Draws at twice the size and averages 2 x 2 pixels: smooth edges with any number of translucent layers.
+Picture draw(vtkRenderer* renderer, const SceneView& view) {
+    vtkNew<vtkRenderWindow> window;
+    window->SetOffScreenRendering(1);
+    window->SetMultiSamples(0);
+    window->SetAlphaBitPlanes(1);
+    window->SetSize(2 * view.width, 2 * view.height);
+    window->AddRenderer(renderer);
+    renderer->SetBackground(0.965, 0.972, 0.98);
+    renderer->SetUseDepthPeeling(1);
+    renderer->SetMaximumNumberOfPeels(12);
+    renderer->SetOcclusionRatio(0.002);
+
+    vtkCamera* camera = renderer->GetActiveCamera();
+    camera->SetFocalPoint(0, 0, 0);
+    camera->SetPosition(view.from.x(), view.from.y(), view.from.z());
+    camera->SetViewUp(0, 0, 1);
+    camera->SetViewAngle(20);
+    renderer->ResetCamera();
+    camera->Zoom(1.35);
+    window->Render();
+
+    vtkNew<vtkWindowToImageFilter> grab;
+    grab->SetInput(window);
+    grab->SetInputBufferTypeToRGB();
+    grab->ReadFrontBufferOff();
+    grab->Update();
+    vtkImageData* image = grab->GetOutput();
+    Picture picture{view.width, view.height, {}};
+    picture.rgb.resize(picture.offset(0, view.height));
+    const auto source = [&](int x, int y) {
+        return static_cast<const std::uint8_t*>(image->GetScalarPointer(x, 2 * view.height - 1 - y, 0));
+    };
+    for (int y = 0; y < view.height; ++y)
+        for (int x = 0; x < view.width; ++x)
+            for (int channel = 0; channel < 3; ++channel) {
+                const int sum = source(2 * x, 2 * y)[channel] + source(2 * x + 1, 2 * y)[channel] +
+                                source(2 * x, 2 * y + 1)[channel] + source(2 * x + 1, 2 * y + 1)[channel];
+                picture.rgb[picture.offset(x, y) + static_cast<std::size_t>(channel)] =
+                    static_cast<std::uint8_t>((sum + 2) / 4);
+            }
+    return picture;
+}
+
+}  // namespace
+
+Picture scene_picture(const Case& patient_case, const SceneView& view) {
+    vtkNew<vtkRenderer> renderer;
+    for (const DeformableBody& body : patient_case.deformable_bodies) add_regions(renderer, body, 0.55);
+    const double opacity = patient_case.deformable_bodies.empty() ? 1 : 0.25;
+    for (const RigidBody& body : patient_case.rigid_bodies)
+        renderer->AddActor(surface_actor(body.surface.vertices, body.surface.triangles, bone, opacity));
+    return draw(renderer, view);
+}
+
+Picture body_picture(const DeformableBody& body, const SceneView& view) {
+    vtkNew<vtkRenderer> renderer;
+    add_regions(renderer, body, 0.45);
+    renderer->AddActor(dots(body.mesh, body.fixed_nodes));
+    return draw(renderer, view);
+}
+
+}  // namespace palpate

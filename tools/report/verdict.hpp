@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <string>
+#include <vector>
+
+#include "formats/model/body.hpp"
+#include "tools/report/quality.hpp"
+
+namespace palpate {
+
+/// One figure of a body, what it means and whether it is as it must be.
+struct Check {
+    std::string name;
+    std::string value;    ///< with its unit
+    std::string limit;    ///< "≤ 1e-6"; empty for a figure that is only told
+    std::string meaning;  ///< in plain words
+    bool holds = true;
+};
+
+/// Judges what was measured when the body was condensed, and the shape of its mesh.
+std::vector<Check> checks_of(const DeformableBody& body, const MeshSummary& mesh);
+
+/// Tells whether all checks hold; true for none.
+bool all_hold(const std::vector<Check>& checks);
+
+}  // namespace palpate
