@@ -91,7 +91,7 @@ std::vector<StageRecord> stages_from_json(const nlohmann::json& json, const std:
     std::vector<StageRecord> stages;
     for (const nlohmann::json& record : json) try {
             stages.push_back({record.at("stage"), record.at("seconds"), record.at("peak_memory_bytes"),
-                              record.at("status")});
+                              record.value("status", "run")});
         } catch (const nlohmann::json::exception&) {
             throw InvalidInput(
                 {culprit, fmt::format("record {} is {}", stages.size(), record.dump()), expected, ""});
@@ -108,14 +108,15 @@ std::string stages_section(const std::vector<StageRecord>& stages) {
     double seconds = 0;
     std::int64_t peak = 0;
     for (const StageRecord& stage : stages) {
-        if (stage.status != "run") continue;
         seconds += stage.seconds;
         peak = std::max(peak, stage.peak_memory_bytes);
     }
-    return html::section("stages", "Stages",
-                         fmt::format("{:.1f} s in all; peak memory {} MB. Bars are wall time.", seconds,
-                                     html::grouped((peak + 500'000) / 1'000'000)),
-                         html::figure(stages_svg(stages), ""));
+    return html::section(
+        "stages", "Stages",
+        fmt::format(
+            "{:.1f} s in all; peak memory {} MB. Each bar is the wall time of a stage when it last ran.",
+            seconds, html::grouped((peak + 500'000) / 1'000'000)),
+        html::figure(stages_svg(stages), ""));
 }
 
 std::string provenance_section(const std::string& provenance) {

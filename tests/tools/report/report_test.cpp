@@ -49,7 +49,7 @@ std::string full_page() {
         ReportInputs inputs{.patient_case = patient_case, .volume = &volume, .labels = &labels};
         inputs.touch = nlohmann::json{{"ticks", 10000}, {"overruns", 3}};
         inputs.force_curve_svg = "<svg xmlns=\"http://www.w3.org/2000/svg\"><script>1</script></svg>";
-        inputs.stages = {{"mesh <wall>", 3.25, 123'000'000, "run"}, {"pack", 0, 0, "up to date"}};
+        inputs.stages = {{"mesh <wall>", 3.25, 123'000'000, "run"}, {"pack", 0.5, 7'000'000, "up to date"}};
         return html_report(inputs);
     }();
     return page;
@@ -213,6 +213,10 @@ TEST(Stages, records_are_read_and_faults_named) {
     ASSERT_EQ(stages.size(), 1U);
     EXPECT_EQ(stages[0].stage, "mesh");
     EXPECT_EQ(stages[0].seconds, 3.5);
+    EXPECT_EQ(
+        stages_from_json(nlohmann::json::parse(R"([{"stage":"a","seconds":1,"peak_memory_bytes":2}])"), "")[0]
+            .status,
+        "run");
     for (const char* bad : {R"({"stage":"mesh"})", R"([{"stage":"mesh"}])", "[7]",
                             R"([{"stage":1,"seconds":1,"peak_memory_bytes":1,"status":"run"}])"})
         try {
