@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // palpate train: the trainer's window beside the haptic loop.
-#include <chrono>
 #include <charconv>
+#include <chrono>
 #include <optional>
 #include <spdlog/spdlog.h>
 #include <thread>
@@ -191,11 +191,12 @@ int main(int argc, char** argv) {
          .summary = "Opens the trainer's window on an asset",
          .examples = {"palpate train case.vtkhdf",
                       "palpate train case.vtkhdf --script press --seconds 10 --screenshot press.png"},
-         .notes = "Without a device, mouse and keyboard move the hand: drag with the left button in the plane of "
-                  "view, turn the wheel or press W and S for depth, step with the arrow keys. Drag with the right "
-                  "button to turn the view; + and - zoom, C cuts the bodies open, B hides the rigid ones, R goes "
-                  "back to the start, H hides the hints, Q or Escape closes. The window needs an X display; "
-                  "on a machine without one use 'xvfb-run'."});
+         .notes =
+             "Without a device, mouse and keyboard move the hand: drag with the left button in the plane of "
+             "view, turn the wheel or press W and S for depth, step with the arrow keys. Drag with the right "
+             "button to turn the view; + and - zoom, C cuts the bodies open, B hides the rigid ones, R goes "
+             "back to the start, H hides the hints, Q or Escape closes. The window needs an X display; "
+             "on a machine without one use 'xvfb-run'."});
     Options options;
     command.input("asset", options.asset, "the case (.vtkhdf)")->required();
     command.option("--size", options.size, "WIDTHxHEIGHT of the window", "pixels");

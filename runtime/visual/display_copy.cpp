@@ -1,47 +1,71 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/visual/display_copy.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <vtkBinnedDecimation.h>
-#include <vtkNew.h>
-#include <vtkPolyData.h>
+#include <unordered_map>
 
-#include "runtime/visual/vtk_mesh.hpp"
+#include "formats/model/errors.hpp"
 
 namespace palpate {
 namespace {
 
-double area_of(const TriangleMesh& surface) {
-    double area = 0;
-    for (const Triangle& t : surface.triangles) {
-        const auto corner = [&](std::size_t i) { return surface.vertices[static_cast<std::size_t>(t[i])]; };
-        area += (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() / 2;
+constexpr double whole_within = 12;  // mm around the focus where detail is worth most
+
+// The cell of a vertex: edges are powers of two (mm), so that cells nest and far ones are few.
+std::uint64_t cell_of(const Eigen::Vector3d& p, double distance, double coarseness) {
+    const double edge = coarseness * std::max(distance, whole_within);
+    const int level = std::clamp(static_cast<int>(std::floor(std::log2(edge))), -12, 12);
+    std::uint64_t key = static_cast<std::uint64_t>(level + 12);
+    constexpr std::int64_t origin = std::int64_t{1} << 18;  // keeps cells of a few metres around 0 positive
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto cell = static_cast<std::int64_t>(std::floor(std::ldexp(p[axis], -level))) + origin;
+        key = key << 19 | (static_cast<std::uint64_t>(cell) & 0x7FFFF);
     }
-    return area;
+    return key;
+}
+
+// Merges the vertices of each cell into their mean; triangles that lose a corner vanish.
+TriangleMesh clustered(const TriangleMesh& surface, const Eigen::Vector3d& focus, double coarseness) {
+    std::unordered_map<std::uint64_t, std::int32_t> cluster_of_cell;
+    cluster_of_cell.reserve(surface.vertices.size());
+    std::vector<std::int32_t> cluster(surface.vertices.size()), members;
+    TriangleMesh result;
+    for (std::size_t i = 0; i < surface.vertices.size(); ++i) {
+        const Eigen::Vector3d& p = surface.vertices[i];
+        const auto [entry, added] = cluster_of_cell.try_emplace(cell_of(p, (p - focus).norm(), coarseness),
+                                                                static_cast<std::int32_t>(members.size()));
+        cluster[i] = entry->second;
+        if (added) {
+            members.push_back(0);
+            result.vertices.emplace_back(Eigen::Vector3d::Zero());
+        }
+        ++members[static_cast<std::size_t>(cluster[i])];
+        result.vertices[static_cast<std::size_t>(cluster[i])] += p;
+    }
+    for (std::size_t c = 0; c < members.size(); ++c) result.vertices[c] /= members[c];
+    for (const Triangle& t : surface.triangles) {
+        const auto corner = [&](std::size_t i) { return cluster[static_cast<std::size_t>(t[i])]; };
+        if (corner(0) != corner(1) && corner(1) != corner(2) && corner(2) != corner(0))
+            result.triangles.push_back({corner(0), corner(1), corner(2)});
+    }
+    return result;
 }
 
 }  // namespace
 
-TriangleMesh display_copy(const TriangleMesh& surface, std::int64_t budget) {
-    if (static_cast<std::int64_t>(surface.triangles.size()) <= budget) return surface;
-    Eigen::AlignedBox3d box;
-    for (const Eigen::Vector3d& p : surface.vertices) box.extend(p);
-    // A surface of area A crosses about 1.5 A / h² cells of edge h, and each gives about two triangles.
-    const double edge = std::sqrt(3 * area_of(surface) / static_cast<double>(budget));
-    std::array<int, 3> divisions{};
-    for (int axis = 0; axis < 3; ++axis)
-        divisions[static_cast<std::size_t>(axis)] =
-            std::max(1, static_cast<int>(std::ceil(box.sizes()[axis] / edge)));
-
-    vtkNew<vtkBinnedDecimation> decimation;
-    decimation->SetInputData(poly_data(surface));
-    decimation->AutoAdjustNumberOfDivisionsOff();
-    decimation->SetNumberOfDivisions(divisions.data());
-    decimation->SetPointGenerationModeToBinAverages();
-    decimation->Update();
-    return triangle_mesh(decimation->GetOutput());
+TriangleMesh display_copy(const TriangleMesh& surface, std::int64_t budget, const Eigen::Vector3d& focus) {
+    if (budget < 1)
+        throw InvalidInput({"display copy", std::to_string(budget) + " triangles", "1 or more", ""});
+    const auto fits = [&](const TriangleMesh& mesh) {
+        return static_cast<std::int64_t>(mesh.triangles.size()) <= budget;
+    };
+    if (fits(surface)) return surface;
+    // Finer steps would not be seen: cells come in powers of two.
+    TriangleMesh copy;
+    for (double coarseness = 1.0 / 64; !fits(copy = clustered(surface, focus, coarseness));)
+        coarseness *= 1.4;
+    return copy;
 }
 
 }  // namespace palpate

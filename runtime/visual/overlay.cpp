@@ -30,6 +30,8 @@ void place(vtkTextActor* actor, double x, double y, int size, bool right, bool t
     text->SetFontSize(size);
     text->SetColor(0.93, 0.95, 0.97);
     text->SetLineSpacing(1.25);
+    text->SetBackgroundColor(0.05, 0.07, 0.09);
+    text->SetBackgroundOpacity(0.55);
     if (right) text->SetJustificationToRight();
     if (top) text->SetVerticalJustificationToTop();
     renderer->AddActor2D(actor);
@@ -66,7 +68,7 @@ Overlay::Overlay(const std::string& title, double max_force, vtkRenderer* render
     vtkNew<vtkPoints> whole;
     set_length(whole, bar_width);
     set_length(bar_points_, 0);
-    make_bar(bar_frame_, whole, 0.18, renderer);
+    make_bar(bar_frame_, whole, 0.3, renderer);
     make_bar(bar_, bar_points_, 1, renderer);
     place(force_, 0.017, 0.975, 30, false, true, renderer);
     place(figures_, 0.017, 0.865, 16, false, true, renderer);

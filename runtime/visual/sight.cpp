@@ -31,10 +31,11 @@ bool blocked_by(const TriangleMesh& mesh, const Eigen::Vector3d& a, const Eigen:
 }  // namespace
 
 Eigen::Vector3d Sight::eye(double view_angle_deg) const {
-    return target + toward_eye * (field / 2 / std::tan(view_angle_deg * std::numbers::pi / 360));
+    return focus + toward_eye * (field / 2 / std::tan(view_angle_deg * std::numbers::pi / 360));
 }
 
 Sight choose_sight(const Case& patient_case, const Eigen::Vector3d& point, const Eigen::Vector3d& normal) {
+    constexpr double toward_body = 0.35;  // of the way from the target to the body's centre
     constexpr double tilt = 0.7;          // 35 degrees
     constexpr double widest = 260;        // mm: a head
     constexpr double clear_of_point = 1;  // mm: the surface itself does not block
@@ -51,7 +52,8 @@ Sight choose_sight(const Case& patient_case, const Eigen::Vector3d& point, const
             box.extend(p);
     else
         for (const Eigen::Vector3d& p : patient_case.rigid_bodies.front().surface.vertices) box.extend(p);
-    sight.field = std::min(widest, 0.9 * box.sizes().maxCoeff());
+    sight.field = std::min(widest, 0.8 * box.sizes().maxCoeff());
+    sight.focus = point + toward_body * (box.center() - point);
 
     const Eigen::Vector3d start = point + normal * clear_of_point;
     const Eigen::Vector3d way = sight.toward_eye * 1000;

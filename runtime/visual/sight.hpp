@@ -9,6 +9,7 @@ namespace palpate {
 /// From where a target is looked at first.
 struct Sight {
     Eigen::Vector3d target = Eigen::Vector3d::Zero();        ///< p_P, mm
+    Eigen::Vector3d focus = Eigen::Vector3d::Zero();         ///< the middle of the picture, p_P, mm
     Eigen::Vector3d toward_eye = -Eigen::Vector3d::UnitY();  ///< unit
     double field = 100;                                      ///< mm, height of what is seen at the target
     bool blocked = false;                                    ///< a body stands between target and eye

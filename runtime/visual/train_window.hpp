@@ -14,7 +14,7 @@ struct WindowSettings {
     int height = 720;                                 ///< pixels
     std::int64_t rigid_budget = 60'000;               ///< triangles of all rigid bodies on the screen
     Eigen::Vector3d start = Eigen::Vector3d::Zero();  ///< where the hand is first, p_P, mm
-    Sight sight;                                      ///< where the eye is first
+    Sight sight{};                                    ///< where the eye is first
 };
 
 /// The trainer's window: draws the scene and turns mouse and keyboard into a place for the hand. One thread,

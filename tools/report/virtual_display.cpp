@@ -17,12 +17,6 @@
 namespace palpate {
 namespace {
 
-bool display_answers() {
-    Display* display = XOpenDisplay(nullptr);
-    if (display != nullptr) XCloseDisplay(display);
-    return display != nullptr;
-}
-
 [[noreturn]] void become_server(int display_fd, pid_t parent) {
     prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (getppid() != parent) _exit(1);  // the parent died before the line above
@@ -32,7 +26,7 @@ bool display_answers() {
     dup2(null, STDERR_FILENO);
     const std::string fd = std::to_string(display_fd);
     execlp("Xvfb", "Xvfb", "-displayfd", fd.c_str(), "-screen", "0", "1280x1024x24", "-nolisten", "tcp",
-           static_cast<char*>(nullptr));
+           "-noreset", static_cast<char*>(nullptr));
     _exit(127);
 }
 
@@ -52,7 +46,8 @@ std::string display_number(int fd) {
 
 VirtualDisplay::VirtualDisplay() {
     if (const char* display = std::getenv("DISPLAY"); display != nullptr) former_ = display;
-    if (!former_.empty() && display_answers()) return;
+    if (!former_.empty()) connection_ = XOpenDisplay(nullptr);
+    if (connection_ != nullptr) return;
     std::array<int, 2> channel{};
     const pid_t parent = getpid();
     if (pipe(channel.data()) != 0) throw SystemFailure({"Xvfb", "no pipe to start it with", "", ""});
@@ -82,6 +77,7 @@ VirtualDisplay::VirtualDisplay() {
 }
 
 VirtualDisplay::~VirtualDisplay() {
+    if (connection_ != nullptr) XCloseDisplay(static_cast<Display*>(connection_));
     if (server_ <= 0) return;
     kill(server_, SIGTERM);
     waitpid(server_, nullptr, 0);

@@ -20,6 +20,7 @@ class VirtualDisplay {
     pid_t server() const { return server_; }
 
   private:
+    void* connection_ = nullptr;  // kept open: a server that loses its last client starts anew
     pid_t server_ = -1;
     std::string former_;
 };

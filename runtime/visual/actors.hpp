@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <vtkActor.h>
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+
+#include "formats/model/triangle_mesh.hpp"
+
+namespace palpate {
+
+/// A colour as three channels of 0 ... 255.
+using Rgb = Eigen::Vector3f;
+
+/// A surface as VTK's, with float points. Triangles come in the order in which they are drawn: nearest to the
+/// eye first, so that software rendering shades little that something else covers.
+vtkSmartPointer<vtkPolyData> poly_data(const TriangleMesh& surface, const Eigen::Vector3d& toward_eye);
+
+/// Draws `data` in one colour; where a cut shows its inside, flat in another, like solid matter.
+vtkSmartPointer<vtkActor> solid_actor(vtkPolyData* data, const Rgb& colour, const Rgb& inside);
+
+/// Draws `data` in one colour.
+vtkSmartPointer<vtkActor> actor(vtkPolyData* data, const Rgb& colour);
+
+void set_colour(vtkActor* actor, const Rgb& colour);
+
+/// Places what was modelled along the x axis: turned to `way` (unit), scaled, its origin at `origin`.
+void place_along(vtkActor* actor, const Eigen::Vector3d& origin, const Eigen::Vector3d& way, double scale);
+
+}  // namespace palpate

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/visual/soft_surface.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <vtkPointData.h>
+#include <vtkProperty.h>
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+const Rgb warm(255, 214, 92);  // where the surface has moved far
+const Rgb flesh(120, 44, 40);  // the inside, where a cut shows it
+
+// Muted, as matter is: pure colours hide the shading.
+Vector3f colour_of(const Label& label) {
+    return 0.8F * 255 * Vector3f(label.colour[0], label.colour[1], label.colour[2]) + Vector3f(45, 40, 40);
+}
+
+// The region with most tetrahedra is the organ, the others are what it encloses.
+std::int32_t main_region(const TetMesh& mesh) {
+    std::map<std::int32_t, std::int64_t> counts;
+    for (const std::int32_t region : mesh.regions) ++counts[region];
+    return std::ranges::max_element(counts, {}, [](const auto& entry) { return entry.second; })->first;
+}
+
+// The organ's colour, tinted with an enclosed region's by how near to the surface that lies.
+std::vector<Vector3f> hinted_colours(const DeformableBody& body) {
+    constexpr float reach = 7;  // mm: depth at which the hint has faded to a third
+    constexpr float strength = 0.75F;
+    const TetMesh& mesh = body.mesh;
+    const std::int32_t organ = main_region(mesh);
+    std::map<std::int32_t, Vector3f> colours;
+    for (const Label& label : mesh.region_names) colours[label.value] = colour_of(label);
+    std::map<std::int32_t, std::int32_t> enclosed;  // node -> region
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+        if (mesh.regions[t] != organ)
+            for (const std::int32_t node : mesh.tetrahedra[t]) enclosed[node] = mesh.regions[t];
+
+    std::vector<Vector3f> result;
+    for (const Vector3d& vertex : body.boundary.surface.vertices) {
+        float nearest = 1e30F;
+        std::int32_t region = organ;
+        for (const auto& [node, node_region] : enclosed) {
+            const auto squared = static_cast<float>(
+                (mesh.rest_positions[static_cast<std::size_t>(node)] - vertex).squaredNorm());
+            if (squared < nearest) {
+                nearest = squared;
+                region = node_region;
+            }
+        }
+        const float tint = strength * std::exp(-nearest / (reach * reach));
+        result.push_back((1 - tint) * colours[organ] + tint * colours[region]);
+    }
+    return result;
+}
+
+}  // namespace
+
+SoftSurface::SoftSurface(const DeformableBody& body, const Vector3d& toward_eye, vtkRenderer* renderer)
+    : rest_colours_(hinted_colours(body)), triangles_(body.boundary.surface.triangles) {
+    for (const Vector3d& p : body.boundary.surface.vertices) rest_.push_back(p.cast<float>());
+    const auto data = poly_data(body.boundary.surface, toward_eye);
+    points_ = data->GetPoints();
+    const auto count = static_cast<vtkIdType>(rest_.size());
+    normals_ = vtkSmartPointer<vtkFloatArray>::New();
+    normals_->SetNumberOfComponents(3);
+    normals_->SetNumberOfTuples(count);
+    colours_ = vtkSmartPointer<vtkUnsignedCharArray>::New();
+    colours_->SetNumberOfComponents(3);
+    colours_->SetNumberOfTuples(count);
+    data->GetPointData()->SetNormals(normals_);
+    data->GetPointData()->SetScalars(colours_);
+    displaced_ = true;
+    deform(std::vector<Vector3f>(rest_.size(), Vector3f::Zero()));
+
+    const auto actor = solid_actor(data, warm, flesh);
+    actor->GetProperty()->SetSpecular(0.25);
+    actor->GetProperty()->SetSpecularPower(30);
+    renderer->AddActor(actor);
+}
+
+void SoftSurface::deform(const std::vector<Vector3f>& displacements) {
+    constexpr float full_warmth = 4;  // mm of displacement
+    const bool moves = std::ranges::any_of(displacements, [](const Vector3f& u) { return !u.isZero(0); });
+    if (!moves && !displaced_) return;
+    displaced_ = moves;
+    auto* points = static_cast<float*>(points_->GetVoidPointer(0));
+    std::uint8_t* colours = colours_->GetPointer(0);
+    for (std::size_t i = 0; i < rest_.size(); ++i) {
+        const float warmth = 0.8F * std::min(1.0F, displacements[i].norm() / full_warmth);
+        const Vector3f colour = (1 - warmth) * rest_colours_[i] + warmth * warm;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const auto a = static_cast<Eigen::Index>(axis);
+            points[3 * i + axis] = rest_[i][a] + displacements[i][a];
+            colours[3 * i + axis] = static_cast<std::uint8_t>(std::lround(colour[a]));
+        }
+    }
+    compute_normals();
+    points_->Modified();
+    normals_->Modified();
+    colours_->Modified();
+}
+
+void SoftSurface::compute_normals() {
+    const Eigen::Map<const Eigen::Matrix3Xf> p(static_cast<const float*>(points_->GetVoidPointer(0)), 3,
+                                               static_cast<Eigen::Index>(rest_.size()));
+    Eigen::Map<Eigen::Matrix3Xf> n(normals_->GetPointer(0), 3, p.cols());
+    n.setZero();
+    for (const Triangle& t : triangles_) {
+        const Vector3f area = (p.col(t[1]) - p.col(t[0])).cross(p.col(t[2]) - p.col(t[0]));
+        for (const std::int32_t vertex : t) n.col(vertex) += area;
+    }
+    n.colwise().normalize();
+}
+
+}  // namespace palpate

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+#include <vtkFloatArray.h>
+#include <vtkPoints.h>
+#include <vtkRenderer.h>
+#include <vtkSmartPointer.h>
+#include <vtkUnsignedCharArray.h>
+
+#include "formats/model/body.hpp"
+#include "runtime/visual/actors.hpp"
+
+namespace palpate {
+
+/// A deformable body as the eye sees it: its surface moves with the displacements and warms up where they
+/// are large; what lies over an enclosed region is tinted with that region's colour.
+class SoftSurface {
+  public:
+    SoftSurface(const DeformableBody& body, const Eigen::Vector3d& toward_eye, vtkRenderer* renderer);
+
+    /// Moves the surface; one displacement (mm) per surface vertex.
+    void deform(const std::vector<Eigen::Vector3f>& displacements);
+
+  private:
+    void compute_normals();
+
+    std::vector<Eigen::Vector3f> rest_;
+    std::vector<Eigen::Vector3f> rest_colours_;  // 0 ... 255
+    std::vector<Triangle> triangles_;
+    bool displaced_ = false;
+    vtkSmartPointer<vtkPoints> points_;
+    vtkSmartPointer<vtkFloatArray> normals_;
+    vtkSmartPointer<vtkUnsignedCharArray> colours_;
+};
+
+}  // namespace palpate
