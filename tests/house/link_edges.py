@@ -13,7 +13,7 @@ from pathlib import Path
 # What each room may link directly: rooms of ours, and families of other libraries.
 ROOMS = {
     "model": {"eigen"},
-    "asset": {"model", "hdf5", "openssl"},
+    "asset": {"model", "hdf5", "openssl", "threads"},
     "imaging": {"model", "itk"},
     "meshing": {"model", "cgal", "vtk"},
     "obb": {"model"},
