@@ -40,6 +40,7 @@ Eigen::MatrixXd dense_stiffness(const TetMesh& mesh, const Material& material) {
 
 DeformableBody true_elastic_cube(int cells) {
     DeformableBody body = elastic_cube(cells);
+    for (RegionMaterial& region : body.materials) region.material = soft_tissue();
     Eigen::MatrixXd K = dense_stiffness(body.mesh, soft_tissue());
     for (const std::int32_t node : body.fixed_nodes)
         for (Eigen::Index dof = 3 * node; dof < 3 * node + 3; ++dof) {

@@ -129,8 +129,7 @@ int main(int argc, char** argv) {
         for (const std::string& text : region_sizes)
             sizing.regions.push_back(parse_region_size(text, map, labels_path.string()));
 
-        // Moving nodes to match volumes costs up to two degrees again.
-        sizing.min_dihedral_deg = std::max(sizing.min_dihedral_deg, contract.min_dihedral_deg + 2);
+        sizing.min_dihedral_deg = std::max(sizing.min_dihedral_deg, contract.min_dihedral_deg);
         const TetMesh mesh = tetrahedralise(
             map, regions, sizing,
             [&](std::string_view what, double fraction) { session.progress.step(what, fraction); });

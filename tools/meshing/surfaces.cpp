@@ -119,7 +119,7 @@ TriangleMesh isosurface(const Volume& volume, double isovalue) {
         throw InvalidInput({"isovalue", fmt::format("{} is above every voxel", isovalue),
                             fmt::format("at most {}", highest), "choose a lower isovalue"});
     lowest = std::min(lowest, level - 1);
-    const float just_above = level + 1e-4F * (highest - lowest);
+    const float margin = 1e-4F * (highest - lowest);
 
     // One voxel of padding on every side; the image's indices start at -1.
     vtkNew<vtkImageData> image;
@@ -132,8 +132,10 @@ TriangleMesh isosurface(const Volume& volume, double isovalue) {
             const float* from = volume.values.data() + grid.offset(0, j, k);
             auto* to = static_cast<float*>(image->GetScalarPointer(0, j, k));
             for (std::int32_t i = 0; i < grid.size[0]; ++i) {
-                const bool inside = from[i] >= level;
-                to[i] = inside ? std::max(from[i], just_above) : std::isnan(from[i]) ? lowest : from[i];
+                if (from[i] >= level)
+                    to[i] = std::max(from[i], level + margin);
+                else if (!std::isnan(from[i]))
+                    to[i] = std::min(from[i], level - margin);
             }
         }
     vtkNew<vtkFlyingEdges3D> contour;

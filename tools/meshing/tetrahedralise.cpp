@@ -110,7 +110,8 @@ TetMesh tetrahedralise(const LabelMap& map, std::span<const std::int32_t> region
     progress("repair", 0.9);
     split_hinges(mesh);
     remove_crumbs(mesh, sizing.min_component_volume);
-    lift_flat_tetrahedra(mesh, sizing.min_dihedral_deg, finest);
+    // Matching volumes may take a tenth of an angle back.
+    lift_flat_tetrahedra(mesh, sizing.min_dihedral_deg / 0.9, finest);
     std::vector<RegionVolume> targets;
     for (const std::int32_t value : labels.values) targets.push_back({value, 0});
     for (const std::uint8_t region : labels.regions)

@@ -27,11 +27,12 @@ struct MeshSizing {
     double facet_distance = 0;      ///< mm: largest distance of a triangle to the surface; 0: cell_size / 10
     double facet_angle_deg = 25;    ///< smallest angle of a surface triangle, up to 30
     double cell_radius_edge = 2.5;  ///< largest circumradius over shortest edge, 2 or more
-    std::vector<RegionSize> regions;  ///< regions with a size of their own; facet sizes and distances scale
-    double smoothing = -1;            ///< mm, Gaussian sigma on the labels; below 0: the largest voxel edge
+    std::vector<RegionSize> regions =
+        {};                 ///< regions with a size of their own; facet sizes and distances scale
+    double smoothing = -1;  ///< mm, Gaussian sigma on the labels; below 0: the largest voxel edge
     double min_component_volume =
         40;                        ///< mm³: smaller specks and pinholes are absorbed by what surrounds them
-    double min_dihedral_deg = 15;  ///< optimisation stops once every dihedral angle is above
+    double min_dihedral_deg = 15;  ///< flatter tetrahedra are optimised
 };
 
 /// Fills regions of a label map with tetrahedra, by Delaunay refinement (CGAL Mesh_3) of the smoothed labels

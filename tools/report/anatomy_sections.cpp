@@ -16,8 +16,9 @@ namespace {
 using Eigen::Vector3d;
 
 struct Target {
-    Vector3d center = Vector3d::Zero();
-    double side = 100;  // mm, of a window that shows the body and what is around it
+    Vector3d planes = Vector3d::Zero();  // where the three planes cross
+    Vector3d center = Vector3d::Zero();  // of the windows
+    double side = 100;                   // mm, of a window that shows the body and what is around it
     std::string name;
 };
 
@@ -53,17 +54,19 @@ Target target_of(const ReportInputs& inputs) {
     const Case& c = inputs.patient_case;
     if (!c.deformable_bodies.empty()) {
         const DeformableBody& body = c.deformable_bodies.front();
-        const auto [region, center] = smallest_region(body.mesh);
-        return {center, side_for(box_of(body.mesh.rest_positions)),
+        const auto [region, planes] = smallest_region(body.mesh);
+        const auto box = box_of(body.mesh.rest_positions);
+        return {planes, box.center(), side_for(box),
                 region == body.name ? region : region + " of " + body.name};
     }
     if (!c.rigid_bodies.empty()) {
         const auto box = box_of(c.rigid_bodies.front().surface.vertices);
-        return {box.center(), side_for(box), c.rigid_bodies.front().name};
+        return {box.center(), box.center(), side_for(box), c.rigid_bodies.front().name};
     }
     const ImageGrid& grid = inputs.volume ? inputs.volume->grid : inputs.labels->grid;
     const Vector3d last(grid.size[0] - 1, grid.size[1] - 1, grid.size[2] - 1);
-    return {grid.point_of(last / 2), grid.spacing.cwiseProduct(last).maxCoeff(), "the image"};
+    return {grid.point_of(last / 2), grid.point_of(last / 2), grid.spacing.cwiseProduct(last).maxCoeff(),
+            "the image"};
 }
 
 struct PlaneText {
@@ -153,8 +156,8 @@ std::string slices_section(const ReportInputs& inputs) {
     const Target target = target_of(inputs);
     for (const Plane plane : {Plane::axial, Plane::coronal, Plane::sagittal}) {
         const PlaneText text = text_of(plane);
-        const SliceWindow window{.plane = plane, .center = target.center, .side = target.side};
-        const double at = target.center[text.axis];
+        SliceWindow window{.plane = plane, .center = target.center, .side = target.side};
+        const double at = window.center[text.axis] = target.planes[text.axis];
         content += html::figure(slice_svg(inputs, window),
                                 fmt::format("<b>{}</b>, {} = {:.1f} mm", text.title, text.higher, at));
     }
@@ -175,23 +178,22 @@ std::string slices_section(const ReportInputs& inputs) {
 }
 
 std::string bodies_section(const Case& patient_case) {
-    const std::vector<std::pair<Vector3d, std::string>> directions{
-        {{-0.7, -1, 0.45}, "from the patient’s right, front and above"},
-        {{0.85, 0.75, 0.4}, "from the patient’s left, back and above"}};
-    std::string scenes;
-    for (const auto& [from, words] : directions)
-        scenes += html::figure(
-            embedded(scene_picture(patient_case, {.from = from}), "All bodies in three dimensions"),
-            "All bodies " + words);
-    std::string content = "<div class=\"two\">\n" + scenes + "</div>\n";
+    const std::vector<ViewDirection> directions{{-0.7, -1, 0.45}, {0.85, 0.75, 0.4}};
+    const std::array<std::string, 2> words{"from the patient’s right, front and above",
+                                           "from the patient’s left, back and above"};
+    const auto side_by_side = [&](const std::vector<Picture>& pictures, const std::string& name) {
+        std::string figures;
+        for (std::size_t i = 0; i < pictures.size(); ++i)
+            figures += html::figure(embedded(pictures[i], name + " " + words[i]),
+                                    "<b>" + html::escaped(name) + "</b> " + words[i]);
+        return "<div class=\"two\">\n" + figures + "</div>\n";
+    };
+    std::string content = side_by_side(scene_pictures(patient_case, directions), "All bodies");
     for (const DeformableBody& body : patient_case.deformable_bodies) {
-        std::string pictures;
-        for (const auto& [from, words] : directions)
-            pictures += html::figure(embedded(body_picture(body, {.from = from}), body.name + " close up"),
-                                     fmt::format("<b>{}</b> {}", html::escaped(body.name), words));
         std::string regions;
         for (const Label& label : body.mesh.region_names) regions += "<li>" + swatch(label) + "</li>";
-        content += "<div class=\"two\">\n" + pictures + "</div>\n<ul class=\"legend\">" + regions +
+        content += side_by_side(body_pictures(body, directions), body.name) + "<ul class=\"legend\">" +
+                   regions +
                    "<li><span class=\"dot\"></span>fixed node</li><li><span class=\"swatch\" "
                    "style=\"background:#9ea8b2\"></span>surface that cannot be touched</li></ul>\n";
     }

@@ -10,7 +10,8 @@ namespace palpate {
 
 using html::escaped;
 
-std::string histogram_svg(const Histogram& histogram, const std::string& axis, const std::string& unit) {
+std::string histogram_svg(const Histogram& histogram, const std::string& axis, const std::string& unit,
+                          int steps) {
     constexpr double width = 420, height = 190, left = 8, right = 8, top = 18, bottom = 38;
     constexpr double plot_width = width - left - right, plot_height = height - top - bottom;
     std::int64_t total = 0;
@@ -35,13 +36,12 @@ std::string histogram_svg(const Histogram& histogram, const std::string& axis, c
     }
     svg += fmt::format("<line class=\"axis\" x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\"/>\n", left,
                        top + plot_height, width - right, top + plot_height);
-    constexpr int ticks = 6;
-    for (int i = 0; i <= ticks; ++i) {
-        const double part = static_cast<double>(i) / ticks;
+    for (int i = 0; i <= steps; ++i) {
+        const double part = static_cast<double>(i) / steps;
         svg += fmt::format("<text class=\"tick\" x=\"{:.2f}\" y=\"{}\" text-anchor=\"{}\">{:.3g}{}</text>\n",
                            left + part * plot_width, top + plot_height + 14,
                            i == 0       ? "start"
-                           : i == ticks ? "end"
+                           : i == steps ? "end"
                                         : "middle",
                            histogram.low + part * (histogram.high - histogram.low), escaped(unit));
     }
@@ -66,10 +66,9 @@ std::string stages_svg(const std::vector<StageRecord>& stages) {
         const bool ran = stage.status == "run";
         const double y = row * static_cast<double>(i) + 4;
         const double length = std::max(1.5, longest_bar * stage.seconds / longest);
-        std::string figures = ran ? fmt::format("{:.2f} s", stage.seconds) : stage.status;
-        if (ran && stage.peak_memory_bytes > 0)
-            figures +=
-                fmt::format(" · {} MB", html::grouped((stage.peak_memory_bytes + 500'000) / 1'000'000));
+        std::string figures = fmt::format("{:.2f} s · {} MB", stage.seconds,
+                                          html::grouped((stage.peak_memory_bytes + 500'000) / 1'000'000));
+        if (!ran) figures += " · " + stage.status;
         svg += fmt::format("<text class=\"stage\" x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>\n",
                            name_width - 10, y + 14, escaped(stage.stage));
         svg += fmt::format(

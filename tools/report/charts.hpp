@@ -12,12 +12,13 @@ namespace palpate {
 struct StageRecord {
     std::string stage;                   ///< e.g. "mesh wall"
     double seconds = 0;                  ///< wall time
-    std::int64_t peak_memory_bytes = 0;  ///< 0 if it did not run
+    std::int64_t peak_memory_bytes = 0;  ///< largest resident set
     std::string status;                  ///< "run" or "up to date"
 };
 
-/// Draws a histogram as inline SVG; `unit` follows the numbers on the axis.
-std::string histogram_svg(const Histogram& histogram, const std::string& axis, const std::string& unit);
+/// Draws a histogram as inline SVG; `unit` follows the numbers on the axis, which has `steps` of them and 0.
+std::string histogram_svg(const Histogram& histogram, const std::string& axis, const std::string& unit,
+                          int steps);
 
 /// Draws one bar per stage as inline SVG: length is time, the text beside it time and peak memory.
 std::string stages_svg(const std::vector<StageRecord>& stages);

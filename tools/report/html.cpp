@@ -58,6 +58,14 @@ std::string table(const std::vector<Column>& columns, const std::vector<std::vec
     return result + "</tbody></table></div>\n";
 }
 
+std::string cards(const std::vector<Card>& cards) {
+    std::string result = "<dl class=\"cards\">\n";
+    for (const Card& card : cards)
+        result += fmt::format("<div><dt>{}</dt><dd>{}{}</dd></div>\n", card.name, card.value,
+                              card.unit.empty() ? "" : " <small>" + card.unit + "</small>");
+    return result + "</dl>\n";
+}
+
 std::string section(std::string_view anchor, std::string_view title, std::string_view lead,
                     std::string_view content) {
     return fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n{}{}</section>\n", anchor, escaped(title),

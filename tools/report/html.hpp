@@ -21,6 +21,12 @@ struct Column {
 /// A table; cells are HTML already, every row has one per column.
 std::string table(const std::vector<Column>& columns, const std::vector<std::vector<std::string>>& rows);
 
+/// A figure that stands out.
+struct Card {
+    std::string name, value, unit;  ///< HTML already
+};
+std::string cards(const std::vector<Card>& cards);
+
 /// A titled section with an anchor.
 std::string section(std::string_view anchor, std::string_view title, std::string_view lead,
                     std::string_view content);

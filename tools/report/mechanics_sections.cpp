@@ -58,9 +58,9 @@ std::string mesh_section(const Case& patient_case, const std::vector<MeasuredBod
                         fmt::format("{:.1f}° – {:.1f}°", mesh.min_dihedral_deg, mesh.max_dihedral_deg),
                         fmt::format("{:.2f} / {:.2f}", mesh.min_radius_ratio, mesh.mean_radius_ratio)});
         charts += body_title(bodies, body) + "<div class=\"two\">\n" +
-                  html::figure(histogram_svg(mesh.dihedral_deg, "dihedral angle", "°"),
+                  html::figure(histogram_svg(mesh.dihedral_deg, "dihedral angle", "°", 6),
                                "All six dihedral angles of every tetrahedron; a regular one has 70.5°.") +
-                  html::figure(histogram_svg(mesh.radius_ratio, "radius ratio", ""),
+                  html::figure(histogram_svg(mesh.radius_ratio, "radius ratio", "", 5),
                                "Three times the inscribed over the circumscribed radius: 1 is regular, 0 is "
                                "flat.") +
                   "</div>\n";
@@ -114,12 +114,10 @@ std::string mechanics_section(const Case& patient_case) {
             grouped(body.certificate.free_dofs));
     }
     const HapticSettings& haptics = patient_case.haptics;
-    content += html::table(
-        {{"Haptic setting"}, {"Value", true}},
-        {{"Tool radius", significant(haptics.tool_radius) + " mm"},
-         {"Coupling stiffness on rigid bodies", significant(haptics.coupling_stiffness) + " N/mm"},
-         {"Largest force", significant(haptics.max_force) + " N"},
-         {"Largest change of force", significant(haptics.max_force_rate) + " N per ms"}});
+    content += html::cards({{"Tool radius", significant(haptics.tool_radius), "mm"},
+                            {"Coupling stiffness", significant(haptics.coupling_stiffness), "N/mm"},
+                            {"Largest force", significant(haptics.max_force), "N"},
+                            {"Largest change", significant(haptics.max_force_rate), "N per ms"}});
     return html::section("mechanics", "Materials and boundary",
                          "Isotropic linear elasticity on linear tetrahedra.", content);
 }

@@ -36,12 +36,7 @@ std::string verdict(const std::vector<MeasuredBody>& bodies) {
         html::significant(residual, 2), angle);
 }
 
-std::string card(std::string_view name, std::string_view value, std::string_view unit = "") {
-    return fmt::format("<div><dt>{}</dt><dd>{}{}</dd></div>\n", name, value,
-                       unit.empty() ? "" : fmt::format(" <small>{}</small>", unit));
-}
-
-std::string cards(const ReportInputs& inputs, const std::vector<MeasuredBody>& bodies) {
+std::string key_figures(const ReportInputs& inputs, const std::vector<MeasuredBody>& bodies) {
     std::size_t tetrahedra = 0, contact_nodes = 0, triangles = 0;
     double volume = 0;
     for (const MeasuredBody& measured : bodies) {
@@ -51,15 +46,16 @@ std::string cards(const ReportInputs& inputs, const std::vector<MeasuredBody>& b
     }
     for (const RigidBody& body : inputs.patient_case.rigid_bodies) triangles += body.surface.triangles.size();
     const auto whole = [](std::size_t value) { return html::grouped(static_cast<std::int64_t>(value)); };
-    std::string result = card("Deformable volume", html::significant(volume / 1000), "ml") +
-                         card("Tetrahedra", whole(tetrahedra)) + card("Contact nodes", whole(contact_nodes)) +
-                         card("Rigid triangles", whole(triangles));
+    std::vector<html::Card> result{{"Deformable volume", fmt::format("{:.0f}", volume / 1000), "ml"},
+                                   {"Tetrahedra", whole(tetrahedra), ""},
+                                   {"Contact nodes", whole(contact_nodes), ""},
+                                   {"Rigid triangles", whole(triangles), ""}};
     if (!inputs.stages.empty()) {
         double seconds = 0;
         for (const StageRecord& stage : inputs.stages) seconds += stage.seconds;
-        result += card("Built in", fmt::format("{:.1f}", seconds), "s");
+        result.push_back({"Built in", fmt::format("{:.1f}", seconds), "s"});
     }
-    return "<dl class=\"cards\">\n" + result + "</dl>\n";
+    return html::cards(result);
 }
 
 }  // namespace
@@ -88,7 +84,7 @@ std::string html_report(const ReportInputs& inputs) {
            "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>" +
            name + " – Palpate report</title>\n<style>" + std::string(page_style) +
            "</style>\n</head>\n<body>\n<main>\n<header>\n<p class=\"kind\">Palpate report</p>\n<h1>" + name +
-           "</h1>\n" + verdict(bodies) + cards(inputs, bodies) + "</header>\n<nav>" + navigation +
+           "</h1>\n" + verdict(bodies) + key_figures(inputs, bodies) + "</header>\n<nav>" + navigation +
            "</nav>\n" + slices_section(inputs) + bodies_section(patient_case) +
            mesh_section(patient_case, bodies) + mechanics_section(patient_case) +
            certificate_section(bodies) + touch_section(inputs) + stages_section(inputs.stages) +

@@ -21,8 +21,8 @@ struct ReportInputs {
     std::vector<StageRecord> stages{};
 };
 
-/// Reads stage records from [{"stage", "seconds", "peak_memory_bytes", "status"}, ...]; throws InvalidInput
-/// naming `culprit` and the record at fault.
+/// Reads stage records from [{"stage", "seconds", "peak_memory_bytes", "status"}, ...], where a missing
+/// status means "run"; throws InvalidInput naming `culprit` and the record at fault.
 std::vector<StageRecord> stages_from_json(const nlohmann::json& json, const std::string& culprit);
 
 /// Makes one self-contained HTML page: no script, no link, pictures within. Draws in 3-D, so it needs an X

@@ -13,6 +13,7 @@ using html::escaped;
 std::string text_of(const nlohmann::json& value) {
     if (value.is_string()) return escaped(value.get<std::string>());
     if (value.is_number_float()) return html::significant(value.get<double>(), 4);
+    if (value.is_number_integer()) return html::grouped(value.get<std::int64_t>());
     return escaped(value.dump());
 }
 
@@ -36,19 +37,24 @@ struct TouchFigure {
 };
 
 constexpr TouchFigure touch_figures[] = {
+    {"/ready_s", "Ready after", " s", "From launch to the first force that could be felt."},
     {"/ticks", "Ticks", "", "One every millisecond: read the device, find the contact, send the force."},
-    {"/overruns", "Overruns", "", "Ticks that were not done when the next one was due."},
-    {"/peak_force_n", "Peak force", " N", "The largest force sent to the hand."},
-    {"/peak_penetration_mm", "Peak penetration", " mm", "How far the device went beyond the surface."},
+    {"/overruns", "Overruns", "", "Milliseconds in which no tick began, because the machine was late."},
+    {"/force_peak_n", "Peak force", " N", "The largest force sent to the hand."},
+    {"/force_step_max_n", "Largest step", " N", "The largest change of force from one tick to the next."},
+    {"/penetration/device_mm", "Device below the surface", " mm",
+     "How far the hand pressed in, measured from the surface at rest."},
+    {"/penetration/tool_mm", "Tool below the surface", " mm",
+     "What is left of that once rigid surfaces held the tool and tissue gave way: the error of the contact."},
 };
 
 std::string percentiles(const nlohmann::json& touch) {
     std::vector<std::vector<std::string>> rows;
     for (const auto& [key, name] :
-         {std::pair{"tick_time_us", "Time of a tick"}, std::pair{"wake_up_latency_us", "Wake-up latency"}}) {
+         {std::pair{"tick_us", "Time of a tick"}, std::pair{"wake_latency_us", "Wake-up latency"}}) {
         if (!touch.contains(key)) continue;
         std::vector<std::string> row{name};
-        for (const char* part : {"p50", "p99", "p99.9", "max"})
+        for (const char* part : {"p50", "p99", "p99_9", "max"})
             row.push_back(touch[key].contains(part) ? text_of(touch[key][part]) : "–");
         rows.push_back(row);
     }
@@ -91,7 +97,7 @@ std::vector<StageRecord> stages_from_json(const nlohmann::json& json, const std:
     std::vector<StageRecord> stages;
     for (const nlohmann::json& record : json) try {
             stages.push_back({record.at("stage"), record.at("seconds"), record.at("peak_memory_bytes"),
-                              record.at("status")});
+                              record.value("status", "run")});
         } catch (const nlohmann::json::exception&) {
             throw InvalidInput(
                 {culprit, fmt::format("record {} is {}", stages.size(), record.dump()), expected, ""});
@@ -108,14 +114,15 @@ std::string stages_section(const std::vector<StageRecord>& stages) {
     double seconds = 0;
     std::int64_t peak = 0;
     for (const StageRecord& stage : stages) {
-        if (stage.status != "run") continue;
         seconds += stage.seconds;
         peak = std::max(peak, stage.peak_memory_bytes);
     }
-    return html::section("stages", "Stages",
-                         fmt::format("{:.1f} s in all; peak memory {} MB. Bars are wall time.", seconds,
-                                     html::grouped((peak + 500'000) / 1'000'000)),
-                         html::figure(stages_svg(stages), ""));
+    return html::section(
+        "stages", "Stages",
+        fmt::format(
+            "{:.1f} s in all; peak memory {} MB. Each bar is the wall time of a stage when it last ran.",
+            seconds, html::grouped((peak + 500'000) / 1'000'000)),
+        html::figure(stages_svg(stages), ""));
 }
 
 std::string provenance_section(const std::string& provenance) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/report/scene.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <vtkActor.h>
+#include <vtkActorCollection.h>
 #include <vtkCamera.h>
 #include <vtkCellArray.h>
 #include <vtkDoubleArray.h>
@@ -87,7 +89,7 @@ vtkSmartPointer<vtkActor> dots(const TetMesh& mesh, const std::vector<std::int32
     data->SetPoints(points);
     data->SetVerts(vertices);
     auto actor = actor_of(data, fixed_dot, 1);
-    actor->GetProperty()->SetPointSize(5);
+    actor->GetProperty()->SetPointSize(6);
     actor->GetProperty()->SetRenderPointsAsSpheres(true);
     return actor;
 }
@@ -126,66 +128,99 @@ void add_regions(vtkRenderer* renderer, const DeformableBody& body, double outer
     renderer->AddActor(surface_actor(positions, other, untouchable, opacity));
 }
 
-// Draws at twice the size and averages 2 x 2 pixels: smooth edges with any number of translucent layers.
-Picture draw(vtkRenderer* renderer, const SceneView& view) {
-    vtkNew<vtkRenderWindow> window;
-    window->SetOffScreenRendering(1);
-    window->SetMultiSamples(0);
-    window->SetAlphaBitPlanes(1);
-    window->SetSize(2 * view.width, 2 * view.height);
-    window->AddRenderer(renderer);
-    renderer->SetBackground(0.965, 0.972, 0.98);
-    renderer->SetUseDepthPeeling(1);
-    renderer->SetMaximumNumberOfPeels(12);
-    renderer->SetOcclusionRatio(0.002);
+constexpr int width = 760, height = 620;  // pixels of a picture
+constexpr int samples = 2;  // each way in a pixel: smooth edges with any number of glassy layers
 
-    vtkCamera* camera = renderer->GetActiveCamera();
-    camera->SetFocalPoint(0, 0, 0);
-    camera->SetPosition(view.from.x(), view.from.y(), view.from.z());
-    camera->SetViewUp(0, 0, 1);
-    camera->SetViewAngle(20);
+// Narrows the view until everything just fits; some two thousand points of each surface tell.
+void fit(vtkRenderer* renderer) {
+    constexpr double filled = 0.95;  // of the picture, at the tightest
+    renderer->GetActiveCamera()->SetWindowCenter(0, 0);
     renderer->ResetCamera();
-    camera->Zoom(1.35);
-    window->Render();
+    Eigen::AlignedBox2d seen;
+    vtkActorCollection* actors = renderer->GetActors();
+    actors->InitTraversal();
+    while (vtkActor* actor = actors->GetNextActor()) {
+        vtkPoints* points = vtkPolyData::SafeDownCast(actor->GetMapper()->GetInput())->GetPoints();
+        const vtkIdType step = points->GetNumberOfPoints() / 2000 + 1;
+        for (vtkIdType i = 0; i < points->GetNumberOfPoints(); i += step) {
+            std::array<double, 3> p{};
+            points->GetPoint(i, p.data());
+            renderer->WorldToView(p[0], p[1], p[2]);
+            seen.extend(Eigen::Vector2d(p[0], p[1]));
+        }
+    }
+    if (seen.isEmpty()) return;
+    const double zoom = 2 * filled / seen.sizes().maxCoeff();
+    const Eigen::Vector2d middle = zoom * seen.center();
+    renderer->GetActiveCamera()->Zoom(zoom);
+    renderer->GetActiveCamera()->SetWindowCenter(middle.x(), middle.y());
+}
 
+Picture grabbed(vtkRenderWindow* window) {
     vtkNew<vtkWindowToImageFilter> grab;
     grab->SetInput(window);
     grab->SetInputBufferTypeToRGB();
     grab->ReadFrontBufferOff();
     grab->Update();
     vtkImageData* image = grab->GetOutput();
-    Picture picture{view.width, view.height, {}};
-    picture.rgb.resize(picture.offset(0, view.height));
-    const auto source = [&](int x, int y) {
-        return static_cast<const std::uint8_t*>(image->GetScalarPointer(x, 2 * view.height - 1 - y, 0));
-    };
-    for (int y = 0; y < view.height; ++y)
-        for (int x = 0; x < view.width; ++x)
-            for (int channel = 0; channel < 3; ++channel) {
-                const int sum = source(2 * x, 2 * y)[channel] + source(2 * x + 1, 2 * y)[channel] +
-                                source(2 * x, 2 * y + 1)[channel] + source(2 * x + 1, 2 * y + 1)[channel];
-                picture.rgb[picture.offset(x, y) + static_cast<std::size_t>(channel)] =
-                    static_cast<std::uint8_t>((sum + 2) / 4);
+    Picture picture{width, height, {}};
+    picture.rgb.resize(picture.offset(0, height));
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            std::array<int, 3> sum{};
+            for (int sample = 0; sample < samples * samples; ++sample) {
+                const auto* pixel = static_cast<const std::uint8_t*>(image->GetScalarPointer(
+                    samples * x + sample % samples, samples * (height - 1 - y) + sample / samples, 0));
+                for (std::size_t channel = 0; channel < 3; ++channel) sum[channel] += pixel[channel];
             }
+            for (std::size_t channel = 0; channel < 3; ++channel)
+                picture.rgb[picture.offset(x, y) + channel] =
+                    static_cast<std::uint8_t>(sum[channel] / (samples * samples));
+        }
     return picture;
+}
+
+std::vector<Picture> draw(vtkRenderer* renderer, const std::vector<ViewDirection>& directions) {
+    vtkNew<vtkRenderWindow> window;
+    window->SetOffScreenRendering(1);
+    window->SetMultiSamples(0);
+    window->SetAlphaBitPlanes(1);
+    window->SetSize(samples * width, samples * height);
+    window->AddRenderer(renderer);
+    renderer->SetBackground(0.965, 0.972, 0.98);
+    renderer->SetUseDepthPeeling(1);
+    renderer->SetMaximumNumberOfPeels(4);
+    renderer->SetOcclusionRatio(0.005);
+    std::vector<Picture> pictures;
+    for (const ViewDirection& from : directions) {
+        vtkCamera* camera = renderer->GetActiveCamera();
+        camera->SetViewAngle(20);
+        camera->SetFocalPoint(0, 0, 0);
+        camera->SetPosition(from.x(), from.y(), from.z());
+        camera->SetViewUp(0, 0, 1);
+        fit(renderer);
+        window->Render();
+        pictures.push_back(grabbed(window));
+    }
+    return pictures;
 }
 
 }  // namespace
 
-Picture scene_picture(const Case& patient_case, const SceneView& view) {
+std::vector<Picture> scene_pictures(const Case& patient_case, const std::vector<ViewDirection>& directions) {
     vtkNew<vtkRenderer> renderer;
     for (const DeformableBody& body : patient_case.deformable_bodies) add_regions(renderer, body, 0.55);
     const double opacity = patient_case.deformable_bodies.empty() ? 1 : 0.25;
     for (const RigidBody& body : patient_case.rigid_bodies)
         renderer->AddActor(surface_actor(body.surface.vertices, body.surface.triangles, bone, opacity));
-    return draw(renderer, view);
+    return draw(renderer, directions);
 }
 
-Picture body_picture(const DeformableBody& body, const SceneView& view) {
+std::vector<Picture> body_pictures(const DeformableBody& body, const std::vector<ViewDirection>& directions) {
     vtkNew<vtkRenderer> renderer;
     add_regions(renderer, body, 0.45);
     renderer->AddActor(dots(body.mesh, body.fixed_nodes));
-    return draw(renderer, view);
+    return draw(renderer, directions);
 }
 
 }  // namespace palpate

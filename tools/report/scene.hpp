@@ -1,25 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <Eigen/Core>
+#include <vector>
 
 #include "formats/model/body.hpp"
 #include "tools/report/picture.hpp"
 
 namespace palpate {
 
-/// From where a scene is seen and how large it is drawn.
-struct SceneView {
-    Eigen::Vector3d from = Eigen::Vector3d(-0.6, -1, 0.45);  ///< direction from the scene to the eye in P
-    int width = 760;                                         ///< pixels
-    int height = 620;
-};
+/// A direction from the scene to the eye, in P; the patient's head is up.
+using ViewDirection = Eigen::Vector3d;
 
-/// Draws all bodies: rigid ones bone-coloured and translucent, deformable ones with their regions. Needs an X
-/// display (VirtualDisplay). About a second for 350 000 triangles in software.
-Picture scene_picture(const Case& patient_case, const SceneView& view);
+/// Draws all bodies once from each direction: rigid ones bone-coloured and translucent, deformable ones with
+/// their regions. Needs an X display (VirtualDisplay).
+std::vector<Picture> scene_pictures(const Case& patient_case, const std::vector<ViewDirection>& directions);
 
-/// Draws one deformable body close up: the contact surface in the colour of its region and translucent, so
-/// that enclosed regions show, the surface that cannot be touched in grey, fixed nodes as dark dots.
-Picture body_picture(const DeformableBody& body, const SceneView& view);
+/// Draws one deformable body close up, once from each direction: the contact surface in the colour of its
+/// region and translucent, so that enclosed regions show, the surface that cannot be touched in grey, fixed
+/// nodes as dark dots.
+std::vector<Picture> body_pictures(const DeformableBody& body, const std::vector<ViewDirection>& directions);
 
 }  // namespace palpate

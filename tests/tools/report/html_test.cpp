@@ -30,7 +30,7 @@ TEST(Html, groups_thousands) {
 }
 
 TEST(Charts, histogram_shows_each_bin_that_is_not_empty) {
-    const std::string svg = histogram_svg({0, 4, {5, 0, 1'000'000, 1}}, "a < b", "°");
+    const std::string svg = histogram_svg({0, 4, {5, 0, 1'000'000, 1}}, "a < b", "°", 4);
     std::size_t bars = 0;
     for (std::size_t at = 0; (at = svg.find("<rect", at)) != std::string::npos; ++at) ++bars;
     EXPECT_EQ(bars, 3U);
@@ -39,7 +39,7 @@ TEST(Charts, histogram_shows_each_bin_that_is_not_empty) {
 }
 
 TEST(Charts, histogram_of_nothing_is_drawn_empty) {
-    EXPECT_EQ(histogram_svg({0, 1, {0, 0}}, "x", "").find("<rect"), std::string::npos);
+    EXPECT_EQ(histogram_svg({0, 1, {0, 0}}, "x", "", 2).find("<rect"), std::string::npos);
 }
 
 TEST(Verdict, a_sound_body_passes_and_each_fault_is_found) {

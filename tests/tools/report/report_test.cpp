@@ -47,9 +47,10 @@ std::string full_page() {
         const LabelMap labels = label_map();
         const Volume volume = volume_like(labels);
         ReportInputs inputs{.patient_case = patient_case, .volume = &volume, .labels = &labels};
-        inputs.touch = nlohmann::json{{"ticks", 10000}, {"overruns", 3}};
+        inputs.touch = nlohmann::json::parse(R"({"ticks": 10000, "overruns": 3, "force_peak_n": 1.25,
+            "penetration": {"device_mm": 3.5}, "tick_us": {"p50": 4.5, "p99": 11.25, "p99_9": 20, "max": 31}})");
         inputs.force_curve_svg = "<svg xmlns=\"http://www.w3.org/2000/svg\"><script>1</script></svg>";
-        inputs.stages = {{"mesh <wall>", 3.25, 123'000'000, "run"}, {"pack", 0, 0, "up to date"}};
+        inputs.stages = {{"mesh <wall>", 3.25, 123'000'000, "run"}, {"pack", 0.5, 7'000'000, "up to date"}};
         return html_report(inputs);
     }();
     return page;
@@ -159,7 +160,8 @@ TEST_F(ReportTest, all_sections_are_there) {
     }
     EXPECT_FALSE(contains(page, "class=\"missing\""));
     EXPECT_TRUE(contains(page, "✓ Verified"));
-    EXPECT_TRUE(contains(page, "10000"));
+    for (const char* figure : {"10\u202f000", "1.25 N", "3.5 mm", "11.25"})
+        EXPECT_TRUE(contains(page, figure)) << figure;
     EXPECT_TRUE(contains(page, "3.25 s"));
 }
 
@@ -213,6 +215,10 @@ TEST(Stages, records_are_read_and_faults_named) {
     ASSERT_EQ(stages.size(), 1U);
     EXPECT_EQ(stages[0].stage, "mesh");
     EXPECT_EQ(stages[0].seconds, 3.5);
+    EXPECT_EQ(
+        stages_from_json(nlohmann::json::parse(R"([{"stage":"a","seconds":1,"peak_memory_bytes":2}])"), "")[0]
+            .status,
+        "run");
     for (const char* bad : {R"({"stage":"mesh"})", R"([{"stage":"mesh"}])", "[7]",
                             R"([{"stage":1,"seconds":1,"peak_memory_bytes":1,"status":"run"}])"})
         try {

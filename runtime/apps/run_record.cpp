@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/apps/run_record.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <iterator>
+#include <ostream>
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+Vector3d vector_of(const std::array<double, 3>& a) {
+    return {a[0], a[1], a[2]};
+}
+
+// RFC 4180: a field with a comma, quote or line break stands in quotes.
+std::string csv_field(const std::string& text) {
+    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+    return quoted + '"';
+}
+
+}  // namespace
+
+RunRecord::RunRecord(const HapticModel& model, std::ostream* log) : model_(model), log_(log) {
+    if (log_)
+        *log_ << "t_s,device_x_mm,device_y_mm,device_z_mm,tool_x_mm,tool_y_mm,tool_z_mm,force_x_n,force_y_n,"
+                 "force_z_n,depth_mm,contacts,body,triangle,tick_us,wake_us,status\n";
+}
+
+void RunRecord::add(const TickResult& result) {
+    const double force = vector_of(result.force).norm();
+    if (curve_.empty() || force > peak_force()) peak_ = result;
+    curve_.push_back({result.time, force, result.depth});
+    if (result.tick == last_tick_ + 1)
+        largest_force_step_ =
+            std::max(largest_force_step_, (vector_of(result.force) - vector_of(last_force_)).norm());
+    last_force_ = result.force;
+    last_tick_ = result.tick;
+    device_depth_ = std::max(device_depth_, result.depth);
+    tool_depth_ = std::max(tool_depth_, tool_depth_of(result));
+    if (result.status != tick_ok) ++statuses_[status_text(result.status)];
+    if (log_) write_row(result);
+}
+
+double RunRecord::peak_force() const {
+    return vector_of(peak_.force).norm();
+}
+
+double RunRecord::tool_depth_of(const TickResult& result) const {
+    if (result.status & (starts_inside | invalid_position)) return 0;
+    // The tool is where the deepest touched rigid body holds it; others may overlap it there.
+    const Contact* holding = nullptr;
+    for (const Contact& contact : result.active_contacts())
+        if (static_cast<std::size_t>(contact.body) < model_.rigid_count() &&
+            (!holding || contact.gap > holding->gap))
+            holding = &contact;
+    const double radius = model_.settings().tool_radius;
+    const Vector3d tool = vector_of(result.tool_position);
+    double depth = result.residual;
+    for (std::size_t body = 0; body < model_.rigid_count(); ++body) {
+        if (holding && static_cast<std::size_t>(holding->body) != body) continue;
+        const CollisionSurface& surface = model_.surface(body);
+        if (const auto nearest = surface.closest_point(tool, radius))
+            depth =
+                std::max(depth, radius + (surface.is_outside(tool) ? -nearest->distance : nearest->distance));
+    }
+    return depth;
+}
+
+void RunRecord::write_row(const TickResult& r) {
+    const auto& d = r.device_position;
+    const auto& t = r.tool_position;
+    const auto& f = r.force;
+    fmt::memory_buffer row;
+    fmt::format_to(
+        std::back_inserter(row),
+        "{:.3f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.5f},{:.5f},{:.5f},{:.4f},{},{},{},{:.2f},"
+        "{:.2f},{}\n",
+        r.time, d[0], d[1], d[2], t[0], t[1], t[2], f[0], f[1], f[2], r.depth, r.contact_count,
+        r.body < 0 ? "" : csv_field(model_.body_name(static_cast<std::size_t>(r.body))),
+        r.contact_count > 0 ? r.contacts[0].triangle : -1, 1e-3 * static_cast<double>(r.tick_ns),
+        1e-3 * static_cast<double>(r.wake_latency_ns), status_text(r.status));
+    log_->write(row.data(), static_cast<std::streamsize>(row.size()));
+}
+
+}  // namespace palpate

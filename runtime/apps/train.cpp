@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+// palpate train: the trainer's window beside the haptic loop.
+#include <chrono>
+#include <charconv>
+#include <optional>
+#include <spdlog/spdlog.h>
+#include <thread>
+
+#include "formats/asset/asset.hpp"
+#include "formats/model/errors.hpp"
+#include "runtime/apps/touch_target.hpp"
+#include "runtime/devices/guided_device.hpp"
+#include "runtime/devices/simulated_device.hpp"
+#include "runtime/haptics/servo_loop.hpp"
+#include "runtime/visual/train_window.hpp"
+#include "tools/cli/command.hpp"
+
+namespace palpate {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Json = nlohmann::ordered_json;
+
+struct Options {
+    std::filesystem::path asset, screenshot;
+    std::string size = "1280x720", script, body;
+    double seconds = 0;
+};
+
+std::pair<int, int> size_of(const std::string& text) {
+    int width = 0, height = 0;
+    const char* end = text.data() + text.size();
+    const auto first = std::from_chars(text.data(), end, width);
+    if (first.ec == std::errc{} && first.ptr != end && *first.ptr == 'x' &&
+        std::from_chars(first.ptr + 1, end, height).ptr == end && width >= 320 && height >= 240 &&
+        width <= 16384 && height <= 16384)
+        return {width, height};
+    throw UsageError({"--size", text, "WIDTHxHEIGHT in pixels, 320x240 or more", "for example 1280x720"});
+}
+
+HandPath scripted_path(const Options& options, const TouchPoint& place, double tool_radius) {
+    const ScriptSettings settings{.tool_radius = tool_radius,
+                                  .seconds = options.seconds > 0 ? options.seconds : 3600};
+    if (options.script == "press") return press_path(place, settings);
+    if (options.script == "slide") return slide_path(place, settings);
+    if (!std::filesystem::exists(options.script))
+        throw UsageError({"--script", options.script, "press, slide or a file of positions", ""});
+    return read_hand_path(options.script);
+}
+
+// Everything felt since the start, from the ticks that the loop left in its ring.
+struct Felt {
+    double force_peak = 0;  // N
+    double depth_peak = 0;  // mm
+    double travel = 0;      // mm, of the device
+    std::optional<Eigen::Vector3d> last_position;
+
+    void take(SpscRing<TickResult>& ring) {
+        for (TickResult tick; ring.pop(tick);) {
+            const Eigen::Vector3d position = Eigen::Map<const Eigen::Vector3d>(tick.device_position.data());
+            force_peak = std::max(force_peak, Eigen::Map<const Eigen::Vector3d>(tick.force.data()).norm());
+            depth_peak = std::max(depth_peak, tick.depth);
+            if (last_position) travel += (position - *last_position).norm();
+            last_position = position;
+        }
+    }
+};
+
+// The tick rate over the last half second or more.
+class TickRate {
+  public:
+    double update(std::int64_t tick) {
+        const auto now = Clock::now();
+        const double seconds = std::chrono::duration<double>(now - since_).count();
+        if (seconds > 0.5) {
+            rate_ = static_cast<double>(tick - tick_) / seconds;
+            since_ = now;
+            tick_ = tick;
+        }
+        return rate_;
+    }
+
+  private:
+    Clock::time_point since_ = Clock::now();
+    std::int64_t tick_ = 0;
+    double rate_ = 0;
+};
+
+void fill_frame(VisualFrame& frame, const TickResult& tick, const HapticModel& model) {
+    frame.device_position = Eigen::Map<const Eigen::Vector3d>(tick.device_position.data());
+    frame.tool_position = Eigen::Map<const Eigen::Vector3d>(tick.tool_position.data());
+    frame.force = Eigen::Map<const Eigen::Vector3d>(tick.force.data());
+    frame.depth = tick.depth;
+    frame.overruns = tick.overruns;
+    for (std::size_t i = 0; i < frame.displacements.size(); ++i)
+        model.surface_displacement(model.rigid_count() + i, tick, frame.displacements[i]);
+}
+
+Json percentiles(const Histogram& histogram, double unit_ns) {
+    const auto in_unit = [&](std::uint64_t ns) { return static_cast<double>(ns) / unit_ns; };
+    return {{"p50", in_unit(histogram.percentile(0.5))},
+            {"p99", in_unit(histogram.percentile(0.99))},
+            {"p99_9", in_unit(histogram.percentile(0.999))},
+            {"max", in_unit(histogram.max())}};
+}
+
+Json train(const Options& options, cli::Session& session) {
+    constexpr auto shortest_frame = std::chrono::nanoseconds(1'000'000'000 / 60);
+    const auto [width, height] = size_of(options.size);
+    std::optional<cli::StagedFile> picture;
+    if (!options.screenshot.empty()) picture.emplace(options.screenshot, session.force);
+
+    session.progress.step("reading the case", 0);
+    const Case patient_case = read_asset(options.asset);
+    HapticModel model(patient_case);
+    const TouchPoint place = choose_touch_target(patient_case, model, options.body, std::nullopt).place;
+    const double radius = model.settings().tool_radius;
+    const Eigen::Vector3d start = place.point + place.normal * (radius + std::min(5.0, place.clearance));
+
+    const DeviceLimits limits{.max_force = model.settings().max_force,
+                              .max_stiffness = model.settings().coupling_stiffness};
+    GuidedDevice guided({start.x(), start.y(), start.z()}, limits);
+    std::optional<SimulatedDevice> scripted;
+    if (!options.script.empty()) scripted.emplace(scripted_path(options, place, radius), limits);
+
+    session.progress.step("opening the window", 0.5);
+    WindowSettings window_settings{.width = width, .height = height, .start = start};
+    window_settings.sight = choose_sight(patient_case, place.point, place.normal);
+    TrainWindow window(patient_case, window_settings);
+    session.progress.finish();
+
+    VisualFrame frame;
+    for (const DeformableBody& body : patient_case.deformable_bodies)
+        frame.displacements.emplace_back(body.boundary.nodes.size());
+    frame.device_position = frame.tool_position = start;
+    window.show(frame);  // the first frame compiles shaders
+
+    ServoLoop loop(model, scripted ? static_cast<Device&>(*scripted) : guided);
+    Felt felt;
+    TickRate rate;
+    Histogram frame_ns;
+    loop.start();
+    const auto began = Clock::now();
+    auto frame_began = began;
+    const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - began).count(); };
+    while (!window.closed() && (options.seconds <= 0 || elapsed() < options.seconds)) {
+        const TickResult& tick = loop.latest().read();
+        fill_frame(frame, tick, model);
+        frame.tick_rate_hz = rate.update(tick.tick);
+        window.show(frame);
+        const Eigen::Vector3d hand = window.hand();
+        guided.set_target({hand.x(), hand.y(), hand.z()});
+        felt.take(loop.ring());
+        std::this_thread::sleep_until(frame_began + shortest_frame);
+        const auto now = Clock::now();
+        frame_ns.record(static_cast<std::uint64_t>(std::chrono::nanoseconds(now - frame_began).count()));
+        frame_began = now;
+    }
+    const double seconds = elapsed();
+    loop.stop();
+    felt.take(loop.ring());
+    if (picture) {
+        window.save_picture(picture->path());
+        picture->commit();
+    }
+
+    const ServoStatistics statistics = loop.statistics();
+    for (const SetupResult& setup : statistics.setup)
+        if (!setup.ok) spdlog::warn("{}", setup.message);
+    return {{"case", patient_case.name},
+            {"device", scripted ? scripted->name() : guided.name()},
+            {"frames", frame_ns.count()},
+            {"frames_per_second", static_cast<double>(frame_ns.count()) / seconds},
+            {"frame_ms", percentiles(frame_ns, 1e6)},
+            {"ticks", statistics.ticks},
+            {"overruns", statistics.overruns},
+            {"tick_us", percentiles(statistics.tick_ns, 1e3)},
+            {"wake_latency_us", percentiles(statistics.wake_latency_ns, 1e3)},
+            {"force_peak_n", felt.force_peak},
+            {"penetration", {{"device_mm", felt.depth_peak}}},
+            {"device_travel_mm", felt.travel}};
+}
+
+}  // namespace
+}  // namespace palpate
+
+int main(int argc, char** argv) {
+    using namespace palpate;
+    cli::Command command(
+        {.name = "train",
+         .summary = "Opens the trainer's window on an asset",
+         .examples = {"palpate train case.vtkhdf",
+                      "palpate train case.vtkhdf --script press --seconds 10 --screenshot press.png"},
+         .notes = "Without a device, mouse and keyboard move the hand: drag with the left button in the plane of "
+                  "view, turn the wheel or press W and S for depth, step with the arrow keys. Drag with the right "
+                  "button to turn the view; + and - zoom, C cuts the bodies open, B hides the rigid ones, R goes "
+                  "back to the start, H hides the hints, Q or Escape closes. The window needs an X display; "
+                  "on a machine without one use 'xvfb-run'."});
+    Options options;
+    command.input("asset", options.asset, "the case (.vtkhdf)")->required();
+    command.option("--size", options.size, "WIDTHxHEIGHT of the window", "pixels");
+    command.option("--seconds", options.seconds, "close after this time; 0: when told to", "s");
+    command.option("--script", options.script,
+                   "what the hand does instead of mouse and keyboard: press, slide or a file as for 'touch'");
+    command.option("--body", options.body, "which body to start at; the first deformable one if not given");
+    command.output("--screenshot", options.screenshot, "picture of the window at the end (.png)");
+    return command.run(argc, argv, [&](cli::Session& session) { return train(options, session); });
+}

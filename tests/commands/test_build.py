@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""palpate build from a phantom to asset and report: what runs again when, and what happens when something is wrong."""
+import json
+import os
+import pathlib
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+BIN = pathlib.Path(os.environ["PALPATE_BIN"])
+PHANTOM = pathlib.Path(os.environ["PALPATE_BUILD"]) / "tests" / "phantom"
+
+CASE = """schema = 1
+name = "abdomen"
+[input]
+volume = "abdomen.nrrd"
+labels = "truth.seg.nrrd"
+[[structure]]
+name = "liver"
+recipe = "import"
+[[structure]]
+name = "tumour"
+recipe = "import"
+[[structure]]
+name = "spine"
+recipe = "import"
+[[rigid]]
+name = "spine"
+[[deformable]]
+name = "liver"
+mesh = { cell_size_mm = 8, facet_size_mm = 7 }
+fixed = [{ plane_mm = [0, 8, 0, 0, 1, 0] }]
+[[deformable.region]]
+label = "liver"
+youngs_modulus_kpa = 6.3
+poissons_ratio = 0.45
+[[deformable.region]]
+label = "tumour"
+youngs_modulus_kpa = 30
+poissons_ratio = 0.45
+[haptics]
+tool_radius_mm = 4
+"""
+
+
+def run(*arguments, **options):
+    return subprocess.run(list(map(str, arguments)), text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          timeout=200, **options)
+
+
+class Build(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.temporary.cleanup)
+        cls.prepared = pathlib.Path(cls.temporary.name) / "prepared"
+        cls.prepared.mkdir()
+        made = run(PHANTOM, "abdomen", cls.prepared / "abdomen.nrrd", cls.prepared / "truth.seg.nrrd")
+        assert made.returncode == 0, made.stderr
+        (cls.prepared / "case.toml").write_text(CASE)
+        built = cls.build_in(cls.prepared)
+        assert built.returncode == 0, built.stderr
+        cls.first = json.loads((cls.prepared / "result.json").read_text())
+
+    @classmethod
+    def build_in(cls, folder, *arguments, **options):
+        return run(BIN / "palpate", "build", folder / "case.toml", "-o", folder / "case.vtkhdf",
+                   "--json", folder / "result.json", *arguments, **options)
+
+    def setUp(self):
+        # A copy of the finished build; moving a build does not make it stale.
+        self.folder = pathlib.Path(self.temporary.name) / self.id().rsplit(".", 1)[1]
+        shutil.copytree(self.prepared, self.folder)
+
+    def change(self, old, new):
+        case = self.folder / "case.toml"
+        text = case.read_text()
+        self.assertIn(old, text)
+        case.write_text(text.replace(old, new))
+
+    def stages_run(self, *arguments):
+        built = self.build_in(self.folder, *arguments)
+        self.assertEqual(built.returncode, 0, built.stderr)
+        result = json.loads((self.folder / "result.json").read_text())
+        return [row["stage"] for row in result["stages"] if row["status"] == "run"]
+
+    def fail(self, code, *phrases, arguments=(), **options):
+        built = self.build_in(self.folder, *arguments, **options)
+        self.assertEqual(built.returncode, code, built.stderr)
+        for phrase in phrases:
+            self.assertIn(phrase, built.stderr)
+        self.assert_nothing_partial()
+        return built
+
+    def assert_nothing_partial(self):
+        partial = [path.name for path in self.folder.rglob(".part*")]
+        self.assertEqual(partial, [], "a partial output was left behind")
+
+    def test_first_build_runs_every_stage_and_leaves_asset_and_report(self):
+        self.assertTrue(all(row["status"] == "run" for row in self.first["stages"]))
+        names = [row["stage"] for row in self.first["stages"]]
+        self.assertEqual(names, ["import volume", "import labels", "segment", "surface spine", "obb spine",
+                                 "mesh liver", "obb liver", "condense liver", "pack", "touch", "report"])
+        self.assertTrue((self.folder / "case.vtkhdf").exists())
+        self.assertIn("</html>", (self.folder / "case.html").read_text())
+
+    def test_nothing_changed_runs_no_stage(self):
+        self.assertEqual(self.stages_run(), [])
+
+    def test_another_modulus_reruns_only_from_condensation_on(self):
+        self.change("youngs_modulus_kpa = 6.3", "youngs_modulus_kpa = 7")
+        self.assertEqual(self.stages_run(), ["condense liver", "pack", "touch", "report"])
+
+    def test_another_tool_reruns_only_from_packing_on(self):
+        self.change("tool_radius_mm = 4", "tool_radius_mm = 3")
+        self.assertEqual(self.stages_run(), ["pack", "touch", "report"])
+
+    def test_verify_accepts_the_asset(self):
+        verified = run(BIN / "palpate", "verify", self.folder / "case.vtkhdf")
+        self.assertEqual(verified.returncode, 0, verified.stderr + verified.stdout)
+
+    def test_no_path_or_file_name_of_the_input_reaches_the_asset(self):
+        content = (self.folder / "case.vtkhdf").read_bytes()
+        for secret in (str(self.prepared), "abdomen.nrrd", "truth.seg"):
+            self.assertNotIn(secret.encode(), content)
+
+    def test_missing_volume_is_named(self):
+        (self.folder / "abdomen.nrrd").unlink()
+        self.fail(3, "abdomen.nrrd")
+
+    def test_unknown_label_lists_the_nearest_names(self):
+        self.change('name = "tumour"\nrecipe = "import"', 'name = "tumour"\nrecipe = "import"\nlabel = "tumor"')
+        self.fail(3, "tumor", "tumour")
+
+    def test_unknown_key_names_line_and_suggestion(self):
+        self.change("tool_radius_mm", "tool_radios_mm")
+        built = self.fail(3, "did you mean tool_radius_mm")
+        self.assertRegex(built.stderr, r"case\.toml:\d+")
+
+    def test_a_body_without_fixed_nodes_is_refused_before_factorising(self):
+        self.change("fixed = [{ plane_mm = [0, 8, 0, 0, 1, 0] }]\n", "")
+        built = self.fail(3, "no node is held", "singular")
+        self.assertNotIn("factorising", built.stderr)
+
+    def test_unmet_quality_contract_exits_with_4(self):
+        self.change("[haptics]", "[quality]\nmin_dihedral_deg = 80\n[haptics]")
+        self.fail(4, "dihedral")
+
+    def test_somebody_elses_output_is_not_replaced(self):
+        (self.folder / "case.vtkhdf").write_text("precious")
+        self.fail(3, "exists", "--force")
+        self.assertEqual((self.folder / "case.vtkhdf").read_text(), "precious")
+
+    def test_full_disk_fails_cleanly_in_every_writing_stage(self):
+        shutil.rmtree(self.folder / "case.parts")
+        for stage, limit in (("import", 20_000), ("mesh", 300_000), ("pack", 700_000)):
+            with self.subTest(stage=stage):
+                # Files larger than the limit cannot be written, as on a full disk.
+                built = self.build_in(self.folder, "--force",
+                                      preexec_fn=lambda size=limit: (signal.signal(signal.SIGXFSZ, signal.SIG_IGN),
+                                                                     resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))))
+                self.assertEqual(built.returncode, 1, built.stderr)
+                self.assert_nothing_partial()
+
+    def test_interrupt_in_any_stage_leaves_nothing_partial(self):
+        for stage in ("import volume", "segment", "mesh liver", "condense liver", "pack", "touch", "report"):
+            with self.subTest(stage=stage):
+                shutil.rmtree(self.folder / "case.parts", ignore_errors=True)
+                (self.folder / "case.vtkhdf").unlink(missing_ok=True)
+                (self.folder / "case.html").unlink(missing_ok=True)
+                process = subprocess.Popen([BIN / "palpate", "build", self.folder / "case.toml",
+                                            "-o", self.folder / "case.vtkhdf"],
+                                           stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+                for line in process.stderr:
+                    if line.strip() == f"palpate-build: {stage}":
+                        break
+                time.sleep(0.05)
+                process.send_signal(signal.SIGINT)
+                process.stderr.read()
+                process.stderr.close()
+                self.assertEqual(process.wait(timeout=60), 130)
+                self.assert_nothing_partial()
+                self.assertFalse((self.folder / "case.html").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()

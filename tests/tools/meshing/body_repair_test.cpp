@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/meshing/body_repair.hpp"
+
+#include <gtest/gtest.h>
+
+#include "formats/model/errors.hpp"
+#include "tests/tools/meshing/phantom.hpp"
+#include "tools/meshing/lift_flat_tetrahedra.hpp"
+#include "tools/meshing/tetrahedralise.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr std::array<std::int32_t, 2> organ_and_lesion{3, 7};
+
+// Two tetrahedra that share node 0 only, or the edge 0-1.
+TetMesh hinged(bool at_edge) {
+    TetMesh mesh;
+    mesh.rest_positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+    mesh.tetrahedra = {{0, 1, 2, 3}, at_edge ? Tetrahedron{0, 1, 5, 6} : Tetrahedron{0, 4, 6, 5}};
+    mesh.regions = {1, 1};
+    return mesh;
+}
+
+TEST(SplitHinges, pieces_that_share_a_point_or_an_edge_are_parted) {
+    for (const bool at_edge : {false, true}) {
+        TetMesh mesh = hinged(at_edge);
+        const MeshQuality before = measure(mesh);
+        EXPECT_EQ(before.boundary.non_manifold_edges, at_edge ? 1 : 0);
+        EXPECT_EQ(split_hinges(mesh), at_edge ? 2 : 1);
+        const MeshQuality after = measure(mesh);
+        EXPECT_TRUE(after.boundary.closed_and_oriented());
+        EXPECT_EQ(after.boundary.components, 2);
+        EXPECT_DOUBLE_EQ(after.region_volumes[0].volume, before.region_volumes[0].volume);
+        EXPECT_EQ(split_hinges(mesh), 0);
+    }
+}
+
+TEST(RemoveCrumbs, only_small_pieces_go_and_every_node_stays_used) {
+    TetMesh mesh = hinged(false);
+    for (const std::size_t node : {4U, 5U, 6U}) mesh.rest_positions[node] *= 0.5;  // 1/48 mm³ beside 1/6
+    split_hinges(mesh);
+    EXPECT_EQ(remove_crumbs(mesh, 0.1), 1);
+    EXPECT_EQ(mesh.tetrahedra.size(), 1U);
+    EXPECT_EQ(mesh.rest_positions.size(), 4U);
+    EXPECT_EQ(remove_crumbs(mesh, 0.1), 0);
+}
+
+TEST(MatchVolumes, targets_are_met_by_moving_interfaces_alone) {
+    const LabelMap map = test::organ_with_lesion();
+    TetMesh mesh = tetrahedralise(map, organ_and_lesion, {.cell_size = 5});
+    const TetMesh before = mesh;
+    std::vector<RegionVolume> targets = measure(mesh).region_volumes;
+    targets[0].volume *= 1.01;
+    targets[1].volume *= 0.97;
+    match_volumes(mesh, targets, 0.5);
+    const auto after = measure(mesh).region_volumes;
+    for (std::size_t k = 0; k < 2; ++k) EXPECT_NEAR(after[k].volume / targets[k].volume, 1, 1e-4);
+    for (std::size_t node = 0; node < mesh.rest_positions.size(); ++node)
+        EXPECT_LT((mesh.rest_positions[node] - before.rest_positions[node]).norm(), 0.5);
+}
+
+TEST(MatchVolumes, region_without_a_target_is_refused) {
+    TetMesh mesh = hinged(false);
+    const std::vector<RegionVolume> other{{2, 1.0}};
+    EXPECT_THROW(match_volumes(mesh, other, 1), InvalidInput);
+}
+
+TEST(LiftFlatTetrahedra, sliver_in_the_middle_of_a_ball_becomes_sound) {
+    const LabelMap map = test::organ_with_lesion();
+    TetMesh mesh = tetrahedralise(map, organ_and_lesion, {.cell_size = 5});
+    // Push one interior node nearly through the opposite face of one of its tetrahedra.
+    const std::size_t node =
+        static_cast<std::size_t>(std::ranges::find(mesh.outside_labels, -1) - mesh.outside_labels.begin());
+    for (const Tetrahedron& tet : mesh.tetrahedra) {
+        const auto corner = std::ranges::find(tet, static_cast<std::int32_t>(node));
+        if (corner == tet.end()) continue;
+        Eigen::Vector3d face = Eigen::Vector3d::Zero();
+        for (const std::int32_t other : tet)
+            if (static_cast<std::size_t>(other) != node)
+                face += mesh.rest_positions[static_cast<std::size_t>(other)] / 3;
+        mesh.rest_positions[node] += 0.97 * (face - mesh.rest_positions[node]);
+        break;
+    }
+    const MeshQuality flat = measure(mesh);
+    ASSERT_EQ(flat.inverted, 0);
+    ASSERT_LT(flat.min_dihedral_deg, 5);
+    lift_flat_tetrahedra(mesh, 15, 0.5);
+    EXPECT_GE(measure(mesh).min_dihedral_deg, 12);
+}
+
+TEST(LiftFlatTetrahedra, surface_nodes_stay_within_reach) {
+    TetMesh mesh;
+    mesh.rest_positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0.02}};
+    mesh.tetrahedra = {{0, 1, 2, 3}};
+    mesh.regions = {1};
+    const std::vector<Eigen::Vector3d> before = mesh.rest_positions;
+    const double flatness = flatness_deg(mesh, 0);
+    lift_flat_tetrahedra(mesh, 30, 0.05);
+    EXPECT_GT(flatness_deg(mesh, 0), flatness);
+    for (std::size_t node = 0; node < 4; ++node)
+        EXPECT_LE((mesh.rest_positions[node] - before[node]).norm(), 0.05);
+}
+
+}  // namespace
+}  // namespace palpate

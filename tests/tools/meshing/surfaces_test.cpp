@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/meshing/surfaces.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numbers>
+
+#include "formats/model/errors.hpp"
+#include "tests/tools/meshing/phantom.hpp"
+#include "tools/meshing/quality.hpp"
+
+namespace palpate {
+namespace {
+
+// Falls off linearly from the centre: the isosurface 100 is the ball of `radius`.
+Volume cone(const Eigen::Matrix3d& direction, double radius) {
+    Volume volume;
+    volume.grid = test::grid_around(test::organ_center, direction, {50, 48, 36});
+    for (std::int32_t k = 0; k < volume.grid.size[2]; ++k)
+        for (std::int32_t j = 0; j < volume.grid.size[1]; ++j)
+            for (std::int32_t i = 0; i < volume.grid.size[0]; ++i) {
+                const double r =
+                    (volume.grid.point_of({1.0 * i, 1.0 * j, 1.0 * k}) - test::organ_center).norm();
+                volume.values.push_back(static_cast<float>(100 + 10 * (radius - r)));
+            }
+    return volume;
+}
+
+TEST(Isosurface, follows_the_level_in_any_direction_and_faces_outwards) {
+    const Eigen::Matrix3d oblique =
+        Eigen::AngleAxisd(0.35, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+    const Eigen::Matrix3d left_handed = Eigen::Vector3d(1, -1, 1).asDiagonal();
+    for (const Eigen::Matrix3d& direction :
+         {Eigen::Matrix3d(Eigen::Matrix3d::Identity()), oblique, left_handed}) {
+        const TriangleMesh surface = isosurface(cone(direction, 15), 100);
+        const SurfaceQuality quality = measure(surface);
+        EXPECT_TRUE(quality.closed_and_oriented());
+        EXPECT_EQ(quality.components, 1);
+        // Linear interpolation of |r| along edges of up to 1.4 mm errs by about h² / (8 r) = 0.02 mm.
+        for (const Eigen::Vector3d& p : surface.vertices)
+            ASSERT_NEAR((p - test::organ_center).norm(), 15, 0.03);
+        EXPECT_NEAR(quality.volume / (4.0 / 3 * std::numbers::pi * 15 * 15 * 15), 1, 0.01);
+    }
+}
+
+TEST(Isosurface, is_closed_at_the_border_of_the_image) {
+    const SurfaceQuality quality = measure(isosurface(cone(Eigen::Matrix3d::Identity(), 26), 100));
+    EXPECT_TRUE(quality.closed_and_oriented());
+}
+
+TEST(Isosurface, voxels_exactly_at_the_level_collapse_no_triangle) {
+    Volume volume = cone(Eigen::Matrix3d::Identity(), 15);
+    for (float& value : volume.values)
+        value = std::round(value / 20) * 20;  // most crossings touch a voxel at 100
+    const SurfaceQuality quality = measure(isosurface(volume, 100));
+    EXPECT_EQ(quality.degenerate_triangles, 0);
+    EXPECT_TRUE(quality.closed_and_oriented());
+}
+
+TEST(Isosurface, level_above_every_voxel_is_refused) {
+    EXPECT_THROW(isosurface(cone(Eigen::Matrix3d::Identity(), 15), 1000), InvalidInput);
+}
+
+TEST(KeepNearLabels, what_is_far_from_the_labels_has_no_surface) {
+    Volume volume = cone(Eigen::Matrix3d::Identity(), 6);
+    const auto ball_at = [&](const Eigen::Vector3d& center, const Eigen::Vector3d& p) {
+        return (p - test::organ_center - center).norm() < 4;
+    };
+    const Eigen::Vector3d aside(15, 0, 0);
+    LabelMap map = test::paint(volume.grid,
+                               [&](const Eigen::Vector3d& p) {
+                                   return ball_at({0, 0, 0}, p) ? 1 : 0;
+                               },
+                               {{1, "bone"}});
+    for (std::size_t v = 0; v < volume.values.size(); ++v) {
+        const auto nx = static_cast<std::size_t>(volume.grid.size[0]), slice = volume.grid.offset(0, 0, 1);
+        const Eigen::Vector3d index(static_cast<double>(v % nx), static_cast<double>(v % slice / nx),
+                                    static_cast<double>(v / slice));
+        if (ball_at(aside, volume.grid.point_of(index))) volume.values[v] = 300;  // the table
+    }
+    EXPECT_EQ(measure(isosurface(volume, 100)).components, 2);
+    const std::array<std::int32_t, 1> bone{1};
+    keep_near_labels(volume, map, bone, 3);
+    EXPECT_EQ(measure(isosurface(volume, 100)).components, 1);
+    map.grid.origin.x() += 1;
+    EXPECT_THROW(keep_near_labels(volume, map, bone, 3), InvalidInput);
+}
+
+TEST(LabelSurface, keeps_the_volume_of_its_labels) {
+    const LabelMap map = test::organ_with_lesion();
+    const std::array<std::int32_t, 2> body{3, 7};
+    const SurfaceQuality quality = measure(label_surface(map, body));
+    EXPECT_TRUE(quality.closed_and_oriented());
+    EXPECT_EQ(quality.components, 1);  // the lesion's interface is inside
+    const auto voxels = std::ranges::count_if(map.labels, [](std::uint16_t l) { return l == 3 || l == 7; });
+    EXPECT_NEAR(quality.volume / (static_cast<double>(voxels) * map.grid.voxel_volume()), 1, 0.005);
+    const std::array<std::int32_t, 1> absent{9};
+    EXPECT_THROW(label_surface(map, absent), InvalidInput);
+}
+
+TEST(Pieces, small_ones_or_all_but_the_largest_are_left_out) {
+    TriangleMesh two = isosurface(cone(Eigen::Matrix3d::Identity(), 15), 100);
+    const std::size_t large = two.triangles.size();
+    const TriangleMesh small = isosurface(cone(Eigen::Matrix3d::Identity(), 5), 100);
+    const auto shift = static_cast<std::int32_t>(two.vertices.size());
+    for (const Eigen::Vector3d& p : small.vertices) two.vertices.push_back(p + Eigen::Vector3d(50, 0, 0));
+    for (const Triangle& t : small.triangles)
+        two.triangles.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
+    EXPECT_EQ(keep_largest_piece(two).triangles.size(), large);
+    EXPECT_EQ(keep_large_pieces(two, 1).triangles.size(), two.triangles.size());
+    EXPECT_EQ(keep_large_pieces(two, static_cast<std::int64_t>(small.triangles.size()) + 1).triangles.size(),
+              large);
+    EXPECT_THROW(keep_large_pieces(two, 1'000'000), InvalidInput);
+}
+
+TEST(Decimate, stays_closed_and_close) {
+    const TriangleMesh fine = isosurface(cone(Eigen::Matrix3d::Identity(), 15), 100);
+    const TriangleMesh coarse = decimate(fine, 1000);
+    EXPECT_LE(coarse.triangles.size(), 1000U);
+    EXPECT_GE(coarse.triangles.size(), 990U);
+    EXPECT_TRUE(measure(coarse).closed_and_oriented());
+    EXPECT_NEAR(measure(coarse).volume / measure(fine).volume, 1, 1e-3);
+    // A triangle of 4 pi r² / 1000 on a sphere of radius r sags by at most 0.11 mm.
+    EXPECT_LT(surface_distance(fine, coarse).maximum, 0.2);
+    EXPECT_EQ(decimate(coarse, 2000).triangles, coarse.triangles);
+}
+
+TEST(Decimate, surface_that_is_no_manifold_is_refused) {
+    TriangleMesh fin{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, -1, 0}},
+                     {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}}};
+    EXPECT_THROW(decimate(fin, 2), InvalidInput);
+}
+
+TEST(SurfaceDistance, concentric_spheres_are_as_far_apart_as_their_radii) {
+    const TriangleMesh inner = isosurface(cone(Eigen::Matrix3d::Identity(), 12), 100);
+    const TriangleMesh outer = isosurface(cone(Eigen::Matrix3d::Identity(), 14), 100);
+    const SurfaceDistance distance = surface_distance(inner, outer);
+    EXPECT_NEAR(distance.mean, 2, 0.05);  // chords sag by some hundredths
+    EXPECT_NEAR(distance.percentile_95, 2, 0.05);
+    EXPECT_NEAR(distance.maximum, 2, 0.1);
+    EXPECT_NEAR(surface_distance(inner, inner).maximum, 0, 1e-9);
+}
+
+}  // namespace
+}  // namespace palpate
