@@ -91,6 +91,7 @@ class Mesh(MeshingCommand):
         self.assertEqual(result["boundary_non_manifold_edges"], 0)
         self.assertEqual(sum(result["dihedral_histogram_10_deg"]), 6 * result["tetrahedra"])
         self.assertGreater(result["nodes"], result["surface_nodes"])
+        self.assertLess(result["surface_distance_mm"]["mean"], 0.1)  # the facet distance is 0.3
         self.assertEqual([r["name"] for r in result["regions"]], ["organ", "lesion"])
         for region in result["regions"]:
             self.assertLess(abs(region["volume_error_percent"]), 0.1)
@@ -208,6 +209,31 @@ class RealHead(MeshingCommand):
         self.assertGreater(result["triangles"], 300_000)
         tree = self.result_of("obb", skull, "-o", self.folder / "skull.obb.h5")
         self.assertEqual(tree["triangles"], result["triangles"])
+
+
+@unittest.skipUnless((DATA / "cgal_images").is_dir(), "PALPATE_DATA: cgal_images is absent")
+class RealLiver(MeshingCommand):
+    def test_liver_with_an_enclosed_tumour_keeps_its_contract(self):
+        size, spacing, center, radius = (438, 353, 165), (0.617188, 0.617188, 1.33333), (106, 91, 129), 12
+        voxels = bytearray(gzip.decompress((DATA / "cgal_images" / "liver.inr.gz").read_bytes())[256:])
+        low = [int((c - radius) / s) for c, s in zip(center, spacing)]
+        high = [int((c + radius) / s) + 1 for c, s in zip(center, spacing)]
+        for k in range(low[2], high[2] + 1):
+            for j in range(low[1], high[1] + 1):
+                for i in range(low[0], high[0] + 1):
+                    if sum((n * s - c) ** 2 for n, s, c in zip((i, j, k), spacing, center)) < radius ** 2:
+                        voxels[(k * size[1] + j) * size[0] + i] = 200
+        labels = self.folder / "liver.nrrd"
+        labels.write_bytes(f"NRRD0004\ntype: uint8\ndimension: 3\nspace: left-posterior-superior\nsizes: {size[0]} "
+                           f"{size[1]} {size[2]}\nspace directions: ({spacing[0]},0,0) (0,{spacing[1]},0) "
+                           f"(0,0,{spacing[2]})\nkinds: domain domain domain\nencoding: raw\nspace origin: (0,0,0)\n\n"
+                           .encode() + voxels)
+        result = self.result_of("mesh", "--labels", labels, "--region", 255, "--region", 200, "--cell-size", 9,
+                                "--region-cell-size", "200=5", "--min-dihedral-deg", 12, "--max-dihedral-deg", 165,
+                                "--max-volume-error-percent", 1, "--min-dice", 0.975, "-o", self.folder / "liver.vtu")
+        self.assertEqual(result["components"], 1)
+        self.assertEqual(result["boundary_non_manifold_edges"], 0)
+        self.assertEqual(len(result["regions"]), 2)
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@
 #include "tools/meshing/fidelity.hpp"
 #include "tools/meshing/mesh_files.hpp"
 #include "tools/meshing/quality.hpp"
+#include "tools/meshing/surfaces.hpp"
 #include "tools/meshing/tetrahedralise.hpp"
 
 using namespace palpate;
@@ -149,6 +150,12 @@ int main(int argc, char** argv) {
         require(contract, mesh, quality, fidelity, output.string());
         write_tetrahedra(staged.path(), mesh);
         staged.commit();
-        return to_json(mesh, quality, fidelity);
+        session.progress.step("measure distance to the labels' surface", 0.95);
+        const SurfaceDistance distance =
+            surface_distance(boundary_surface(mesh).surface, label_surface(map, regions, sizing.smoothing));
+        nlohmann::json result = to_json(mesh, quality, fidelity);
+        result["surface_distance_mm"] = {
+            {"mean", distance.mean}, {"p95", distance.percentile_95}, {"max", distance.maximum}};
+        return result;
     });
 }
