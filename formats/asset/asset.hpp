@@ -15,8 +15,9 @@ enum class Digests { check, skip };
 void write_asset(const std::filesystem::path& path, const Case& patient_case);
 
 /// Reads and validates an asset. Shapes are checked against the file's size before anything is allocated,
-/// every index against its range, every number for finiteness; compliances are mapped, not copied. Throws
-/// InvalidInput naming the file, the dataset and the remedy.
+/// every index against its range, every number for finiteness; compliances are mapped, not copied, so the
+/// file must not be shortened while one lives (replacing it by rename is safe). Throws InvalidInput naming
+/// the file, the dataset and the remedy.
 Case read_asset(const std::filesystem::path& path, Digests digests = Digests::check);
 
 }  // namespace palpate

@@ -102,8 +102,8 @@ void check_header(const Hdf5File& file, const std::string& kind) {
     const std::string found_kind = file.text_attribute("/palpate", "kind");
     if (found_kind != kind)
         throw InvalidInput(
-            {file.name(), "holds a " + found_kind, "a " + kind,
-             "'palpate pack' makes a case (.vtkhdf) from bodies (.body.h5) and OBB trees (.obb.h5)"});
+            {file.name(), "is of kind '" + found_kind + "'", "'" + kind + "'",
+             "'palpate pack' makes a case (.vtkhdf) of bodies (.body.h5) and OBB trees (.obb.h5)"});
     if (file.text_attribute("/palpate", "units") != "mm, N, s")
         file.refuse("/palpate", "has other units", "mm, N, s");
     if (file.text_attribute("/palpate", "space") != "LPS")

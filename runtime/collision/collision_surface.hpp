@@ -86,7 +86,7 @@ class CollisionSurface {
         std::int32_t first;
         std::int32_t count;
     };
-    static constexpr int max_depth = 96;
+    static constexpr int max_depth = 160;
 
     void take_nodes(const ObbTree& tree, double scale, const std::string& name);
     static float squared_distance_bound(const Node& node, const Eigen::Vector3f& p) noexcept;

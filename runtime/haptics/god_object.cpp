@@ -20,12 +20,13 @@ bool GodObject::move(const CollisionSurface& surface, const Vector3d& device) no
     plane_count_ = 0;
     touch_count_ = 0;
     if (!following_) {
-        position_ = device;
+        position_ = last_device_ = device;
         if (surface.closest_point(device, radius_ + skin) || !surface.is_outside(device)) return false;
         following_ = true;
         return true;
     }
     slide(surface, device);
+    last_device_ = device;
     if ((position_ - device).norm() > at_rest) find_touches(surface, device);
     return true;
 }
@@ -34,22 +35,27 @@ bool GodObject::move(const CollisionSurface& surface, const Vector3d& device) no
 // The half-spaces are those of the first touches, so a sphere that slid off an edge hangs above the surface;
 // further rounds let it down, until a round does not move it any more.
 void GodObject::slide(const CollisionSurface& surface, const Vector3d& device) noexcept {
+    double slide_left = 2 * (device - last_device_).norm() + slide_slack;
     int sweeps = 0;
     while (sweeps < max_sweeps) {
         const Vector3d round_start = position_;
         plane_count_ = 0;
         bool blocked = true;
         while (blocked && sweeps < max_sweeps) {
-            const Vector3d goal = nearest_admissible(device);
-            const Vector3d way = goal - position_;
-            if (way.norm() <= at_rest) break;
-            const auto contact = surface.sweep_sphere(position_, goal, radius_, hint_);
+            Vector3d way = nearest_admissible(device) - position_;
+            const double length = way.norm();
+            const bool sliding = plane_count_ > 0;
+            if (length <= at_rest || (sliding && slide_left <= at_rest)) break;
+            if (sliding && length > slide_left) way *= slide_left / length;
+            const Vector3d start = position_;
+            const auto contact = surface.sweep_sphere(position_, position_ + way, radius_, hint_);
             ++sweeps;
             blocked = contact.has_value();
             if (blocked)
                 touch(*contact, way);
             else
-                position_ = goal;
+                position_ += way;
+            if (sliding) slide_left -= (position_ - start).norm();
         }
         if (plane_count_ == 0 || (position_ - round_start).norm() <= at_rest) return;
     }

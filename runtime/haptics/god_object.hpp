@@ -16,7 +16,8 @@ namespace palpate {
 /// rounding never lets it through at any speed.
 class GodObject {
   public:
-    static constexpr double skin = 1e-4;  ///< mm: above rounding (1e-12), below any edge (0.05)
+    static constexpr double skin = 1e-4;         ///< mm: above rounding (1e-12), below any edge (0.05)
+    static constexpr double slide_slack = 0.05;  ///< mm per move
     static constexpr std::size_t max_touches = 4;
 
     /// One place where the sphere rests on the surface.
@@ -53,6 +54,7 @@ class GodObject {
     double radius_;
     bool following_ = false;
     Eigen::Vector3d position_ = Eigen::Vector3d::Zero();
+    Eigen::Vector3d last_device_ = Eigen::Vector3d::Zero();
     std::int32_t hint_ = -1;
     std::array<HalfSpace, max_touches> planes_;
     std::size_t plane_count_ = 0;

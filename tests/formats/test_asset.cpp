@@ -14,6 +14,11 @@
 #include "tests/formats/sample_case.hpp"
 #include "tests/formats/scratch.hpp"
 
+// HDF5 1.10 leaks a block where a file could not be written whole.
+extern "C" const char* __lsan_default_suppressions() {
+    return "leak:libhdf5";
+}
+
 namespace palpate {
 namespace {
 
@@ -183,7 +188,7 @@ TEST(Asset, a_part_is_not_a_case) {
     const Scratch scratch;
     write_body_part(scratch / "wall.body.h5", sample::elastic_cube(1));
     EXPECT_THAT(refusal([&] { read_asset(scratch / "wall.body.h5"); }),
-                HasSubstr("holds a body (expected a case); 'palpate pack'"));
+                HasSubstr("is of kind 'body' (expected 'case'); 'palpate pack'"));
 }
 
 TEST(Asset, an_hdf5_file_of_another_program_is_refused) {

@@ -80,7 +80,9 @@ TEST(HapticModel, the_trap_sees_an_allocation) {
 }
 
 TEST(HapticModel, forces_stay_within_the_limits) {
-    HapticModel model(patient());
+    Case c = patient();
+    c.haptics.max_force_rate = 0.02;
+    HapticModel model(c);
     TickResult result{};
     model.tick(at({20, 10, 60}), result);
     Vector3d last = Vector3d::Zero();
@@ -89,7 +91,7 @@ TEST(HapticModel, forces_stay_within_the_limits) {
         model.tick(at(wandering(tick) - Vector3d(0, 0, 6)), result);
         const Vector3d force = force_of(result);
         ASSERT_LE(force.norm(), 3.0 + 1e-9);
-        ASSERT_LE((force - last).norm(), 0.25 + 1e-9);
+        ASSERT_LE((force - last).norm(), 0.02 + 1e-9);
         last = force;
         seen |= result.status;
     }

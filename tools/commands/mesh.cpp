@@ -8,6 +8,7 @@
 #include "tools/meshing/fidelity.hpp"
 #include "tools/meshing/mesh_files.hpp"
 #include "tools/meshing/quality.hpp"
+#include "tools/meshing/surfaces.hpp"
 #include "tools/meshing/tetrahedralise.hpp"
 
 using namespace palpate;
@@ -21,7 +22,7 @@ RegionSize parse_region_size(const std::string& text, const LabelMap& map, const
     const char* number = text.c_str() + (equals == std::string::npos ? text.size() : equals + 1);
     const auto [end, error] = std::from_chars(number, text.c_str() + text.size(), size.cell_size);
     if (equals == std::string::npos || error != std::errc{} || *end != '\0')
-        throw UsageError({"--region-size", "'" + text + "'", "NAME=MM, such as tumour=4", ""});
+        throw UsageError({"--region-cell-size", "'" + text + "'", "NAME=MM, such as tumour=4", ""});
     size.region = require_label(map, text.substr(0, equals), culprit).value;
     return size;
 }
@@ -52,20 +53,20 @@ nlohmann::json to_json(const TetMesh& mesh, const MeshQuality& quality,
 }
 
 struct Contract {
-    double min_dihedral_deg = 10, max_volume_error_percent = 3, min_dice = 0;
+    double min_dihedral_deg = 10, max_dihedral_deg = 170, max_volume_error_percent = 3, min_dice = 0;
 };
 
 void require(const Contract& contract, const TetMesh& mesh, const MeshQuality& quality,
              const std::vector<RegionFidelity>& fidelity, const std::string& culprit) {
-    if (quality.min_dihedral_deg < contract.min_dihedral_deg) {
+    if (quality.min_dihedral_deg < contract.min_dihedral_deg ||
+        quality.max_dihedral_deg > contract.max_dihedral_deg) {
         std::string places;
         for (const WorstTetrahedron& worst : quality.worst)
-            if (worst.dihedral_deg < contract.min_dihedral_deg)
-                places += fmt::format("{} {:.2f}° at ({:.1f}, {:.1f}, {:.1f})", places.empty() ? "" : ",",
-                                      worst.dihedral_deg, worst.centroid.x(), worst.centroid.y(),
-                                      worst.centroid.z());
-        throw QualityNotMet({culprit, "smallest dihedral angles" + places,
-                             fmt::format("{}° or more", contract.min_dihedral_deg),
+            places += fmt::format("{} {:.1f}° ... {:.1f}° at ({:.1f}, {:.1f}, {:.1f})",
+                                  places.empty() ? "" : ",", worst.min_dihedral_deg, worst.max_dihedral_deg,
+                                  worst.centroid.x(), worst.centroid.y(), worst.centroid.z());
+        throw QualityNotMet({culprit, "dihedral angles of the flattest tetrahedra are" + places,
+                             fmt::format("{}° ... {}°", contract.min_dihedral_deg, contract.max_dihedral_deg),
                              "choose a smaller cell size or facet distance, or smooth more"});
     }
     for (std::size_t k = 0; k < fidelity.size(); ++k) {
@@ -75,7 +76,7 @@ void require(const Contract& contract, const TetMesh& mesh, const MeshQuality& q
                 {culprit,
                  fmt::format("the volume of '{}' is off by {:.2f} %", name, fidelity[k].volume_error_percent),
                  fmt::format("at most {} %", contract.max_volume_error_percent),
-                 "give it a smaller size with --region-size " + name + "=MM"});
+                 "give it a smaller size with --region-cell-size " + name + "=MM"});
         if (fidelity[k].dice < contract.min_dice)
             throw QualityNotMet({culprit, fmt::format("Dice of '{}' is {:.4f}", name, fidelity[k].dice),
                                  fmt::format("{} or more", contract.min_dice),
@@ -91,7 +92,7 @@ int main(int argc, char** argv) {
          .summary = "Fills labels with tetrahedra of good shape that share the nodes of their interfaces.",
          .examples =
              {"palpate mesh --labels liver.seg.nrrd --region liver --region tumour --cell-size 8 "
-              "--region-size tumour=4 -o liver.vtu",
+              "--region-cell-size tumour=4 -o liver.vtu",
               "palpate mesh --labels head.seg.nrrd --region wall --cell-size 4 --facet-distance 0.4 -o "
               "wall.vtu --json -"},
          .notes = "Sizes are radii of circumscribed spheres; edges are about 1.2 times as long.\n"
@@ -105,7 +106,7 @@ int main(int argc, char** argv) {
     command.option("--region", region_names, "label of the body, by name or value; repeat for more")
         ->required();
     command.option("--cell-size", sizing.cell_size, "largest tetrahedron", "mm");
-    command.option("--region-size", region_sizes, "NAME=MM: another cell size for one label");
+    command.option("--region-cell-size", region_sizes, "NAME=MM: another cell size for one label");
     command.option("--facet-size", sizing.facet_size, "largest surface triangle; 0: as the cell size", "mm");
     command.option("--facet-distance", sizing.facet_distance,
                    "largest distance of triangles to the surface; 0: a tenth of the cell size", "mm");
@@ -115,6 +116,7 @@ int main(int argc, char** argv) {
                    "smaller specks and pinholes vanish", "mm³");
     command.flag("--allow-components", allow_components, "accept a body of several separate pieces");
     command.option("--min-dihedral-deg", contract.min_dihedral_deg, "quality contract", "degrees");
+    command.option("--max-dihedral-deg", contract.max_dihedral_deg, "quality contract", "degrees");
     command.option("--max-volume-error-percent", contract.max_volume_error_percent, "quality contract", "%");
     command.option("--min-dice", contract.min_dice, "quality contract");
     command.output("-o,--output", output, "tetrahedra (.vtu), LPS mm")->required();
@@ -129,7 +131,8 @@ int main(int argc, char** argv) {
         for (const std::string& text : region_sizes)
             sizing.regions.push_back(parse_region_size(text, map, labels_path.string()));
 
-        sizing.min_dihedral_deg = std::max(sizing.min_dihedral_deg, contract.min_dihedral_deg);
+        sizing.min_dihedral_deg =
+            std::max({sizing.min_dihedral_deg, contract.min_dihedral_deg, 180 - contract.max_dihedral_deg});
         const TetMesh mesh = tetrahedralise(
             map, regions, sizing,
             [&](std::string_view what, double fraction) { session.progress.step(what, fraction); });
@@ -139,10 +142,20 @@ int main(int argc, char** argv) {
                                 fmt::format("the body has {} separate pieces", quality.components), "1",
                                 "keep the largest with 'palpate segment --keep-largest', or pass "
                                 "--allow-components and hold each of them"});
+        if (quality.boundary.non_manifold_edges > 0)
+            spdlog::warn(
+                "the boundary touches itself at {} edges; a smaller cell size or facet distance may part it",
+                quality.boundary.non_manifold_edges);
         const std::vector<RegionFidelity> fidelity = compare(mesh, map);
         require(contract, mesh, quality, fidelity, output.string());
         write_tetrahedra(staged.path(), mesh);
         staged.commit();
-        return to_json(mesh, quality, fidelity);
+        session.progress.step("measure distance to the labels' surface", 0.95);
+        const SurfaceDistance distance =
+            surface_distance(boundary_surface(mesh).surface, label_surface(map, regions, sizing.smoothing));
+        nlohmann::json result = to_json(mesh, quality, fidelity);
+        result["surface_distance_mm"] = {
+            {"mean", distance.mean}, {"p95", distance.percentile_95}, {"max", distance.maximum}};
+        return result;
     });
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/meshing/lift_flat_tetrahedra.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "tools/meshing/quality.hpp"
@@ -16,18 +18,23 @@ class Lifter {
         : mesh_(mesh),
           start_(mesh.rest_positions),
           stars_(mesh.rest_positions.size()),
-          reach_(mesh.rest_positions.size(), std::numeric_limits<double>::infinity()) {
+          normals_(mesh.rest_positions.size(), Eigen::Vector3d::Zero()),
+          max_surface_move_(max_surface_move) {
         for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
             for (const std::int32_t node : mesh.tetrahedra[t])
                 stars_[static_cast<std::size_t>(node)].push_back(t);
         const std::vector<TetFace> faces = sorted_faces(mesh);
         for (std::size_t i = 0; i < faces.size();) {
             const bool shared = i + 1 < faces.size() && faces[i + 1].sorted_nodes == faces[i].sorted_nodes;
-            if (!shared || mesh.regions[faces[i].tet] != mesh.regions[faces[i + 1].tet])
-                for (const std::int32_t node : faces[i].sorted_nodes)
-                    reach_[static_cast<std::size_t>(node)] = max_surface_move;
+            if (!shared)
+                add_normal(faces[i]);
+            else if (mesh.regions[faces[i].tet] != mesh.regions[faces[i + 1].tet])
+                // Always seen from the same region, so that the normals of one interface add up.
+                add_normal(mesh.regions[faces[i].tet] < mesh.regions[faces[i + 1].tet] ? faces[i]
+                                                                                       : faces[i + 1]);
             i += shared ? 2 : 1;
         }
+        for (Eigen::Vector3d& normal : normals_) normal.normalize();
     }
 
     // One pass over all tetrahedra flatter than the bound, flattest first; tells whether anything moved.
@@ -44,6 +51,25 @@ class Lifter {
     }
 
   private:
+    void add_normal(const TetFace& face) {
+        const Tetrahedron& tet = mesh_.tetrahedra[face.tet];
+        const auto corner = [&](std::size_t c) {
+            return static_cast<std::size_t>(tet[tet_faces[face.face][c]]);
+        };
+        const Eigen::Vector3d area =
+            (start_[corner(1)] - start_[corner(0)]).cross(start_[corner(2)] - start_[corner(0)]);
+        for (std::size_t c = 0; c < 3; ++c) normals_[corner(c)] += area;
+    }
+
+    // Interior nodes, which have no normal, may go anywhere.
+    bool within_reach(std::size_t node) const {
+        if (normals_[node].isZero()) return true;
+        const Eigen::Vector3d way = mesh_.rest_positions[node] - start_[node];
+        const double height = way.dot(normals_[node]);
+        return std::abs(height) <= max_surface_move_ &&
+               (way - height * normals_[node]).norm() <= 4 * max_surface_move_;
+    }
+
     double flattest_around(std::size_t node) const {
         double flattest = 180;
         for (const std::size_t t : stars_[node]) {
@@ -76,7 +102,7 @@ class Lifter {
                 for (int j = -1; j <= 1; ++j)
                     for (int i = -1; i <= 1; ++i) {
                         position = center + step * Eigen::Vector3d(i, j, k);
-                        if ((position - start_[node]).norm() > reach_[node]) continue;
+                        if (!within_reach(node)) continue;
                         if (const double now = flattest_around(node); now > best) {
                             best = now;
                             best_position = position;
@@ -90,7 +116,8 @@ class Lifter {
     TetMesh& mesh_;
     std::vector<Eigen::Vector3d> start_;
     std::vector<std::vector<std::size_t>> stars_;
-    std::vector<double> reach_;
+    std::vector<Eigen::Vector3d> normals_;
+    double max_surface_move_;
 };
 
 }  // namespace

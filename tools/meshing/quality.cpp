@@ -127,14 +127,14 @@ MeshQuality measure(const TetMesh& mesh) {
     std::vector<double> angles;
     angles.reserve(6 * mesh.tetrahedra.size());
     std::map<std::int32_t, double> volumes;
-    std::vector<WorstTetrahedron> flatness;
+    std::vector<WorstTetrahedron> flattest;
     quality.min_radius_ratio = 1;
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
         const auto p = corners_of(mesh, t);
         const auto dihedrals = dihedral_angles_deg(p);
         angles.insert(angles.end(), dihedrals.begin(), dihedrals.end());
-        flatness.push_back(
-            {static_cast<std::int32_t>(t), std::ranges::min(dihedrals), (p[0] + p[1] + p[2] + p[3]) / 4});
+        const auto [low, high] = std::ranges::minmax(dihedrals);
+        flattest.push_back({static_cast<std::int32_t>(t), low, high, (p[0] + p[1] + p[2] + p[3]) / 4});
         const double volume = six_volume(mesh, t) / 6;
         volumes[mesh.regions[t]] += volume;
         quality.inverted += !(volume > 0);
@@ -142,9 +142,11 @@ MeshQuality measure(const TetMesh& mesh) {
         quality.min_radius_ratio = std::min(quality.min_radius_ratio, ratio);
         quality.mean_radius_ratio += ratio / static_cast<double>(mesh.tetrahedra.size());
     }
-    std::ranges::stable_sort(flatness, {}, &WorstTetrahedron::dihedral_deg);
-    flatness.resize(std::min<std::size_t>(5, flatness.size()));
-    quality.worst = std::move(flatness);
+    std::ranges::stable_sort(flattest, {}, [](const WorstTetrahedron& tet) {
+        return std::min(tet.min_dihedral_deg, 180 - tet.max_dihedral_deg);
+    });
+    flattest.resize(std::min<std::size_t>(5, flattest.size()));
+    quality.worst = std::move(flattest);
     for (const auto& [region, volume] : volumes) quality.region_volumes.push_back({region, volume});
 
     std::ranges::sort(angles);

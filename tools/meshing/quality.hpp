@@ -36,7 +36,7 @@ struct RegionVolume {
 /// One of the flattest tetrahedra.
 struct WorstTetrahedron {
     std::int32_t tetrahedron = 0;
-    double dihedral_deg = 0;                             ///< its smallest dihedral angle
+    double min_dihedral_deg = 0, max_dihedral_deg = 0;   ///< over its six angles
     Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  ///< p_P, mm
 };
 

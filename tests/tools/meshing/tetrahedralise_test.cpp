@@ -16,7 +16,7 @@ using test::organ_center;
 using test::organ_with_lesion;
 
 constexpr std::array<std::int32_t, 2> organ_and_lesion{3, 7};
-const MeshSizing coarse{.cell_size = 5};
+const MeshSizing coarse{.cell_size = 3.5};
 
 // The labels are the reference: a mesh must keep volume (matched to 1e-4), place and shape.
 constexpr double max_volume_error_percent = 0.05;
@@ -101,7 +101,7 @@ TEST(Tetrahedralise, surface_nodes_know_what_lies_beyond) {
 TEST(Tetrahedralise, region_size_refines_its_region_alone) {
     const LabelMap map = organ_with_lesion();
     MeshSizing fine = coarse;
-    fine.regions = {{7, 2}};
+    fine.regions = {{7, 1.5}};
     const auto lesion_cells = [](const TetMesh& mesh) { return std::ranges::count(mesh.regions, 7); };
     const TetMesh a = tetrahedralise(map, organ_and_lesion, coarse);
     const TetMesh b = tetrahedralise(map, organ_and_lesion, fine);

@@ -166,7 +166,8 @@ DeformableSpec deformable(Reader reader) {
     spec.name = reader.required<std::string>("name");
     spec.sizing = options(reader.table("mesh"), {{"cell_size_mm", "--cell-size"},
                                                  {"facet_size_mm", "--facet-size"},
-                                                 {"facet_distance_mm", "--facet-distance"}});
+                                                 {"facet_distance_mm", "--facet-distance"},
+                                                 {"smoothing_mm", "--smoothing"}});
     for (Reader rule : reader.tables("fixed")) spec.fixed.push_back(fixed_rule(rule));
     for (Reader region : reader.tables("region")) {
         spec.regions.push_back(
@@ -218,6 +219,7 @@ CaseFile read_case_file(const std::filesystem::path& path) {
                                                      {"max_force_rate_n_per_ms", "--max-force-rate"}});
     result.quality =
         options(root.table("quality"), {{"min_dihedral_deg", "--min-dihedral-deg"},
+                                        {"max_dihedral_deg", "--max-dihedral-deg"},
                                         {"max_volume_error_percent", "--max-volume-error-percent"},
                                         {"min_dice", "--min-dice"}});
     root.refuse_unknown();

@@ -76,7 +76,7 @@ Stage mesh_stage(const DeformableSpec& body, const std::map<std::string, double>
         add(stage.arguments, {"--region", region.label});
         if (region.cell_size_mm)
             add(stage.arguments,
-                {"--region-size", fmt::format("{}={}", region.label, *region.cell_size_mm)});
+                {"--region-cell-size", fmt::format("{}={}", region.label, *region.cell_size_mm)});
     }
     add_options(stage.arguments, body.sizing);
     add_options(stage.arguments, quality);

@@ -1,0 +1,275 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""palpate pack, inspect, verify: a small body from mesh to asset, and what they say of bad input."""
+import json
+import os
+import pathlib
+import re
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import h5py
+import numpy
+
+BIN = pathlib.Path(os.environ["PALPATE_BIN"])
+SOURCE = pathlib.Path(os.environ["PALPATE_SOURCE"])
+SAMPLE = pathlib.Path(os.environ["PALPATE_BUILD"]) / "tests" / "write_sample_case"
+
+OK, FAILED, USAGE, INVALID, QUALITY = 0, 1, 2, 3, 4
+
+
+def run(program, *arguments, **options):
+    return subprocess.run([program, *map(str, arguments)], text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          timeout=120, **options)
+
+
+def array(name, kind, values, components=1):
+    flat = " ".join(str(value) for value in numpy.asarray(values).ravel())
+    return f'<DataArray type="{kind}" Name="{name}" NumberOfComponents="{components}" format="ascii">{flat}</DataArray>'
+
+
+def grid(kind, points, section, cells, types="", data=""):
+    counts = f'NumberOfPoints="{len(points)}" ' + (
+        f'NumberOfCells="{len(cells)}"' if kind == "UnstructuredGrid" else
+        f'NumberOfVerts="0" NumberOfLines="0" NumberOfStrips="0" NumberOfPolys="{len(cells)}"')
+    offsets = [len(cells[0]) * (i + 1) for i in range(len(cells))]
+    return (f'<VTKFile type="{kind}" version="1.0" byte_order="LittleEndian" header_type="UInt64"><{kind}><Piece {counts}>'
+            f'<CellData>{data}</CellData><Points>{array("Points", "Float64", points, 3)}</Points>'
+            f'<{section}>{array("connectivity", "Int64", cells)}{array("offsets", "Int64", offsets)}{types}</{section}>'
+            f'</Piece></{kind}></VTKFile>')
+
+
+def write_block(path, n=3, edge=10.0):
+    """n x n x n cubes of five tetrahedra each, mirrored from cube to cube so that faces match."""
+    node = lambda i, j, k: i + (n + 1) * (j + (n + 1) * k)
+    points = [(i * edge, j * edge, k * edge) for k in range(n + 1) for j in range(n + 1) for i in range(n + 1)]
+    tetrahedra = []
+    for k in range(n):
+        for j in range(n):
+            for i in range(n):
+                c = [node(i + (b & 1), j + (b >> 1 & 1), k + (b >> 2)) for b in range(8)]
+                for tet in ([(0, 1, 2, 4), (3, 2, 1, 7), (5, 4, 7, 1), (6, 7, 4, 2), (1, 2, 4, 7)] if (i + j + k) % 2 == 0 else
+                            [(1, 0, 3, 5), (2, 3, 0, 6), (4, 5, 6, 0), (7, 6, 5, 3), (0, 3, 5, 6)]):
+                    p = numpy.array([points[c[v]] for v in tet])
+                    order = tet if numpy.linalg.det(p[1:] - p[0]) > 0 else (tet[1], tet[0], tet[2], tet[3])
+                    tetrahedra.append([c[v] for v in order])
+    types = array("types", "UInt8", [10] * len(tetrahedra))
+    path.write_text(grid("UnstructuredGrid", points, "Cells", tetrahedra, types, array("region", "Int32", [1] * len(tetrahedra))))
+
+
+def write_tetrahedron_surface(path, x):
+    points = [(x, 0, 0), (x + 9, 0, 0), (x, 9, 0), (x, 0, 9)]
+    path.write_text(grid("PolyData", points, "Polys", [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]))
+
+
+class AssetCommand(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.inputs = tempfile.TemporaryDirectory()
+        cls.parts = pathlib.Path(cls.inputs.name)
+        write_block(cls.parts / "wall.vtu")
+        write_tetrahedron_surface(cls.parts / "skull.vtp", 40)
+        for command in ([BIN / "palpate-condense", cls.parts / "wall.vtu", "--material", "1:5,0.45", "--fixed",
+                         "plane:0,0,1,0,0,-1", "-o", cls.parts / "wall.body.h5"],
+                        [BIN / "palpate-obb", cls.parts / "wall.vtu", "-o", cls.parts / "wall.obb.h5"],
+                        [BIN / "palpate-obb", cls.parts / "skull.vtp", "-o", cls.parts / "skull.obb.h5"]):
+            made = run(*command)
+            assert made.returncode == OK, made.stderr
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.inputs.cleanup()
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.asset = self.folder / "case.vtkhdf"
+
+    def pack(self, *extra, output=None, **options):
+        return run(BIN / "palpate-pack", "--name", "case", "--rigid",
+                   f"skull={self.parts / 'skull.vtp'},{self.parts / 'skull.obb.h5'}", "--deformable",
+                   f"wall={self.parts / 'wall.body.h5'},{self.parts / 'wall.obb.h5'}", "-o", output or self.asset, *extra,
+                   **options)
+
+    def sample(self):
+        made = run(SAMPLE, self.asset)
+        self.assertEqual(made.returncode, OK, made.stderr)
+        return self.asset
+
+    def assertFails(self, result, code, *messages):
+        self.assertEqual(result.returncode, code, result.stderr)
+        for message in messages:
+            self.assertIn(message, result.stderr)
+
+    def assertNothingLeft(self):
+        self.assertEqual([p.name for p in self.folder.iterdir() if p.name not in ("given.json", "other.obb.h5")], [])
+
+
+class Pack(AssetCommand):
+    def test_what_is_packed_verifies(self):
+        self.assertEqual(self.pack().returncode, OK)
+        verified = run(BIN / "palpate-verify", self.asset, "--json", "-")
+        self.assertEqual(verified.returncode, OK, verified.stderr)
+        result = json.loads(verified.stdout)
+        self.assertEqual(result["verdict"], "ok")
+        figures = {row["check"]: row["figure"] for row in result["checks"] if row["of"] == "wall"}
+        self.assertLess(figures["residual of 16 re-solved columns"], 1e-6)
+        self.assertEqual({row["status"] for row in result["checks"]}, {"ok"})
+
+    def test_equal_parts_give_equal_bytes_whatever_was_in_memory(self):
+        for name, fill in (("a", "85"), ("b", "170")):
+            made = self.pack(output=self.folder / name, env={**os.environ, "MALLOC_PERTURB_": fill})
+            self.assertEqual(made.returncode, OK, made.stderr)
+        self.assertEqual((self.folder / "a").read_bytes(), (self.folder / "b").read_bytes())
+
+    def test_settings_and_provenance_arrive(self):
+        given = self.folder / "given.json"
+        given.write_text('{"inputs": {"volume_sha256": "abc"}, "steps": ["mesh --labels head.seg.nrrd"]}')
+        made = self.pack("--tool-radius", 2, "--coupling-stiffness", 0.3, "--max-force", 2.5, "--max-force-rate", 0.1,
+                         "--provenance", given)
+        self.assertEqual(made.returncode, OK, made.stderr)
+        seen = json.loads(run(BIN / "palpate-inspect", self.asset, "--json", "-").stdout)
+        self.assertEqual(seen["haptics"], {"tool_radius_mm": 2.0, "coupling_stiffness_n_per_mm": 0.3, "max_force_n": 2.5,
+                                           "max_force_rate_n_per_ms": 0.1})
+        self.assertEqual(seen["provenance"]["build"]["inputs"]["volume_sha256"], "abc")
+        self.assertIn("HDF5", seen["provenance"]["software"]["libraries"])
+
+    def test_no_path_of_the_machine_gets_into_the_asset(self):
+        self.assertEqual(self.pack().returncode, OK)
+        self.assertNotIn(str(self.parts).encode(), self.asset.read_bytes())
+
+    def test_a_path_in_the_provenance_is_refused(self):
+        for text in ('{"steps": ["mesh /home/jane/head.nrrd"]}', '{"a": [{"C:\\\\data": 1}]}'):
+            (self.folder / "given.json").write_text(text)
+            self.assertFails(self.pack("--provenance", self.folder / "given.json"), INVALID, "holds a path")
+        self.assertNothingLeft()
+
+    def test_provenance_that_is_no_json_is_refused(self):
+        (self.folder / "given.json").write_text("{")
+        self.assertFails(self.pack("--provenance", self.folder / "given.json"), INVALID, "given.json", "JSON")
+        self.assertNothingLeft()
+
+    def test_a_tree_of_another_surface_is_refused(self):
+        made = run(BIN / "palpate-pack", "--name", "case", "--rigid",
+                   f"skull={self.parts / 'skull.vtp'},{self.parts / 'wall.obb.h5'}", "-o", self.asset)
+        self.assertFails(made, INVALID, "wall.obb.h5", "was built over another surface", "palpate obb")
+        self.assertNothingLeft()
+
+    def test_parts_that_are_not_what_they_should_be_are_refused(self):
+        made = run(BIN / "palpate-pack", "--name", "case", "--deformable",
+                   f"wall={self.parts / 'wall.obb.h5'},{self.parts / 'wall.obb.h5'}", "-o", self.asset)
+        self.assertFails(made, INVALID, "is of kind 'obb_tree'", "expected 'body'")
+        made = run(BIN / "palpate-pack", "--name", "case", "--deformable", "wall=none.body.h5,none.obb.h5", "-o", self.asset)
+        self.assertFails(made, INVALID, "none.body.h5", "No such file")
+        self.assertNothingLeft()
+
+    def test_wrong_arguments_are_usage_errors(self):
+        for text in ("skull", "skull=a", "=a,b", "skull=,b", "skull=a,"):
+            made = run(BIN / "palpate-pack", "--name", "case", "--rigid", text, "-o", self.asset)
+            self.assertFails(made, USAGE, "NAME=SURFACE.vtp,TREE.obb.h5")
+        self.assertNothingLeft()
+
+    def test_a_case_without_bodies_or_with_silly_settings_is_refused(self):
+        self.assertFails(run(BIN / "palpate-pack", "--name", "case", "-o", self.asset), INVALID, "has no bodies")
+        self.assertFails(self.pack("--tool-radius", 0), INVALID, "tool_radius is 0")
+        self.assertNothingLeft()
+
+    def test_an_existing_asset_is_kept_unless_forced(self):
+        self.asset.write_text("precious")
+        self.assertFails(self.pack(), INVALID, "exists already", "--force")
+        self.assertEqual(self.asset.read_text(), "precious")
+        self.assertEqual(self.pack("--force").returncode, OK)
+
+    def test_a_full_disk_leaves_nothing_behind(self):
+        def small_files():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (40_000, 40_000))
+
+        self.assertFails(self.pack(preexec_fn=small_files), FAILED, "could not be written", "free space")
+        self.assertNothingLeft()
+
+
+class InspectAndVerify(AssetCommand):
+    def test_inspect_counts_what_is_there(self):
+        seen = json.loads(run(BIN / "palpate-inspect", self.sample(), "--json", "-").stdout)
+        wall = next(body for body in seen["bodies"] if body["name"] == "wall")
+        self.assertEqual((wall["nodes"], wall["tetrahedra"], wall["surface_nodes"], wall["contact_nodes"]), (125, 384, 98, 73))
+        self.assertAlmostEqual(wall["compliance_mb"], (3 * 73) ** 2 * 4e-6)
+        moduli = {row["region"]: row["youngs_modulus_kpa"] for row in seen["regions"]}
+        self.assertEqual(moduli, {"tissue": 5.0, "tumour": 40.0})
+        self.assertAlmostEqual(sum(row["volume_ml"] for row in seen["regions"]), 8.0)
+
+    def test_inspect_fits_on_a_screen(self):
+        shown = run(BIN / "palpate-inspect", self.sample()).stdout
+        self.assertLessEqual(len(shown.splitlines()), 40)
+        self.assertIn("tumour", shown)
+
+    def test_verify_says_which_check_fails_and_exits_with_4(self):
+        checked = run(BIN / "palpate-verify", self.sample())  # its compliance is no stiffness's inverse
+        self.assertFails(checked, QUALITY, "1 of 9 checks failed, first 'wall: residual of 16 re-solved columns'")
+        self.assertRegex(checked.stdout, r"residual of 16 re-solved columns +failed")
+        self.assertRegex(checked.stdout, r"compliance is symmetric.* ok")
+
+    def test_verify_names_the_dataset_that_is_damaged(self):
+        path = self.sample()
+        with h5py.File(path) as file:
+            offset = file["palpate/bodies/deformable/0/compliance"].id.get_offset()
+        data = bytearray(path.read_bytes())
+        data[offset + 4] ^= 1
+        path.write_bytes(data)
+        self.assertFails(run(BIN / "palpate-verify", path), INVALID, "compliance: does not match its SHA-256")
+
+    def test_both_refuse_a_truncated_asset(self):
+        path = self.sample()
+        size = path.stat().st_size
+        os.truncate(path, size - 1000)
+        for command in ("inspect", "verify"):
+            self.assertFails(run(BIN / f"palpate-{command}", path), INVALID,
+                             f"case.vtkhdf: is truncated: {size - 1000} bytes (expected {size})")
+
+    def test_both_refuse_a_newer_schema(self):
+        path = self.sample()
+        with h5py.File(path, "r+", libver=("v110", "v110")) as file:
+            file["palpate"].attrs.get_id("schema").write(numpy.array(2, "i4"))
+        for command in ("inspect", "verify"):
+            self.assertFails(run(BIN / f"palpate-{command}", path), INVALID, "has schema 2", "use a newer palpate")
+
+    def test_both_refuse_what_is_no_asset(self):
+        self.asset.write_text("hello")
+        for command in ("inspect", "verify"):
+            self.assertFails(run(BIN / f"palpate-{command}", self.asset), INVALID, "is not an HDF5 file")
+            self.assertFails(run(BIN / f"palpate-{command}", self.folder / "none"), INVALID, "no such file")
+            self.assertFails(run(BIN / f"palpate-{command}"), USAGE)
+        self.assertFails(run(BIN / "palpate-verify", self.sample(), "--columns", 0), USAGE, "--columns")
+
+
+class Specification(AssetCommand):
+    def test_the_reader_in_the_specification_reads_an_asset(self):
+        code = re.search(r"```python\n(.*?)```", (SOURCE / "formats/asset/SPEC.md").read_text(), re.S).group(1)
+        read = run(sys.executable, "-c", code, self.sample())
+        self.assertEqual(read.returncode, OK, read.stderr)
+        self.assertEqual(read.stdout, "wall 384 tetrahedra, 73 contact nodes\n")
+
+    def test_the_reader_in_the_specification_finds_a_flipped_byte(self):
+        code = re.search(r"```python\n(.*?)```", (SOURCE / "formats/asset/SPEC.md").read_text(), re.S).group(1)
+        path = self.sample()
+        with h5py.File(path, "r+", libver=("v110", "v110")) as file:
+            file["palpate/haptics"].attrs.get_id("max_force").write(numpy.array(9.0))
+        read = run(sys.executable, "-c", code, path)
+        self.assertIn("AssertionError: manifest", read.stderr)
+
+    def test_every_object_of_an_asset_is_in_the_specification(self):
+        text = (SOURCE / "formats/asset/SPEC.md").read_text()
+        with h5py.File(self.sample()) as file:
+            names = []
+            file.visititems(lambda path, node: names.extend([path, *node.attrs]))
+        for name in {part for path in names for part in path.split("/") if not part.isdigit()}:
+            self.assertIn(name, text)
+
+
+if __name__ == "__main__":
+    unittest.main()
