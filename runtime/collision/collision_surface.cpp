@@ -62,7 +62,7 @@ void CollisionSurface::take_nodes(const ObbTree& tree, double scale, const std::
     for (std::size_t i = 0; i < count; ++i) {
         const ObbNode& from = tree.nodes[i];
         Node& to = nodes_[i];
-        Eigen::Map<Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(to.axes) = from.axes;
+        Eigen::Map<Eigen::Matrix3f>(to.axes) = from.axes;
         Eigen::Map<Eigen::Vector3f>(to.center) = from.center;
         Eigen::Map<Eigen::Vector3f>(to.half_extents) = from.half_extents.array() + padding;
         if (depth[i] < 0)

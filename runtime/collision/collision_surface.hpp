@@ -77,7 +77,7 @@ class CollisionSurface {
         std::int32_t mesh_triangle;
     };
     struct alignas(64) Node {
-        float axes[9];  // row-major: rows are the box's axes
+        float axes[9];  // column-major: column k is what coordinate k adds along the box's three axes
         float center[3];
         float half_extents[3];
         std::int32_t link;  // inner: index of the left child; leaf: -1 - index into leaves_
@@ -89,9 +89,9 @@ class CollisionSurface {
     static constexpr int max_depth = 160;
 
     void take_nodes(const ObbTree& tree, double scale, const std::string& name);
+    struct Reach;
     static float squared_distance_bound(const Node& node, const Eigen::Vector3f& p) noexcept;
-    static bool may_touch(const Node& node, const Eigen::Vector3f& middle, const Eigen::Vector3f& half,
-                          float radius) noexcept;
+    static float squared_distance_bound(const Node& node, const Reach& reach) noexcept;
 
     std::vector<Node> nodes_;
     std::vector<Leaf> leaves_;
