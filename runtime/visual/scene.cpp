@@ -29,11 +29,11 @@ Rgb force_colour(double share) {
     return s < 0.5F ? Rgb(90 + 330 * s, 210, 90) : Rgb(255, 370 - 320 * s, 60);
 }
 
-vtkSmartPointer<vtkActor> ball(double radius, const Rgb& colour) {
+vtkSmartPointer<vtkActor> ball(double radius, const Rgb& colour, int resolution) {
     vtkNew<vtkSphereSource> sphere;
     sphere->SetRadius(radius);
-    sphere->SetThetaResolution(24);
-    sphere->SetPhiResolution(16);
+    sphere->SetThetaResolution(resolution);
+    sphere->SetPhiResolution(resolution);
     sphere->Update();
     return actor(sphere->GetOutput(), colour);
 }
@@ -75,8 +75,8 @@ void Scene::add_rigid(const Case& patient_case, const Sight& sight, std::int64_t
 }
 
 void Scene::add_tool(vtkRenderer* renderer, vtkRenderer* front) {
-    tool_ = ball(tool_radius_, blue);
-    device_ = ball(0.6 * tool_radius_, white);
+    tool_ = ball(tool_radius_, blue, 24);
+    device_ = ball(0.6 * tool_radius_, white, 10);
     device_->GetProperty()->SetRepresentationToWireframe();
 
     vtkNew<vtkLineSource> axis;

@@ -86,14 +86,14 @@ SoftSurface::SoftSurface(const DeformableBody& body, const Vector3d& toward_eye,
 }
 
 void SoftSurface::deform(const std::vector<Vector3f>& displacements) {
-    constexpr float full_warmth = 4;  // mm of displacement
+    constexpr float warm_at = 6;  // mm of displacement
     const bool moves = std::ranges::any_of(displacements, [](const Vector3f& u) { return !u.isZero(0); });
     if (!moves && !displaced_) return;
     displaced_ = moves;
     auto* points = static_cast<float*>(points_->GetVoidPointer(0));
     std::uint8_t* colours = colours_->GetPointer(0);
     for (std::size_t i = 0; i < rest_.size(); ++i) {
-        const float warmth = 0.8F * std::min(1.0F, displacements[i].norm() / full_warmth);
+        const float warmth = 0.8F * (1 - std::exp(-displacements[i].norm() / warm_at));
         const Vector3f colour = (1 - warmth) * rest_colours_[i] + warmth * warm;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const auto a = static_cast<Eigen::Index>(axis);

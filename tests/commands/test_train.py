@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: Apache-2.0
+"""palpate-train under a real X server, driven with mouse and keyboard as a person would."""
+
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+TRAIN = pathlib.Path(os.environ["PALPATE_BIN"]) / "palpate-train"
+WRITER = pathlib.Path(os.environ["PALPATE_BUILD"]) / "tests" / "write_sample_asset"
+NEEDED = ("Xvfb", "xdotool", "xwd", "convert")
+
+
+class XServer:
+    """An Xvfb of our own; -noreset keeps it when its last client leaves."""
+
+    def __enter__(self):
+        reader, writer = os.pipe()
+        self.process = subprocess.Popen(
+            ["Xvfb", "-displayfd", str(writer), "-screen", "0", "1400x800x24", "-nolisten", "tcp", "-noreset"],
+            pass_fds=[writer],
+            stderr=subprocess.DEVNULL,
+        )
+        os.close(writer)
+        with os.fdopen(reader) as stream:
+            self.environment = dict(os.environ, DISPLAY=":" + stream.readline().strip())
+        return self
+
+    def __exit__(self, *_):
+        self.process.terminate()
+        self.process.wait()
+
+
+@unittest.skipUnless(TRAIN.exists(), "PALPATE_VISUAL is off")
+@unittest.skipUnless(all(map(shutil.which, NEEDED)), "PALPATE: xvfb, xdotool, x11-apps or imagemagick is missing")
+class Train(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.temporary.name)
+        cls.asset = cls.folder / "sample.vtkhdf"
+        subprocess.run([WRITER, cls.asset], check=True)
+        cls.server = XServer().__enter__()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.server.__exit__()
+        cls.temporary.cleanup()
+
+    def run_train(self, *options, environment=None):
+        return subprocess.run(
+            [TRAIN, *map(str, options)],
+            capture_output=True,
+            text=True,
+            timeout=60,
+            env=environment or self.server.environment,
+        )
+
+    def x(self, *command):
+        run = subprocess.run(
+            [*map(str, command)], env=self.server.environment, check=True, capture_output=True, timeout=60
+        )
+        return run.stdout
+
+    def open_window(self, *options):
+        """Starts the trainer and returns its process and the id of its window, which has the focus."""
+        process = subprocess.Popen(
+            [TRAIN, self.asset, "--json", "-", *map(str, options)],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            env=self.server.environment,
+        )
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        window = self.x("xdotool", "search", "--sync", "--onlyvisible", "--name", "Palpate: sample").split()[0]
+        window = window.decode()
+        self.x("xdotool", "windowfocus", "--sync", window)
+        self.x("xdotool", "mousemove", "--window", window, 640, 360)
+        time.sleep(0.5)
+        return process, window
+
+    def finish(self, process):
+        out, err = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 0, err)
+        return json.loads(out)
+
+    def colours(self, window):
+        """How many colours the window on the screen has."""
+        dump = subprocess.run(
+            ["xwd", "-silent", "-id", window], env=self.server.environment, capture_output=True, check=True
+        ).stdout
+        picture = self.folder / "window.png"
+        subprocess.run(["convert", "xwd:-", f"png:{picture}"], input=dump, check=True)
+        return self.colours_of(picture)
+
+    def colours_of(self, picture):
+        counted = subprocess.run(["convert", picture, "-format", "%k", "info:"], capture_output=True, check=True)
+        return int(counted.stdout)
+
+    def test_keys_drive_the_tool_into_the_organ_and_q_closes(self):
+        process, window = self.open_window()
+        for _ in range(40):  # half a millimetre each, from 5 mm above the surface
+            self.x("xdotool", "key", "w")
+        time.sleep(0.5)
+        self.assertGreater(self.colours(window), 500)
+        self.x("xdotool", "key", "q")
+        result = self.finish(process)
+        self.assertEqual(result["schema"], "palpate.train/1")
+        self.assertGreater(result["ticks"], 500)
+        self.assertGreater(result["frames"], 5)
+        self.assertGreater(result["frames_per_second"], 1)
+        self.assertGreater(result["device_travel_mm"], 10)
+        self.assertGreater(result["force_peak_n"], 0.01)
+
+    def test_left_drag_moves_the_tool_and_right_drag_does_not(self):
+        travel = {}
+        for button in (1, 3):
+            process, _ = self.open_window()
+            self.x("xdotool", "mousedown", button)
+            for _ in range(10):
+                self.x("xdotool", "mousemove_relative", "--", -12, -12)
+                time.sleep(0.05)
+            self.x("xdotool", "mouseup", button)
+            time.sleep(0.3)
+            self.x("xdotool", "key", "Escape")
+            travel[button] = self.finish(process)["device_travel_mm"]
+        self.assertGreater(travel[1], 1)
+        self.assertEqual(travel[3], 0)
+
+    def test_wheel_moves_in_depth_and_reset_brings_back(self):
+        process, _ = self.open_window()
+        for _ in range(5):  # a millimetre a notch, away from the organ
+            self.x("xdotool", "click", 5)
+        time.sleep(0.5)
+        self.x("xdotool", "key", "r")
+        time.sleep(0.5)
+        self.x("xdotool", "key", "q")
+        self.assertAlmostEqual(self.finish(process)["device_travel_mm"], 10, delta=0.5)
+
+    def test_scripted_run_closes_by_itself_and_leaves_a_picture(self):
+        picture = self.folder / "press.png"
+        options = [self.asset, "--script", "press", "--seconds", "2", "--screenshot", picture, "--json", "-"]
+        run = self.run_train(*options, "--size", "640x360")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        result = json.loads(run.stdout)
+        self.assertGreater(result["force_peak_n"], 0.01)
+        self.assertAlmostEqual(result["penetration"]["device_mm"], 3, places=2)
+        self.assertGreater(self.colours_of(picture), 300)
+        header = picture.read_bytes()[:24]
+        self.assertEqual(header[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertEqual((int.from_bytes(header[16:20], "big"), int.from_bytes(header[20:24], "big")), (640, 360))
+        self.assertEqual(self.run_train(*options).returncode, 3, "an existing picture was replaced")
+
+    def test_interrupt_ends_with_130_and_leaves_nothing(self):
+        picture = self.folder / "never.png"
+        process, _ = self.open_window("--screenshot", picture)
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 130)
+        self.assertFalse(picture.exists())
+
+    def test_without_a_display_the_remedy_is_named(self):
+        for display in ({}, {"DISPLAY": ":9999"}):
+            environment = {k: v for k, v in os.environ.items() if k != "DISPLAY"} | display
+            run = self.run_train(self.asset, environment=environment)
+            self.assertEqual(run.returncode, 1)
+            self.assertIn("xvfb-run", run.stderr)
+
+    def test_bad_arguments_are_refused(self):
+        cases = [
+            ([self.asset, "--size", "wide"], 2, "WIDTHxHEIGHT"),
+            ([self.asset, "--size", "10x10"], 2, "320x240"),
+            ([self.asset, "--script", "dance"], 2, "press, slide"),
+            ([self.asset, "--body", "spleen"], 2, "spleen"),
+            ([self.folder / "nothing.vtkhdf"], 3, "nothing.vtkhdf"),
+        ]
+        for options, code, words in cases:
+            run = self.run_train(*options)
+            self.assertEqual(run.returncode, code, run.stderr)
+            self.assertIn(words, run.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
