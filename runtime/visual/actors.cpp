@@ -4,8 +4,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <vtkCellArray.h>
+#include <vtkFloatArray.h>
 #include <vtkMatrix4x4.h>
 #include <vtkNew.h>
+#include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
@@ -13,17 +15,42 @@
 namespace palpate {
 namespace {
 
+using Eigen::Vector3d;
+
 void set_colour(vtkProperty* property, const Rgb& colour) {
     property->SetColor(colour[0] / 255, colour[1] / 255, colour[2] / 255);
 }
 
 }  // namespace
 
-vtkSmartPointer<vtkPolyData> poly_data(const TriangleMesh& surface, const Eigen::Vector3d& toward_eye) {
+void vertex_normals(std::span<const Eigen::Vector3f> positions, std::span<const Triangle> triangles,
+                    std::span<Eigen::Vector3f> normals) {
+    std::ranges::fill(normals, Eigen::Vector3f::Zero());
+    const auto p = [&](std::int32_t vertex) { return positions[static_cast<std::size_t>(vertex)]; };
+    for (const Triangle& t : triangles) {
+        const Eigen::Vector3f area = (p(t[1]) - p(t[0])).cross(p(t[2]) - p(t[0]));
+        for (const std::int32_t vertex : t) normals[static_cast<std::size_t>(vertex)] += area;
+    }
+    for (Eigen::Vector3f& normal : normals) normal.normalize();
+}
+
+vtkSmartPointer<vtkPolyData> poly_data(const TriangleMesh& surface, const Vector3d& toward_eye) {
+    std::vector<Eigen::Vector3f> positions;
+    for (const Vector3d& p : surface.vertices) positions.push_back(p.cast<float>());
+    std::vector<Eigen::Vector3f> normals(positions.size());
+    vertex_normals(positions, surface.triangles, normals);
+
+    const auto point_count = static_cast<vtkIdType>(positions.size());
     vtkNew<vtkPoints> points;
-    points->SetNumberOfPoints(static_cast<vtkIdType>(surface.vertices.size()));
-    for (std::size_t i = 0; i < surface.vertices.size(); ++i)
-        points->SetPoint(static_cast<vtkIdType>(i), surface.vertices[i].data());
+    points->SetNumberOfPoints(point_count);
+    vtkNew<vtkFloatArray> point_normals;
+    point_normals->SetNumberOfComponents(3);
+    point_normals->SetNumberOfTuples(point_count);
+    for (vtkIdType i = 0; i < point_count; ++i) {
+        points->SetPoint(i, positions[static_cast<std::size_t>(i)].data());
+        point_normals->SetTypedTuple(i, normals[static_cast<std::size_t>(i)].data());
+    }
+
     std::vector<Triangle> triangles = surface.triangles;
     std::ranges::stable_sort(triangles, std::ranges::greater{}, [&](const Triangle& t) {
         double height = 0;
@@ -35,9 +62,11 @@ vtkSmartPointer<vtkPolyData> poly_data(const TriangleMesh& surface, const Eigen:
     const auto count = static_cast<vtkIdType>(triangles.size());
     cells->AllocateExact(count, 3 * count);
     for (const Triangle& t : triangles) cells->InsertNextCell({t[0], t[1], t[2]});
+
     auto data = vtkSmartPointer<vtkPolyData>::New();
     data->SetPoints(points);
     data->SetPolys(cells);
+    data->GetPointData()->SetNormals(point_normals);
     return data;
 }
 

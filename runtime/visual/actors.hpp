@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <span>
+#include <vector>
 #include <vtkActor.h>
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
@@ -12,8 +14,12 @@ namespace palpate {
 /// A colour as three channels of 0 ... 255.
 using Rgb = Eigen::Vector3f;
 
-/// A surface as VTK's, with float points. Triangles come in the order in which they are drawn: nearest to the
-/// eye first, so that software rendering shades little that something else covers.
+/// Area-weighted unit normals of the vertices.
+void vertex_normals(std::span<const Eigen::Vector3f> positions, std::span<const Triangle> triangles,
+                    std::span<Eigen::Vector3f> normals);
+
+/// A surface as VTK's, with float points and normals. Triangles come in the order in which they are drawn:
+/// nearest to the eye first, so that software rendering shades little that something else covers.
 vtkSmartPointer<vtkPolyData> poly_data(const TriangleMesh& surface, const Eigen::Vector3d& toward_eye);
 
 /// Draws `data` in one colour; where a cut shows its inside, flat in another, like solid matter.

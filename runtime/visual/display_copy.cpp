@@ -10,11 +10,10 @@
 namespace palpate {
 namespace {
 
-constexpr double whole_within = 12;  // mm around the focus where detail is worth most
-
-// The cell of a vertex: edges are powers of two (mm), so that cells nest and far ones are few.
+// The cell of a vertex at a distance from the focus: edges are powers of two (mm), so that cells nest and far
+// ones are few.
 std::uint64_t cell_of(const Eigen::Vector3d& p, double distance, double coarseness) {
-    const double edge = coarseness * std::max(distance, whole_within);
+    const double edge = coarseness * distance;
     const int level = std::clamp(static_cast<int>(std::floor(std::log2(edge))), -12, 12);
     std::uint64_t key = static_cast<std::uint64_t>(level + 12);
     constexpr std::int64_t origin = std::int64_t{1} << 18;  // keeps cells of a few metres around 0 positive
@@ -26,15 +25,17 @@ std::uint64_t cell_of(const Eigen::Vector3d& p, double distance, double coarsene
 }
 
 // Merges the vertices of each cell into their mean; triangles that lose a corner vanish.
-TriangleMesh clustered(const TriangleMesh& surface, const Eigen::Vector3d& focus, double coarseness) {
+TriangleMesh clustered(const TriangleMesh& surface, const Eigen::Vector3d& focus, double near,
+                       double coarseness) {
     std::unordered_map<std::uint64_t, std::int32_t> cluster_of_cell;
     cluster_of_cell.reserve(surface.vertices.size());
     std::vector<std::int32_t> cluster(surface.vertices.size()), members;
     TriangleMesh result;
     for (std::size_t i = 0; i < surface.vertices.size(); ++i) {
         const Eigen::Vector3d& p = surface.vertices[i];
-        const auto [entry, added] = cluster_of_cell.try_emplace(cell_of(p, (p - focus).norm(), coarseness),
-                                                                static_cast<std::int32_t>(members.size()));
+        const auto [entry, added] =
+            cluster_of_cell.try_emplace(cell_of(p, std::max(near, (p - focus).norm()), coarseness),
+                                        static_cast<std::int32_t>(members.size()));
         cluster[i] = entry->second;
         if (added) {
             members.push_back(0);
@@ -54,7 +55,8 @@ TriangleMesh clustered(const TriangleMesh& surface, const Eigen::Vector3d& focus
 
 }  // namespace
 
-TriangleMesh display_copy(const TriangleMesh& surface, std::int64_t budget, const Eigen::Vector3d& focus) {
+TriangleMesh display_copy(const TriangleMesh& surface, std::int64_t budget, const Eigen::Vector3d& focus,
+                          double near) {
     if (budget < 1)
         throw InvalidInput({"display copy", std::to_string(budget) + " triangles", "1 or more", ""});
     const auto fits = [&](const TriangleMesh& mesh) {
@@ -63,7 +65,7 @@ TriangleMesh display_copy(const TriangleMesh& surface, std::int64_t budget, cons
     if (fits(surface)) return surface;
     // Finer steps would not be seen: cells come in powers of two.
     TriangleMesh copy;
-    for (double coarseness = 1.0 / 64; !fits(copy = clustered(surface, focus, coarseness));)
+    for (double coarseness = 1.0 / 64; !fits(copy = clustered(surface, focus, near, coarseness));)
         coarseness *= 1.4;
     return copy;
 }

@@ -13,6 +13,7 @@ namespace palpate {
 /// between. Thin walls far away may close. A surface within the budget comes back as it is. Throws
 /// InvalidInput for a budget below 1. Cost: 0.3 s for 350 000 triangles. Source: vertex clustering, Rossignac
 /// and Borrel 1993.
-TriangleMesh display_copy(const TriangleMesh& surface, std::int64_t budget, const Eigen::Vector3d& focus);
+TriangleMesh display_copy(const TriangleMesh& surface, std::int64_t budget, const Eigen::Vector3d& focus,
+                          double near);
 
 }  // namespace palpate

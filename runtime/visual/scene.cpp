@@ -7,7 +7,6 @@
 #include <vtkArrowSource.h>
 #include <vtkLineSource.h>
 #include <vtkNew.h>
-#include <vtkPolyDataNormals.h>
 #include <vtkProperty.h>
 #include <vtkSphereSource.h>
 #include <vtkTubeFilter.h>
@@ -63,13 +62,8 @@ void Scene::add_rigid(const Case& patient_case, const Sight& sight, std::int64_t
     for (const RigidBody& body : patient_case.rigid_bodies) {
         const double share = static_cast<double>(body.surface.triangles.size()) / all;
         const auto own_budget = std::max(1LL, std::llround(share * static_cast<double>(budget)));
-        vtkNew<vtkPolyDataNormals> normals;
-        normals->SetInputData(
-            poly_data(display_copy(body.surface, own_budget, sight.target), sight.toward_eye));
-        normals->SplittingOff();
-        normals->ConsistencyOff();
-        normals->Update();
-        rigid_.push_back(solid_actor(normals->GetOutput(), bone, cut_bone));
+        const TriangleMesh copy = display_copy(body.surface, own_budget, sight.target, sight.field / 2);
+        rigid_.push_back(solid_actor(poly_data(copy, sight.toward_eye), bone, cut_bone));
         renderer->AddActor(rigid_.back());
     }
 }
@@ -122,6 +116,11 @@ void Scene::update(const VisualFrame& frame) {
 
 void Scene::show_rigid(bool on) {
     for (const auto& body : rigid_) body->SetVisibility(on);
+}
+
+void Scene::show_inside(bool on) {
+    for (const auto& body : rigid_) body->GetProperty()->SetBackfaceCulling(!on);
+    for (const SoftSurface& body : soft_) body.actor()->GetProperty()->SetBackfaceCulling(!on);
 }
 
 }  // namespace palpate

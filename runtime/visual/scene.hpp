@@ -23,6 +23,8 @@ class Scene {
 
     void update(const VisualFrame& frame);
     void show_rigid(bool on);
+    /// Tells whether a cut may show bodies from inside; where none does, their far sides are not drawn.
+    void show_inside(bool on);
 
   private:
     void add_rigid(const Case& patient_case, const Sight& sight, std::int64_t budget, vtkRenderer* renderer);

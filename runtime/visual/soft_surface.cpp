@@ -67,22 +67,18 @@ SoftSurface::SoftSurface(const DeformableBody& body, const Vector3d& toward_eye,
     for (const Vector3d& p : body.boundary.surface.vertices) rest_.push_back(p.cast<float>());
     const auto data = poly_data(body.boundary.surface, toward_eye);
     points_ = data->GetPoints();
-    const auto count = static_cast<vtkIdType>(rest_.size());
-    normals_ = vtkSmartPointer<vtkFloatArray>::New();
-    normals_->SetNumberOfComponents(3);
-    normals_->SetNumberOfTuples(count);
+    normals_ = vtkFloatArray::SafeDownCast(data->GetPointData()->GetNormals());
     colours_ = vtkSmartPointer<vtkUnsignedCharArray>::New();
     colours_->SetNumberOfComponents(3);
-    colours_->SetNumberOfTuples(count);
-    data->GetPointData()->SetNormals(normals_);
+    colours_->SetNumberOfTuples(static_cast<vtkIdType>(rest_.size()));
     data->GetPointData()->SetScalars(colours_);
     displaced_ = true;
     deform(std::vector<Vector3f>(rest_.size(), Vector3f::Zero()));
 
-    const auto actor = solid_actor(data, warm, flesh);
-    actor->GetProperty()->SetSpecular(0.25);
-    actor->GetProperty()->SetSpecularPower(30);
-    renderer->AddActor(actor);
+    actor_ = solid_actor(data, warm, flesh);
+    actor_->GetProperty()->SetSpecular(0.25);
+    actor_->GetProperty()->SetSpecularPower(30);
+    renderer->AddActor(actor_);
 }
 
 void SoftSurface::deform(const std::vector<Vector3f>& displacements) {
@@ -90,33 +86,23 @@ void SoftSurface::deform(const std::vector<Vector3f>& displacements) {
     const bool moves = std::ranges::any_of(displacements, [](const Vector3f& u) { return !u.isZero(0); });
     if (!moves && !displaced_) return;
     displaced_ = moves;
-    auto* points = static_cast<float*>(points_->GetVoidPointer(0));
+    // Three floats a point, as in VTK's arrays.
+    static_assert(sizeof(Vector3f) == 3 * sizeof(float));
+    const std::span points(static_cast<Vector3f*>(points_->GetVoidPointer(0)), rest_.size());
     std::uint8_t* colours = colours_->GetPointer(0);
     for (std::size_t i = 0; i < rest_.size(); ++i) {
+        points[i] = rest_[i] + displacements[i];
         const float warmth = 0.8F * (1 - std::exp(-displacements[i].norm() / warm_at));
         const Vector3f colour = (1 - warmth) * rest_colours_[i] + warmth * warm;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const auto a = static_cast<Eigen::Index>(axis);
-            points[3 * i + axis] = rest_[i][a] + displacements[i][a];
             colours[3 * i + axis] = static_cast<std::uint8_t>(std::lround(colour[a]));
         }
     }
-    compute_normals();
+    vertex_normals(points, triangles_, {reinterpret_cast<Vector3f*>(normals_->GetPointer(0)), rest_.size()});
     points_->Modified();
     normals_->Modified();
     colours_->Modified();
-}
-
-void SoftSurface::compute_normals() {
-    const Eigen::Map<const Eigen::Matrix3Xf> p(static_cast<const float*>(points_->GetVoidPointer(0)), 3,
-                                               static_cast<Eigen::Index>(rest_.size()));
-    Eigen::Map<Eigen::Matrix3Xf> n(normals_->GetPointer(0), 3, p.cols());
-    n.setZero();
-    for (const Triangle& t : triangles_) {
-        const Vector3f area = (p.col(t[1]) - p.col(t[0])).cross(p.col(t[2]) - p.col(t[0]));
-        for (const std::int32_t vertex : t) n.col(vertex) += area;
-    }
-    n.colwise().normalize();
 }
 
 }  // namespace palpate

@@ -22,9 +22,9 @@ class SoftSurface {
     /// Moves the surface; one displacement (mm) per surface vertex.
     void deform(const std::vector<Eigen::Vector3f>& displacements);
 
-  private:
-    void compute_normals();
+    vtkActor* actor() const { return actor_; }
 
+  private:
     std::vector<Eigen::Vector3f> rest_;
     std::vector<Eigen::Vector3f> rest_colours_;  // 0 ... 255
     std::vector<Triangle> triangles_;
@@ -32,6 +32,7 @@ class SoftSurface {
     vtkSmartPointer<vtkPoints> points_;
     vtkSmartPointer<vtkFloatArray> normals_;
     vtkSmartPointer<vtkUnsignedCharArray> colours_;
+    vtkSmartPointer<vtkActor> actor_;
 };
 
 }  // namespace palpate

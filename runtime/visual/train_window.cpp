@@ -228,6 +228,7 @@ void TrainWindow::show(const VisualFrame& frame) {
     p.interactor->ProcessEvents();
     if (p.closed) return;
     p.scene.update(frame);
+    p.scene.show_inside(p.cut);
     p.set_clipping_range(frame.tool_position);
     p.overlay.update(frame, frames_per_second());
     p.window->Render();

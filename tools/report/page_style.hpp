@@ -34,7 +34,7 @@ nav{margin:0 0 18px;font-size:14px}nav a{color:var(--accent);text-decoration:non
 figure{margin:0}figure img,figure svg{display:block;width:100%;height:auto;border-radius:8px}
 figure img{border:1px solid var(--line)}
 figcaption{margin-top:6px;color:var(--soft);font-size:13.5px}
-.chart img{background:#fff;padding:8px}
+.chart img{background:#fff;padding:8px}.chart+figcaption{margin-bottom:14px}.missing+.missing{margin-top:10px}
 .slice{background:#000}
 .slice text{fill:#ffe9a8;font-size:20px;font-weight:600;paint-order:stroke;stroke:#000;stroke-width:4px}
 .slice .small{font-size:16px;font-weight:400}

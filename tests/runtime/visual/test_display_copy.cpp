@@ -15,6 +15,8 @@ const Eigen::Vector3d center(10, -200, 700);
 constexpr double radius = 80;  // mm: a head
 const Eigen::Vector3d focus = center + Eigen::Vector3d(0, 0, radius);
 
+constexpr double near = 15;  // mm
+
 TriangleMesh head() {
     return sample::sphere_surface(center, radius, 6);  // 32 768 triangles
 }
@@ -49,7 +51,8 @@ double mean_edge(const TriangleMesh& mesh, double from, double to) {
 TEST(DisplayCopy, keeps_to_the_budget) {
     const TriangleMesh surface = head();
     for (const std::int64_t budget : {20'000, 3'000, 200}) {
-        const auto count = static_cast<std::int64_t>(display_copy(surface, budget, focus).triangles.size());
+        const auto count =
+            static_cast<std::int64_t>(display_copy(surface, budget, focus, near).triangles.size());
         EXPECT_LE(count, budget);
         EXPECT_GE(count, budget / 8);  // no more is thrown away than powers of two make
     }
@@ -57,14 +60,14 @@ TEST(DisplayCopy, keeps_to_the_budget) {
 
 TEST(DisplayCopy, a_surface_within_the_budget_comes_back_as_it_is) {
     const TriangleMesh surface = sample::sphere_surface(center, radius, 3);
-    const TriangleMesh copy = display_copy(surface, 512, focus);
+    const TriangleMesh copy = display_copy(surface, 512, focus, near);
     EXPECT_EQ(copy.triangles, surface.triangles);
     EXPECT_EQ(copy.vertices, surface.vertices);
 }
 
 TEST(DisplayCopy, is_fine_near_the_focus_and_coarse_far_from_it) {
     const TriangleMesh surface = head();
-    const TriangleMesh copy = display_copy(surface, 6'000, focus);
+    const TriangleMesh copy = display_copy(surface, 6'000, focus, near);
     const double original = mean_edge(surface, 0, 15);
     EXPECT_LT(mean_edge(copy, 0, 15), 1.2 * original);
     EXPECT_GT(mean_edge(copy, 100, 200), 2 * original);
@@ -72,12 +75,12 @@ TEST(DisplayCopy, is_fine_near_the_focus_and_coarse_far_from_it) {
 
 TEST(DisplayCopy, stays_a_closed_head_facing_outwards) {
     const double exact = 4 * std::numbers::pi / 3 * radius * radius * radius;
-    const double got = volume(display_copy(head(), 6'000, focus));
+    const double got = volume(display_copy(head(), 6'000, focus, near));
     EXPECT_NEAR(got, exact, 0.05 * exact);  // merged vertices lie a little inside a convex surface
 }
 
 TEST(DisplayCopy, refuses_an_empty_budget) {
-    EXPECT_THROW(display_copy(head(), 0, focus), InvalidInput);
+    EXPECT_THROW(display_copy(head(), 0, focus, near), InvalidInput);
 }
 
 }  // namespace
