@@ -49,10 +49,6 @@ float squared_excess(Float4 value, Float4 limit) noexcept {
     return squared[0] + squared[1] + squared[2];
 }
 
-ClosestPoint from_triangle_point(const TrianglePoint& found, std::int32_t slot) noexcept {
-    return {found.point, found.barycentric, std::sqrt(found.squared_distance), 0, slot, found.feature};
-}
-
 }  // namespace
 
 // A segment from `from` over 2 `half`, fattened by `radius`.
@@ -118,9 +114,9 @@ std::optional<ClosestPoint> CollisionSurface::closest_point(const Vector3d& p, d
         stack[size++] = a_first ? a : b;
     }
     if (best_slot < 0) return std::nullopt;
-    ClosestPoint result = from_triangle_point(best, best_slot);
-    result.triangle = mesh_triangle(best_slot);
-    return result;
+    return ClosestPoint{
+        best.point, best.barycentric, std::sqrt(best.squared_distance), mesh_triangle(best_slot),
+        best_slot,  best.feature};
 }
 
 std::optional<SweepContact> CollisionSurface::sweep_sphere(const Vector3d& from, const Vector3d& to,
