@@ -92,7 +92,7 @@ std::optional<ClosestPoint> CollisionSurface::closest_point(const Vector3d& p, d
     if (hint >= 0 && hint < triangle_count()) test(hint);
 
     const Vector3f p_float = p.cast<float>();
-    std::array<Pending, max_depth + 2> stack;
+    std::array<Pending, deepest_obb_tree + 2> stack;
     std::size_t size = 0;
     stack[size++] = {0, squared_distance_bound(nodes_[0], p_float)};
     while (size > 0) {
@@ -136,7 +136,7 @@ std::optional<SweepContact> CollisionSurface::sweep_sphere(const Vector3d& from,
 
     const Vector3f from_float = from.cast<float>();
     const auto radius_float = static_cast<float>(radius);
-    std::array<Pending, max_depth + 2> stack;
+    std::array<Pending, deepest_obb_tree + 2> stack;
     std::size_t size = 0;
     stack[size++] = {0, 0};
     while (size > 0 && !(best.slot >= 0 && best.fraction <= 0)) {
@@ -168,7 +168,7 @@ std::size_t CollisionSurface::slots_near(const Vector3d& a, const Vector3d& b, d
     const Vector3f half = (0.5 * (b - a)).cast<float>();
     const Reach reach{a.cast<float>(), half, static_cast<float>(radius)};
     std::size_t found = 0;
-    std::array<std::int32_t, max_depth + 2> stack;
+    std::array<std::int32_t, deepest_obb_tree + 2> stack;
     std::size_t size = 0;
     stack[size++] = 0;
     while (size > 0) {

@@ -90,8 +90,8 @@ void StagedFile::write_text(const std::string& text) const {
     stream << text;
     stream.close();
     if (!stream)
-        throw SystemFailure({target_.string(), "could not be written", "",
-                             "check free space and permissions of its folder"});
+        throw SystemFailure(
+            {target_.string(), "could not be written", "", "check free space and permissions of its folder"});
 }
 
 void StagedFile::commit() {

@@ -45,6 +45,9 @@ int main(int argc, char** argv) {
     return command.run(argc, argv, [&](cli::Session& session) {
         if (output.extension() != ".vtkhdf")
             throw UsageError({output.string(), "is no name for an asset", "a name that ends in .vtkhdf", ""});
+        if (output.has_parent_path() && !std::filesystem::is_directory(output.parent_path()))
+            throw InvalidInput({output.string(), "its folder does not exist", "",
+                                "make it first: mkdir -p " + output.parent_path().string()});
         build::CaseFile case_file = build::read_case_file(case_path);
         if (!volume.empty()) case_file.volume = volume;
         if (!labels.empty()) case_file.labels = labels;

@@ -115,10 +115,12 @@ int main(int argc, char** argv) {
     command.option("--min-component-volume", sizing.min_component_volume,
                    "smaller specks and pinholes vanish", "mm³");
     command.flag("--allow-components", allow_components, "accept a body of several separate pieces");
-    command.option("--min-dihedral-deg", contract.min_dihedral_deg, "quality contract: smallest dihedral angle", "degrees");
-    command.option("--max-dihedral-deg", contract.max_dihedral_deg, "quality contract: largest dihedral angle", "degrees");
+    command.option("--min-dihedral-deg", contract.min_dihedral_deg,
+                   "quality contract: smallest dihedral angle", "degrees");
+    command.option("--max-dihedral-deg", contract.max_dihedral_deg,
+                   "quality contract: largest dihedral angle", "degrees");
     command.option("--max-volume-error-percent", contract.max_volume_error_percent,
- "quality contract: volume of a region against its voxels", "%");
+                   "quality contract: volume of a region against its voxels", "%");
     command.option("--min-dice", contract.min_dice, "quality contract: overlap with the labels, 0 to 1");
     command.output("-o,--output", output, "tetrahedra (.vtu), LPS mm")->required();
 

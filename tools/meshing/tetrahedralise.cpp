@@ -68,7 +68,8 @@ void require_every_region(const RegionLabels& labels, const LabelMap& map, doubl
         if (voxels[region] == 0) {
             const Label label = label_of(map, labels.values[region - 1]);
             throw InvalidInput({fmt::format("label {} \"{}\"", label.value, label.name),
-                                fmt::format("has no piece of {:g} mm³ or more", min_component_volume), "1 or more",
+                                fmt::format("has no piece of {:g} mm³ or more", min_component_volume),
+                                "1 or more",
                                 "make the structure larger, or pass a smaller --min-component-volume"});
         }
 }

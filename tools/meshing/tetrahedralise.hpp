@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "formats/model/progress.hpp"
 #include "formats/model/label_map.hpp"
+#include "formats/model/progress.hpp"
 #include "formats/model/tet_mesh.hpp"
 
 namespace palpate {

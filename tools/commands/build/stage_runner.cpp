@@ -78,8 +78,7 @@ std::string content_digest(const std::filesystem::path& path) {
 
 StageRunner::StageRunner(std::filesystem::path programs, std::filesystem::path folder, int threads,
                          bool quiet)
-    : programs_(std::move(programs)), folder_(std::move(folder)), threads_(threads), quiet_(quiet) {
-}
+    : programs_(std::move(programs)), folder_(std::move(folder)), threads_(threads), quiet_(quiet) {}
 
 std::filesystem::path StageRunner::result_path(const std::string& stage_name) const {
     std::string file = stage_name;
