@@ -11,6 +11,7 @@ mkdir -p "$root/build/demo"
 "$root/sample_data/unpack.py" "$root/build/sample_data"
 started=$SECONDS
 for name in nasopharynx liver; do
+    rm -f "$root/build/demo/$name.json" "$root/build/demo/$name.verify.json"
     "$bin/palpate" build "$root/pipelines/cases/$name.toml" -o "$root/build/demo/$name.vtkhdf" \
         --json "$root/build/demo/$name.json"
     "$bin/palpate" verify "$root/build/demo/$name.vtkhdf" --json "$root/build/demo/$name.verify.json"

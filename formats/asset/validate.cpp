@@ -217,6 +217,9 @@ void check_obb_tree(const ObbTree& tree, std::size_t triangle_count, const std::
             continue;
         }
         const auto count = static_cast<std::size_t>(node.count);
+        if (node.count > most_leaf_triangles)
+            refuse(where, box + " holds " + std::to_string(node.count) + " triangles",
+                   std::to_string(most_leaf_triangles) + " at most");
         if (first + count > triangle_count) refuse(where, box + " has triangles beyond the last");
         for (std::size_t entry = first; entry < first + count; ++entry)
             if (std::exchange(seen[entry], 1) != 0)

@@ -14,11 +14,9 @@ namespace palpate {
 void check_surface(const TriangleMesh& surface, const std::string& where);
 
 /// A binary tree whose siblings are neighbours, children after parents, at most `deepest_obb_tree` levels;
-/// boxes finite with orthonormal axes; leaves that share out all triangles, each once. O(nodes + triangles).
+/// boxes finite with orthonormal axes; leaves of at most `most_leaf_triangles` that share out all triangles,
+/// each once. O(nodes + triangles).
 void check_obb_tree(const ObbTree& tree, std::size_t triangle_count, const std::string& where);
-
-/// Levels below the root that a traversal must be ready for.
-inline constexpr int deepest_obb_tree = 64;
 
 /// Everything about an elastic body but its OBB tree, its boundary recomputed. O(tetrahedra log + entries of
 /// the compliance).

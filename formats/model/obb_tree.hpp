@@ -6,6 +6,13 @@
 
 namespace palpate {
 
+/// Most levels below the root: what build_obb_tree()'s splits cannot exceed for 2^24 triangles. Traversals
+/// size their stacks by it.
+inline constexpr int deepest_obb_tree = 160;
+
+/// Most triangles in a leaf: queries look at a leaf's triangles one by one in workspaces of fixed size.
+inline constexpr std::int32_t most_leaf_triangles = 16;
+
 /// One oriented box, in the order the tick reads it. A point p is inside when |axes * (p - center)| <=
 /// half_extents in every component.
 struct ObbNode {

@@ -7,8 +7,6 @@
 namespace palpate {
 
 BoundarySurface boundary_surface(const TetMesh& mesh) {
-    // The face opposite to corner c of a positively oriented tetrahedron, counter-clockwise from outside.
-    constexpr std::array<std::array<std::size_t, 3>, 4> faces{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
     struct Face {
         Triangle key;
         std::size_t order;
@@ -17,7 +15,7 @@ BoundarySurface boundary_surface(const TetMesh& mesh) {
     all.reserve(mesh.tetrahedra.size() * 4);
     const auto corners = [&](std::size_t order) {
         const Tetrahedron& tet = mesh.tetrahedra[order / 4];
-        const auto& face = faces[order % 4];
+        const auto& face = tetrahedron_faces[order % 4];
         return Triangle{tet[face[0]], tet[face[1]], tet[face[2]]};
     };
     for (std::size_t order = 0; order < mesh.tetrahedra.size() * 4; ++order) {

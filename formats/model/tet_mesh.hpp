@@ -13,6 +13,10 @@ namespace palpate {
 
 using Tetrahedron = std::array<std::int32_t, 4>;
 
+/// The face opposite to each corner of a positively oriented tetrahedron, counter-clockwise from outside.
+inline constexpr std::array<std::array<std::size_t, 3>, 4> tetrahedron_faces{
+    {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+
 /// Linear tetrahedra in frame P (LPS, mm); det[p1-p0, p2-p0, p3-p0] > 0 for every one.
 struct TetMesh {
     std::vector<Eigen::Vector3d> rest_positions;  ///< p_P of each node, mm

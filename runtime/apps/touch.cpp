@@ -45,15 +45,23 @@ std::optional<Eigen::Vector3d> point_of(std::string text) {
     return p;
 }
 
+// At least one tick, so that there is something to report.
+void require_positive(double seconds) {
+    if (!(seconds >= 1e-3)) throw UsageError({"--seconds", std::to_string(seconds), "0.001 or more", ""});
+}
+
 Plan plan_of(const Options& options, const Case& patient_case, const HapticModel& model) {
     const bool press = options.script == "press", slide = options.script == "slide";
     if (!press && !slide) {
         if (!std::filesystem::exists(options.script))
-            throw UsageError({"--script", options.script, "press, slide or a file of positions", ""});
+            throw InvalidInput({options.script, "no such script or file",
+                                "press, slide or a file of positions", "check the path"});
         HandPath path = read_hand_path(options.script);
         const double seconds = options.seconds_given ? options.seconds : path.duration();
+        require_positive(seconds);
         return {std::move(path), std::nullopt, seconds};
     }
+    require_positive(options.seconds);
     const TouchTarget target =
         choose_touch_target(patient_case, model, options.body, point_of(options.target));
     const ScriptSettings settings{.tool_radius = model.settings().tool_radius,
@@ -151,25 +159,23 @@ Json touch(const Options& options, cli::Session& session) {
         run_in_real_time(loop, record, plan.seconds);
     }
 
+    // A script's file name may name a patient.
+    const std::string script = plan.target ? options.script : "file";
     if (log_file) {
         log.close();
         if (!log) throw SystemFailure({options.log.string(), "could not be written", "", "check free space"});
-        log_file->commit();
     }
     if (curve_file) {
-        std::ofstream curve(curve_file->path());
-        curve << force_curve_svg(record.curve(), patient_case.name + ": " + options.script);
-        curve.close();
-        if (!curve)
-            throw SystemFailure({options.curve.string(), "could not be written", "", "check free space"});
+        curve_file->write_text(force_curve_svg(record.curve(), patient_case.name + ": " + script));
         curve_file->commit();
     }
+    if (log_file) log_file->commit();
 
     const ServoStatistics statistics = loop.statistics();
     for (const SetupResult& setup : statistics.setup)
         if (!setup.ok) spdlog::warn("{}", setup.message);
     Json result{{"case", patient_case.name},
-                {"script", options.script},
+                {"script", script},
                 {"clock", options.virtual_clock ? "virtual" : "real"},
                 {"ready_s", ready_s},
                 {"ticks", statistics.ticks},

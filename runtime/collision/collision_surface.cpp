@@ -67,8 +67,8 @@ void CollisionSurface::take_nodes(const ObbTree& tree, double scale, const std::
         Eigen::Map<Eigen::Vector3f>(to.half_extents) = from.half_extents.array() + padding;
         if (depth[i] < 0)
             refuse(name, "node " + std::to_string(i) + " of the OBB tree has no parent before it", "");
-        if (depth[i] > max_depth)
-            refuse(name, "the OBB tree is deeper than " + std::to_string(max_depth) + " levels", "");
+        if (depth[i] > deepest_obb_tree)
+            refuse(name, "the OBB tree is deeper than " + std::to_string(deepest_obb_tree) + " levels", "");
         const auto first = static_cast<std::size_t>(from.first);
         if (from.count > 0) {
             if (from.first < 0 || first + static_cast<std::size_t>(from.count) > triangles_.size())
@@ -77,7 +77,7 @@ void CollisionSurface::take_nodes(const ObbTree& tree, double scale, const std::
             to.link = -1 - static_cast<std::int32_t>(leaves_.size());
             leaves_.push_back({from.first, from.count});
         } else {
-            if (from.count < 0 || first <= i || first + 1 >= count || depth[first] >= 0)
+            if (from.count < 0 || from.first < 0 || first <= i || first + 1 >= count || depth[first] >= 0)
                 refuse(name,
                        "node " + std::to_string(i) + " of the OBB tree names child " + std::to_string(first),
                        "a later node without a parent");

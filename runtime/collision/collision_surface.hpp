@@ -86,7 +86,6 @@ class CollisionSurface {
         std::int32_t first;
         std::int32_t count;
     };
-    static constexpr int max_depth = 160;
 
     void take_nodes(const ObbTree& tree, double scale, const std::string& name);
     struct Reach;

@@ -49,10 +49,6 @@ float squared_excess(Float4 value, Float4 limit) noexcept {
     return squared[0] + squared[1] + squared[2];
 }
 
-ClosestPoint from_triangle_point(const TrianglePoint& found, std::int32_t slot) noexcept {
-    return {found.point, found.barycentric, std::sqrt(found.squared_distance), 0, slot, found.feature};
-}
-
 }  // namespace
 
 // A segment from `from` over 2 `half`, fattened by `radius`.
@@ -96,7 +92,7 @@ std::optional<ClosestPoint> CollisionSurface::closest_point(const Vector3d& p, d
     if (hint >= 0 && hint < triangle_count()) test(hint);
 
     const Vector3f p_float = p.cast<float>();
-    std::array<Pending, max_depth + 2> stack;
+    std::array<Pending, deepest_obb_tree + 2> stack;
     std::size_t size = 0;
     stack[size++] = {0, squared_distance_bound(nodes_[0], p_float)};
     while (size > 0) {
@@ -118,9 +114,9 @@ std::optional<ClosestPoint> CollisionSurface::closest_point(const Vector3d& p, d
         stack[size++] = a_first ? a : b;
     }
     if (best_slot < 0) return std::nullopt;
-    ClosestPoint result = from_triangle_point(best, best_slot);
-    result.triangle = mesh_triangle(best_slot);
-    return result;
+    return ClosestPoint{
+        best.point, best.barycentric, std::sqrt(best.squared_distance), mesh_triangle(best_slot),
+        best_slot,  best.feature};
 }
 
 std::optional<SweepContact> CollisionSurface::sweep_sphere(const Vector3d& from, const Vector3d& to,
@@ -140,7 +136,7 @@ std::optional<SweepContact> CollisionSurface::sweep_sphere(const Vector3d& from,
 
     const Vector3f from_float = from.cast<float>();
     const auto radius_float = static_cast<float>(radius);
-    std::array<Pending, max_depth + 2> stack;
+    std::array<Pending, deepest_obb_tree + 2> stack;
     std::size_t size = 0;
     stack[size++] = {0, 0};
     while (size > 0 && !(best.slot >= 0 && best.fraction <= 0)) {
@@ -172,7 +168,7 @@ std::size_t CollisionSurface::slots_near(const Vector3d& a, const Vector3d& b, d
     const Vector3f half = (0.5 * (b - a)).cast<float>();
     const Reach reach{a.cast<float>(), half, static_cast<float>(radius)};
     std::size_t found = 0;
-    std::array<std::int32_t, max_depth + 2> stack;
+    std::array<std::int32_t, deepest_obb_tree + 2> stack;
     std::size_t size = 0;
     stack[size++] = 0;
     while (size > 0) {

@@ -34,7 +34,7 @@ bool GodObject::move(const CollisionSurface& surface, const Vector3d& device) no
 
 // One round goes towards the device until nothing is in the way within the half-spaces touched in that round.
 // The half-spaces are those of the first touches, so a sphere that slid off an edge hangs above the surface;
-// further rounds let it down, until a round does not move it any more.
+// further rounds let it down, until a round hardly moves it.
 void GodObject::slide(const CollisionSurface& surface, const Vector3d& device) noexcept {
     double slide_left = 2 * (device - last_device_).norm() + slide_slack;
     int sweeps = 0;

@@ -38,6 +38,19 @@ void ServoLoop::run() {
         const PeriodicClock::Wake wake = clock.wait();
         step(1e-9 * static_cast<double>(wake.period * period_ns), wake.latency_ns, clock.overruns());
     }
+    let_go(clock);
+}
+
+// A hand that presses must not be dropped: the force ends as for a lost device, within 20 ms.
+void ServoLoop::let_go(PeriodicClock& clock) noexcept {
+    constexpr int ramp_ticks = 20;
+    for (int tick = 0; tick < ramp_ticks; ++tick) {
+        clock.wait();
+        DeviceState state = device_.read(result_.time);
+        state.connected = false;
+        model_.tick(state, result_);
+        device_.write(result_.force);
+    }
     device_.write({0, 0, 0});
 }
 

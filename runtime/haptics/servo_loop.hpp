@@ -57,6 +57,7 @@ class ServoLoop {
 
   private:
     void run();
+    void let_go(PeriodicClock& clock) noexcept;
     void step(double time, std::int64_t wake_latency_ns, std::int64_t overruns) noexcept;
 
     HapticModel& model_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Times a tick on a rigid surface along a recorded path: the sliding and pressing of design.md, "Numbers to
+// Times a tick on a rigid surface along a recorded path: the sliding and pressing of "Numbers to
 // beat". usage: bench_tick SURFACE.vtp PATH.txt
 #include <cstdio>
 #include <exception>

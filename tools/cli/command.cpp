@@ -2,6 +2,8 @@
 #include "tools/cli/command.hpp"
 
 #include <chrono>
+#include <cmath>
+#include <cstdlib>
 #include <iostream>
 #include <new>
 #include <spdlog/sinks/stdout_sinks.h>
@@ -102,7 +104,13 @@ Command::Command(CommandText text) : text_(std::move(text)), app_(text_.summary,
     app_.add_flag("--verbose", verbose_, "say more")->group(group);
     app_.add_flag("--force", force_, "replace existing outputs")->group(group);
     app_.add_flag("--xml", xml_, "print the Slicer Execution Model description and exit")->group(group);
-    app_.add_option("--threads", threads_, "threads to use [default: all cores]")->group(group);
+    app_.add_option("--threads", threads_, "threads for work that can use several [default: all cores]")
+        ->check(CLI::PositiveNumber)
+        ->group(group);
+}
+
+std::string Command::finite_number(const std::string& text) {
+    return std::isfinite(std::strtod(text.c_str(), nullptr)) ? "" : text + " is not a finite number";
 }
 
 CLI::Option* Command::remember(Parameter::Kind kind, CLI::Option* option, const std::string& help) {
@@ -156,17 +164,19 @@ int Command::parse(int argc, char** argv) {
     return ExitCode::usage;
 }
 
-void Command::emit(nlohmann::ordered_json result, double seconds) const {
+void Command::emit(nlohmann::ordered_json result, double seconds, StagedFile* json_file) const {
     result["schema"] = "palpate." + text_.name + "/1";
     result["version"] = version();
     result["seconds"] = seconds;
     result["peak_memory_bytes"] = peak_memory_bytes();
-    if (json_path_.empty())
-        print_lines(result, "");
-    else if (json_path_ == "-")
+    if (json_file != nullptr) {
+        json_file->write_text(result.dump(2) + "\n");
+        json_file->commit();
+    } else if (json_path_ == "-") {
         std::cout << result.dump(2) << '\n';
-    else
-        write_text_file(json_path_, result.dump(2) + "\n", true);
+    } else {
+        print_lines(result, "");
+    }
 }
 
 int Command::run(int argc, char** argv, const std::function<nlohmann::ordered_json(Session&)>& job) {
@@ -176,10 +186,9 @@ int Command::run(int argc, char** argv, const std::function<nlohmann::ordered_js
     remove_staged_files_on_interrupt();
     const auto start = std::chrono::steady_clock::now();
     const auto say = [&](const std::exception& error) {
-        std::cerr << program << ": " << error.what() << '\n';
+        std::cerr << program << ": " << with_final_names(error.what()) << '\n';
     };
     try {
-        if (threads_ < 0) throw UsageError({"--threads", std::to_string(threads_), "1 or more", ""});
         for (const Parameter& parameter : parameters_)
             if (parameter.kind == Parameter::Kind::input_file)
                 for (const std::string& path : parameter.option->results())
@@ -191,10 +200,13 @@ int Command::run(int argc, char** argv, const std::function<nlohmann::ordered_js
         session.force = force_;
         session.quiet = quiet_;
         session.progress = Progress(quiet_);
+        std::optional<StagedFile> json_file;
+        if (!json_path_.empty() && json_path_ != "-") json_file.emplace(json_path_, force_);
         nlohmann::ordered_json result = job(session);
         session.progress.finish();
         emit(std::move(result),
-             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+             json_file ? &*json_file : nullptr);
         std::cout.flush();
         if (session.shortfall) throw QualityNotMet(*session.shortfall);
         return std::cout ? ExitCode::ok : ExitCode::failed;

@@ -66,9 +66,9 @@ struct Session {
 ///     int main(int argc, char** argv) {
 ///         cli::Command command({.name = "obb", .summary = "Builds ...", .examples = {..., ...}});
 ///         std::filesystem::path input, output;
-///         command.input("surface", input, "triangle surface (.vtp) or tetrahedra (.vtu), LPS
-///         mm")->required(); command.output("-o,--output", output, "OBB tree (.obb.h5)")->required(); return
-///         command.run(argc, argv, [&](cli::Session& session) { ...; return nlohmann::json{...}; });
+///         command.input("surface", input, "triangles (.vtp), LPS mm")->required();
+///         command.output("-o,--output", output, "OBB tree (.obb.h5)")->required();
+///         return command.run(argc, argv, [&](cli::Session& session) { ...; return Json{...}; });
 ///     }
 class Command {
   public:
@@ -86,17 +86,18 @@ class Command {
     template <typename T>
     CLI::Option* option(const std::string& names, T& value, const std::string& help,
                         const std::string& unit = "") {
-        CLI::Option* option = app_.add_option(names, value, unit.empty() ? help : help + " [" + unit + "]");
+        const std::string full_help = unit.empty() ? help : help + " [" + unit + "]";
+        CLI::Option* option = app_.add_option(names, value, full_help);
         if constexpr (std::is_floating_point_v<T>) {
-            option->default_str(fmt::format("{}", value));
-            return remember(Parameter::Kind::number, option, help);
+            option->default_str(fmt::format("{}", value))->check(finite_number);
+            return remember(Parameter::Kind::number, option, full_help);
         } else if constexpr (std::is_integral_v<T>) {
             option->default_str(fmt::format("{}", value));
-            return remember(Parameter::Kind::integer, option, help);
+            return remember(Parameter::Kind::integer, option, full_help);
         } else {
             if constexpr (std::is_convertible_v<T, std::string>)
                 if (!value.empty()) option->default_str(value);
-            return remember(Parameter::Kind::text, option, help);
+            return remember(Parameter::Kind::text, option, full_help);
         }
     }
 
@@ -109,9 +110,11 @@ class Command {
     const std::vector<Parameter>& parameters() const { return parameters_; }
 
   private:
+    /// Refuses "nan" and "inf", which CLI11 reads as numbers; an empty text means accepted.
+    static std::string finite_number(const std::string& text);
     CLI::Option* remember(Parameter::Kind kind, CLI::Option* option, const std::string& help);
     int parse(int argc, char** argv);
-    void emit(nlohmann::ordered_json result, double seconds) const;
+    void emit(nlohmann::ordered_json result, double seconds, StagedFile* json_file) const;
 
     CommandText text_;
     CLI::App app_;

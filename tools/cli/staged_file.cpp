@@ -38,6 +38,10 @@ extern "C" void remove_and_exit(int) {
     _exit(130);
 }
 
+std::string temporary_prefix() {
+    return ".part" + std::to_string(getpid()) + "-";
+}
+
 int claim_slot(const std::string& path) {
     for (std::size_t i = 0; i < slots.size(); ++i) {
         if (slots[i].used.load() || path.size() >= slots[i].path.size()) continue;
@@ -71,7 +75,7 @@ StagedFile::StagedFile(std::filesystem::path target, bool replace) : target_(std
     if (!std::filesystem::is_directory(folder))
         throw InvalidInput({target_.string(), "its folder does not exist", "",
                             "make it first: mkdir -p " + folder.string()});
-    temporary_ = folder / (".part" + std::to_string(getpid()) + "-" + target_.filename().string());
+    temporary_ = folder / (temporary_prefix() + target_.filename().string());
     slot_ = claim_slot(temporary_.string());
 }
 
@@ -81,10 +85,26 @@ StagedFile::~StagedFile() {
     if (slot_ >= 0) slots[static_cast<std::size_t>(slot_)].used.store(false);
 }
 
+void StagedFile::write_text(const std::string& text) const {
+    std::ofstream stream(temporary_, std::ios::binary);
+    stream << text;
+    stream.close();
+    if (!stream)
+        throw SystemFailure(
+            {target_.string(), "could not be written", "", "check free space and permissions of its folder"});
+}
+
 void StagedFile::commit() {
     flush_to_disk(temporary_, target_);
     std::filesystem::rename(temporary_, target_);
     flush_to_disk(target_.has_parent_path() ? target_.parent_path() : ".", target_);
+}
+
+std::string with_final_names(std::string message) {
+    const std::string prefix = temporary_prefix();
+    for (auto at = message.find(prefix); at != std::string::npos; at = message.find(prefix, at))
+        message.erase(at, prefix.size());
+    return message;
 }
 
 void remove_staged_files_on_interrupt() {
@@ -100,12 +120,7 @@ void pass_interrupts_to(pid_t child) {
 
 void write_text_file(const std::filesystem::path& target, const std::string& text, bool replace) {
     StagedFile staged(target, replace);
-    std::ofstream stream(staged.path(), std::ios::binary);
-    stream << text;
-    stream.close();
-    if (!stream)
-        throw SystemFailure(
-            {target.string(), "could not be written", "", "check free space and permissions of its folder"});
+    staged.write_text(text);
     staged.commit();
 }
 

@@ -20,6 +20,9 @@ class StagedFile {
     /// Where to write; ends in the target's name, so that writers that look at the extension find it.
     const std::filesystem::path& path() const { return temporary_; }
 
+    /// Writes the whole content; throws SystemFailure if it does not fit.
+    void write_text(const std::string& text) const;
+
     /// Flushes and renames; throws SystemFailure if the file is missing or cannot be flushed.
     void commit();
 
@@ -28,6 +31,9 @@ class StagedFile {
     std::filesystem::path temporary_;
     int slot_ = -1;
 };
+
+/// Puts final names into a message in the place of temporary ones.
+std::string with_final_names(std::string message);
 
 /// Makes SIGINT and SIGTERM remove all staged files and exit with 130. Called once by Command::run().
 void remove_staged_files_on_interrupt();

@@ -43,9 +43,15 @@ int main(int argc, char** argv) {
     command.output("-o,--output", output, "asset (.vtkhdf)")->required();
     command.output("--parts", parts, "folder for intermediate results; OUTPUT.parts by default");
     return command.run(argc, argv, [&](cli::Session& session) {
+        if (output.extension() != ".vtkhdf")
+            throw UsageError({output.string(), "is no name for an asset", "a name that ends in .vtkhdf", ""});
+        if (output.has_parent_path() && !std::filesystem::is_directory(output.parent_path()))
+            throw InvalidInput({output.string(), "its folder does not exist", "",
+                                "make it first: mkdir -p " + output.parent_path().string()});
         build::CaseFile case_file = build::read_case_file(case_path);
         if (!volume.empty()) case_file.volume = volume;
         if (!labels.empty()) case_file.labels = labels;
+        build::require_what_the_bodies_need(case_file);
         if (parts.empty()) parts = std::filesystem::path(output).replace_extension(".parts");
         const build::BuildPaths paths{parts, output,
                                       std::filesystem::path(output).replace_extension(".html")};

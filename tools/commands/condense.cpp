@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/fem/condense.hpp"
 
+#include <algorithm>
 #include <charconv>
 
 #include "formats/asset/parts.hpp"
@@ -82,6 +83,7 @@ int main(int argc, char** argv) {
         body.mesh = read_tetrahedra(input);
         for (const std::string& text : materials)
             body.materials.push_back(parse_material(text, body.mesh, input.filename().string()));
+        std::ranges::sort(body.materials, {}, &RegionMaterial::region);
         std::vector<FixedRule> rules;
         for (const std::string& text : fixed) rules.push_back(parse_fixed_rule(text));
         body.fixed_nodes = fixed_nodes_of(body.mesh, boundary_surface(body.mesh), rules);

@@ -115,14 +115,18 @@ int main(int argc, char** argv) {
     command.option("--min-component-volume", sizing.min_component_volume,
                    "smaller specks and pinholes vanish", "mm³");
     command.flag("--allow-components", allow_components, "accept a body of several separate pieces");
-    command.option("--min-dihedral-deg", contract.min_dihedral_deg, "quality contract", "degrees");
-    command.option("--max-dihedral-deg", contract.max_dihedral_deg, "quality contract", "degrees");
-    command.option("--max-volume-error-percent", contract.max_volume_error_percent, "quality contract", "%");
-    command.option("--min-dice", contract.min_dice, "quality contract");
+    command.option("--min-dihedral-deg", contract.min_dihedral_deg,
+                   "quality contract: smallest dihedral angle", "degrees");
+    command.option("--max-dihedral-deg", contract.max_dihedral_deg,
+                   "quality contract: largest dihedral angle", "degrees");
+    command.option("--max-volume-error-percent", contract.max_volume_error_percent,
+                   "quality contract: volume of a region against its voxels", "%");
+    command.option("--min-dice", contract.min_dice, "quality contract: overlap with the labels, 0 to 1");
     command.output("-o,--output", output, "tetrahedra (.vtu), LPS mm")->required();
 
     return command.run(argc, argv, [&](cli::Session& session) {
         cli::StagedFile staged = session.stage(output);
+        set_imaging_threads(session.threads);
         session.progress.step("read", 0);
         const LabelMap map = read_label_map(labels_path, [](auto text) { spdlog::info("{}", text); });
         std::vector<std::int32_t> regions;
@@ -149,13 +153,13 @@ int main(int argc, char** argv) {
         const std::vector<RegionFidelity> fidelity = compare(mesh, map);
         require(contract, mesh, quality, fidelity, output.string());
         write_tetrahedra(staged.path(), mesh);
-        staged.commit();
         session.progress.step("measure distance to the labels' surface", 0.95);
         const SurfaceDistance distance =
             surface_distance(boundary_surface(mesh).surface, label_surface(map, regions, sizing.smoothing));
         nlohmann::json result = to_json(mesh, quality, fidelity);
         result["surface_distance_mm"] = {
             {"mean", distance.mean}, {"p95", distance.percentile_95}, {"max", distance.maximum}};
+        staged.commit();
         return result;
     });
 }

@@ -17,7 +17,8 @@ int main(int argc, char** argv) {
     std::filesystem::path input, output;
     ObbTreeOptions options;
     command.input("surface", input, "triangle surface (.vtp) or tetrahedra (.vtu), LPS mm")->required();
-    command.option("--leaf-triangles", options.max_leaf_triangles, "most triangles in a leaf");
+    command.option("--leaf-triangles", options.max_leaf_triangles, "most triangles in a leaf")
+        ->check(CLI::Range(1, most_leaf_triangles));
     command.output("-o,--output", output, "OBB tree (.obb.h5)")->required();
 
     return command.run(argc, argv, [&](cli::Session& session) {

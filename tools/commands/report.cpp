@@ -61,6 +61,7 @@ int main(int argc, char** argv) {
 
     return command.run(argc, argv, [&](cli::Session& session) {
         cli::StagedFile page = session.stage(output);
+        set_imaging_threads(session.threads);
         session.progress.step("reading the case", 0);
         const Case patient_case = read_asset(asset);
         std::optional<Volume> volume;
@@ -75,7 +76,7 @@ int main(int argc, char** argv) {
         if (!stages.empty()) inputs.stages = stages_from_json(json_of(stages), stages.string());
         session.progress.step("drawing", 0.3);
         const std::string html = html_report(inputs);
-        std::ofstream(page.path(), std::ios::binary) << html;
+        page.write_text(html);
         page.commit();
         return nlohmann::json{{"report", output.string()}, {"bytes", html.size()}};
     });

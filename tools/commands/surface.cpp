@@ -47,6 +47,7 @@ int main(int argc, char** argv) {
             throw UsageError({"--labels, --label", "one is given without the other", "both or none", ""});
         cli::StagedFile staged = session.stage(output);
         const auto note = [](std::string_view text) { spdlog::info("{}", text); };
+        set_imaging_threads(session.threads);
         session.progress.step("read", 0);
         LabelMap labels;
         std::vector<std::int32_t> values;

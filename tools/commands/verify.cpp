@@ -107,6 +107,7 @@ int main(int argc, char** argv) {
     command.option("--columns", columns, "columns of each compliance to solve again")
         ->check(CLI::Range(1, 100000));
     return command.run(argc, argv, [&](cli::Session& session) {
+        set_linear_algebra_threads(session.threads);
         session.progress.step("read and check digests", 0);
         const Case patient_case = read_asset(asset);
         Checks checks;

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <Eigen/Core>
-#include <functional>
-#include <string_view>
 
 #include "formats/model/body.hpp"
+#include "formats/model/progress.hpp"
 
 namespace palpate {
-
-/// Called with what happens now and the fraction of the whole that is done.
-using ProgressCallback = std::function<void(std::string_view what, double fraction)>;
 
 /// A surface compliance in double precision, with what its factor tells about it.
 struct ExactCompliance {

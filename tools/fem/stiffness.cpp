@@ -70,7 +70,8 @@ std::map<std::int32_t, Lame> checked_materials(const TetMesh& mesh,
         if (!(material.poissons_ratio > -1 && material.poissons_ratio < 0.5))
             throw InvalidInput({culprit, "Poisson's ratio " + std::to_string(material.poissons_ratio),
                                 "between -1 and 0.5, both excluded", "soft tissue is usually 0.45 to 0.49"});
-        lame[region] = lame_parameters(material);
+        if (!lame.try_emplace(region, lame_parameters(material)).second)
+            throw InvalidInput({culprit, "given twice", "one material a region", "leave one out"});
     }
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
         if (!lame.contains(mesh.regions[t]))

@@ -161,7 +161,7 @@ void check_names(std::span<const StructureRecipe> structures) {
 }  // namespace
 
 LabelMap segment(const Volume* volume, const LabelMap* prior, std::span<const StructureRecipe> structures,
-                 const SegmentProgress& progress) {
+                 const ProgressCallback& progress) {
     check_names(structures);
     for (const StructureRecipe& structure : structures) check_recipe(structure);
     if (volume == nullptr && prior == nullptr)

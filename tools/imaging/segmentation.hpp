@@ -10,6 +10,7 @@
 
 #include "formats/model/image_grid.hpp"
 #include "formats/model/label_map.hpp"
+#include "formats/model/progress.hpp"
 
 namespace palpate {
 
@@ -46,9 +47,6 @@ StructureRecipe parse_structure(std::string_view text);
 /// Throws InvalidInput if the recipe or a parameter is unknown (with the nearest names), or of another kind.
 void check_recipe(const StructureRecipe& structure);
 
-/// Called before each structure with its name and the fraction done (0 ... 1).
-using SegmentProgress = std::function<void(std::string_view, double)>;
-
 /// Makes the structures in order, with label values 1, 2, 3 ... A structure takes background voxels only,
 /// except a sphere, which takes voxels of the structure it lies inside. The result lies on the grid of
 /// `volume` or, without one, of `prior`. `prior` is what the recipe "import" reads from, resampled to the
@@ -56,6 +54,6 @@ using SegmentProgress = std::function<void(std::string_view, double)>;
 /// Throws InvalidInput naming the structure if it would be empty, if a recipe misses the volume or the prior
 /// it needs, if a label is not found, if a name occurs twice; and as check_recipe() does.
 LabelMap segment(const Volume* volume, const LabelMap* prior, std::span<const StructureRecipe> structures,
-                 const SegmentProgress& progress = {});
+                 const ProgressCallback& progress = {});
 
 }  // namespace palpate

@@ -35,7 +35,7 @@ std::vector<InterfaceFace> interface_faces(const TetMesh& mesh, std::span<const 
         const Eigen::Index inner = number(faces[i].tet), outer = shared ? number(faces[i + 1].tet) : 0;
         if (inner != outer) {
             const Tetrahedron& tet = mesh.tetrahedra[faces[i].tet];
-            const auto& corner = tet_faces[faces[i].face];
+            const auto& corner = tetrahedron_faces[faces[i].face];
             result.push_back({{tet[corner[0]], tet[corner[1]], tet[corner[2]]}, inner, outer});
         }
         i += shared ? 2 : 1;
@@ -107,7 +107,8 @@ std::vector<TetFace> sorted_faces(const TetMesh& mesh) {
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
         for (std::size_t f = 0; f < 4; ++f) {
             const Tetrahedron& tet = mesh.tetrahedra[t];
-            Triangle nodes{tet[tet_faces[f][0]], tet[tet_faces[f][1]], tet[tet_faces[f][2]]};
+            Triangle nodes{tet[tetrahedron_faces[f][0]], tet[tetrahedron_faces[f][1]],
+                           tet[tetrahedron_faces[f][2]]};
             std::ranges::sort(nodes);
             faces.push_back({nodes, t, f});
         }

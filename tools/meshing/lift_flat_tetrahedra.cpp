@@ -54,7 +54,7 @@ class Lifter {
     void add_normal(const TetFace& face) {
         const Tetrahedron& tet = mesh_.tetrahedra[face.tet];
         const auto corner = [&](std::size_t c) {
-            return static_cast<std::size_t>(tet[tet_faces[face.face][c]]);
+            return static_cast<std::size_t>(tet[tetrahedron_faces[face.face][c]]);
         };
         const Eigen::Vector3d area =
             (start_[corner(1)] - start_[corner(0)]).cross(start_[corner(2)] - start_[corner(0)]);

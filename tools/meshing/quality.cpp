@@ -30,7 +30,7 @@ std::array<Eigen::Vector3d, 4> corners_of(const TetMesh& mesh, std::size_t t) {
 std::array<Eigen::Vector3d, 4> face_vectors(const std::array<Eigen::Vector3d, 4>& p) {
     std::array<Eigen::Vector3d, 4> areas;
     for (std::size_t f = 0; f < 4; ++f) {
-        const auto& [a, b, c] = tet_faces[f];
+        const auto& [a, b, c] = tetrahedron_faces[f];
         areas[f] = 0.5 * (p[b] - p[a]).cross(p[c] - p[a]);
     }
     return areas;

@@ -60,6 +60,20 @@ std::vector<Label> labels_among(const LabelMap& map, const std::vector<std::int3
     return labels;
 }
 
+// Meshing needs something of every region left after specks are gone.
+void require_every_region(const RegionLabels& labels, const LabelMap& map, double min_component_volume) {
+    std::vector<std::int64_t> voxels(labels.values.size() + 1, 0);
+    for (const std::uint8_t region : labels.regions) ++voxels[region];
+    for (std::size_t region = 1; region < voxels.size(); ++region)
+        if (voxels[region] == 0) {
+            const Label label = label_of(map, labels.values[region - 1]);
+            throw InvalidInput({fmt::format("label {} \"{}\"", label.value, label.name),
+                                fmt::format("has no piece of {:g} mm³ or more", min_component_volume),
+                                "1 or more",
+                                "make the structure larger, or pass a smaller --min-component-volume"});
+        }
+}
+
 // A component has arrived if at least half of its voxels lie in tetrahedra of its region.
 void require_every_component(const TetMesh& mesh, const RegionLabels& labels, const LabelMap& map) {
     const LabelComponents found = find_components(labels);
@@ -93,6 +107,7 @@ TetMesh tetrahedralise(const LabelMap& map, std::span<const std::int32_t> region
     progress("smooth labels", 0);
     RegionLabels labels = cut_out_regions(map, region_values, smoothing_margin(map.grid, sigma));
     absorb_specks(labels, sizing.min_component_volume);
+    require_every_region(labels, map, sizing.min_component_volume);
     const SmoothedLabels smoothed(labels, sigma);
 
     const std::vector<RegionSizing> region_sizing = sizing_by_region(sizing, labels.values);

@@ -7,12 +7,10 @@
 #include <vector>
 
 #include "formats/model/label_map.hpp"
+#include "formats/model/progress.hpp"
 #include "formats/model/tet_mesh.hpp"
 
 namespace palpate {
-
-/// Told what happens now and which fraction (0 ... 1) of the whole is done.
-using ProgressCallback = std::function<void(std::string_view, double)>;
 
 /// A finer or coarser size for one region.
 struct RegionSize {

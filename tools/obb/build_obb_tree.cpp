@@ -22,7 +22,7 @@ struct Plate {
 };
 
 void check(const TriangleMesh& surface, const ObbTreeOptions& options) {
-    if (options.max_leaf_triangles < 1)
+    if (options.max_leaf_triangles < 1 || options.max_leaf_triangles > most_leaf_triangles)
         throw InvalidInput({"OBB tree", std::to_string(options.max_leaf_triangles) + " triangles per leaf",
                             "1 or more", ""});
     if (surface.triangles.empty())

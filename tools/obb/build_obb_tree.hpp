@@ -8,7 +8,7 @@
 namespace palpate {
 
 struct ObbTreeOptions {
-    std::int32_t max_leaf_triangles = 4;  ///< 1 or more
+    std::int32_t max_leaf_triangles = 4;  ///< 1 ... most_leaf_triangles
 };
 
 /// Builds a tree of oriented boxes over a triangle surface, top down. A box takes its axes from the

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/commands/build/case_file.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <fmt/format.h>
 #include <set>
 #include <toml++/toml.h>
@@ -131,19 +133,31 @@ nlohmann::json to_json(const toml::node& node) {
 
 // A structure's other keys are the recipe's parameters; `palpate segment` knows which exist and refuses the
 // rest.
-StructureSpec structure(Reader reader) {
+StructureSpec structure(Reader reader, const std::filesystem::path& folder) {
     StructureSpec spec;
     spec.name = reader.required<std::string>("name");
     spec.recipe = reader.required<std::string>("recipe");
     for (const auto& [key, node] : reader.raw())
-        if (key.str() != "name" && key.str() != "recipe")
+        if (key.str() == "file")
+            spec.file = folder / reader.required<std::string>("file");
+        else if (key.str() != "name" && key.str() != "recipe")
             spec.parameters[std::string(key.str())] = to_json(node);
     return spec;
 }
 
+// Bodies name files and stages.
+std::string body_name(Reader& reader) {
+    const std::string name = reader.required<std::string>("name");
+    const bool fit = !name.empty() && std::ranges::all_of(name, [](unsigned char c) {
+        return std::isalnum(c) != 0 || c == '_' || c == '-';
+    });
+    if (!fit) reader.fail(reader.raw(), "name", "is '" + name + "'", "letters, digits, '_' and '-'");
+    return name;
+}
+
 RigidSpec rigid(Reader reader) {
     RigidSpec spec;
-    spec.name = reader.required<std::string>("name");
+    spec.name = body_name(reader);
     spec.label = reader.optional<std::string>("label").value_or(spec.name);
     spec.isovalue = reader.optional<double>("isovalue_hu");
     spec.max_triangles = reader.optional<std::int64_t>("max_triangles");
@@ -163,7 +177,7 @@ std::map<std::string, double> options(Reader reader,
 
 DeformableSpec deformable(Reader reader) {
     DeformableSpec spec;
-    spec.name = reader.required<std::string>("name");
+    spec.name = body_name(reader);
     spec.sizing = options(reader.table("mesh"), {{"cell_size_mm", "--cell-size"},
                                                  {"facet_size_mm", "--facet-size"},
                                                  {"facet_distance_mm", "--facet-distance"},
@@ -210,7 +224,8 @@ CaseFile read_case_file(const std::filesystem::path& path) {
     result.volume = resolved(input.optional<std::string>("volume"));
     result.labels = resolved(input.optional<std::string>("labels"));
     input.refuse_unknown();
-    for (const Reader& table : root.tables("structure")) result.structures.push_back(structure(table));
+    for (const Reader& table : root.tables("structure"))
+        result.structures.push_back(structure(table, path.parent_path()));
     for (const Reader& table : root.tables("rigid")) result.rigid.push_back(rigid(table));
     for (const Reader& table : root.tables("deformable")) result.deformable.push_back(deformable(table));
     result.haptics = options(root.table("haptics"), {{"tool_radius_mm", "--tool-radius"},
@@ -223,9 +238,24 @@ CaseFile read_case_file(const std::filesystem::path& path) {
                                         {"max_volume_error_percent", "--max-volume-error-percent"},
                                         {"min_dice", "--min-dice"}});
     root.refuse_unknown();
+    std::set<std::string> names;
+    const auto require_new = [&](const std::string& name) {
+        if (!names.insert(name).second)
+            root.fail(document, "name", "'" + name + "' is used by two bodies", "a name of its own for each");
+    };
+    for (const RigidSpec& body : result.rigid) require_new(body.name);
+    for (const DeformableSpec& body : result.deformable) require_new(body.name);
     if (result.rigid.empty() && result.deformable.empty())
         root.fail(document, "deformable", "is missing", "at least one [[rigid]] or [[deformable]] body");
     return result;
+}
+
+void require_what_the_bodies_need(const CaseFile& case_file) {
+    for (const RigidSpec& body : case_file.rigid)
+        if (body.isovalue && !case_file.volume)
+            throw InvalidInput({"rigid body '" + body.name + "'",
+                                "isovalue_hu needs grey values, and no volume is named", "",
+                                "set input.volume or pass --volume, or leave isovalue_hu out"});
 }
 
 }  // namespace palpate::build

@@ -14,6 +14,7 @@ struct StructureSpec {
     std::string name;
     std::string recipe;
     nlohmann::json parameters = nlohmann::json::object();
+    std::optional<std::filesystem::path> file;  ///< parameter `file` of recipe import: a label map of its own
 };
 
 /// A rigid body: the surface of a label, or of a grey isovalue near a label.
@@ -53,7 +54,11 @@ struct CaseFile {
 };
 
 /// Reads a case file. Throws InvalidInput naming file, line and key for a syntax error, an unknown key (with
-/// the nearest known ones), a missing or wrongly typed value, or another schema.
+/// the nearest known ones), a missing or wrongly typed value, a name used twice or unfit for a file name, or
+/// another schema.
 CaseFile read_case_file(const std::filesystem::path& path);
+
+/// Throws InvalidInput if a body asks for a grey isovalue and no volume is named.
+void require_what_the_bodies_need(const CaseFile& case_file);
 
 }  // namespace palpate::build

@@ -18,19 +18,6 @@ std::string digest_of_text(const std::string& text) {
     return sha256(std::as_bytes(std::span(text)));
 }
 
-// A file's digest; for a folder, that of its files' names and digests.
-std::string content_digest(const std::filesystem::path& path) {
-    if (!std::filesystem::is_directory(path)) return sha256_file(path);
-    std::vector<std::filesystem::path> files;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(path))
-        if (entry.is_regular_file()) files.push_back(entry.path());
-    std::ranges::sort(files);
-    std::string listing;
-    for (const auto& file : files)
-        listing += std::filesystem::relative(file, path).string() + " " + sha256_file(file) + "\n";
-    return digest_of_text(listing);
-}
-
 nlohmann::ordered_json read_json(const std::filesystem::path& path) {
     std::ifstream stream(path);
     return nlohmann::ordered_json::parse(stream, nullptr, false);
@@ -77,11 +64,21 @@ bool outputs_match(const nlohmann::ordered_json& record, const Stage& stage) {
 
 }  // namespace
 
+std::string content_digest(const std::filesystem::path& path) {
+    if (!std::filesystem::is_directory(path)) return sha256_file(path);
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(path))
+        if (entry.is_regular_file()) files.push_back(entry.path());
+    std::ranges::sort(files);
+    std::string listing;
+    for (const auto& file : files)
+        listing += std::filesystem::relative(file, path).string() + " " + sha256_file(file) + "\n";
+    return digest_of_text(listing);
+}
+
 StageRunner::StageRunner(std::filesystem::path programs, std::filesystem::path folder, int threads,
                          bool quiet)
-    : programs_(std::move(programs)), folder_(std::move(folder)), threads_(threads), quiet_(quiet) {
-    std::filesystem::create_directories(folder_);
-}
+    : programs_(std::move(programs)), folder_(std::move(folder)), threads_(threads), quiet_(quiet) {}
 
 std::filesystem::path StageRunner::result_path(const std::string& stage_name) const {
     std::string file = stage_name;
@@ -109,7 +106,7 @@ StageRecord StageRunner::run(Stage stage) const {
         record.is_object() && record.value("key", "") == key && outputs_match(record, stage);
     if (!up_to_date) {
         spdlog::info("{}", stage.name);
-        std::filesystem::remove(record_file);
+        std::filesystem::create_directories(folder_);
         for (const std::string& extra : {std::string("--force"), std::string("--json"), result.string(),
                                          std::string("--threads"), std::to_string(threads_)})
             stage.arguments.push_back(extra);

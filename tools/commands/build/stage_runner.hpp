@@ -25,12 +25,15 @@ struct StageRecord {
     nlohmann::ordered_json result;  ///< the command's JSON result
 };
 
+/// SHA-256 of a file's content; of a folder, of its files' relative names and digests.
+std::string content_digest(const std::filesystem::path& path);
+
 /// Runs stages in order, each only if its program, arguments or the content of an input changed since its
 /// record in `folder`, or an output is missing or altered. Each leaves the command's result as `<stage>.json`
 /// and its record as `<stage>.stage.json`, blanks written as '-'.
 class StageRunner {
   public:
-    /// `programs` holds the palpate-<command> executables.
+    /// `programs` holds the palpate-<command> executables; `folder` is made by the first run().
     StageRunner(std::filesystem::path programs, std::filesystem::path folder, int threads, bool quiet);
 
     /// Throws what the child's exit code means (InvalidInput, QualityNotMet, ...) after the child itself has

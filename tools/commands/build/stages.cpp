@@ -30,15 +30,27 @@ Stage import_stage(const std::string& role, const std::filesystem::path& input,
     return stage;
 }
 
-Stage segment_stage(const CaseFile& case_file, const std::filesystem::path& parts) {
+// The structures as `palpate segment --recipes` takes them; `file_value` writes the file of an import.
+template <typename FileValue>
+Json recipes_json(const CaseFile& case_file, const std::string& file_key, const FileValue& file_value) {
     Json recipes = Json::array();
-    for (const StructureSpec& structure : case_file.structures)
+    for (const StructureSpec& structure : case_file.structures) {
+        nlohmann::json parameters = structure.parameters;
+        if (structure.file) parameters[file_key] = file_value(*structure.file);
         recipes.push_back(
-            {{"name", structure.name}, {"recipe", structure.recipe}, {"parameters", structure.parameters}});
+            {{"name", structure.name}, {"recipe", structure.recipe}, {"parameters", parameters}});
+    }
+    return recipes;
+}
+
+Stage segment_stage(const CaseFile& case_file, const std::filesystem::path& parts) {
+    const Json recipes = recipes_json(case_file, "file", [](const auto& file) { return file.string(); });
     const std::filesystem::path recipe_file = parts / "recipes.json", output = parts / "labels.seg.nrrd";
     cli::write_text_file(recipe_file, recipes.dump(2) + "\n", true);
 
     Stage stage{"segment", "segment", {"--recipes", recipe_file.string()}, {recipe_file}, {output}};
+    for (const StructureSpec& structure : case_file.structures)
+        if (structure.file) stage.inputs.push_back(*structure.file);
     if (case_file.volume) {
         add(stage.arguments, {"--volume", (parts / "volume.nrrd").string()});
         stage.inputs.push_back(parts / "volume.nrrd");
@@ -104,9 +116,8 @@ Stage condense_stage(const DeformableSpec& body, const std::filesystem::path& pa
 // What made the asset: digests of the inputs and the parameters, no file names of the patient's.
 Json provenance(const CaseFile& case_file, const std::vector<Stage>& stages) {
     Json inputs = Json::object();
-    if (case_file.volume && !std::filesystem::is_directory(*case_file.volume))
-        inputs["volume_sha256"] = sha256_file(*case_file.volume);
-    if (case_file.labels) inputs["labels_sha256"] = sha256_file(*case_file.labels);
+    if (case_file.volume) inputs["volume_sha256"] = content_digest(*case_file.volume);
+    if (case_file.labels) inputs["labels_sha256"] = content_digest(*case_file.labels);
     Json steps = Json::array();
     for (const Stage& stage : stages) {
         if (stage.command == "import") continue;
@@ -117,10 +128,7 @@ Json provenance(const CaseFile& case_file, const std::vector<Stage>& stages) {
                                : std::filesystem::path(argument).filename().string());
         steps.push_back(line);
     }
-    Json structures = Json::array();
-    for (const StructureSpec& structure : case_file.structures)
-        structures.push_back(
-            {{"name", structure.name}, {"recipe", structure.recipe}, {"parameters", structure.parameters}});
+    const Json structures = recipes_json(case_file, "file_sha256", sha256_file);
     return {{"inputs", inputs}, {"structures", structures}, {"steps", steps}};
 }
 
@@ -149,6 +157,7 @@ Stage pack_stage(const CaseFile& case_file, const BuildPaths& paths, const std::
 }  // namespace
 
 std::vector<Stage> stages_to_asset(const CaseFile& case_file, const BuildPaths& paths) {
+    std::filesystem::create_directories(paths.parts);
     std::vector<Stage> stages;
     if (case_file.volume)
         stages.push_back(import_stage("volume", *case_file.volume, paths.parts / "volume.nrrd"));
