@@ -6,9 +6,8 @@
 
 namespace palpate {
 
-/// Most levels below the root: what build_obb_tree()'s splits cannot exceed for 2^24 triangles. Traversals
-/// size their stacks by it.
-inline constexpr int deepest_obb_tree = 160;
+/// Most levels below the root, by which traversals size their stacks; a tree over 352 000 triangles has 21.
+inline constexpr int deepest_obb_tree = 120;
 
 /// Most triangles in a leaf: queries look at a leaf's triangles one by one in workspaces of fixed size.
 inline constexpr std::int32_t most_leaf_triangles = 16;

@@ -105,7 +105,7 @@ class Touch(unittest.TestCase):
         bad = self.folder / "bad.txt"
         bad.write_text("1 2 3\n1 2\n")
         cases = [
-            (["--script", "prod"], 2, "press, slide or a file"),
+            (["--script", "prod"], 3, "press, slide or a file"),
             (["--script", bad], 3, "line 2"),
             (["--body", "wal"], 2, "'wall'"),
             (["--target", "1,2"], 2, "--target"),
