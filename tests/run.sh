@@ -6,6 +6,8 @@ set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../pipelines/set_up.sh"
 set_up release asan tsan
 cd "$root"
+# Without these two volumes the tests of the demo's cases are skipped.
+sample_data/unpack.py build/sample_data || echo "run.sh: the sample volumes could not be unpacked" >&2
 
 status=0
 run_preset() { # preset

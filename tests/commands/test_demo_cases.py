@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The demo's two cases, built from real volumes, verified, pressed, and judged by a direct sparse solve."""
+import csv
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+BIN = pathlib.Path(os.environ["PALPATE_BIN"])
+SOURCE = pathlib.Path(os.environ["PALPATE_SOURCE"])
+ORACLE = pathlib.Path(os.environ["PALPATE_BUILD"]) / "tests" / "press_oracle"
+SAMPLES = SOURCE / "build" / "sample_data"
+
+FORCE_TOLERANCE = 0.01  # relative; what a press may differ from the direct solve
+
+
+def run(*arguments):
+    return subprocess.run(list(map(str, arguments)), text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=250)
+
+
+@unittest.skipUnless(SAMPLES.exists(), "PALPATE sample volumes are absent; run sample_data/unpack.py")
+class DemoCases(unittest.TestCase):
+    def check(self, name):
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            asset, log, touch = folder / "case.vtkhdf", folder / "log.csv", folder / "touch.json"
+            build = [BIN / "palpate", "build", SOURCE / "pipelines" / "cases" / f"{name}.toml", "-o", asset]
+            built = run(*build)
+            self.assertEqual(built.returncode, 0, built.stderr)
+            again = run(*build, "--json", "-")
+            self.assertEqual([row["stage"] for row in json.loads(again.stdout)["stages"] if row["status"] == "run"], [])
+
+            verified = run(BIN / "palpate", "verify", asset, "--json", "-")
+            self.assertEqual(verified.returncode, 0, verified.stdout)
+
+            touched = run(BIN / "palpate", "touch", asset, "--script", "press", "--depth", "3", "--seconds", "2",
+                          "--virtual-clock", "--log", log, "--json", touch)
+            self.assertEqual(touched.returncode, 0, touched.stderr)
+            self.check_force_follows_depth(log)
+            judged = run(ORACLE, asset, touch)
+            self.assertEqual(judged.returncode, 0, judged.stderr)
+            judgement = json.loads(judged.stdout)
+            self.assertGreater(judgement["felt_n"], 0)
+            self.assertLess(abs(judgement["felt_n"] / judgement["exact_n"] - 1), FORCE_TOLERANCE)
+            self.assertGreaterEqual(judgement["smallest_exact_n"], 0)
+            self.assertLess(judgement["deepest_inside_mm"], 0.01)
+
+    def check_force_follows_depth(self, log):
+        """Up to the first rest at full depth force never falls; at the end of the release it is zero."""
+        with open(log, newline="") as file:
+            rows = [{key.split("_")[0] + "_" + key.split("_")[1] if key.startswith("force") else key: float(value)
+                     for key, value in row.items() if key.startswith("force") or key == "depth_mm"}
+                    for row in csv.DictReader(file)]
+        magnitude = [sum(value * value for key, value in row.items() if key.startswith("force")) ** 0.5 for row in rows]
+        depth = [row["depth_mm"] for row in rows]
+        deepest = depth.index(max(depth))
+        self.assertAlmostEqual(max(depth), 3.0, delta=0.02)
+        pressing = magnitude[:deepest + 1]
+        # Sliding feet may trade a thousandth of the peak between ticks.
+        self.assertTrue(all(b >= a - 1e-3 * max(pressing) for a, b in zip(pressing, pressing[1:])), "force fell while pressing")
+        released = next(index for index in range(deepest, len(depth)) if depth[index] == 0)
+        self.assertEqual(magnitude[released + 25], 0, "a force stayed after release")
+
+    def test_nasopharynx(self):
+        self.check("nasopharynx")
+
+    def test_liver(self):
+        self.check("liver")
+
+
+if __name__ == "__main__":
+    unittest.main()

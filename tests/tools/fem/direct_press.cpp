@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/tools/fem/direct_press.hpp"
+
+#include <Eigen/Cholesky>
+
+#include "tools/fem/sparse_cholesky.hpp"
+#include "tools/fem/stiffness.hpp"
+
+namespace palpate::test {
+
+Eigen::MatrixXd direct_compliance(const DeformableBody& body, const std::vector<DirectContact>& contacts) {
+    const auto position = number_free_nodes(body.mesh.rest_positions.size(), body.fixed_nodes);
+    const LowerSparse K = assemble_stiffness(body.mesh, body.materials, position);
+    Eigen::MatrixXd loads = Eigen::MatrixXd::Zero(K.rows(), static_cast<Eigen::Index>(contacts.size()));
+    for (std::size_t k = 0; k < contacts.size(); ++k)
+        for (std::size_t i = 0; i < contacts[k].nodes.size(); ++i) {
+            const std::int32_t at = position[static_cast<std::size_t>(contacts[k].nodes[i])];
+            if (at >= 0)
+                loads.block<3, 1>(3 * at, static_cast<Eigen::Index>(k)) +=
+                    contacts[k].weights[i] * contacts[k].normal;
+        }
+    Eigen::MatrixXd A = loads.transpose() * SparseCholesky(K, Elimination::fill_reducing).solve(loads);
+    for (std::size_t k = 0; k < contacts.size(); ++k)
+        A(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)) += contacts[k].series_compliance;
+    return A;
+}
+
+Eigen::VectorXd direct_forces(const Eigen::MatrixXd& A, const Eigen::VectorXd& delta,
+                              const std::vector<bool>& active) {
+    std::vector<Eigen::Index> points;
+    for (std::size_t k = 0; k < active.size(); ++k)
+        if (active[k]) points.push_back(static_cast<Eigen::Index>(k));
+    const Eigen::MatrixXd A_active = A(points, points);
+    const Eigen::VectorXd delta_active = delta(points);
+    const Eigen::VectorXd f_active = A_active.llt().solve(delta_active);
+    Eigen::VectorXd f = Eigen::VectorXd::Zero(delta.size());
+    f(points) = f_active;
+    return f;
+}
+
+}  // namespace palpate::test

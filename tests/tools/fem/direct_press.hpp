@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "formats/model/body.hpp"
+
+namespace palpate::test {
+
+/// A contact point as palpate touch reports it: mesh nodes with weights, unit normal from tissue to tool.
+struct DirectContact {
+    std::vector<std::int32_t> nodes;
+    std::vector<double> weights;
+    Eigen::Vector3d normal;
+    double series_compliance;  // mm/N
+};
+
+/// A_kl of contact points from the full sparse stiffness, without the condensed compliance: mm/N.
+Eigen::MatrixXd direct_compliance(const DeformableBody& body, const std::vector<DirectContact>& contacts);
+
+/// Solves A f = delta on the points with `active`, zero elsewhere.
+Eigen::VectorXd direct_forces(const Eigen::MatrixXd& A, const Eigen::VectorXd& delta,
+                              const std::vector<bool>& active);
+
+}  // namespace palpate::test
