@@ -143,6 +143,15 @@ const std::map<std::string, Maker>& makers() {
     return all;
 }
 
+// An imported label keeps its colour.
+std::array<float, 3> colour_of(const StructureRecipe& structure, const Parameters& p, const LabelMap* prior,
+                               std::int32_t value) {
+    if (structure.recipe == "import" && prior != nullptr && !p.has("file"))
+        if (const auto label = find_label(*prior, p.has("label") ? p.text("label") : structure.name))
+            return label->colour;
+    return default_label_colour(value);
+}
+
 void check_names(std::span<const StructureRecipe> structures) {
     std::map<std::string, int> seen;
     if (structures.empty())
@@ -186,7 +195,7 @@ LabelMap segment(const Volume* volume, const LabelMap* prior, std::span<const St
         }
         if (taken == 0)
             throw InvalidInput({"structure '" + structure.name + "'", "is empty", "", maker.if_empty});
-        map.names.push_back({value, structure.name, default_label_colour(value)});
+        map.names.push_back({value, structure.name, colour_of(structure, parameters, prior, value)});
     }
     return map;
 }

@@ -129,6 +129,14 @@ TEST(Recipes, import_resamples_from_another_grid) {
     EXPECT_GT(dice(map, "organ", turned.truth, "liver"), thick_dice);
 }
 
+TEST(Recipes, import_keeps_the_labels_colour) {
+    Phantom abdomen = abdomen_phantom();
+    for (Label& label : abdomen.truth.names)
+        if (label.name == "liver") label.colour = {0.6F, 0.3F, 0.2F};
+    const LabelMap map = run(&abdomen.volume, &abdomen.truth, {"organ: recipe=import label=liver"});
+    EXPECT_EQ(map.names.at(0).colour, (std::array<float, 3>{0.6F, 0.3F, 0.2F}));
+}
+
 TEST(Segment, later_structures_take_background_only_and_values_follow_the_order) {
     const Phantom head = head_phantom();
     const LabelMap map =
