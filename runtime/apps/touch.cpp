@@ -8,7 +8,9 @@
 
 #include "formats/asset/asset.hpp"
 #include "formats/model/errors.hpp"
+#include "runtime/apps/hand_script.hpp"
 #include "runtime/apps/run_record.hpp"
+#include "runtime/apps/statistics_json.hpp"
 #include "runtime/apps/touch_target.hpp"
 #include "runtime/devices/simulated_device.hpp"
 #include "runtime/haptics/servo_loop.hpp"
@@ -51,12 +53,8 @@ void require_positive(double seconds) {
 }
 
 Plan plan_of(const Options& options, const Case& patient_case, const HapticModel& model) {
-    const bool press = options.script == "press", slide = options.script == "slide";
-    if (!press && !slide) {
-        if (!std::filesystem::exists(options.script))
-            throw InvalidInput({options.script, "no such script or file",
-                                "press, slide or a file of positions", "check the path"});
-        HandPath path = read_hand_path(options.script);
+    if (!is_made_to_measure(options.script)) {
+        HandPath path = recorded_path(options.script);
         const double seconds = options.seconds_given ? options.seconds : path.duration();
         require_positive(seconds);
         return {std::move(path), std::nullopt, seconds};
@@ -68,20 +66,11 @@ Plan plan_of(const Options& options, const Case& patient_case, const HapticModel
                                   .depth = options.depth,
                                   .speed = options.speed,
                                   .seconds = options.seconds};
-    return {press ? press_path(target.place, settings) : slide_path(target.place, settings), target,
-            options.seconds};
+    return {made_to_measure_path(options.script, target.place, settings), target, options.seconds};
 }
 
 Json numbers(std::span<const double, 3> v) {
     return Json::array({v[0], v[1], v[2]});
-}
-
-Json percentiles_us(const Histogram& histogram) {
-    const auto us = [](std::uint64_t ns) { return 1e-3 * static_cast<double>(ns); };
-    return {{"p50", us(histogram.percentile(0.5))},
-            {"p99", us(histogram.percentile(0.99))},
-            {"p99_9", us(histogram.percentile(0.999))},
-            {"max", us(histogram.max())}};
 }
 
 Json target_json(const TouchTarget& target, const HapticModel& model) {
@@ -181,8 +170,8 @@ Json touch(const Options& options, cli::Session& session) {
                 {"ticks", statistics.ticks},
                 {"overruns", statistics.overruns},
                 {"lost_log_records", options.virtual_clock ? 0 : statistics.lost_records},
-                {"tick_us", percentiles_us(statistics.tick_ns)},
-                {"wake_latency_us", percentiles_us(statistics.wake_latency_ns)},
+                {"tick_us", percentiles_json(statistics.tick_ns, 1e3)},
+                {"wake_latency_us", percentiles_json(statistics.wake_latency_ns, 1e3)},
                 {"force_peak_n", record.peak_force()},
                 {"force_step_max_n", record.largest_force_step()},
                 {"penetration", {{"device_mm", record.device_depth()}, {"tool_mm", record.tool_depth()}}},

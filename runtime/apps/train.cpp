@@ -8,6 +8,8 @@
 
 #include "formats/asset/asset.hpp"
 #include "formats/model/errors.hpp"
+#include "runtime/apps/hand_script.hpp"
+#include "runtime/apps/statistics_json.hpp"
 #include "runtime/apps/touch_target.hpp"
 #include "runtime/devices/guided_device.hpp"
 #include "runtime/devices/simulated_device.hpp"
@@ -41,11 +43,8 @@ std::pair<int, int> size_of(const std::string& text) {
 HandPath scripted_path(const Options& options, const TouchPoint& place, double tool_radius) {
     const ScriptSettings settings{.tool_radius = tool_radius,
                                   .seconds = options.seconds > 0 ? options.seconds : 3600};
-    if (options.script == "press") return press_path(place, settings);
-    if (options.script == "slide") return slide_path(place, settings);
-    if (!std::filesystem::exists(options.script))
-        throw UsageError({"--script", options.script, "press, slide or a file of positions", ""});
-    return read_hand_path(options.script);
+    return is_made_to_measure(options.script) ? made_to_measure_path(options.script, place, settings)
+                                              : recorded_path(options.script);
 }
 
 // Everything felt since the start, from the ticks that the loop left in its ring.
@@ -94,14 +93,6 @@ void fill_frame(VisualFrame& frame, const TickResult& tick, const HapticModel& m
     frame.overruns = tick.overruns;
     for (std::size_t i = 0; i < frame.displacements.size(); ++i)
         model.surface_displacement(model.rigid_count() + i, tick, frame.displacements[i]);
-}
-
-Json percentiles(const Histogram& histogram, double unit_ns) {
-    const auto in_unit = [&](std::uint64_t ns) { return static_cast<double>(ns) / unit_ns; };
-    return {{"p50", in_unit(histogram.percentile(0.5))},
-            {"p99", in_unit(histogram.percentile(0.99))},
-            {"p99_9", in_unit(histogram.percentile(0.999))},
-            {"max", in_unit(histogram.max())}};
 }
 
 Json train(const Options& options, cli::Session& session) {
@@ -171,11 +162,11 @@ Json train(const Options& options, cli::Session& session) {
             {"device", scripted ? scripted->name() : guided.name()},
             {"frames", frame_ns.count()},
             {"frames_per_second", static_cast<double>(frame_ns.count()) / seconds},
-            {"frame_ms", percentiles(frame_ns, 1e6)},
+            {"frame_ms", percentiles_json(frame_ns, 1e6)},
             {"ticks", statistics.ticks},
             {"overruns", statistics.overruns},
-            {"tick_us", percentiles(statistics.tick_ns, 1e3)},
-            {"wake_latency_us", percentiles(statistics.wake_latency_ns, 1e3)},
+            {"tick_us", percentiles_json(statistics.tick_ns, 1e3)},
+            {"wake_latency_us", percentiles_json(statistics.wake_latency_ns, 1e3)},
             {"force_peak_n", felt.force_peak},
             {"penetration", {{"device_mm", felt.depth_peak}}},
             {"device_travel_mm", felt.travel}};
