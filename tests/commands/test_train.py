@@ -176,7 +176,7 @@ class Train(unittest.TestCase):
         cases = [
             ([self.asset, "--size", "wide"], 2, "WIDTHxHEIGHT"),
             ([self.asset, "--size", "10x10"], 2, "320x240"),
-            ([self.asset, "--script", "dance"], 2, "press, slide"),
+            ([self.asset, "--script", "dance"], 3, "press, slide"),
             ([self.asset, "--body", "spleen"], 2, "spleen"),
             ([self.folder / "nothing.vtkhdf"], 3, "nothing.vtkhdf"),
         ]
