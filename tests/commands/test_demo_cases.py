@@ -11,6 +11,7 @@ import unittest
 BIN = pathlib.Path(os.environ["PALPATE_BIN"])
 SOURCE = pathlib.Path(os.environ["PALPATE_SOURCE"])
 ORACLE = pathlib.Path(os.environ["PALPATE_BUILD"]) / "tests" / "press_oracle"
+VTK_SUMMARY = pathlib.Path(os.environ["PALPATE_BUILD"]) / "tests" / "vtk_summary"
 SAMPLES = SOURCE / "build" / "sample_data"
 
 FORCE_TOLERANCE = 0.01  # relative; what a press may differ from the direct solve
@@ -34,6 +35,10 @@ class DemoCases(unittest.TestCase):
 
             verified = run(BIN / "palpate", "verify", asset, "--json", "-")
             self.assertEqual(verified.returncode, 0, verified.stdout)
+
+            seen = json.loads(run(VTK_SUMMARY, asset).stdout)
+            self.assertEqual(len(seen["tetrahedra_of_region"]), 2, "organ and tumour")
+            self.assertEqual(set(seen["cells_of_type"]), {"5", "10"}, "triangles and tetrahedra")
 
             touched = run(BIN / "palpate", "touch", asset, "--script", "press", "--depth", "3", "--seconds", "2",
                           "--virtual-clock", "--log", log, "--json", touch)
