@@ -6,13 +6,13 @@ import os
 import pathlib
 import shutil
 import subprocess
-import tempfile
 import unittest
+
+from sample_asset import SampleAsset
 
 BIN = pathlib.Path(os.environ["PALPATE_BIN"])
 BUILD = pathlib.Path(os.environ["PALPATE_BUILD"])
 PHANTOM = BUILD / "tests" / "phantom"
-WRITER = BUILD / "tests" / "write_sample_case"
 EMPTY = {"meta", "img", "br"}
 
 
@@ -45,17 +45,8 @@ class Page(html.parser.HTMLParser):
 
 
 @unittest.skipUnless(os.environ.get("DISPLAY") or shutil.which("Xvfb"), "PALPATE: xvfb is missing")
-class Report(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory()
-        cls.folder = pathlib.Path(cls.temporary.name)
-        cls.asset = cls.folder / "sample.vtkhdf"
-        subprocess.run([WRITER, cls.asset], check=True)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.temporary.cleanup()
+class Report(SampleAsset):
+    writer = "write_sample_case"
 
     def report(self, *arguments, **options):
         return subprocess.run([BIN / "palpate-report", *map(str, arguments)], text=True, capture_output=True,

@@ -7,26 +7,15 @@ import math
 import os
 import pathlib
 import subprocess
-import tempfile
 import unittest
 import xml.etree.ElementTree
 
+from sample_asset import SampleAsset
+
 TOUCH = pathlib.Path(os.environ["PALPATE_BIN"]) / "palpate-touch"
-WRITER = pathlib.Path(os.environ["PALPATE_BUILD"]) / "tests" / "write_sample_asset"
 
 
-class Touch(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory()
-        cls.folder = pathlib.Path(cls.temporary.name)
-        cls.asset = cls.folder / "sample.vtkhdf"
-        subprocess.run([WRITER, cls.asset], check=True)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.temporary.cleanup()
-
+class Touch(SampleAsset):
     def touch(self, *options):
         return subprocess.run(
             [TOUCH, self.asset, *map(str, options)], capture_output=True, text=True, timeout=60

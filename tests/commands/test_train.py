@@ -7,12 +7,12 @@ import pathlib
 import shutil
 import signal
 import subprocess
-import tempfile
 import time
 import unittest
 
+from sample_asset import SampleAsset
+
 TRAIN = pathlib.Path(os.environ["PALPATE_BIN"]) / "palpate-train"
-WRITER = pathlib.Path(os.environ["PALPATE_BUILD"]) / "tests" / "write_sample_asset"
 NEEDED = ("Xvfb", "xdotool", "xwd", "convert")
 
 
@@ -38,19 +38,15 @@ class XServer:
 
 @unittest.skipUnless(TRAIN.exists(), "PALPATE_VISUAL is off")
 @unittest.skipUnless(all(map(shutil.which, NEEDED)), "PALPATE: xvfb, xdotool, x11-apps or imagemagick is missing")
-class Train(unittest.TestCase):
+class Train(SampleAsset):
     @classmethod
     def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory()
-        cls.folder = pathlib.Path(cls.temporary.name)
-        cls.asset = cls.folder / "sample.vtkhdf"
-        subprocess.run([WRITER, cls.asset], check=True)
+        super().setUpClass()
         cls.server = XServer().__enter__()
 
     @classmethod
     def tearDownClass(cls):
         cls.server.__exit__()
-        cls.temporary.cleanup()
 
     def run_train(self, *options, environment=None):
         return subprocess.run(
