@@ -30,7 +30,7 @@ ROOMS = {
     "collision": {"model"},
     "haptics": {"model", "collision", "realtime"},
     "devices": {"model", "realtime"},
-    "visual": {"model", "realtime", "haptics", "vtk"},
+    "visual": {"model", "realtime", "vtk"},
     "apps": {"model", "asset", "realtime", "collision", "haptics", "devices"},
 }
 COMMANDS = {"model", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "build", "json"}
