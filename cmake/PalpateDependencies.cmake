@@ -5,7 +5,7 @@ find_package(Threads REQUIRED)
 # Eigen: value types and small dense algebra; header-only, so the runtime carries nothing with it.
 # NO_MODULE, and before ITK, whose own FindEigen3 would shadow it.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-# HDF5 C interface: the asset; ParaView, h5py and MATLAB read the same file. HighFive is not in Debian 12.
+# HDF5 C interface: the asset; VTK and h5py read the same file. HighFive is not in Debian 12.
 set(HDF5_PREFER_PARALLEL FALSE)
 find_package(HDF5 1.10 REQUIRED COMPONENTS C)
 # OpenSSL's libcrypto: SHA-256 with the CPU's SHA instructions; a 100 MB compliance must be hashed while loading.

@@ -103,7 +103,9 @@ Command::Command(CommandText text) : text_(std::move(text)), app_(text_.summary,
     app_.add_flag("--quiet", quiet_, "say nothing but errors")->group(group);
     app_.add_flag("--verbose", verbose_, "say more")->group(group);
     app_.add_flag("--force", force_, "replace existing outputs")->group(group);
-    app_.add_flag("--xml", xml_, "print the Slicer Execution Model description and exit")->group(group);
+    app_.add_flag("--xml")
+        ->description("print the Slicer Execution Model description and exit")
+        ->group(group);
     app_.add_option("--threads", threads_, "threads for work that can use several [default: all cores]")
         ->check(CLI::PositiveNumber)
         ->group(group);
@@ -132,7 +134,7 @@ CLI::Option* Command::flag(const std::string& names, bool& value, const std::str
 }
 
 int Command::parse(int argc, char** argv) {
-    // --xml must work without the required arguments.
+    // Not left to CLI11: --xml must work without the required arguments.
     for (int i = 1; i < argc; ++i)
         if (std::string_view(argv[i]) == "--xml") {
             std::cout << slicer_xml(*this);

@@ -123,7 +123,6 @@ class Command {
     bool quiet_ = false;
     bool verbose_ = false;
     bool force_ = false;
-    bool xml_ = false;
     int threads_ = 0;
 };
 
