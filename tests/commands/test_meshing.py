@@ -91,18 +91,28 @@ class Mesh(MeshingCommand):
         self.assertEqual(result["boundary_non_manifold_edges"], 0)
         self.assertEqual(sum(result["dihedral_histogram_10_deg"]), 6 * result["tetrahedra"])
         self.assertGreater(result["nodes"], result["surface_nodes"])
-        self.assertLess(result["surface_distance_mm"]["mean"], 0.1)  # the facet distance is 0.3
         self.assertEqual([r["name"] for r in result["regions"]], ["organ", "lesion"])
         for region in result["regions"]:
             self.assertLess(abs(region["volume_error_percent"]), 0.1)
             self.assertGreater(region["dice"], 0.98)
             self.assertLess(region["centroid_distance_mm"], 0.05)
+            self.assertLess(region["surface_distance_mm"]["mean"], 0.1)  # the facet distance is 0.3
+        self.assertEqual(result["attempts"], [{"tetrahedra": result["tetrahedra"], "misses": []}])
+        self.assertEqual(result["contract"]["min_dihedral_deg"], 12)
 
-    def test_two_runs_give_the_same_bytes(self):
+    def test_missed_limits_are_listed_with_every_attempt(self):
+        result = self.result_of("mesh", *self.mesh("--max-mean-distance", 0.067, "--attempts", 8))
+        first, last = result["attempts"][0], result["attempts"][-1]
+        self.assertIn("mean surface distance", first["misses"][0]["found"])
+        self.assertEqual(last, {"tetrahedra": result["tetrahedra"], "misses": []})
+        self.assertGreater(last["tetrahedra"], first["tetrahedra"])
+
+    def test_every_run_at_any_thread_count_gives_the_same_bytes(self):
         self.result_of("mesh", *self.mesh())
         first = (self.folder / "organ.vtu").read_bytes()
-        self.result_of("mesh", *self.mesh("--force"))
-        self.assertEqual((self.folder / "organ.vtu").read_bytes(), first)
+        for threads in (1, 2, 8):
+            self.result_of("mesh", *self.mesh("--force", "--threads", threads))
+            self.assertEqual((self.folder / "organ.vtu").read_bytes(), first, f"{threads} threads")
 
     def test_region_cell_size_refines(self):
         coarse = self.result_of("mesh", *self.mesh())
@@ -112,7 +122,18 @@ class Mesh(MeshingCommand):
     def test_missed_contract_names_the_worst_places(self):
         self.expect_refusal(QUALITY, ["dihedral angles", " at (", "70° ... "], "mesh",
                             *self.mesh("--min-dihedral-deg", 70))
-        self.expect_refusal(QUALITY, ["Dice of", "0.9999"], "mesh", *self.mesh("--min-dice", 0.9999))
+        self.expect_refusal(QUALITY, ["Dice coefficient of the body", "0.99999", "after 2 meshes"], "mesh",
+                            *self.mesh("--min-dice", 0.99999, "--attempts", 2))
+
+    def test_cells_near_a_label_or_a_point_are_finer(self):
+        coarse = self.result_of("mesh", *self.mesh())
+        for place in ("lesion=1,3", "-27.6,38.8,117=1,6"):
+            fine = self.result_of("mesh", *self.mesh("--near", place, "--force"))
+            self.assertGreater(fine["tetrahedra"], 1.5 * coarse["tetrahedra"], place)
+        for text in ("lesion", "lesion=1", "=1,2,3", "1,2=3,x"):
+            run = self.run_command("mesh", *self.mesh("--near", text, "--force"))
+            self.assertEqual(run.returncode, USAGE, run.stderr)
+            self.assertIn("--near", run.stderr)
 
     def test_unknown_label_is_answered_with_the_nearest(self):
         self.expect_refusal(INVALID, ["no label 'lesoin'", "'lesion'"], "mesh", "--labels", self.labels, "--region",

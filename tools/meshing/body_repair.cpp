@@ -1,122 +1,87 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/meshing/body_repair.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
-#include <string>
+#include <map>
 
-#include "formats/model/errors.hpp"
 #include "tools/meshing/disjoint_sets.hpp"
+#include "tools/meshing/quality.hpp"
 #include "tools/meshing/tet_faces.hpp"
 
 namespace palpate {
 namespace {
 
-// A face with different regions on its two sides, seen from `inner`; outer is 0 on the boundary.
-struct InterfaceFace {
-    Triangle nodes;  // counter-clockwise seen from the outer side
-    Eigen::Index inner, outer;
-};
+using Edge = std::array<std::int32_t, 2>;  // ascending
 
-// Regions are numbered by their place in `targets`, starting from 1.
-std::vector<InterfaceFace> interface_faces(const TetMesh& mesh, std::span<const RegionVolume> targets) {
-    const auto number = [&](std::size_t tet) -> Eigen::Index {
-        const auto found = std::ranges::find(targets, mesh.regions[tet], &RegionVolume::region);
-        if (found == targets.end())
-            throw InvalidInput({"match_volumes",
-                                "region " + std::to_string(mesh.regions[tet]) + " has no target",
-                                "one for each region", ""});
-        return found - targets.begin() + 1;
-    };
-    std::vector<InterfaceFace> result;
+// Edges in more than two faces of the boundary.
+std::map<Edge, std::vector<std::size_t>> pinched_edges(const TetMesh& mesh) {
+    std::map<Edge, int> faces_at;
     const std::vector<TetFace> faces = sorted_faces(mesh);
     for (std::size_t i = 0; i < faces.size();) {
         const bool shared = i + 1 < faces.size() && faces[i + 1].sorted_nodes == faces[i].sorted_nodes;
-        const Eigen::Index inner = number(faces[i].tet), outer = shared ? number(faces[i + 1].tet) : 0;
-        if (inner != outer) {
-            const Tetrahedron& tet = mesh.tetrahedra[faces[i].tet];
-            const auto& corner = tetrahedron_faces[faces[i].face];
-            result.push_back({{tet[corner[0]], tet[corner[1]], tet[corner[2]]}, inner, outer});
-        }
+        const auto& [a, b, c] = faces[i].sorted_nodes;
+        if (!shared)
+            for (const Edge& edge : {Edge{a, b}, Edge{b, c}, Edge{a, c}}) ++faces_at[edge];
         i += shared ? 2 : 1;
     }
-    return result;
-}
-
-Eigen::VectorXd volumes_of(const TetMesh& mesh, std::span<const RegionVolume> targets) {
-    Eigen::VectorXd volumes = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(targets.size()));
-    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
-        volumes[std::ranges::find(targets, mesh.regions[t], &RegionVolume::region) - targets.begin()] +=
-            six_volume(mesh, t) / 6;
-    return volumes;
-}
-
-// How far each node moves, per offset of each region: a column per region, three rows per node.
-Eigen::MatrixXd push_directions(const TetMesh& mesh, const std::vector<InterfaceFace>& faces,
-                                Eigen::Index regions, Eigen::MatrixXd& gradients) {
-    const auto nodes = static_cast<Eigen::Index>(mesh.rest_positions.size());
-    gradients = Eigen::MatrixXd::Zero(3 * nodes, regions);
-    Eigen::VectorXd area = Eigen::VectorXd::Zero(nodes);
-    for (const InterfaceFace& face : faces) {
-        const auto point = [&](std::size_t c) -> const Eigen::Vector3d& {
-            return mesh.rest_positions[static_cast<std::size_t>(face.nodes[c])];
-        };
-        // A third of the face's area vector: the share of each of its nodes, to first order.
-        const Eigen::Vector3d third = (point(1) - point(0)).cross(point(2) - point(0)) / 6;
-        for (const std::int32_t node : face.nodes) {
-            gradients.block<3, 1>(3 * node, face.inner - 1) += third;
-            if (face.outer > 0) gradients.block<3, 1>(3 * node, face.outer - 1) -= third;
-            area[node] += third.norm();
-        }
+    std::map<Edge, std::vector<std::size_t>> pinched;
+    for (const auto& [edge, count] : faces_at)
+        if (count > 2) pinched[edge];
+    if (pinched.empty()) return pinched;
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+        Tetrahedron nodes = mesh.tetrahedra[t];
+        std::ranges::sort(nodes);
+        for (std::size_t a = 0; a < 4; ++a)
+            for (std::size_t b = a + 1; b < 4; ++b)
+                if (const auto found = pinched.find({nodes[a], nodes[b]}); found != pinched.end())
+                    found->second.push_back(t);
     }
-    Eigen::MatrixXd directions = gradients;
-    for (Eigen::Index node = 0; node < nodes; ++node)
-        if (area[node] > 0) directions.middleRows<3>(3 * node) /= area[node];
-    return directions;
+    return pinched;
 }
 
-// Adds `step`, halved as often as it takes at the nodes of every tetrahedron whose smallest dihedral angle
-// would fall below nine tenths of what it is.
-void move_nodes(TetMesh& mesh, const Eigen::VectorXd& step) {
-    const std::vector<Eigen::Vector3d> before = mesh.rest_positions;
-    std::vector<double> lowest(mesh.tetrahedra.size()), fraction(before.size(), 1.0);
-    for (std::size_t t = 0; t < lowest.size(); ++t) lowest[t] = 0.9 * flatness_deg(mesh, t);
-    for (int halvings = 0; halvings < 8; ++halvings) {
-        for (std::size_t node = 0; node < before.size(); ++node)
-            mesh.rest_positions[node] =
-                before[node] + fraction[node] * step.segment<3>(3 * static_cast<Eigen::Index>(node));
-        std::vector<bool> halve(before.size(), false);
-        bool sound = true;
-        for (std::size_t t = 0; t < lowest.size(); ++t) {
-            if (six_volume(mesh, t) > 0 && flatness_deg(mesh, t) >= lowest[t]) continue;
-            sound = false;
-            for (const std::int32_t node : mesh.tetrahedra[t]) halve[static_cast<std::size_t>(node)] = true;
+// The tetrahedra of the smallest of the fans (tetrahedra that share faces with the edge) around an edge.
+std::vector<std::size_t> smallest_fan(const TetMesh& mesh, const std::vector<std::size_t>& around) {
+    DisjointSets fans(around.size());
+    for (std::size_t a = 0; a < around.size(); ++a)
+        for (std::size_t b = a + 1; b < around.size(); ++b)
+            if (std::ranges::count_if(mesh.tetrahedra[around[a]], [&](std::int32_t node) {
+                    return std::ranges::count(mesh.tetrahedra[around[b]], node) > 0;
+                }) == 3)
+                fans.join(a, b);
+    std::map<std::size_t, double> volumes;
+    for (std::size_t a = 0; a < around.size(); ++a) volumes[fans.root(a)] += six_volume(mesh, around[a]);
+    const auto smallest = std::ranges::min_element(
+        volumes, {}, [](const std::pair<const std::size_t, double>& fan) { return fan.second; });
+    std::vector<std::size_t> fan;
+    for (std::size_t a = 0; a < around.size(); ++a)
+        if (fans.root(a) == smallest->first) fan.push_back(around[a]);
+    return fan;
+}
+
+// Keeps the tetrahedra for which `keep` holds, and the nodes that they use, in order of use.
+void keep_tetrahedra(TetMesh& mesh, const std::vector<bool>& keep) {
+    TetMesh kept;
+    std::vector<std::int32_t> node_of(mesh.rest_positions.size(), -1);
+    for (std::size_t t = 0; t < keep.size(); ++t) {
+        if (!keep[t]) continue;
+        Tetrahedron tet = mesh.tetrahedra[t];
+        for (std::int32_t& node : tet) {
+            std::int32_t& id = node_of[static_cast<std::size_t>(node)];
+            if (id < 0) {
+                id = static_cast<std::int32_t>(kept.rest_positions.size());
+                kept.rest_positions.push_back(mesh.rest_positions[static_cast<std::size_t>(node)]);
+            }
+            node = id;
         }
-        if (sound) return;
-        for (std::size_t node = 0; node < before.size(); ++node)
-            if (halve[node]) fraction[node] *= 0.5;
+        kept.tetrahedra.push_back(tet);
+        kept.regions.push_back(mesh.regions[t]);
     }
-    mesh.rest_positions = before;
+    mesh.rest_positions = std::move(kept.rest_positions);
+    mesh.tetrahedra = std::move(kept.tetrahedra);
+    mesh.regions = std::move(kept.regions);
 }
 
 }  // namespace
-
-std::vector<TetFace> sorted_faces(const TetMesh& mesh) {
-    std::vector<TetFace> faces;
-    faces.reserve(4 * mesh.tetrahedra.size());
-    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
-        for (std::size_t f = 0; f < 4; ++f) {
-            const Tetrahedron& tet = mesh.tetrahedra[t];
-            Triangle nodes{tet[tetrahedron_faces[f][0]], tet[tetrahedron_faces[f][1]],
-                           tet[tetrahedron_faces[f][2]]};
-            std::ranges::sort(nodes);
-            faces.push_back({nodes, t, f});
-        }
-    std::ranges::sort(faces, [](const TetFace& a, const TetFace& b) {
-        return a.sorted_nodes != b.sorted_nodes ? a.sorted_nodes < b.sorted_nodes : a.tet < b.tet;
-    });
-    return faces;
-}
 
 std::int64_t split_hinges(TetMesh& mesh) {
     // Corners of tetrahedra that share a face are one node; corners that only share a node are not.
@@ -155,50 +120,26 @@ std::int64_t remove_crumbs(TetMesh& mesh, double min_volume) {
     std::vector<double> volumes(static_cast<std::size_t>(std::ranges::max(piece)) + 1, 0.0);
     for (std::size_t t = 0; t < piece.size(); ++t)
         volumes[static_cast<std::size_t>(piece[t])] += six_volume(mesh, t) / 6;
-    TetMesh kept;
-    std::vector<std::int32_t> node_of(mesh.rest_positions.size(), -1);
-    for (std::size_t t = 0; t < piece.size(); ++t) {
-        if (volumes[static_cast<std::size_t>(piece[t])] < min_volume) continue;
-        Tetrahedron tet = mesh.tetrahedra[t];
-        for (std::int32_t& node : tet) {
-            std::int32_t& id = node_of[static_cast<std::size_t>(node)];
-            if (id < 0) {
-                id = static_cast<std::int32_t>(kept.rest_positions.size());
-                kept.rest_positions.push_back(mesh.rest_positions[static_cast<std::size_t>(node)]);
-            }
-            node = id;
-        }
-        kept.tetrahedra.push_back(tet);
-        kept.regions.push_back(mesh.regions[t]);
-    }
-    mesh.rest_positions = std::move(kept.rest_positions);
-    mesh.tetrahedra = std::move(kept.tetrahedra);
-    mesh.regions = std::move(kept.regions);
+    std::vector<bool> keep;
+    for (const std::int32_t id : piece) keep.push_back(volumes[static_cast<std::size_t>(id)] >= min_volume);
+    keep_tetrahedra(mesh, keep);
     return std::ranges::count_if(volumes, [&](double volume) { return volume < min_volume; });
 }
 
-void match_volumes(TetMesh& mesh, std::span<const RegionVolume> targets, double max_distance) {
-    const std::vector<InterfaceFace> faces = interface_faces(mesh, targets);
-    const auto regions = static_cast<Eigen::Index>(targets.size());
-    for (int round = 0; round < 5; ++round) {
-        Eigen::VectorXd missing = -volumes_of(mesh, targets);
-        double worst = 0;
-        for (Eigen::Index k = 0; k < regions; ++k) {
-            const double target = targets[static_cast<std::size_t>(k)].volume;
-            missing[k] += target;
-            worst = std::max(worst, std::abs(missing[k]) / target);
-        }
-        if (worst < 1e-4) return;
-        Eigen::MatrixXd gradients;
-        const Eigen::MatrixXd directions = push_directions(mesh, faces, regions, gradients);
-        const Eigen::MatrixXd response = gradients.transpose() * directions;
-        Eigen::VectorXd step = directions * response.completeOrthogonalDecomposition().solve(missing);
-        for (Eigen::Index node = 0; node < step.size() / 3; ++node) {
-            const double length = step.segment<3>(3 * node).norm();
-            if (length > max_distance) step.segment<3>(3 * node) *= max_distance / length;
-        }
-        move_nodes(mesh, step);
+std::int64_t part_pinched_edges(TetMesh& mesh) {
+    std::int64_t removed = 0;
+    constexpr int max_rounds = 50;  // each parts all pinched edges there are, and may uncover others
+    for (int round = 0; round < max_rounds; ++round) {
+        const auto pinched = pinched_edges(mesh);
+        if (pinched.empty()) break;
+        std::vector<bool> keep(mesh.tetrahedra.size(), true);
+        for (const auto& [edge, around] : pinched)
+            for (const std::size_t t : smallest_fan(mesh, around)) keep[t] = false;
+        removed += std::ranges::count(keep, false);
+        keep_tetrahedra(mesh, keep);
+        split_hinges(mesh);
     }
+    return removed;
 }
 
 }  // namespace palpate

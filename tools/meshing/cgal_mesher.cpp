@@ -14,7 +14,7 @@
 #include <boost/variant.hpp>
 #include <unordered_map>
 
-#include "formats/model/errors.hpp"
+#include "tools/meshing/surface_gap.hpp"
 
 namespace palpate {
 namespace {
@@ -29,28 +29,28 @@ using CellCriteria = Criteria::Cell_criteria;
 using Point = Kernel::Point_3;
 namespace parameters = CGAL::parameters;
 
-// One of a region's sizes as a field over the domain; an interface takes the smaller of its two sides.
-class SizingField {
+Eigen::Vector3d position(const Point& p) {
+    return {p.x(), p.y(), p.z()};
+}
+
+// One member of a SizeField as CGAL asks for it.
+class Field {
   public:
     using FT = Kernel::FT;
     using Point_3 = Point;
     using Index = Domain::Index;
 
-    SizingField(std::span<const RegionSizing> sizing, double RegionSizing::*member) {
-        for (const RegionSizing& region : sizing) sizes_.push_back(region.*member);
-    }
-    double operator()(const Point&, int, const Index& index) const {
-        if (const auto* region = boost::get<Domain::Subdomain_index>(&index)) return size(*region);
+    Field(const SizeField& sizes, double LocalSizes::*member) : sizes_(&sizes), member_(member) {}
+    double operator()(const Point& p, int, const Index& index) const {
+        if (const auto* region = boost::get<Domain::Subdomain_index>(&index))
+            return sizes_->at(position(p), *region).*member_;
         const auto& patch = boost::get<Domain::Surface_patch_index>(index);
-        return std::min(size(patch.first), size(patch.second));
+        return sizes_->at(position(p), patch.first, patch.second).*member_;
     }
 
   private:
-    double size(int region) const {
-        return region == 0 ? std::numeric_limits<double>::max()
-                           : sizes_[static_cast<std::size_t>(region) - 1];
-    }
-    std::vector<double> sizes_;
+    const SizeField* sizes_;
+    double LocalSizes::*member_;
 };
 
 Domain make_domain(const SmoothedLabels& labels, double error) {
@@ -104,33 +104,90 @@ TetMesh extract(const Complex& complex) {
     return mesh;
 }
 
+// A surface triangle of the complex.
+struct ComplexFacet {
+    std::array<Eigen::Vector3d, 3> corners;
+    InterfaceSide side;
+};
+
+ComplexFacet describe(const Complex& complex, const Complex::Facet& facet) {
+    const auto& [cell, opposite] = facet;
+    ComplexFacet result;
+    for (int c = 0; c < 3; ++c)
+        result.corners[static_cast<std::size_t>(c)] =
+            position(cell->vertex((opposite + 1 + c) % 4)->point().point());
+    const auto& [a, b, c] = result.corners;
+    result.side.normal = (b - a).cross(c - a).normalized();
+    if (result.side.normal.dot(position(cell->vertex(opposite)->point().point()) - a) > 0)
+        result.side.normal *= -1;
+    result.side.inner = static_cast<std::uint8_t>(complex.subdomain_index(cell));
+    result.side.outer = static_cast<std::uint8_t>(complex.subdomain_index(cell->neighbor(opposite)));
+    return result;
+}
+
+// The distance of a triangle to the labels' surface at its centre and half-way to its corners.
+double largest_gap(const SmoothedLabels& labels, const ComplexFacet& facet, double reach) {
+    const auto& [a, b, c] = facet.corners;
+    const Eigen::Vector3d center = (a + b + c) / 3;
+    double largest = 0;
+    for (const Eigen::Vector3d& p :
+         {center, Eigen::Vector3d(0.5 * (center + a)), Eigen::Vector3d(0.5 * (center + b)),
+          Eigen::Vector3d(0.5 * (center + c))})
+        largest = std::max(largest, std::abs(surface_gap(labels, facet.side, p, reach).value_or(0)));
+    return largest;
+}
+
+// Halves the wanted size of triangles that are too far from the surface; tells how many there are.
+std::int64_t refine_gaps(const Complex& complex, const SmoothedLabels& labels, double max_gap,
+                         SizeField& sizes) {
+    std::vector<FineBall> balls;
+    for (auto facet = complex.facets_in_complex_begin(); facet != complex.facets_in_complex_end(); ++facet) {
+        const ComplexFacet triangle = describe(complex, *facet);
+        const auto& [a, b, c] = triangle.corners;
+        const Eigen::Vector3d center = (a + b + c) / 3;
+        const double radius = std::max({(a - center).norm(), (b - center).norm(), (c - center).norm()});
+        const double allowed =
+            std::min(max_gap, 2 * sizes.at(center, triangle.side.inner, triangle.side.outer).distance);
+        if (largest_gap(labels, triangle, radius) > allowed)
+            balls.push_back({center, radius, {.facet = 0.5 * radius}});
+    }
+    for (const FineBall& ball : balls) sizes.add(ball);
+    return static_cast<std::int64_t>(balls.size());
+}
+
 }  // namespace
 
 TetMesh mesh_smoothed_labels(const SmoothedLabels& labels, std::span<const SurfaceSeed> seeds,
-                             std::span<const RegionSizing> region_sizing, const MeshSizing& sizing,
+                             SizeField& sizes, double max_gap, const DelaunayShape& shape,
                              const ProgressCallback& progress) {
     CGAL::get_default_random() = CGAL::Random(0);
-    double finest = region_sizing.front().facet_distance;
-    for (const RegionSizing& region : region_sizing) finest = std::min(finest, region.facet_distance);
-    const Domain domain = make_domain(labels, 0.02 * finest);
-    const Criteria criteria(
-        FacetCriteria(sizing.facet_angle_deg, SizingField(region_sizing, &RegionSizing::facet_size),
-                      SizingField(region_sizing, &RegionSizing::facet_distance)),
-        CellCriteria(sizing.cell_radius_edge, SizingField(region_sizing, &RegionSizing::cell_size)));
+    const Domain domain = make_domain(labels, 0.02 * std::min(max_gap, sizes.finest_distance()));
+    const Criteria criteria(FacetCriteria(shape.facet_angle_deg, Field(sizes, &LocalSizes::facet),
+                                          Field(sizes, &LocalSizes::distance)),
+                            CellCriteria(shape.cell_radius_edge, Field(sizes, &LocalSizes::cell)));
     Complex complex;
     insert_seeds(complex, domain, seeds);
 
+    const auto refine = [&] {
+        constexpr int max_rounds = 6;
+        for (int round = 0; round < max_rounds; ++round) {
+            CGAL::refine_mesh_3(complex, domain, criteria, parameters::no_odt(), parameters::no_lloyd(),
+                                parameters::no_perturb(), parameters::no_exude());
+            if (refine_gaps(complex, labels, max_gap, sizes) == 0) break;
+        }
+    };
     progress("refine", 0.3);
-    CGAL::refine_mesh_3(complex, domain, criteria, parameters::no_odt(), parameters::no_lloyd(),
-                        parameters::no_perturb(), parameters::no_exude());
+    refine();
     // A time limit of 0 is none: what a busy machine leaves undone would differ from run to run. CGAL's
     // perturber is left out: lift_flat_tetrahedra() reaches better angles in a tenth of its time.
-    progress("optimise", 0.6);
+    progress("optimise", 0.5);
     CGAL::odt_optimize_mesh_3(complex, domain, parameters::time_limit = 0,
                               parameters::max_iteration_number = 10);
+    // Optimisation slides nodes off sharp edges and tips.
+    refine();
     progress("exude", 0.8);
     CGAL::exude_mesh_3(complex, parameters::time_limit = 0,
-                       parameters::sliver_bound = sizing.min_dihedral_deg);
+                       parameters::sliver_bound = shape.min_dihedral_deg);
     return extract(complex);
 }
 

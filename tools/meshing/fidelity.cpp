@@ -34,11 +34,26 @@ void paint(const Eigen::Matrix<double, 3, 4>& corners, std::int32_t region, cons
         }
 }
 
-// Voxel counts and index sums of a label, of a region's paint, and of both at once.
+// Voxel counts and index sums of a label, of a region's paint, and of both at once; the mesh's volume.
 struct Overlap {
     std::int64_t label = 0, painted = 0, both = 0;
     Eigen::Vector3d label_sum = Eigen::Vector3d::Zero(), painted_sum = Eigen::Vector3d::Zero();
+    double mesh_volume = 0;
 };
+
+RegionFidelity fidelity_of(std::int32_t region, const Overlap& overlap, const ImageGrid& grid) {
+    RegionFidelity fidelity{.region = region};
+    fidelity.label_volume = static_cast<double>(overlap.label) * grid.voxel_volume();
+    fidelity.volume_error_percent = 100 * (overlap.mesh_volume / fidelity.label_volume - 1);
+    fidelity.dice =
+        2 * static_cast<double>(overlap.both) / static_cast<double>(overlap.label + overlap.painted);
+    const auto mean = [&](const Eigen::Vector3d& sum, std::int64_t count) -> Eigen::Vector3d {
+        return grid.point_of(sum / static_cast<double>(std::max<std::int64_t>(1, count)));
+    };
+    fidelity.centroid_distance =
+        (mean(overlap.painted_sum, overlap.painted) - mean(overlap.label_sum, overlap.label)).norm();
+    return fidelity;
+}
 
 }  // namespace
 
@@ -54,50 +69,48 @@ std::vector<std::int32_t> voxelise(const TetMesh& mesh, const ImageGrid& grid) {
     return voxels;
 }
 
-std::vector<RegionFidelity> compare(const TetMesh& mesh, const LabelMap& map) {
-    std::map<std::int32_t, Overlap> overlaps;
-    std::map<std::int32_t, double> volumes;
+BodyFidelity compare(const TetMesh& mesh, const RegionLabels& labels) {
+    // Regions by number, 1, 2, ...; entry 0 is the body.
+    std::vector<Overlap> overlaps(labels.values.size() + 1);
+    std::map<std::int32_t, std::size_t> number_of;
+    for (std::size_t k = 0; k < labels.values.size(); ++k) number_of[labels.values[k]] = k + 1;
+    const auto number = [&](std::int32_t region) {
+        const auto found = number_of.find(region);
+        if (found == number_of.end())
+            throw InvalidInput({"label map", "lacks region " + std::to_string(region) + " of the mesh",
+                                "the map that the mesh was made from", ""});
+        return found->second;
+    };
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
-        volumes[mesh.regions[t]] += six_volume(mesh, t) / 6;
-    std::vector<Overlap*> overlap_of(65536, nullptr);
-    for (const auto& [region, volume] : volumes)
-        overlap_of.at(static_cast<std::size_t>(region)) = &overlaps[region];
+        for (const std::size_t k : {number(mesh.regions[t]), std::size_t{0}})
+            overlaps[k].mesh_volume += six_volume(mesh, t) / 6;
 
-    const std::vector<std::int32_t> painted = voxelise(mesh, map.grid);
+    const std::vector<std::int32_t> painted = voxelise(mesh, labels.grid);
     std::size_t offset = 0;
-    for (std::int32_t k = 0; k < map.grid.size[2]; ++k)
-        for (std::int32_t j = 0; j < map.grid.size[1]; ++j)
-            for (std::int32_t i = 0; i < map.grid.size[0]; ++i, ++offset) {
+    for (std::int32_t k = 0; k < labels.grid.size[2]; ++k)
+        for (std::int32_t j = 0; j < labels.grid.size[1]; ++j)
+            for (std::int32_t i = 0; i < labels.grid.size[0]; ++i, ++offset) {
+                const std::size_t label = labels.regions[offset];
+                const std::size_t paint = painted[offset] > 0 ? number(painted[offset]) : 0;
+                if (label == 0 && paint == 0) continue;
                 const Eigen::Vector3d index(i, j, k);
-                if (Overlap* overlap = overlap_of[map.labels[offset]]) {
-                    ++overlap->label;
-                    overlap->label_sum += index;
-                    overlap->both += painted[offset] == map.labels[offset];
-                }
-                if (painted[offset] > 0) {
-                    Overlap* overlap = overlap_of[static_cast<std::size_t>(painted[offset])];
-                    ++overlap->painted;
-                    overlap->painted_sum += index;
-                }
+                if (label > 0)
+                    for (const std::size_t own : {label, std::size_t{0}}) {
+                        ++overlaps[own].label;
+                        overlaps[own].label_sum += index;
+                    }
+                if (paint > 0)
+                    for (const std::size_t own : {paint, std::size_t{0}}) {
+                        ++overlaps[own].painted;
+                        overlaps[own].painted_sum += index;
+                    }
+                if (label > 0 && label == paint) ++overlaps[label].both;
+                if (label > 0 && paint > 0) ++overlaps[0].both;
             }
 
-    std::vector<RegionFidelity> result;
-    for (const auto& [region, overlap] : overlaps) {
-        if (overlap.label == 0)
-            throw InvalidInput({"label map", "region " + std::to_string(region) + " of the mesh has no voxel",
-                                "the map that the mesh was made from", ""});
-        RegionFidelity fidelity{.region = region};
-        fidelity.label_volume = static_cast<double>(overlap.label) * map.grid.voxel_volume();
-        fidelity.volume_error_percent = 100 * (volumes[region] / fidelity.label_volume - 1);
-        fidelity.dice =
-            2 * static_cast<double>(overlap.both) / static_cast<double>(overlap.label + overlap.painted);
-        const auto mean = [&](const Eigen::Vector3d& sum, std::int64_t count) -> Eigen::Vector3d {
-            return map.grid.point_of(sum / static_cast<double>(std::max<std::int64_t>(1, count)));
-        };
-        fidelity.centroid_distance =
-            (mean(overlap.painted_sum, overlap.painted) - mean(overlap.label_sum, overlap.label)).norm();
-        result.push_back(fidelity);
-    }
+    BodyFidelity result{.body = fidelity_of(0, overlaps[0], labels.grid), .regions = {}};
+    for (std::size_t k = 0; k < labels.values.size(); ++k)
+        result.regions.push_back(fidelity_of(labels.values[k], overlaps[k + 1], labels.grid));
     return result;
 }
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "formats/model/label_map.hpp"
 #include "formats/model/tet_mesh.hpp"
+#include "formats/model/triangle_mesh.hpp"
+#include "tools/meshing/region_labels.hpp"
 
 namespace palpate {
 
@@ -12,17 +14,46 @@ namespace palpate {
 /// does. Cost: O(voxels of the tetrahedra's index boxes), 0.2 s for a liver of 3 million voxels.
 std::vector<std::int32_t> voxelise(const TetMesh& mesh, const ImageGrid& grid);
 
-/// How well one region of a mesh agrees with its label.
+/// How well one region of a mesh, or all of them taken together, agree with their labels.
 struct RegionFidelity {
-    std::int32_t region = 0;          ///< label value
+    std::int32_t region = 0;          ///< label value; 0 for all together
     double label_volume = 0;          ///< mm³, voxels times voxel volume
     double volume_error_percent = 0;  ///< (mesh volume - label volume) / label volume
     double dice = 0;                  ///< of the voxelised mesh and the label, 0 ... 1
     double centroid_distance = 0;     ///< mm between the centroids of voxelised mesh and label
 };
 
-/// Compares every region of a mesh with the label map it was made from. Throws InvalidInput if the map lacks
-/// one of the mesh's regions.
-std::vector<RegionFidelity> compare(const TetMesh& mesh, const LabelMap& map);
+struct BodyFidelity {
+    RegionFidelity body;                  ///< all regions together
+    std::vector<RegionFidelity> regions;  ///< in the order of the labels' regions
+};
+
+/// Compares a mesh with the labels it was made from, as prepare_domain() cuts them out; regions come in the
+/// labels' order. Throws InvalidInput if they lack one of the mesh's regions.
+BodyFidelity compare(const TetMesh& mesh, const RegionLabels& labels);
+
+/// A point of one surface and its distance to another.
+struct SurfaceSample {
+    Eigen::Vector3d p_P;  ///< mm
+    double distance;      ///< mm
+};
+
+/// How far the triangles around a region are from the surface of its labels, both ways, mm.
+struct RegionDistance {
+    std::int32_t region = 0;                             ///< label value
+    double mean = 0;                                     ///< of the two one-sided means
+    double percentile_95 = 0, maximum = 0;               ///< the larger of the two sides'
+    Eigen::Vector3d farthest = Eigen::Vector3d::Zero();  ///< p_P, mm, where `maximum` is
+    std::vector<SurfaceSample> far_samples;              ///< those beyond half a voxel diagonal
+};
+
+/// The surface of each region of labels without their stairs: SmoothedLabels with a Gaussian of 0.7 of the
+/// largest voxel edge. In the regions' order.
+std::vector<TriangleMesh> region_surfaces(const RegionLabels& labels);
+
+/// Measures every region of a mesh against its surface of region_surfaces(). Samples: that surface at every
+/// voxel, the mesh's triangles half a voxel diagonal apart. Cost: 1 s for a million samples.
+std::vector<RegionDistance> region_distances(const TetMesh& mesh, const RegionLabels& labels,
+                                             std::span<const TriangleMesh> surfaces);
 
 }  // namespace palpate

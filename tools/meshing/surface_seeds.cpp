@@ -97,28 +97,30 @@ class SeedGrid {
 }  // namespace
 
 std::vector<SurfaceSeed> scatter_seeds(const RegionLabels& labels, const SmoothedLabels& smoothed,
-                                       std::span<const double> spacing) {
+                                       const SizeField& sizes) {
     const LabelComponents found = find_components(labels);
     std::vector<double> distance;
     for (const LabelComponent& component : found.components) {
         const double volume = static_cast<double>(component.voxels) * labels.grid.voxel_volume();
         // A ball takes some 25 seeds when they are 0.6 of its radius apart.
-        const double small = 0.6 * std::cbrt(volume * 3 / (4 * std::numbers::pi));
-        distance.push_back(component.region == 0 ? small : std::min(small, spacing[component.region - 1U]));
+        distance.push_back(0.6 * std::cbrt(volume * 3 / (4 * std::numbers::pi)));
     }
     const std::array<std::size_t, 3> stride{1, static_cast<std::size_t>(labels.grid.size[0]),
                                             labels.grid.offset(0, 0, 1)};
-    SeedGrid placed(*std::ranges::max_element(spacing));
+    constexpr double facet_sizes_apart = 1.5;
+    SeedGrid placed(facet_sizes_apart * sizes.largest_facet());
     std::vector<SurfaceSeed> seeds;
     for (const VoxelFace& face : faces_between_regions(labels)) {
         const auto component_of = [&](std::size_t voxel) {
             return static_cast<std::size_t>(found.component_of[voxel]);
         };
-        const double apart =
-            std::min(distance[component_of(face.voxel)],
-                     distance[component_of(face.voxel + stride[static_cast<std::size_t>(face.axis)])]);
         const auto seed = project(face, smoothed);
-        if (!seed || placed.has_within(seed->position, apart)) continue;
+        if (!seed) continue;
+        const double apart =
+            std::min({distance[component_of(face.voxel)],
+                      distance[component_of(face.voxel + stride[static_cast<std::size_t>(face.axis)])],
+                      facet_sizes_apart * sizes.at(seed->position, seed->lower, seed->upper).facet});
+        if (placed.has_within(seed->position, apart)) continue;
         placed.add(seed->position);
         seeds.push_back(*seed);
     }

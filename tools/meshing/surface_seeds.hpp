@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-#include <span>
 #include <vector>
 
 #include "tools/meshing/region_labels.hpp"
+#include "tools/meshing/size_field.hpp"
 #include "tools/meshing/smoothed_labels.hpp"
 
 namespace palpate {
@@ -14,10 +14,10 @@ struct SurfaceSeed {
     std::uint8_t lower, upper;  ///< the regions that meet, lower < upper; 0 is the outside
 };
 
-/// Scatters seeds over the surfaces of all components of all regions, `spacing[region]` mm apart or more, and
+/// Scatters seeds over the surfaces of all components of all regions, 1.5 facet sizes apart or more, and
 /// closer on small components, so that each gets some two dozen: Delaunay refinement finds only surfaces that
 /// it has met, and a component between its first points would be lost. Equal inputs give equal seeds.
 std::vector<SurfaceSeed> scatter_seeds(const RegionLabels& labels, const SmoothedLabels& smoothed,
-                                       std::span<const double> spacing);
+                                       const SizeField& sizes);
 
 }  // namespace palpate

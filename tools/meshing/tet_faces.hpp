@@ -16,4 +16,13 @@ struct TetFace {
 /// All faces of all tetrahedra, sorted by nodes, so that the two sides of an inner face are neighbours.
 std::vector<TetFace> sorted_faces(const TetMesh& mesh);
 
+/// A face with different regions on its two sides, seen from `inner`; `outer` is 0 on the boundary.
+struct InterfaceFace {
+    Triangle nodes;  ///< counter-clockwise seen from the outer side
+    std::int32_t inner, outer;
+};
+
+/// All such faces of a mesh, each once.
+std::vector<InterfaceFace> interface_faces(const TetMesh& mesh);
+
 }  // namespace palpate

@@ -8,10 +8,10 @@
 #include "formats/model/errors.hpp"
 #include "tools/meshing/body_repair.hpp"
 #include "tools/meshing/cgal_mesher.hpp"
-#include "tools/meshing/fidelity.hpp"
 #include "tools/meshing/lift_flat_tetrahedra.hpp"
 #include "tools/meshing/outside_labels.hpp"
-#include "tools/meshing/smoothed_labels.hpp"
+#include "tools/meshing/size_field.hpp"
+#include "tools/meshing/surface_fit.hpp"
 #include "tools/meshing/surface_seeds.hpp"
 
 namespace palpate {
@@ -29,21 +29,91 @@ void check(const MeshSizing& sizing) {
             sizing.facet_angle_deg, "0 ... 30 degrees, beyond which refinement may not end");
     require(sizing.cell_radius_edge >= 2, "cell radius over edge", sizing.cell_radius_edge,
             "2 or more, below which refinement may not end");
-    for (const RegionSize& region : sizing.regions)
-        require(region.cell_size > 0, "region cell size", region.cell_size, "more than 0 mm");
+    for (const RegionSize& region : sizing.regions) {
+        require(region.cell_size >= 0, "region cell size", region.cell_size, "0 or more mm");
+        require(region.surface_scale > 0, "region surface scale", region.surface_scale, "more than 0");
+    }
+    for (const NearSize& near : sizing.near) {
+        require(near.cell_size > 0, "cell size near a place", near.cell_size, "more than 0 mm");
+        require(near.within > 0, "distance to a place", near.within, "more than 0 mm");
+    }
 }
 
-std::vector<RegionSizing> sizing_by_region(const MeshSizing& sizing, std::span<const std::int32_t> values) {
-    std::vector<RegionSizing> result;
-    for (const std::int32_t value : values) {
-        const auto own = std::ranges::find(sizing.regions, value, &RegionSize::region);
-        const double cell_size = own == sizing.regions.end() ? sizing.cell_size : own->cell_size;
-        const double scale = cell_size / sizing.cell_size;
-        result.push_back(
-            {cell_size, scale * (sizing.facet_size > 0 ? sizing.facet_size : sizing.cell_size),
-             scale * (sizing.facet_distance > 0 ? sizing.facet_distance : sizing.cell_size / 10)});
+double volume_of(const RegionLabels& labels, std::size_t region) {
+    return static_cast<double>(std::ranges::count(labels.regions, static_cast<std::uint8_t>(region))) *
+           labels.grid.voxel_volume();
+}
+
+// Three times volume over surface, mm: the radius of a ball, 1.5 thicknesses of a sheet. The faces of voxels
+// add up to 1.5 times the area of the surface that they follow, averaged over its directions.
+std::vector<double> radii(const RegionLabels& labels) {
+    std::vector<double> area(labels.values.size() + 1, 0.0), result;
+    const std::array<std::size_t, 3> stride{1, static_cast<std::size_t>(labels.grid.size[0]),
+                                            labels.grid.offset(0, 0, 1)};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double face =
+            labels.grid.voxel_volume() / labels.grid.spacing[static_cast<Eigen::Index>(axis)] / 1.5;
+        for (std::size_t v = 0; v + stride[axis] < labels.regions.size(); ++v) {
+            const std::uint8_t here = labels.regions[v], next = labels.regions[v + stride[axis]];
+            if (here == next) continue;
+            area[here] += face;
+            area[next] += face;
+        }
+    }
+    for (std::size_t region = 1; region < area.size(); ++region)
+        result.push_back(3 * volume_of(labels, region) / area[region]);
+    return result;
+}
+
+LocalSizes scaled(const MeshSizing& sizing, double cell_size) {
+    const double scale = cell_size / sizing.cell_size;
+    return {cell_size, scale * (sizing.facet_size > 0 ? sizing.facet_size : sizing.cell_size),
+            scale * (sizing.facet_distance > 0 ? sizing.facet_distance : sizing.cell_size / 10)};
+}
+
+std::vector<LocalSizes> sizes_by_region(const MeshSizing& sizing, const RegionLabels& labels) {
+    std::vector<LocalSizes> result;
+    const std::vector<double> radius = radii(labels);
+    for (std::size_t k = 0; k < radius.size(); ++k) {
+        const auto found = std::ranges::find(sizing.regions, labels.values[k], &RegionSize::region);
+        const RegionSize own = found == sizing.regions.end() ? RegionSize{} : *found;
+        LocalSizes sizes =
+            scaled(sizing, own.cell_size > 0 ? own.cell_size : std::min(sizing.cell_size, radius[k]));
+        sizes.facet *= own.surface_scale;
+        sizes.distance *= own.surface_scale;
+        result.push_back(sizes);
     }
     return result;
+}
+
+// The points of a place: those given, or the label's voxels, thinned to a fraction of the distance.
+std::vector<Eigen::Vector3d> points_of(const NearSize& near, const LabelMap& map, double apart) {
+    if (!near.points.empty()) return near.points;
+    std::vector<Eigen::Vector3d> points;
+    std::set<std::array<int, 3>> taken;
+    std::size_t offset = 0;
+    for (std::int32_t k = 0; k < map.grid.size[2]; ++k)
+        for (std::int32_t j = 0; j < map.grid.size[1]; ++j)
+            for (std::int32_t i = 0; i < map.grid.size[0]; ++i, ++offset) {
+                if (map.labels[offset] != near.label) continue;
+                const Eigen::Vector3d p = map.grid.point_of(Eigen::Vector3d(i, j, k));
+                const Eigen::Array3i cell = (p.array() / apart).floor().cast<int>();
+                if (taken.insert({cell[0], cell[1], cell[2]}).second) points.push_back(p);
+            }
+    return points;
+}
+
+SizeField size_field(const MeshSizing& sizing, const MeshDomain& domain, const LabelMap& map) {
+    const std::vector<LocalSizes> regions = sizes_by_region(sizing, domain.labels);
+    double edge = sizing.cell_size;
+    for (const NearSize& near : sizing.near) edge = std::max(edge, near.within);
+    SizeField field(regions, edge);
+    for (const NearSize& near : sizing.near) {
+        const double apart = near.points.empty() ? 0.5 * near.within : 0;
+        for (const Eigen::Vector3d& p : points_of(near, map, apart))
+            field.add({p, near.within + apart, scaled(sizing, near.cell_size)});
+    }
+    return field;
 }
 
 Label label_of(const LabelMap& map, std::int32_t value) {
@@ -74,66 +144,51 @@ void require_every_region(const RegionLabels& labels, const LabelMap& map, doubl
         }
 }
 
-// A component has arrived if at least half of its voxels lie in tetrahedra of its region.
-void require_every_component(const TetMesh& mesh, const RegionLabels& labels, const LabelMap& map) {
-    const LabelComponents found = find_components(labels);
-    const std::vector<std::int32_t> painted = voxelise(mesh, labels.grid);
-    std::vector<std::int64_t> covered(found.components.size(), 0);
-    for (std::size_t v = 0; v < painted.size(); ++v)
-        covered[static_cast<std::size_t>(found.component_of[v])] +=
-            labels.regions[v] > 0 && painted[v] == labels.values[labels.regions[v] - 1U];
-    for (std::size_t c = 0; c < covered.size(); ++c) {
-        const LabelComponent& component = found.components[c];
-        if (component.region == 0 || 2 * covered[c] >= component.voxels) continue;
-        const Label label = label_of(map, labels.values[component.region - 1U]);
-        const Eigen::Vector3d& p = component.centroid;
-        throw QualityNotMet(
-            {fmt::format("label {} \"{}\"", label.value, label.name),
-             fmt::format(
-                 "its component of {:.0f} mm³ around ({:.1f}, {:.1f}, {:.1f}) is {:.0f} % in the mesh",
-                 static_cast<double>(component.voxels) * labels.grid.voxel_volume(), p.x(), p.y(), p.z(),
-                 100.0 * static_cast<double>(covered[c]) / static_cast<double>(component.voxels)),
-             "half of it or more", "give this label a smaller cell size, or smooth less"});
-    }
-}
-
 }  // namespace
 
+MeshDomain prepare_domain(const LabelMap& map, std::span<const std::int32_t> region_values, double smoothing,
+                          double min_component_volume) {
+    const double sigma = smoothing < 0 ? map.grid.spacing.maxCoeff() : smoothing;
+    RegionLabels labels = cut_out_regions(map, region_values, smoothing_margin(map.grid, sigma));
+    absorb_specks(labels, min_component_volume);
+    require_every_region(labels, map, min_component_volume);
+    SmoothedLabels smoothed(labels, sigma);
+    return {std::move(labels), std::move(smoothed)};
+}
+
 TetMesh tetrahedralise(const LabelMap& map, std::span<const std::int32_t> region_values,
-                       const MeshSizing& sizing, const ProgressCallback& callback) {
+                       const MeshSizing& sizing, const ProgressCallback& progress) {
+    check(sizing);
+    return tetrahedralise(prepare_domain(map, region_values, sizing.smoothing, sizing.min_component_volume),
+                          map, sizing, progress);
+}
+
+TetMesh tetrahedralise(const MeshDomain& domain, const LabelMap& map, const MeshSizing& sizing,
+                       const ProgressCallback& callback) {
     check(sizing);
     const ProgressCallback progress = callback ? callback : [](std::string_view, double) {};
-    const double sigma = sizing.smoothing < 0 ? map.grid.spacing.maxCoeff() : sizing.smoothing;
-    progress("smooth labels", 0);
-    RegionLabels labels = cut_out_regions(map, region_values, smoothing_margin(map.grid, sigma));
-    absorb_specks(labels, sizing.min_component_volume);
-    require_every_region(labels, map, sizing.min_component_volume);
-    const SmoothedLabels smoothed(labels, sigma);
+    const auto& [labels, smoothed] = domain;
+    SizeField sizes = size_field(sizing, domain, map);
+    const double max_gap = 0.6 * map.grid.spacing.norm();
 
-    const std::vector<RegionSizing> region_sizing = sizing_by_region(sizing, labels.values);
-    std::vector<double> seed_spacing;
-    double finest = region_sizing.front().facet_distance;
-    for (const RegionSizing& region : region_sizing) {
-        seed_spacing.push_back(1.5 * region.facet_size);
-        finest = std::min(finest, region.facet_distance);
-    }
     progress("seed surfaces", 0.2);
-    TetMesh mesh = mesh_smoothed_labels(smoothed, scatter_seeds(labels, smoothed, seed_spacing),
-                                        region_sizing, sizing, progress);
-    for (std::int32_t& region : mesh.regions) region = labels.values[static_cast<std::size_t>(region) - 1];
+    TetMesh mesh = mesh_smoothed_labels(
+        smoothed, scatter_seeds(labels, smoothed, sizes), sizes, max_gap,
+        {sizing.facet_angle_deg, sizing.cell_radius_edge, sizing.min_dihedral_deg}, progress);
 
     progress("repair", 0.9);
     split_hinges(mesh);
+    part_pinched_edges(mesh);
     remove_crumbs(mesh, sizing.min_component_volume);
-    // Matching volumes may take a tenth of an angle back.
-    lift_flat_tetrahedra(mesh, sizing.min_dihedral_deg / 0.9, finest);
-    std::vector<RegionVolume> targets;
-    for (const std::int32_t value : labels.values) targets.push_back({value, 0});
-    for (const std::uint8_t region : labels.regions)
-        if (region > 0) targets[region - 1U].volume += labels.grid.voxel_volume();
-    match_volumes(mesh, targets, finest);
-    require_every_component(mesh, labels, map);
+    // Each step leaves the next one a degree to spend.
+    lift_flat_tetrahedra(mesh, sizing.min_dihedral_deg + 2, 0.5 * max_gap);
+    fit_surface(mesh, smoothed, sizing.min_dihedral_deg + 1, max_gap);
+    std::vector<double> volumes;
+    for (std::size_t region = 1; region <= labels.values.size(); ++region)
+        volumes.push_back(volume_of(labels, region));
+    match_volumes(mesh, volumes, sizing.min_dihedral_deg, max_gap);
 
+    for (std::int32_t& region : mesh.regions) region = labels.values[static_cast<std::size_t>(region) - 1];
     mesh.region_names = labels_among(map, mesh.regions);
     mesh.outside_labels = outside_labels(mesh, map);
     mesh.outside_names = labels_among(map, mesh.outside_labels);

@@ -6,6 +6,7 @@
 #include "formats/model/errors.hpp"
 #include "tests/tools/meshing/phantom.hpp"
 #include "tools/meshing/lift_flat_tetrahedra.hpp"
+#include "tools/meshing/quality.hpp"
 #include "tools/meshing/tetrahedralise.hpp"
 
 namespace palpate {
@@ -46,24 +47,45 @@ TEST(RemoveCrumbs, only_small_pieces_go_and_every_node_stays_used) {
     EXPECT_EQ(remove_crumbs(mesh, 0.1), 0);
 }
 
-TEST(MatchVolumes, targets_are_met_by_moving_interfaces_alone) {
-    const LabelMap map = test::organ_with_lesion();
-    TetMesh mesh = tetrahedralise(map, organ_and_lesion, {.cell_size = 5});
-    const TetMesh before = mesh;
-    std::vector<RegionVolume> targets = measure(mesh).region_volumes;
-    targets[0].volume *= 1.01;
-    targets[1].volume *= 0.97;
-    match_volumes(mesh, targets, 0.5);
-    const auto after = measure(mesh).region_volumes;
-    for (std::size_t k = 0; k < 2; ++k) EXPECT_NEAR(after[k].volume / targets[k].volume, 1, 1e-4);
-    for (std::size_t node = 0; node < mesh.rest_positions.size(); ++node)
-        EXPECT_LT((mesh.rest_positions[node] - before.rest_positions[node]).norm(), 0.5);
+// Three layers of 2 x 2 cubes; the middle one lacks two that are diagonal, so that the others meet in an
+// edge.
+TetMesh pinched() {
+    TetMesh mesh;
+    const auto node = [](int i, int j, int k) { return (k * 3 + j) * 3 + i; };
+    for (int k = 0; k <= 3; ++k)
+        for (int j = 0; j <= 2; ++j)
+            for (int i = 0; i <= 2; ++i) mesh.rest_positions.emplace_back(i, j, k);
+    for (int k = 0; k < 3; ++k)
+        for (int j = 0; j < 2; ++j)
+            for (int i = 0; i < 2; ++i) {
+                if (k == 1 && i == j) continue;
+                for (const auto& [a, b] : {std::pair(0, 1), std::pair(1, 2), std::pair(2, 0), std::pair(1, 0),
+                                           std::pair(2, 1), std::pair(0, 2)}) {
+                    std::array<int, 3> first{i, j, k}, second{i, j, k};
+                    ++first[static_cast<std::size_t>(a)];
+                    ++second[static_cast<std::size_t>(a)];
+                    ++second[static_cast<std::size_t>(b)];
+                    Tetrahedron tet{node(i, j, k), node(first[0], first[1], first[2]),
+                                    node(second[0], second[1], second[2]), node(i + 1, j + 1, k + 1)};
+                    if ((b - a + 3) % 3 == 2) std::swap(tet[1], tet[2]);
+                    mesh.tetrahedra.push_back(tet);
+                    mesh.regions.push_back(1);
+                }
+            }
+    return mesh;
 }
 
-TEST(MatchVolumes, region_without_a_target_is_refused) {
-    TetMesh mesh = hinged(false);
-    const std::vector<RegionVolume> other{{2, 1.0}};
-    EXPECT_THROW(match_volumes(mesh, other, 1), InvalidInput);
+TEST(PartPinchedEdges, no_edge_is_left_in_more_than_two_boundary_faces) {
+    TetMesh mesh = pinched();
+    ASSERT_EQ(split_hinges(mesh), 0);  // the other layers hold the corners together
+    const MeshQuality before = measure(mesh);
+    ASSERT_EQ(before.boundary.non_manifold_edges, 1);
+    const std::int64_t removed = part_pinched_edges(mesh);
+    const MeshQuality after = measure(mesh);
+    EXPECT_TRUE(after.boundary.closed_and_oriented());
+    EXPECT_GT(removed, 0);
+    EXPECT_LE(removed, 6);  // no more than one of the six cubes
+    EXPECT_EQ(part_pinched_edges(mesh), 0);
 }
 
 TEST(LiftFlatTetrahedra, sliver_in_the_middle_of_a_ball_becomes_sound) {

@@ -8,7 +8,9 @@
 #include "tests/tools/meshing/phantom.hpp"
 #include "tools/meshing/gaussian.hpp"
 #include "tools/meshing/region_labels.hpp"
+#include "tools/meshing/size_field.hpp"
 #include "tools/meshing/smoothed_labels.hpp"
+#include "tools/meshing/surface_gap.hpp"
 #include "tools/meshing/surface_seeds.hpp"
 
 namespace palpate {
@@ -125,12 +127,94 @@ TEST(SmoothedLabels, beyond_the_grid_lies_the_outside) {
     EXPECT_EQ(smoothed.region_at(test::lesion_center), 2);
 }
 
+// A cone with its tip towards +x: smoothing takes most from the tip.
+LabelMap cone() {
+    return test::paint(test::grid_around({0, 0, 0}, Eigen::Matrix3d::Identity(), {90, 60, 44}),
+                       [](const Eigen::Vector3d& p) {
+                           const double along = 30 - p.x();
+                           return along > 0 && along < 60 && p.tail<2>().norm() < 0.4 * along ? 1 : 0;
+                       },
+                       {{1, "cone"}});
+}
+
+TEST(SmoothedLabels, centroid_of_a_pointed_body_stays) {
+    const LabelMap map = cone();
+    const std::array<std::int32_t, 1> one{1};
+    const double sigma = 2.5;
+    const RegionLabels labels = cut_out_regions(map, one, smoothing_margin(map.grid, sigma));
+    const SmoothedLabels smoothed(labels, sigma);
+    std::array<double, 2> count{}, sum{};
+    std::size_t offset = 0;
+    for (std::int32_t k = 0; k < labels.grid.size[2]; ++k)
+        for (std::int32_t j = 0; j < labels.grid.size[1]; ++j)
+            for (std::int32_t i = 0; i < labels.grid.size[0]; ++i, ++offset) {
+                const Eigen::Vector3d p = labels.grid.point_of({1.0 * i, 1.0 * j, 1.0 * k});
+                if (labels.regions[offset] == 1) {
+                    ++count[0];
+                    sum[0] += p.x();
+                }
+                if (smoothed.region_at(p) == 1) {
+                    ++count[1];
+                    sum[1] += p.x();
+                }
+            }
+    // One offset for the whole surface would move the centroid by 0.15 mm.
+    EXPECT_NEAR(sum[1] / count[1], sum[0] / count[0], 0.05);
+}
+
+TEST(SmoothedLabels, sheet_of_one_voxel_beside_a_large_body_survives) {
+    const LabelMap map = test::paint(test::grid_around({0, 0, 0}, Eigen::Matrix3d::Identity(), {70, 50, 40}),
+                                     [](const Eigen::Vector3d& p) {
+                                         if (std::abs(p.x() - 20) < 0.45) return 5;
+                                         return (p + Eigen::Vector3d(15, 0, 0)).norm() < 15 ? 5 : 0;
+                                     },
+                                     {{5, "ball and sheet"}});
+    const std::array<std::int32_t, 1> label{5};
+    const RegionLabels labels = cut_out_regions(map, label, smoothing_margin(map.grid, 3));
+    const SmoothedLabels smoothed(labels, 3);
+    const double x =
+        map.grid.point_of(Eigen::Vector3d(std::round(map.grid.index_of({20, 0, 0}).x()), 0, 0)).x();
+    for (double y = -15; y <= 15; y += 5) EXPECT_EQ(smoothed.region_at({x, y, 3}), 1) << y;
+    EXPECT_EQ(smoothed.region_at({x - 3, 0, 3}), 0);
+}
+
+TEST(SurfaceGap, is_the_distance_to_a_ball_along_the_normal) {
+    const LabelMap map = test::organ_with_lesion();
+    const RegionLabels labels = cut_out_regions(map, organ_and_lesion, smoothing_margin(map.grid, 1));
+    const SmoothedLabels smoothed(labels, 1);
+    const Eigen::Vector3d outwards = Eigen::Vector3d(-1, 0.5, 0.3).normalized();
+    const InterfaceSide side{.inner = 1, .outer = 0, .normal = outwards};
+    const double voxel = 0.9;
+    const auto gap = [&](double radius) {
+        return surface_gap(smoothed, side, test::organ_center + radius * outwards, 5);
+    };
+    EXPECT_NEAR(gap(18).value(), 2, 0.5 * voxel);
+    EXPECT_NEAR(gap(21.5).value(), -1.5, 0.5 * voxel);
+    EXPECT_FALSE(gap(12).has_value());  // 8 mm off
+    EXPECT_FALSE(surface_gap(smoothed, side, test::lesion_center, 5).has_value());
+}
+
+TEST(SizeField, finest_of_regions_and_balls_holds) {
+    const std::array<LocalSizes, 2> regions{LocalSizes{8, 6, 0.8}, LocalSizes{4, 5, 0.4}};
+    SizeField field(regions, 3);
+    field.add({{10, 0, 0}, 2, {.cell = 1, .facet = 2}});
+    EXPECT_EQ(field.at({0, 0, 0}, 1).cell, 8);
+    EXPECT_EQ(field.at({0, 0, 0}, 0, 2).facet, 5);
+    EXPECT_EQ(field.at({0, 0, 0}, 1, 2).distance, 0.4);
+    EXPECT_EQ(field.at({11.9, 0, 0}, 1).cell, 1);
+    EXPECT_EQ(field.at({11.9, 0, 0}, 1).distance, 0.8);
+    EXPECT_EQ(field.at({12.1, 0, 0}, 1).cell, 8);
+    EXPECT_EQ(field.finest_distance(), 0.4);
+    EXPECT_EQ(field.largest_facet(), 6);
+}
+
 TEST(SurfaceSeeds, lie_on_every_surface_at_their_distance) {
     const LabelMap map = test::organ_with_lesion();
     const RegionLabels labels = cut_out_regions(map, organ_and_lesion, smoothing_margin(map.grid, 1));
     const SmoothedLabels smoothed(labels, 1);
-    const std::array<double, 2> spacing{6, 6};
-    const std::vector<SurfaceSeed> seeds = scatter_seeds(labels, smoothed, spacing);
+    const std::array<LocalSizes, 2> sizes{LocalSizes{.facet = 4},
+                                          LocalSizes{.facet = 4}};  // seeds 6 mm apart
+    const std::vector<SurfaceSeed> seeds = scatter_seeds(labels, smoothed, SizeField(sizes, 4));
     std::int64_t on_lesion = 0;
     for (const SurfaceSeed& seed : seeds) {
         if (seed.lower == 1 && seed.upper == 2) {

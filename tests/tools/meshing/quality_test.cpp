@@ -155,8 +155,12 @@ TEST(Fidelity, comparison_of_a_shifted_label_is_a_hand_calculation) {
     for (std::int32_t k = 1; k <= 2; ++k)
         for (std::int32_t j = 1; j <= 3; ++j)
             for (std::int32_t i = 1; i <= 5; ++i) map.labels[grid.offset(i, j, k)] = i <= 3 ? 4 : 9;
-    const auto fidelity = compare(box(4, 3, 2), map);
+    const std::array<std::int32_t, 2> both{4, 9};
+    const BodyFidelity result = compare(box(4, 3, 2), cut_out_regions(map, both, 1));
+    const std::vector<RegionFidelity>& fidelity = result.regions;
     ASSERT_EQ(fidelity.size(), 2U);
+    EXPECT_NEAR(result.body.dice, 2 * 24.0 / (24 + 30), rounding);
+    EXPECT_NEAR(result.body.centroid_distance, 0.5, rounding);
     EXPECT_NEAR(fidelity[0].volume_error_percent, 100 * (12.0 / 18 - 1), 1e-9);
     EXPECT_NEAR(fidelity[0].dice, 2 * 12.0 / (12 + 18), rounding);
     EXPECT_NEAR(fidelity[0].centroid_distance, 0.5, rounding);
@@ -168,7 +172,8 @@ TEST(Fidelity, map_without_the_region_is_refused) {
     ImageGrid grid;
     grid.size = {3, 3, 3};
     const LabelMap map{grid, std::vector<std::uint16_t>(27, 4), {{4, "a"}}};
-    EXPECT_THROW(compare(box(4, 3, 2), map), InvalidInput);
+    const std::array<std::int32_t, 1> one{4};
+    EXPECT_THROW(compare(box(4, 3, 2), cut_out_regions(map, one, 1)), InvalidInput);
 }
 
 }  // namespace

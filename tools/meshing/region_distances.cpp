@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <future>
+#include <vtkCellArray.h>
+#include <vtkGenericCell.h>
+#include <vtkNew.h>
+#include <vtkPolyData.h>
+#include <vtkStaticCellLocator.h>
+
+#include "tools/meshing/fidelity.hpp"
+#include "tools/meshing/smoothed_labels.hpp"
+#include "tools/meshing/surfaces.hpp"
+#include "tools/meshing/tet_faces.hpp"
+
+namespace palpate {
+namespace {
+
+std::vector<Eigen::Vector3d> samples(const TriangleMesh& surface, double apart) {
+    std::vector<Eigen::Vector3d> points;
+    for (const Triangle& t : surface.triangles) {
+        const auto corner = [&](std::size_t c) -> const Eigen::Vector3d& {
+            return surface.vertices[static_cast<std::size_t>(t[c])];
+        };
+        const Eigen::Vector3d u = corner(1) - corner(0), v = corner(2) - corner(0);
+        const double longest = std::max({u.norm(), v.norm(), (u - v).norm()});
+        const int n = std::max(1, static_cast<int>(std::ceil(longest / apart)));
+        // The centres of the n² like triangles that it splits into: equal weights are equal areas.
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; i + j < n; ++j) {
+                points.push_back(corner(0) + (i + 1.0 / 3) / n * u + (j + 1.0 / 3) / n * v);
+                if (i + j + 1 < n)
+                    points.push_back(corner(0) + (i + 2.0 / 3) / n * u + (j + 2.0 / 3) / n * v);
+            }
+    }
+    return points;
+}
+
+// Distances of points to a surface, in their order, on two threads.
+std::vector<double> distances(const std::vector<Eigen::Vector3d>& points, const TriangleMesh& surface) {
+    vtkNew<vtkPoints> vertices;
+    vertices->SetDataTypeToDouble();
+    for (const Eigen::Vector3d& p : surface.vertices) vertices->InsertNextPoint(p.data());
+    vtkNew<vtkCellArray> triangles;
+    for (const Triangle& t : surface.triangles) triangles->InsertNextCell({t[0], t[1], t[2]});
+    vtkNew<vtkPolyData> data;
+    data->SetPoints(vertices);
+    data->SetPolys(triangles);
+    vtkNew<vtkStaticCellLocator> locator;
+    locator->SetDataSet(data);
+    locator->BuildLocator();
+    std::vector<double> result(points.size());
+    const auto measure_range = [&](std::size_t begin, std::size_t end) {
+        vtkNew<vtkGenericCell> cell;
+        for (std::size_t i = begin; i < end; ++i) {
+            Eigen::Vector3d closest;
+            vtkIdType id = 0;
+            int sub_id = 0;
+            double squared_distance = 0;
+            locator->FindClosestPoint(points[i].data(), closest.data(), cell, id, sub_id, squared_distance);
+            result[i] = std::sqrt(squared_distance);
+        }
+    };
+    auto other_half = std::async(std::launch::async, measure_range, points.size() / 2, points.size());
+    measure_range(0, points.size() / 2);
+    other_half.get();
+    return result;
+}
+
+// The triangles around one region; each vertex once, in their order.
+TriangleMesh surface_around(const std::vector<InterfaceFace>& faces, const TetMesh& mesh,
+                            std::int32_t region) {
+    TriangleMesh surface;
+    std::vector<std::int32_t> vertex_of(mesh.rest_positions.size(), -1);
+    for (const InterfaceFace& face : faces) {
+        if (face.inner != region && face.outer != region) continue;
+        Triangle t = face.nodes;
+        for (std::int32_t& node : t) {
+            std::int32_t& vertex = vertex_of[static_cast<std::size_t>(node)];
+            if (vertex < 0) {
+                vertex = static_cast<std::int32_t>(surface.vertices.size());
+                surface.vertices.push_back(mesh.rest_positions[static_cast<std::size_t>(node)]);
+            }
+            node = vertex;
+        }
+        surface.triangles.push_back(t);
+    }
+    return surface;
+}
+
+double mean_of(const std::vector<double>& values) {
+    double sum = 0;
+    for (const double value : values) sum += value;
+    return sum / static_cast<double>(values.size());
+}
+
+double percentile_95(std::vector<double> values) {
+    const auto rank =
+        values.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(values.size() - 1));
+    std::ranges::nth_element(values, rank);
+    return *rank;
+}
+
+}  // namespace
+
+std::vector<TriangleMesh> region_surfaces(const RegionLabels& labels) {
+    constexpr double voxels = 0.7;
+    const SmoothedLabels smoothed(labels, voxels * labels.grid.spacing.maxCoeff());
+    std::vector<TriangleMesh> surfaces;
+    for (std::size_t region = 1; region <= smoothed.region_count(); ++region)
+        surfaces.push_back(isosurface(smoothed.leads(static_cast<std::uint8_t>(region)), 0));
+    return surfaces;
+}
+
+std::vector<RegionDistance> region_distances(const TetMesh& mesh, const RegionLabels& labels,
+                                             std::span<const TriangleMesh> surfaces) {
+    const std::vector<InterfaceFace> faces = interface_faces(mesh);
+    std::vector<RegionDistance> result;
+    for (std::size_t k = 0; k < labels.values.size(); ++k) {
+        const TriangleMesh around = surface_around(faces, mesh, labels.values[k]);
+        const TriangleMesh& labelled = surfaces[k];
+        RegionDistance distance;
+        distance.region = labels.values[k];
+        const auto add_side = [&](const std::vector<Eigen::Vector3d>& points, const TriangleMesh& surface) {
+            const std::vector<double> side = distances(points, surface);
+            const auto farthest = std::ranges::max_element(side);
+            distance.mean += 0.5 * mean_of(side);
+            distance.percentile_95 = std::max(distance.percentile_95, percentile_95(side));
+            for (std::size_t i = 0; i < side.size(); ++i)
+                if (side[i] > 0.5 * labels.grid.spacing.norm())
+                    distance.far_samples.push_back({points[i], side[i]});
+            if (*farthest <= distance.maximum) return;
+            distance.maximum = *farthest;
+            distance.farthest = points[static_cast<std::size_t>(farthest - side.begin())];
+        };
+        add_side(labelled.vertices, around);
+        add_side(samples(around, 0.5 * labels.grid.spacing.norm()), labelled);
+        result.push_back(distance);
+    }
+    return result;
+}
+
+}  // namespace palpate
