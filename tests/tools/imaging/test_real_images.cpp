@@ -40,8 +40,9 @@ TEST(RealImages, a_nifti_ct_and_its_labels_lie_on_one_grid_with_the_liver_on_the
     const Volume ct = read_volume(folder / "ct.nii.gz");
     const LabelMap labels = read_label_map(folder / "seg_totalseg.nii.gz");
     ASSERT_TRUE(same_grid(ct.grid, labels.grid));
-    const Label liver = require_label(labels, "label_5", "labels"),
-                spleen = require_label(labels, "1", "labels");
+    // TotalSegmentator wrote the names into the file.
+    const Label liver = require_label(labels, "liver", "labels"),
+                spleen = require_label(labels, "spleen", "labels");
     // Liver without contrast: 40 to 70 HU.
     EXPECT_NEAR(mean_within(ct, labels, liver.value), 55, 15);
     std::map<std::int32_t, Eigen::Vector3d> centroids;
@@ -62,14 +63,44 @@ TEST(RealImages, a_dicom_series_without_identifiers_fits_its_nifti_labels) {
     EXPECT_NEAR(mean_within(ct, on_ct, 1), 110, 30);
 }
 
-TEST(RealImages, of_several_dicom_series_the_largest_is_read_and_said_so) {
+TEST(RealImages, dicom_segmentations_beside_a_series_are_skipped_and_lie_on_its_grid) {
     REQUIRE_REAL_DATA(folder, "abdomen_dicom_seg_dcmqi");
     std::string notes;
     const Volume ct = read_volume(folder, [&](std::string_view note) { notes += note; });
     EXPECT_EQ(ct.grid.size[2], 3);
-    EXPECT_NE(notes.find("3 series"), std::string::npos);
-    const LabelMap liver = read_label_map(folder / "liver_seg.nrrd");
+    EXPECT_NE(notes.find("2 DICOM files that are no images: SEG"), std::string::npos);
+    const LabelMap twin = read_label_map(folder / "liver_seg.nrrd"),
+                   liver = read_label_map(folder / "liver.dcm");
+    EXPECT_TRUE(same_grid(ct.grid, twin.grid));
     EXPECT_TRUE(same_grid(ct.grid, liver.grid));
+    ASSERT_EQ(liver.names.size(), 1U);
+    EXPECT_EQ(liver.names[0].name, "Liver");
+    EXPECT_EQ(liver.labels, twin.labels);
+}
+
+TEST(RealImages, overlapping_segments_of_a_dicom_segmentation_are_those_of_its_nrrd_twins) {
+    REQUIRE_REAL_DATA(folder, "abdomen_dicom_seg_dcmqi");
+    const auto file = folder / "partial_overlaps.dcm";
+    try {
+        read_label_map(file);
+        FAIL() << "was read";
+    } catch (const InvalidInput& error) {
+        EXPECT_NE(std::string(error.what()).find("'GREEN' and 'ORANGE' share"), std::string::npos)
+            << error.what();
+    }
+    // Each twin holds one segment; the later one wins, so the last one is whole.
+    ReadOptions later;
+    later.overlaps = Overlaps::later_wins;
+    const LabelMap map = read_label_map(file, {}, later);
+    ASSERT_EQ(map.names.size(), 3U);
+    std::vector<std::uint16_t> expected(map.labels.size(), 0);
+    for (int i = 1; i <= 3; ++i) {
+        const LabelMap twin = read_label_map(folder / fmt::format("partial_overlaps-{}.nrrd", i));
+        ASSERT_TRUE(same_grid(twin.grid, map.grid));
+        for (std::size_t n = 0; n < expected.size(); ++n)
+            if (twin.labels[n] != 0) expected[n] = static_cast<std::uint16_t>(i);
+    }
+    EXPECT_EQ(map.labels, expected);
 }
 
 TEST(RealImages, a_missing_dicom_slice_is_refused_with_its_place) {
