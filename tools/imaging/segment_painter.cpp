@@ -26,7 +26,7 @@ LabelMap SegmentPainter::finish(const std::filesystem::path& path, const NoteSin
     std::size_t named = 0;
     for (const auto& [pair, count] : shared_)
         if (++named <= pairs_to_name)
-            pairs += fmt::format("{}'{}' and '{}' share {} voxels", pairs.empty() ? "" : ", ",
+            pairs += fmt::format("{}'{}' and '{}' both claim {} voxels", pairs.empty() ? "" : ", ",
                                  segments_[pair.first].name, segments_[pair.second].name, count);
     if (named > pairs_to_name) pairs += fmt::format(", and {} more pairs", named - pairs_to_name);
     if (!pairs.empty() && rule_ == Overlaps::refuse)
