@@ -82,9 +82,9 @@ void name_labels(LabelMap& map, const std::string& source, const NoteSink& note)
     else if (source.find('=') != std::string::npos)
         rename_labels(map, parse_label_names(source));
     else
-        throw InvalidInput({source, "no such file",
-                            "a label table, totalsegmentator:v2/total or 5=liver,4=gallbladder",
-                            "check the path"});
+        throw UsageError({"label names", "'" + source + "' is no file and no known table",
+                          "a label table, totalsegmentator:v2/total or 5=liver,4=gallbladder",
+                          "check the path"});
     make_names_unique(map, note);
 }
 

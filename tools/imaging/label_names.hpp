@@ -36,7 +36,8 @@ LabelTable totalsegmentator_table(std::string_view task);
 /// Names the labels of a map after `source`: "5=liver,4=gallbladder" as rename_labels() does, or
 /// "totalsegmentator:v2/total", or the path of a label table, whose further names are ignored; labels that a
 /// table does not know keep theirs, with a note. An empty source changes nothing and notes labels without
-/// name. Throws as those do, and InvalidInput if a table knows none.
+/// name. Throws as those do, UsageError if the source is none of them, and InvalidInput if a table knows
+/// none.
 void name_labels(LabelMap& map, const std::string& source, const NoteSink& note = {});
 
 /// Appends _2, _3 ... to names that occurred before, with a note.

@@ -64,6 +64,7 @@ void read_pixels(const std::string& file, std::span<const DicomSlice> slices, co
         return InvalidInput({file, found, "whole grey pixels that GDCM can decode",
                              "copy the file again, or decompress it with 'gdcmconv --raw'"});
     };
+    if (!is_whole_dicom(file)) throw fail("is cut off");
     gdcm::ImageReader reader;
     reader.SetFileName(file.c_str());
     if (!reader.Read()) throw fail("its pixels cannot be read");
@@ -73,6 +74,10 @@ void read_pixels(const std::string& file, std::span<const DicomSlice> slices, co
     const std::size_t frames = image.GetNumberOfDimensions() > 2 ? image.GetDimension(2) : 1;
     if (format.GetSamplesPerPixel() != 1 ||
         image.GetBufferLength() < frames * count * std::size_t{format.GetPixelSize()})
+        throw fail("holds fewer pixels than its header claims");
+    const gdcm::ByteValue* raw =
+        reader.GetFile().GetDataSet().GetDataElement(gdcm::Tag(0x7fe0, 0x0010)).GetByteValue();
+    if (raw != nullptr && raw->GetLength() < frames * count * std::size_t{format.GetPixelSize()})
         throw fail("holds fewer pixels than its header claims");
     std::vector<char> buffer(image.GetBufferLength());
     if (!image.GetBuffer(buffer.data())) throw fail("its pixels cannot be decoded");

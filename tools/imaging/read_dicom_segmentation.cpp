@@ -165,6 +165,12 @@ ImageGrid Source::grid(const NoteSink& note) const {
 
 }  // namespace
 
+bool is_whole_dicom(const std::filesystem::path& path) {
+    OFLog::configure(OFLogger::OFF_LOG_LEVEL);
+    DcmFileFormat file;
+    return file.loadFile(path.c_str()).good();
+}
+
 LabelMap read_dicom_segmentation(const std::filesystem::path& path, const NoteSink& note, Overlaps overlaps) {
     const Source source(path);
     const ImageGrid grid = source.grid(note);

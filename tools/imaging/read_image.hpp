@@ -48,6 +48,9 @@ LabelMap read_dicom_segmentation(const std::filesystem::path& path, const NoteSi
 /// Tells whether a file is DICOM by its preamble.
 bool is_dicom(const std::filesystem::path& path);
 
+/// Tells whether a DICOM file ends where its elements do; GDCM pads pixels that are cut off.
+bool is_whole_dicom(const std::filesystem::path& path);
+
 /// Checks sizes and spacings, and makes the directions orthonormal; throws InvalidInput naming `path`.
 void check_geometry(ImageGrid& grid, const std::filesystem::path& path, const NoteSink& note);
 

@@ -7,6 +7,9 @@
 #include <itkMetaDataObject.h>
 #include <itkMetaImageIO.h>
 #include <itkNrrdImageIO.h>
+#include <itk_zlib.h>
+#include <memory>
+#include <optional>
 #include <sstream>
 
 #include "formats/model/errors.hpp"
@@ -57,66 +60,100 @@ std::map<std::string, std::string> header_of(const itk::MetaDataDictionary& dict
     return header;
 }
 
-// Whether a MetaImage's data file is as long as its header says.
-bool meta_data_is_long_enough(const std::filesystem::path& path, std::size_t bytes) {
+// Where a MetaImage keeps its voxels.
+struct MetaData {
+    std::filesystem::path file;
+    std::size_t offset = 0;
+    bool compressed = false;
+    bool big_endian = false;
+};
+std::optional<MetaData> meta_data_of(const std::filesystem::path& path) {
     std::ifstream stream(path, std::ios::binary);
-    std::string line;
-    while (std::getline(stream, line)) {
+    MetaData data;
+    for (std::string line; std::getline(stream, line);) {
         std::istringstream words(line);
         std::string key, equals, value;
         words >> key >> equals >> value;
-        if (key == "CompressedData" && (value.starts_with("T") || value.starts_with("t"))) bytes = 1;
-        if (key == "CompressedDataSize") std::istringstream(value) >> bytes;
+        const bool yes = value.starts_with('T') || value.starts_with('t');
+        if (key == "CompressedData") data.compressed = yes;
+        if (key == "BinaryDataByteOrderMSB" || key == "ElementByteOrderMSB") data.big_endian = yes;
         if (key != "ElementDataFile") continue;
-        std::error_code absent;
-        if (value == "LOCAL")
-            return std::filesystem::file_size(path) >= bytes + static_cast<std::size_t>(stream.tellg());
-        const auto data_bytes = std::filesystem::file_size(path.parent_path() / value, absent);
-        return !absent && data_bytes >= bytes;
+        const bool local = value == "LOCAL" || value == "Local" || value == "local";
+        data.file = local ? path : path.parent_path() / value;
+        data.offset = local ? static_cast<std::size_t>(stream.tellg()) : 0;
+        if (std::error_code none; std::filesystem::is_regular_file(data.file, none)) return data;
+        break;
     }
-    return false;
+    return std::nullopt;
+}
+
+// Whether all of `bytes` came out of the zlib or gzip stream; MetaIO's own reader wants its packed size.
+bool inflate_into(const MetaData& data, std::span<std::byte> bytes) {
+    std::ifstream stream(data.file, std::ios::binary);
+    stream.seekg(static_cast<std::streamoff>(data.offset));
+    z_stream state{};
+    constexpr int either_header = 15 + 32;
+    if (inflateInit2(&state, either_header) != Z_OK) return false;
+    const std::unique_ptr<z_stream, int (*)(z_stream*)> end(&state, inflateEnd);
+    std::vector<char> packed(1 << 18);
+    std::size_t done = 0;
+    int status = Z_OK;
+    while (status == Z_OK) {
+        if (state.avail_in == 0) {
+            stream.read(packed.data(), static_cast<std::streamsize>(packed.size()));
+            state.next_in = reinterpret_cast<Bytef*>(packed.data());
+            state.avail_in = static_cast<uInt>(stream.gcount());
+        }
+        const auto room = static_cast<uInt>(std::min<std::size_t>(bytes.size() - done, std::size_t{1} << 28));
+        state.next_out = reinterpret_cast<Bytef*>(bytes.data() + done);
+        state.avail_out = room;
+        status = inflate(&state, Z_NO_FLUSH);
+        done += room - state.avail_out;
+    }
+    return status == Z_STREAM_END && done == bytes.size();
 }
 
 template <typename Voxel>
-std::vector<Voxel> read_voxels(itk::ImageIOBase& io, std::size_t count, bool twice) {
+std::vector<Voxel> read_voxels(itk::ImageIOBase& io, std::size_t count, const std::optional<MetaData>& meta) {
     std::vector<Voxel> voxels(count);
-    io.Read(voxels.data());
-    if (!twice) return voxels;
-    // ITK's MetaImage reader says nothing where decompression fails; what it leaves unread keeps what was
-    // there.
-    std::vector<Voxel> again(count);
-    std::ranges::fill(std::as_writable_bytes(std::span(again)), std::byte{0xff});
-    io.Read(again.data());
-    const auto bytes = std::as_bytes(std::span(voxels)), bytes_again = std::as_bytes(std::span(again));
-    if (!std::ranges::equal(bytes, bytes_again)) voxels.clear();
+    const auto bytes = std::as_writable_bytes(std::span(voxels));
+    if (!meta || !meta->compressed) {
+        io.Read(voxels.data());
+    } else if (!inflate_into(*meta, bytes)) {
+        voxels.clear();
+    } else if (meta->big_endian) {
+        for (std::size_t at = 0; at < bytes.size(); at += sizeof(Voxel))
+            std::ranges::reverse(bytes.subspan(at, sizeof(Voxel)));
+    }
     return voxels;
 }
 
-StoredVoxels read_voxels(itk::ImageIOBase& io, std::size_t count, bool twice) {
+// Nothing if the data are damaged or of another type.
+StoredVoxels read_voxels(itk::ImageIOBase& io, std::size_t count, const std::optional<MetaData>& meta) {
     using enum itk::IOComponentEnum;
     switch (io.GetComponentType()) {
         case UCHAR:
-            return read_voxels<std::uint8_t>(io, count, twice);
+            return read_voxels<std::uint8_t>(io, count, meta);
         case CHAR:
-            return read_voxels<std::int8_t>(io, count, twice);
+            return read_voxels<std::int8_t>(io, count, meta);
         case USHORT:
-            return read_voxels<std::uint16_t>(io, count, twice);
+            return read_voxels<std::uint16_t>(io, count, meta);
         case SHORT:
-            return read_voxels<std::int16_t>(io, count, twice);
+            return read_voxels<std::int16_t>(io, count, meta);
         case UINT:
-            return read_voxels<std::uint32_t>(io, count, twice);
+            return read_voxels<std::uint32_t>(io, count, meta);
         case INT:
-            return read_voxels<std::int32_t>(io, count, twice);
+            return read_voxels<std::int32_t>(io, count, meta);
         case ULONG:
         case ULONGLONG:
-            return read_voxels<std::uint64_t>(io, count, twice);
+            return read_voxels<std::uint64_t>(io, count, meta);
         case LONG:
         case LONGLONG:
-            return read_voxels<std::int64_t>(io, count, twice);
+            return read_voxels<std::int64_t>(io, count, meta);
         case FLOAT:
-            return read_voxels<float>(io, count, twice);
+            return read_voxels<float>(io, count, meta);
         case DOUBLE:
-            return read_voxels<double>(io, count, twice);
+            return read_voxels<double>(io, count, meta);
         default:
             return {};
     }
@@ -147,12 +184,17 @@ StoredImage read_itk_image(const std::filesystem::path& path, const NoteSink& no
         if (note && !meta && !image.header.contains("NRRD_space"))
             note("the header names no patient space; taken as LPS");
         const std::size_t count = image.layers * image.grid.voxel_count();
-        const auto bytes = static_cast<std::size_t>(io->GetImageSizeInBytes());
         itk::ImageIORegion whole(io->GetNumberOfDimensions());
         for (unsigned axis = 0; axis < io->GetNumberOfDimensions(); ++axis)
             whole.SetSize(axis, io->GetDimensions(axis));
         io->SetIORegion(whole);
-        if (!meta || meta_data_is_long_enough(path, bytes)) image.voxels = read_voxels(*io, count, meta);
+        const auto meta_data = meta ? meta_data_of(path) : std::nullopt;
+        const bool whole_file =
+            !meta ||
+            (meta_data && (meta_data->compressed ||
+                           std::filesystem::file_size(meta_data->file) >=
+                               meta_data->offset + static_cast<std::size_t>(io->GetImageSizeInBytes())));
+        if (whole_file) image.voxels = read_voxels(*io, count, meta_data);
         if (std::visit([](const auto& voxels) { return voxels.empty(); }, image.voxels))
             throw InvalidInput({path.string(), "holds fewer voxels than its header claims", "",
                                 "check that the file is whole"});

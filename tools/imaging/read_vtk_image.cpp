@@ -5,8 +5,11 @@
 #include <vtkErrorCode.h>
 #include <vtkFieldData.h>
 #include <vtkImageData.h>
+#include <vtkLogger.h>
 #include <vtkMatrix3x3.h>
 #include <vtkNew.h>
+#include <vtkObjectFactory.h>
+#include <vtkOutputWindow.h>
 #include <vtkPointData.h>
 #include <vtkStringArray.h>
 #include <vtkStructuredPoints.h>
@@ -19,11 +22,26 @@
 namespace palpate {
 namespace {
 
+// VTK's readers print what is wrong with a file and carry on; this remembers that they did.
+class Complaints : public vtkOutputWindow {
+  public:
+    static Complaints* New();
+    void DisplayText(const char*) override { any = true; }
+    bool any = false;
+};
+vtkStandardNewMacro(Complaints);
+
 template <typename Reader>
 vtkSmartPointer<vtkImageData> output_of(Reader& reader, const std::filesystem::path& path) {
+    const vtkSmartPointer<vtkOutputWindow> usual = vtkOutputWindow::GetInstance();
+    vtkNew<Complaints> complaints;
+    vtkOutputWindow::SetInstance(complaints);
+    vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
+    vtkObject::GlobalWarningDisplayOn();
     reader.SetFileName(path.c_str());
     reader.Update();
-    if (reader.GetErrorCode() != vtkErrorCode::NoError || reader.GetOutput() == nullptr)
+    vtkOutputWindow::SetInstance(usual);
+    if (complaints->any || reader.GetErrorCode() != vtkErrorCode::NoError || reader.GetOutput() == nullptr)
         throw InvalidInput(
             {path.string(), "cannot be read as VTK image data", "",
              "check that the file is whole; of .vtk files only STRUCTURED_POINTS are volumes"});
@@ -91,7 +109,6 @@ bool is_ras(vtkImageData& data, const NoteSink& note) {
 }  // namespace
 
 StoredImage read_vtk_image(const std::filesystem::path& path, const NoteSink& note) {
-    vtkObject::GlobalWarningDisplayOff();
     const vtkSmartPointer<vtkImageData> data = load(path);
     vtkDataArray* scalars = data->GetPointData()->GetScalars();
     if (scalars == nullptr) scalars = data->GetPointData()->GetArray(0);

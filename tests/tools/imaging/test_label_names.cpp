@@ -109,7 +109,8 @@ TEST(LabelNames, malformed_tables_are_refused_with_their_line) {
     EXPECT_NE(refusal("{\"liver\": [5]}").find("no JSON label table"), std::string::npos);
     EXPECT_NE(refusal("{\"1\": ").find("no JSON label table"), std::string::npos);
     LabelMap map = bare_map();
-    EXPECT_NE(refusal_of([&] { name_labels(map, "absent.ctbl"); }).find("no such file"), std::string::npos);
+    EXPECT_NE(refusal_of([&] { name_labels(map, "absent.ctbl"); }).find("'absent.ctbl' is no file"),
+              std::string::npos);
 }
 
 TEST(LabelNames, repeated_names_get_numbers) {
