@@ -14,7 +14,7 @@ namespace {
 
 using namespace palpate;
 
-nlohmann::json describe(const ImageGrid& grid) {
+nlohmann::ordered_json describe(const ImageGrid& grid) {
     const auto numbers = [](const auto& v) { return std::vector<double>(v.data(), v.data() + v.size()); };
     return {{"size", grid.size},
             {"spacing_mm", numbers(grid.spacing)},
@@ -22,8 +22,9 @@ nlohmann::json describe(const ImageGrid& grid) {
             {"direction_columns", numbers(grid.direction)}};
 }
 
-nlohmann::json describe(const LabelMap& map) {
-    nlohmann::json result = {{"grid", describe(map.grid)}, {"labels", nlohmann::json::array()}};
+nlohmann::ordered_json describe(const LabelMap& map) {
+    nlohmann::ordered_json result = {{"grid", describe(map.grid)},
+                                     {"labels", nlohmann::ordered_json::array()}};
     for (const LabelStatistics& label : label_statistics(map))
         result["labels"].push_back({{"name", label.label.name},
                                     {"value", label.label.value},
@@ -33,17 +34,18 @@ nlohmann::json describe(const LabelMap& map) {
 }
 
 // Free text and UIDs may identify a patient: for eyes on a terminal, not for files.
-nlohmann::json describe(const std::vector<SeriesSummary>& list, bool to_file) {
-    nlohmann::json rows = nlohmann::json::array();
+nlohmann::ordered_json describe(const std::vector<SeriesSummary>& list, bool to_file) {
+    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
     for (const SeriesSummary& series : list) {
-        nlohmann::json row = {{"number", series.number},
-                              {"modality", series.modality},
-                              {"slices", series.size[2]},
-                              {"rows", series.size[1]},
-                              {"columns", series.size[0]},
-                              {"spacing_mm", fmt::format("{:.4g} x {:.4g} x {:.4g}", series.spacing[0],
-                                                         series.spacing[1], series.spacing[2])},
-                              {"localizer", series.localizer}};
+        nlohmann::ordered_json row = {
+            {"number", series.number},
+            {"modality", series.modality},
+            {"slices", series.size[2]},
+            {"rows", series.size[1]},
+            {"columns", series.size[0]},
+            {"spacing_mm", fmt::format("{:.4g} x {:.4g} x {:.4g}", series.spacing[0], series.spacing[1],
+                                       series.spacing[2])},
+            {"localizer", series.localizer}};
         if (!to_file) {
             row["description"] = series.description;
             row["uid"] = series.uid;
@@ -105,7 +107,7 @@ int main(int argc, char** argv) {
                    "names of the labels: value=name,..., a known table or a file");
     command.option("--overlaps", overlaps,
                    "where segments of a label map overlap: refuse, later (in the file) or smaller wins");
-    return command.run(argc, argv, [&](cli::Session& session) -> nlohmann::json {
+    return command.run(argc, argv, [&](cli::Session& session) -> nlohmann::ordered_json {
         if (!labels && !label_names.empty())
             throw UsageError({"--label-names", "given without --labels", "", "add --labels"});
         if (list != output.empty())
@@ -123,7 +125,7 @@ int main(int argc, char** argv) {
         }
         auto staged = session.stage(output);
         session.progress.step("reading", 0);
-        nlohmann::json result;
+        nlohmann::ordered_json result;
         if (labels) {
             LabelMap map = read_label_map(input, note, options);
             name_labels(map, label_names, note);
