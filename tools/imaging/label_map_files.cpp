@@ -31,12 +31,15 @@ std::vector<Segment> segments_of(const StoredImage& image, const std::filesystem
     for (int n = 0;; ++n) {
         const std::string prefix = fmt::format("Segment{}_", n);
         const auto name = field(image.header, prefix + "Name");
+        if (!name) break;
+        // 3D Slicer before 5.0 wrote a layer of ones for each segment and neither of these fields.
         const auto value = field(image.header, prefix + "LabelValue");
-        if (!name || !value) break;
+        const std::string own_layer = value ? "0" : std::to_string(n);
         Segment segment;
-        std::istringstream number(*value), layer(field(image.header, prefix + "Layer").value_or("0"));
+        std::istringstream number(value.value_or("1")),
+            layer(field(image.header, prefix + "Layer").value_or(own_layer));
         if (!(number >> segment.label.value) || segment.label.value < 0 || segment.label.value > 65535)
-            throw InvalidInput({path.string(), prefix + "LabelValue is '" + *value + "'",
+            throw InvalidInput({path.string(), prefix + "LabelValue is '" + number.str() + "'",
                                 "an integer of 0 ... 65535", "correct the header"});
         if (!(layer >> segment.layer) || segment.layer >= image.layers)
             throw InvalidInput({path.string(), prefix + "Layer is '" + layer.str() + "'",
@@ -133,7 +136,9 @@ LabelMap label_map_of(StoredImage image, const std::filesystem::path& path, cons
 LabelMap read_label_map(const std::filesystem::path& path, const NoteSink& note, const ReadOptions& options) {
     itk::Object::GlobalWarningDisplayOff();
     if (!std::filesystem::is_regular_file(path))
-        throw InvalidInput({path.string(), "no such file", "", "check the path"});
+        throw InvalidInput({path.string(),
+                            std::filesystem::is_directory(path) ? "is a folder" : "no such file",
+                            "a file with a label map, as .seg.nrrd, .nii.gz or DICOM SEG", "check the path"});
     LabelMap map = is_dicom(path)
                        ? read_dicom_segmentation(path, note, options.overlaps)
                        : label_map_of(read_image_file(path, note, options), path, note, options.overlaps);

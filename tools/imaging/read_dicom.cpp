@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <gdcmImageReader.h>
+#include <set>
 
 #include "formats/model/errors.hpp"
 #include "tools/imaging/dicom_series.hpp"
@@ -145,12 +146,12 @@ Volume read_dicom(const std::filesystem::path& path, const NoteSink& note, const
                             fault.next_step + ", or interpolate with --accept-gaps"});
     grid.spacing[2] = fault.mean_gap > 0 ? fault.mean_gap : 1;
 
+    std::set<std::string> files;
+    for (const DicomSlice& slice : series.slices) files.insert(slice.file);
+    std::uintmax_t bytes = 0;
+    for (const std::string& file : files) bytes += std::filesystem::file_size(file);
+    check_claim(grid, bytes, path);
     volume.values.resize(grid.voxel_count());
-    std::string done;
-    std::vector<std::string> files;
-    for (const DicomSlice& slice : series.slices) files.push_back(slice.file);
-    std::ranges::sort(files);
-    files.erase(std::unique(files.begin(), files.end()), files.end());
     for (const std::string& file : files) read_pixels(file, series.slices, grid, volume.values);
     return fault.found.empty() ? volume : resample_stack(volume, places, path, note);
 }

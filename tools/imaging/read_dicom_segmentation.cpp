@@ -155,11 +155,17 @@ ImageGrid Source::grid(const NoteSink& note) const {
     const double length = positions.back() - positions.front();
     if (gap == 0 && measures.getSpacingBetweenSlices(gap, 0).bad()) measures.getSliceThickness(gap, 0);
     const double steps = gap > 0 ? std::round(length / gap) : 0;
+    constexpr double sparsest = 1000;  // slices for each frame
+    if (steps > sparsest * static_cast<double>(frames_.size()))
+        throw InvalidInput({path_.string(),
+                            fmt::format("frames lie between {:.3g} and {:.3g} mm apart", gap, length),
+                            "frames on one grid", "resample the segmentation first"});
     grid.spacing[2] = steps > 0 ? length / steps : gap;
     // A volume has two slices at least; the second one may be empty.
     grid.size = {columns_, rows_, static_cast<std::int32_t>(std::clamp(steps, 1.0, 65535.0)) + 1};
     grid.origin = std::ranges::min_element(frames_, {}, along)->origin;
     check_geometry(grid, path_, note);
+    check_claim(grid, 8 * std::filesystem::file_size(path_), path_);  // a bit per voxel
     return grid;
 }
 

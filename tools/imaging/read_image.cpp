@@ -67,6 +67,12 @@ void check_size(const std::array<std::int64_t, 3>& size, const std::filesystem::
     }
 }
 
+void check_claim(const ImageGrid& grid, std::uintmax_t bytes, const std::filesystem::path& path) {
+    if (grid.voxel_count() / 1100 > bytes)
+        throw InvalidInput(
+            {path.string(), "holds fewer voxels than its header claims", "", "check that the file is whole"});
+}
+
 void set_axes(ImageGrid& grid, const Eigen::Matrix3d& axes) {
     grid.spacing = axes.colwise().norm();
     grid.direction = axes * grid.spacing.cwiseInverse().asDiagonal();

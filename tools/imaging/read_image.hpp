@@ -57,6 +57,10 @@ void check_geometry(ImageGrid& grid, const std::filesystem::path& path, const No
 /// Throws InvalidInput unless 2 ... 65535 voxels lie along each axis.
 void check_size(const std::array<std::int64_t, 3>& size, const std::filesystem::path& path);
 
+/// Throws InvalidInput if a header claims more voxels than `bytes` of file could hold: zlib shrinks by 1032
+/// at most, so none can make us allocate without end.
+void check_claim(const ImageGrid& grid, std::uintmax_t bytes, const std::filesystem::path& path);
+
 /// A grid's spacing and direction from its voxel axes: columns are the steps of i, j, k in P, mm.
 void set_axes(ImageGrid& grid, const Eigen::Matrix3d& axes);
 

@@ -53,6 +53,49 @@ ImageGrid grid_of(const itk::ImageIOBase& io, const std::filesystem::path& path)
     return grid;
 }
 
+// The fields "name: value" of an NRRD header, as written.
+std::map<std::string, std::string> nrrd_fields(const std::filesystem::path& path) {
+    std::ifstream stream(path, std::ios::binary);
+    std::map<std::string, std::string> fields;
+    for (std::string line; std::getline(stream, line) && !line.empty() && line != "\r";) {
+        if (line.ends_with('\r')) line.pop_back();
+        if (const auto colon = line.find(": "); colon != std::string::npos && !line.starts_with('#'))
+            fields[line.substr(0, colon)] = line.substr(colon + 2);
+    }
+    return fields;
+}
+
+// The first three vectors "(x,y,z)" of a field as columns; zeros where there are fewer.
+Eigen::Matrix3d vectors_of(std::string text) {
+    if (const auto none = text.find("none"); none != std::string::npos) text.erase(none, 4);
+    std::ranges::replace_if(
+        text, [](char c) { return c == '(' || c == ')' || c == ','; }, ' ');
+    std::istringstream numbers(text);
+    Eigen::Matrix3d vectors = Eigen::Matrix3d::Zero();
+    for (double& value : vectors.reshaped()) numbers >> value;
+    return vectors;
+}
+
+// ITK before its pull request 5224 (2025) mirrors left-anterior-superior along the wrong axis, and takes
+// spaces that name no patient as LPS.
+void correct_frame(ImageGrid& grid, const std::filesystem::path& path, const NoteSink& note) {
+    const auto fields = nrrd_fields(path);
+    const std::string space = fields.contains("space") ? fields.at("space") : "";
+    const auto is = [&](const char* words, const char* letters) {
+        return space == words || space == letters;
+    };
+    if (is("left-anterior-superior", "LAS") && fields.contains("space directions")) {
+        Eigen::Matrix3d axes = vectors_of(fields.at("space directions"));
+        axes.row(1) *= -1;
+        set_axes(grid, axes);
+        grid.origin = fields.contains("space origin") ? vectors_of(fields.at("space origin")).col(0).eval()
+                                                      : Eigen::Vector3d::Zero();
+        grid.origin[1] *= -1;
+    } else if (note && !is("left-posterior-superior", "LPS") && !is("right-anterior-superior", "RAS")) {
+        note("the header names no patient space; taken as LPS");
+    }
+}
+
 std::map<std::string, std::string> header_of(const itk::MetaDataDictionary& dictionary) {
     std::map<std::string, std::string> header;
     for (const std::string& key : dictionary.GetKeys())
@@ -180,9 +223,8 @@ StoredImage read_itk_image(const std::filesystem::path& path, const NoteSink& no
         image.grid = grid_of(*io, path);
         image.layers = io->GetNumberOfComponents();
         image.header = header_of(io->GetMetaDataDictionary());
+        if (!meta) correct_frame(image.grid, path, note);
         check_geometry(image.grid, path, note);
-        if (note && !meta && !image.header.contains("NRRD_space"))
-            note("the header names no patient space; taken as LPS");
         const std::size_t count = image.layers * image.grid.voxel_count();
         itk::ImageIORegion whole(io->GetNumberOfDimensions());
         for (unsigned axis = 0; axis < io->GetNumberOfDimensions(); ++axis)

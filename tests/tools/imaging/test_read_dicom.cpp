@@ -115,6 +115,35 @@ TEST(Dicom, slices_in_any_order_with_their_own_slopes_make_the_volume_in_its_pla
     }
 }
 
+TEST(Dicom, twelve_bits_with_sign_keep_their_sign_and_negative_first_photometry_its_values) {
+    const TemporaryFolder folder;
+    const ImageGrid grid = oblique_grid();
+    for (int k = 0; k < 8; ++k) {
+        std::vector<std::int16_t> stored(120, 0x0FFB);  // -5 in twelve bits
+        stored[7] = static_cast<std::int16_t>(k);
+        testing::write_bytes(folder / fmt::format("{}.dcm", k),
+                             testing::ct_slice(grid, place_of(grid, k), stored)
+                                 .us(0x00280101, 12)
+                                 .us(0x00280102, 11)
+                                 .text(0x00280004, "CS", "MONOCHROME1")
+                                 .file());
+    }
+    const Volume volume = read_volume(folder.path());
+    EXPECT_EQ(volume.values[0], -5);
+    EXPECT_EQ(volume.values[grid.offset(7, 0, 6)], 6);
+}
+
+TEST(Dicom, a_header_that_claims_more_than_the_files_hold_is_refused_before_memory_is_taken) {
+    const TemporaryFolder folder;
+    ImageGrid huge = oblique_grid();
+    huge.size = {65000, 65000, 8};
+    for (int k = 0; k < 8; ++k)
+        testing::write_bytes(
+            folder / fmt::format("{}.dcm", k),
+            testing::ct_slice(huge, place_of(huge, k), std::vector<std::int16_t>(120, 1)).file());
+    EXPECT_SAYS(refusal_of(folder.path()), "fewer voxels than its header claims");
+}
+
 TEST(Dicom, every_lossless_compression_reads_as_the_same_values) {
     const TemporaryFolder plain;
     const ImageGrid grid = oblique_grid();

@@ -279,6 +279,51 @@ TEST(SegNrrd, overlaps_are_refused_with_the_pair_or_decided_as_asked) {
     EXPECT_EQ(voxels_of(map, "lesion"), 6U);
 }
 
+TEST(SegNrrd, old_segmentations_hold_a_segment_in_each_layer) {
+    const TemporaryFolder folder;
+    std::string file = layered_segmentation(false);
+    for (const char* field :
+         {"Segment0_LabelValue:=1\nSegment0_Layer:=1\n", "Segment1_LabelValue:=1\nSegment1_Layer:=0\n",
+          "Segment2_ID:=c\nSegment2_Name:=vessel\nSegment2_LabelValue:=2\nSegment2_Layer:=0\n"})
+        file.erase(file.find(field), std::strlen(field));
+    // Layer 0 of the voxels is now the first segment, 'lesion'; without the vessel's value 2.
+    for (char& voxel : std::span(file).last(240))
+        if (voxel == 2) voxel = 0;
+    write_bytes(folder / "s.seg.nrrd", file);
+    const LabelMap map = read_label_map(folder / "s.seg.nrrd");
+    EXPECT_EQ(voxels_of(map, "lesion"), 30U);
+    EXPECT_EQ(voxels_of(map, "organ"), 4U);
+}
+
+TEST(Nrrd, every_patient_space_becomes_lps_and_others_are_noted) {
+    const TemporaryFolder folder;
+    const std::vector<std::int16_t> voxels{1, 2, 3, 4, 5, 6, 7, 8};
+    for (const auto& [space, sign] :
+         std::map<std::string, Eigen::Vector3d>{{"left-posterior-superior", {1, 1, 1}},
+                                                {"LPS", {1, 1, 1}},
+                                                {"right-anterior-superior", {-1, -1, 1}},
+                                                {"RAS", {-1, -1, 1}},
+                                                {"left-anterior-superior", {1, -1, 1}},
+                                                {"LAS", {1, -1, 1}},
+                                                {"scanner-xyz", {1, 1, 1}}}) {
+        SCOPED_TRACE(space);
+        write_bytes(folder / "v.nrrd",
+                    "NRRD0004\ntype: short\ndimension: 3\nspace: " + space +
+                        "\nsizes: 2 2 2\nspace directions: (0,2,0) (3,0,0) (0,0,-4)\nendian: little\n"
+                        "encoding: raw\nspace origin: (10,20,30)\n\n" +
+                        testing::raw_bytes<std::int16_t>(voxels));
+        std::string notes;
+        const Volume volume = read_volume(folder / "v.nrrd", [&](std::string_view note) { notes += note; });
+        EXPECT_LT((volume.grid.point_of({1, 0, 0}) - sign.cwiseProduct(Eigen::Vector3d(10, 22, 30))).norm(),
+                  1e-9);
+        EXPECT_LT((volume.grid.point_of({0, 1, 0}) - sign.cwiseProduct(Eigen::Vector3d(13, 20, 30))).norm(),
+                  1e-9);
+        EXPECT_LT((volume.grid.point_of({0, 0, 1}) - sign.cwiseProduct(Eigen::Vector3d(10, 20, 26))).norm(),
+                  1e-9);
+        EXPECT_EQ(notes.empty(), space != "scanner-xyz") << notes;
+    }
+}
+
 TEST(LabelValues, up_to_65535_are_exact_and_beyond_are_refused) {
     const TemporaryFolder folder;
     const ImageGrid grid = ramp_volume().grid;

@@ -6,6 +6,7 @@
 #include "formats/model/errors.hpp"
 #include "tests/tools/imaging/hand_written_images.hpp"
 #include "tools/imaging/image_files.hpp"
+#include "tools/imaging/label_names.hpp"
 #include "tools/imaging/label_statistics.hpp"
 #include "tools/imaging/segmentation.hpp"
 
@@ -49,6 +50,36 @@ TEST(RealImages, a_nifti_ct_and_its_labels_lie_on_one_grid_with_the_liver_on_the
     for (const LabelStatistics& label : label_statistics(labels))
         centroids[label.label.value] = label.centroid;
     EXPECT_LT(centroids[liver.value][0], centroids[spleen.value][0]);  // x grows to the left
+}
+
+TEST(RealImages, totalsegmentators_names_in_its_files_are_those_of_its_table) {
+    REQUIRE_REAL_DATA(folder, "abdomen_ct_totalseg3mm");
+    const LabelMap labels = read_label_map(folder / "seg_totalseg.nii.gz");
+    const LabelTable table = totalsegmentator_table("v2/total");
+    EXPECT_GT(labels.names.size(), 40U);
+    for (const Label& label : labels.names) EXPECT_EQ(label.name, table.at(label.value).name);
+}
+
+TEST(RealImages, an_atlas_takes_its_names_and_colours_from_a_slicer_table) {
+    REQUIRE_REAL_DATA(folder, "abdomen_ct_spl");
+    LabelMap labels = read_label_map(folder / "seg.nrrd");
+    name_labels(labels, folder / "labels_spl.ctbl");
+    const Label liver = require_label(labels, "Liver", "labels");
+    EXPECT_EQ(liver.value, 3);
+    EXPECT_EQ(liver.colour, (std::array<float, 3>{147 / 255.0F, 59 / 255.0F, 0}));
+    EXPECT_EQ(require_label(labels, "right kidney", "labels").value, 51);
+}
+
+TEST(RealImages, a_detached_big_endian_nrrd_is_smooth) {
+    REQUIRE_REAL_DATA(folder, "tooth_ct_seg3d");
+    const Volume tooth = read_volume(folder / "tooth.nhdr");
+    EXPECT_EQ(tooth.grid.size, (std::array<std::int32_t, 3>{103, 94, 161}));
+    double step = 0, count = 0;
+    for (int k = 0; k < 161; ++k)
+        for (int i = 1; i < 103; ++i, ++count)
+            step += std::abs(tooth.values[tooth.grid.offset(i, 47, k)] -
+                             tooth.values[tooth.grid.offset(i - 1, 47, k)]);
+    EXPECT_LT(step / count, 60) << "of a range of 1300; swapped bytes would be noise";
 }
 
 TEST(RealImages, a_dicom_series_without_identifiers_fits_its_nifti_labels) {
@@ -99,8 +130,7 @@ TEST(RealImages, overlapping_segments_of_a_dicom_segmentation_are_those_of_its_n
     for (int i = 1; i <= 3; ++i) {
         const LabelMap twin = read_label_map(folder / fmt::format("partial_overlaps-{}.nrrd", i));
         ASSERT_TRUE(same_grid(twin.grid, map.grid));
-        for (std::size_t n = 0; n < expected.size(); ++n)
-            expected[n] = std::max(expected[n], twin.labels[n]);
+        for (std::size_t n = 0; n < expected.size(); ++n) expected[n] = std::max(expected[n], twin.labels[n]);
     }
     EXPECT_EQ(map.labels, expected);
 }
