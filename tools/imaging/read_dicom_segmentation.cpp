@@ -12,7 +12,6 @@
 #include <dcmtk/dcmiod/cielabutil.h>
 #include <dcmtk/dcmseg/segdoc.h>
 #include <dcmtk/dcmseg/segment.h>
-#include <dcmtk/dcmseg/segutils.h>
 #include <fmt/format.h>
 #include <memory>
 
@@ -55,18 +54,23 @@ class Source {
                                 "export it with a threshold"});
         read_segments();
         read_frames();
+        find_bits();
     }
 
     const std::vector<Label>& segments() const { return segments_; }
     const std::vector<Frame>& frames() const { return frames_; }
     ImageGrid grid(const NoteSink& note) const;
 
-    // The pixels of a frame, 0 or 1, rows * columns of them.
+    // The pixels of a frame, 0 or 1, rows * columns of them. Frames follow each other bit by bit
+    // (PS3.5 8.1.1); DCMTK 3.6.7 misplaces those that do not begin with a byte.
     std::vector<std::uint8_t> pixels(std::size_t frame) const {
-        const std::unique_ptr<DcmIODTypes::Frame> bytes(
-            DcmSegUtils::unpackBinaryFrame(object_->getFrame(frame), rows_, columns_));
-        if (!bytes || bytes->length < std::size_t{rows_} * columns_) throw refuse("a frame is short");
-        return {bytes->pixData, bytes->pixData + std::size_t{rows_} * columns_};
+        std::vector<std::uint8_t> unpacked(std::size_t{rows_} * columns_);
+        std::size_t bit = frame * unpacked.size();
+        for (std::uint8_t& pixel : unpacked) {
+            pixel = static_cast<std::uint8_t>(bits_[bit / 8] >> bit % 8 & 1U);
+            ++bit;
+        }
+        return unpacked;
     }
 
   private:
@@ -85,6 +89,7 @@ class Source {
 
     void read_segments();
     void read_frames();
+    void find_bits();
 
     std::filesystem::path path_;
     DcmFileFormat file_;
@@ -92,6 +97,7 @@ class Source {
     Uint16 rows_ = 0, columns_ = 0;
     std::vector<Label> segments_;
     std::vector<Frame> frames_;
+    const Uint8* bits_ = nullptr;
 };
 
 void Source::read_segments() {
@@ -129,6 +135,18 @@ void Source::read_frames() {
         frames_.push_back(frame);
     }
     if (frames_.empty()) throw refuse("it holds no frame");
+}
+
+void Source::find_bits() {
+    unsigned long bytes = 0;
+    if (file_.getDataset()->findAndGetUint8Array(DCM_PixelData, bits_, &bytes).bad()) {
+        const Uint16* words = nullptr;
+        file_.getDataset()->findAndGetUint16Array(DCM_PixelData, words, &bytes);
+        bits_ = reinterpret_cast<const Uint8*>(words);
+        bytes *= 2;
+    }
+    if (bits_ == nullptr || bytes < (frames_.size() * rows_ * columns_ + 7) / 8)
+        throw refuse("it holds fewer pixels than its header claims");
 }
 
 // The smallest grid that holds all frames; slices that no segment reaches may be left out of the file.
