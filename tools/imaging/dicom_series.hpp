@@ -32,6 +32,9 @@ struct DicomSeries {
 /// note. Series are in the order of their numbers. Throws InvalidInput if there is no image.
 std::vector<DicomSeries> scan_dicom(const std::filesystem::path& path, const NoteSink& note);
 
+/// Sorts series and numbers them: by DICOM number if all have one of their own, else by place.
+void number_series(std::vector<DicomSeries>& all);
+
 /// The series that `wanted` names, or the one that is meant where none is named, as read_volume() says;
 /// throws InvalidInput with the list.
 const DicomSeries& choose_series(const std::vector<DicomSeries>& all, const std::string& wanted,

@@ -1,216 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // NIfTI-1 and NIfTI-2 single files, read here rather than through ITK 5.2, which refuses directions 4e-4 off
-// orthonormality and hides that qform and sform disagree. Byte offsets: nifti1.h and nifti2.h (NIH, 2003,
-// 2011).
-#include <Eigen/Geometry>
+// orthonormality and hides that qform and sform disagree.
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <fmt/format.h>
-#include <itk_zlib.h>
-#include <memory>
-#include <sstream>
+#include <fmt/ranges.h>
 
 #include "formats/model/errors.hpp"
 #include "tools/imaging/label_names.hpp"
+#include "tools/imaging/nifti_header.hpp"
 #include "tools/imaging/read_image.hpp"
 
 namespace palpate {
 namespace {
 
-static_assert(std::endian::native == std::endian::little);
-
-// Corners of the image may differ by this many voxels between the two transforms.
-constexpr double agreement_voxels = 0.1;
 constexpr std::size_t largest_header = std::size_t{1} << 26;
-
-// A file, unpacked on the fly if it is gzip.
-class Stream {
-  public:
-    explicit Stream(const std::filesystem::path& path)
-        : path_(path), file_(gzopen(path.c_str(), "rb"), gzclose) {}
-
-    void read(void* to, std::size_t bytes) {
-        char* target = static_cast<char*>(to);
-        while (bytes > 0) {
-            const auto part = static_cast<unsigned>(std::min<std::size_t>(bytes, std::size_t{1} << 28));
-            const int got = file_ ? gzread(file_.get(), target, part) : -1;
-            if (got <= 0)
-                throw InvalidInput({path_.string(), "holds fewer voxels than its header claims", "",
-                                    "check that the file is whole"});
-            target += got;
-            bytes -= static_cast<std::size_t>(got);
-        }
-    }
-
-    // Reading to the end makes zlib check the sum of the contents.
-    void read_rest() {
-        std::array<char, 4096> rest{};
-        int got = 1;
-        while (got > 0) got = gzread(file_.get(), rest.data(), rest.size());
-        if (got < 0)
-            throw InvalidInput({path_.string(), "is damaged: its checksum does not fit its contents", "",
-                                "copy or convert the file again"});
-    }
-
-  private:
-    std::filesystem::path path_;
-    std::unique_ptr<gzFile_s, int (*)(gzFile)> file_;
-};
 
 void swap_bytes(std::span<std::byte> bytes, std::size_t width) {
     for (std::size_t at = 0; width > 1 && at + width <= bytes.size(); at += width)
         std::ranges::reverse(bytes.subspan(at, width));
 }
 
-struct Header {
-    std::array<std::int64_t, 8> dim{};
-    std::int16_t datatype = 0;
-    std::array<double, 8> pixdim{};
-    std::int64_t voxel_offset = 0;
-    std::size_t bytes = 0;
-    double slope = 0, intercept = 0;
-    int units = 0, qform_code = 0, sform_code = 0;
-    Eigen::Vector3d quaternion, q_offset;
-    Eigen::Matrix<double, 3, 4> sform;
-    bool swapped = false;
-};
-
-template <typename T>
-T field(const std::string& bytes, std::size_t offset, bool swapped) {
-    std::array<std::byte, sizeof(T)> raw{};
-    std::memcpy(raw.data(), bytes.data() + offset, sizeof(T));
-    if (swapped) std::ranges::reverse(raw);
-    return std::bit_cast<T>(raw);
-}
-
-// Both versions hold the same fields, in other places and widths.
-template <typename Integer, typename Real, typename Code>
-Header parse(const std::string& bytes, bool swapped, std::size_t dim, std::size_t datatype,
-             std::size_t pixdim, std::size_t slope, std::size_t units, std::size_t codes) {
-    Header header;
-    header.swapped = swapped;
-    header.bytes = bytes.size();
-    const auto real = [&](std::size_t at) { return double{field<Real>(bytes, at, swapped)}; };
-    for (std::size_t i = 0; i < 8; ++i) {
-        header.dim[i] = field<Integer>(bytes, dim + i * sizeof(Integer), swapped);
-        header.pixdim[i] = real(pixdim + i * sizeof(Real));
-    }
-    header.datatype = field<std::int16_t>(bytes, datatype, swapped);
-    header.slope = real(slope);
-    header.intercept = real(slope + sizeof(Real));
-    header.units = bytes[units];
-    header.qform_code = static_cast<int>(field<Code>(bytes, codes, swapped));
-    header.sform_code = static_cast<int>(field<Code>(bytes, codes + sizeof(Code), swapped));
-    const std::size_t quaternion = codes + 2 * sizeof(Code);
-    for (std::size_t i = 0; i < 3; ++i) {
-        const auto row = static_cast<Eigen::Index>(i);
-        header.quaternion[row] = real(quaternion + i * sizeof(Real));
-        header.q_offset[row] = real(quaternion + (3 + i) * sizeof(Real));
-        for (std::size_t j = 0; j < 4; ++j)
-            header.sform(row, static_cast<Eigen::Index>(j)) =
-                real(quaternion + (6 + 4 * i + j) * sizeof(Real));
-    }
-    return header;
-}
-
-Header read_header(Stream& stream, const std::filesystem::path& path) {
-    std::string bytes(348, '\0');
-    stream.read(bytes.data(), 348);
-    const auto first = field<std::int32_t>(bytes, 0, false),
-               first_swapped = field<std::int32_t>(bytes, 0, true);
-    if (first == 348 || first_swapped == 348) {
-        const bool swapped = first != 348;
-        if (bytes.substr(344, 3) == "n+1") {
-            Header header =
-                parse<std::int16_t, float, std::int16_t>(bytes, swapped, 40, 70, 76, 112, 123, 252);
-            const float offset = field<float>(bytes, 108, swapped);
-            header.voxel_offset =
-                std::isfinite(offset) ? static_cast<std::int64_t>(std::clamp(offset, 0.F, 1e9F)) : 0;
-            return header;
-        }
-    } else if (first == 540 || first_swapped == 540) {
-        const bool swapped = first != 540;
-        bytes.resize(540);
-        stream.read(bytes.data() + 348, 540 - 348);
-        if (bytes.substr(4, 3) == "n+2") {
-            const std::size_t units = swapped ? 503 : 500;
-            Header header =
-                parse<std::int64_t, double, std::int32_t>(bytes, swapped, 16, 12, 104, 176, units, 344);
-            header.voxel_offset = field<std::int64_t>(bytes, 168, swapped);
-            return header;
-        }
-    }
-    throw InvalidInput({path.string(), "is not a NIfTI file of one piece", "a header of NIfTI-1 or NIfTI-2",
-                        "convert an Analyze or .hdr/.img pair to .nii.gz"});
-}
-
-using Affine = Eigen::Matrix<double, 3, 4>;
-
-// nifti1.h, method 2: a rotation by the quaternion, after mirroring the third axis if qfac is -1.
-Affine qform_of(const Header& header) {
-    const double length = std::min(header.quaternion.norm(), 1.0);
-    const Eigen::Quaterniond rotation(std::sqrt(1 - length * length), header.quaternion[0],
-                                      header.quaternion[1], header.quaternion[2]);
-    Affine affine;
-    affine.leftCols<3>() = rotation.normalized().toRotationMatrix() *
-                           Eigen::Vector3d(header.pixdim[1], header.pixdim[2],
-                                           header.pixdim[3] * (header.pixdim[0] < 0 ? -1 : 1))
-                               .asDiagonal();
-    affine.col(3) = header.q_offset;
-    return affine;
-}
-
-// The largest distance between corners of the image under two transforms, in the smallest voxel edge.
-double disagreement_voxels(const Affine& a, const Affine& b, const Header& header) {
-    double largest = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-        Eigen::Vector4d index(0, 0, 0, 1);
-        for (unsigned axis = 0; axis < 3; ++axis)
-            if (corner >> axis & 1) index[axis] = static_cast<double>(header.dim[axis + 1] - 1);
-        largest = std::max(largest, (a * index - b * index).norm());
-    }
-    return largest / b.leftCols<3>().colwise().norm().minCoeff();
-}
-
-std::string rows_of(const Affine& affine) {
-    std::string text;
-    for (int row = 0; row < 3; ++row)
-        text += fmt::format("{}[{:.6g} {:.6g} {:.6g} {:.6g}]", row ? " " : "", affine(row, 0), affine(row, 1),
-                            affine(row, 2), affine(row, 3));
-    return text;
-}
-
-Affine affine_of(const Header& header, const std::filesystem::path& path, const NoteSink& note,
-                 const std::string& frame) {
-    const Affine qform = qform_of(header);
-    if (frame == "qform" || frame == "sform") {
-        if ((frame == "qform" ? header.qform_code : header.sform_code) > 0)
-            return frame == "qform" ? qform : header.sform;
-        throw InvalidInput({path.string(), "has no " + frame, "", "leave the choice of the frame out"});
-    }
-    if (!frame.empty()) throw UsageError({"NIfTI frame", "'" + frame + "'", "qform or sform", ""});
-    if (header.qform_code > 0 && header.sform_code > 0) {
-        const double voxels = disagreement_voxels(qform, header.sform, header);
-        if (!(voxels <= agreement_voxels))
-            throw InvalidInput(
-                {path.string(),
-                 fmt::format("qform {} and sform {} (RAS mm) are both set and disagree by {:.3g} voxels",
-                             rows_of(qform), rows_of(header.sform), voxels),
-                 fmt::format("{} at most", agreement_voxels),
-                 "choose with '--nifti-frame qform' or '--nifti-frame sform'"});
-    }
-    if (header.sform_code > 0) return header.sform;
-    if (header.qform_code > 0) return qform;
-    // nifti1.h, method 1.
-    if (note) note("the header sets neither qform nor sform; axes taken as right, anterior, superior");
-    Affine affine = Affine::Zero();
-    for (unsigned axis = 0; axis < 3; ++axis) affine(axis, axis) = header.pixdim[axis + 1];
-    return affine;
-}
-
-ImageGrid grid_of(const Header& header, Affine affine) {
+ImageGrid grid_of(const NiftiHeader& header, Eigen::Matrix<double, 3, 4> affine) {
     ImageGrid grid;
     for (std::size_t axis = 0; axis < 3; ++axis)
         grid.size[axis] = static_cast<std::int32_t>(header.dim[axis + 1]);
@@ -222,7 +33,7 @@ ImageGrid grid_of(const Header& header, Affine affine) {
     return grid;
 }
 
-void check_dimensions(const Header& header, const std::filesystem::path& path) {
+void check_dimensions(const NiftiHeader& header, const std::filesystem::path& path) {
     const auto axes = header.dim[0];
     bool good = axes >= 3 && axes <= 7;
     for (std::int64_t axis = 4; good && axis <= axes; ++axis)
@@ -236,14 +47,14 @@ void check_dimensions(const Header& header, const std::filesystem::path& path) {
 }
 
 template <typename Voxel>
-std::vector<Voxel> read_voxels(Stream& stream, std::size_t count, bool swapped) {
+std::vector<Voxel> read_voxels(NiftiStream& stream, std::size_t count, bool swapped) {
     std::vector<Voxel> voxels(count);
     stream.read(voxels.data(), count * sizeof(Voxel));
     if (swapped) swap_bytes(std::as_writable_bytes(std::span(voxels)), sizeof(Voxel));
     return voxels;
 }
 
-StoredVoxels read_voxels(Stream& stream, const Header& header, std::size_t count,
+StoredVoxels read_voxels(NiftiStream& stream, const NiftiHeader& header, std::size_t count,
                          const std::filesystem::path& path) {
     switch (header.datatype) {
         case 2:
@@ -276,11 +87,11 @@ StoredVoxels read_voxels(Stream& stream, const Header& header, std::size_t count
 }  // namespace
 
 StoredImage read_nifti(const std::filesystem::path& path, const NoteSink& note, const ReadOptions& options) {
-    Stream stream(path);
-    const Header header = read_header(stream, path);
+    NiftiStream stream(path);
+    const NiftiHeader header = read_nifti_header(stream, path);
     check_dimensions(header, path);
     StoredImage image;
-    image.grid = grid_of(header, affine_of(header, path, note, options.nifti_frame));
+    image.grid = grid_of(header, nifti_affine(header, path, note, options.nifti_frame));
     check_geometry(image.grid, path, note);
     check_claim(image.grid, std::filesystem::file_size(path), path);
     if (const auto offset = static_cast<std::size_t>(std::max<std::int64_t>(header.voxel_offset, 0));
