@@ -123,6 +123,7 @@ class Import(unittest.TestCase):
         rows = json.loads(listed.stdout)["series"]
         self.assertEqual([(row["number"], row["slices"], row["description"]) for row in rows],
                          [("3", 4, "arterial"), ("7", 6, "portal venous Roe")])
+        self.assertEqual([rows[0][f"spacing_{axis}_mm"] for axis in "ijk"], [0.5, 0.5, 2])
         self.assertIn("arterial", self.run_import(self.folder / "in", "--list").stdout)
         for wanted in ("3", "arterial", "1.2.826.0.1.99.6"):
             result = self.run_import(self.folder / "in", "--series", wanted, "-o", output, "--force", "--json", "-")

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <filesystem>
-#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "formats/model/errors.hpp"
@@ -38,13 +37,10 @@ nlohmann::ordered_json describe(const std::vector<SeriesSummary>& list, bool to_
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
     for (const SeriesSummary& series : list) {
         nlohmann::ordered_json row = {
-            {"number", series.number},
-            {"modality", series.modality},
-            {"slices", series.size[2]},
-            {"rows", series.size[1]},
-            {"columns", series.size[0]},
-            {"spacing_mm", fmt::format("{:.4g} x {:.4g} x {:.4g}", series.spacing[0], series.spacing[1],
-                                       series.spacing[2])},
+            {"number", series.number},           {"modality", series.modality},
+            {"slices", series.size[2]},          {"rows", series.size[1]},
+            {"columns", series.size[0]},         {"spacing_i_mm", series.spacing[0]},
+            {"spacing_j_mm", series.spacing[1]}, {"spacing_k_mm", series.spacing[2]},
             {"localizer", series.localizer}};
         if (!to_file) {
             row["description"] = series.description;

@@ -53,6 +53,8 @@ const DicomSeries& choose_series(const std::vector<DicomSeries>& all, const std:
              {&SeriesSummary::number, &SeriesSummary::uid, &SeriesSummary::description}) {
             for (const DicomSeries& series : all)
                 if (series.summary.*matches == wanted) found.push_back(&series);
+            if (found.size() > 1)  // a series' own localizers share its UID and description
+                std::erase_if(found, [](const DicomSeries* series) { return series->summary.localizer; });
             if (found.size() == 1) return *found.front();
             if (!found.empty()) break;
         }

@@ -240,6 +240,9 @@ TEST(Dicom, scouts_and_localizers_beside_a_volume_need_no_choice) {
     std::string notes;
     EXPECT_EQ(read_volume(folder.path(), [&](std::string_view note) { notes += note; }).grid.size[2], 8);
     EXPECT_SAYS(notes, "3 series; reading number");
+    ReadOptions options;
+    options.series = "1.2.3.4.5.1";
+    EXPECT_EQ(read_volume(folder.path(), {}, options).grid.size[2], 8);
     EXPECT_EQ(notes.find("portal"), std::string::npos) << "a note tells text of the input";
 }
 
