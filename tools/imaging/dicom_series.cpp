@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "formats/model/errors.hpp"
+#include "tools/imaging/read_image.hpp"
 
 namespace palpate {
 namespace {
@@ -29,6 +30,15 @@ std::string text(const DataSet& data, const Tag& tag) {
     while (!value.empty() && padding(value.back())) value.pop_back();
     value.erase(value.begin(), std::ranges::find_if_not(value, padding));
     return value;
+}
+
+// A code string (PS3.5, VR CS); empty if it is none, so that no free text passes for one.
+std::string code_text(const DataSet& data, const Tag& tag) {
+    const std::string code = text(data, tag);
+    const bool good = code.size() <= 16 && std::ranges::all_of(code, [](char c) {
+                          return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == ' ';
+                      });
+    return good ? code : "";
 }
 
 // Exactly `count` numbers separated by backslashes.
@@ -152,6 +162,11 @@ std::vector<DicomSeries> scan_dicom(const std::filesystem::path& path, const Not
     std::map<std::string, DicomSeries> by_key;
     std::map<std::string, int> skipped;
     for (const std::filesystem::path& file : files_below(path)) {
+        if (!is_whole_dicom(file)) {
+            if (!is_dicom(file)) continue;
+            throw InvalidInput({file.string(), "is cut off or damaged",
+                                "a DICOM file that ends with its elements", "copy the file again"});
+        }
         gdcm::Reader reader;
         reader.SetFileName(file.c_str());
         if (!reader.CanRead() || !reader.ReadUpToTag(Tag(0x7fe0, 0x0010))) continue;
@@ -171,14 +186,14 @@ std::vector<DicomSeries> scan_dicom(const std::filesystem::path& path, const Not
         DicomSeries& series = by_key[series_key(data, uid, localizer)];
         if (series.slices.empty()) {
             series.summary.number = text(data, Tag(0x0020, 0x0011));
-            series.summary.modality = text(data, Tag(0x0008, 0x0060));
-            series.summary.description = text(data, Tag(0x0008, 0x103e));
-            series.summary.uid = uid;
+            series.summary.modality = code_text(data, Tag(0x0008, 0x0060));
+            series.summary.description = as_utf8(text(data, Tag(0x0008, 0x103e)));
+            series.summary.uid = as_utf8(uid);
             series.summary.localizer = localizer;
         }
         if (const std::string colours = text(data, Tag(0x0028, 0x0004));
             !colours.empty() && !colours.starts_with("MONOCHROME"))
-            series.colours = colours;
+            series.colours = as_utf8(colours);
         series.slices.insert(series.slices.end(), slices.begin(), slices.end());
     }
     for (const auto& [kind, count] : skipped)

@@ -145,6 +145,7 @@ LabelMap read_label_map(const std::filesystem::path& path, const NoteSink& note,
     if (map.names.empty())
         throw InvalidInput({path.string(), "is empty: every voxel is background", "",
                             "choose another file or segment again"});
+    for (Label& label : map.names) label.name = as_utf8(label.name);
     make_names_unique(map, note);
     return map;
 }

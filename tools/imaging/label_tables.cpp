@@ -11,6 +11,7 @@
 
 #include "formats/model/errors.hpp"
 #include "tools/imaging/label_names.hpp"
+#include "tools/imaging/read_image.hpp"
 #include "tools/imaging/totalsegmentator_labels.hpp"
 
 namespace palpate {
@@ -66,7 +67,7 @@ Colour hex_colour(const std::string& text) {
 bool add(LabelTable& table, std::optional<std::int32_t> value, const std::string& name,
          const Colour& colour) {
     if (!value || *value < 0 || *value > 65535 || name.empty()) return false;
-    if (*value > 0) table[*value] = {*value, name, colour.value_or(default_label_colour(*value))};
+    if (*value > 0) table[*value] = {*value, as_utf8(name), colour.value_or(default_label_colour(*value))};
     return true;
 }
 

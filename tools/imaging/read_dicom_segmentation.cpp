@@ -192,8 +192,7 @@ ImageGrid Source::grid(const NoteSink& note) const {
 bool is_whole_dicom(const std::filesystem::path& path) {
     OFLog::configure(OFLogger::OFF_LOG_LEVEL);
     DcmFileFormat file;
-    const OFCondition loaded = file.loadFile(path.c_str());
-    return loaded != EC_StreamNotifyClient && loaded != EC_InvalidStream;
+    return file.loadFile(path.c_str()).good();
 }
 
 LabelMap read_dicom_segmentation(const std::filesystem::path& path, const NoteSink& note, Overlaps overlaps) {

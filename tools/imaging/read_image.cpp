@@ -49,7 +49,39 @@ Volume volume_of(StoredImage image, const std::filesystem::path& path) {
     return {image.grid, float_values(image)};
 }
 
+// Whether every byte above 127 is part of a UTF-8 sequence (its lead and continuation bits, not its range).
+bool is_utf8(std::string_view text) {
+    int expected = 0;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        const bool continues = (byte & 0xC0U) == 0x80;
+        if (continues != (expected > 0)) return false;
+        if (continues)
+            --expected;
+        else if (byte >= 0xC2 && byte <= 0xF4)
+            expected = byte >= 0xF0 ? 3 : byte >= 0xE0 ? 2 : 1;
+        else if (byte >= 0x80)
+            return false;
+    }
+    return expected == 0;
+}
+
 }  // namespace
+
+std::string as_utf8(std::string_view text) {
+    const bool good = is_utf8(text);
+    std::string result;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte < 32 || byte == 127)
+            result += ' ';
+        else if (byte < 128 || good)
+            result += c;
+        else
+            result.append({static_cast<char>(0xC0U | byte >> 6), static_cast<char>(0x80U | (byte & 0x3FU))});
+    }
+    return result;
+}
 
 bool is_dicom(const std::filesystem::path& path) {
     return first_bytes(path, 132).ends_with("DICM");

@@ -45,10 +45,14 @@ Volume read_dicom(const std::filesystem::path& path, const NoteSink& note, const
 /// Reads a DICOM segmentation object; throws as read_label_map() does.
 LabelMap read_dicom_segmentation(const std::filesystem::path& path, const NoteSink& note, Overlaps overlaps);
 
+/// Text of a header as UTF-8: what is none is taken as Latin-1, and control characters become spaces.
+std::string as_utf8(std::string_view text);
+
 /// Tells whether a file is DICOM by its preamble.
 bool is_dicom(const std::filesystem::path& path);
 
-/// Tells whether a DICOM file ends where its elements do; GDCM pads pixels that are cut off.
+/// Tells whether DCMTK can parse a file as DICOM to its end; GDCM pads pixels that are cut off, and aborts on
+/// some damaged headers.
 bool is_whole_dicom(const std::filesystem::path& path);
 
 /// Checks sizes and spacings, and makes the directions orthonormal; throws InvalidInput naming `path`.

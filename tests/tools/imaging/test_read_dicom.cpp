@@ -226,6 +226,19 @@ TEST(Dicom, several_series_are_listed_and_one_is_chosen_by_number_uid_or_descrip
     EXPECT_EQ(list_series(folder.path())[1].number, "2");
 }
 
+TEST(Dicom, texts_of_other_alphabets_are_listed_as_utf8_and_only_codes_pass_for_a_modality) {
+    const TemporaryFolder folder;
+    write_stack(folder, oblique_grid(), even, [](DicomData& slice, std::size_t) {
+        slice.text(0x0008103e, "LO", "Oberbauch ven\xf6s\n").text(0x00080060, "CS", "Jane Roe");
+    });
+    std::string notes;
+    EXPECT_EQ(list_series(folder.path())[0].description, "Oberbauch ven\xc3\xb6s ");
+    EXPECT_EQ(list_series(folder.path())[0].modality, "");
+    read_volume(folder.path(), [&](std::string_view note) { notes += note; });
+    EXPECT_SAYS(notes, "modality unknown");
+    EXPECT_EQ(notes.find("Jane"), std::string::npos);
+}
+
 TEST(Dicom, scouts_and_localizers_beside_a_volume_need_no_choice) {
     const TemporaryFolder folder;
     const ImageGrid grid = oblique_grid();
