@@ -61,6 +61,32 @@ std::int32_t whole_number(const DataSet& data, const Tag& tag, std::int32_t othe
     return value && std::abs((*value)[0]) < 1e9 ? static_cast<std::int32_t>((*value)[0]) : otherwise;
 }
 
+// 0 if it is missing.
+std::uint16_t unsigned_short(const DataSet& data, const Tag& tag) {
+    std::uint16_t value = 0;
+    const gdcm::ByteValue* bytes =
+        data.FindDataElement(tag) ? data.GetDataElement(tag).GetByteValue() : nullptr;
+    if (bytes != nullptr && bytes->GetLength() >= 2) bytes->GetBuffer(reinterpret_cast<char*>(&value), 2);
+    return value;
+}
+
+// GDCM aborts on pixel formats that cannot be.
+void check_pixel_format(const DataSet& data, const std::string& file) {
+    const int samples = unsigned_short(data, Tag(0x0028, 0x0002)),
+              allocated = unsigned_short(data, Tag(0x0028, 0x0100)),
+              stored = unsigned_short(data, Tag(0x0028, 0x0101)),
+              high = unsigned_short(data, Tag(0x0028, 0x0102)),
+              sign = unsigned_short(data, Tag(0x0028, 0x0103));
+    const bool whole_bytes =
+        allocated == 1 || allocated == 8 || allocated == 16 || allocated == 32 || allocated == 64;
+    if (samples > 4 || !whole_bytes || stored < 1 || stored > allocated || high >= allocated ||
+        high < stored - 1 || sign > 1)
+        throw InvalidInput({file,
+                            fmt::format("{} samples of {} bits, {} of them used up to bit {}", samples,
+                                        allocated, stored, high),
+                            "a pixel format of DICOM", "copy or export the file again"});
+}
+
 // The first item of a sequence; an empty set if there is none.
 DataSet item(const DataSet& data, const Tag& tag, std::size_t position = 0) {
     if (!data.FindDataElement(tag)) return {};
@@ -89,13 +115,7 @@ void take_functional_groups(DicomSlice& slice, const DataSet& groups) {
 std::vector<DicomSlice> slices_of(const DataSet& data, const std::string& file) {
     DicomSlice slice;
     slice.file = file;
-    for (const auto& [i, tag] : {std::pair(0U, Tag(0x0028, 0x0011)), std::pair(1U, Tag(0x0028, 0x0010))}) {
-        const gdcm::ByteValue* bytes =
-            data.FindDataElement(tag) ? data.GetDataElement(tag).GetByteValue() : nullptr;
-        std::uint16_t count = 0;
-        if (bytes != nullptr && bytes->GetLength() >= 2) bytes->GetBuffer(reinterpret_cast<char*>(&count), 2);
-        slice.size[i] = count;
-    }
+    slice.size = {unsigned_short(data, Tag(0x0028, 0x0011)), unsigned_short(data, Tag(0x0028, 0x0010))};
     if (slice.size[0] == 0 || slice.size[1] == 0) return {};
     take_geometry(slice, data, data, data, data);
     const std::int32_t frames = std::clamp(whole_number(data, Tag(0x0028, 0x0008), 1), 1, 65535);
@@ -181,6 +201,7 @@ std::vector<DicomSeries> scan_dicom(const std::filesystem::path& path, const Not
             ++skipped["DICOMDIR or other"];
             continue;
         }
+        check_pixel_format(data, file.string());
         const std::string uid = text(data, Tag(0x0020, 0x000e));
         const bool localizer = text(data, Tag(0x0008, 0x0008)).find("LOCALIZER") != std::string::npos;
         DicomSeries& series = by_key[series_key(data, uid, localizer)];
