@@ -7,7 +7,6 @@
 #include "tools/cli/command.hpp"
 #include "tools/imaging/image_files.hpp"
 #include "tools/imaging/label_names.hpp"
-#include "tools/imaging/label_statistics.hpp"
 
 namespace {
 
@@ -24,11 +23,16 @@ nlohmann::ordered_json describe(const ImageGrid& grid) {
 nlohmann::ordered_json describe(const LabelMap& map) {
     nlohmann::ordered_json result = {{"grid", describe(map.grid)},
                                      {"labels", nlohmann::ordered_json::array()}};
-    for (const LabelStatistics& label : label_statistics(map))
-        result["labels"].push_back({{"name", label.label.name},
-                                    {"value", label.label.value},
-                                    {"voxels", label.voxels},
-                                    {"volume_ml", label.volume_ml}});
+    std::vector<std::size_t> voxels(65536, 0);
+    for (const std::uint16_t value : map.labels) ++voxels[value];
+    for (const Label& label : map.names) {
+        const std::size_t count = voxels[static_cast<std::size_t>(label.value)];
+        result["labels"].push_back(
+            {{"name", label.name},
+             {"value", label.value},
+             {"voxels", count},
+             {"volume_ml", static_cast<double>(count) * map.grid.voxel_volume() / 1000}});
+    }
     return result;
 }
 

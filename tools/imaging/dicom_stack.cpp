@@ -152,10 +152,11 @@ Volume resample_stack(const Volume& volume, std::span<const SlicePlace> places,
                     static_cast<float>((1 - weight) * sample(slices[above - 1], from, i, j, outside) +
                                        weight * sample(slices[above], from, i, j, outside)));
     }
+    const std::size_t doubled = places.size() - slices.size();
     if (note)
-        note(fmt::format(
-            "{} slices interpolated onto {} even, untilted ones {:.4g} mm apart; {} doubled ones left out",
-            slices.size(), result.grid.size[2], result.grid.spacing[2], places.size() - slices.size()));
+        note(fmt::format("{} slices interpolated onto {} even, untilted ones {:.4g} mm apart{}",
+                         slices.size(), result.grid.size[2], result.grid.spacing[2],
+                         doubled > 0 ? fmt::format("; {} doubled ones left out", doubled) : ""));
     return result;
 }
 
