@@ -22,9 +22,19 @@ if(PALPATE_TOOLS)
     find_package(tomlplusplus 3 REQUIRED)
     # ITK: the reference implementation of volume reading, DICOM geometry and segmentation filters.
     find_package(ITK 5.2 REQUIRED COMPONENTS
-        ITKCommon ITKIOImageBase ITKIONRRD ITKIONIFTI ITKIOMeta ITKIOGDCM ITKImageIntensity ITKThresholding
+        ITKCommon ITKIOImageBase ITKIONRRD ITKIOMeta ITKImageIntensity ITKThresholding
         ITKConnectedComponents ITKLabelMap ITKBinaryMathematicalMorphology ITKMathematicalMorphology
         ITKDistanceMap ITKSmoothing ITKRegionGrowing ITKImageGrid ITKImageFunction ITKImageStatistics)
+    # DCMTK's dcmseg: the reference reader of DICOM segmentation objects, which ITK and GDCM lack.
+    set(PALPATE_DCMTK_LIBRARIES)
+    foreach(part seg fg iod data)
+        find_library(PALPATE_DCM_${part}_LIBRARY dcm${part} REQUIRED)
+        list(APPEND PALPATE_DCMTK_LIBRARIES ${PALPATE_DCM_${part}_LIBRARY})
+    endforeach()
+    foreach(part oflog ofstd)
+        find_library(PALPATE_DCM_${part}_LIBRARY ${part} REQUIRED)
+        list(APPEND PALPATE_DCMTK_LIBRARIES ${PALPATE_DCM_${part}_LIBRARY})
+    endforeach()
     # CGAL Mesh_3: multi-domain Delaunay refinement with sliver removal, from any labelling function.
     find_package(CGAL 5.5 REQUIRED)
     # CHOLMOD (supernodal Cholesky), METIS (ordering), LAPACK (dpotri): condensation at the machine's limit.

@@ -12,10 +12,12 @@
 namespace palpate {
 namespace {
 
-std::string lower(std::string_view text) {
+// As names are compared: lower case, a space like an underscore.
+std::string folded(std::string_view text) {
     std::string result(text);
-    std::ranges::transform(result, result.begin(),
-                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::ranges::transform(result, result.begin(), [](unsigned char c) {
+        return c == ' ' ? '_' : static_cast<char>(std::tolower(c));
+    });
     return result;
 }
 
@@ -39,7 +41,7 @@ std::optional<Label> find_label(std::span<const Label> labels, std::string_view 
     for (const Label& label : labels)
         if (label.name == key) return label;
     for (const Label& label : labels)
-        if (lower(label.name) == lower(key)) return label;
+        if (folded(label.name) == folded(key)) return label;
     std::int32_t value = 0;
     const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), value);
     if (error == std::errc{} && end == key.data() + key.size())
@@ -50,9 +52,9 @@ std::optional<Label> find_label(std::span<const Label> labels, std::string_view 
 
 std::vector<std::string> nearest_names(std::string_view key, const std::vector<std::string>& candidates) {
     std::vector<std::pair<std::size_t, std::string>> ranked;
-    const std::string wanted = lower(key);
+    const std::string wanted = folded(key);
     for (const std::string& name : candidates) {
-        const std::string have = lower(name);
+        const std::string have = folded(name);
         const bool contained =
             have.find(wanted) != std::string::npos || wanted.find(have) != std::string::npos;
         ranked.emplace_back(contained ? 0 : edit_distance(wanted, have), name);

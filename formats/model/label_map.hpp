@@ -25,7 +25,8 @@ struct LabelMap {
     std::vector<Label> names;           ///< ascending by value
 };
 
-/// Finds a label by name (exact, then ignoring case) or, if `key` is a number, by value.
+/// Finds a label by name (exact, then ignoring case and with spaces like underscores) or, if `key` is a
+/// number, by value.
 std::optional<Label> find_label(std::span<const Label> labels, std::string_view key);
 inline std::optional<Label> find_label(const LabelMap& map, std::string_view key) {
     return find_label(map.names, key);

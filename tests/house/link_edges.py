@@ -18,7 +18,7 @@ TEST_SUPPORT = {"palpate_house", "palpate_phantoms", "palpate_sample_case"}
 ROOMS = {
     "model": set(),
     "asset": {"model", "hdf5", "openssl", "threads"},
-    "imaging": {"model", "itk", "hdf5"},  # HDF5 is one of ITK's own
+    "imaging": {"model", "itk", "hdf5", "dcmtk", "vtk", "json"},  # HDF5 is one of ITK's own
     "meshing": {"model", "cgal", "vtk"},
     "obb": {"model"},
     "fem": {"model", "linear_algebra"},
@@ -47,6 +47,7 @@ LEAN = {"palpate_model", "palpate_asset", "palpate_cli", "palpate_realtime", "pa
 DRAWING = {"palpate_visual", "palpate-train"}
 FAMILIES = {
     "eigen": r"Eigen3::", "hdf5": r"hdf5|HDF5|/libhdf5|libsz|libz\.|libdl|libm\.|^dl$|^m$", "openssl": r"OpenSSL::",
+    "dcmtk": r"/libdcm|/libof(?:log|std)",
     "itk": r"ITK|itk|gdcm", "cgal": r"CGAL", "vtk": r"VTK::|X11::", "cholmod": r"cholmod", "metis": r"libmetis",
     "lapack": r"lapacke|openblas", "cli11": r"CLI11::", "spdlog": r"spdlog", "fmt": r"fmt::", "json": r"nlohmann_json",
     "toml": r"tomlplusplus", "threads": r"Threads::", "house": r"palpate_house",

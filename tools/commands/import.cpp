@@ -7,18 +7,59 @@
 #include "tools/cli/command.hpp"
 #include "tools/imaging/image_files.hpp"
 #include "tools/imaging/label_names.hpp"
-#include "tools/imaging/label_statistics.hpp"
 
 namespace {
 
 using namespace palpate;
 
-nlohmann::json describe(const ImageGrid& grid) {
+nlohmann::ordered_json describe(const ImageGrid& grid) {
     const auto numbers = [](const auto& v) { return std::vector<double>(v.data(), v.data() + v.size()); };
     return {{"size", grid.size},
             {"spacing_mm", numbers(grid.spacing)},
             {"origin_mm", numbers(grid.origin)},
             {"direction_columns", numbers(grid.direction)}};
+}
+
+nlohmann::ordered_json describe(const LabelMap& map) {
+    nlohmann::ordered_json result = {{"grid", describe(map.grid)},
+                                     {"labels", nlohmann::ordered_json::array()}};
+    std::vector<std::size_t> voxels(65536, 0);
+    for (const std::uint16_t value : map.labels) ++voxels[value];
+    for (const Label& label : map.names) {
+        const std::size_t count = voxels[static_cast<std::size_t>(label.value)];
+        result["labels"].push_back(
+            {{"name", label.name},
+             {"value", label.value},
+             {"voxels", count},
+             {"volume_ml", static_cast<double>(count) * map.grid.voxel_volume() / 1000}});
+    }
+    return result;
+}
+
+// Free text and UIDs may identify a patient: for eyes on a terminal, not for files.
+nlohmann::ordered_json describe(const std::vector<SeriesSummary>& list, bool to_file) {
+    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+    for (const SeriesSummary& series : list) {
+        nlohmann::ordered_json row = {
+            {"number", series.number},           {"modality", series.modality},
+            {"slices", series.size[2]},          {"rows", series.size[1]},
+            {"columns", series.size[0]},         {"spacing_i_mm", series.spacing[0]},
+            {"spacing_j_mm", series.spacing[1]}, {"spacing_k_mm", series.spacing[2]},
+            {"localizer", series.localizer}};
+        if (!to_file) {
+            row["description"] = series.description;
+            row["uid"] = series.uid;
+        }
+        rows.push_back(row);
+    }
+    return {{"series", rows}};
+}
+
+Overlaps overlaps_of(const std::string& text) {
+    if (text == "refuse") return Overlaps::refuse;
+    if (text == "later") return Overlaps::later_wins;
+    if (text == "smaller") return Overlaps::smaller_wins;
+    throw UsageError({"--overlaps", "'" + text + "'", "refuse, later or smaller", ""});
 }
 
 }  // namespace
@@ -27,46 +68,72 @@ int main(int argc, char** argv) {
     cli::Command command(
         {.name = "import",
          .summary = "Turns a volume or a label map of any readable format into NRRD in LPS mm",
-         .examples = {"palpate import ct_series/ -o volume.nrrd",
-                      "palpate import --labels seg.nii.gz --label-names 5=liver,4=gallbladder -o "
+         .examples = {"palpate import ct_series/ --series 3 -o volume.nrrd",
+                      "palpate import --labels seg.nii.gz --label-names totalsegmentator:v2/total -o "
                       "labels.seg.nrrd"},
-         .notes =
-             "Reads a DICOM folder, NRRD, MetaImage or NIfTI. Only geometry, values and label names are\n"
-             "kept: no patient, study or file fields. CT values stay in HU."});
+         .notes = "Reads DICOM (a folder of slices or a file of several frames), NRRD, MetaImage, NIfTI or "
+                  "VTK image\n"
+                  "data; label maps also from DICOM SEG. Only geometry, values and label names are kept: no "
+                  "patient,\n"
+                  "study or file fields. CT values are in HU.\n"
+                  "Of several DICOM series one must be chosen, unless the others are localizers or have at "
+                  "most a\n"
+                  "fifth of its slices. A series' number is its DICOM number where all differ, else its "
+                  "place in the\n"
+                  "list.\n"
+                  "Label names: 5=liver,4=gallbladder (other values are dropped); "
+                  "totalsegmentator:VERSION/TASK, as\n"
+                  "v1/total, v2/total, v2/total_mr or v2/head_glands_cavities; or a table file: Slicer "
+                  ".ctbl, ITK-SNAP,\n"
+                  "FreeSurfer, BIDS .tsv, JSON, or lines 'value name'. Without it names come from the file "
+                  "itself\n"
+                  "(.seg.nrrd, DICOM SEG, TotalSegmentator's NIfTI), else they are label_<value>."});
     std::filesystem::path input, output;
-    bool labels = false;
-    std::string label_names;
-    command.input("input", input, "DICOM folder, .nrrd, .nhdr, .mha, .mhd, .nii or .nii.gz")->required();
-    command.output("-o,--output", output, "volume (.nrrd) or, with --labels, label map (.seg.nrrd)")
+    bool labels = false, list = false;
+    std::string label_names, overlaps = "refuse";
+    ReadOptions options;
+    command
+        .input("input", input, "DICOM folder or file, .nrrd, .nhdr, .mha, .mhd, .nii, .nii.gz, .vti or .vtk")
         ->required();
+    command.output("-o,--output", output, "volume (.nrrd) or, with --labels, label map (.seg.nrrd)");
+    command.flag("--list", list, "list the DICOM series of the input and make nothing");
+    command.option("--series", options.series, "DICOM series to read: its number, UID or description");
+    command.flag("--accept-gaps", options.accept_gaps,
+                 "interpolate missing, uneven, doubled or tilted DICOM slices linearly onto an even grid");
+    command.option("--nifti-frame", options.nifti_frame,
+                   "qform or sform, for a NIfTI file in which both are set and disagree");
     command.flag("--labels", labels, "the input is a label map");
     command.option("--label-names", label_names,
-                   "names by value, e.g. 5=liver,4=gallbladder; values not named are dropped");
-    return command.run(argc, argv, [&](cli::Session& session) -> nlohmann::json {
+                   "names of the labels: value=name,..., a known table or a file");
+    command.option("--overlaps", overlaps,
+                   "where segments of a label map overlap: refuse, later (in the file) or smaller wins");
+    return command.run(argc, argv, [&](cli::Session& session) -> nlohmann::ordered_json {
         if (!labels && !label_names.empty())
             throw UsageError({"--label-names", "given without --labels", "", "add --labels"});
+        if (list != output.empty())
+            throw UsageError({"--output", list ? "given with --list" : "not given", "", "give one of them"});
+        options.overlaps = overlaps_of(overlaps);
         set_imaging_threads(session.threads);
-        auto staged = session.stage(output);
         std::vector<std::string> notes;
         const NoteSink note = [&](std::string_view text) {
             spdlog::warn("{}", text);
             notes.emplace_back(text);
         };
+        if (list) {
+            const auto json = command.app().get_option("--json")->results();
+            return describe(list_series(input, note), !json.empty() && json.front() != "-");
+        }
+        auto staged = session.stage(output);
         session.progress.step("reading", 0);
-        nlohmann::json result;
+        nlohmann::ordered_json result;
         if (labels) {
-            LabelMap map = read_label_map(input, note);
-            if (!label_names.empty()) rename_labels(map, parse_label_names(label_names));
+            LabelMap map = read_label_map(input, note, options);
+            name_labels(map, label_names, note);
             session.progress.step("writing", 0.5);
             write_label_map(staged.path(), map);
-            result = {{"grid", describe(map.grid)}, {"labels", nlohmann::json::array()}};
-            for (const LabelStatistics& label : label_statistics(map))
-                result["labels"].push_back({{"name", label.label.name},
-                                            {"value", label.label.value},
-                                            {"voxels", label.voxels},
-                                            {"volume_ml", label.volume_ml}});
+            result = describe(map);
         } else {
-            const Volume volume = read_volume(input, note);
+            const Volume volume = read_volume(input, note, options);
             const auto [low, high] = std::ranges::minmax(volume.values);
             session.progress.step("writing", 0.5);
             write_volume(staged.path(), volume);

@@ -2,34 +2,80 @@
 #pragma once
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "formats/model/image_grid.hpp"
 #include "formats/model/label_map.hpp"
 
 namespace palpate {
 
-/// Receives what a reader repaired or assumed, one sentence at a time; may be empty.
+/// Receives what a reader repaired or assumed, one sentence at a time, without text of the input's header or
+/// path; may be empty.
 using NoteSink = std::function<void(std::string_view)>;
 
-/// Reads NRRD (.nrrd, .nhdr), MetaImage (.mha, .mhd), NIfTI (.nii, .nii.gz) or a folder of DICOM slices.
-/// Of several DICOM series in a folder the one with most slices is read, with a note. RAS files become LPS.
-/// Direction cosines off orthonormality by at most 1e-3 are replaced by the nearest rotation, with a note.
-/// Throws InvalidInput if the file is missing, damaged, not three-dimensional, holds one value only, holds
-/// NaN or infinity, has a spacing that is not positive, directions further off, or slices that are missing,
-/// doubled, unevenly spaced or sheared (with the place).
-Volume read_volume(const std::filesystem::path& path, const NoteSink& note = {});
+/// What becomes of a voxel that two segments claim.
+enum class Overlaps {
+    refuse,
+    later_wins,   ///< the segment that comes later in the file
+    smaller_wins  ///< the segment of fewer voxels, the later one of two equals
+};
+
+/// What a caller decides where a file leaves it open.
+struct ReadOptions {
+    std::string series;                    ///< DICOM: number, UID or description as list_series() gives them
+    bool accept_gaps = false;              ///< DICOM: resample missing, uneven, doubled or tilted slices
+    std::string nifti_frame;               ///< NIfTI: "qform" or "sform" where both are set and disagree
+    Overlaps overlaps = Overlaps::refuse;  ///< label maps with segments in several layers
+};
+
+/// Reads NRRD (.nrrd, .nhdr), MetaImage (.mha, .mhd), NIfTI-1 and -2 (.nii, .nii.gz), VTK image data (.vti,
+/// .vtk), a DICOM file of several frames or a folder of DICOM slices, in which what is no image is skipped
+/// with a note. CT comes in HU, by each slice's own slope and intercept.
+/// Frames: NIfTI is RAS and becomes LPS; the others are LPS unless their header says otherwise, and a note
+/// says so where the header says nothing. Direction cosines off orthonormality by at most 1e-3 are replaced
+/// by the nearest rotation, with a note. Of several DICOM series one is read without options.series only if
+/// each other one is a localizer or has at most a fifth of its slices; a note says so. Two NIfTI transforms
+/// agree within a tenth of a voxel. With accept_gaps, slices are interpolated linearly onto an even, untilted
+/// grid between the first and the last one, with a note; doubled slices must then be identical. Throws
+/// InvalidInput if the file is missing, damaged, not three-dimensional, not grey, holds one value only, holds
+/// NaN or infinity, has a spacing that is not positive, directions further off, transforms that disagree
+/// (with both), several series (with the list), or slices that are missing, doubled, unevenly spaced, of
+/// mixed sizes or directions, or sheared (with the place). Cost: one pass over the voxels; memory for the
+/// voxels as stored and in float32.
+Volume read_volume(const std::filesystem::path& path, const NoteSink& note = {},
+                   const ReadOptions& options = {});
+
+/// One DICOM series as a list shows it. Description and UID may identify a patient: not for outputs.
+struct SeriesSummary {
+    std::string number;       ///< its DICOM number where all have distinct ones, else its place in the list
+    std::string modality;     ///< "CT", "MR", ...
+    std::string description;  ///< may be empty
+    std::string uid;          ///< may be empty
+    std::array<std::int32_t, 3> size{0, 0, 0};          ///< columns, rows, slices
+    Eigen::Vector3d spacing = Eigen::Vector3d::Zero();  ///< mm; 0 where unknown
+    bool localizer = false;
+};
+
+/// Lists the image series of a DICOM folder or file, by number. Throws InvalidInput if there is none. Cost:
+/// it reads every file's header.
+std::vector<SeriesSummary> list_series(const std::filesystem::path& path, const NoteSink& note = {});
+
+/// Reads a label map in any format of read_volume(), or DICOM SEG instead of grey DICOM, as integers. Names
+/// and colours come from SegmentN_* fields of an NRRD header, from a DICOM SEG's segments, or from the label
+/// table in a NIfTI header extension as TotalSegmentator and Connectome Workbench write it; a value without
+/// one is named "label_<value>". Only values that occur are listed; equal names get a number.
+/// Segments in several layers become one map; where they overlap, options.overlaps decides. Throws as
+/// read_volume() does, and InvalidInput if a value is not an integer of 0 ... 65535, if all voxels are
+/// background, or if segments overlap and the option is to refuse (with the pairs).
+LabelMap read_label_map(const std::filesystem::path& path, const NoteSink& note = {},
+                        const ReadOptions& options = {});
 
 /// Writes gzip-compressed NRRD in LPS, as int16 if every value is an integer that fits, else as float32.
 /// Nothing but geometry and values is written. The path must end in ".nrrd".
 /// Throws InvalidInput for another ending, SystemFailure if the file could not be written whole.
 void write_volume(const std::filesystem::path& path, const Volume& volume);
-
-/// Reads a label map in any format of read_volume() but DICOM. Names and colours come from a .seg.nrrd
-/// header (SegmentN_Name, SegmentN_LabelValue, SegmentN_Color); a value without one is named "label_<value>".
-/// Only values that occur are listed. Throws as read_volume() does, and InvalidInput if a value is not an
-/// integer of 0 ... 65535, if all voxels are background, or if segments overlap (several layers).
-LabelMap read_label_map(const std::filesystem::path& path, const NoteSink& note = {});
 
 /// Writes a .seg.nrrd that 3D Slicer opens as a segmentation, one layer, uint8 or uint16. Nothing but
 /// geometry, values, names and colours is written. The path must end in ".seg.nrrd". Throws as

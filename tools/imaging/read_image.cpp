@@ -4,23 +4,13 @@
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <fstream>
-#include <itkGDCMImageIO.h>
-#include <itkImageFileReader.h>
-#include <itkMetaDataObject.h>
-#include <itkMetaImageIO.h>
 #include <itkMultiThreaderBase.h>
-#include <itkNiftiImageIO.h>
-#include <itkNrrdImageIO.h>
-#include <itk_zlib.h>
-#include <memory>
-#include <sstream>
+#include <itkObject.h>
 
 #include "formats/model/errors.hpp"
-#include "tools/imaging/itk_image.hpp"
 
 namespace palpate {
 namespace {
@@ -29,129 +19,100 @@ namespace {
 constexpr double round_off_tolerance = 1e-6;
 constexpr double repair_tolerance = 1e-3;
 
-itk::ImageIOBase::Pointer image_io_of(const std::filesystem::path& path) {
-    const std::array<itk::ImageIOBase::Pointer, 3> candidates{itk::NrrdImageIO::New().GetPointer(),
-                                                              itk::MetaImageIO::New().GetPointer(),
-                                                              itk::NiftiImageIO::New().GetPointer()};
-    for (const auto& io : candidates)
-        if (io->CanReadFile(path.c_str())) {
-            // The other NIfTI layout and its parent Analyze do not say reliably which way the patient lies.
-            if (io == candidates[2] && (path.extension() == ".hdr" || path.extension() == ".img")) break;
-            return io;
-        }
-    if (itk::GDCMImageIO::New()->CanReadFile(path.c_str()))
-        throw InvalidInput(
-            {path.string(), "is a single DICOM file", "", "name the folder that holds the whole series"});
-    throw InvalidInput({path.string(), "is not a volume", "NRRD, MetaImage, NIfTI or a DICOM folder",
-                        "check that the file is whole and its ending names its format"});
-}
-
-// Refuses what a float volume cannot hold before any voxel is read.
-void check_layout(const itk::ImageIOBase& io, const std::filesystem::path& path) {
-    const std::string next = "export one scalar volume (overlapping segments: one layer)";
-    if (io.GetNumberOfComponents() != 1)
-        throw InvalidInput(
-            {path.string(), fmt::format("has {} values per voxel", io.GetNumberOfComponents()), "1", next});
-    unsigned axes = 0;
-    for (unsigned axis = 0; axis < io.GetNumberOfDimensions(); ++axis)
-        if (axis < 3 || io.GetDimensions(axis) > 1) ++axes;
-    if (axes != 3) throw InvalidInput({path.string(), fmt::format("has {} dimensions", axes), "3", next});
-    for (unsigned axis = 0; axis < 3; ++axis)
-        if (io.GetDimensions(axis) > 65535)
-            throw InvalidInput({path.string(),
-                                fmt::format("claims {} voxels along one axis", io.GetDimensions(axis)),
-                                "65535 at most", "check that the file is whole"});
-}
-
-ImageGrid grid_of(const itk::ImageIOBase& io) {
-    ImageGrid grid;
-    for (unsigned axis = 0; axis < 3; ++axis) {
-        grid.size[axis] = static_cast<std::int32_t>(io.GetDimensions(axis));
-        grid.spacing[axis] = io.GetSpacing(axis);
-        grid.origin[axis] = io.GetOrigin(axis);
-        const std::vector<double> direction = io.GetDirection(axis);
-        for (unsigned row = 0; row < 3; ++row) grid.direction(row, axis) = direction[row];
-    }
-    return grid;
-}
-
-std::map<std::string, std::string> header_of(const itk::MetaDataDictionary& dictionary) {
-    std::map<std::string, std::string> header;
-    for (const std::string& key : dictionary.GetKeys())
-        if (std::string text; itk::ExposeMetaData(dictionary, key, text)) header[key] = text;
-    return header;
-}
-
-// Bytes of a file, unpacked if it is gzip; what follows damage is not counted.
-std::uint64_t readable_bytes(const std::filesystem::path& path) {
-    const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
-    std::vector<char> block(1 << 18);
-    std::uint64_t total = 0;
-    for (int count = 0; file && (count = gzread(file.get(), block.data(), 1 << 18)) > 0;)
-        total += static_cast<std::uint64_t>(count);
-    return total;
-}
-
-// Whether a MetaImage's data file is as long as its header says.
-bool meta_data_is_long_enough(const std::filesystem::path& path, std::size_t bytes) {
+std::string first_bytes(const std::filesystem::path& path, std::size_t count) {
+    std::string bytes(count, '\0');
     std::ifstream stream(path, std::ios::binary);
-    std::string line;
-    while (std::getline(stream, line)) {
-        std::istringstream words(line);
-        std::string key, equals, value;
-        words >> key >> equals >> value;
-        if (key == "CompressedDataSize") std::istringstream(value) >> bytes;
-        if (key != "ElementDataFile") continue;
-        std::error_code absent;
-        if (value == "LOCAL")
-            return std::filesystem::file_size(path) >= bytes + static_cast<std::size_t>(stream.tellg());
-        const auto data_bytes = std::filesystem::file_size(path.parent_path() / value, absent);
-        return !absent && data_bytes >= bytes;
+    stream.read(bytes.data(), static_cast<std::streamsize>(count));
+    bytes.resize(static_cast<std::size_t>(stream.gcount()));
+    return bytes;
+}
+
+std::vector<float> float_values(StoredImage& image) {
+    if (auto* values = std::get_if<std::vector<float>>(&image.voxels);
+        values != nullptr && image.slope == 1 && image.intercept == 0)
+        return std::move(*values);
+    return std::visit(
+        [&](const auto& stored) {
+            std::vector<float> values(stored.size());
+            std::ranges::transform(stored, values.begin(), [&](auto value) {
+                return static_cast<float>(image.slope * static_cast<double>(value) + image.intercept);
+            });
+            return values;
+        },
+        image.voxels);
+}
+
+Volume volume_of(StoredImage image, const std::filesystem::path& path) {
+    if (image.layers != 1)
+        throw InvalidInput({path.string(), fmt::format("has {} values per voxel", image.layers), "1",
+                            "export one scalar volume, or read a label map with layers as labels"});
+    return {image.grid, float_values(image)};
+}
+
+// Whether every byte above 127 is part of a UTF-8 sequence (its lead and continuation bits, not its range).
+bool is_utf8(std::string_view text) {
+    int expected = 0;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        const bool continues = (byte & 0xC0U) == 0x80;
+        if (continues != (expected > 0)) return false;
+        if (continues)
+            --expected;
+        else if (byte >= 0xC2 && byte <= 0xF4)
+            expected = byte >= 0xF0 ? 3 : byte >= 0xE0 ? 2 : 1;
+        else if (byte >= 0x80)
+            return false;
     }
-    return false;
-}
-
-// Reads twice over different contents: what a failed decompression leaves unread keeps what was there.
-bool reads_every_byte(itk::ImageIOBase& io, std::size_t bytes) {
-    itk::ImageIORegion whole(io.GetNumberOfDimensions());
-    for (unsigned axis = 0; axis < io.GetNumberOfDimensions(); ++axis)
-        whole.SetSize(axis, io.GetDimensions(axis));
-    io.SetIORegion(whole);
-    std::vector<char> over_zeros(bytes, '\0'), over_ones(bytes, '\xff');
-    io.Read(over_zeros.data());
-    io.Read(over_ones.data());
-    return over_zeros == over_ones;
-}
-
-// ITK's NIfTI and MetaImage readers silently fill what a short or damaged file lacks with zeros or leftovers.
-bool holds_all_voxels(itk::ImageIOBase& io, const std::filesystem::path& path) {
-    const auto bytes = static_cast<std::size_t>(io.GetImageSizeInBytes());
-    constexpr std::size_t nifti_header_bytes = 352;
-    if (dynamic_cast<itk::NiftiImageIO*>(&io) != nullptr)
-        return readable_bytes(path) >= bytes + nifti_header_bytes;
-    if (dynamic_cast<itk::MetaImageIO*>(&io) != nullptr)
-        return meta_data_is_long_enough(path, bytes) && reads_every_byte(io, bytes);
-    return true;
+    return expected == 0;
 }
 
 }  // namespace
 
-std::string reason_of(const itk::ExceptionObject& error) {
-    std::string text = error.GetDescription();
-    if (text.starts_with("ITK ERROR: ")) text.erase(0, 11);
-    if (const auto prefix = text.find("): "); prefix != std::string::npos) text.erase(0, prefix + 3);
-    std::ranges::replace(text, '\n', ' ');
-    while (text.ends_with(' ')) text.pop_back();
-    return text.substr(0, 240);
+std::string as_utf8(std::string_view text) {
+    const bool good = is_utf8(text);
+    std::string result;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte < 32 || byte == 127)
+            result += ' ';
+        else if (byte < 128 || good)
+            result += c;
+        else
+            result.append({static_cast<char>(0xC0U | byte >> 6), static_cast<char>(0x80U | (byte & 0x3FU))});
+    }
+    return result;
+}
+
+bool is_dicom(const std::filesystem::path& path) {
+    return first_bytes(path, 132).ends_with("DICM");
+}
+
+void check_size(const std::array<std::int64_t, 3>& size, const std::filesystem::path& path) {
+    for (const std::int64_t count : size) {
+        if (count > 65535)
+            throw InvalidInput({path.string(), fmt::format("claims {} voxels along one axis", count),
+                                "65535 at most", "check that the file is whole"});
+        if (count < 2)
+            throw InvalidInput({path.string(),
+                                fmt::format("is flat: {} x {} x {} voxels", size[0], size[1], size[2]),
+                                "2 voxels or more along each axis", "choose a three-dimensional volume"});
+    }
+}
+
+void check_claim(const ImageGrid& grid, std::uintmax_t bytes, const std::filesystem::path& path) {
+    if (grid.voxel_count() / 1100 > bytes)
+        throw InvalidInput(
+            {path.string(), "holds fewer voxels than its header claims", "", "check that the file is whole"});
+}
+
+void set_axes(ImageGrid& grid, const Eigen::Matrix3d& axes) {
+    grid.spacing = axes.colwise().norm();
+    grid.direction = axes * grid.spacing.cwiseInverse().asDiagonal();
+    grid.direction.array() += 0.0;  // no negative zeros
 }
 
 void check_geometry(ImageGrid& grid, const std::filesystem::path& path, const NoteSink& note) {
-    for (const std::int32_t size : grid.size)
-        if (size < 2)
-            throw InvalidInput({path.string(),
-                                fmt::format("is empty or flat: {} x {} x {} voxels", grid.size[0],
-                                            grid.size[1], grid.size[2]),
-                                "2 or more along each axis", "choose the file of the whole volume"});
+    check_size({grid.size[0], grid.size[1], grid.size[2]}, path);
     if (!(grid.spacing.minCoeff() > 0) || !grid.spacing.allFinite() || !grid.origin.allFinite())
         throw InvalidInput(
             {path.string(),
@@ -181,42 +142,23 @@ void check_finite(const Volume& volume, const std::filesystem::path& path) {
                         "finite values", "replace such voxels, by -1024 HU in CT"});
 }
 
-ReadImage read_image_file(const std::filesystem::path& path, const NoteSink& note) {
-    const itk::ImageIOBase::Pointer io = image_io_of(path);
-    try {
-        io->SetFileName(path.string());
-        io->ReadImageInformation();
-        check_layout(*io, path);
-        ReadImage result;
-        result.volume.grid = grid_of(*io);
-        result.header = header_of(io->GetMetaDataDictionary());
-        check_geometry(result.volume.grid, path, note);
-        const auto space = result.header.find("NRRD_space");
-        if (note && dynamic_cast<itk::NrrdImageIO*>(io.GetPointer()) != nullptr &&
-            space == result.header.end())
-            note("the header names no patient space; taken as LPS");
-        if (!holds_all_voxels(*io, path))
-            throw InvalidInput({path.string(), "holds fewer voxels than its header claims", "",
-                                "check that the file is whole"});
-        auto reader = itk::ImageFileReader<ItkImage<float>>::New();
-        reader->SetImageIO(io);
-        reader->SetFileName(path.string());
-        reader->Update();
-        const auto voxels = voxels_of(*reader->GetOutput());
-        result.volume.values.assign(voxels.begin(), voxels.end());
-        return result;
-    } catch (const itk::ExceptionObject& error) {
-        throw InvalidInput({path.string(), "cannot be read: " + reason_of(error), "",
-                            "check that the file is whole and its directions are orthonormal"});
-    }
+StoredImage read_image_file(const std::filesystem::path& path, const NoteSink& note,
+                            const ReadOptions& options) {
+    const std::string name = path.filename().string();
+    if (name.ends_with(".nii") || name.ends_with(".nii.gz")) return read_nifti(path, note, options);
+    if (const std::string head = first_bytes(path, 16);
+        name.ends_with(".vti") || (name.ends_with(".vtk") && head.starts_with("# vtk")))
+        return read_vtk_image(path, note);
+    return read_itk_image(path, note);
 }
 
-Volume read_volume(const std::filesystem::path& path, const NoteSink& note) {
+Volume read_volume(const std::filesystem::path& path, const NoteSink& note, const ReadOptions& options) {
     itk::Object::GlobalWarningDisplayOff();
     if (!std::filesystem::exists(path))
         throw InvalidInput({path.string(), "no such file or folder", "", "check the path"});
-    Volume volume = std::filesystem::is_directory(path) ? read_dicom_folder(path, note)
-                                                        : read_image_file(path, note).volume;
+    Volume volume = std::filesystem::is_directory(path) || is_dicom(path)
+                        ? read_dicom(path, note, options)
+                        : volume_of(read_image_file(path, note, options), path);
     check_finite(volume, path);
     const auto [low, high] = std::ranges::minmax(volume.values);
     if (low == high)

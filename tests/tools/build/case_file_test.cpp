@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "formats/model/errors.hpp"
+#include "tests/tools/imaging/hand_written_images.hpp"
 
 namespace palpate::build {
 namespace {
@@ -28,7 +29,8 @@ poissons_ratio = 0.45
 )";
 
 std::filesystem::path written(const std::string& text) {
-    const auto path = std::filesystem::path(testing::TempDir()) / "case.toml";
+    static const palpate::testing::TemporaryFolder folder;  // of each process, as tests run side by side
+    const auto path = folder / "case.toml";
     std::ofstream(path) << text;
     return path;
 }
@@ -52,6 +54,30 @@ TEST(CaseFile, reads_what_people_write) {
     EXPECT_EQ(body.sizing.at("--cell-size"), 8);
     EXPECT_EQ(body.fixed, (std::vector<std::string>{"touching:skull", "sphere:1,2,3.5,4"}));
     EXPECT_EQ(body.regions.at(0).youngs_modulus_kpa, 6);
+}
+
+TEST(CaseFile, how_the_inputs_are_read_becomes_options_of_import) {
+    using Texts = std::vector<std::string>;
+    const auto with = [](const std::string& lines) {
+        std::string text = minimal;
+        text.insert(text.find("[[structure]]"), lines);
+        return read_case_file(written(text));
+    };
+    const CaseFile file =
+        with("series = 3\naccept_gaps = true\nlabel_names = \"totalsegmentator:v2/total\"\n");
+    EXPECT_EQ(file.volume_options, (Texts{"--series", "3", "--accept-gaps"}));
+    EXPECT_EQ(file.labels_options, (Texts{"--label-names", "totalsegmentator:v2/total"}));
+    EXPECT_FALSE(file.label_table);
+    EXPECT_EQ(with("series = \"portal venous\"\n").volume_options, (Texts{"--series", "portal venous"}));
+
+    const auto table = written(minimal).parent_path() / "names.ctbl";
+    std::ofstream(table) << "1 liver\n";
+    const CaseFile named =
+        with("label_names = \"names.ctbl\"\noverlaps = \"smaller\"\nnifti_frame = \"qform\"\n");
+    EXPECT_EQ(named.label_table, table);
+    EXPECT_EQ(named.labels_options,
+              (Texts{"--nifti-frame", "qform", "--label-names", table.string(), "--overlaps", "smaller"}));
+    EXPECT_THROW(with("accept_gaps = \"yes\"\n"), InvalidInput);
 }
 
 TEST(CaseFile, an_unknown_key_is_refused_with_line_and_nearest_name) {

@@ -6,6 +6,7 @@
 #include "formats/model/errors.hpp"
 #include "tests/tools/imaging/hand_written_images.hpp"
 #include "tools/imaging/image_files.hpp"
+#include "tools/imaging/label_names.hpp"
 #include "tools/imaging/label_statistics.hpp"
 #include "tools/imaging/segmentation.hpp"
 
@@ -40,14 +41,45 @@ TEST(RealImages, a_nifti_ct_and_its_labels_lie_on_one_grid_with_the_liver_on_the
     const Volume ct = read_volume(folder / "ct.nii.gz");
     const LabelMap labels = read_label_map(folder / "seg_totalseg.nii.gz");
     ASSERT_TRUE(same_grid(ct.grid, labels.grid));
-    const Label liver = require_label(labels, "label_5", "labels"),
-                spleen = require_label(labels, "1", "labels");
+    // TotalSegmentator wrote the names into the file.
+    const Label liver = require_label(labels, "liver", "labels"),
+                spleen = require_label(labels, "spleen", "labels");
     // Liver without contrast: 40 to 70 HU.
     EXPECT_NEAR(mean_within(ct, labels, liver.value), 55, 15);
     std::map<std::int32_t, Eigen::Vector3d> centroids;
     for (const LabelStatistics& label : label_statistics(labels))
         centroids[label.label.value] = label.centroid;
     EXPECT_LT(centroids[liver.value][0], centroids[spleen.value][0]);  // x grows to the left
+}
+
+TEST(RealImages, totalsegmentators_names_in_its_files_are_those_of_its_table) {
+    REQUIRE_REAL_DATA(folder, "abdomen_ct_totalseg3mm");
+    const LabelMap labels = read_label_map(folder / "seg_totalseg.nii.gz");
+    const LabelTable table = totalsegmentator_table("v2/total");
+    EXPECT_GT(labels.names.size(), 40U);
+    for (const Label& label : labels.names) EXPECT_EQ(label.name, table.at(label.value).name);
+}
+
+TEST(RealImages, an_atlas_takes_its_names_and_colours_from_a_slicer_table) {
+    REQUIRE_REAL_DATA(folder, "abdomen_ct_spl");
+    LabelMap labels = read_label_map(folder / "seg.nrrd");
+    name_labels(labels, folder / "labels_spl.ctbl");
+    const Label liver = require_label(labels, "Liver", "labels");
+    EXPECT_EQ(liver.value, 3);
+    EXPECT_EQ(liver.colour, (std::array<float, 3>{147 / 255.0F, 59 / 255.0F, 0}));
+    EXPECT_EQ(require_label(labels, "right kidney", "labels").value, 51);
+}
+
+TEST(RealImages, a_detached_big_endian_nrrd_is_smooth) {
+    REQUIRE_REAL_DATA(folder, "tooth_ct_seg3d");
+    const Volume tooth = read_volume(folder / "tooth.nhdr");
+    EXPECT_EQ(tooth.grid.size, (std::array<std::int32_t, 3>{103, 94, 161}));
+    double step = 0, count = 0;
+    for (int k = 0; k < 161; ++k)
+        for (int i = 1; i < 103; ++i, ++count)
+            step += std::abs(tooth.values[tooth.grid.offset(i, 47, k)] -
+                             tooth.values[tooth.grid.offset(i - 1, 47, k)]);
+    EXPECT_LT(step / count, 60) << "of a range of 1300; swapped bytes would be noise";
 }
 
 TEST(RealImages, a_dicom_series_without_identifiers_fits_its_nifti_labels) {
@@ -62,14 +94,45 @@ TEST(RealImages, a_dicom_series_without_identifiers_fits_its_nifti_labels) {
     EXPECT_NEAR(mean_within(ct, on_ct, 1), 110, 30);
 }
 
-TEST(RealImages, of_several_dicom_series_the_largest_is_read_and_said_so) {
+TEST(RealImages, dicom_segmentations_beside_a_series_are_skipped_and_lie_on_its_grid) {
     REQUIRE_REAL_DATA(folder, "abdomen_dicom_seg_dcmqi");
     std::string notes;
     const Volume ct = read_volume(folder, [&](std::string_view note) { notes += note; });
     EXPECT_EQ(ct.grid.size[2], 3);
-    EXPECT_NE(notes.find("3 series"), std::string::npos);
-    const LabelMap liver = read_label_map(folder / "liver_seg.nrrd");
+    EXPECT_NE(notes.find("2 DICOM files that are no images: SEG"), std::string::npos);
+    const LabelMap twin = read_label_map(folder / "liver_seg.nrrd"),
+                   liver = read_label_map(folder / "liver.dcm");
+    EXPECT_TRUE(same_grid(ct.grid, twin.grid));
     EXPECT_TRUE(same_grid(ct.grid, liver.grid));
+    ASSERT_EQ(liver.names.size(), 1U);
+    EXPECT_EQ(liver.names[0].name, "Liver");
+    EXPECT_EQ(liver.labels, twin.labels);
+}
+
+TEST(RealImages, overlapping_segments_of_a_dicom_segmentation_are_those_of_its_nrrd_twins) {
+    REQUIRE_REAL_DATA(folder, "abdomen_dicom_seg_dcmqi");
+    const auto file = folder / "partial_overlaps.dcm";
+    try {
+        read_label_map(file);
+        FAIL() << "was read";
+    } catch (const InvalidInput& error) {
+        EXPECT_NE(std::string(error.what()).find("'GREEN' and 'ORANGE' both claim"), std::string::npos)
+            << error.what();
+    }
+    // The twins hold the segments by number, overlapping ones in different files.
+    ReadOptions later;
+    later.overlaps = Overlaps::later_wins;
+    const LabelMap map = read_label_map(file, {}, later);
+    ASSERT_EQ(map.names.size(), 5U);
+    EXPECT_EQ(map.names[3].name, "LIGHT_BLUE");
+    EXPECT_GT(map.names[3].colour[2], map.names[3].colour[0]);
+    std::vector<std::uint16_t> expected(map.labels.size(), 0);
+    for (int i = 1; i <= 3; ++i) {
+        const LabelMap twin = read_label_map(folder / fmt::format("partial_overlaps-{}.nrrd", i));
+        ASSERT_TRUE(same_grid(twin.grid, map.grid));
+        for (std::size_t n = 0; n < expected.size(); ++n) expected[n] = std::max(expected[n], twin.labels[n]);
+    }
+    EXPECT_EQ(map.labels, expected);
 }
 
 TEST(RealImages, a_missing_dicom_slice_is_refused_with_its_place) {

@@ -25,7 +25,17 @@ class Reader {
         const toml::node* node = table_.get(key);
         if (node == nullptr) return std::nullopt;
         if (const auto value = node->value<T>()) return value;
-        fail(*node, key, "has the wrong type", std::is_same_v<T, std::string> ? "text" : "a number");
+        fail(*node, key, "has the wrong type",
+             std::is_same_v<T, std::string> ? "text"
+             : std::is_same_v<T, bool>      ? "true or false"
+                                            : "a number");
+    }
+
+    // Text, or a whole number written as text.
+    std::optional<std::string> text_or_number(const std::string& key) {
+        const toml::node* node = table_.get(key);
+        if (node == nullptr || !node->is_integer()) return optional<std::string>(key);
+        return std::to_string(*optional<std::int64_t>(key));
     }
 
     template <typename T>
@@ -195,6 +205,28 @@ DeformableSpec deformable(Reader reader) {
     return spec;
 }
 
+void read_import_options(Reader& input, const std::filesystem::path& folder, CaseFile& result) {
+    const auto add = [](std::vector<std::string>& options, const std::string& option,
+                        const std::string& value) {
+        options.push_back(option);
+        options.push_back(value);
+    };
+    if (const auto series = input.text_or_number("series")) add(result.volume_options, "--series", *series);
+    if (input.optional<bool>("accept_gaps").value_or(false))
+        result.volume_options.emplace_back("--accept-gaps");
+    if (const auto frame = input.optional<std::string>("nifti_frame")) {
+        add(result.volume_options, "--nifti-frame", *frame);
+        add(result.labels_options, "--nifti-frame", *frame);
+    }
+    if (const auto names = input.optional<std::string>("label_names")) {
+        if (std::filesystem::is_regular_file(folder / *names)) result.label_table = folder / *names;
+        add(result.labels_options, "--label-names",
+            result.label_table ? result.label_table->string() : *names);
+    }
+    if (const auto overlaps = input.optional<std::string>("overlaps"))
+        add(result.labels_options, "--overlaps", *overlaps);
+}
+
 toml::table parse(const std::filesystem::path& path) {
     try {
         return toml::parse_file(path.string());
@@ -223,6 +255,7 @@ CaseFile read_case_file(const std::filesystem::path& path) {
     Reader input = root.table("input");
     result.volume = resolved(input.optional<std::string>("volume"));
     result.labels = resolved(input.optional<std::string>("labels"));
+    read_import_options(input, path.parent_path(), result);
     input.refuse_unknown();
     for (const Reader& table : root.tables("structure"))
         result.structures.push_back(structure(table, path.parent_path()));

@@ -44,8 +44,11 @@ struct DeformableSpec {
 /// A case file, schema 1: what to build for one patient. Paths are absolute or relative to the case file.
 struct CaseFile {
     std::string name;
-    std::optional<std::filesystem::path> volume;  ///< CT or MRI
-    std::optional<std::filesystem::path> labels;  ///< label map that structures are imported from
+    std::optional<std::filesystem::path> volume;       ///< CT or MRI
+    std::optional<std::filesystem::path> labels;       ///< label map that structures are imported from
+    std::vector<std::string> volume_options;           ///< of `palpate import`: series, gaps, frame
+    std::vector<std::string> labels_options;           ///< of `palpate import`: names, overlaps, frame
+    std::optional<std::filesystem::path> label_table;  ///< the file among labels_options, if one is
     std::vector<StructureSpec> structures;
     std::vector<RigidSpec> rigid;
     std::vector<DeformableSpec> deformable;

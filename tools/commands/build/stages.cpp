@@ -22,10 +22,20 @@ void add(std::vector<std::string>& arguments, std::initializer_list<std::string>
     arguments.insert(arguments.end(), more);
 }
 
-Stage import_stage(const std::string& role, const std::filesystem::path& input,
-                   const std::filesystem::path& output) {
-    Stage stage{"import " + role, "import", {input.string()}, {input}, {output}};
-    if (role == "labels") stage.arguments.emplace_back("--labels");
+Stage import_volume_stage(const CaseFile& case_file, const std::filesystem::path& output) {
+    Stage stage{"import volume", "import", {case_file.volume->string()}, {*case_file.volume}, {output}};
+    stage.arguments.insert(stage.arguments.end(), case_file.volume_options.begin(),
+                           case_file.volume_options.end());
+    add(stage.arguments, {"-o", output.string()});
+    return stage;
+}
+
+Stage import_labels_stage(const CaseFile& case_file, const std::filesystem::path& output) {
+    Stage stage{
+        "import labels", "import", {case_file.labels->string(), "--labels"}, {*case_file.labels}, {output}};
+    if (case_file.label_table) stage.inputs.push_back(*case_file.label_table);
+    stage.arguments.insert(stage.arguments.end(), case_file.labels_options.begin(),
+                           case_file.labels_options.end());
     add(stage.arguments, {"-o", output.string()});
     return stage;
 }
@@ -159,10 +169,8 @@ Stage pack_stage(const CaseFile& case_file, const BuildPaths& paths, const std::
 std::vector<Stage> stages_to_asset(const CaseFile& case_file, const BuildPaths& paths) {
     std::filesystem::create_directories(paths.parts);
     std::vector<Stage> stages;
-    if (case_file.volume)
-        stages.push_back(import_stage("volume", *case_file.volume, paths.parts / "volume.nrrd"));
-    if (case_file.labels)
-        stages.push_back(import_stage("labels", *case_file.labels, paths.parts / "prior.seg.nrrd"));
+    if (case_file.volume) stages.push_back(import_volume_stage(case_file, paths.parts / "volume.nrrd"));
+    if (case_file.labels) stages.push_back(import_labels_stage(case_file, paths.parts / "prior.seg.nrrd"));
     stages.push_back(segment_stage(case_file, paths.parts));
     for (const RigidSpec& body : case_file.rigid) {
         stages.push_back(surface_stage(body, paths.parts));

@@ -1,0 +1,403 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Corners of NIfTI, NRRD, MetaImage and VTK files that strangers meet.
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <numeric>
+#include <zlib.h>
+
+#include "formats/model/errors.hpp"
+#include "tests/tools/imaging/hand_written_images.hpp"
+#include "tools/imaging/image_files.hpp"
+
+namespace palpate {
+namespace {
+
+using testing::TemporaryFolder;
+using testing::write_bytes;
+
+// NIfTI-1 stores the affine in float32: 100 mm at 2^-24 relative, over a few terms.
+constexpr double header_tolerance = 5e-5;
+
+Volume ramp_volume() {
+    Volume volume;
+    volume.grid.size = {4, 5, 6};
+    volume.grid.spacing = {0.5, 0.75, 1.25};
+    volume.grid.origin = {-10.5, 20.25, 30.125};
+    volume.grid.direction = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, -2, 3).normalized()).toRotationMatrix();
+    volume.values.resize(volume.grid.voxel_count());
+    std::iota(volume.values.begin(), volume.values.end(), -7.0F);
+    return volume;
+}
+
+template <typename T>
+void put(std::string& bytes, std::size_t offset, T value) {
+    std::memcpy(bytes.data() + offset, &value, sizeof(value));
+}
+
+// The quaternion and offset of a grid, code 1, beside the sform.
+void put_qform(std::string& nifti, const ImageGrid& grid) {
+    Eigen::Matrix3d rotation = testing::scaled_axes(grid, true) * grid.spacing.cwiseInverse().asDiagonal();
+    const double qfac = rotation.determinant() < 0 ? -1 : 1;
+    rotation.col(2) *= qfac;
+    Eigen::Quaterniond q(rotation);
+    if (q.w() < 0) q.coeffs() *= -1;
+    const Eigen::Vector3d origin = testing::origin_in(grid, true);
+    put(nifti, 76, static_cast<float>(qfac));
+    put(nifti, 252, std::int16_t{1});
+    for (int i = 0; i < 3; ++i) {
+        put(nifti, static_cast<std::size_t>(256 + 4 * i), static_cast<float>(q.vec()[i]));
+        put(nifti, static_cast<std::size_t>(268 + 4 * i), static_cast<float>(origin[i]));
+    }
+}
+
+std::string refusal_of(const std::filesystem::path& path, const ReadOptions& options = {}) {
+    try {
+        read_volume(path, {}, options);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "nothing was refused";
+}
+
+#define EXPECT_SAYS(text, phrase) EXPECT_NE((text).find(phrase), std::string::npos) << (text)
+
+void expect_same_place(const ImageGrid& found, const ImageGrid& expected) {
+    ASSERT_EQ(found.size, expected.size);
+    for (const Eigen::Vector3d& index : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(3, 0, 0),
+                                         Eigen::Vector3d(0, 4, 0), Eigen::Vector3d(0, 0, 5)})
+        EXPECT_LT((found.point_of(index) - expected.point_of(index)).norm(), header_tolerance);
+}
+
+ReadOptions framed(const std::string& frame) {
+    ReadOptions options;
+    options.nifti_frame = frame;
+    return options;
+}
+
+TEST(Nifti, transforms_that_agree_are_read_and_ones_that_do_not_are_refused_with_both) {
+    const TemporaryFolder folder;
+    for (const bool mirrored : {false, true}) {
+        Volume volume = ramp_volume();
+        if (mirrored) volume.grid.direction.col(2) *= -1;
+        std::string file = testing::nifti_file(volume.grid, testing::raw_bytes<float>(volume.values));
+        put_qform(file, volume.grid);
+        write_bytes(folder / "v.nii", file);
+        for (const char* frame : {"", "qform", "sform"})
+            expect_same_place(read_volume(folder / "v.nii", {}, framed(frame)).grid, volume.grid);
+
+        ImageGrid moved = volume.grid;
+        moved.origin[0] += 0.06;  // 0.12 of the smallest voxel edge
+        put_qform(file, moved);
+        write_bytes(folder / "v.nii", file);
+        const std::string refusal = refusal_of(folder / "v.nii");
+        EXPECT_SAYS(refusal, "qform [");
+        EXPECT_SAYS(refusal, "sform [");
+        EXPECT_SAYS(refusal, "disagree by 0.12 voxels");
+        EXPECT_SAYS(refusal, "--nifti-frame qform");
+        expect_same_place(read_volume(folder / "v.nii", {}, framed("qform")).grid, moved);
+        expect_same_place(read_volume(folder / "v.nii", {}, framed("sform")).grid, volume.grid);
+    }
+}
+
+TEST(Nifti, a_transform_that_is_not_set_cannot_be_chosen) {
+    const TemporaryFolder folder;
+    const Volume volume = ramp_volume();
+    write_bytes(folder / "v.nii", testing::nifti_file(volume.grid, testing::raw_bytes<float>(volume.values)));
+    EXPECT_SAYS(refusal_of(folder / "v.nii", framed("qform")), "has no qform");
+    EXPECT_SAYS(refusal_of(folder / "v.nii", framed("affine")), "'affine'");
+}
+
+TEST(Nifti, shear_up_to_a_thousandth_is_repaired_and_reported_and_beyond_refused) {
+    const TemporaryFolder folder;
+    for (const double shear : {9e-4, 1.2e-3}) {
+        Volume volume = ramp_volume();
+        volume.grid.direction.col(1) += shear * volume.grid.direction.col(0);
+        write_bytes(folder / "v.nii",
+                    testing::nifti_file(volume.grid, testing::raw_bytes<float>(volume.values)));
+        if (shear > 1e-3) {
+            EXPECT_SAYS(refusal_of(folder / "v.nii"), "off orthonormality");
+            continue;
+        }
+        std::string notes;
+        const Volume read = read_volume(folder / "v.nii", [&](std::string_view note) { notes += note; });
+        EXPECT_SAYS(notes, "0.0009 off orthonormality and were made orthonormal");
+        EXPECT_LT(
+            (read.grid.direction.transpose() * read.grid.direction - Eigen::Matrix3d::Identity()).norm(),
+            1e-12);
+        EXPECT_LT((read.grid.direction - volume.grid.direction).norm(), 1e-3);
+    }
+}
+
+TEST(Nifti, a_file_without_transforms_is_read_as_ras_with_a_note) {
+    const TemporaryFolder folder;
+    Volume volume = ramp_volume();
+    volume.grid.direction.setIdentity();
+    std::string file = testing::nifti_file(volume.grid, testing::raw_bytes<float>(volume.values));
+    put(file, 254, std::int16_t{0});
+    write_bytes(folder / "v.nii", file);
+    std::string notes;
+    const Volume read = read_volume(folder / "v.nii", [&](std::string_view note) { notes += note; });
+    EXPECT_SAYS(notes, "neither qform nor sform");
+    EXPECT_EQ(read.grid.direction.col(0), Eigen::Vector3d(-1, 0, 0));
+}
+
+TEST(Nifti, big_endian_scaled_and_second_version_files_hold_the_same_volume) {
+    const TemporaryFolder folder;
+    const Volume volume = ramp_volume();
+    const std::string little = testing::nifti_file(volume.grid, testing::raw_bytes<float>(volume.values));
+
+    std::string big = little;
+    const auto swap = [&](std::size_t from, std::size_t count, std::size_t width) {
+        for (std::size_t i = 0; i < count; ++i)
+            std::reverse(big.begin() + static_cast<long>(from + i * width),
+                         big.begin() + static_cast<long>(from + (i + 1) * width));
+    };
+    swap(0, 1, 4);
+    swap(40, 8, 2);
+    swap(70, 2, 2);
+    swap(76, 8, 4);
+    swap(108, 3, 4);
+    swap(252, 2, 2);
+    swap(256, 18, 4);
+    swap(352, volume.values.size(), 4);
+    write_bytes(folder / "big.nii", big);
+
+    std::string scaled = little.substr(0, 352);  // values -7, -6 ... as 2 * stored - 7, over int16
+    put(scaled, 70, std::int16_t{4});
+    put(scaled, 112, 0.5F);
+    put(scaled, 116, -7.0F);
+    for (std::size_t i = 0; i < volume.values.size(); ++i) {
+        const auto stored = static_cast<std::int16_t>(2 * i);
+        scaled += testing::raw_bytes<std::int16_t>(std::span(&stored, 1));
+    }
+    write_bytes(folder / "scaled.nii", scaled);
+
+    std::string second(544, '\0');
+    put(second, 0, std::int32_t{540});
+    std::memcpy(second.data() + 4, "n+2\0\r\n\032\n", 8);
+    put(second, 12, std::int16_t{16});
+    for (std::size_t i = 0; i < 8; ++i) {
+        put(second, 16 + 8 * i, std::int64_t{i == 0 ? 3 : i < 4 ? volume.grid.size[i - 1] : 1});
+        put(second, 104 + 8 * i, 1.0);
+    }
+    put(second, 168, std::int64_t{544});
+    put(second, 348, std::int32_t{1});
+    const Eigen::Matrix3d axes = testing::scaled_axes(volume.grid, true);
+    const Eigen::Vector3d origin = testing::origin_in(volume.grid, true);
+    for (int row = 0; row < 3; ++row) {
+        for (int axis = 0; axis < 3; ++axis)
+            put(second, static_cast<std::size_t>(400 + 32 * row + 8 * axis), axes(row, axis));
+        put(second, static_cast<std::size_t>(400 + 32 * row + 24), origin[row]);
+    }
+    write_bytes(folder / "second.nii", second + testing::raw_bytes<float>(volume.values));
+
+    for (const char* name : {"big.nii", "scaled.nii", "second.nii"}) {
+        SCOPED_TRACE(name);
+        const Volume read = read_volume(folder / name);
+        expect_same_place(read.grid, volume.grid);
+        EXPECT_EQ(read.values, volume.values);
+    }
+}
+
+TEST(Nifti, colours_time_series_pairs_and_false_claims_are_refused) {
+    const TemporaryFolder folder;
+    const Volume volume = ramp_volume();
+    const std::string good = testing::nifti_file(volume.grid, testing::raw_bytes<float>(volume.values));
+    const auto refusal = [&](std::size_t offset, auto value) {
+        std::string file = good;
+        put(file, offset, value);
+        write_bytes(folder / "v.nii", file);
+        return refusal_of(folder / "v.nii");
+    };
+    EXPECT_SAYS(refusal(70, std::int16_t{128}), "datatype 128");
+    EXPECT_SAYS(refusal(344, 'x'), "not a NIfTI file of one piece");
+    EXPECT_SAYS(refusal(42, std::int16_t{-4}), "is flat: -4");
+    EXPECT_SAYS(refusal(42, std::int16_t{32000}), "fewer voxels than its header claims");
+    EXPECT_SAYS(refusal(108, 1e9F), "claims a header");
+    std::string series = good;
+    put(series, 40, std::int16_t{4});
+    put(series, 48, std::int16_t{2});
+    write_bytes(folder / "v.nii", series);
+    EXPECT_SAYS(refusal_of(folder / "v.nii"), "has sizes 4 5 6 2");
+}
+
+// Voxels of three segments: 'organ' and 'lesion' overlap in layer 0 and 1, 'vessel' shares a layer and does
+// not.
+std::string layered_segmentation(bool overlap) {
+    std::vector<std::uint8_t> voxels(2 * 4 * 5 * 6, 0);
+    for (std::size_t n = 10; n < 40; ++n) voxels[2 * n] = 1;                     // organ: 30 voxels
+    for (std::size_t n = 60; n < 65; ++n) voxels[2 * n] = 2;                     // vessel: 5
+    for (std::size_t n = overlap ? 38 : 40; n < 44; ++n) voxels[2 * n + 1] = 1;  // lesion: 6 or 4
+    return "NRRD0004\ntype: unsigned char\ndimension: 4\nspace: left-posterior-superior\nsizes: 2 4 5 6\n"
+           "space directions: none (0.5,0,0) (0,0.75,0) (0,0,1.25)\nkinds: list domain domain domain\n"
+           "encoding: raw\nspace origin: (1,2,3)\n"
+           "Segment0_ID:=a\nSegment0_Name:=lesion\nSegment0_LabelValue:=1\nSegment0_Layer:=1\nSegment0_Color:"
+           "=1 0 0\n"
+           "Segment1_ID:=b\nSegment1_Name:=organ\nSegment1_LabelValue:=1\nSegment1_Layer:=0\n"
+           "Segment2_ID:=c\nSegment2_Name:=vessel\nSegment2_LabelValue:=2\nSegment2_Layer:=0\n\n" +
+           testing::raw_bytes<std::uint8_t>(voxels);
+}
+
+std::size_t voxels_of(const LabelMap& map, const std::string& name) {
+    const Label label = require_label(map, name, "map");
+    return static_cast<std::size_t>(std::ranges::count(map.labels, label.value));
+}
+
+TEST(SegNrrd, layers_that_do_not_overlap_become_one_map_with_names_and_colours) {
+    const TemporaryFolder folder;
+    write_bytes(folder / "s.seg.nrrd", layered_segmentation(false));
+    const LabelMap map = read_label_map(folder / "s.seg.nrrd");
+    EXPECT_EQ(map.grid.size, (std::array<std::int32_t, 3>{4, 5, 6}));
+    ASSERT_EQ(map.names.size(), 3U);
+    EXPECT_EQ(voxels_of(map, "organ"), 30U);
+    EXPECT_EQ(voxels_of(map, "vessel"), 5U);
+    EXPECT_EQ(voxels_of(map, "lesion"), 4U);
+    EXPECT_EQ(require_label(map, "lesion", "").colour, (std::array<float, 3>{1, 0, 0}));
+}
+
+TEST(SegNrrd, overlaps_are_refused_with_the_pair_or_decided_as_asked) {
+    const TemporaryFolder folder;
+    write_bytes(folder / "s.seg.nrrd", layered_segmentation(true));
+    try {
+        read_label_map(folder / "s.seg.nrrd");
+        FAIL() << "was read";
+    } catch (const InvalidInput& error) {
+        EXPECT_SAYS(std::string(error.what()), "'lesion' and 'organ' both claim 2 voxels");
+    }
+    ReadOptions options;
+    std::string notes;
+    options.overlaps = Overlaps::later_wins;
+    LabelMap map = read_label_map(
+        folder / "s.seg.nrrd", [&](std::string_view note) { notes += note; }, options);
+    EXPECT_EQ(voxels_of(map, "organ"), 30U);
+    EXPECT_EQ(voxels_of(map, "lesion"), 4U);
+    EXPECT_SAYS(notes, "the later one got them");
+    options.overlaps = Overlaps::smaller_wins;
+    map = read_label_map(folder / "s.seg.nrrd", {}, options);
+    EXPECT_EQ(voxels_of(map, "organ"), 28U);
+    EXPECT_EQ(voxels_of(map, "lesion"), 6U);
+}
+
+TEST(SegNrrd, old_segmentations_hold_a_segment_in_each_layer) {
+    const TemporaryFolder folder;
+    std::string file = layered_segmentation(false);
+    for (const char* field :
+         {"Segment0_LabelValue:=1\nSegment0_Layer:=1\n", "Segment1_LabelValue:=1\nSegment1_Layer:=0\n",
+          "Segment2_ID:=c\nSegment2_Name:=vessel\nSegment2_LabelValue:=2\nSegment2_Layer:=0\n"})
+        file.erase(file.find(field), std::strlen(field));
+    // Layer 0 of the voxels is now the first segment, 'lesion'; without the vessel's value 2.
+    for (char& voxel : std::span(file).last(240))
+        if (voxel == 2) voxel = 0;
+    write_bytes(folder / "s.seg.nrrd", file);
+    const LabelMap map = read_label_map(folder / "s.seg.nrrd");
+    EXPECT_EQ(voxels_of(map, "lesion"), 30U);
+    EXPECT_EQ(voxels_of(map, "organ"), 4U);
+}
+
+TEST(Nrrd, every_patient_space_becomes_lps_and_others_are_noted) {
+    const TemporaryFolder folder;
+    const std::vector<std::int16_t> voxels{1, 2, 3, 4, 5, 6, 7, 8};
+    for (const auto& [space, sign] :
+         std::map<std::string, Eigen::Vector3d>{{"left-posterior-superior", {1, 1, 1}},
+                                                {"LPS", {1, 1, 1}},
+                                                {"right-anterior-superior", {-1, -1, 1}},
+                                                {"RAS", {-1, -1, 1}},
+                                                {"left-anterior-superior", {1, -1, 1}},
+                                                {"LAS", {1, -1, 1}},
+                                                {"scanner-xyz", {1, 1, 1}}}) {
+        SCOPED_TRACE(space);
+        write_bytes(folder / "v.nrrd",
+                    "NRRD0004\ntype: short\ndimension: 3\nspace: " + space +
+                        "\nsizes: 2 2 2\nspace directions: (0,2,0) (3,0,0) (0,0,-4)\nendian: little\n"
+                        "encoding: raw\nspace origin: (10,20,30)\n\n" +
+                        testing::raw_bytes<std::int16_t>(voxels));
+        std::string notes;
+        const Volume volume = read_volume(folder / "v.nrrd", [&](std::string_view note) { notes += note; });
+        EXPECT_LT((volume.grid.point_of({1, 0, 0}) - sign.cwiseProduct(Eigen::Vector3d(10, 22, 30))).norm(),
+                  1e-9);
+        EXPECT_LT((volume.grid.point_of({0, 1, 0}) - sign.cwiseProduct(Eigen::Vector3d(13, 20, 30))).norm(),
+                  1e-9);
+        EXPECT_LT((volume.grid.point_of({0, 0, 1}) - sign.cwiseProduct(Eigen::Vector3d(10, 20, 26))).norm(),
+                  1e-9);
+        EXPECT_EQ(notes.empty(), space != "scanner-xyz") << notes;
+    }
+}
+
+TEST(LabelValues, up_to_65535_are_exact_and_beyond_are_refused) {
+    const TemporaryFolder folder;
+    const ImageGrid grid = ramp_volume().grid;
+    std::vector<std::uint32_t> values(grid.voxel_count(), 0);
+    values[3] = 65535;
+    values[4] = 65534;
+    const auto file = [&] {
+        return testing::nrrd_file(grid, "uint", testing::raw_bytes<std::uint32_t>(values),
+                                  "left-posterior-superior");
+    };
+    write_bytes(folder / "l.nrrd", file());
+    const LabelMap map = read_label_map(folder / "l.nrrd");
+    EXPECT_EQ(map.labels[3], 65535);
+    EXPECT_EQ(map.labels[4], 65534);
+    values[5] = 65536;
+    write_bytes(folder / "l.nrrd", file());
+    EXPECT_THROW(read_label_map(folder / "l.nrrd"), InvalidInput);
+}
+
+std::string deflated(const std::string& bytes) {
+    uLongf size = compressBound(bytes.size());
+    std::string packed(size, '\0');
+    compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
+             bytes.size());
+    return packed.substr(0, size);
+}
+
+TEST(MetaImage, compressed_data_is_read_with_and_without_its_size_and_not_if_cut) {
+    const TemporaryFolder folder;
+    const Volume volume = ramp_volume();
+    const std::string packed = deflated(testing::raw_bytes<float>(volume.values));
+    std::string header = testing::meta_file(volume.grid, "MET_FLOAT", "");
+    const auto end = header.find("ElementDataFile");
+    for (const bool sized : {true, false})
+        for (const bool local : {true, false}) {
+            SCOPED_TRACE(fmt::format("sized {}, local {}", sized, local));
+            const std::string text = header.substr(0, end) + "CompressedData = True\n" +
+                                     (sized ? fmt::format("CompressedDataSize = {}\n", packed.size()) : "") +
+                                     (local ? "ElementDataFile = LOCAL\n" : "ElementDataFile = v.zraw\n");
+            const auto path = folder / (local ? "v.mha" : "v.mhd");
+            const auto write = [&](const std::string& data) {
+                write_bytes(path, local ? text + data : text);
+                if (!local) write_bytes(folder / "v.zraw", data);
+            };
+            write(packed);
+            const Volume read = read_volume(path);
+            expect_same_place(read.grid, volume.grid);
+            EXPECT_EQ(read.values, volume.values);
+            write(packed.substr(0, packed.size() / 2));
+            EXPECT_THROW(read_volume(path), InvalidInput);
+        }
+}
+
+TEST(VtkImage, legacy_structured_points_are_read_and_other_data_refused) {
+    const TemporaryFolder folder;
+    const std::string header =
+        "# vtk DataFile Version 3.0\nJane Roe\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 3 2\n"
+        "ORIGIN 1 2 3\nSPACING 0.5 0.75 1.25\nPOINT_DATA 12\nSCALARS s short 1\nLOOKUP_TABLE default\n";
+    write_bytes(folder / "v.vtk", header + "1 2 3 4 5 6 7 8 9 10 11 12\n");
+    std::string notes;
+    const Volume volume = read_volume(folder / "v.vtk", [&](std::string_view note) { notes += note; });
+    EXPECT_EQ(volume.grid.size, (std::array<std::int32_t, 3>{2, 3, 2}));
+    EXPECT_EQ(volume.grid.origin, Eigen::Vector3d(1, 2, 3));
+    EXPECT_EQ(volume.grid.spacing, Eigen::Vector3d(0.5, 0.75, 1.25));
+    EXPECT_EQ(volume.values.front(), 1);
+    EXPECT_EQ(volume.values.back(), 12);
+    EXPECT_SAYS(notes, "taken as LPS");
+    write_bytes(folder / "v.vtk", header + "1 2 3\n");
+    EXPECT_THROW(read_volume(folder / "v.vtk"), InvalidInput);
+    write_bytes(folder / "v.vtk", "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 0 float\n");
+    EXPECT_THROW(read_volume(folder / "v.vtk"), InvalidInput);
+    write_bytes(folder / "v.vti", "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 1 0 1 0 1\">");
+    EXPECT_THROW(read_volume(folder / "v.vti"), InvalidInput);
+}
+
+}  // namespace
+}  // namespace palpate
