@@ -125,6 +125,25 @@ TEST(Decimate, stays_closed_and_close) {
     EXPECT_EQ(decimate(coarse, 2000).triangles, coarse.triangles);
 }
 
+TEST(Decimate, keeps_the_distance_asked_for_or_names_the_place_that_does_not) {
+    Volume ball = cone(Eigen::Matrix3d::Identity(), 12);
+    for (std::int32_t k = 0; k < 16; ++k)  // a thin spine, which costs decimation little to lose
+        ball.values[ball.grid.offset(25, 24, k)] = std::max(102.0F, ball.values[ball.grid.offset(25, 24, k)]);
+    const TriangleMesh fine = isosurface(ball, 100);
+    const double free = surface_distance(fine, decimate(fine, 600)).maximum;
+    const Decimation kept = decimate_within(fine, 600, 0.9 * free);
+    EXPECT_LE(kept.surface.triangles.size(), 600U);
+    EXPECT_LE(kept.distance.maximum, 0.9 * free);
+    EXPECT_DOUBLE_EQ(kept.distance.maximum, surface_distance(fine, kept.surface).maximum);
+    EXPECT_TRUE(measure(kept.surface).closed_and_oriented());
+    try {
+        decimate_within(fine, 600, 1e-3);
+        FAIL() << "600 triangles cannot do that";
+    } catch (const QualityNotMet& error) {
+        EXPECT_NE(std::string(error.what()).find("mm off at ("), std::string::npos) << error.what();
+    }
+}
+
 TEST(Decimate, surface_that_is_no_manifold_is_refused) {
     TriangleMesh fin{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, -1, 0}},
                      {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}}};
