@@ -72,6 +72,25 @@ std::vector<NearestPlace> nearest_places(std::span<const SurfaceSample> samples,
     return places;
 }
 
+std::vector<double> triangle_distances(const TriangleMesh& surface, const TriangleMesh& reference) {
+    std::vector<SurfaceSample> samples;
+    for (const Eigen::Vector3d& p : surface.vertices) samples.push_back({p, 0});
+    for (const Triangle& t : surface.triangles) {
+        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+        for (const std::int32_t v : t) sum += surface.vertices[static_cast<std::size_t>(v)];
+        samples.push_back({sum / 3, 0});
+    }
+    const std::vector<NearestPlace> places = nearest_places(samples, reference);
+    std::vector<double> distances;
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+        double most = places[surface.vertices.size() + t].distance;
+        for (const std::int32_t v : surface.triangles[t])
+            most = std::max(most, places[static_cast<std::size_t>(v)].distance);
+        distances.push_back(most);
+    }
+    return distances;
+}
+
 SurfaceDistance summary(std::span<const SurfaceSample> samples_a, std::span<const NearestPlace> of_a,
                         std::span<const SurfaceSample> samples_b, std::span<const NearestPlace> of_b) {
     std::vector<double> distances;

@@ -27,6 +27,10 @@ struct NearestPlace {
 /// Finds the nearest place of `surface` for each sample. Cost: 2 us a sample.
 std::vector<NearestPlace> nearest_places(std::span<const SurfaceSample> samples, const TriangleMesh& surface);
 
+/// Returns for each triangle of `surface` the largest distance of its corners and its centroid to
+/// `reference`, mm.
+std::vector<double> triangle_distances(const TriangleMesh& surface, const TriangleMesh& reference);
+
 /// How far two surfaces are apart, mm, both ways over the samples of each.
 struct SurfaceDistance {
     double mean = 0, percentile_95 = 0, maximum = 0;

@@ -179,6 +179,7 @@ RigidSpec rigid(Reader reader, const std::filesystem::path& folder) {
     spec.label = reader.optional<std::string>("label").value_or(spec.name);
     spec.isovalue = reader.optional<double>("isovalue_hu");
     spec.max_triangles = reader.optional<std::int64_t>("max_triangles");
+    spec.max_distance = reader.optional<double>("max_distance_mm");
     reader.refuse_unknown();
     return spec;
 }

@@ -31,6 +31,7 @@ struct RigidSpec {
     std::string label;
     std::optional<double> isovalue;  ///< HU
     std::optional<std::int64_t> max_triangles;
+    std::optional<double> max_distance;  ///< mm that decimation may move the surface
 };
 
 /// One region of a deformable body.

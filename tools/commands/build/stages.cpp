@@ -89,6 +89,7 @@ Stage surface_stage(const RigidSpec& body, const std::filesystem::path& parts) {
         stage.inputs.push_back(parts / "volume.nrrd");
     }
     if (body.max_triangles) add(stage.arguments, {"--max-triangles", std::to_string(*body.max_triangles)});
+    if (body.max_distance) add(stage.arguments, {"--max-distance", fmt::format("{}", *body.max_distance)});
     add(stage.arguments, {"-o", output.string()});
     return stage;
 }
@@ -249,6 +250,11 @@ Stage report_stage(const CaseFile& case_file, const BuildPaths& paths,
     if (needs_labels(case_file)) {
         add(stage.arguments, {"--labels", labels.string()});
         stage.inputs.push_back(labels);
+        for (const RigidSpec& body : case_file.rigid)
+            if (!body.file)
+                add(stage.arguments,
+                    {"--rigid", body.name + "=" + body.label +
+                                    (body.isovalue ? fmt::format(",{}", *body.isovalue) : std::string())});
     }
     if (case_file.volume) {
         add(stage.arguments, {"--volume", volume.string()});
