@@ -60,13 +60,14 @@ FoundTetrahedra read_medit(const std::filesystem::path& path) {
                 }
                 found.regions.push_back(static_cast<std::int32_t>(file.integer()));
             }
-        } else if (const auto kind = kinds.find(keyword); kind != kinds.end()) {
-            const std::int64_t count = file.count();
-            if (count > 0) (kind->second.solid ? found.solid : found.flat)[kind->second.name] += count;
-            for (std::int64_t n = 0; n < count * (kind->second.corners + 1); ++n) file.word();
         } else {
-            // Everything else (ridges, normals, required vertices, ...) is numbers up to the next keyword.
-            while (!file.at_end() && !is_keyword(file.peek())) file.word();
+            // Everything else (triangles, ridges, normals, ...) is numbers up to the next keyword; the number
+            // of entries is not relied on, because TetGen announces too many triangles.
+            std::int64_t numbers = -1;  // the first one is that number
+            for (; !file.at_end() && !is_keyword(file.peek()) && file.peek()[0] != '#'; ++numbers) file.word();
+            if (const auto kind = kinds.find(keyword); kind != kinds.end() && numbers > 0)
+                (kind->second.solid ? found.solid : found.flat)[kind->second.name] +=
+                    numbers / (kind->second.corners + 1);
         }
     }
     return found;

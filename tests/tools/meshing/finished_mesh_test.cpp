@@ -168,6 +168,14 @@ TEST_F(FinishedMesh, region_zero_gets_the_next_free_value) {
     EXPECT_EQ(mesh.region_names[1].name, "region 0");
 }
 
+TEST_F(FinishedMesh, medit_files_of_tetgen_that_announce_too_many_triangles_are_read) {
+    std::string text = medit;
+    text.replace(text.find("Triangles\n1\n"), 12, "Triangles\n9\n");
+    text.insert(text.find("Tetrahedra"), "# Set of Tetrahedra\n");
+    expect_the_two_tetrahedra(tetrahedra("t.mesh", text));
+    EXPECT_TRUE(noted("ignored 1 of kind 'triangle'"));
+}
+
 TEST_F(FinishedMesh, other_solid_cells_are_refused_by_kind) {
     std::string text = gmsh_2;
     text.replace(text.find("3 2 2 3 1 1 2 3\n"), 16, "3 7 2 5 1 1 2 3 4 9\n");

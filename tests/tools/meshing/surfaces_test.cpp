@@ -94,6 +94,9 @@ TEST(LabelSurface, keeps_the_volume_of_its_labels) {
     EXPECT_EQ(quality.components, 1);  // the lesion's interface is inside
     const auto voxels = std::ranges::count_if(map.labels, [](std::uint16_t l) { return l == 3 || l == 7; });
     EXPECT_NEAR(quality.volume / (static_cast<double>(voxels) * map.grid.voxel_volume()), 1, 0.005);
+    const SurfaceQuality unsmoothed = measure(label_surface(map, body, 0));
+    EXPECT_TRUE(unsmoothed.closed_and_oriented());
+    EXPECT_NEAR(unsmoothed.volume / quality.volume, 1, 0.05);  // corners of voxels are cut
     const std::array<std::int32_t, 1> absent{9};
     EXPECT_THROW(label_surface(map, absent), InvalidInput);
 }
