@@ -11,6 +11,7 @@ import gzip
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -53,8 +54,9 @@ def timed(*command, folder):
         raise Failed("took more than 900 s") from None
     seconds = time.perf_counter() - started
     if run.returncode != 0:
-        lines = (run.stderr or run.stdout).strip().splitlines()
-        raise Failed(lines[-1] if lines else f"exit code {run.returncode}")
+        lines = (run.stdout + run.stderr).splitlines()
+        words = [line for line in lines if re.search(r"error|intersect|palpate-\w+: .*;", line, re.I) and "---" not in line]
+        raise Failed((words or lines or [f"exit code {run.returncode}"])[0].strip())
     return seconds
 
 

@@ -10,7 +10,6 @@
 
 #include "formats/model/errors.hpp"
 #include "tools/meshing/disjoint_sets.hpp"
-#include "tools/meshing/quality.hpp"
 
 namespace palpate {
 namespace {
@@ -146,6 +145,42 @@ std::int64_t part_fans(TriangleMesh& surface, const Seams& seams) {
     return static_cast<std::int64_t>(added.size());
 }
 
+// Turns pieces that face inwards though no other piece's box holds them, which no cavity does; returns how
+// many triangles that took.
+std::int64_t turn_inverted_pieces(TriangleMesh& surface) {
+    DisjointSets sets(surface.vertices.size());
+    for (const Triangle& t : surface.triangles)
+        for (const std::int32_t v : {t[1], t[2]})
+            sets.join(static_cast<std::size_t>(t[0]), static_cast<std::size_t>(v));
+    struct Piece {
+        double volume = 0;
+        Eigen::AlignedBox3d box;
+        bool turned = false;
+    };
+    std::map<std::size_t, Piece> pieces;
+    const auto piece_of = [&](const Triangle& t) -> Piece& {
+        return pieces[sets.root(static_cast<std::size_t>(t[0]))];
+    };
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+        Piece& piece = piece_of(surface.triangles[t]);
+        piece.volume += area_vector(surface, t).dot(point(surface, surface.triangles[t][0])) / 3;
+        for (const std::int32_t v : surface.triangles[t]) piece.box.extend(point(surface, v));
+    }
+    for (auto& [root, piece] : pieces) {
+        const auto holds = [&](const auto& other) {
+            return &other.second != &piece && other.second.box.contains(piece.box);
+        };
+        piece.turned = piece.volume < 0 && std::ranges::none_of(pieces, holds);
+    }
+    std::int64_t count = 0;
+    for (Triangle& t : surface.triangles)
+        if (piece_of(t).turned) {
+            std::swap(t[1], t[2]);
+            ++count;
+        }
+    return count;
+}
+
 std::int64_t drop_unused_vertices(TriangleMesh& surface) {
     std::vector<std::int32_t> index(surface.vertices.size(), -1);
     for (const Triangle& t : surface.triangles)
@@ -186,11 +221,7 @@ TriangleMesh repaired_surface(TriangleMesh surface, const std::string& culprit,
     const Seams seams = seams_of(surface, culprit);
     say(orient(surface, seams, culprit), "triangles turned to the side of their neighbours");
     say(part_fans(surface, seams), "vertices doubled where pieces touch in a point");
-    if (measure(surface).volume < 0) {
-        for (Triangle& t : surface.triangles) std::swap(t[1], t[2]);
-        say(static_cast<std::int64_t>(surface.triangles.size()),
-            "triangles turned: the surface faced inwards");
-    }
+    say(turn_inverted_pieces(surface), "triangles turned: their piece faced inwards");
     return surface;
 }
 

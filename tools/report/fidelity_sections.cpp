@@ -138,8 +138,10 @@ std::string distances_section(const ReportInputs& inputs) {
     if (rows.empty())
         return html::section(
             "distances", "Distances", "",
-            html::missing("No label map was given; <code>--labels labels.seg.nrrd</code> adds how "
-                          "far each surface is from its label."));
+            html::missing(inputs.labels
+                              ? "No body has the name of a label, so there is nothing to compare with."
+                              : "No label map was given; <code>--labels labels.seg.nrrd</code> adds how "
+                                "far each surface is from its label."));
     return html::section(
         "distances", "Distances",
         "How far the surface that is touched lies from the one that it stands for, triangle by "

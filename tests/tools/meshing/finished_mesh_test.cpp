@@ -247,7 +247,19 @@ TEST_F(FinishedMesh, surfaces_are_turned_outwards_and_joined) {
     EXPECT_TRUE(noted("1 triangles turned to the side of their neighbours"));
     const std::string inwards = "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 0 0 10\nf 2 4 3\nf 1 3 4\nf 1 4 2\nf 1 2 3\n";
     EXPECT_TRUE(measure(surface("c.obj", inwards)).closed_and_oriented());
-    EXPECT_TRUE(noted("the surface faced inwards"));
+    EXPECT_TRUE(noted("4 triangles turned: their piece faced inwards"));
+}
+
+TEST_F(FinishedMesh, of_several_pieces_those_inside_may_face_inwards) {
+    const std::string inner = "v 1 1 1\nv 2 1 1\nv 1 2 1\nv 1 1 2\n";
+    const std::string far = "v 30 0 0\nv 40 0 0\nv 30 10 0\nv 30 0 10\n";
+    const std::string inwards = "f 6 8 7\nf 5 7 8\nf 5 8 6\nf 5 6 7\n";
+    const TriangleMesh cavity = surface("cavity.obj", obj("f 1 3 2\n" + inner + inwards));
+    EXPECT_NEAR(measure(cavity).volume, 999.0 / 6, 1e-9);
+    EXPECT_FALSE(noted("faced inwards"));
+    const TriangleMesh apart = surface("apart.obj", obj("f 1 3 2\n" + far + inwards));
+    EXPECT_NEAR(measure(apart).volume, 2000.0 / 6, 1e-9);
+    EXPECT_TRUE(noted("4 triangles turned: their piece faced inwards"));
 }
 
 TEST_F(FinishedMesh, stl_in_either_kind_and_ply_are_read) {
