@@ -199,7 +199,32 @@ class Surface(MeshingCommand):
         self.expect_refusal(USAGE, ["without the other"], "surface", "--labels", self.labels, *output)
         self.expect_refusal(INVALID, ["above every voxel"], "surface", "--volume", self.volume, "--isovalue", 5000,
                             *output)
+        self.expect_refusal(USAGE, [], "surface", "--surface-file", "x.stl", "--labels", self.labels, *output)
         self.expect_refusal(INVALID, ["no such file"], "surface", "--volume", "absent.nrrd", "--isovalue", 1, *output)
+
+
+    def test_decimation_keeps_the_distance_asked_for_or_says_where_it_cannot(self):
+        arguments = ("--labels", self.labels, "--label", "organ", "--label", "lesion", "--max-triangles", 300)
+        decimation = self.result_of("surface", *arguments, "--max-distance", 0.5, "-o",
+                                    self.folder / "a.vtp")["decimation"]
+        self.assertLessEqual(decimation["max_distance_mm"], 0.5)
+        self.assertEqual(len(decimation["max_distance_at_mm"]), 3)
+        (self.folder / "a.vtp").unlink()
+        self.expect_refusal(QUALITY, ["300 triangles stay", "mm off at ("], "surface", *arguments, "--max-distance",
+                            0.001, "-o", self.folder / "x.vtp")
+
+    def test_finished_surface_is_taken_in_its_unit_or_refused_by_place(self):
+        faces = ("2 3 4", "1 4 3", "1 2 4", "1 2 3")  # the last one faces inwards
+        with tempfile.TemporaryDirectory() as elsewhere:
+            sound, open_ = pathlib.Path(elsewhere) / "a.obj", pathlib.Path(elsewhere) / "b.obj"
+            points = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+            sound.write_text(points + "".join(f"f {face}\n" for face in faces))
+            open_.write_text(points + "".join(f"f {face}\n" for face in faces[:3]))
+            result = self.result_of("surface", "--surface-file", sound, "--unit", "cm", "-o", self.folder / "a.vtp")
+            self.assertAlmostEqual(result["volume_mm3"], 1000 / 6, places=3)
+            (self.folder / "a.vtp").unlink()
+            self.expect_refusal(INVALID, ["3 open edges, the first at (5.0, 0.0, 0.0)", "close its holes"], "surface",
+                                "--surface-file", open_, "--unit", "cm", "-o", self.folder / "x.vtp")
 
 
 class Obb(MeshingCommand):
@@ -230,6 +255,33 @@ class RealHead(MeshingCommand):
         self.assertGreater(result["triangles"], 300_000)
         tree = self.result_of("obb", skull, "-o", self.folder / "skull.obb.h5")
         self.assertEqual(tree["triangles"], result["triangles"])
+
+    def test_skull_of_a_triangle_budget_stays_within_the_distance_asked_for(self):
+        result = self.result_of("surface", "--volume", DATA / "head_ct_cranium" / "head_ct_cranium.nrrd", "--isovalue",
+                                226, "--keep-largest", "--max-triangles", 200_000, "--max-distance", 0.5, "-o",
+                                self.folder / "skull.vtp")
+        self.assertLessEqual(result["triangles"], 200_000)
+        self.assertLessEqual(result["decimation"]["max_distance_mm"], 0.5)
+
+
+@unittest.skipUnless((DATA / "cgal_images").is_dir(), "PALPATE_DATA: cgal_images is absent")
+class RealSkull(MeshingCommand):
+    def test_grey_skull_of_cgal_is_closed_and_decimates_within_a_tenth_of_a_voxel(self):
+        content = gzip.decompress((DATA / "cgal_images" / "skull_2.9.inr.gz").read_bytes())
+        header = dict(line.split("=", 1) for line in content[:256].decode().splitlines() if "=" in line)
+        size = [int(header[axis + "DIM"]) for axis in "XYZ"]
+        spacing = [float(header["V" + axis]) for axis in "XYZ"]
+        kind = {"float": "float", "unsigned fixed": "uint8"}[header["TYPE"]]
+        endian = "big" if header.get("CPU") in ("sun", "sgi") else "little"
+        volume = self.folder / "skull.nrrd"
+        volume.write_bytes(f"NRRD0004\ntype: {kind}\ndimension: 3\nspace: left-posterior-superior\nsizes: {size[0]} "
+                           f"{size[1]} {size[2]}\nspace directions: ({spacing[0]},0,0) (0,{spacing[1]},0) "
+                           f"(0,0,{spacing[2]})\nkinds: domain domain domain\nencoding: raw\nendian: {endian}\n"
+                           "space origin: (0,0,0)\n\n".encode() + content[256:])
+        result = self.result_of("surface", "--volume", volume, "--isovalue", 2.9, "--keep-largest", "--max-triangles",
+                                20_000, "--max-distance", 0.4, "-o", self.folder / "skull.vtp")
+        self.assertLessEqual(result["triangles"], 20_000)
+        self.assertGreater(result["volume_mm3"], 1e5)
 
 
 @unittest.skipUnless((DATA / "cgal_images").is_dir(), "PALPATE_DATA: cgal_images is absent")

@@ -25,6 +25,7 @@ ROOMS = {
     "linear_algebra": {"cholmod", "metis", "lapack"},
     "report": {"model", "asset", "vtk", "json"},
     "cli": {"model", "cli11", "spdlog", "json", "toml"},
+    "mesh": {"model", "meshing", "json", "fmt"},
     "build": {"model", "asset", "cli", "json", "toml"},
     "realtime": set(),
     "collision": {"model"},
@@ -33,7 +34,7 @@ ROOMS = {
     "visual": {"model", "realtime", "vtk"},
     "apps": {"model", "asset", "realtime", "collision", "haptics", "devices"},
 }
-COMMANDS = {"model", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "build", "json"}
+COMMANDS = {"model", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "build", "mesh", "json"}
 APPS = {"model", "asset", "cli", "realtime", "collision", "haptics", "devices", "apps", "json"}
 EXECUTABLES = {
     "palpate": {"cli", "model"},

@@ -1,136 +1,76 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <charconv>
+#include <set>
 #include <spdlog/spdlog.h>
 
 #include "formats/model/errors.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/commands/mesh/arguments.hpp"
+#include "tools/commands/mesh/results.hpp"
 #include "tools/imaging/image_files.hpp"
+#include "tools/meshing/finished_mesh.hpp"
 #include "tools/meshing/mesh_files.hpp"
 #include "tools/meshing/mesh_to_contract.hpp"
 
 using namespace palpate;
-using Json = nlohmann::ordered_json;
 
 namespace {
 
-std::vector<double> parse_numbers(const std::string& text) {
-    std::vector<double> numbers;
-    const char* at = text.c_str();
-    const char* const end = at + text.size();
-    while (at < end) {
-        double value = 0;
-        const auto [next, error] = std::from_chars(at, end, value);
-        if (error != std::errc{} || (next < end && *next != ',')) return {};
-        numbers.push_back(value);
-        at = next + 1;
+struct Body {
+    TetMesh mesh;
+    std::int64_t pieces = 0;
+    std::vector<ContractMiss> misses;
+    std::string next_step;  // if there are misses
+    mesh::Json result;
+};
+
+Body make_body(ContractedMesh made) {
+    for (const ContractMiss& miss :
+         made.attempts.size() > 1 ? made.attempts.front().misses : std::vector<ContractMiss>{})
+        spdlog::info("made finer: {} (expected {})", miss.found, miss.limit);
+    Body body;
+    body.pieces = made.measures.quality.components;
+    body.misses = made.attempts.back().misses;
+    body.next_step = fmt::format(
+        "after {} meshes: choose a smaller cell size, facet distance or --region-cell-size, or a contract "
+        "that this body can keep",
+        made.attempts.size());
+    body.result = mesh::to_json(made.mesh, made.measures);
+    body.result["attempts"] = mesh::to_json(made.attempts);
+    body.mesh = std::move(made.mesh);
+    return body;
+}
+
+// Measures against the labels if there is one for every region.
+Body take_finished(const std::filesystem::path& path, const FinishedMeshOptions& options,
+                   const std::filesystem::path& labels_path, const QualityContract& contract,
+                   const NoteSink& note) {
+    Body body;
+    body.mesh = read_finished_tetrahedra(path, options, note);
+    body.next_step = "mend the mesh where it was made, or state a contract that it can keep";
+    const MeshQuality quality = measure(body.mesh);
+    body.pieces = quality.components;
+    body.misses = shape_misses(contract, body.mesh, quality);
+    body.result = mesh::to_json(body.mesh, quality);
+    if (labels_path.empty()) return body;
+
+    const LabelMap map = read_label_map(labels_path, note);
+    adopt_labels(body.mesh, map);
+    const std::set<std::int32_t> found(body.mesh.regions.begin(), body.mesh.regions.end());
+    const std::vector<std::int32_t> values(found.begin(), found.end());
+    if (!std::ranges::all_of(values, [&](std::int32_t value) {
+            return std::ranges::find(map.names, value, &Label::value) != map.names.end();
+        })) {
+        note("a region of the mesh has no label: it is not measured against the labels");
+        return body;
     }
-    return numbers;
-}
-
-// "tumour=4" names a label and its cell size in mm.
-RegionSize parse_region_size(const std::string& text, const LabelMap& map, const std::string& culprit) {
-    const std::size_t equals = text.rfind('=');
-    const std::vector<double> size =
-        equals == std::string::npos ? std::vector<double>{} : parse_numbers(text.substr(equals + 1));
-    if (size.size() != 1)
-        throw UsageError({"--region-cell-size", "'" + text + "'", "NAME=MM, such as tumour=4", ""});
-    return {.region = require_label(map, text.substr(0, equals), culprit).value, .cell_size = size[0]};
-}
-
-// "tumour=3,10" or "12,-40,88=3,10": cells of 3 mm as far as 10 mm from a label or from a point.
-NearSize parse_near(const std::string& text, const LabelMap& map, const std::string& culprit) {
-    const std::size_t equals = text.rfind('=');
-    const std::vector<double> sizes =
-        equals == std::string::npos ? std::vector<double>{} : parse_numbers(text.substr(equals + 1));
-    if (sizes.size() != 2)
-        throw UsageError({"--near", "'" + text + "'",
-                          "NAME=SIZE,WITHIN or X,Y,Z=SIZE,WITHIN in mm, such as tumour=3,10", ""});
-    NearSize near{.points = {}, .within = sizes[1], .cell_size = sizes[0]};
-    const std::vector<double> point = parse_numbers(text.substr(0, equals));
-    if (point.size() == 3)
-        near.points.emplace_back(point[0], point[1], point[2]);
-    else
-        near.label = require_label(map, text.substr(0, equals), culprit).value;
-    return near;
-}
-
-Json to_json(const QualityContract& contract) {
-    return {{"min_dihedral_deg", contract.min_dihedral_deg},
-            {"max_dihedral_deg", contract.max_dihedral_deg},
-            {"max_volume_error_percent", contract.max_volume_error_percent},
-            {"max_mean_distance_mm", contract.max_mean_distance},
-            {"max_p95_distance_mm", contract.max_p95_distance},
-            {"max_distance_voxel_diagonals", contract.max_distance_voxels},
-            {"min_dice", contract.min_dice},
-            {"min_region_dice", contract.min_region_dice},
-            {"max_centroid_distance_mm", contract.max_centroid_distance}};
-}
-
-Json to_json(const TetMesh& mesh, const MeshMeasures& measures) {
-    Json regions = Json::array();
-    for (std::size_t k = 0; k < measures.fidelity.regions.size(); ++k) {
-        const RegionFidelity& fidelity = measures.fidelity.regions[k];
-        const RegionDistance& distance = measures.distances[k];
-        regions.push_back(
-            {{"name", mesh.region_names[k].name},
-             {"value", fidelity.region},
-             {"volume_mm3", measures.quality.region_volumes[k].volume},
-             {"volume_error_percent", fidelity.volume_error_percent},
-             {"dice", fidelity.dice},
-             {"centroid_distance_mm", fidelity.centroid_distance},
-             {"surface_distance_mm",
-              {{"mean", distance.mean},
-               {"p95", distance.percentile_95},
-               {"max", distance.maximum},
-               {"farthest", {distance.farthest.x(), distance.farthest.y(), distance.farthest.z()}}}}});
-    }
-    const MeshQuality& quality = measures.quality;
-    Json worst = Json::array();
-    for (const WorstTetrahedron& tet : quality.worst)
-        worst.push_back({{"tetrahedron", tet.tetrahedron},
-                         {"min_dihedral_deg", tet.min_dihedral_deg},
-                         {"max_dihedral_deg", tet.max_dihedral_deg},
-                         {"at", {tet.centroid.x(), tet.centroid.y(), tet.centroid.z()}}});
-    return {
-        {"nodes", mesh.rest_positions.size()},
-        {"tetrahedra", mesh.tetrahedra.size()},
-        {"surface_nodes", std::ranges::count_if(mesh.outside_labels, [](int label) { return label >= 0; })},
-        {"components", quality.components},
-        {"boundary_non_manifold_edges", quality.boundary.non_manifold_edges},
-        {"inverted", quality.inverted},
-        {"min_dihedral_deg", quality.min_dihedral_deg},
-        {"max_dihedral_deg", quality.max_dihedral_deg},
-        {"dihedral_percentiles_1_5_50_95_99_deg", quality.dihedral_percentiles_deg},
-        {"dihedral_histogram_10_deg", quality.dihedral_histogram},
-        {"min_radius_ratio", quality.min_radius_ratio},
-        {"mean_radius_ratio", quality.mean_radius_ratio},
-        {"worst", worst},
-        {"dice", measures.fidelity.body.dice},
-        {"centroid_distance_mm", measures.fidelity.body.centroid_distance},
-        {"regions", regions}};
-}
-
-Json to_json(const std::vector<MeshAttempt>& attempts) {
-    Json list = Json::array();
-    for (const MeshAttempt& attempt : attempts) {
-        Json missed = Json::array();
-        for (const ContractMiss& miss : attempt.misses)
-            missed.push_back({{"found", miss.found}, {"limit", miss.limit}});
-        list.push_back({{"tetrahedra", attempt.tetrahedra}, {"misses", missed}});
-    }
-    return list;
-}
-
-void require_contract(const std::vector<MeshAttempt>& attempts, const std::string& culprit) {
-    const std::vector<ContractMiss>& missed = attempts.back().misses;
-    if (missed.empty()) return;
-    std::string found;
-    for (const ContractMiss& miss : missed)
-        found += fmt::format("{}{} (expected {})", found.empty() ? "" : "; ", miss.found, miss.limit);
-    throw QualityNotMet({culprit, found, "",
-                         fmt::format("after {} meshes: choose a smaller cell size, facet distance or "
-                                     "--region-cell-size, or a contract that this body can keep",
-                                     attempts.size())});
+    const MeshSizing defaults;
+    const RegionLabels labels =
+        prepare_domain(map, values, defaults.smoothing, defaults.min_component_volume).labels;
+    const MeshMeasures measures = measure(body.mesh, labels, region_surfaces(labels));
+    const auto unfaithful = fidelity_misses(contract, body.mesh, measures, map.grid);
+    body.misses.insert(body.misses.end(), unfaithful.begin(), unfaithful.end());
+    body.result = mesh::to_json(body.mesh, measures);
+    return body;
 }
 
 }  // namespace
@@ -138,12 +78,14 @@ void require_contract(const std::vector<MeshAttempt>& attempts, const std::strin
 int main(int argc, char** argv) {
     cli::Command command(
         {.name = "mesh",
-         .summary = "Fills labels with tetrahedra of good shape that share the nodes of their interfaces.",
+         .summary =
+             "Fills labels with tetrahedra of good shape, or checks and converts a mesh made elsewhere.",
          .examples =
              {"palpate mesh --labels liver.seg.nrrd --region liver --region tumour --cell-size 8 "
               "--near tumour=4,10 -o liver.vtu",
               "palpate mesh --labels head.seg.nrrd --region wall --cell-size 4 --facet-distance 0.4 -o "
-              "wall.vtu --json -"},
+              "wall.vtu --json -",
+              "palpate mesh --mesh-file liver.msh --unit cm --region-name 1=liver -o liver.vtu"},
          .notes = "Sizes are radii of circumscribed spheres; edges are about 1.2 times as long.\n"
                   "A mesh that misses the quality contract is made anew, finer where it missed, before the "
                   "command "
@@ -151,15 +93,27 @@ int main(int argc, char** argv) {
                   "cube root "
                   "of larger ones.\n"
                   "Source: CGAL Mesh_3 (Jamin, Alliez, Yvinec, Boissonnat 2015)."});
-    std::filesystem::path labels_path, output;
-    std::vector<std::string> region_names, region_sizes, near_sizes;
+    std::filesystem::path labels_path, mesh_path, output;
+    std::vector<std::string> regions, region_sizes, near_sizes, region_names;
+    FinishedMeshOptions finished;
     MeshSizing sizing;
     QualityContract contract;
     int attempts = 4;
     bool allow_components = false;
-    command.input("--labels", labels_path, "label map (.seg.nrrd, NIfTI, NRRD)")->required();
-    command.option("--region", region_names, "label of the body, by name or value; repeat for more")
-        ->required();
+    command.input(
+        "--labels", labels_path,
+        "label map (.seg.nrrd, NIfTI, NRRD); with --mesh-file the one that the mesh is checked against");
+    auto* const region =
+        command.option("--region", regions, "label of the body, by name or value; repeat for more");
+    auto* const mesh_file = command.input("--mesh-file", mesh_path,
+                                          "tetrahedra made elsewhere (.vtu, .vtk, Gmsh .msh, MEDIT .mesh)");
+    mesh_file->excludes(region);
+    command.option("--unit", finished.unit, "of that file: um, mm, cm, m or in")->needs(mesh_file);
+    command.option("--frame", finished.frame, "of that file: lps or ras; empty: what it states, else lps")
+        ->needs(mesh_file);
+    command
+        .option("--region-name", region_names, "VALUE=NAME: name of a region of that file; repeat for more")
+        ->needs(mesh_file);
     command.option("--cell-size", sizing.cell_size, "largest tetrahedron", "mm");
     command.option("--region-cell-size", region_sizes,
                    "NAME=MM: another cell size for one label; otherwise no more than its radius");
@@ -198,34 +152,38 @@ int main(int argc, char** argv) {
 
     return command.run(argc, argv, [&](cli::Session& session) {
         cli::StagedFile staged = session.stage(output);
+        const auto progress = [&](std::string_view what, double fraction) {
+            session.progress.step(what, fraction);
+        };
+        const auto note = [](std::string_view text) { spdlog::info("{}", text); };
         set_imaging_threads(session.threads);
-        session.progress.step("read", 0);
-        const LabelMap map = read_label_map(labels_path, [](auto text) { spdlog::info("{}", text); });
-        std::vector<std::int32_t> regions;
-        for (const std::string& name : region_names)
-            regions.push_back(require_label(map, name, labels_path.string()).value);
-        for (const std::string& text : region_sizes)
-            sizing.regions.push_back(parse_region_size(text, map, labels_path.string()));
-        for (const std::string& text : near_sizes)
-            sizing.near.push_back(parse_near(text, map, labels_path.string()));
-
-        const auto [mesh, measures, made] = mesh_to_contract(
-            map, regions, sizing, contract, attempts,
-            [&](std::string_view what, double fraction) { session.progress.step(what, fraction); });
-        for (const ContractMiss& miss : made.size() > 1 ? made.front().misses : std::vector<ContractMiss>{})
-            spdlog::info("made finer: {} (expected {})", miss.found, miss.limit);
-        if (measures.quality.components > 1 && !allow_components)
-            throw InvalidInput({labels_path.string(),
-                                fmt::format("the body has {} separate pieces", measures.quality.components),
-                                "1",
+        progress("read", 0);
+        Body body;
+        if (!mesh_path.empty()) {
+            finished.region_names = mesh::parse_region_names(region_names);
+            body = take_finished(mesh_path, finished, labels_path, contract, note);
+        } else {
+            if (labels_path.empty() || regions.empty())
+                throw UsageError({"mesh", "nothing to mesh", "--labels with --region, or --mesh-file", ""});
+            const LabelMap map = read_label_map(labels_path, note);
+            std::vector<std::int32_t> values;
+            for (const std::string& name : regions)
+                values.push_back(require_label(map, name, labels_path.string()).value);
+            for (const std::string& text : region_sizes)
+                sizing.regions.push_back(mesh::parse_region_size(text, map, labels_path.string()));
+            for (const std::string& text : near_sizes)
+                sizing.near.push_back(mesh::parse_near(text, map, labels_path.string()));
+            body = make_body(mesh_to_contract(map, values, sizing, contract, attempts, progress));
+        }
+        if (body.pieces > 1 && !allow_components)
+            throw InvalidInput({(mesh_path.empty() ? labels_path : mesh_path).string(),
+                                fmt::format("the body has {} separate pieces", body.pieces), "1",
                                 "keep the largest with 'palpate segment --keep-largest', or pass "
                                 "--allow-components and hold each of them"});
-        require_contract(made, output.string());
-        write_tetrahedra(staged.path(), mesh);
-        Json result = to_json(mesh, measures);
-        result["contract"] = to_json(contract);
-        result["attempts"] = to_json(made);
+        mesh::require_none(body.misses, output.string(), body.next_step);
+        write_tetrahedra(staged.path(), body.mesh);
+        body.result["contract"] = mesh::to_json(contract);
         staged.commit();
-        return result;
+        return body.result;
     });
 }

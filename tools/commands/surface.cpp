@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <limits>
 #include <spdlog/spdlog.h>
 
 #include "formats/model/errors.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/imaging/image_files.hpp"
+#include "tools/meshing/finished_mesh.hpp"
 #include "tools/meshing/mesh_files.hpp"
 #include "tools/meshing/quality.hpp"
+#include "tools/meshing/surface_repair.hpp"
 #include "tools/meshing/surfaces.hpp"
 
 using namespace palpate;
@@ -15,14 +18,19 @@ int main(int argc, char** argv) {
         {.name = "surface",
          .summary = "Extracts the closed triangle surface of a rigid structure.",
          .examples = {"palpate surface --volume head.nrrd --isovalue 226 --keep-largest -o skull.vtp",
-                      "palpate surface --labels abdomen.seg.nrrd --label kidney -o kidney.vtp"},
+                      "palpate surface --labels abdomen.seg.nrrd --label kidney -o kidney.vtp",
+                      "palpate surface --surface-file skull.stl --unit cm --max-triangles 100000 "
+                      "--max-distance 0.5 -o skull.vtp"},
          .notes =
              "With a volume the surface follows the grey isovalue, below the voxel's size; --labels then "
              "masks\n"
-             "it to the named labels. With labels alone their outline is smoothed and keeps its volume."});
-    std::filesystem::path volume_path, labels_path, output;
+             "it to the named labels. With labels alone their outline is smoothed and keeps its volume. A "
+             "finished\n"
+             "surface (.vtp, .vtk, .stl, .obj, .ply) is made sound where that can be done, else refused."});
+    std::filesystem::path volume_path, labels_path, surface_path, output;
+    FinishedMeshOptions finished;
     std::vector<std::string> names;
-    double isovalue = 0, smoothing = -1;
+    double isovalue = 0, smoothing = -1, max_distance = 0;
     std::int64_t max_triangles = 0, min_triangles = 100;
     int mask_reach = 2;
     bool keep_largest = false;
@@ -33,16 +41,28 @@ int main(int argc, char** argv) {
     volume_option->needs(level);
     command.input("--labels", labels_path, "label map (.seg.nrrd, NIfTI, NRRD)");
     command.option("--label", names, "label by name or value; may be repeated");
+    auto* file_option = command.input("--surface-file", surface_path,
+                                      "finished surface instead (.vtp, .vtk, .stl, .obj, .ply)");
+    file_option->excludes(volume_option)->excludes("--labels");
+    command.option("--unit", finished.unit, "of that file: um, mm, cm, m or in")->needs(file_option);
+    command
+        .option("--frame", finished.frame, "of that file: lps or ras; by default what it states, else lps")
+        ->needs(file_option);
     command.option("--mask-reach", mask_reach, "how far beyond its labels the volume counts", "voxels");
     command.option("--smoothing", smoothing, "Gaussian on labels; below 0: the largest voxel edge", "mm");
     command.flag("--keep-largest", keep_largest, "keep the piece of largest area only");
     command.option("--min-triangles", min_triangles, "leave out pieces of fewer triangles");
-    command.option("--max-triangles", max_triangles, "decimate to this many; 0: do not");
+    auto* budget = command.option("--max-triangles", max_triangles, "decimate to this many; 0: do not");
+    command
+        .option("--max-distance", max_distance,
+                "largest distance between full and decimated surface; 0: any, it is measured", "mm")
+        ->needs(budget);
     command.output("-o,--output", output, "triangle surface (.vtp), LPS mm")->required();
 
     return command.run(argc, argv, [&](cli::Session& session) {
-        if (volume_path.empty() && labels_path.empty())
-            throw UsageError({"--volume, --labels", "neither is given", "one or both", ""});
+        if (volume_path.empty() && labels_path.empty() && surface_path.empty())
+            throw UsageError(
+                {"--volume, --labels, --surface-file", "none is given", "one, or the first two", ""});
         if (labels_path.empty() != names.empty())
             throw UsageError({"--labels, --label", "one is given without the other", "both or none", ""});
         cli::StagedFile staged = session.stage(output);
@@ -56,7 +76,9 @@ int main(int argc, char** argv) {
             values.push_back(require_label(labels, name, labels_path.string()).value);
 
         TriangleMesh surface;
-        if (volume_path.empty()) {
+        if (!surface_path.empty()) {
+            surface = read_finished_surface(surface_path, finished, note);
+        } else if (volume_path.empty()) {
             session.progress.step("extract label surface", 0.3);
             surface = label_surface(labels, values, smoothing);
         } else {
@@ -65,25 +87,35 @@ int main(int argc, char** argv) {
             if (!values.empty()) keep_near_labels(volume, labels, values, mask_reach);
             surface = isosurface(volume, isovalue);
         }
-        surface = keep_largest ? keep_largest_piece(surface) : keep_large_pieces(surface, min_triangles);
+        if (keep_largest)
+            surface = keep_largest_piece(surface);
+        else if (surface_path.empty())  // whoever made a finished surface meant its small pieces
+            surface = keep_large_pieces(surface, min_triangles);
         nlohmann::json result;
+        surface = repaired_surface(std::move(surface), output.filename().string(), note);
         if (max_triangles > 0 && static_cast<std::int64_t>(surface.triangles.size()) > max_triangles) {
             session.progress.step("decimate", 0.5);
-            const TriangleMesh fine = surface;
-            surface = decimate(fine, max_triangles);
-            const SurfaceDistance distance = surface_distance(fine, surface);
-            result["decimation"] = {{"triangles_before", fine.triangles.size()},
+            const std::size_t before = surface.triangles.size();
+            constexpr double any = std::numeric_limits<double>::infinity();
+            auto [coarse, distance] =
+                decimate_within(surface, max_triangles, max_distance > 0 ? max_distance : any);
+            surface = std::move(coarse);
+            const Eigen::Vector3d& p = distance.farthest;
+            result["decimation"] = {{"triangles_before", before},
                                     {"mean_distance_mm", distance.mean},
                                     {"p95_distance_mm", distance.percentile_95},
-                                    {"max_distance_mm", distance.maximum}};
+                                    {"max_distance_mm", distance.maximum},
+                                    {"max_distance_at_mm", {p.x(), p.y(), p.z()}}};
         }
         const SurfaceQuality quality = measure(surface);
         if (!quality.closed_and_oriented())
             throw QualityNotMet(
                 {output.string(),
-                 fmt::format("the surface has {} open, {} non-manifold, {} misoriented edges",
-                             quality.open_edges, quality.non_manifold_edges, quality.misoriented_edges),
-                 "0", "choose another isovalue, or smooth more"});
+                 fmt::format("the surface has {} open, {} non-manifold, {} misoriented edges, {} triangles "
+                             "without area",
+                             quality.open_edges, quality.non_manifold_edges, quality.misoriented_edges,
+                             quality.degenerate_triangles),
+                 "0", "allow more triangles, choose another isovalue, or smooth more"});
         write_surface(staged.path(), surface);
         staged.commit();
         result["triangles"] = surface.triangles.size();

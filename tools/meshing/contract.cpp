@@ -12,11 +12,6 @@ std::string place(const Eigen::Vector3d& p_P) {
     return fmt::format("({:.1f}, {:.1f}, {:.1f})", p_P.x(), p_P.y(), p_P.z());
 }
 
-std::string name_of(const TetMesh& mesh, std::int32_t region) {
-    const auto found = std::ranges::find(mesh.region_names, region, &Label::value);
-    return found != mesh.region_names.end() ? found->name : fmt::format("label {}", region);
-}
-
 double longest_edge(const TetMesh& mesh, std::int32_t t) {
     const Tetrahedron& tet = mesh.tetrahedra[static_cast<std::size_t>(t)];
     double longest = 0;
@@ -31,7 +26,7 @@ double longest_edge(const TetMesh& mesh, std::int32_t t) {
 // Samples of the surface further than `limit` from the other surface, thinned to as far apart.
 std::vector<Eigen::Vector3d> places_beyond(const RegionDistance& distance, double limit) {
     std::vector<Eigen::Vector3d> places;
-    for (const SurfaceSample& sample : distance.far_samples)
+    for (const FarPlace& sample : distance.far_places)
         if (sample.distance > limit && std::ranges::none_of(places, [&](const Eigen::Vector3d& p) {
                 return (p - sample.p_P).norm() < limit;
             }))
@@ -58,6 +53,11 @@ std::vector<ComponentCover> cover_components(const TetMesh& mesh, const RegionLa
 }
 
 }  // namespace
+
+std::string region_name(const TetMesh& mesh, std::int32_t region) {
+    const auto found = std::ranges::find(mesh.region_names, region, &Label::value);
+    return found != mesh.region_names.end() ? found->name : fmt::format("label {}", region);
+}
 
 MeshMeasures measure(const TetMesh& mesh, const RegionLabels& labels,
                      std::span<const TriangleMesh> surfaces) {
@@ -93,7 +93,7 @@ std::vector<ContractMiss> fidelity_misses(const QualityContract& contract, const
     const double coarseness = std::max(1.0, std::cbrt(grid.voxel_volume()));
     const auto add = [&](const std::string& what, std::int32_t region, const std::string& found,
                          const std::string& limit) {
-        const std::string owner = region == 0 ? "the body" : "'" + name_of(mesh, region) + "'";
+        const std::string owner = region == 0 ? "the body" : "'" + region_name(mesh, region) + "'";
         result.push_back(
             {.found = fmt::format("{} of {} is {}", what, owner, found), .limit = limit, .region = region});
     };

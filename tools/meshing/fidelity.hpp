@@ -33,7 +33,7 @@ struct BodyFidelity {
 BodyFidelity compare(const TetMesh& mesh, const RegionLabels& labels);
 
 /// A point of one surface and its distance to another.
-struct SurfaceSample {
+struct FarPlace {
     Eigen::Vector3d p_P;  ///< mm
     double distance;      ///< mm
 };
@@ -44,7 +44,7 @@ struct RegionDistance {
     double mean = 0;                                     ///< of the two one-sided means
     double percentile_95 = 0, maximum = 0;               ///< the larger of the two sides'
     Eigen::Vector3d farthest = Eigen::Vector3d::Zero();  ///< p_P, mm, where `maximum` is
-    std::vector<SurfaceSample> far_samples;              ///< those beyond half a voxel diagonal
+    std::vector<FarPlace> far_places;                    ///< those beyond half a voxel diagonal
 };
 
 /// The surface of each region of labels without their stairs: SmoothedLabels with a Gaussian of 0.7 of the

@@ -2,9 +2,6 @@
 #include "tools/meshing/mesh_files.hpp"
 
 #include <algorithm>
-#include <optional>
-#include <set>
-#include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkErrorCode.h>
@@ -17,7 +14,6 @@
 #include <vtkPolyData.h>
 #include <vtkStringArray.h>
 #include <vtkTypeInt32Array.h>
-#include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLPolyDataWriter.h>
@@ -25,46 +21,16 @@
 #include <vtkXMLUnstructuredGridWriter.h>
 
 #include "formats/model/errors.hpp"
+#include "tools/meshing/vtk_reading.hpp"
 
 namespace palpate {
 namespace {
 
 namespace fs = std::filesystem;
 
-// VTK prints errors unless somebody listens; this listens and remembers that there was one.
-class ErrorListener {
-  public:
-    ErrorListener() {
-        command_->SetClientData(&failed_);
-        command_->SetCallback(
-            [](vtkObject*, unsigned long, void* failed, void*) { *static_cast<bool*>(failed) = true; });
-    }
-    vtkCommand* command() { return command_; }
-    bool failed() const { return failed_; }
-
-  private:
-    vtkNew<vtkCallbackCommand> command_;
-    bool failed_ = false;
-};
-
-template <typename Reader>
-void read_file(Reader* reader, const fs::path& path, const char* kind) {
-    if (!fs::exists(path)) throw InvalidInput({path.string(), "no such file", "", "check the path"});
-    ErrorListener listener;
-    reader->SetReaderErrorObserver(listener.command());
-    reader->SetParserErrorObserver(listener.command());
-    reader->AddObserver(vtkCommand::ErrorEvent, listener.command());
-    reader->AddObserver(vtkCommand::WarningEvent, listener.command());
-    reader->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, listener.command());
-    reader->SetFileName(path.c_str());
-    reader->Update();
-    if (listener.failed() || reader->GetErrorCode() != vtkErrorCode::NoError)
-        throw InvalidInput({path.string(), std::string("is not a readable ") + kind, "", "write it again"});
-}
-
 template <typename Writer>
 void write_file(Writer* writer, vtkDataObject* data, const fs::path& path) {
-    ErrorListener listener;
+    VtkErrorListener listener;
     writer->AddObserver(vtkCommand::ErrorEvent, listener.command());
     writer->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, listener.command());
     writer->SetInputData(data);
@@ -85,17 +51,6 @@ vtkNew<vtkPoints> make_points(const std::vector<Eigen::Vector3d>& positions) {
     for (std::size_t i = 0; i < positions.size(); ++i)
         points->SetPoint(static_cast<vtkIdType>(i), positions[i].data());
     return points;
-}
-
-std::vector<Eigen::Vector3d> read_points(vtkPoints* points, const fs::path& path) {
-    std::vector<Eigen::Vector3d> positions(points ? static_cast<std::size_t>(points->GetNumberOfPoints())
-                                                  : 0);
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-        points->GetPoint(static_cast<vtkIdType>(i), positions[i].data());
-        if (!positions[i].allFinite())
-            throw InvalidInput({path.string(), "point " + std::to_string(i) + " is not finite", "", ""});
-    }
-    return positions;
 }
 
 template <std::size_t Corners>
@@ -152,9 +107,8 @@ void add_space(vtkDataObject* data) {
 }
 
 void require_lps(vtkDataObject* data, const fs::path& path) {
-    auto* space = vtkStringArray::SafeDownCast(data->GetFieldData()->GetAbstractArray("SPACE"));
-    if (space && space->GetNumberOfValues() == 1 && space->GetValue(0) != "LPS")
-        throw InvalidInput({path.string(), "its SPACE is " + space->GetValue(0), "LPS",
+    if (const std::string space = space_of(data); !space.empty() && space != "LPS")
+        throw InvalidInput({path.string(), "its SPACE is " + space, "LPS",
                             "export it as LPS, the default of 3D Slicer since 2020"});
 }
 
@@ -173,37 +127,6 @@ void add_labels(vtkDataObject* data, const std::vector<Label>& labels, const std
     add_field(data, colours, (prefix + "_colours").c_str());
 }
 
-std::vector<Label> read_labels(vtkDataObject* data, const std::string& prefix) {
-    vtkFieldData* fields = data->GetFieldData();
-    auto* names = vtkStringArray::SafeDownCast(fields->GetAbstractArray((prefix + "_names").c_str()));
-    vtkDataArray* values = fields->GetArray((prefix + "_values").c_str());
-    vtkDataArray* colours = fields->GetArray((prefix + "_colours").c_str());
-    std::vector<Label> labels;
-    if (!names || !values || names->GetNumberOfValues() != values->GetNumberOfTuples()) return labels;
-    for (vtkIdType i = 0; i < names->GetNumberOfValues(); ++i) {
-        const auto value = static_cast<std::int32_t>(values->GetTuple1(i));
-        Label label{value, names->GetValue(i), default_label_colour(value)};
-        if (colours && colours->GetNumberOfComponents() == 3 && i < colours->GetNumberOfTuples())
-            for (int c = 0; c < 3; ++c)
-                label.colour[static_cast<std::size_t>(c)] = static_cast<float>(colours->GetComponent(i, c));
-        labels.push_back(std::move(label));
-    }
-    return labels;
-}
-
-std::optional<std::vector<std::int32_t>> read_integers(vtkDataSetAttributes* attributes, const char* name,
-                                                       std::size_t count, const fs::path& path) {
-    vtkDataArray* array = attributes->GetArray(name);
-    if (!array) return std::nullopt;
-    if (array->GetNumberOfComponents() != 1 || static_cast<std::size_t>(array->GetNumberOfTuples()) != count)
-        throw InvalidInput({path.string(), std::string("array '") + name + "' has the wrong size",
-                            std::to_string(count) + " values", "write it again"});
-    std::vector<std::int32_t> values(count);
-    for (std::size_t i = 0; i < count; ++i)
-        values[i] = static_cast<std::int32_t>(array->GetTuple1(static_cast<vtkIdType>(i)));
-    return values;
-}
-
 vtkNew<vtkTypeInt32Array> make_integers(const std::vector<std::int32_t>& values, const char* name) {
     vtkNew<vtkTypeInt32Array> array;
     array->SetName(name);
@@ -212,25 +135,11 @@ vtkNew<vtkTypeInt32Array> make_integers(const std::vector<std::int32_t>& values,
     return array;
 }
 
-// Labels that occur in `values` (those above 0), with the names that `known` gives them.
-std::vector<Label> occurring_labels(const std::vector<std::int32_t>& values,
-                                    const std::vector<Label>& known) {
-    std::vector<Label> labels;
-    for (const std::int32_t value : std::set(values.begin(), values.end())) {
-        if (value <= 0) continue;
-        const auto found = std::ranges::find(known, value, &Label::value);
-        labels.push_back(found != known.end()
-                             ? *found
-                             : Label{value, "region " + std::to_string(value), default_label_colour(value)});
-    }
-    return labels;
-}
-
 }  // namespace
 
 TriangleMesh read_surface(const fs::path& path) {
     vtkNew<vtkXMLPolyDataReader> reader;
-    read_file(reader.Get(), path, "VTK PolyData file (.vtp)");
+    read_with(*reader.Get(), path, "VTK PolyData file (.vtp)");
     vtkPolyData* data = reader->GetOutput();
     require_lps(data, path);
     if (data->GetNumberOfStrips() > 0)
@@ -252,7 +161,7 @@ void write_surface(const fs::path& path, const TriangleMesh& surface) {
 
 TetMesh read_tetrahedra(const fs::path& path) {
     vtkNew<vtkXMLUnstructuredGridReader> reader;
-    read_file(reader.Get(), path, "VTK UnstructuredGrid file (.vtu)");
+    read_with(*reader.Get(), path, "VTK UnstructuredGrid file (.vtu)");
     vtkUnstructuredGrid* data = reader->GetOutput();
     require_lps(data, path);
     TetMesh mesh;

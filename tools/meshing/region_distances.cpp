@@ -2,15 +2,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <future>
-#include <vtkCellArray.h>
-#include <vtkGenericCell.h>
-#include <vtkNew.h>
-#include <vtkPolyData.h>
-#include <vtkStaticCellLocator.h>
 
 #include "tools/meshing/fidelity.hpp"
 #include "tools/meshing/smoothed_labels.hpp"
+#include "tools/meshing/surface_distance.hpp"
 #include "tools/meshing/surfaces.hpp"
 #include "tools/meshing/tet_faces.hpp"
 
@@ -37,34 +32,11 @@ std::vector<Eigen::Vector3d> samples(const TriangleMesh& surface, double apart) 
     return points;
 }
 
-// Distances of points to a surface, in their order, on two threads.
 std::vector<double> distances(const std::vector<Eigen::Vector3d>& points, const TriangleMesh& surface) {
-    vtkNew<vtkPoints> vertices;
-    vertices->SetDataTypeToDouble();
-    for (const Eigen::Vector3d& p : surface.vertices) vertices->InsertNextPoint(p.data());
-    vtkNew<vtkCellArray> triangles;
-    for (const Triangle& t : surface.triangles) triangles->InsertNextCell({t[0], t[1], t[2]});
-    vtkNew<vtkPolyData> data;
-    data->SetPoints(vertices);
-    data->SetPolys(triangles);
-    vtkNew<vtkStaticCellLocator> locator;
-    locator->SetDataSet(data);
-    locator->BuildLocator();
-    std::vector<double> result(points.size());
-    const auto measure_range = [&](std::size_t begin, std::size_t end) {
-        vtkNew<vtkGenericCell> cell;
-        for (std::size_t i = begin; i < end; ++i) {
-            Eigen::Vector3d closest;
-            vtkIdType id = 0;
-            int sub_id = 0;
-            double squared_distance = 0;
-            locator->FindClosestPoint(points[i].data(), closest.data(), cell, id, sub_id, squared_distance);
-            result[i] = std::sqrt(squared_distance);
-        }
-    };
-    auto other_half = std::async(std::launch::async, measure_range, points.size() / 2, points.size());
-    measure_range(0, points.size() / 2);
-    other_half.get();
+    std::vector<SurfaceSample> samples;
+    for (const Eigen::Vector3d& p : points) samples.push_back({p, 0});
+    std::vector<double> result;
+    for (const NearestPlace& place : nearest_places(samples, surface)) result.push_back(place.distance);
     return result;
 }
 
@@ -129,7 +101,7 @@ std::vector<RegionDistance> region_distances(const TetMesh& mesh, const RegionLa
             distance.percentile_95 = std::max(distance.percentile_95, percentile_95(side));
             for (std::size_t i = 0; i < side.size(); ++i)
                 if (side[i] > 0.5 * labels.grid.spacing.norm())
-                    distance.far_samples.push_back({points[i], side[i]});
+                    distance.far_places.push_back({points[i], side[i]});
             if (*farthest <= distance.maximum) return;
             distance.maximum = *farthest;
             distance.farthest = points[static_cast<std::size_t>(farthest - side.begin())];

@@ -8,12 +8,10 @@
 #include <vtkCellArray.h>
 #include <vtkFloatArray.h>
 #include <vtkFlyingEdges3D.h>
-#include <vtkGenericCell.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
-#include <vtkStaticCellLocator.h>
 
 #include "formats/model/errors.hpp"
 #include "tools/meshing/disjoint_sets.hpp"
@@ -24,22 +22,6 @@
 
 namespace palpate {
 namespace {
-
-vtkNew<vtkPolyData> to_vtk(const TriangleMesh& surface) {
-    vtkNew<vtkPoints> points;
-    points->SetDataTypeToDouble();
-    points->SetNumberOfPoints(static_cast<vtkIdType>(surface.vertices.size()));
-    for (std::size_t v = 0; v < surface.vertices.size(); ++v)
-        points->SetPoint(static_cast<vtkIdType>(v), surface.vertices[v].data());
-    vtkNew<vtkCellArray> triangles;
-    triangles->AllocateExact(static_cast<vtkIdType>(surface.triangles.size()),
-                             static_cast<vtkIdType>(3 * surface.triangles.size()));
-    for (const Triangle& t : surface.triangles) triangles->InsertNextCell({t[0], t[1], t[2]});
-    vtkNew<vtkPolyData> data;
-    data->SetPoints(points);
-    data->SetPolys(triangles);
-    return data;
-}
 
 TriangleMesh from_vtk(vtkPolyData* data) {
     TriangleMesh surface;
@@ -86,23 +68,6 @@ DisjointSets pieces_of(const TriangleMesh& surface) {
         pieces.join(static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[2]));
     }
     return pieces;
-}
-
-void add_distances(const TriangleMesh& from, vtkStaticCellLocator* locator, std::vector<double>& distances) {
-    vtkNew<vtkGenericCell> cell;
-    const auto add = [&](const Eigen::Vector3d& p) {
-        Eigen::Vector3d closest;
-        vtkIdType id = 0;
-        int sub_id = 0;
-        double squared_distance = 0;
-        locator->FindClosestPoint(p.data(), closest.data(), cell, id, sub_id, squared_distance);
-        distances.push_back(std::sqrt(squared_distance));
-    };
-    for (const Eigen::Vector3d& p : from.vertices) add(p);
-    for (const Triangle& t : from.triangles)
-        add((from.vertices[static_cast<std::size_t>(t[0])] + from.vertices[static_cast<std::size_t>(t[1])] +
-             from.vertices[static_cast<std::size_t>(t[2])]) /
-            3);
 }
 
 }  // namespace
@@ -194,10 +159,13 @@ TriangleMesh label_surface(const LabelMap& map, std::span<const std::int32_t> va
                            [](std::uint8_t region) { return region > 0 ? 1.0F : 0.0F; });
     const auto inside = std::ranges::count(indicator.values, 1.0F);
     smooth(indicator);
-    // As many voxels lie above the level as the labels have.
+    // As many voxels lie above the level as the labels have; half way to the next value, so that unsmoothed
+    // labels are cut at a half.
     std::vector<float> ranked = indicator.values;
     std::ranges::nth_element(ranked, ranked.begin() + inside, std::greater<>());
-    return isosurface({labels.grid, std::move(indicator.values)}, ranked[static_cast<std::size_t>(inside)]);
+    const float below = ranked[static_cast<std::size_t>(inside)];
+    const float above = *std::ranges::min_element(ranked.begin(), ranked.begin() + inside);
+    return isosurface({labels.grid, std::move(indicator.values)}, 0.5 * (above + below));
 }
 
 TriangleMesh keep_large_pieces(const TriangleMesh& surface, std::int64_t min_triangles) {
@@ -220,24 +188,6 @@ TriangleMesh keep_largest_piece(const TriangleMesh& surface) {
     }
     const auto largest = static_cast<std::size_t>(std::ranges::max_element(areas) - areas.begin());
     return filter_triangles(surface, [&](const Triangle& t) { return piece(t) == largest; });
-}
-
-SurfaceDistance surface_distance(const TriangleMesh& a, const TriangleMesh& b) {
-    std::vector<double> distances;
-    for (const auto& [from, to] : {std::pair(&a, &b), std::pair(&b, &a)}) {
-        const vtkNew<vtkPolyData> target = to_vtk(*to);
-        vtkNew<vtkStaticCellLocator> locator;
-        locator->SetDataSet(target);
-        locator->BuildLocator();
-        add_distances(*from, locator, distances);
-    }
-    std::ranges::sort(distances);
-    SurfaceDistance result;
-    for (const double distance : distances) result.mean += distance / static_cast<double>(distances.size());
-    result.percentile_95 =
-        distances[static_cast<std::size_t>(0.95 * static_cast<double>(distances.size() - 1))];
-    result.maximum = distances.back();
-    return result;
 }
 
 }  // namespace palpate

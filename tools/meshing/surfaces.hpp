@@ -6,6 +6,7 @@
 #include "formats/model/image_grid.hpp"
 #include "formats/model/label_map.hpp"
 #include "formats/model/triangle_mesh.hpp"
+#include "tools/meshing/surface_distance.hpp"
 
 namespace palpate {
 
@@ -38,12 +39,16 @@ TriangleMesh keep_largest_piece(const TriangleMesh& surface);
 /// Throws InvalidInput if the surface is not a manifold. Cost: O(n log n).
 TriangleMesh decimate(const TriangleMesh& surface, std::int64_t max_triangles);
 
-/// How far two surfaces are apart, mm, over the vertices and triangle centres of both.
-struct SurfaceDistance {
-    double mean = 0, percentile_95 = 0, maximum = 0;
+/// A decimated surface and how far it is from the full one.
+struct Decimation {
+    TriangleMesh surface;
+    SurfaceDistance distance;
 };
 
-/// Measures the distance of two surfaces both ways. Cost: O((m + n) log(m + n)).
-SurfaceDistance surface_distance(const TriangleMesh& a, const TriangleMesh& b);
+/// Decimates as decimate() does, and measures. Where either surface is further than `max_distance` mm from
+/// the other at a sample, the full surface is kept and its triangles are saved elsewhere, in up to six
+/// rounds. Throws QualityNotMet naming the distance left and its place if that does not suffice. Cost: that
+/// of decimate() and surface_distance() a round.
+Decimation decimate_within(const TriangleMesh& surface, std::int64_t max_triangles, double max_distance);
 
 }  // namespace palpate

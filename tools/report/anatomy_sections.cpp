@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <map>
 
 #include "tools/report/html.hpp"
 #include "tools/report/scene.hpp"
 #include "tools/report/sections.hpp"
 #include "tools/report/slices.hpp"
+#include "tools/report/view_svg.hpp"
 
 namespace palpate {
 namespace {
@@ -48,6 +50,44 @@ std::pair<std::string, Vector3d> smallest_region(const TetMesh& mesh) {
     const auto name = std::ranges::find(mesh.region_names, smallest->first, &Label::value);
     return {name != mesh.region_names.end() ? name->name : std::to_string(smallest->first),
             smallest->second.second / smallest->second.first};
+}
+
+// One window for each label of the map, around it, with the planes through that voxel of it which is nearest
+// to its centroid: the centroid of a bent structure may lie outside it.
+std::vector<Target> targets_of(const LabelMap& map) {
+    struct Extent {
+        Vector3d sum = Vector3d::Zero();
+        std::int64_t voxels = 0;
+        Eigen::AlignedBox3d box;
+        Vector3d nearest = Vector3d::Zero();
+        double squared_distance = std::numeric_limits<double>::infinity();
+    };
+    std::map<std::uint16_t, Extent> extents;
+    const auto visit = [&](const auto& function) {
+        std::size_t offset = 0;
+        for (std::int32_t k = 0; k < map.grid.size[2]; ++k)
+            for (std::int32_t j = 0; j < map.grid.size[1]; ++j)
+                for (std::int32_t i = 0; i < map.grid.size[0]; ++i, ++offset)
+                    if (map.labels[offset] != 0)
+                        function(extents[map.labels[offset]], map.grid.point_of({1.0 * i, 1.0 * j, 1.0 * k}));
+    };
+    visit([](Extent& extent, const Vector3d& p) {
+        extent.sum += p;
+        ++extent.voxels;
+        extent.box.extend(p);
+    });
+    visit([](Extent& extent, const Vector3d& p) {
+        const double squared = (p - extent.sum / static_cast<double>(extent.voxels)).squaredNorm();
+        if (squared >= extent.squared_distance) return;
+        extent.squared_distance = squared;
+        extent.nearest = p;
+    });
+    std::vector<Target> targets;
+    for (const Label& label : map.names)
+        if (const auto found = extents.find(static_cast<std::uint16_t>(label.value)); found != extents.end())
+            targets.push_back({found->second.nearest, found->second.box.center(),
+                               1.3 * found->second.box.sizes().maxCoeff() + 10, label.name});
+    return targets;
 }
 
 Target target_of(const ReportInputs& inputs) {
@@ -106,6 +146,7 @@ std::string slice_svg(const ReportInputs& inputs, const SliceWindow& window) {
         html::data_uri("image/png", png_bytes(slice_picture(window, inputs.volume, inputs.labels))));
     for (const DeformableBody& body : inputs.patient_case.deformable_bodies)
         svg += outline_path(window, body.boundary.surface);
+    for (const RigidBody& body : inputs.patient_case.rigid_bodies) svg += outline_path(window, body.surface);
     const auto letter = [&](int x, int y, const std::string& what) {
         svg += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>", x, y, what);
     };
@@ -127,14 +168,35 @@ std::string legend(const ReportInputs& inputs) {
         for (const Label& label : inputs.labels->names)
             if (std::ranges::find(inputs.labels->labels, label.value) != inputs.labels->labels.end())
                 items += "<li>" + swatch(label) + "</li>";
-    if (!inputs.patient_case.deformable_bodies.empty())
-        items += "<li><span class=\"dash\"></span>surface of the tetrahedral mesh</li>";
-    return items.empty() ? "" : "<ul class=\"legend\">" + items + "</ul>\n";
+    items += "<li><span class=\"dash\"></span>surface of a body’s mesh</li>";
+    return "<ul class=\"legend\">" + items + "</ul>\n";
 }
 
-std::string embedded(const Picture& picture, const std::string& description) {
-    return fmt::format("<img alt=\"{}\" width=\"{}\" height=\"{}\" src=\"{}\">", html::escaped(description),
-                       picture.width, picture.height, html::data_uri("image/png", png_bytes(picture)));
+// Three planes through a target, side by side.
+std::string three_planes(const ReportInputs& inputs, const Target& target) {
+    std::string figures;
+    for (const Plane plane : {Plane::axial, Plane::coronal, Plane::sagittal}) {
+        const PlaneText text = text_of(plane);
+        SliceWindow window{.plane = plane, .center = target.center, .side = target.side};
+        const double at = window.center[text.axis] = target.planes[text.axis];
+        figures += html::figure(slice_svg(inputs, window),
+                                fmt::format("<b>{}</b>, {} = {:.1f} mm", text.title, text.higher, at));
+    }
+    return "<div class=\"three\">\n" + figures + "</div>\n";
+}
+
+// Every structure in planes of its own, the first ones if there are many.
+std::string structures(const ReportInputs& inputs) {
+    constexpr std::size_t most = 8;
+    std::vector<Target> targets = targets_of(*inputs.labels);
+    std::string content;
+    if (targets.size() > most)
+        content = fmt::format("<p class=\"lead\">The first {} of {} structures are shown.</p>\n", most,
+                              targets.size());
+    targets.resize(std::min(targets.size(), most));
+    for (const Target& target : targets)
+        content += "<h3>" + html::escaped(target.name) + "</h3>\n" + three_planes(inputs, target);
+    return content;
 }
 
 }  // namespace
@@ -154,13 +216,6 @@ std::string slices_section(const ReportInputs& inputs) {
         return html::section("slices", "Slices", lead, content);
     }
     const Target target = target_of(inputs);
-    for (const Plane plane : {Plane::axial, Plane::coronal, Plane::sagittal}) {
-        const PlaneText text = text_of(plane);
-        SliceWindow window{.plane = plane, .center = target.center, .side = target.side};
-        const double at = window.center[text.axis] = target.planes[text.axis];
-        content += html::figure(slice_svg(inputs, window),
-                                fmt::format("<b>{}</b>, {} = {:.1f} mm", text.title, text.higher, at));
-    }
     lead = fmt::format("Three planes through {}. Radiological display: the patient’s right is at the left.",
                        html::escaped(target.name));
     if (inputs.volume) {
@@ -173,19 +228,28 @@ std::string slices_section(const ReportInputs& inputs) {
     }
     if (!inputs.labels)
         lead += " No label map was given; <code>--labels labels.seg.nrrd</code> adds the contours.";
-    return html::section("slices", "Slices", lead,
-                         "<div class=\"three\">\n" + content + "</div>\n" + legend(inputs));
+    content = three_planes(inputs, target) + legend(inputs);
+    if (inputs.labels) content += structures(inputs);
+    return html::section("slices", "Slices", lead, content);
+}
+
+const std::vector<NamedDirection>& view_directions() {
+    static const std::vector<NamedDirection> directions{
+        {{-0.7, -1, 0.45}, "from the patient’s right, front and above"},
+        {{0.85, 0.75, 0.4}, "from the patient’s left, back and above"}};
+    return directions;
 }
 
 std::string bodies_section(const Case& patient_case) {
-    const std::vector<ViewDirection> directions{{-0.7, -1, 0.45}, {0.85, 0.75, 0.4}};
-    const std::array<std::string, 2> words{"from the patient’s right, front and above",
-                                           "from the patient’s left, back and above"};
-    const auto side_by_side = [&](const std::vector<Picture>& pictures, const std::string& name) {
+    std::vector<ViewDirection> directions;
+    for (const NamedDirection& view : view_directions()) directions.push_back(view.direction);
+    const auto side_by_side = [&](const std::vector<SceneView>& views, const std::string& name) {
         std::string figures;
-        for (std::size_t i = 0; i < pictures.size(); ++i)
-            figures += html::figure(embedded(pictures[i], name + " " + words[i]),
-                                    "<b>" + html::escaped(name) + "</b> " + words[i]);
+        for (std::size_t i = 0; i < views.size(); ++i) {
+            const auto& [direction, words] = view_directions()[i];
+            figures += html::figure(view_svg(views[i], direction, name + " " + words),
+                                    "<b>" + html::escaped(name) + "</b> " + words);
+        }
         return "<div class=\"two\">\n" + figures + "</div>\n";
     };
     std::string content = side_by_side(scene_pictures(patient_case, directions), "All bodies");

@@ -40,6 +40,14 @@ figcaption{margin-top:6px;color:var(--soft);font-size:13.5px}
 .slice .small{font-size:16px;font-weight:400}
 .slice .scale{stroke:#ffe9a8;stroke-width:4;fill:none}
 .slice .outline{stroke:#fff;stroke-width:1.3;stroke-dasharray:4 3;fill:none;opacity:.9}
+.view{background:#f6f8fa;border:1px solid var(--line)}
+.view text{fill:#17212b;font-size:19px;font-weight:600;paint-order:stroke;stroke:#fff;stroke-width:4px}
+.view path{stroke:#17212b;stroke-width:2.5;fill:none}
+.view circle{fill:none;stroke:#b3261e;stroke-width:3}.view .mark{fill:#b3261e;font-size:21px}
+.tetrahedron{background:#f6f8fa;border:1px solid var(--line)}
+.tetrahedron path{fill-opacity:.45}.edge{stroke:#17212b;stroke-width:1.6;fill:none}.hidden{stroke-dasharray:5 4;stroke-width:1.2}
+.angle{fill:#17212b;font-size:15px;paint-order:stroke;stroke:#fff;stroke-width:4px}.angle.worst{fill:#b3261e;font-weight:700}
+figure .scale-bar{max-width:420px;margin:8px 0 2px}.scale-bar .tick{font-size:13px}
 .legend{list-style:none;display:flex;flex-wrap:wrap;gap:4px 20px;margin:4px 0 14px;padding:0;font-size:14px}
 .swatch{display:inline-block;width:.85em;height:.85em;border-radius:3px;margin-right:.45em;vertical-align:-.06em;border:1px solid rgb(0 0 0/.25)}
 .dot{display:inline-block;width:.6em;height:.6em;border-radius:50%;background:#1a2942;margin-right:.5em;border:1px solid var(--soft)}

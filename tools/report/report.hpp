@@ -11,6 +11,15 @@
 
 namespace palpate {
 
+/// How far one body's surface is from what it was made from.
+struct SurfaceComparison {
+    std::string body;                                    ///< name in the case
+    std::string against;                                 ///< "the outline of liver and tumour", for people
+    std::vector<double> triangle_distances;              ///< mm, one for each triangle of the body's surface
+    double mean = 0, percentile_95 = 0, maximum = 0;     ///< mm, both ways
+    Eigen::Vector3d farthest = Eigen::Vector3d::Zero();  ///< p_P where it is `maximum`
+};
+
 /// What a report is made of. A section whose input is missing says which option fills it.
 struct ReportInputs {
     const Case& patient_case;
@@ -19,6 +28,7 @@ struct ReportInputs {
     std::optional<nlohmann::json> touch{};  ///< result of `palpate touch --json`
     std::string force_curve_svg{};          ///< picture made by `palpate touch --curve`; empty if none
     std::vector<StageRecord> stages{};
+    std::vector<SurfaceComparison> comparisons{};
 };
 
 /// Reads stage records from [{"stage", "seconds", "peak_memory_bytes", "status"}, ...], where a missing

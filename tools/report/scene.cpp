@@ -7,6 +7,7 @@
 #include <vtkActorCollection.h>
 #include <vtkCamera.h>
 #include <vtkCellArray.h>
+#include <vtkCellData.h>
 #include <vtkDoubleArray.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
@@ -19,6 +20,7 @@
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkWindowToImageFilter.h>
 
 namespace palpate {
@@ -180,7 +182,14 @@ Picture grabbed(vtkRenderWindow* window) {
     return picture;
 }
 
-std::vector<Picture> draw(vtkRenderer* renderer, const std::vector<ViewDirection>& directions) {
+Eigen::Vector2d seen_at(vtkRenderer* renderer, const Eigen::Vector3d& p_P) {
+    double x = p_P.x(), y = p_P.y(), z = p_P.z();
+    renderer->WorldToView(x, y, z);
+    return {(x + 1) / 2 * width, (1 - y) / 2 * height};
+}
+
+std::vector<SceneView> draw(vtkRenderer* renderer, const std::vector<ViewDirection>& directions,
+                            const std::vector<Eigen::Vector3d>& marked = {}) {
     vtkNew<vtkRenderWindow> window;
     window->SetOffScreenRendering(1);
     window->SetMultiSamples(0);
@@ -191,7 +200,7 @@ std::vector<Picture> draw(vtkRenderer* renderer, const std::vector<ViewDirection
     renderer->SetUseDepthPeeling(1);
     renderer->SetMaximumNumberOfPeels(4);
     renderer->SetOcclusionRatio(0.005);
-    std::vector<Picture> pictures;
+    std::vector<SceneView> views;
     for (const ViewDirection& from : directions) {
         vtkCamera* camera = renderer->GetActiveCamera();
         camera->SetViewAngle(20);
@@ -200,14 +209,17 @@ std::vector<Picture> draw(vtkRenderer* renderer, const std::vector<ViewDirection
         camera->SetViewUp(0, 0, 1);
         fit(renderer);
         window->Render();
-        pictures.push_back(grabbed(window));
+        SceneView view{grabbed(window), {}};
+        for (const Eigen::Vector3d& p : marked) view.marks.push_back(seen_at(renderer, p));
+        views.push_back(std::move(view));
     }
-    return pictures;
+    return views;
 }
 
 }  // namespace
 
-std::vector<Picture> scene_pictures(const Case& patient_case, const std::vector<ViewDirection>& directions) {
+std::vector<SceneView> scene_pictures(const Case& patient_case,
+                                      const std::vector<ViewDirection>& directions) {
     vtkNew<vtkRenderer> renderer;
     for (const DeformableBody& body : patient_case.deformable_bodies) add_regions(renderer, body, 0.55);
     const double opacity = patient_case.deformable_bodies.empty() ? 1 : 0.25;
@@ -216,11 +228,54 @@ std::vector<Picture> scene_pictures(const Case& patient_case, const std::vector<
     return draw(renderer, directions);
 }
 
-std::vector<Picture> body_pictures(const DeformableBody& body, const std::vector<ViewDirection>& directions) {
+std::vector<SceneView> body_pictures(const DeformableBody& body,
+                                     const std::vector<ViewDirection>& directions) {
     vtkNew<vtkRenderer> renderer;
     add_regions(renderer, body, 0.45);
     renderer->AddActor(dots(body.mesh, body.fixed_nodes));
     return draw(renderer, directions);
+}
+
+std::vector<SceneView> tetrahedra_pictures(const DeformableBody& body,
+                                           const std::vector<std::size_t>& tetrahedra,
+                                           const std::vector<ViewDirection>& directions) {
+    constexpr Colour red{0.75F, 0.10F, 0.08F};
+    TetMesh part;
+    part.rest_positions = body.mesh.rest_positions;
+    std::vector<Eigen::Vector3d> centroids;
+    for (const std::size_t t : tetrahedra) {
+        part.tetrahedra.push_back(body.mesh.tetrahedra[t]);
+        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+        for (const std::int32_t node : part.tetrahedra.back())
+            sum += part.rest_positions[static_cast<std::size_t>(node)];
+        centroids.push_back(sum / 4);
+    }
+    const TriangleMesh solid = boundary_surface(part).surface;
+    vtkNew<vtkRenderer> renderer;
+    renderer->AddActor(
+        surface_actor(body.boundary.surface.vertices, body.boundary.surface.triangles, untouchable, 0.3));
+    renderer->AddActor(actor_of(poly_data(solid.vertices, solid.triangles), red, 1));
+    return draw(renderer, directions, centroids);
+}
+
+std::vector<SceneView> coloured_pictures(const TriangleMesh& surface,
+                                         const std::vector<double>& triangle_values, const ColourScale& scale,
+                                         const Eigen::Vector3d& marked,
+                                         const std::vector<ViewDirection>& directions) {
+    const auto data = poly_data(surface.vertices, surface.triangles);
+    vtkNew<vtkUnsignedCharArray> colours;
+    colours->SetNumberOfComponents(3);
+    for (const double value : triangle_values) colours->InsertNextTypedTuple(scale.colour_of(value).data());
+    data->GetCellData()->SetScalars(colours);
+    const auto actor = actor_of(data, bone, 1);
+    actor->GetMapper()->ScalarVisibilityOn();
+    actor->GetProperty()->SetInterpolationToFlat();
+    actor->GetProperty()->SetSpecular(0);
+    actor->GetProperty()->SetAmbient(0.5);
+    actor->GetProperty()->SetDiffuse(0.55);
+    vtkNew<vtkRenderer> renderer;
+    renderer->AddActor(actor);
+    return draw(renderer, directions, {marked});
 }
 
 }  // namespace palpate

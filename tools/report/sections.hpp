@@ -5,6 +5,7 @@
 
 #include "tools/report/quality.hpp"
 #include "tools/report/report.hpp"
+#include "tools/report/scene.hpp"
 #include "tools/report/verdict.hpp"
 
 namespace palpate {
@@ -20,11 +21,20 @@ struct MeasuredBody {
 std::string slices_section(const ReportInputs& inputs);
 std::string bodies_section(const Case& patient_case);
 std::string mesh_section(const Case& patient_case, const std::vector<MeasuredBody>& bodies);
+std::string worst_section(const std::vector<MeasuredBody>& bodies);
+std::string distances_section(const ReportInputs& inputs);
 std::string mechanics_section(const Case& patient_case);
 std::string certificate_section(const std::vector<MeasuredBody>& bodies);
 std::string touch_section(const ReportInputs& inputs);
 std::string stages_section(const std::vector<StageRecord>& stages);
 std::string provenance_section(const std::string& provenance);
+
+/// The two directions that bodies are looked at from, with words.
+struct NamedDirection {
+    ViewDirection direction;
+    std::string words;
+};
+const std::vector<NamedDirection>& view_directions();
 
 /// A coloured square beside a name.
 std::string swatch(const Label& label);

@@ -113,5 +113,38 @@ TEST(CaseFile, a_fixed_rule_with_too_few_numbers_is_refused) {
         std::string::npos);
 }
 
+TEST(CaseFile, finished_meshes_and_surfaces_need_no_image) {
+    const CaseFile file = read_case_file(written(R"(schema = 1
+name = "sofa"
+[[deformable]]
+name = "liver"
+mesh_file = "liver.msh"
+mesh_unit = "cm"
+[[deformable.region]]
+label = "liver"
+mesh_region = 1
+youngs_modulus_kpa = 6
+poissons_ratio = 0.45
+[[rigid]]
+name = "skull"
+surface_file = "skull.stl"
+surface_frame = "ras"
+)"));
+    EXPECT_FALSE(needs_labels(file));
+    EXPECT_EQ(file.deformable.at(0).file->path.filename(), "liver.msh");
+    EXPECT_EQ(file.deformable.at(0).file->unit, "cm");
+    EXPECT_EQ(file.deformable.at(0).regions.at(0).mesh_region, 1);
+    EXPECT_EQ(file.rigid.at(0).file->unit, "mm");
+    EXPECT_EQ(file.rigid.at(0).file->frame, "ras");
+    EXPECT_TRUE(needs_labels(read_case_file(written(minimal))));
+}
+
+TEST(CaseFile, a_finished_file_beside_what_would_make_it_is_refused) {
+    const std::string head = "schema = 1\nname = \"x\"\n[[rigid]]\nname = \"y\"\n";
+    EXPECT_NE(message(head + "surface_file = \"y.stl\"\nisovalue_hu = 226\n").find("isovalue_hu"),
+              std::string::npos);
+    EXPECT_NE(message(head + "surface_unit = \"cm\"\n").find("'surface_file'"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace palpate::build

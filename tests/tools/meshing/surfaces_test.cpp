@@ -94,6 +94,9 @@ TEST(LabelSurface, keeps_the_volume_of_its_labels) {
     EXPECT_EQ(quality.components, 1);  // the lesion's interface is inside
     const auto voxels = std::ranges::count_if(map.labels, [](std::uint16_t l) { return l == 3 || l == 7; });
     EXPECT_NEAR(quality.volume / (static_cast<double>(voxels) * map.grid.voxel_volume()), 1, 0.005);
+    const SurfaceQuality unsmoothed = measure(label_surface(map, body, 0));
+    EXPECT_TRUE(unsmoothed.closed_and_oriented());
+    EXPECT_NEAR(unsmoothed.volume / quality.volume, 1, 0.05);  // corners of voxels are cut
     const std::array<std::int32_t, 1> absent{9};
     EXPECT_THROW(label_surface(map, absent), InvalidInput);
 }
@@ -123,6 +126,25 @@ TEST(Decimate, stays_closed_and_close) {
     // A triangle of 4 pi r² / 1000 on a sphere of radius r sags by at most 0.11 mm.
     EXPECT_LT(surface_distance(fine, coarse).maximum, 0.2);
     EXPECT_EQ(decimate(coarse, 2000).triangles, coarse.triangles);
+}
+
+TEST(Decimate, keeps_the_distance_asked_for_or_names_the_place_that_does_not) {
+    Volume ball = cone(Eigen::Matrix3d::Identity(), 12);
+    for (std::int32_t k = 0; k < 16; ++k)  // a thin spine, which costs decimation little to lose
+        ball.values[ball.grid.offset(25, 24, k)] = std::max(102.0F, ball.values[ball.grid.offset(25, 24, k)]);
+    const TriangleMesh fine = isosurface(ball, 100);
+    const double free = surface_distance(fine, decimate(fine, 600)).maximum;
+    const Decimation kept = decimate_within(fine, 600, 0.9 * free);
+    EXPECT_LE(kept.surface.triangles.size(), 600U);
+    EXPECT_LE(kept.distance.maximum, 0.9 * free);
+    EXPECT_DOUBLE_EQ(kept.distance.maximum, surface_distance(fine, kept.surface).maximum);
+    EXPECT_TRUE(measure(kept.surface).closed_and_oriented());
+    try {
+        decimate_within(fine, 600, 1e-3);
+        FAIL() << "600 triangles cannot do that";
+    } catch (const QualityNotMet& error) {
+        EXPECT_NE(std::string(error.what()).find("mm off at ("), std::string::npos) << error.what();
+    }
 }
 
 TEST(Decimate, surface_that_is_no_manifold_is_refused) {

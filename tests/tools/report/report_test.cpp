@@ -12,6 +12,7 @@
 
 #include "formats/model/errors.hpp"
 #include "tests/formats/sample_case.hpp"
+#include "tools/report/colour_scale.hpp"
 
 namespace palpate {
 namespace {
@@ -51,6 +52,10 @@ std::string full_page() {
             "penetration": {"device_mm": 3.5}, "tick_us": {"p50": 4.5, "p99": 11.25, "p99_9": 20, "max": 31}})");
         inputs.force_curve_svg = "<svg xmlns=\"http://www.w3.org/2000/svg\"><script>1</script></svg>";
         inputs.stages = {{"mesh <wall>", 3.25, 123'000'000, "run"}, {"pack", 0.5, 7'000'000, "up to date"}};
+        const DeformableBody& body = patient_case.deformable_bodies.front();
+        inputs.comparisons = {{body.name, "label <a>",
+                               std::vector<double>(body.boundary.surface.triangles.size(), 0.25), 0.125, 0.25,
+                               0.375, body.boundary.surface.vertices.front()}};
         return html_report(inputs);
     }();
     return page;
@@ -177,16 +182,43 @@ TEST_F(ReportTest, names_are_escaped) {
 }
 
 TEST_F(ReportTest, pictures_show_something) {
-    std::size_t pictures = 0;
+    std::size_t pictures = 0, shaded = 0;
     const std::string page = full_page();
     const std::string prefix = "data:image/png;base64,";
     for (const char* attribute : {"src", "href"})
         for (const std::string& value : attributes(page, attribute)) {
             if (!value.starts_with(prefix)) continue;
             ++pictures;
-            EXPECT_GT(colours_of_png(decoded(value.substr(prefix.size()))), attribute[0] == 's' ? 200U : 4U);
+            const std::size_t colours = colours_of_png(decoded(value.substr(prefix.size())));
+            EXPECT_GT(colours, 4U);
+            shaded += colours > 100;
         }
-    EXPECT_EQ(pictures, 3U + 2U + 2U);  // slices, all bodies, one deformable body
+    // Slices through the case and its one label; all bodies, one deformable body, its worst elements, its
+    // distances.
+    EXPECT_EQ(pictures, 3U + 3U + 2U + 2U + 2U + 2U);
+    EXPECT_EQ(shaded, 6U);  // those in three dimensions, but for a cube in one flat colour
+}
+
+TEST_F(ReportTest, worst_elements_are_marked_with_their_angles) {
+    const std::string page = full_page();
+    for (const char* number : {">1</text>", ">5</text>"}) EXPECT_TRUE(contains(page, number)) << number;
+    std::size_t angles = 0;
+    for (std::size_t at = 0; (at = page.find("class=\"angle", at)) != std::string::npos; ++at) ++angles;
+    EXPECT_EQ(angles, 3U * 6U);
+}
+
+TEST_F(ReportTest, distances_carry_a_scale_in_mm_and_the_farthest_place) {
+    const std::string page = full_page();
+    for (const char* words : {"label &lt;a&gt;", "0.38 mm", "≥ 0.5 mm", "0.125", ">A</text>", ">R</text>"})
+        EXPECT_TRUE(contains(page, words)) << words;
+}
+
+TEST(ColourScale, ends_at_a_round_number_and_holds_there) {
+    const std::vector<double> values{0.1, 0.2, 0.3, 0.4, 7.0};
+    const ColourScale scale = scale_for(values);
+    EXPECT_EQ(scale.top, 0.5);
+    EXPECT_EQ(scale.colour_of(7), scale.colour_of(0.5));
+    EXPECT_EQ(scale.colour_of(0), (std::array<std::uint8_t, 3>{255, 255, 204}));
 }
 
 TEST_F(ReportTest, a_missing_input_is_named_with_the_option_that_fills_it) {

@@ -165,12 +165,31 @@ std::string body_name(Reader& reader) {
     return name;
 }
 
-RigidSpec rigid(Reader reader) {
+// Keys PREFIX_file, PREFIX_unit and PREFIX_frame; with a file, none of the keys that `excluded` names.
+std::optional<FinishedFile> finished_file(Reader& reader, const std::string& prefix,
+                                          const std::filesystem::path& folder,
+                                          std::initializer_list<const char*> excluded) {
+    const auto path = reader.optional<std::string>(prefix + "_file");
+    const auto unit = reader.optional<std::string>(prefix + "_unit"),
+               frame = reader.optional<std::string>(prefix + "_frame");
+    if (!path && (unit || frame))
+        reader.fail(reader.raw(), prefix + "_file", "is missing", "", "or leave out its unit and frame");
+    if (!path) return std::nullopt;
+    for (const char* key : excluded)
+        if (reader.has(key))
+            reader.fail(*reader.raw().get(key), key, "makes no sense beside " + prefix + "_file", "",
+                        "leave one of them out");
+    return FinishedFile{folder / *path, unit.value_or("mm"), frame.value_or("")};
+}
+
+RigidSpec rigid(Reader reader, const std::filesystem::path& folder) {
     RigidSpec spec;
     spec.name = body_name(reader);
+    spec.file = finished_file(reader, "surface", folder, {"label", "isovalue_hu"});
     spec.label = reader.optional<std::string>("label").value_or(spec.name);
     spec.isovalue = reader.optional<double>("isovalue_hu");
     spec.max_triangles = reader.optional<std::int64_t>("max_triangles");
+    spec.max_distance = reader.optional<double>("max_distance_mm");
     reader.refuse_unknown();
     return spec;
 }
@@ -185,18 +204,30 @@ std::map<std::string, double> options(Reader reader,
     return values;
 }
 
-DeformableSpec deformable(Reader reader) {
+// near = "label" or [x, y, z], within_mm, cell_size_mm: as palpate mesh --near takes it.
+std::string near_rule(Reader& rule) {
+    const bool point = rule.raw().get_as<toml::array>("near") != nullptr;
+    const std::string place = point ? joined(rule.numbers("near", 3)) : rule.required<std::string>("near");
+    const auto size = rule.required<double>("cell_size_mm"), within = rule.required<double>("within_mm");
+    rule.refuse_unknown();
+    return fmt::format("{}={},{}", place, size, within);
+}
+
+DeformableSpec deformable(Reader reader, const std::filesystem::path& folder) {
     DeformableSpec spec;
     spec.name = body_name(reader);
+    spec.file = finished_file(reader, "mesh", folder, {"mesh"});
     spec.sizing = options(reader.table("mesh"), {{"cell_size_mm", "--cell-size"},
                                                  {"facet_size_mm", "--facet-size"},
                                                  {"facet_distance_mm", "--facet-distance"},
                                                  {"smoothing_mm", "--smoothing"}});
+    for (Reader place : reader.tables("refine")) spec.near.push_back(near_rule(place));
     for (Reader rule : reader.tables("fixed")) spec.fixed.push_back(fixed_rule(rule));
     for (Reader region : reader.tables("region")) {
         spec.regions.push_back(
             {region.required<std::string>("label"), region.required<double>("youngs_modulus_kpa"),
-             region.required<double>("poissons_ratio"), region.optional<double>("cell_size_mm")});
+             region.required<double>("poissons_ratio"), region.optional<double>("cell_size_mm"),
+             region.optional<std::int64_t>("mesh_region")});
         region.refuse_unknown();
     }
     if (spec.regions.empty())
@@ -259,8 +290,9 @@ CaseFile read_case_file(const std::filesystem::path& path) {
     input.refuse_unknown();
     for (const Reader& table : root.tables("structure"))
         result.structures.push_back(structure(table, path.parent_path()));
-    for (const Reader& table : root.tables("rigid")) result.rigid.push_back(rigid(table));
-    for (const Reader& table : root.tables("deformable")) result.deformable.push_back(deformable(table));
+    for (const Reader& table : root.tables("rigid")) result.rigid.push_back(rigid(table, path.parent_path()));
+    for (const Reader& table : root.tables("deformable"))
+        result.deformable.push_back(deformable(table, path.parent_path()));
     result.haptics = options(root.table("haptics"), {{"tool_radius_mm", "--tool-radius"},
                                                      {"coupling_stiffness_n_per_mm", "--coupling-stiffness"},
                                                      {"max_force_n", "--max-force"},
@@ -269,7 +301,13 @@ CaseFile read_case_file(const std::filesystem::path& path) {
         options(root.table("quality"), {{"min_dihedral_deg", "--min-dihedral-deg"},
                                         {"max_dihedral_deg", "--max-dihedral-deg"},
                                         {"max_volume_error_percent", "--max-volume-error-percent"},
-                                        {"min_dice", "--min-dice"}});
+                                        {"max_mean_distance_mm", "--max-mean-distance"},
+                                        {"max_p95_distance_mm", "--max-p95-distance"},
+                                        {"max_distance_voxel_diagonals", "--max-distance"},
+                                        {"min_dice", "--min-dice"},
+                                        {"min_region_dice", "--min-region-dice"},
+                                        {"max_centroid_distance_mm", "--max-centroid-distance"},
+                                        {"attempts", "--attempts"}});
     root.refuse_unknown();
     std::set<std::string> names;
     const auto require_new = [&](const std::string& name) {
@@ -281,6 +319,12 @@ CaseFile read_case_file(const std::filesystem::path& path) {
     if (result.rigid.empty() && result.deformable.empty())
         root.fail(document, "deformable", "is missing", "at least one [[rigid]] or [[deformable]] body");
     return result;
+}
+
+bool needs_labels(const CaseFile& case_file) {
+    const auto made_here = [](const auto& body) { return !body.file; };
+    return !case_file.structures.empty() || std::ranges::any_of(case_file.rigid, made_here) ||
+           std::ranges::any_of(case_file.deformable, made_here);
 }
 
 void require_what_the_bodies_need(const CaseFile& case_file) {

@@ -17,12 +17,21 @@ struct StructureSpec {
     std::optional<std::filesystem::path> file;  ///< parameter `file` of recipe import: a label map of its own
 };
 
-/// A rigid body: the surface of a label, or of a grey isovalue near a label.
+/// A mesh or surface that somebody made elsewhere.
+struct FinishedFile {
+    std::filesystem::path path;
+    std::string unit = "mm";  ///< um, mm, cm, m or in
+    std::string frame{};      ///< lps or ras; empty: what the file states, else lps
+};
+
+/// A rigid body: a finished surface, or the surface of a label, or of a grey isovalue near a label.
 struct RigidSpec {
     std::string name;
+    std::optional<FinishedFile> file;
     std::string label;
     std::optional<double> isovalue;  ///< HU
     std::optional<std::int64_t> max_triangles;
+    std::optional<double> max_distance;  ///< mm that decimation may move the surface
 };
 
 /// One region of a deformable body.
@@ -31,13 +40,17 @@ struct RegionSpec {
     double youngs_modulus_kpa = 0;
     double poissons_ratio = 0;
     std::optional<double> cell_size_mm;
+    std::optional<std::int64_t> mesh_region;  ///< its value in a finished mesh
 };
 
-/// A deformable body: regions meshed together, fixed by rules of `palpate condense --fixed`.
+/// A deformable body: regions meshed together, or a finished mesh of them, fixed by rules of `palpate
+/// condense --fixed`.
 struct DeformableSpec {
     std::string name;
+    std::optional<FinishedFile> file;
     std::vector<RegionSpec> regions;
     std::vector<std::string> fixed;        ///< "touching:skull", "sphere:x,y,z,r", ...
+    std::vector<std::string> near;         ///< "tumour=3,10", "x,y,z=3,10", as `palpate mesh --near` takes it
     std::map<std::string, double> sizing;  ///< options of `palpate mesh` by name, mm or degrees
 };
 
@@ -60,6 +73,9 @@ struct CaseFile {
 /// the nearest known ones), a missing or wrongly typed value, a name used twice or unfit for a file name, or
 /// another schema.
 CaseFile read_case_file(const std::filesystem::path& path);
+
+/// Tells whether some stage needs the label map of the structures; finished meshes and surfaces alone do not.
+bool needs_labels(const CaseFile& case_file);
 
 /// Throws InvalidInput if a body asks for a grey isovalue and no volume is named.
 void require_what_the_bodies_need(const CaseFile& case_file);

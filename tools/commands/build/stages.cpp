@@ -73,20 +73,50 @@ Stage segment_stage(const CaseFile& case_file, const std::filesystem::path& part
     return stage;
 }
 
+// What a command takes of a finished mesh or surface; `option` names the file.
+Stage finished_stage(const std::string& command, const std::string& name, const std::string& option,
+                     const FinishedFile& file, const std::filesystem::path& output) {
+    Stage stage{command + " " + name,
+                command,
+                {option, file.path.string(), "--unit", file.unit},
+                {file.path},
+                {output}};
+    if (!file.frame.empty()) add(stage.arguments, {"--frame", file.frame});
+    return stage;
+}
+
 Stage surface_stage(const RigidSpec& body, const std::filesystem::path& parts) {
     const std::filesystem::path labels = parts / "labels.seg.nrrd", output = parts / (body.name + ".vtp");
-    Stage stage{"surface " + body.name,
-                "surface",
-                {"--labels", labels.string(), "--label", body.label},
-                {labels},
-                {output}};
+    Stage stage = body.file ? finished_stage("surface", body.name, "--surface-file", *body.file, output)
+                            : Stage{"surface " + body.name,
+                                    "surface",
+                                    {"--labels", labels.string(), "--label", body.label},
+                                    {labels},
+                                    {output}};
     if (body.isovalue) {
         add(stage.arguments,
             {"--volume", (parts / "volume.nrrd").string(), "--isovalue", fmt::format("{}", *body.isovalue)});
         stage.inputs.push_back(parts / "volume.nrrd");
     }
     if (body.max_triangles) add(stage.arguments, {"--max-triangles", std::to_string(*body.max_triangles)});
+    if (body.max_distance) add(stage.arguments, {"--max-distance", fmt::format("{}", *body.max_distance)});
     add(stage.arguments, {"-o", output.string()});
+    return stage;
+}
+
+// A finished mesh; its regions get their labels' names, and its surface its neighbours if there are labels.
+Stage finished_mesh_stage(const DeformableSpec& body, const std::map<std::string, double>& quality,
+                          bool labels, const std::filesystem::path& parts) {
+    Stage stage = finished_stage("mesh", body.name, "--mesh-file", *body.file, parts / (body.name + ".vtu"));
+    for (const RegionSpec& region : body.regions)
+        if (region.mesh_region)
+            add(stage.arguments, {"--region-name", fmt::format("{}={}", *region.mesh_region, region.label)});
+    if (labels) {
+        add(stage.arguments, {"--labels", (parts / "labels.seg.nrrd").string()});
+        stage.inputs.push_back(parts / "labels.seg.nrrd");
+    }
+    add_options(stage.arguments, quality);
+    add(stage.arguments, {"-o", stage.outputs.front().string()});
     return stage;
 }
 
@@ -100,6 +130,7 @@ Stage mesh_stage(const DeformableSpec& body, const std::map<std::string, double>
             add(stage.arguments,
                 {"--region-cell-size", fmt::format("{}={}", region.label, *region.cell_size_mm)});
     }
+    for (const std::string& place : body.near) add(stage.arguments, {"--near", place});
     add_options(stage.arguments, body.sizing);
     add_options(stage.arguments, quality);
     add(stage.arguments, {"-o", output.string()});
@@ -128,14 +159,25 @@ Json provenance(const CaseFile& case_file, const std::vector<Stage>& stages) {
     Json inputs = Json::object();
     if (case_file.volume) inputs["volume_sha256"] = content_digest(*case_file.volume);
     if (case_file.labels) inputs["labels_sha256"] = content_digest(*case_file.labels);
+    std::map<std::string, std::string> finished;  // files may be called after a patient
+    const auto add_finished = [&](const std::string& name, const std::optional<FinishedFile>& file) {
+        if (!file) return;
+        inputs[name + "_file_sha256"] = content_digest(file->path);
+        finished[file->path.string()] = name + file->path.extension().string();
+    };
+    for (const RigidSpec& body : case_file.rigid) add_finished(body.name, body.file);
+    for (const DeformableSpec& body : case_file.deformable) add_finished(body.name, body.file);
     Json steps = Json::array();
     for (const Stage& stage : stages) {
         if (stage.command == "import") continue;
         std::string line = stage.command;
         for (const std::string& argument : stage.arguments)
-            line += " " + (argument.find('/') == std::string::npos
-                               ? argument
-                               : std::filesystem::path(argument).filename().string());
+            if (const auto file = finished.find(argument); file != finished.end())
+                line += " " + file->second;
+            else
+                line += " " + (argument.find('/') == std::string::npos
+                                   ? argument
+                                   : std::filesystem::path(argument).filename().string());
         steps.push_back(line);
     }
     const Json structures = recipes_json(case_file, "file_sha256", sha256_file);
@@ -171,13 +213,15 @@ std::vector<Stage> stages_to_asset(const CaseFile& case_file, const BuildPaths& 
     std::vector<Stage> stages;
     if (case_file.volume) stages.push_back(import_volume_stage(case_file, paths.parts / "volume.nrrd"));
     if (case_file.labels) stages.push_back(import_labels_stage(case_file, paths.parts / "prior.seg.nrrd"));
-    stages.push_back(segment_stage(case_file, paths.parts));
+    const bool labels = needs_labels(case_file);
+    if (labels) stages.push_back(segment_stage(case_file, paths.parts));
     for (const RigidSpec& body : case_file.rigid) {
         stages.push_back(surface_stage(body, paths.parts));
         stages.push_back(obb_stage(body.name, paths.parts / (body.name + ".vtp")));
     }
     for (const DeformableSpec& body : case_file.deformable) {
-        stages.push_back(mesh_stage(body, case_file.quality, paths.parts));
+        stages.push_back(body.file ? finished_mesh_stage(body, case_file.quality, labels, paths.parts)
+                                   : mesh_stage(body, case_file.quality, paths.parts));
         stages.push_back(obb_stage(body.name, paths.parts / (body.name + ".vtu")));
         stages.push_back(condense_stage(body, paths.parts));
     }
@@ -208,10 +252,19 @@ Stage report_stage(const CaseFile& case_file, const BuildPaths& paths,
     cli::write_text_file(stages_file, rows.dump(2) + "\n", true);
     Stage stage{"report",
                 "report",
-                {paths.asset.string(), "--labels", labels.string(), "--touch", touch_result.string(),
-                 "--curve", curve.string(), "--stages", stages_file.string()},
-                {paths.asset, labels, touch_result, curve, stages_file},
+                {paths.asset.string(), "--touch", touch_result.string(), "--curve", curve.string(),
+                 "--stages", stages_file.string()},
+                {paths.asset, touch_result, curve, stages_file},
                 {paths.report}};
+    if (needs_labels(case_file)) {
+        add(stage.arguments, {"--labels", labels.string()});
+        stage.inputs.push_back(labels);
+        for (const RigidSpec& body : case_file.rigid)
+            if (!body.file)
+                add(stage.arguments,
+                    {"--rigid", body.name + "=" + body.label +
+                                    (body.isovalue ? fmt::format(",{}", *body.isovalue) : std::string())});
+    }
     if (case_file.volume) {
         add(stage.arguments, {"--volume", volume.string()});
         stage.inputs.push_back(volume);

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/commands/build/stages.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <iterator>
+#include <unistd.h>
+
+namespace palpate::build {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string line_of(const std::vector<Stage>& stages, const std::string& name) {
+    const auto stage = std::ranges::find(stages, name, &Stage::name);
+    if (stage == stages.end()) return "no such stage";
+    std::string line = stage->command;
+    for (const std::string& argument : stage->arguments) line += " " + argument;
+    return line;
+}
+
+TEST(Stages, finished_files_replace_image_and_labels_and_their_names_stay_out_of_the_asset) {
+    const fs::path folder = fs::path(testing::TempDir()) / ("palpate_stages_" + std::to_string(getpid()));
+    fs::create_directories(folder);
+    for (const char* name : {"doe_john.msh", "doe_john.stl"}) std::ofstream(folder / name) << name;
+    CaseFile file;
+    file.name = "x";
+    DeformableSpec liver;
+    liver.name = "liver";
+    liver.file = FinishedFile{folder / "doe_john.msh", "cm", "ras"};
+    liver.regions = {{"liver", 6, 0.45, {}, 1}};
+    file.deformable = {liver};
+    RigidSpec skull;
+    skull.name = "skull";
+    skull.file = FinishedFile{folder / "doe_john.stl"};
+    skull.max_triangles = 1000;
+    skull.max_distance = 0.5;
+    file.rigid = {skull};
+    const std::vector<Stage> stages =
+        stages_to_asset(file, {folder / "parts", folder / "x.vtkhdf", folder / "x.html"});
+
+    std::vector<std::string> names;
+    std::ranges::transform(stages, std::back_inserter(names), &Stage::name);
+    EXPECT_EQ(names, (std::vector<std::string>{"surface skull", "obb skull", "mesh liver", "obb liver",
+                                               "condense liver", "pack"}));
+    EXPECT_EQ(line_of(stages, "mesh liver"), "mesh --mesh-file " + (folder / "doe_john.msh").string() +
+                                                 " --unit cm --frame ras --region-name 1=liver -o " +
+                                                 (folder / "parts" / "liver.vtu").string());
+    EXPECT_EQ(line_of(stages, "surface skull"), "surface --surface-file " +
+                                                    (folder / "doe_john.stl").string() +
+                                                    " --unit mm --max-triangles 1000 --max-distance 0.5 -o " +
+                                                    (folder / "parts" / "skull.vtp").string());
+    std::ifstream stream(folder / "parts" / "provenance.json");
+    const std::string provenance{std::istreambuf_iterator<char>(stream), {}};
+    EXPECT_NE(provenance.find("liver_file_sha256"), std::string::npos);
+    EXPECT_EQ(provenance.find("doe"), std::string::npos) << provenance;
+    fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace palpate::build
