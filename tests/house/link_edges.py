@@ -18,7 +18,7 @@ TEST_SUPPORT = {"palpate_house", "palpate_phantoms", "palpate_sample_case"}
 ROOMS = {
     "model": set(),
     "asset": {"model", "hdf5", "openssl", "threads"},
-    "imaging": {"model", "itk", "hdf5"},  # HDF5 is one of ITK's own
+    "imaging": {"model", "itk", "hdf5", "json"},  # HDF5 is one of ITK's own
     "meshing": {"model", "cgal", "vtk"},
     "obb": {"model"},
     "fem": {"model", "linear_algebra"},
