@@ -45,4 +45,59 @@ Volume coarsen(const Volume& volume, const std::array<std::int32_t, 3>& block) {
     return coarse;
 }
 
+Volume crop(const Volume& volume, const std::array<std::int32_t, 3>& low,
+            const std::array<std::int32_t, 3>& size) {
+    Volume part{volume.grid, {}};
+    part.grid.size = size;
+    part.grid.origin = volume.grid.point_of(Eigen::Vector3d(low[0], low[1], low[2]));
+    part.values.reserve(part.grid.voxel_count());
+    for (std::int32_t k = 0; k < size[2]; ++k)
+        for (std::int32_t j = 0; j < size[1]; ++j) {
+            const auto row = volume.values.begin() +
+                             static_cast<std::ptrdiff_t>(volume.grid.offset(low[0], low[1] + j, low[2] + k));
+            part.values.insert(part.values.end(), row, row + size[0]);
+        }
+    return part;
+}
+
+Mask refine(const Mask& blocks, const std::array<std::int32_t, 3>& low,
+            const std::array<std::int32_t, 3>& block, const ImageGrid& grid) {
+    struct Between {
+        std::int32_t first, second;
+        float share;  // of the second
+    };
+    // For each voxel along an axis the two blocks it lies between; outside the crop nothing is inside.
+    std::array<std::vector<Between>, 3> between;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        for (std::int32_t voxel = 0; voxel < grid.size[axis]; ++voxel) {
+            const double at = (voxel - (block[axis] - 1) / 2.0) / block[axis] - low[axis];
+            const auto first = static_cast<std::int32_t>(std::floor(at));
+            const std::int32_t last = blocks.grid.size[axis] - 1;
+            const bool inside = first >= -1 && first <= last;
+            between[axis].push_back({inside ? std::clamp(first, 0, last) : -1,
+                                     inside ? std::clamp(first + 1, 0, last) : -1,
+                                     static_cast<float>(at - first)});
+        }
+    Mask result{grid, std::vector<std::uint8_t>(grid.voxel_count(), 0)};
+    std::size_t offset = 0;
+    for (const Between& z : between[2])
+        for (const Between& y : between[1])
+            for (const Between& x : between[0]) {
+                const std::size_t here = offset++;
+                if (x.first < 0 || y.first < 0 || z.first < 0) continue;
+                const auto along_x = [&](std::int32_t j, std::int32_t k) {
+                    const float a = blocks.voxels[blocks.grid.offset(x.first, j, k)],
+                                b = blocks.voxels[blocks.grid.offset(x.second, j, k)];
+                    return a + x.share * (b - a);
+                };
+                const auto along_y = [&](std::int32_t k) {
+                    const float a = along_x(y.first, k), b = along_x(y.second, k);
+                    return a + y.share * (b - a);
+                };
+                const float a = along_y(z.first), b = along_y(z.second);
+                result.voxels[here] = a + z.share * (b - a) >= 0.5F;
+            }
+    return result;
+}
+
 }  // namespace palpate

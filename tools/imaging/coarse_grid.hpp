@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "formats/model/image_grid.hpp"
+#include "tools/imaging/mask.hpp"
 
 namespace palpate {
 
@@ -16,5 +17,14 @@ ImageGrid coarse_grid(const ImageGrid& grid, const std::array<std::int32_t, 3>& 
 
 /// Mean value of each block.
 Volume coarsen(const Volume& volume, const std::array<std::int32_t, 3>& block);
+
+/// The part of a volume that begins at voxel `low` and has `size` voxels.
+Volume crop(const Volume& volume, const std::array<std::int32_t, 3>& low,
+            const std::array<std::int32_t, 3>& size);
+
+/// A mask of blocks, cropped at block `low`, as voxels of `grid`: the blocks' values are interpolated
+/// linearly between their centres and cut at one half, so that the result has no steps of a block.
+Mask refine(const Mask& blocks, const std::array<std::int32_t, 3>& low,
+            const std::array<std::int32_t, 3>& block, const ImageGrid& grid);
 
 }  // namespace palpate

@@ -49,6 +49,7 @@ Table make_table() {
           {"lower_hu", Kind::number, "HU", "-400", "soft tissue is at least this dense"},
           {"upper_hu", Kind::number, "HU", "225", "soft tissue is at most this dense"},
           {"smoothing_mm", Kind::number, "mm", "1", "gaps and spikes below this radius vanish"}}},
+        {"liver", {{"seeds_mm", Kind::numbers, "mm", "", "points x, y, z in the liver"}}},
         {"threshold",
          {{"lower_hu", Kind::number, "HU", "-inf", "lowest value"},
           {"upper_hu", Kind::number, "HU", "inf", "highest value"}}},

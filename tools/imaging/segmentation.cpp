@@ -6,6 +6,7 @@
 
 #include "formats/model/errors.hpp"
 #include "tools/imaging/image_files.hpp"
+#include "tools/imaging/organ.hpp"
 #include "tools/imaging/recipe_parameters.hpp"
 #include "tools/imaging/recipes.hpp"
 
@@ -95,6 +96,11 @@ Mask make_airway(const Job& job) {
         p);
 }
 
+Mask make_liver(const Job& job) {
+    const Parameters& p = job.parameters;
+    return clean(organ(job.require_volume(), p.points("seeds_mm"), {}, job.culprit()), p);
+}
+
 Mask make_threshold(const Job& job) {
     const Parameters& p = job.parameters;
     return clean(threshold(job.require_volume(), p.number("lower_hu"), p.number("upper_hu")), p);
@@ -136,6 +142,7 @@ const std::map<std::string, Maker>& makers() {
     static const std::map<std::string, Maker> all{
         {"airway", {make_airway, "raise threshold_hu, lower opening_mm, or check region and cleaning"}},
         {"bone", {make_bone, "lower threshold_hu or min_component_ml; are the values in HU?"}},
+        {"liver", {make_liver, "?"}},
         {"import", {make_import, "check that both images show the same place, or the region and cleaning"}},
         {"nasopharynx", {make_nasopharynx, "raise thickness_mm or move the region to the passage's wall"}},
         {"sphere", {make_sphere, "move center_mm into the structure named by 'inside', or raise radius_mm"}},

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/imaging/organ.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "formats/model/errors.hpp"
+#include "tools/imaging/coarse_grid.hpp"
+#include "tools/imaging/filters.hpp"
+#include "tools/imaging/necks.hpp"
+#include "tools/imaging/seed_statistics.hpp"
+
+namespace palpate {
+namespace {
+
+using Points = std::span<const Eigen::Vector3d>;
+
+constexpr double block_mm = 2;      // fine enough for the shape, coarse enough for noise and time
+constexpr double reach_mm = 200;    // further from the seeds no liver reaches
+constexpr double seed_radius = 6;   // mm: what is looked at around a seed
+constexpr int smoothing_steps = 8;  // of the curvature flow
+constexpr double bone_hu = 250;     // above vessels and kidneys in most contrast phases
+constexpr double rib_gap = 20;      // mm: balls of this radius do not pass between two ribs
+constexpr double edge_factor = 4;   // an edge is so much steeper than the organ's inside
+constexpr double local_mm = 12;     // the local mean is taken over Gaussian surroundings of this deviation
+constexpr double neck_ratio = 0.5;  // of cut_at_necks()
+constexpr double edge_mm = 4;       // edges are about this wide
+constexpr double regained_mm = 3;   // thinner parts stay this far from thick ones
+constexpr int rounds = 3;           // after which the local mean hardly changes
+
+struct Seeds {
+    Points points;
+    std::vector<double> means;  // grey value around each, NaN where it does not count
+    double center = 0;          // median of all
+};
+
+Seeds look_at(const Volume& volume, Points points, const OrganParameters& p, const std::string& culprit,
+              const std::function<void(std::string_view)>& note) {
+    Seeds seeds{points, {}, 0};
+    for (const Eigen::Vector3d& point : points) {
+        std::vector<float> near = values_near(volume, std::span(&point, 1), seed_radius);
+        seeds.means.push_back(robust_statistics(near).mean);
+        const double mean = seeds.means.back();
+        if (mean < p.darkest_hu || mean > p.brightest_hu)
+            throw InvalidInput({culprit,
+                                fmt::format("seed {} lies in {} ({:.0f} HU)", point_text(point),
+                                            mean > p.brightest_hu ? "bone or a strongly enhanced vessel"
+                                            : mean < -300         ? "air"
+                                                                  : "fat",
+                                            mean),
+                                fmt::format("{} to {} HU", p.darkest_hu, p.brightest_hu),
+                                "move it into the organ (LPS mm; 3D Slicer shows RAS, x and y negated)"});
+    }
+    std::vector<double> sorted = seeds.means;
+    std::ranges::sort(sorted);
+    seeds.center = sorted[sorted.size() / 2];
+    for (std::size_t n = 0; n < points.size(); ++n) {
+        if (std::abs(seeds.means[n] - seeds.center) <= p.drift_hu) continue;
+        if (note)
+            note(fmt::format(
+                "{}: around seed {} it is {:.0f} HU, around the others {:.0f} HU; is it in a vessel "
+                "or another organ?",
+                culprit, point_text(points[n]), seeds.means[n], seeds.center));
+        seeds.means[n] = std::nan("");
+    }
+    return seeds;
+}
+
+// Mean of the seeds' grey values, weighted by the inverse of their squared distance.
+double expected_at(const Seeds& seeds, const Eigen::Vector3d& p_P) {
+    double sum = 0, weights = 0;
+    for (std::size_t n = 0; n < seeds.means.size(); ++n) {
+        if (std::isnan(seeds.means[n])) continue;
+        const double weight = 1 / ((p_P - seeds.points[n]).squaredNorm() + 100);
+        sum += weight * seeds.means[n];
+        weights += weight;
+    }
+    return sum / weights;
+}
+
+template <typename Visit>
+void for_each_voxel(const ImageGrid& grid, const Visit& visit) {
+    std::size_t offset = 0;
+    for (std::int32_t k = 0; k < grid.size[2]; ++k)
+        for (std::int32_t j = 0; j < grid.size[1]; ++j)
+            for (std::int32_t i = 0; i < grid.size[0]; ++i, ++offset) visit(i, j, k, offset);
+}
+
+// Length of the gradient, per mm.
+Volume gradient(const Volume& volume) {
+    Volume smooth = volume, result = volume;
+    gaussian(smooth.grid, smooth.values, block_mm * 0.75);
+    const ImageGrid& grid = volume.grid;
+    for_each_voxel(grid, [&](std::int32_t i, std::int32_t j, std::int32_t k, std::size_t offset) {
+        double squared = 0;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            std::array<std::int32_t, 3> low{i, j, k}, high{i, j, k};
+            low[axis] = std::max(0, low[axis] - 1);
+            high[axis] = std::min(grid.size[axis] - 1, high[axis] + 1);
+            const double length =
+                std::max(1, high[axis] - low[axis]) * grid.spacing[static_cast<Eigen::Index>(axis)];
+            squared += std::pow((smooth.values[grid.offset(high[0], high[1], high[2])] -
+                                 smooth.values[grid.offset(low[0], low[1], low[2])]) /
+                                    length,
+                                2);
+        }
+        result.values[offset] = static_cast<float>(std::sqrt(squared));
+    });
+    return result;
+}
+
+// Where the organ cannot be: bone with the gaps between ribs, and edges.
+struct Barriers {
+    Mask wall, edges;
+};
+
+Barriers barriers_of(const Volume& blocks, const Volume& smooth, Points seeds) {
+    Barriers barriers;
+    barriers.wall = {blocks.grid, std::vector<std::uint8_t>(blocks.values.size())};
+    std::ranges::transform(blocks.values, barriers.wall.voxels.begin(), [](float v) { return v >= bone_hu; });
+    barriers.wall = close(barriers.wall, rib_gap);
+    const Volume steepness = gradient(smooth);
+    std::vector<float> inside = values_near(steepness, seeds, 10);
+    const double limit = edge_factor * robust_statistics(inside).mean;
+    barriers.edges = {blocks.grid, std::vector<std::uint8_t>(blocks.values.size())};
+    std::ranges::transform(steepness.values, barriers.edges.voxels.begin(),
+                           [&](float v) { return v >= limit; });
+    return barriers;
+}
+
+std::vector<float> depth_in(Mask mask) {
+    for (std::uint8_t& voxel : mask.voxels) voxel = !voxel;
+    return distance_to(mask);
+}
+
+// For each point the nearest voxel for which `is_target` holds.
+template <typename Target>
+std::vector<std::size_t> nearest_to(const ImageGrid& grid, Points points, double reach,
+                                    const Target& is_target) {
+    std::vector<double> best(points.size(), reach * reach);
+    std::vector<std::size_t> found(points.size(), SIZE_MAX);
+    for_each_voxel(grid, [&](std::int32_t i, std::int32_t j, std::int32_t k, std::size_t offset) {
+        if (!is_target(offset)) return;
+        const Eigen::Vector3d p = grid.point_of(Eigen::Vector3d(i, j, k));
+        for (std::size_t n = 0; n < points.size(); ++n)
+            if (const double squared = (p - points[n]).squaredNorm(); squared < best[n]) {
+                best[n] = squared;
+                found[n] = offset;
+            }
+    });
+    std::erase(found, SIZE_MAX);
+    return found;
+}
+
+// What of the candidates hangs together with the seeds through necks that a ball of `neck_mm` passes.
+Mask thick_part(const Mask& candidates, Points seeds, double neck_mm) {
+    const std::vector<float> depth = depth_in(candidates);
+    const auto inside =
+        nearest_to(candidates.grid, seeds, 10, [&](std::size_t i) { return candidates.voxels[i] != 0; });
+    if (inside.empty()) return {candidates.grid, std::vector<std::uint8_t>(candidates.voxels.size(), 0)};
+    const Mask cut = cut_at_necks(candidates, depth, inside, neck_ratio);
+    Mask core = cut;
+    for (std::size_t i = 0; i < core.voxels.size(); ++i)
+        core.voxels[i] = cut.voxels[i] && depth[i] >= neck_mm;
+    const Components pieces = components_of(core);
+    std::vector<std::uint8_t> seeded(pieces.sizes.size() + 1, 0);
+    for (const std::size_t voxel :
+         nearest_to(core.grid, seeds, 30, [&](std::size_t i) { return core.voxels[i] != 0; }))
+        seeded[pieces.labels[voxel]] = 1;
+    core = select(core, pieces, [&](std::uint32_t n) { return seeded[n] != 0; });
+    return intersect(dilate(core, neck_mm + regained_mm), cut);
+}
+
+// Adds the voxels around `mask` whose grey value is nearer to the organ's than to that of what follows.
+Mask with_rim(const Mask& mask, const Volume& blocks, const std::vector<float>& local,
+              const Mask& not_there) {
+    const ImageGrid& grid = mask.grid;
+    const Mask rim = subtract(dilate(mask, grid.spacing.maxCoeff()), mask);
+    Mask result = mask;
+    for_each_voxel(grid, [&](std::int32_t i, std::int32_t j, std::int32_t k, std::size_t offset) {
+        if (!rim.voxels[offset] || not_there.voxels[offset]) return;
+        double furthest = 0;
+        for (std::int32_t dk = -1; dk <= 1; ++dk)
+            for (std::int32_t dj = -1; dj <= 1; ++dj)
+                for (std::int32_t di = -1; di <= 1; ++di) {
+                    if (!grid.contains(i + di, j + dj, k + dk)) continue;
+                    const std::size_t other = grid.offset(i + di, j + dj, k + dk);
+                    if (!mask.voxels[other])
+                        furthest = std::max(furthest, std::abs(double{blocks.values[other]} - local[offset]));
+                }
+        if (std::abs(blocks.values[offset] - local[offset]) < furthest / 2) result.voxels[offset] = 1;
+    });
+    return result;
+}
+
+Mask organ_of_blocks(const Volume& blocks, const Seeds& seeds, const OrganParameters& p) {
+    Volume window = blocks;
+    for (float& value : window.values)
+        value =
+            std::clamp(value, static_cast<float>(seeds.center - 200), static_cast<float>(seeds.center + 200));
+    const Volume smooth = curvature_flow(window, smoothing_steps);
+    const Barriers barriers = barriers_of(blocks, smooth, seeds.points);
+
+    const std::size_t count = smooth.values.size();
+    std::vector<float> expected(count);
+    for_each_voxel(smooth.grid, [&](std::int32_t i, std::int32_t j, std::int32_t k, std::size_t offset) {
+        expected[offset] =
+            static_cast<float>(expected_at(seeds, smooth.grid.point_of(Eigen::Vector3d(i, j, k))));
+    });
+    std::vector<float> local = expected, weights(count);
+    Mask found{smooth.grid, std::vector<std::uint8_t>(count, 0)}, candidates = found, near_enough = found;
+    for (int round = 0; round < rounds; ++round) {
+        for (std::size_t i = 0; i < count; ++i) {
+            near_enough.voxels[i] =
+                std::abs(smooth.values[i] - local[i]) <= p.tolerance_hu && !barriers.wall.voxels[i];
+            candidates.voxels[i] = near_enough.voxels[i] && !barriers.edges.voxels[i];
+        }
+        found = thick_part(candidates, seeds.points, p.neck_mm);
+        found = intersect(dilate(found, edge_mm), near_enough);
+        for (std::size_t i = 0; i < count; ++i) {
+            weights[i] = found.voxels[i];
+            local[i] = found.voxels[i] ? smooth.values[i] - static_cast<float>(seeds.center) : 0;
+        }
+        gaussian(smooth.grid, local, local_mm);
+        gaussian(smooth.grid, weights, local_mm);
+        for (std::size_t i = 0; i < count; ++i) {
+            constexpr float doubt = 0.1F;  // weight of the seeds' word where little was found
+            const float center = static_cast<float>(seeds.center), drift = static_cast<float>(p.drift_hu);
+            const float mean = (local[i] + doubt * (expected[i] - center)) / (weights[i] + doubt);
+            local[i] = center + std::clamp(mean, -drift, drift);
+        }
+    }
+    found = fill_holes(close(keep_largest(found), p.gap_mm));
+    found = with_rim(found, window, local, candidates);
+    return keep_largest(fill_holes(found));
+}
+
+struct Box {
+    std::array<std::int32_t, 3> low, size;
+};
+
+// The blocks that are not air and at most reach_mm from the seeds' box.
+Box box_around(const Volume& blocks, Points seeds) {
+    const ImageGrid& grid = blocks.grid;
+    Eigen::Array3d low = Eigen::Array3d::Constant(INFINITY), high = -low;
+    for (const Eigen::Vector3d& seed : seeds) {
+        low = low.min(grid.index_of(seed).array());
+        high = high.max(grid.index_of(seed).array());
+    }
+    low -= reach_mm / grid.spacing.array();
+    high += reach_mm / grid.spacing.array();
+    Eigen::Array3i first = Eigen::Array3i::Constant(INT32_MAX), last = -first;
+    for_each_voxel(grid, [&](std::int32_t i, std::int32_t j, std::int32_t k, std::size_t offset) {
+        const Eigen::Array3i at(i, j, k);
+        if (blocks.values[offset] < -200 || (at.cast<double>() < low).any() ||
+            (at.cast<double>() > high).any())
+            return;
+        first = first.min(at);
+        last = last.max(at);
+    });
+    return {{first[0], first[1], first[2]},
+            {last[0] - first[0] + 1, last[1] - first[1] + 1, last[2] - first[2] + 1}};
+}
+
+}  // namespace
+
+Mask organ(const Volume& volume, Points seeds, const OrganParameters& parameters, const std::string& culprit,
+           const std::function<void(std::string_view)>& note) {
+    if (seeds.empty())
+        throw InvalidInput(
+            {culprit, "has no seed", "1 to 5 points inside it", "add seeds=x,y,z;... or seeds_file=..."});
+    for (const Eigen::Vector3d& seed : seeds) voxel_of_seed(volume.grid, seed, culprit);
+    const auto block = blocks_of(volume.grid, block_mm);
+    const Volume whole = coarsen(volume, block);
+    const Seeds looked_at = look_at(whole, seeds, parameters, culprit, note);
+    const Box box = box_around(whole, seeds);
+    const Volume blocks = crop(whole, box.low, box.size);
+    const Mask found = organ_of_blocks(blocks, looked_at, parameters);
+    if (found.count() == 0)
+        throw InvalidInput(
+            {culprit, fmt::format("no piece as thick as {} mm holds a seed", 2 * parameters.neck_mm), "",
+             "move the seeds away from the organ's border, lower neck_mm or raise tolerance_hu"});
+    return refine(found, box.low, block, volume.grid);
+}
+
+}  // namespace palpate
