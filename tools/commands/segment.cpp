@@ -12,15 +12,16 @@ namespace {
 
 using namespace palpate;
 using nlohmann::json;
+using nlohmann::ordered_json;  // cleaning steps apply in the order written
 
 // A JSON value as a recipe takes it; arrays of points are flattened.
-RecipeValue recipe_value(const json& value, const std::string& culprit) {
+RecipeValue recipe_value(const ordered_json& value, const std::string& culprit) {
     if (value.is_boolean()) return value.get<bool>();
     if (value.is_number()) return value.get<double>();
     if (value.is_string()) return value.get<std::string>();
     std::vector<double> numbers;
-    const json flat = value.flatten();
-    for (const json& number : flat) {
+    const ordered_json flat = value.flatten();
+    for (const ordered_json& number : flat) {
         if (!value.is_array() || !number.is_number())
             throw InvalidInput({culprit, value.dump(), "a number, numbers, a text, true or false", ""});
         numbers.push_back(number.get<double>());
@@ -30,7 +31,7 @@ RecipeValue recipe_value(const json& value, const std::string& culprit) {
 
 std::vector<StructureRecipe> read_recipes(const std::filesystem::path& path) {
     std::ifstream stream(path);
-    const json document = json::parse(stream, nullptr, false);
+    const ordered_json document = ordered_json::parse(stream, nullptr, false);
     const auto refuse = [&](const std::string& found) {
         return InvalidInput({path.string(), found,
                              "[{\"name\": ..., \"recipe\": ..., \"parameters\": {...}}]",
@@ -38,7 +39,7 @@ std::vector<StructureRecipe> read_recipes(const std::filesystem::path& path) {
     };
     if (!document.is_array()) throw refuse("is not a JSON array");
     std::vector<StructureRecipe> structures;
-    for (const json& item : document) {
+    for (const ordered_json& item : document) {
         if (!item.is_object()) throw refuse("holds " + item.dump());
         for (const auto& [key, value] : item.items())
             if (key != "name" && key != "recipe" && key != "parameters")
@@ -47,10 +48,12 @@ std::vector<StructureRecipe> read_recipes(const std::filesystem::path& path) {
         if (!item.contains("recipe") || !item["recipe"].is_string())
             throw refuse("a structure has no recipe");
         StructureRecipe structure{item["name"], item["recipe"], {}};
-        const json parameters = item.value("parameters", json::object());
+        const ordered_json parameters = item.value("parameters", ordered_json::object());
         if (!parameters.is_object()) throw refuse("parameters of '" + structure.name + "' are no object");
-        for (const auto& [key, value] : parameters.items())
+        for (const auto& [key, value] : parameters.items()) {
             structure.parameters[key] = recipe_value(value, path.string() + ": " + key);
+            structure.order.push_back(key);
+        }
         structures.push_back(std::move(structure));
     }
     return structures;

@@ -5,6 +5,28 @@
 #include <cmath>
 
 namespace palpate {
+namespace {
+
+ImageGrid cropped_grid(const ImageGrid& grid, const Box& box) {
+    ImageGrid part = grid;
+    part.size = box.size;
+    part.origin = grid.point_of(Eigen::Vector3d(box.low[0], box.low[1], box.low[2]));
+    return part;
+}
+
+template <typename Value>
+std::vector<Value> cropped(const ImageGrid& grid, const std::vector<Value>& values, const Box& box) {
+    std::vector<Value> part;
+    for (std::int32_t k = 0; k < box.size[2]; ++k)
+        for (std::int32_t j = 0; j < box.size[1]; ++j) {
+            const auto row = values.begin() + static_cast<std::ptrdiff_t>(
+                                                  grid.offset(box.low[0], box.low[1] + j, box.low[2] + k));
+            part.insert(part.end(), row, row + box.size[0]);
+        }
+    return part;
+}
+
+}  // namespace
 
 std::array<std::int32_t, 3> blocks_of(const ImageGrid& grid, double spacing) {
     std::array<std::int32_t, 3> block{};
@@ -45,19 +67,37 @@ Volume coarsen(const Volume& volume, const std::array<std::int32_t, 3>& block) {
     return coarse;
 }
 
-Volume crop(const Volume& volume, const std::array<std::int32_t, 3>& low,
-            const std::array<std::int32_t, 3>& size) {
-    Volume part{volume.grid, {}};
-    part.grid.size = size;
-    part.grid.origin = volume.grid.point_of(Eigen::Vector3d(low[0], low[1], low[2]));
-    part.values.reserve(part.grid.voxel_count());
+Box bounding_box(const Mask& mask, double margin) {
+    const auto& size = mask.grid.size;
+    std::array<std::int32_t, 3> low = size, high{-1, -1, -1};
+    std::size_t offset = 0;
     for (std::int32_t k = 0; k < size[2]; ++k)
-        for (std::int32_t j = 0; j < size[1]; ++j) {
-            const auto row = volume.values.begin() +
-                             static_cast<std::ptrdiff_t>(volume.grid.offset(low[0], low[1] + j, low[2] + k));
-            part.values.insert(part.values.end(), row, row + size[0]);
-        }
-    return part;
+        for (std::int32_t j = 0; j < size[1]; ++j)
+            for (std::int32_t i = 0; i < size[0]; ++i, ++offset) {
+                if (!mask.voxels[offset]) continue;
+                const std::array at{i, j, k};
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    low[axis] = std::min(low[axis], at[axis]);
+                    high[axis] = std::max(high[axis], at[axis]);
+                }
+            }
+    if (high[0] < 0) return {{0, 0, 0}, size};
+    Box box{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto more =
+            static_cast<std::int32_t>(std::ceil(margin / mask.grid.spacing[static_cast<Eigen::Index>(axis)]));
+        box.low[axis] = std::max(0, low[axis] - more);
+        box.size[axis] = std::min(size[axis], high[axis] + more + 1) - box.low[axis];
+    }
+    return box;
+}
+
+Volume crop(const Volume& volume, const Box& box) {
+    return {cropped_grid(volume.grid, box), cropped(volume.grid, volume.values, box)};
+}
+
+Mask crop(const Mask& mask, const Box& box) {
+    return {cropped_grid(mask.grid, box), cropped(mask.grid, mask.voxels, box)};
 }
 
 Mask refine(const Mask& blocks, const std::array<std::int32_t, 3>& low,

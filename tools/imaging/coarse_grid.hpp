@@ -18,9 +18,17 @@ ImageGrid coarse_grid(const ImageGrid& grid, const std::array<std::int32_t, 3>& 
 /// Mean value of each block.
 Volume coarsen(const Volume& volume, const std::array<std::int32_t, 3>& block);
 
-/// The part of a volume that begins at voxel `low` and has `size` voxels.
-Volume crop(const Volume& volume, const std::array<std::int32_t, 3>& low,
-            const std::array<std::int32_t, 3>& size);
+/// A block of voxels: the first and how many along each axis.
+struct Box {
+    std::array<std::int32_t, 3> low, size;
+};
+
+/// The smallest box that holds the mask and `margin` (mm) around it within the grid; all of the grid if the
+/// mask is empty.
+Box bounding_box(const Mask& mask, double margin);
+
+Volume crop(const Volume& volume, const Box& box);
+Mask crop(const Mask& mask, const Box& box);
 
 /// A mask of blocks, cropped at block `low`, as voxels of `grid`: the blocks' values are interpolated
 /// linearly between their centres and cut at one half, so that the result has no steps of a block.

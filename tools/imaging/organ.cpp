@@ -129,11 +129,6 @@ Barriers barriers_of(const Volume& blocks, const Volume& smooth, Points seeds) {
     return barriers;
 }
 
-std::vector<float> depth_in(Mask mask) {
-    for (std::uint8_t& voxel : mask.voxels) voxel = !voxel;
-    return distance_to(mask);
-}
-
 // For each point the nearest voxel for which `is_target` holds.
 template <typename Target>
 std::vector<std::size_t> nearest_to(const ImageGrid& grid, Points points, double reach,
@@ -236,10 +231,6 @@ Mask organ_of_blocks(const Volume& blocks, const Seeds& seeds, const OrganParame
     return keep_largest(fill_holes(found));
 }
 
-struct Box {
-    std::array<std::int32_t, 3> low, size;
-};
-
 // The blocks that are not air and at most reach_mm from the seeds' box.
 Box box_around(const Volume& blocks, Points seeds) {
     const ImageGrid& grid = blocks.grid;
@@ -275,7 +266,7 @@ Mask organ(const Volume& volume, Points seeds, const OrganParameters& parameters
     const Volume whole = coarsen(volume, block);
     const Seeds looked_at = look_at(whole, seeds, parameters, culprit, note);
     const Box box = box_around(whole, seeds);
-    const Volume blocks = crop(whole, box.low, box.size);
+    const Volume blocks = crop(whole, box);
     const Mask found = organ_of_blocks(blocks, looked_at, parameters);
     if (found.count() == 0)
         throw InvalidInput(

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "formats/model/errors.hpp"
+#include "tools/imaging/seed_statistics.hpp"
 
 namespace palpate {
 namespace {
@@ -82,6 +83,25 @@ Mask threshold(const Volume& volume, double lower_hu, double upper_hu) {
     std::ranges::transform(volume.values, mask.voxels.begin(),
                            [&](float value) { return value >= lower_hu && value <= upper_hu; });
     return mask;
+}
+
+double hounsfield_offset(const Volume& volume) {
+    constexpr double offset = 1024;
+    std::size_t soft_tissue = 0, between = 0;  // between air and soft tissue lies little but lung
+    for (const float value : volume.values) {
+        if (value < 0) return 0;
+        soft_tissue += value > offset - 150 && value < offset + 150;
+        between += value > 200 && value < 800;
+    }
+    return soft_tissue * 20 > volume.values.size() && soft_tissue > 3 * between ? offset : 0;
+}
+
+double bone_threshold(const Volume& volume) {
+    std::vector<float> soft;
+    std::ranges::copy_if(volume.values, std::back_inserter(soft),
+                         [](float value) { return value >= -20 && value <= 200; });
+    const GreyStatistics grey = robust_statistics(soft);
+    return grey.mean + std::max(150.0, 5 * grey.sigma);
 }
 
 Mask bone(const Volume& volume, double threshold_hu, double separation_mm) {

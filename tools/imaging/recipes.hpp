@@ -9,6 +9,14 @@ namespace palpate {
 /// Voxels of lower ... upper HU, both included.
 Mask threshold(const Volume& volume, double lower_hu, double upper_hu);
 
+/// How far the values of a CT lie above HU: 1024 if none is negative and soft tissue is found about 1024 and
+/// not about 0, as in files that store value + 1024; else 0.
+double hounsfield_offset(const Volume& volume);
+
+/// Lowest threshold for bone that is clear of soft tissue: the median of the values of -20 ... 200 HU and
+/// five of their deviations (median absolute deviation), at least 150 HU above.
+double bone_threshold(const Volume& volume);
+
 /// Bone: voxels of `threshold_hu` or more in the body. The body is the largest piece of tissue (above -300
 /// HU) after an opening by `separation_mm`, which cuts it from table and head rest, and what lies within
 /// `separation_mm` of that piece.
