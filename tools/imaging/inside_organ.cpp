@@ -19,6 +19,7 @@ using Points = std::span<const Eigen::Vector3d>;
 
 constexpr double seed_reach = 3;        // mm: a seed may miss by a voxel or two
 constexpr double least_contrast = 1.5;  // standard deviations
+constexpr double least_difference = 5;  // HU
 constexpr double noise_mm = 1;          // deviation of the Gaussian that smooths it
 constexpr double neck_ratio = 0.5;      // of cut_at_necks()
 
@@ -56,11 +57,11 @@ Mask lesion(const Volume& volume, const Mask& organ, Points seeds, double margin
     const GreyStatistics around = robust_statistics(values);
     values = values_near(grey, seeds, 3);
     const double mean = robust_statistics(values).mean, difference = mean - around.mean;
-    if (std::abs(difference) < least_contrast * around.sigma)
+    if (std::abs(difference) < std::max(least_contrast * around.sigma, least_difference))
         throw InvalidInput({culprit,
                             fmt::format("around the seeds it is {:.0f} HU, in the organ {:.0f} +- {:.0f} HU",
                                         mean, around.mean, around.sigma),
-                            "a difference of 1.5 deviations or more",
+                            "a difference of 1.5 deviations and 5 HU or more",
                             "move the seeds into the lesion, or draw it with recipe=sphere or scribbles"});
     Mask candidates = region;
     for (std::size_t i = 0; i < candidates.voxels.size(); ++i)

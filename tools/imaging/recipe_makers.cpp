@@ -130,7 +130,8 @@ Mask make_bone(const Job& job) {
 
 Mask make_airway(const Job& job) {
     const Parameters& p = job.parameters;
-    return airway(job.require_volume(), points_for(job), p.number("threshold_hu"), p.number("opening_mm"));
+    return airway(job.require_volume(), points_for(job), p.number("threshold_hu"), p.number("opening_mm"),
+                  job.culprit());
 }
 
 Mask make_threshold(const Job& job) {

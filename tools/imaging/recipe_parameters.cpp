@@ -32,13 +32,14 @@ std::vector<RecipeParameterInfo> seed_parameters() {
 
 // Applied in the order written, after the recipe; in this order where none is known.
 std::vector<RecipeParameterInfo> cleaning_parameters(const std::string& smallest_ml = "0",
-                                                     const std::string& solid = "no") {
+                                                     const std::string& solid = "no",
+                                                     const std::string& smooth_mm = "0") {
     return {{"close_mm", Kind::number, "mm", "0", "fill gaps that a ball of this radius does not fit into"},
             {"open_mm", Kind::number, "mm", "0", "remove what a ball of this radius does not fit into"},
             {"fill_holes", Kind::flag, "", solid, "fill enclosed background"},
             {"min_component_ml", Kind::number, "ml", smallest_ml, "drop smaller pieces"},
             {"keep_largest", Kind::flag, "", solid, "keep the largest piece only"},
-            {"smooth_mm", Kind::number, "mm", "0", "round details below this size off, volume kept"}};
+            {"smooth_mm", Kind::number, "mm", smooth_mm, "round details below this size off, volume kept"}};
 }
 
 const std::vector<RecipeParameterInfo> import_parameters{
@@ -104,7 +105,7 @@ Table make_table() {
         append(parameters, cleaning_parameters(recipe == "bone"      ? "1"
                                                : recipe == "vessels" ? "0.05"
                                                                      : "0",
-                                               solid ? "yes" : "no"));
+                                               solid ? "yes" : "no", recipe == "liver" ? "3" : "0"));
     }
     return table;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <span>
+#include <string>
 
 #include "tools/imaging/mask.hpp"
 
@@ -25,9 +26,10 @@ Mask bone(const Volume& volume, double threshold_hu = 226, double separation_mm 
 /// Air passages: air (below `threshold_hu`) without the outside. The outside is the air that reaches an edge
 /// of the volume, where two of its faces meet, through openings that a ball of `opening_mm` passes; so a
 /// passage cut by the last slice stays. Kept are the pieces that hold a seed (p_P, mm) or, without seeds, the
-/// largest. Throws InvalidInput if a seed lies outside the volume or more than 2 mm from such air.
+/// largest. Throws InvalidInput naming `culprit` if a seed lies outside the volume or more than 2 mm from
+/// such air.
 Mask airway(const Volume& volume, std::span<const Eigen::Vector3d> seeds, double threshold_hu = -400,
-            double opening_mm = 5);
+            double opening_mm = 5, const std::string& culprit = "seed");
 
 /// The soft wall of an air passage: voxels of lower ... upper HU outside `air` and not in `taken`, within
 /// `thickness_mm` of `air` and in `region`. Gaps below `smoothing_mm` are closed, spikes below it removed,
