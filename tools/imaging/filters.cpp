@@ -11,33 +11,41 @@
 namespace palpate {
 namespace {
 
-// Filters every line along one axis; lines that neighbour in memory are taken together.
+constexpr std::size_t lines_together = 64;  // so that what is worked on stays in the cache
+
+// Filters lines of `length` values that lie `stride` apart; up to lines_together neighbours at a time.
 void gaussian_along(std::vector<float>& values, std::size_t length, std::size_t stride, double sigma) {
     if (length < 2) return;
-    const auto radius = static_cast<std::size_t>(std::ceil(3 * sigma));
+    const std::size_t radius = std::min(length - 1, static_cast<std::size_t>(std::ceil(3 * sigma)));
     std::vector<float> weights;
     for (std::size_t r = 0; r <= radius; ++r)
         weights.push_back(static_cast<float>(std::exp(-0.5 * std::pow(static_cast<double>(r) / sigma, 2))));
-    const std::size_t plane = length * stride;
+    std::vector<float> totals(length, 0.0F);
+    for (std::size_t at = 0; at < length; ++at)
+        for (std::size_t other = at > radius ? at - radius : 0; other <= std::min(length - 1, at + radius);
+             ++other)
+            totals[at] += weights[other > at ? other - at : at - other];
+
+    const std::size_t groups = (stride + lines_together - 1) / lines_together;
     const auto filter = [&](std::size_t n) {
-        std::vector<float> sums(plane, 0.0F);
-        const float* from = &values[n * plane];
-        for (std::size_t at = 0; at < length; ++at) {
-            const std::size_t first = at > radius ? at - radius : 0, last = std::min(length - 1, at + radius);
-            float total = 0;
-            for (std::size_t other = first; other <= last; ++other)
-                total += weights[other > at ? other - at : at - other];
-            float* to = &sums[at * stride];
-            for (std::size_t other = first; other <= last; ++other) {
-                const float weight = weights[other > at ? other - at : at - other] / total;
-                const float* line = from + other * stride;
-                for (std::size_t i = 0; i < stride; ++i) to[i] += weight * line[i];
-            }
+        const std::size_t first = n % groups * lines_together,
+                          lines = std::min(lines_together, stride - first);
+        float* start = &values[n / groups * length * stride + first];
+        std::vector<float> from(length * lines), sums(length * lines);
+        for (std::size_t at = 0; at < length; ++at)
+            std::copy_n(start + at * stride, lines, &from[at * lines]);
+        for (std::size_t i = 0; i < from.size(); ++i) sums[i] = weights[0] * from[i];
+        for (std::size_t r = 1; r <= radius; ++r) {
+            const std::size_t shift = r * lines;
+            for (std::size_t i = 0; i + shift < from.size(); ++i) sums[i] += weights[r] * from[i + shift];
+            for (std::size_t i = shift; i < from.size(); ++i) sums[i] += weights[r] * from[i - shift];
         }
-        std::ranges::copy(sums, values.begin() + static_cast<std::ptrdiff_t>(n * plane));
+        for (std::size_t at = 0; at < length; ++at)
+            for (std::size_t i = 0; i < lines; ++i)
+                start[at * stride + i] = sums[at * lines + i] / totals[at];
     };
     itk::MultiThreaderBase::New()->ParallelizeArray(
-        0, values.size() / plane, [&](itk::SizeValueType n) { filter(n); }, nullptr);
+        0, values.size() / length / stride * groups, [&](itk::SizeValueType n) { filter(n); }, nullptr);
 }
 
 }  // namespace

@@ -27,7 +27,8 @@ constexpr double local_mm = 12;     // the local mean is taken over Gaussian sur
 constexpr double neck_ratio = 0.4;  // of cut_at_necks()
 constexpr double edge_mm = 4;       // edges are about this wide
 constexpr double regained_mm = 3;   // thinner parts stay this far from thick ones
-constexpr int rounds = 3;           // after which the local mean hardly changes
+constexpr double surroundings_mm = 30;  // kept around what the first round found
+constexpr int rounds = 3;               // after which the local mean hardly changes
 
 struct Seeds {
     Points points;
@@ -110,23 +111,49 @@ Volume gradient(const Volume& volume) {
     return result;
 }
 
-// Where the organ cannot be: bone with the gaps between ribs, and edges.
-struct Barriers {
-    Mask wall, edges;
+// What is looked at, block by block.
+struct Blocks {
+    Volume grey;    // within 200 HU of the seeds
+    Volume smooth;  // the same without noise
+    Mask wall;      // bone and the gaps between ribs
+    Mask edges;
+    std::vector<float> local;  // the organ's mean grey value around each block
 };
 
-Barriers barriers_of(const Volume& blocks, const Volume& smooth, Points seeds) {
-    Barriers barriers;
-    barriers.wall = {blocks.grid, std::vector<std::uint8_t>(blocks.values.size())};
-    std::ranges::transform(blocks.values, barriers.wall.voxels.begin(), [](float v) { return v >= bone_hu; });
-    barriers.wall = close(barriers.wall, rib_gap);
+Mask wall_of(const Volume& volume) {
+    Mask bone{volume.grid, std::vector<std::uint8_t>(volume.values.size())};
+    std::ranges::transform(volume.values, bone.voxels.begin(), [](float v) { return v >= bone_hu; });
+    return close(bone, rib_gap);
+}
+
+Mask edges_of(const Volume& smooth, Points seeds) {
     const Volume steepness = gradient(smooth);
     std::vector<float> inside = values_near(steepness, seeds, 10);
     const double limit = edge_factor * robust_statistics(inside).mean;
-    barriers.edges = {blocks.grid, std::vector<std::uint8_t>(blocks.values.size())};
-    std::ranges::transform(steepness.values, barriers.edges.voxels.begin(),
-                           [&](float v) { return v >= limit; });
-    return barriers;
+    Mask edges{smooth.grid, std::vector<std::uint8_t>(smooth.values.size())};
+    std::ranges::transform(steepness.values, edges.voxels.begin(), [&](float v) { return v >= limit; });
+    return edges;
+}
+
+Blocks prepare(Volume grey, const Seeds& seeds) {
+    Mask wall = wall_of(grey);
+    for (float& value : grey.values)
+        value =
+            std::clamp(value, static_cast<float>(seeds.center - 200), static_cast<float>(seeds.center + 200));
+    Volume smooth = curvature_flow(grey, smoothing_steps);
+    Mask edges = edges_of(smooth, seeds.points);
+    std::vector<float> local(smooth.values.size());
+    for_each_voxel(smooth.grid, [&](std::int32_t i, std::int32_t j, std::int32_t k, std::size_t offset) {
+        local[offset] =
+            static_cast<float>(expected_at(seeds, smooth.grid.point_of(Eigen::Vector3d(i, j, k))));
+    });
+    return {std::move(grey), std::move(smooth), std::move(wall), std::move(edges), std::move(local)};
+}
+
+Blocks crop(const Blocks& blocks, const Box& box) {
+    Volume local = crop(Volume{blocks.grey.grid, blocks.local}, box);
+    return {crop(blocks.grey, box), crop(blocks.smooth, box), crop(blocks.wall, box), crop(blocks.edges, box),
+            std::move(local.values)};
 }
 
 // For each point the nearest voxel for which `is_target` holds.
@@ -189,46 +216,61 @@ Mask with_rim(const Mask& mask, const Volume& blocks, const std::vector<float>& 
     return result;
 }
 
-Mask organ_of_blocks(const Volume& blocks, const Seeds& seeds, const OrganParameters& p) {
-    Volume window = blocks;
-    for (float& value : window.values)
-        value =
-            std::clamp(value, static_cast<float>(seeds.center - 200), static_cast<float>(seeds.center + 200));
-    const Volume smooth = curvature_flow(window, smoothing_steps);
-    const Barriers barriers = barriers_of(blocks, smooth, seeds.points);
+// Voxels near the local mean and not in the wall, with or without edges.
+Mask candidates_of(const Blocks& blocks, double tolerance_hu, bool with_edges) {
+    Mask mask = blocks.wall;
+    for (std::size_t i = 0; i < mask.voxels.size(); ++i)
+        mask.voxels[i] = !blocks.wall.voxels[i] && (with_edges || !blocks.edges.voxels[i]) &&
+                         std::abs(blocks.smooth.values[i] - blocks.local[i]) <= tolerance_hu;
+    return mask;
+}
 
-    const std::size_t count = smooth.values.size();
-    std::vector<float> expected(count);
-    for_each_voxel(smooth.grid, [&](std::int32_t i, std::int32_t j, std::int32_t k, std::size_t offset) {
-        expected[offset] =
-            static_cast<float>(expected_at(seeds, smooth.grid.point_of(Eigen::Vector3d(i, j, k))));
+Mask found_in(const Blocks& blocks, const Seeds& seeds, const OrganParameters& p) {
+    const Mask thick = thick_part(candidates_of(blocks, p.tolerance_hu, false), seeds.points, p.neck_mm);
+    return intersect(dilate(thick, edge_mm), candidates_of(blocks, p.tolerance_hu, true));
+}
+
+// The mean of what was found, around each block; where little was found, what the seeds say. It varies slowly
+// and is worked out on a coarser grid.
+void follow(Blocks& blocks, const Mask& found, const Seeds& seeds, double drift_hu) {
+    constexpr float doubt = 0.1F;  // weight of the seeds' word
+    const auto center = static_cast<float>(seeds.center), drift = static_cast<float>(drift_hu);
+    Volume share{found.grid, {found.voxels.begin(), found.voxels.end()}}, sum = share;
+    for (std::size_t i = 0; i < sum.values.size(); ++i) sum.values[i] *= blocks.smooth.values[i] - center;
+    const auto step = blocks_of(found.grid, local_mm / 3);
+    sum = coarsen(sum, step);
+    share = coarsen(share, step);
+    gaussian(sum.grid, sum.values, local_mm);
+    gaussian(share.grid, share.values, local_mm);
+    Volume mean = sum;
+    for_each_voxel(mean.grid, [&](std::int32_t i, std::int32_t j, std::int32_t k, std::size_t offset) {
+        const auto expected =
+            static_cast<float>(expected_at(seeds, mean.grid.point_of(Eigen::Vector3d(i, j, k)))) - center;
+        const float off = (sum.values[offset] + doubt * expected) / (share.values[offset] + doubt);
+        mean.values[offset] = center + std::clamp(off, -drift, drift);
     });
-    std::vector<float> local = expected, weights(count);
-    Mask found{smooth.grid, std::vector<std::uint8_t>(count, 0)}, candidates = found, near_enough = found;
-    for (int round = 0; round < rounds; ++round) {
-        for (std::size_t i = 0; i < count; ++i) {
-            near_enough.voxels[i] =
-                std::abs(smooth.values[i] - local[i]) <= p.tolerance_hu && !barriers.wall.voxels[i];
-            candidates.voxels[i] = near_enough.voxels[i] && !barriers.edges.voxels[i];
-        }
-        found = thick_part(candidates, seeds.points, p.neck_mm);
-        found = intersect(dilate(found, edge_mm), near_enough);
-        for (std::size_t i = 0; i < count; ++i) {
-            weights[i] = found.voxels[i];
-            local[i] = found.voxels[i] ? smooth.values[i] - static_cast<float>(seeds.center) : 0;
-        }
-        gaussian(smooth.grid, local, local_mm);
-        gaussian(smooth.grid, weights, local_mm);
-        for (std::size_t i = 0; i < count; ++i) {
-            constexpr float doubt = 0.1F;  // weight of the seeds' word where little was found
-            const float center = static_cast<float>(seeds.center), drift = static_cast<float>(p.drift_hu);
-            const float mean = (local[i] + doubt * (expected[i] - center)) / (weights[i] + doubt);
-            local[i] = center + std::clamp(mean, -drift, drift);
-        }
+    for_each_voxel(found.grid, [&](std::int32_t i, std::int32_t j, std::int32_t k, std::size_t offset) {
+        blocks.local[offset] = mean.values[mean.grid.offset(i / step[0], j / step[1], k / step[2])];
+    });
+}
+
+// The organ in blocks of `box`, which shrinks to the organ's surroundings.
+Mask organ_of_blocks(Volume grey, const Seeds& seeds, const OrganParameters& p, Box& box) {
+    Blocks blocks = prepare(std::move(grey), seeds);
+    Mask found = found_in(blocks, seeds, p);
+    follow(blocks, found, seeds, p.drift_hu);
+    const Box part = bounding_box(found, surroundings_mm);
+    blocks = crop(blocks, part);
+    box.size = part.size;
+    for (std::size_t axis = 0; axis < 3; ++axis) box.low[axis] += part.low[axis];
+    Mask candidates;
+    for (int round = 1; round < rounds; ++round) {
+        candidates = candidates_of(blocks, p.tolerance_hu, false);
+        found = found_in(blocks, seeds, p);
+        follow(blocks, found, seeds, p.drift_hu);
     }
     found = fill_holes(close(keep_largest(found), p.gap_mm));
-    found = with_rim(found, window, local, candidates);
-    return keep_largest(fill_holes(found));
+    return keep_largest(fill_holes(with_rim(found, blocks.grey, blocks.local, candidates)));
 }
 
 // The blocks that are not air and at most reach_mm from the seeds' box.
@@ -263,11 +305,11 @@ Mask organ(const Volume& volume, Points seeds, const OrganParameters& parameters
             {culprit, "has no seed", "1 to 5 points inside it", "add seeds=x,y,z;... or seeds_file=..."});
     for (const Eigen::Vector3d& seed : seeds) voxel_of_seed(volume.grid, seed, culprit);
     const auto block = blocks_of(volume.grid, block_mm);
-    const Volume whole = coarsen(volume, block);
+    Volume whole = coarsen(volume, block);
     const Seeds looked_at = look_at(whole, seeds, parameters, culprit, note);
-    const Box box = box_around(whole, seeds);
-    const Volume blocks = crop(whole, box);
-    const Mask found = organ_of_blocks(blocks, looked_at, parameters);
+    Box box = box_around(whole, seeds);
+    whole = crop(whole, box);
+    const Mask found = organ_of_blocks(std::move(whole), looked_at, parameters, box);
     if (found.count() == 0)
         throw InvalidInput(
             {culprit, fmt::format("no piece as thick as {} mm holds a seed", 2 * parameters.neck_mm), "",
