@@ -269,7 +269,8 @@ TEST(Segment, bad_seeds_and_leaks_are_named) {
     expect(refusal("g: recipe=grow-from-seeds"), "structure 'g': has no seed");
     expect(refusal(small_liver, "t: recipe=tumour inside=liver seeds=40,20,0"),
            "seed (40, 20, 0) mm is not there");
-    expect(refusal(small_liver, "t: recipe=tumour inside=liver seeds=-8,-6,16"), "1.5 deviations and 5 HU or more");
+    expect(refusal(small_liver, "t: recipe=tumour inside=liver seeds=-8,-6,16"),
+           "1.5 deviations and 5 HU or more");
     expect(refusal(small_liver, "t: recipe=tumour inside=liver"), "structure 't': has no seed");
 }
 
