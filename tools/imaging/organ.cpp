@@ -16,13 +16,15 @@ namespace {
 
 using Points = std::span<const Eigen::Vector3d>;
 
-constexpr double block_mm = 2;      // fine enough for the shape, coarse enough for noise and time
-constexpr double reach_mm = 200;    // further from the seeds no liver reaches
-constexpr double seed_radius = 6;   // mm: what is looked at around a seed
-constexpr int smoothing_steps = 8;  // of the curvature flow
-constexpr double bone_hu = 250;     // above vessels and kidneys in most contrast phases
-constexpr double rib_gap = 20;      // mm: balls of this radius do not pass between two ribs
-constexpr double edge_factor = 4;   // an edge is so much steeper than the organ's inside
+constexpr double block_mm = 2;           // fine enough for the shape, coarse enough for noise and time
+constexpr double reach_mm = 200;         // further from the seeds no liver reaches
+constexpr double seed_radius = 6;        // mm: what is looked at around a seed
+constexpr double seed_reach_mm = 10;     // a seed may lie in a vessel or a lesion
+constexpr int smoothing_steps = 8;       // of the curvature flow
+constexpr double bone_hu = 250;          // above vessels and kidneys in most contrast phases
+constexpr double rib_gap = 20;           // mm: balls of this radius do not pass between two ribs
+constexpr double first_edge_factor = 4;  // an edge is so much steeper than the surroundings of the seeds
+constexpr double edge_factor = 3;        // and, later, than what was found, vessels and all
 constexpr double local_mm = 12;     // the local mean is taken over Gaussian surroundings of this deviation
 constexpr double neck_ratio = 0.4;  // of cut_at_necks()
 constexpr double edge_mm = 4;       // edges are about this wide
@@ -56,8 +58,12 @@ Seeds look_at(const Volume& volume, Points points, const OrganParameters& p, con
     std::vector<double> sorted = seeds.means;
     std::ranges::sort(sorted);
     seeds.center = sorted[sorted.size() / 2];
+    // One seed that differs from every other is suspected; streaks and fat make several differ.
+    const std::vector<double> means = seeds.means;
     for (std::size_t n = 0; n < points.size(); ++n) {
-        if (std::abs(seeds.means[n] - seeds.center) <= p.drift_hu) continue;
+        const auto alike = std::ranges::count_if(
+            means, [&](double other) { return std::abs(other - means[n]) <= p.drift_hu; });
+        if (alike > 1 || points.size() < 3) continue;
         if (note)
             note(fmt::format(
                 "{}: around seed {} it is {:.0f} HU, around the others {:.0f} HU; is it in a vessel "
@@ -116,7 +122,8 @@ struct Blocks {
     Volume grey;    // within 200 HU of the seeds
     Volume smooth;  // the same without noise
     Mask wall;      // bone and the gaps between ribs
-    Mask edges;
+    Volume steepness;
+    double edge = 0;           // what is as steep is an edge, per mm
     std::vector<float> local;  // the organ's mean grey value around each block
 };
 
@@ -126,13 +133,14 @@ Mask wall_of(const Volume& volume) {
     return close(bone, rib_gap);
 }
 
-Mask edges_of(const Volume& smooth, Points seeds) {
-    const Volume steepness = gradient(smooth);
-    std::vector<float> inside = values_near(steepness, seeds, 10);
-    const double limit = edge_factor * robust_statistics(inside).mean;
-    Mask edges{smooth.grid, std::vector<std::uint8_t>(smooth.values.size())};
-    std::ranges::transform(steepness.values, edges.voxels.begin(), [&](float v) { return v >= limit; });
-    return edges;
+// The gradient around each seed, and of those the median: single seeds lie near vessels or the border.
+double inner_gradient(const Volume& steepness, Points seeds) {
+    std::vector<float> gradients;
+    for (const Eigen::Vector3d& seed : seeds) {
+        std::vector<float> near = values_near(steepness, std::span(&seed, 1), seed_radius);
+        gradients.push_back(static_cast<float>(robust_statistics(near).mean));
+    }
+    return robust_statistics(gradients).mean;
 }
 
 Blocks prepare(Volume grey, const Seeds& seeds) {
@@ -141,18 +149,24 @@ Blocks prepare(Volume grey, const Seeds& seeds) {
         value =
             std::clamp(value, static_cast<float>(seeds.center - 200), static_cast<float>(seeds.center + 200));
     Volume smooth = curvature_flow(grey, smoothing_steps);
-    Mask edges = edges_of(smooth, seeds.points);
+    Volume steepness = gradient(smooth);
+    const double edge = first_edge_factor * inner_gradient(steepness, seeds.points);
     std::vector<float> local(smooth.values.size());
     for_each_voxel(smooth.grid, [&](std::int32_t i, std::int32_t j, std::int32_t k, std::size_t offset) {
         local[offset] =
             static_cast<float>(expected_at(seeds, smooth.grid.point_of(Eigen::Vector3d(i, j, k))));
     });
-    return {std::move(grey), std::move(smooth), std::move(wall), std::move(edges), std::move(local)};
+    return {std::move(grey), std::move(smooth), std::move(wall), std::move(steepness), edge,
+            std::move(local)};
 }
 
 Blocks crop(const Blocks& blocks, const Box& box) {
     Volume local = crop(Volume{blocks.grey.grid, blocks.local}, box);
-    return {crop(blocks.grey, box), crop(blocks.smooth, box), crop(blocks.wall, box), crop(blocks.edges, box),
+    return {crop(blocks.grey, box),
+            crop(blocks.smooth, box),
+            crop(blocks.wall, box),
+            crop(blocks.steepness, box),
+            blocks.edge,
             std::move(local.values)};
 }
 
@@ -175,22 +189,34 @@ std::vector<std::size_t> nearest_to(const ImageGrid& grid, Points points, double
     return found;
 }
 
+// The pieces of a mask that are nearest to a seed, at most `reach` (mm) away.
+Mask pieces_at(const Mask& mask, Points seeds, double reach) {
+    const Components pieces = components_of(mask);
+    std::vector<std::uint8_t> seeded(pieces.sizes.size() + 1, 0);
+    for (const std::size_t voxel :
+         nearest_to(mask.grid, seeds, reach, [&](std::size_t i) { return mask.voxels[i] != 0; }))
+        seeded[pieces.labels[voxel]] = 1;
+    return select(mask, pieces, [&](std::uint32_t n) { return seeded[n] != 0; });
+}
+
+double median_within(const Mask& mask, const Volume& volume) {
+    std::vector<float> values;
+    for (std::size_t i = 0; i < mask.voxels.size(); ++i)
+        if (mask.voxels[i]) values.push_back(volume.values[i]);
+    return robust_statistics(values).mean;
+}
+
 // What of the candidates hangs together with the seeds through necks that a ball of `neck_mm` passes.
 Mask thick_part(const Mask& candidates, Points seeds, double neck_mm) {
     const std::vector<float> depth = depth_in(candidates);
-    const auto inside =
-        nearest_to(candidates.grid, seeds, 10, [&](std::size_t i) { return candidates.voxels[i] != 0; });
+    const auto inside = nearest_to(candidates.grid, seeds, seed_reach_mm,
+                                   [&](std::size_t i) { return candidates.voxels[i] != 0; });
     if (inside.empty()) return {candidates.grid, std::vector<std::uint8_t>(candidates.voxels.size(), 0)};
     const Mask cut = cut_at_necks(candidates, depth, inside, neck_ratio);
     Mask core = cut;
     for (std::size_t i = 0; i < core.voxels.size(); ++i)
         core.voxels[i] = cut.voxels[i] && depth[i] >= neck_mm;
-    const Components pieces = components_of(core);
-    std::vector<std::uint8_t> seeded(pieces.sizes.size() + 1, 0);
-    for (const std::size_t voxel :
-         nearest_to(core.grid, seeds, 30, [&](std::size_t i) { return core.voxels[i] != 0; }))
-        seeded[pieces.labels[voxel]] = 1;
-    core = select(core, pieces, [&](std::uint32_t n) { return seeded[n] != 0; });
+    core = pieces_at(core, seeds, 3 * seed_reach_mm);
     return intersect(dilate(core, neck_mm + regained_mm), cut);
 }
 
@@ -220,7 +246,7 @@ Mask with_rim(const Mask& mask, const Volume& blocks, const std::vector<float>& 
 Mask candidates_of(const Blocks& blocks, double tolerance_hu, bool with_edges) {
     Mask mask = blocks.wall;
     for (std::size_t i = 0; i < mask.voxels.size(); ++i)
-        mask.voxels[i] = !blocks.wall.voxels[i] && (with_edges || !blocks.edges.voxels[i]) &&
+        mask.voxels[i] = !blocks.wall.voxels[i] && (with_edges || blocks.steepness.values[i] < blocks.edge) &&
                          std::abs(blocks.smooth.values[i] - blocks.local[i]) <= tolerance_hu;
     return mask;
 }
@@ -247,7 +273,7 @@ void follow(Blocks& blocks, const Mask& found, const Seeds& seeds, double drift_
         const auto expected =
             static_cast<float>(expected_at(seeds, mean.grid.point_of(Eigen::Vector3d(i, j, k)))) - center;
         const float off = (sum.values[offset] + doubt * expected) / (share.values[offset] + doubt);
-        mean.values[offset] = center + std::clamp(off, -drift, drift);
+        mean.values[offset] = center + std::clamp(off, expected - drift, expected + drift);
     });
     for_each_voxel(found.grid, [&](std::int32_t i, std::int32_t j, std::int32_t k, std::size_t offset) {
         blocks.local[offset] = mean.values[mean.grid.offset(i / step[0], j / step[1], k / step[2])];
@@ -261,16 +287,19 @@ Mask organ_of_blocks(Volume grey, const Seeds& seeds, const OrganParameters& p, 
     follow(blocks, found, seeds, p.drift_hu);
     const Box part = bounding_box(found, surroundings_mm);
     blocks = crop(blocks, part);
+    found = crop(found, part);
     box.size = part.size;
     for (std::size_t axis = 0; axis < 3; ++axis) box.low[axis] += part.low[axis];
     Mask candidates;
     for (int round = 1; round < rounds; ++round) {
+        blocks.edge = edge_factor * median_within(found, blocks.steepness);
         candidates = candidates_of(blocks, p.tolerance_hu, false);
         found = found_in(blocks, seeds, p);
         follow(blocks, found, seeds, p.drift_hu);
     }
-    found = fill_holes(close(keep_largest(found), p.gap_mm));
-    return keep_largest(fill_holes(with_rim(found, blocks.grey, blocks.local, candidates)));
+    found = fill_holes(close(pieces_at(found, seeds.points, seed_reach_mm), p.gap_mm));
+    return pieces_at(fill_holes(with_rim(found, blocks.grey, blocks.local, candidates)), seeds.points,
+                     seed_reach_mm);
 }
 
 // The blocks that are not air and at most reach_mm from the seeds' box.

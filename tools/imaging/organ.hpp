@@ -11,7 +11,7 @@ namespace palpate {
 
 struct OrganParameters {
     double tolerance_hu = 25;   ///< grey values may be so far off the organ's local mean
-    double drift_hu = 20;       ///< the local mean may be so far off that of the seeds
+    double drift_hu = 20;       ///< the local mean may be so far off that of the seeds nearby
     double neck_mm = 6;         ///< where no ball of this radius passes, the organ ends
     double gap_mm = 4;          ///< vessels, lesions and clefts below this radius are filled
     double darkest_hu = -50;    ///< a seed darker than this is a mistake
@@ -21,7 +21,7 @@ struct OrganParameters {
 /// Finds a solid organ, such as the liver in CT with contrast or without, from points inside it (p_P, mm).
 /// On blocks of about 2 mm: noise is smoothed along level sets; the candidates are voxels within tolerance of
 /// a local mean, which starts from the seeds and then follows what was found, without those on an edge (a
-/// gradient of four times the median around the seeds) and without the chest wall (bone, closed over
+/// gradient of three times the median in what was found) and without the chest wall (bone, closed over
 /// the gaps between ribs); the candidates are cut at their necks and what holds no seed is dropped, three
 /// times over; edge voxels nearer in grey to the organ than to what follows are taken back; gaps and holes
 /// are filled. `note` receives what a person should look at: seeds whose surroundings differ from the
