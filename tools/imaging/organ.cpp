@@ -25,6 +25,7 @@ constexpr double bone_hu = 250;          // above vessels and kidneys in most co
 constexpr double rib_gap = 20;           // mm: balls of this radius do not pass between two ribs
 constexpr double first_edge_factor = 4;  // an edge is so much steeper than the surroundings of the seeds
 constexpr double edge_factor = 3;        // and, later, than what was found, vessels and all
+constexpr double least_edge = 1;         // HU per mm, for images without noise
 constexpr double local_mm = 12;     // the local mean is taken over Gaussian surroundings of this deviation
 constexpr double neck_ratio = 0.4;  // of cut_at_necks()
 constexpr double edge_mm = 4;       // edges are about this wide
@@ -150,7 +151,7 @@ Blocks prepare(Volume grey, const Seeds& seeds) {
             std::clamp(value, static_cast<float>(seeds.center - 200), static_cast<float>(seeds.center + 200));
     Volume smooth = curvature_flow(grey, smoothing_steps);
     Volume steepness = gradient(smooth);
-    const double edge = first_edge_factor * inner_gradient(steepness, seeds.points);
+    const double edge = std::max(least_edge, first_edge_factor * inner_gradient(steepness, seeds.points));
     std::vector<float> local(smooth.values.size());
     for_each_voxel(smooth.grid, [&](std::int32_t i, std::int32_t j, std::int32_t k, std::size_t offset) {
         local[offset] =
@@ -292,7 +293,7 @@ Mask organ_of_blocks(Volume grey, const Seeds& seeds, const OrganParameters& p, 
     for (std::size_t axis = 0; axis < 3; ++axis) box.low[axis] += part.low[axis];
     Mask candidates;
     for (int round = 1; round < rounds; ++round) {
-        blocks.edge = edge_factor * median_within(found, blocks.steepness);
+        blocks.edge = std::max(least_edge, edge_factor * median_within(found, blocks.steepness));
         candidates = candidates_of(blocks, p.tolerance_hu, false);
         found = found_in(blocks, seeds, p);
         follow(blocks, found, seeds, p.drift_hu);

@@ -151,12 +151,14 @@ TEST(Recipes, liver_takes_its_tumour_and_vessels_along_and_both_can_be_found_ins
                              {small_liver, "tumour: recipe=tumour inside=liver seeds=-22,-10,4",
                               "vessels: recipe=vessels inside=liver max_radius_mm=6 seeds=-12,6,-8"});
     EXPECT_GT(dice(map, "tumour", abdomen.truth, "tumour"), coarse_dice);
-    const auto statistics = label_statistics(map);
-    EXPECT_EQ(statistics[1].components, 1U);
-    // The portal vein lies on the segment from (-28, 4, -8) to (4, 8, -8) with a radius of 3 mm.
-    EXPECT_GT(statistics[2].box.min()[2], -16);
-    EXPECT_LT(statistics[2].box.max()[2], 0);
-    EXPECT_GT(statistics[2].voxels, 50U);
+    EXPECT_EQ(label_statistics(map)[1].components, 1U);
+    std::size_t found = 0, true_vessels = 0;
+    for (std::size_t i = 0; i < map.labels.size(); ++i) {
+        found += map.labels[i] == 3;
+        true_vessels += map.labels[i] == 3 && abdomen.truth.labels[i] == 3;
+    }
+    EXPECT_GT(found, 50U);
+    EXPECT_GT(true_vessels * 10, found * 6);  // a tube of three voxels is mostly border
 }
 
 TEST(Recipes, liver_hardly_depends_on_where_the_seeds_are) {
