@@ -2,12 +2,22 @@
 // For this folder only: working on blocks of voxels where full resolution would only cost time.
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "formats/model/image_grid.hpp"
 #include "tools/imaging/mask.hpp"
 
 namespace palpate {
+
+/// Calls visit(i, j, k, offset) for every voxel, in memory's order.
+template <typename Visit>
+void for_each_voxel(const ImageGrid& grid, const Visit& visit) {
+    std::size_t offset = 0;
+    for (std::int32_t k = 0; k < grid.size[2]; ++k)
+        for (std::int32_t j = 0; j < grid.size[1]; ++j)
+            for (std::int32_t i = 0; i < grid.size[0]; ++i, ++offset) visit(i, j, k, offset);
+}
 
 /// Voxels per block along each axis, so that blocks measure about `spacing` (mm); 1 where voxels are larger.
 std::array<std::int32_t, 3> blocks_of(const ImageGrid& grid, double spacing);

@@ -6,6 +6,7 @@
 #include <itkCurvatureFlowImageFilter.h>
 #include <itkMultiThreaderBase.h>
 
+#include "tools/imaging/coarse_grid.hpp"
 #include "tools/imaging/itk_image.hpp"
 
 namespace palpate {
@@ -58,6 +59,28 @@ void gaussian(const ImageGrid& grid, std::vector<float>& values, double sigma) {
         gaussian_along(values, length, stride, sigma / grid.spacing[static_cast<Eigen::Index>(axis)]);
         stride *= length;
     }
+}
+
+Volume gradient_length(const Volume& volume, double sigma) {
+    Volume smooth = volume, result = volume;
+    gaussian(smooth.grid, smooth.values, sigma);
+    const ImageGrid& grid = volume.grid;
+    for_each_voxel(grid, [&](std::int32_t i, std::int32_t j, std::int32_t k, std::size_t offset) {
+        double squared = 0;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            std::array<std::int32_t, 3> low{i, j, k}, high{i, j, k};
+            low[axis] = std::max(0, low[axis] - 1);
+            high[axis] = std::min(grid.size[axis] - 1, high[axis] + 1);
+            const double length =
+                std::max(1, high[axis] - low[axis]) * grid.spacing[static_cast<Eigen::Index>(axis)];
+            squared += std::pow((smooth.values[grid.offset(high[0], high[1], high[2])] -
+                                 smooth.values[grid.offset(low[0], low[1], low[2])]) /
+                                    length,
+                                2);
+        }
+        result.values[offset] = static_cast<float>(std::sqrt(squared));
+    });
+    return result;
 }
 
 Volume curvature_flow(const Volume& volume, int iterations) {

@@ -11,6 +11,9 @@ namespace palpate {
 /// normalised over the voxels that exist. Cost: voxels times 18 sigma / spacing.
 void gaussian(const ImageGrid& grid, std::vector<float>& values, double sigma);
 
+/// Length of the gradient (values per mm), by central differences after a Gaussian of deviation `sigma` (mm).
+Volume gradient_length(const Volume& volume, double sigma);
+
 /// Smooths along level sets, so that noise goes and edges stay (curvature flow, Sethian, 1999).
 Volume curvature_flow(const Volume& volume, int iterations);
 

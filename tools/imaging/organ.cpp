@@ -9,6 +9,7 @@
 #include "tools/imaging/coarse_grid.hpp"
 #include "tools/imaging/filters.hpp"
 #include "tools/imaging/necks.hpp"
+#include "tools/imaging/organ_seeds.hpp"
 #include "tools/imaging/seed_statistics.hpp"
 
 namespace palpate {
@@ -18,7 +19,6 @@ using Points = std::span<const Eigen::Vector3d>;
 
 constexpr double block_mm = 2;           // fine enough for the shape, coarse enough for noise and time
 constexpr double reach_mm = 200;         // further from the seeds no liver reaches
-constexpr double seed_radius = 6;        // mm: what is looked at around a seed
 constexpr double seed_reach_mm = 10;     // a seed may lie in a vessel or a lesion
 constexpr int smoothing_steps = 8;       // of the curvature flow
 constexpr double bone_hu = 250;          // above vessels and kidneys in most contrast phases
@@ -32,91 +32,6 @@ constexpr double edge_mm = 4;       // edges are about this wide
 constexpr double regained_mm = 3;   // thinner parts stay this far from thick ones
 constexpr double surroundings_mm = 30;  // kept around what the first round found
 constexpr int rounds = 3;               // after which the local mean hardly changes
-
-struct Seeds {
-    Points points;
-    std::vector<double> means;  // grey value around each, NaN where it does not count
-    double center = 0;          // median of all
-};
-
-Seeds look_at(const Volume& volume, Points points, const OrganParameters& p, const std::string& culprit,
-              const std::function<void(std::string_view)>& note) {
-    Seeds seeds{points, {}, 0};
-    for (const Eigen::Vector3d& point : points) {
-        std::vector<float> near = values_near(volume, std::span(&point, 1), seed_radius);
-        seeds.means.push_back(robust_statistics(near).mean);
-        const double mean = seeds.means.back();
-        if (mean < p.darkest_hu || mean > p.brightest_hu)
-            throw InvalidInput({culprit,
-                                fmt::format("seed {} lies in {} ({:.0f} HU)", point_text(point),
-                                            mean > p.brightest_hu ? "bone or a strongly enhanced vessel"
-                                            : mean < -300         ? "air"
-                                                                  : "fat",
-                                            mean),
-                                fmt::format("{} to {} HU", p.darkest_hu, p.brightest_hu),
-                                "move it into the organ (LPS mm; 3D Slicer shows RAS, x and y negated)"});
-    }
-    std::vector<double> sorted = seeds.means;
-    std::ranges::sort(sorted);
-    seeds.center = sorted[sorted.size() / 2];
-    // One seed that differs from every other is suspected; streaks and fat make several differ.
-    const std::vector<double> means = seeds.means;
-    for (std::size_t n = 0; n < points.size(); ++n) {
-        const auto alike = std::ranges::count_if(
-            means, [&](double other) { return std::abs(other - means[n]) <= p.drift_hu; });
-        if (alike > 1 || points.size() < 3) continue;
-        if (note)
-            note(fmt::format(
-                "{}: around seed {} it is {:.0f} HU, around the others {:.0f} HU; is it in a vessel "
-                "or another organ?",
-                culprit, point_text(points[n]), seeds.means[n], seeds.center));
-        seeds.means[n] = std::nan("");
-    }
-    return seeds;
-}
-
-// Mean of the seeds' grey values, weighted by the inverse of their squared distance.
-double expected_at(const Seeds& seeds, const Eigen::Vector3d& p_P) {
-    double sum = 0, weights = 0;
-    for (std::size_t n = 0; n < seeds.means.size(); ++n) {
-        if (std::isnan(seeds.means[n])) continue;
-        const double weight = 1 / ((p_P - seeds.points[n]).squaredNorm() + 100);
-        sum += weight * seeds.means[n];
-        weights += weight;
-    }
-    return sum / weights;
-}
-
-template <typename Visit>
-void for_each_voxel(const ImageGrid& grid, const Visit& visit) {
-    std::size_t offset = 0;
-    for (std::int32_t k = 0; k < grid.size[2]; ++k)
-        for (std::int32_t j = 0; j < grid.size[1]; ++j)
-            for (std::int32_t i = 0; i < grid.size[0]; ++i, ++offset) visit(i, j, k, offset);
-}
-
-// Length of the gradient, per mm.
-Volume gradient(const Volume& volume) {
-    Volume smooth = volume, result = volume;
-    gaussian(smooth.grid, smooth.values, block_mm * 0.75);
-    const ImageGrid& grid = volume.grid;
-    for_each_voxel(grid, [&](std::int32_t i, std::int32_t j, std::int32_t k, std::size_t offset) {
-        double squared = 0;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            std::array<std::int32_t, 3> low{i, j, k}, high{i, j, k};
-            low[axis] = std::max(0, low[axis] - 1);
-            high[axis] = std::min(grid.size[axis] - 1, high[axis] + 1);
-            const double length =
-                std::max(1, high[axis] - low[axis]) * grid.spacing[static_cast<Eigen::Index>(axis)];
-            squared += std::pow((smooth.values[grid.offset(high[0], high[1], high[2])] -
-                                 smooth.values[grid.offset(low[0], low[1], low[2])]) /
-                                    length,
-                                2);
-        }
-        result.values[offset] = static_cast<float>(std::sqrt(squared));
-    });
-    return result;
-}
 
 // What is looked at, block by block.
 struct Blocks {
@@ -138,19 +53,19 @@ Mask wall_of(const Volume& volume) {
 double inner_gradient(const Volume& steepness, Points seeds) {
     std::vector<float> gradients;
     for (const Eigen::Vector3d& seed : seeds) {
-        std::vector<float> near = values_near(steepness, std::span(&seed, 1), seed_radius);
+        std::vector<float> near = values_near(steepness, std::span(&seed, 1), seed_radius_mm);
         gradients.push_back(static_cast<float>(robust_statistics(near).mean));
     }
     return robust_statistics(gradients).mean;
 }
 
-Blocks prepare(Volume grey, const Seeds& seeds) {
+Blocks prepare(Volume grey, const OrganSeeds& seeds) {
     Mask wall = wall_of(grey);
     for (float& value : grey.values)
         value =
             std::clamp(value, static_cast<float>(seeds.center - 200), static_cast<float>(seeds.center + 200));
     Volume smooth = curvature_flow(grey, smoothing_steps);
-    Volume steepness = gradient(smooth);
+    Volume steepness = gradient_length(smooth, block_mm * 0.75);
     const double edge = std::max(least_edge, first_edge_factor * inner_gradient(steepness, seeds.points));
     std::vector<float> local(smooth.values.size());
     for_each_voxel(smooth.grid, [&](std::int32_t i, std::int32_t j, std::int32_t k, std::size_t offset) {
@@ -171,32 +86,12 @@ Blocks crop(const Blocks& blocks, const Box& box) {
             std::move(local.values)};
 }
 
-// For each point the nearest voxel for which `is_target` holds.
-template <typename Target>
-std::vector<std::size_t> nearest_to(const ImageGrid& grid, Points points, double reach,
-                                    const Target& is_target) {
-    std::vector<double> best(points.size(), reach * reach);
-    std::vector<std::size_t> found(points.size(), SIZE_MAX);
-    for_each_voxel(grid, [&](std::int32_t i, std::int32_t j, std::int32_t k, std::size_t offset) {
-        if (!is_target(offset)) return;
-        const Eigen::Vector3d p = grid.point_of(Eigen::Vector3d(i, j, k));
-        for (std::size_t n = 0; n < points.size(); ++n)
-            if (const double squared = (p - points[n]).squaredNorm(); squared < best[n]) {
-                best[n] = squared;
-                found[n] = offset;
-            }
-    });
-    std::erase(found, SIZE_MAX);
-    return found;
-}
-
 // The pieces of a mask that are nearest to a seed, at most `reach` (mm) away.
 Mask pieces_at(const Mask& mask, Points seeds, double reach) {
     const Components pieces = components_of(mask);
     std::vector<std::uint8_t> seeded(pieces.sizes.size() + 1, 0);
-    for (const std::size_t voxel :
-         nearest_to(mask.grid, seeds, reach, [&](std::size_t i) { return mask.voxels[i] != 0; }))
-        seeded[pieces.labels[voxel]] = 1;
+    for (const Eigen::Vector3d& seed : seeds)
+        if (const auto voxel = nearest_voxel(mask, seed, reach)) seeded[pieces.labels[*voxel]] = 1;
     return select(mask, pieces, [&](std::uint32_t n) { return seeded[n] != 0; });
 }
 
@@ -210,8 +105,9 @@ double median_within(const Mask& mask, const Volume& volume) {
 // What of the candidates hangs together with the seeds through necks that a ball of `neck_mm` passes.
 Mask thick_part(const Mask& candidates, Points seeds, double neck_mm) {
     const std::vector<float> depth = depth_in(candidates);
-    const auto inside = nearest_to(candidates.grid, seeds, seed_reach_mm,
-                                   [&](std::size_t i) { return candidates.voxels[i] != 0; });
+    std::vector<std::size_t> inside;
+    for (const Eigen::Vector3d& seed : seeds)
+        if (const auto voxel = nearest_voxel(candidates, seed, seed_reach_mm)) inside.push_back(*voxel);
     if (inside.empty()) return {candidates.grid, std::vector<std::uint8_t>(candidates.voxels.size(), 0)};
     const Mask cut = cut_at_necks(candidates, depth, inside, neck_ratio);
     Mask core = cut;
@@ -252,14 +148,14 @@ Mask candidates_of(const Blocks& blocks, double tolerance_hu, bool with_edges) {
     return mask;
 }
 
-Mask found_in(const Blocks& blocks, const Seeds& seeds, const OrganParameters& p) {
+Mask found_in(const Blocks& blocks, const OrganSeeds& seeds, const OrganParameters& p) {
     const Mask thick = thick_part(candidates_of(blocks, p.tolerance_hu, false), seeds.points, p.neck_mm);
     return intersect(dilate(thick, edge_mm), candidates_of(blocks, p.tolerance_hu, true));
 }
 
 // The mean of what was found, around each block; where little was found, what the seeds say. It varies slowly
 // and is worked out on a coarser grid.
-void follow(Blocks& blocks, const Mask& found, const Seeds& seeds, double drift_hu) {
+void follow(Blocks& blocks, const Mask& found, const OrganSeeds& seeds, double drift_hu) {
     constexpr float doubt = 0.1F;  // weight of the seeds' word
     const auto center = static_cast<float>(seeds.center), drift = static_cast<float>(drift_hu);
     Volume share{found.grid, {found.voxels.begin(), found.voxels.end()}}, sum = share;
@@ -282,7 +178,7 @@ void follow(Blocks& blocks, const Mask& found, const Seeds& seeds, double drift_
 }
 
 // The organ in blocks of `box`, which shrinks to the organ's surroundings.
-Mask organ_of_blocks(Volume grey, const Seeds& seeds, const OrganParameters& p, Box& box) {
+Mask organ_of_blocks(Volume grey, const OrganSeeds& seeds, const OrganParameters& p, Box& box) {
     Blocks blocks = prepare(std::move(grey), seeds);
     Mask found = found_in(blocks, seeds, p);
     follow(blocks, found, seeds, p.drift_hu);
@@ -336,7 +232,7 @@ Mask organ(const Volume& volume, Points seeds, const OrganParameters& parameters
     for (const Eigen::Vector3d& seed : seeds) voxel_of_seed(volume.grid, seed, culprit);
     const auto block = blocks_of(volume.grid, block_mm);
     Volume whole = coarsen(volume, block);
-    const Seeds looked_at = look_at(whole, seeds, parameters, culprit, note);
+    const OrganSeeds looked_at = look_at_seeds(whole, seeds, parameters, culprit, note);
     Box box = box_around(whole, seeds);
     whole = crop(whole, box);
     const Mask found = organ_of_blocks(std::move(whole), looked_at, parameters, box);
