@@ -121,6 +121,17 @@ class Build(unittest.TestCase):
         self.change("tool_radius_mm = 4", "tool_radius_mm = 3")
         self.assertEqual(self.stages_run(), ["pack", "touch", "report"])
 
+    def test_other_seeds_segment_anew(self):
+        seeds = self.folder / "muscle.fcsv"
+        seeds.write_text("# CoordinateSystem = LPS\n1,34,20,0\n")
+        case = self.folder / "case.toml"
+        case.write_text(case.read_text() + '[[structure]]\nname = "muscle"\nrecipe = "grow-from-seeds"\n'
+                                           'seeds_file = "muscle.fcsv"\n')
+        self.assertIn("segment", self.stages_run())
+        self.assertEqual(self.stages_run(), [])
+        seeds.write_text("# CoordinateSystem = LPS\n1,34,22,0\n")
+        self.assertIn("segment", self.stages_run())
+
     def test_verify_accepts_the_asset(self):
         verified = run(BIN / "palpate", "verify", self.folder / "case.vtkhdf")
         self.assertEqual(verified.returncode, 0, verified.stderr + verified.stdout)

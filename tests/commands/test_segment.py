@@ -78,6 +78,42 @@ class Segment(ImagingCommand):
             contents.add(self.output.read_bytes())
         self.assertEqual(len(contents), 1)
 
+    def test_recipes_with_seeds_give_the_same_bytes_at_any_thread_count(self):
+        abdomen = pathlib.Path(self.inputs.name) / "abdomen.nrrd"
+        made = run(PHANTOM, "abdomen", abdomen, pathlib.Path(self.inputs.name) / "abdomen.seg.nrrd")
+        self.assertEqual(made.returncode, OK, made.stderr)
+        contents = set()
+        for threads in (1, 2, 8):
+            self.expect(self.segment("--volume", abdomen, "--structure",
+                                     "liver: recipe=liver seeds=-14,-6,16;-30,-6,-4 neck_mm=4 gap_mm=10",
+                                     "--structure", "tumour: recipe=tumour inside=liver seeds=-22,-10,4",
+                                     "--structure", "vessels: recipe=vessels inside=liver max_radius_mm=6",
+                                     "--structure", "muscle: recipe=grow-from-seeds seeds=34,20,0",
+                                     "--threads", threads, "--force"), OK)
+            contents.add(self.output.read_bytes())
+        self.assertEqual(len(contents), 1)
+
+    def test_seeds_come_from_slicers_files(self):
+        points = pathlib.Path(self.inputs.name) / "points.fcsv"
+        points.write_text("# CoordinateSystem = RAS\n1,0,5,-40,0,0,0,1,1,1,0,airway-1,,\n"
+                          "2,60,60,60,0,0,0,1,1,1,0,elsewhere,,\n")
+        structure = f"airway: recipe=airway opening_mm=4 seeds_file={points}"
+        self.expect(self.segment("--volume", self.volume, "--structure", structure), OK)
+        from_file = self.output.read_bytes()
+        self.expect(self.segment("--volume", self.volume, *self.RECIPES[2:], "--force"), OK)
+        self.assertEqual(from_file, self.output.read_bytes())
+        self.output.unlink()
+        self.expect(self.segment("--volume", self.volume, "--structure", structure.replace("airway:", "nose:")),
+                    INVALID, "structure 'nose': no seed is labelled 'nose' (expected one of the labels 'airway', "
+                             "'elsewhere'")
+        self.expect(self.segment("--volume", self.volume, "--structure", structure + "x"), INVALID, "points.fcsvx")
+
+    def test_what_was_assumed_is_said_and_reported(self):
+        result = self.segment("--volume", self.volume, "--structure", "skull: recipe=bone threshold_hu=0",
+                              "--json", "-")
+        self.expect(result, OK, "structure 'skull': threshold")
+        self.assertIn("HU found", json.loads(result.stdout)["notes"][0])
+
     def test_recipe_file_equals_options(self):
         recipes = pathlib.Path(self.inputs.name) / "recipes.json"
         recipes.write_text(json.dumps([
@@ -140,8 +176,9 @@ class Segment(ImagingCommand):
 
     def test_help_lists_every_recipe_with_units_and_defaults(self):
         text = self.segment("--help").stdout
-        for phrase in ("airway", "bone", "import", "nasopharynx", "sphere", "threshold_hu", "[HU] (default 226)",
-                       "thickness_mm", "[mm] (default 6)"):
+        for phrase in ("airway", "bone", "import", "nasopharynx", "sphere", "threshold_hu", "[HU] (default 226)", "liver",
+                       "tumour", "vessels", "brain", "grow-from-seeds", "seeds_file", "scribbles", "smooth_mm",
+                       "apply in the order written", "thickness_mm", "[mm] (default 6)"):
             self.assertIn(phrase, text)
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <filesystem>
 #include <fstream>
+#include <spdlog/spdlog.h>
 
 #include "formats/model/errors.hpp"
 #include "tools/cli/command.hpp"
@@ -12,15 +13,16 @@ namespace {
 
 using namespace palpate;
 using nlohmann::json;
+using nlohmann::ordered_json;  // cleaning steps apply in the order written
 
 // A JSON value as a recipe takes it; arrays of points are flattened.
-RecipeValue recipe_value(const json& value, const std::string& culprit) {
+RecipeValue recipe_value(const ordered_json& value, const std::string& culprit) {
     if (value.is_boolean()) return value.get<bool>();
     if (value.is_number()) return value.get<double>();
     if (value.is_string()) return value.get<std::string>();
     std::vector<double> numbers;
-    const json flat = value.flatten();
-    for (const json& number : flat) {
+    const ordered_json flat = value.flatten();
+    for (const ordered_json& number : flat) {
         if (!value.is_array() || !number.is_number())
             throw InvalidInput({culprit, value.dump(), "a number, numbers, a text, true or false", ""});
         numbers.push_back(number.get<double>());
@@ -30,7 +32,7 @@ RecipeValue recipe_value(const json& value, const std::string& culprit) {
 
 std::vector<StructureRecipe> read_recipes(const std::filesystem::path& path) {
     std::ifstream stream(path);
-    const json document = json::parse(stream, nullptr, false);
+    const ordered_json document = ordered_json::parse(stream, nullptr, false);
     const auto refuse = [&](const std::string& found) {
         return InvalidInput({path.string(), found,
                              "[{\"name\": ..., \"recipe\": ..., \"parameters\": {...}}]",
@@ -38,7 +40,7 @@ std::vector<StructureRecipe> read_recipes(const std::filesystem::path& path) {
     };
     if (!document.is_array()) throw refuse("is not a JSON array");
     std::vector<StructureRecipe> structures;
-    for (const json& item : document) {
+    for (const ordered_json& item : document) {
         if (!item.is_object()) throw refuse("holds " + item.dump());
         for (const auto& [key, value] : item.items())
             if (key != "name" && key != "recipe" && key != "parameters")
@@ -47,10 +49,12 @@ std::vector<StructureRecipe> read_recipes(const std::filesystem::path& path) {
         if (!item.contains("recipe") || !item["recipe"].is_string())
             throw refuse("a structure has no recipe");
         StructureRecipe structure{item["name"], item["recipe"], {}};
-        const json parameters = item.value("parameters", json::object());
+        const ordered_json parameters = item.value("parameters", ordered_json::object());
         if (!parameters.is_object()) throw refuse("parameters of '" + structure.name + "' are no object");
-        for (const auto& [key, value] : parameters.items())
+        for (const auto& [key, value] : parameters.items()) {
             structure.parameters[key] = recipe_value(value, path.string() + ": " + key);
+            structure.order.push_back(key);
+        }
         structures.push_back(std::move(structure));
     }
     return structures;
@@ -58,8 +62,14 @@ std::vector<StructureRecipe> read_recipes(const std::filesystem::path& path) {
 
 std::string recipe_help() {
     std::string text =
-        "A structure takes background only, in the order given; a sphere takes voxels of the structure it\n"
-        "lies inside. Write points as x,y,z and several as x,y,z;x,y,z. A recipe file is a JSON array of\n"
+        "A structure takes background only, in the order given; a sphere, a tumour or vessels take voxels of "
+        "the\n"
+        "structure they lie inside. Points are LPS in mm: x,y,z and several as x,y,z;x,y,z (3D Slicer shows "
+        "RAS:\n"
+        "negate x and y). Cleaning steps (close_mm, open_mm, fill_holes, min_component_ml, keep_largest,\n"
+        "smooth_mm) apply in the order written. Structures of grow-from-seeds compete with each other; "
+        "points\n"
+        "and strokes of other names in their files compete as background. A recipe file is a JSON array of\n"
         "{\"name\", \"recipe\", \"parameters\"}.\n\nRecipes and their parameters:\n";
     for (const std::string& recipe : recipe_names()) {
         text += "  " + recipe + "\n";
@@ -73,7 +83,7 @@ std::string recipe_help() {
     return text;
 }
 
-json describe(const LabelMap& map) {
+json describe(const LabelMap& map, const std::vector<std::string>& notes) {
     const auto numbers = [](const Eigen::Vector3d& v) { return json{v[0], v[1], v[2]}; };
     json labels = json::array();
     for (const LabelStatistics& label : label_statistics(map))
@@ -85,7 +95,7 @@ json describe(const LabelMap& map) {
                           {"box_min_mm", numbers(label.box.min())},
                           {"box_max_mm", numbers(label.box.max())},
                           {"centroid_mm", numbers(label.centroid)}});
-    return {{"labels", labels}};
+    return {{"labels", labels}, {"notes", notes}};
 }
 
 }  // namespace
@@ -96,6 +106,10 @@ int main(int argc, char** argv) {
          .summary = "Makes a label map of named structures from a volume, by recipes",
          .examples =
              {"palpate segment --volume volume.nrrd --structure 'skull: recipe=bone threshold_hu=226' -o "
+              "labels.seg.nrrd",
+              "palpate segment --volume volume.nrrd --structure 'liver: recipe=liver "
+              "seeds=-60,10,40;-20,-30,45' "
+              "--structure 'tumour: recipe=tumour inside=liver seeds_file=tumour.mrk.json' -o "
               "labels.seg.nrrd",
               "palpate segment --labels prior.seg.nrrd --structure 'liver: recipe=import' --structure "
               "'tumour: recipe=sphere inside=liver center_mm=80,90,140 radius_mm=12' -o labels.seg.nrrd"},
@@ -118,18 +132,24 @@ int main(int argc, char** argv) {
         set_imaging_threads(session.threads);
         auto staged = session.stage(output);
         session.progress.step("reading", 0);
+        std::vector<std::string> notes;
+        const NoteSink note = [&](std::string_view text) {
+            spdlog::warn("{}", text);
+            notes.emplace_back(text);
+        };
         std::optional<Volume> volume;
         std::optional<LabelMap> prior;
-        if (!volume_path.empty()) volume = read_volume(volume_path);
-        if (!labels_path.empty()) prior = read_label_map(labels_path);
-        const LabelMap map = segment(volume ? &*volume : nullptr, prior ? &*prior : nullptr, structures,
-                                     [&](std::string_view name, double fraction) {
-                                         session.progress.step(std::string("segmenting ") + std::string(name),
-                                                               0.1 + 0.8 * fraction);
-                                     });
+        if (!volume_path.empty()) volume = read_volume(volume_path, note);
+        if (!labels_path.empty()) prior = read_label_map(labels_path, note);
+        const LabelMap map = segment(
+            volume ? &*volume : nullptr, prior ? &*prior : nullptr, structures,
+            [&](std::string_view name, double fraction) {
+                session.progress.step(std::string("segmenting ") + std::string(name), 0.1 + 0.8 * fraction);
+            },
+            note);
         session.progress.step("writing", 0.9);
         write_label_map(staged.path(), map);
         staged.commit();
-        return describe(map);
+        return describe(map, notes);
     });
 }

@@ -9,6 +9,7 @@
 #include <limits>
 #include <numeric>
 
+#include "tools/imaging/filters.hpp"
 #include "tools/imaging/itk_image.hpp"
 
 namespace palpate {
@@ -91,6 +92,29 @@ std::vector<float> distance_to(const Mask& mask) {
     return distances;
 }
 
+std::vector<float> depth_in(const Mask& mask) {
+    return distance_to(complement(mask));
+}
+
+std::optional<std::size_t> nearest_voxel(const Mask& mask, const Eigen::Vector3d& p_P, double reach) {
+    const ImageGrid& grid = mask.grid;
+    const Eigen::Vector3d center = grid.index_of(p_P), step = reach * grid.spacing.cwiseInverse();
+    const Eigen::Array3i low = (center - step).array().ceil().cast<int>(),
+                         high = (center + step).array().floor().cast<int>();
+    std::optional<std::size_t> found;
+    double nearest = reach * reach;
+    for (int k = low[2]; k <= high[2]; ++k)
+        for (int j = low[1]; j <= high[1]; ++j)
+            for (int i = low[0]; i <= high[0]; ++i) {
+                if (!grid.contains(i, j, k) || !mask.voxels[grid.offset(i, j, k)]) continue;
+                const double squared = (grid.point_of(Eigen::Vector3d(i, j, k)) - p_P).squaredNorm();
+                if (squared > nearest || (found && squared == nearest)) continue;
+                nearest = squared;
+                found = grid.offset(i, j, k);
+            }
+    return found;
+}
+
 Mask dilate(const Mask& mask, double radius) {
     if (radius <= 0) return mask;
     const std::vector<float> distances = distance_to(mask);
@@ -121,6 +145,20 @@ Mask fill_holes(const Mask& mask) {
     filter->Update();
     const auto filled = voxels_of(*filter->GetOutput());
     return {mask.grid, {filled.begin(), filled.end()}};
+}
+
+Mask smooth(const Mask& mask, double size) {
+    const std::size_t inside = mask.count();
+    if (size <= 0 || inside == 0) return mask;
+    std::vector<float> share(mask.voxels.begin(), mask.voxels.end());
+    gaussian(mask.grid, share, size / 2);
+    std::vector<float> sorted = share;
+    const auto last_inside = sorted.begin() + static_cast<std::ptrdiff_t>(inside - 1);
+    std::ranges::nth_element(sorted, last_inside, std::greater<>());
+    Mask result = mask;
+    std::ranges::transform(share, result.voxels.begin(),
+                           [&](float value) -> std::uint8_t { return value >= *last_inside; });
+    return result;
 }
 
 Mask intersect(const Mask& a, const Mask& b) {

@@ -52,6 +52,12 @@ Mask drop_small(const Mask& mask, double volume);
 /// Cost: linear in voxels (Maurer, Qi and Raghavan, 2003).
 std::vector<float> distance_to(const Mask& mask);
 
+/// Distance from each voxel of the mask to the nearest voxel outside it (mm), 0 outside.
+std::vector<float> depth_in(const Mask& mask);
+
+/// The offset of the voxel of `mask` nearest to `p_P` (mm), at most `reach` (mm) away; none if there is none.
+std::optional<std::size_t> nearest_voxel(const Mask& mask, const Eigen::Vector3d& p_P, double reach);
+
 /// Voxels within `radius` (mm) of the mask; radius 0 changes nothing, here and below.
 Mask dilate(const Mask& mask, double radius);
 Mask erode(const Mask& mask, double radius);
@@ -61,6 +67,10 @@ Mask open(const Mask& mask, double radius);
 Mask close(const Mask& mask, double radius);
 /// Adds the background that the grid's border cannot be reached from by face steps.
 Mask fill_holes(const Mask& mask);
+
+/// Rounds the border off: the mask's Gaussian mean with deviation `size` / 2 (mm), cut where as many voxels
+/// lie inside as before, so that the volume stays; size 0 changes nothing.
+Mask smooth(const Mask& mask, double size);
 
 Mask intersect(const Mask& a, const Mask& b);
 Mask subtract(const Mask& a, const Mask& b);

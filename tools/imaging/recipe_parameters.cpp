@@ -2,6 +2,7 @@
 #include "tools/imaging/recipe_parameters.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <fmt/format.h>
 #include <sstream>
@@ -21,49 +22,90 @@ std::vector<RecipeParameterInfo> region_parameters() {
             {"box_max_mm", Kind::numbers, "mm", "", "highest x, y, z of that box"}};
 }
 
-// Applied in this order after the recipe.
-std::vector<RecipeParameterInfo> cleaning_parameters(const std::string& smallest_ml) {
-    return {{"close_mm", Kind::number, "mm", "0", "fill gaps that a ball of this radius does not fit into"},
-            {"open_mm", Kind::number, "mm", "0", "remove what a ball of this radius does not fit into"},
-            {"fill_holes", Kind::flag, "", "no", "fill enclosed background"},
-            {"min_component_ml", Kind::number, "ml", smallest_ml, "drop smaller pieces"},
-            {"keep_largest", Kind::flag, "", "no", "keep the largest piece only"}};
+std::vector<RecipeParameterInfo> seed_parameters() {
+    return {{"seeds_mm", Kind::numbers, "mm", "", "points x, y, z inside it (LPS); 'seeds' for short"},
+            {"seeds_file", Kind::text, "", "",
+             "3D Slicer points (.mrk.json, .fcsv): those labelled as the structure, or all if they share a "
+             "label"},
+            {"scribbles", Kind::text, "", "", "label map with strokes, those labelled as the structure"}};
 }
 
-Table make_table() {
-    Table table{
+// Applied in the order written, after the recipe; in this order where none is known.
+std::vector<RecipeParameterInfo> cleaning_parameters(const std::string& smallest_ml = "0",
+                                                     const std::string& solid = "no",
+                                                     const std::string& smooth_mm = "0") {
+    return {{"close_mm", Kind::number, "mm", "0", "fill gaps that a ball of this radius does not fit into"},
+            {"open_mm", Kind::number, "mm", "0", "remove what a ball of this radius does not fit into"},
+            {"fill_holes", Kind::flag, "", solid, "fill enclosed background"},
+            {"min_component_ml", Kind::number, "ml", smallest_ml, "drop smaller pieces"},
+            {"keep_largest", Kind::flag, "", solid, "keep the largest piece only"},
+            {"smooth_mm", Kind::number, "mm", smooth_mm, "round details below this size off, volume kept"}};
+}
+
+const std::vector<RecipeParameterInfo> import_parameters{
+    {"label", Kind::text, "", "",
+     "name or value in the label map, * for all of them [default: the structure's name]"},
+    {"file", Kind::text, "", "", "label map to read [default: the one given with the volume]"}};
+
+Table own_parameters() {
+    return {
         {"bone",
-         {{"threshold_hu", Kind::number, "HU", "226", "bone is at least this dense"},
+         {{"threshold_hu", Kind::number, "HU", "226", "bone is at least this dense; 0 finds it by itself"},
           {"separation_mm", Kind::number, "mm", "4", "ball that cuts table and head rest off the body"}}},
         {"airway",
          {{"threshold_hu", Kind::number, "HU", "-400", "air is below"},
           {"opening_mm", Kind::number, "mm", "5",
-           "openings to the outside that a ball of this radius does "
-           "not pass count as closed"},
-          {"seeds_mm", Kind::numbers, "mm", "",
-           "points x, y, z in the passage; without any, the largest "
-           "piece is kept"}}},
+           "openings to the outside that a ball of this radius does not pass count as closed"}}},
         {"nasopharynx",
          {{"air", Kind::text, "", "airway", "structure the wall encloses"},
           {"thickness_mm", Kind::number, "mm", "6", "depth of the wall from the air"},
           {"lower_hu", Kind::number, "HU", "-400", "soft tissue is at least this dense"},
           {"upper_hu", Kind::number, "HU", "225", "soft tissue is at most this dense"},
           {"smoothing_mm", Kind::number, "mm", "1", "gaps and spikes below this radius vanish"}}},
+        {"liver",
+         {{"tolerance_hu", Kind::number, "HU", "25", "grey values may be so far off the local mean"},
+          {"drift_hu", Kind::number, "HU", "20", "the local mean may be so far off that at the seeds"},
+          {"neck_mm", Kind::number, "mm", "6", "where no ball of this radius passes, the liver ends"},
+          {"gap_mm", Kind::number, "mm", "4", "vessels, lesions and clefts below this radius are filled"},
+          {"largest_ml", Kind::number, "ml", "4000", "more than this is a leak"}}},
+        {"tumour",
+         {{"inside", Kind::text, "", "", "structure whose voxels it takes"},
+          {"margin_mm", Kind::number, "mm", "2",
+           "how far it may reach beyond the voxels of that structure"}}},
+        {"vessels",
+         {{"inside", Kind::text, "", "", "structure whose voxels they take [default: background only]"},
+          {"contrast_hu", Kind::number, "HU", "25", "they are so much brighter than their surroundings"},
+          {"max_radius_mm", Kind::number, "mm", "8", "what a larger ball fits into is no vessel"}}},
+        {"grow-from-seeds",
+         {{"tolerance", Kind::number, "", "3",
+           "it stops at grey values so many standard deviations off its seeds' mean"}}},
         {"threshold",
          {{"lower_hu", Kind::number, "HU", "-inf", "lowest value"},
           {"upper_hu", Kind::number, "HU", "inf", "highest value"}}},
-        {"import",
-         {{"label", Kind::text, "", "", "name or value in the label map [default: the structure's name]"},
-          {"file", Kind::text, "", "", "label map to read [default: the one given with the volume]"}}},
+        {"import", import_parameters},
+        {"brain", import_parameters},
         {"sphere",
          {{"inside", Kind::text, "", "", "structure whose voxels it takes"},
           {"center_mm", Kind::numbers, "mm", "", "centre x, y, z"},
           {"radius_mm", Kind::number, "mm", "", "radius"}}}};
+}
+
+Table make_table() {
+    const auto append = [](std::vector<RecipeParameterInfo>& to,
+                           const std::vector<RecipeParameterInfo>& more) {
+        to.insert(to.end(), more.begin(), more.end());
+    };
+    Table table = own_parameters();
     for (auto& [recipe, parameters] : table) {
         if (recipe == "sphere") continue;
-        std::ranges::copy(region_parameters(), std::back_inserter(parameters));
+        if (takes_seeds(recipe)) append(parameters, seed_parameters());
+        append(parameters, region_parameters());
         if (recipe == "nasopharynx") continue;
-        std::ranges::copy(cleaning_parameters(recipe == "bone" ? "1" : "0"), std::back_inserter(parameters));
+        const bool solid = recipe == "brain" || recipe == "tumour";
+        append(parameters, cleaning_parameters(recipe == "bone"      ? "1"
+                                               : recipe == "vessels" ? "0.05"
+                                                                     : "0",
+                                               solid ? "yes" : "no", recipe == "liver" ? "3" : "0"));
     }
     return table;
 }
@@ -71,6 +113,11 @@ Table make_table() {
 const Table& table() {
     static const Table recipes = make_table();
     return recipes;
+}
+
+// "seeds" is short for "seeds_mm".
+std::string full_name(const std::string& parameter) {
+    return parameter == "seeds" ? "seeds_mm" : parameter;
 }
 
 std::string culprit_of(const std::string& structure) {
@@ -132,7 +179,7 @@ const RecipeParameterInfo& require_parameter(const StructureRecipe& structure, c
                             "nearest names: " + joined(nearest_names(structure.recipe, recipe_names()))});
     std::vector<std::string> names;
     for (const RecipeParameterInfo& info : found->second) {
-        if (info.name == name) return info;
+        if (info.name == full_name(name)) return info;
         names.push_back(info.name);
     }
     throw InvalidInput({culprit_of(structure.name),
@@ -141,6 +188,23 @@ const RecipeParameterInfo& require_parameter(const StructureRecipe& structure, c
 }
 
 }  // namespace
+
+bool takes_seeds(const std::string& recipe) {
+    return std::ranges::count(std::array{"airway", "grow-from-seeds", "liver", "tumour", "vessels"}, recipe) >
+           0;
+}
+
+std::vector<std::string> cleaning_steps(const StructureRecipe& structure) {
+    std::vector<std::string> steps, written;
+    for (const RecipeParameterInfo& info : cleaning_parameters())
+        if (std::ranges::count(structure.order, info.name) == 0) steps.push_back(info.name);
+    for (const std::string& name : structure.order)
+        if (std::ranges::count(steps, name) == 0 &&
+            std::ranges::count(cleaning_parameters(), name, &RecipeParameterInfo::name) > 0)
+            written.push_back(name);
+    steps.insert(steps.end(), written.begin(), written.end());
+    return steps;
+}
 
 std::vector<std::string> recipe_names() {
     std::vector<std::string> names;
@@ -166,7 +230,8 @@ void check_recipe(const StructureRecipe& structure) {
                                                               : "yes or no";
         if (!is_of(info.kind, value)) refuse_value(structure.name, name, "of another kind", kind);
         if (const auto* numbers = std::get_if<std::vector<double>>(&value))
-            if (numbers->empty() || numbers->size() % 3 != 0 || (name != "seeds_mm" && numbers->size() != 3))
+            if (numbers->empty() || numbers->size() % 3 != 0 ||
+                (info.name != "seeds_mm" && numbers->size() != 3))
                 refuse_value(structure.name, name, fmt::format("{} numbers", numbers->size()), "x, y, z");
         if (const auto* number = std::get_if<double>(&value))
             if ((info.unit == "mm" || info.unit == "ml") && !(*number >= 0))
@@ -183,6 +248,7 @@ StructureRecipe parse_structure(std::string_view text) {
     if (colon == 0 || colon == std::string_view::npos) throw malformed("no name before a colon");
     StructureRecipe structure{std::string(text.substr(0, colon)), "", {}};
     std::map<std::string, std::string> words;
+    std::vector<std::string> order;
     std::istringstream stream{std::string(text.substr(colon + 1))};
     for (std::string word; stream >> word;) {
         const auto equals = word.find('=');
@@ -190,11 +256,14 @@ StructureRecipe parse_structure(std::string_view text) {
             throw malformed("'" + word + "' is no parameter=value");
         if (!words.emplace(word.substr(0, equals), word.substr(equals + 1)).second)
             throw malformed("'" + word.substr(0, equals) + "' is given twice");
+        order.push_back(word.substr(0, equals));
     }
     if (!words.contains("recipe")) throw malformed("no recipe");
     structure.recipe = words.extract("recipe").mapped();
     for (const auto& [name, value] : words)
-        structure.parameters[name] = parse_value(structure.name, require_parameter(structure, name), value);
+        structure.parameters[full_name(name)] =
+            parse_value(structure.name, require_parameter(structure, name), value);
+    structure.order = order;
     check_recipe(structure);
     return structure;
 }
@@ -202,6 +271,10 @@ StructureRecipe parse_structure(std::string_view text) {
 Parameters::Parameters(const StructureRecipe& structure)
     : structure_(structure.name), values_(structure.parameters) {
     check_recipe(structure);
+    if (auto seeds = values_.extract("seeds")) {
+        seeds.key() = full_name("seeds");
+        values_.insert(std::move(seeds));
+    }
     for (const RecipeParameterInfo& info : recipe_parameters(structure.recipe))
         if (!info.default_value.empty() && !values_.contains(info.name))
             values_[info.name] = parse_value(structure.name, info, info.default_value);

@@ -30,4 +30,10 @@ class Parameters {
     std::map<std::string, RecipeValue> values_;
 };
 
+/// Tells whether a recipe has the parameters seeds_mm, seeds_file and scribbles.
+bool takes_seeds(const std::string& recipe);
+
+/// The cleaning parameters in the order in which they apply: those not written first, then as written.
+std::vector<std::string> cleaning_steps(const StructureRecipe& structure);
+
 }  // namespace palpate

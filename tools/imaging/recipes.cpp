@@ -7,6 +7,7 @@
 #include <set>
 
 #include "formats/model/errors.hpp"
+#include "tools/imaging/seed_statistics.hpp"
 
 namespace palpate {
 namespace {
@@ -39,24 +40,6 @@ Mask outside_air(const Mask& air, double opening_mm) {
     return intersect(air, dilate(outside, opening_mm + air.grid.spacing.maxCoeff()));
 }
 
-// The piece nearest to a seed, at most seed_reach away.
-std::uint32_t piece_at(const Components& pieces, const ImageGrid& grid, const Eigen::Vector3d& seed) {
-    const Eigen::Vector3d center = grid.index_of(seed);
-    const Eigen::Vector3d reach = seed_reach * grid.spacing.cwiseInverse();
-    double nearest = seed_reach * seed_reach;
-    std::uint32_t piece = 0;
-    for (auto k = static_cast<std::int32_t>(center[2] - reach[2]); k <= center[2] + reach[2]; ++k)
-        for (auto j = static_cast<std::int32_t>(center[1] - reach[1]); j <= center[1] + reach[1]; ++j)
-            for (auto i = static_cast<std::int32_t>(center[0] - reach[0]); i <= center[0] + reach[0]; ++i) {
-                if (!grid.contains(i, j, k) || pieces.labels[grid.offset(i, j, k)] == 0) continue;
-                const double squared = (grid.point_of(Eigen::Vector3d(i, j, k)) - seed).squaredNorm();
-                if (squared > nearest) continue;
-                nearest = squared;
-                piece = pieces.labels[grid.offset(i, j, k)];
-            }
-    return piece;
-}
-
 Mask touching(const Mask& mask, const Mask& other) {
     const auto& grid = mask.grid;
     const auto& size = grid.size;
@@ -84,6 +67,25 @@ Mask threshold(const Volume& volume, double lower_hu, double upper_hu) {
     return mask;
 }
 
+double hounsfield_offset(const Volume& volume) {
+    constexpr double offset = 1024;
+    std::size_t soft_tissue = 0, between = 0;  // between air and soft tissue lies little but lung
+    for (const float value : volume.values) {
+        if (value < 0) return 0;
+        soft_tissue += value > offset - 150 && value < offset + 150;
+        between += value > 200 && value < 800;
+    }
+    return soft_tissue * 20 > volume.values.size() && soft_tissue > 3 * between ? offset : 0;
+}
+
+double bone_threshold(const Volume& volume) {
+    std::vector<float> soft;
+    std::ranges::copy_if(volume.values, std::back_inserter(soft),
+                         [](float value) { return value >= -20 && value <= 200; });
+    const GreyStatistics grey = robust_statistics(soft);
+    return grey.mean + std::max(150.0, 5 * grey.sigma);
+}
+
 Mask bone(const Volume& volume, double threshold_hu, double separation_mm) {
     constexpr double any = std::numeric_limits<double>::infinity();
     const Mask body = keep_largest(open(threshold(volume, tissue_above_hu, any), separation_mm));
@@ -91,7 +93,7 @@ Mask bone(const Volume& volume, double threshold_hu, double separation_mm) {
 }
 
 Mask airway(const Volume& volume, std::span<const Eigen::Vector3d> seeds, double threshold_hu,
-            double opening_mm) {
+            double opening_mm, const std::string& culprit) {
     Mask air{volume.grid, std::vector<std::uint8_t>(volume.values.size())};
     std::ranges::transform(volume.values, air.voxels.begin(),
                            [&](float value) { return value < threshold_hu; });
@@ -100,13 +102,14 @@ Mask airway(const Volume& volume, std::span<const Eigen::Vector3d> seeds, double
     const Components pieces = components_of(inner);
     std::set<std::uint32_t> seeded;
     for (const Eigen::Vector3d& seed : seeds) {
-        const std::uint32_t piece = piece_at(pieces, volume.grid, seed);
-        if (piece == 0)
-            throw InvalidInput({"seed", fmt::format("({}, {}, {}) mm", seed[0], seed[1], seed[2]),
+        voxel_of_seed(volume.grid, seed, culprit);
+        const auto voxel = nearest_voxel(inner, seed, seed_reach);
+        if (!voxel)
+            throw InvalidInput({culprit, "seed " + point_text(seed) + " is not in the passage",
                                 fmt::format("inner air within {} mm", seed_reach),
                                 "move the seed into the passage, or lower opening_mm if the passage counts "
                                 "as outside"});
-        seeded.insert(piece);
+        seeded.insert(pieces.labels[*voxel]);
     }
     return select(inner, pieces, [&](std::uint32_t n) { return seeded.contains(n); });
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <span>
+#include <string>
 
 #include "tools/imaging/mask.hpp"
 
@@ -8,6 +9,14 @@ namespace palpate {
 
 /// Voxels of lower ... upper HU, both included.
 Mask threshold(const Volume& volume, double lower_hu, double upper_hu);
+
+/// How far the values of a CT lie above HU: 1024 if none is negative and soft tissue is found about 1024 and
+/// not about 0, as in files that store value + 1024; else 0.
+double hounsfield_offset(const Volume& volume);
+
+/// Lowest threshold for bone that is clear of soft tissue: the median of the values of -20 ... 200 HU and
+/// five of their deviations (median absolute deviation), at least 150 HU above.
+double bone_threshold(const Volume& volume);
 
 /// Bone: voxels of `threshold_hu` or more in the body. The body is the largest piece of tissue (above -300
 /// HU) after an opening by `separation_mm`, which cuts it from table and head rest, and what lies within
@@ -17,9 +26,10 @@ Mask bone(const Volume& volume, double threshold_hu = 226, double separation_mm 
 /// Air passages: air (below `threshold_hu`) without the outside. The outside is the air that reaches an edge
 /// of the volume, where two of its faces meet, through openings that a ball of `opening_mm` passes; so a
 /// passage cut by the last slice stays. Kept are the pieces that hold a seed (p_P, mm) or, without seeds, the
-/// largest. Throws InvalidInput if a seed lies outside the volume or more than 2 mm from such air.
+/// largest. Throws InvalidInput naming `culprit` if a seed lies outside the volume or more than 2 mm from
+/// such air.
 Mask airway(const Volume& volume, std::span<const Eigen::Vector3d> seeds, double threshold_hu = -400,
-            double opening_mm = 5);
+            double opening_mm = 5, const std::string& culprit = "seed");
 
 /// The soft wall of an air passage: voxels of lower ... upper HU outside `air` and not in `taken`, within
 /// `thickness_mm` of `air` and in `region`. Gaps below `smoothing_mm` are closed, spikes below it removed,

@@ -11,6 +11,7 @@
 #include "formats/model/image_grid.hpp"
 #include "formats/model/label_map.hpp"
 #include "formats/model/progress.hpp"
+#include "tools/imaging/image_files.hpp"
 
 namespace palpate {
 
@@ -22,6 +23,7 @@ struct StructureRecipe {
     std::string name;                               ///< of the label it makes
     std::string recipe;                             ///< one of recipe_names()
     std::map<std::string, RecipeValue> parameters;  ///< by name; what is absent takes its default
+    std::vector<std::string> order = {};  ///< parameters as written, for cleaning steps; may be empty
 };
 
 /// What a recipe's parameter is.
@@ -34,26 +36,32 @@ struct RecipeParameterInfo {
     std::string meaning;
 };
 
-/// "airway", "bone", "import", "nasopharynx", "sphere", "threshold".
+/// "airway", "bone", "brain", "grow-from-seeds", "import", "liver", "nasopharynx", "sphere", "threshold",
+/// "tumour", "vessels".
 std::vector<std::string> recipe_names();
 
 /// Lists the parameters of a recipe; throws InvalidInput with the nearest names if there is no such recipe.
 std::vector<RecipeParameterInfo> recipe_parameters(const std::string& recipe);
 
 /// Reads "skull: recipe=bone threshold_hu=226"; numbers of a point are separated by commas, points by
-/// semicolons. Throws UsageError if the text is malformed, InvalidInput as check_recipe() does.
+/// semicolons; "seeds" is short for "seeds_mm". Throws UsageError if the text is malformed, InvalidInput as
+/// check_recipe() does.
 StructureRecipe parse_structure(std::string_view text);
 
 /// Throws InvalidInput if the recipe or a parameter is unknown (with the nearest names), or of another kind.
 void check_recipe(const StructureRecipe& structure);
 
 /// Makes the structures in order, with label values 1, 2, 3 ... A structure takes background voxels only,
-/// except a sphere, which takes voxels of the structure it lies inside. The result lies on the grid of
-/// `volume` or, without one, of `prior`. `prior` is what the recipe "import" reads from, resampled to the
-/// nearest voxel if its grid differs; either may be null.
-/// Throws InvalidInput naming the structure if it would be empty, if a recipe misses the volume or the prior
-/// it needs, if a label is not found, if a name occurs twice; and as check_recipe() does.
+/// except a sphere, a tumour or vessels inside another structure, which take voxels of that one. Cleaning
+/// steps follow the recipe in the order written. Structures of the recipe "grow-from-seeds" compete with each
+/// other. The result lies on the grid of `volume` or, without one, of `prior`. `prior` is what the recipes
+/// "import" and "brain" read from, resampled to the nearest voxel if its grid differs; either may be null.
+/// A CT without negative values whose soft tissue lies about 1024 is taken to be 1024 above HU. `note`
+/// receives that, and what else a person should look at, one sentence at a time.
+/// Throws InvalidInput naming the structure if it would be empty or implausibly large, if a recipe misses the
+/// volume, the prior or the seeds it needs, if a seed or a label is not where it must be, if a name occurs
+/// twice; as check_recipe() and read_seeds() do.
 LabelMap segment(const Volume* volume, const LabelMap* prior, std::span<const StructureRecipe> structures,
-                 const ProgressCallback& progress = {});
+                 const ProgressCallback& progress = {}, const NoteSink& note = {});
 
 }  // namespace palpate

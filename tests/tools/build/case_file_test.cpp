@@ -49,7 +49,7 @@ TEST(CaseFile, reads_what_people_write) {
     EXPECT_EQ(file.name, "liver");
     EXPECT_EQ(file.labels->filename(), "liver.seg.nrrd");
     EXPECT_FALSE(file.volume);
-    EXPECT_EQ(file.structures.at(0).parameters.at("center_mm"), nlohmann::json::parse("[1, 2.5, 3]"));
+    EXPECT_EQ(file.structures.at(0).parameters.at("center_mm"), nlohmann::ordered_json::parse("[1, 2.5, 3]"));
     const DeformableSpec& body = file.deformable.at(0);
     EXPECT_EQ(body.sizing.at("--cell-size"), 8);
     EXPECT_EQ(body.fixed, (std::vector<std::string>{"touching:skull", "sphere:1,2,3.5,4"}));
@@ -78,6 +78,23 @@ TEST(CaseFile, how_the_inputs_are_read_becomes_options_of_import) {
     EXPECT_EQ(named.labels_options,
               (Texts{"--nifti-frame", "qform", "--label-names", table.string(), "--overlaps", "smaller"}));
     EXPECT_THROW(with("accept_gaps = \"yes\"\n"), InvalidInput);
+}
+
+TEST(CaseFile, files_that_recipes_read_lie_beside_it_and_parameters_keep_their_order) {
+    const CaseFile file = read_case_file(written(minimal + R"([[structure]]
+name = "liver"
+recipe = "liver"
+seeds_file = "seeds/liver.mrk.json"
+open_mm = 2
+keep_largest = true
+close_mm = 1
+scribbles = "strokes.seg.nrrd"
+)"));
+    const StructureSpec& liver = file.structures.at(1);
+    const auto folder = written(minimal).parent_path();
+    EXPECT_EQ(liver.files.at("seeds_file"), folder / "seeds/liver.mrk.json");
+    EXPECT_EQ(liver.files.at("scribbles"), folder / "strokes.seg.nrrd");
+    EXPECT_EQ(liver.parameters.dump(), R"({"open_mm":2,"keep_largest":true,"close_mm":1})");
 }
 
 TEST(CaseFile, an_unknown_key_is_refused_with_line_and_nearest_name) {

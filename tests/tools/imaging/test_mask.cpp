@@ -114,6 +114,19 @@ TEST(Mask, only_enclosed_holes_are_filled) {
     EXPECT_EQ(filled.voxels[mask.grid.offset(2, 2, 0)], 0);
 }
 
+TEST(Mask, smoothing_keeps_the_volume_and_rounds_corners_off) {
+    Mask cube{ImageGrid{{20, 20, 20}}, std::vector<std::uint8_t>(8000, 0)};
+    for (int k = 5; k < 15; ++k)
+        for (int j = 5; j < 15; ++j)
+            for (int i = 5; i < 15; ++i) cube.voxels[cube.grid.offset(i, j, k)] = 1;
+    const Mask round = smooth(cube, 4);
+    // Voxels of equal mean are kept or dropped together: eight corners at most, by symmetry in threes.
+    EXPECT_NEAR(static_cast<double>(round.count()), 1000, 48);
+    EXPECT_EQ(round.voxels[cube.grid.offset(5, 5, 5)], 0);
+    EXPECT_EQ(round.voxels[cube.grid.offset(4, 9, 9)], 1);
+    EXPECT_EQ(smooth(cube, 0).voxels, cube.voxels);
+}
+
 TEST(Mask, results_do_not_depend_on_the_number_of_threads) {
     const Mask mask = random_mask(0.4, 7);
     const auto run = [&](int threads) {

@@ -5,11 +5,13 @@
 
 #include "formats/model/errors.hpp"
 #include "sample_data/phantoms.hpp"
+#include "tests/formats/scratch.hpp"
 #include "tests/tools/imaging/hand_written_images.hpp"
 #include "tools/imaging/image_files.hpp"
 #include "tools/imaging/label_names.hpp"
 #include "tools/imaging/label_statistics.hpp"
 #include "tools/imaging/recipes.hpp"
+#include "tools/imaging/seeds.hpp"
 #include "tools/imaging/segmentation.hpp"
 
 namespace palpate {
@@ -137,6 +139,154 @@ TEST(Recipes, import_keeps_the_labels_colour) {
     EXPECT_EQ(map.names.at(0).colour, (std::array<float, 3>{0.6F, 0.3F, 0.2F}));
 }
 
+// Liver, tumour and vessels on a body twice life's smallness: the liver's balls and necks scale with it.
+const std::string small_liver = "liver: recipe=liver seeds=-14,-6,16;-30,-6,-4;4,-8,0 neck_mm=4 gap_mm=10";
+
+TEST(Recipes, liver_takes_its_tumour_and_vessels_along_and_both_can_be_found_inside) {
+    const Phantom abdomen = abdomen_phantom({.samples_per_axis = 2, .noise_hu = 15});
+    LabelMap whole = abdomen.truth;
+    for (std::uint16_t& label : whole.labels) label = label == 2 ? 1 : label;
+    EXPECT_GT(dice(run(&abdomen.volume, nullptr, {small_liver}), "liver", whole, "liver"), coarse_dice);
+    const LabelMap map = run(&abdomen.volume, nullptr,
+                             {small_liver, "tumour: recipe=tumour inside=liver seeds=-22,-10,4",
+                              "vessels: recipe=vessels inside=liver max_radius_mm=6 seeds=-12,6,-8"});
+    EXPECT_GT(dice(map, "tumour", abdomen.truth, "tumour"), coarse_dice);
+    EXPECT_EQ(label_statistics(map)[1].components, 1U);
+    std::size_t found = 0, true_vessels = 0;
+    for (std::size_t i = 0; i < map.labels.size(); ++i) {
+        found += map.labels[i] == 3;
+        true_vessels += map.labels[i] == 3 && abdomen.truth.labels[i] == 3;
+    }
+    EXPECT_GT(found, 50U);
+    EXPECT_GT(true_vessels * 10, found * 6);  // a tube of three voxels is mostly border
+}
+
+TEST(Recipes, liver_hardly_depends_on_where_the_seeds_are) {
+    const Phantom abdomen = abdomen_phantom({.samples_per_axis = 2, .noise_hu = 15});
+    const LabelMap map = run(&abdomen.volume, nullptr, {small_liver});
+    for (const char* seeds : {"-10,-8,14", "-12,-2,12;-33,-8,-6", "-18,-6,-18;0,-8,4;-20,6,10;-30,-6,-8"}) {
+        const LabelMap other = run(&abdomen.volume, nullptr,
+                                   {"liver: recipe=liver neck_mm=4 gap_mm=10 seeds=" + std::string(seeds)});
+        EXPECT_GT(dice(map, "liver", other, "liver"), 0.97) << seeds;
+    }
+}
+
+TEST(Recipes, liver_is_found_however_it_was_imaged) {
+    for (const auto& [name, options] : imagings()) {
+        SCOPED_TRACE(name);
+        const Phantom abdomen = abdomen_phantom(options);
+        LabelMap whole = abdomen.truth;
+        for (std::uint16_t& label : whole.labels) label = label == 2 ? 1 : label;
+        const LabelMap map = run(&abdomen.volume, nullptr, {small_liver});
+        EXPECT_GT(dice(map, "liver", whole, "liver"), coarse_dice);
+    }
+}
+
+TEST(Recipes, bone_finds_a_threshold_clear_of_soft_tissue) {
+    const Phantom head = head_phantom({.samples_per_axis = 2, .noise_hu = 25});
+    const LabelMap map = run(&head.volume, nullptr, {"skull: recipe=bone threshold_hu=0"});
+    EXPECT_GT(dice(map, "skull", head.truth, "skull"), coarse_dice);
+}
+
+TEST(Recipes, brain_is_imported_in_one_piece_without_holes) {
+    Phantom abdomen = abdomen_phantom();
+    const LabelMap map = run(&abdomen.volume, &abdomen.truth, {"brain: recipe=brain label=liver"});
+    EXPECT_EQ(label_statistics(map)[0].components, 1U);
+    const LabelMap all =
+        run(&abdomen.volume, &abdomen.truth, {"all: recipe=brain label=* keep_largest=no fill_holes=no"});
+    EXPECT_EQ(std::ranges::count(all.labels, 0), std::ranges::count(abdomen.truth.labels, 0));
+}
+
+TEST(Recipes, structures_grown_from_seeds_share_a_border) {
+    const Phantom abdomen = abdomen_phantom({.noise_hu = 10});
+    const LabelMap map =
+        run(&abdomen.volume, nullptr,
+            {"liver: recipe=grow-from-seeds seeds=-14,-6,16", "rest: recipe=grow-from-seeds seeds=34,20,0"});
+    EXPECT_GT(dice(map, "liver", abdomen.truth, "liver"), coarse_dice);
+    EXPECT_GT(label_statistics(map)[1].volume_ml, 100);
+}
+
+TEST(Recipes, seeds_come_from_points_and_from_strokes_alike) {
+    const sample::Scratch scratch;
+    const Phantom abdomen = abdomen_phantom();
+    write_seeds(scratch / "points.mrk.json",
+                std::vector<Seed>{{"liver-1", {-14, -6, 16}}, {"other", {34, 20, 0}}});
+    LabelMap strokes{abdomen.truth.grid,
+                     std::vector<std::uint16_t>(abdomen.truth.labels.size(), 0),
+                     {{1, "liver", {}}, {2, "other", {}}}};
+    const auto draw = [&](const Eigen::Vector3d& p, std::uint16_t label) {
+        const Eigen::Vector3d at = strokes.grid.index_of(p).array().round();
+        strokes.labels[strokes.grid.offset(static_cast<int>(at[0]), static_cast<int>(at[1]),
+                                           static_cast<int>(at[2]))] = label;
+    };
+    draw({-14, -6, 16}, 1);
+    draw({34, 20, 0}, 2);
+    write_label_map(scratch / "strokes.seg.nrrd", strokes);
+    const LabelMap points =
+        run(&abdomen.volume, nullptr,
+            {"liver: recipe=grow-from-seeds seeds_file=" + (scratch / "points.mrk.json").string()});
+    const LabelMap drawn =
+        run(&abdomen.volume, nullptr,
+            {"liver: recipe=grow-from-seeds scribbles=" + (scratch / "strokes.seg.nrrd").string()});
+    EXPECT_GT(dice(points, "liver", drawn, "liver"), 0.99);
+    EXPECT_GT(dice(points, "liver", abdomen.truth, "liver"), coarse_dice);
+}
+
+TEST(Segment, cleaning_steps_follow_the_order_written) {
+    const Phantom abdomen = abdomen_phantom();
+    // Keeping the largest piece first keeps liver, vessels and all that touches them; opening may then divide
+    // it.
+    const auto volume = [&](const std::string& steps) {
+        return label_statistics(
+            run(&abdomen.volume, nullptr, {"x: recipe=threshold lower_hu=80 " + steps}))[0];
+    };
+    const LabelStatistics first = volume("keep_largest=yes open_mm=4"),
+                          last = volume("open_mm=4 keep_largest=yes");
+    EXPECT_EQ(last.components, 1U);
+    EXPECT_LE(last.voxels, first.voxels);
+    EXPECT_NE(volume("open_mm=4 close_mm=8").voxels, volume("close_mm=8 open_mm=4").voxels);
+}
+
+TEST(Segment, values_stored_1024_above_hounsfield_are_told_and_treated_alike) {
+    Phantom head = head_phantom();
+    const LabelMap plain = run(&head.volume, nullptr, {"skull: recipe=bone"});
+    for (float& value : head.volume.values) value += 1024;
+    std::string said;
+    const std::vector<StructureRecipe> bone{parse_structure("skull: recipe=bone")};
+    const LabelMap shifted =
+        segment(&head.volume, nullptr, bone, {}, [&](std::string_view note) { said += note; });
+    EXPECT_EQ(shifted.labels, plain.labels);
+    EXPECT_NE(said.find("1024 was subtracted"), std::string::npos);
+}
+
+TEST(Segment, bad_seeds_and_leaks_are_named) {
+    const Phantom abdomen = abdomen_phantom();
+    const auto refusal = [&](const std::string& text, const std::string& second = "") {
+        std::vector<std::string> texts{text};
+        if (!second.empty()) texts.push_back(second);
+        return refusal_of([&] { run(&abdomen.volume, nullptr, texts); });
+    };
+    const auto expect = [](const std::string& text, const std::string& phrase) {
+        EXPECT_NE(text.find(phrase), std::string::npos) << text;
+    };
+    expect(refusal("liver: recipe=liver"), "structure 'liver': has no seed");
+    expect(refusal("liver: recipe=liver seeds=900,0,0"),
+           "structure 'liver': seed (900, 0, 0) mm lies outside the volume");
+    expect(refusal("liver: recipe=liver seeds=0,-58,0"), "seed (0, -58, 0) mm lies in air");
+    expect(refusal("liver: recipe=liver seeds=0,30,0"), "lies in bone");
+    expect(refusal("liver: recipe=liver seeds=-14,-6,16 neck_mm=40"),
+           "no piece as thick as 80 mm holds a seed");
+    expect(refusal("liver: recipe=liver seeds=-14,-6,16 neck_mm=4 largest_ml=20"),
+           "it ran into its neighbours");
+    expect(refusal("v: recipe=vessels"), "has neither 'inside' nor a seed");
+    expect(refusal("g: recipe=grow-from-seeds"), "structure 'g': has no seed");
+    expect(refusal(small_liver, "t: recipe=tumour inside=liver seeds=40,20,0"),
+           "seed (40, 20, 0) mm is not there");
+    expect(refusal(small_liver, "t: recipe=tumour inside=liver seeds=-8,-6,16"),
+           "1.5 deviations and 5 HU or more");
+    expect(refusal(small_liver, "t: recipe=tumour inside=liver"), "structure 't': has no seed");
+}
+
 TEST(Segment, later_structures_take_background_only_and_values_follow_the_order) {
     const Phantom head = head_phantom();
     const LabelMap map =
@@ -172,7 +322,7 @@ TEST(Segment, refusals_name_the_structure_and_what_to_change) {
     EXPECT_NE(refusal({"skull: recipe=import", "t: recipe=sphere center_mm=0,0,0 radius_mm=2"})
                   .find("has no 'inside'"),
               std::string::npos);
-    EXPECT_NE(refusal({"a: recipe=airway seeds_mm=0,4,14"}).find("seed: (0, 4, 14) mm"), std::string::npos);
+    EXPECT_NE(refusal({"a: recipe=airway seeds_mm=0,4,14"}).find("seed (0, 4, 14) mm"), std::string::npos);
     EXPECT_NE(refusal({"a: recipe=bone", "a: recipe=airway"}).find("occurs twice"), std::string::npos);
     EXPECT_NE(refusal({"a: recipe=bone radius_mm=3"}).find("has no 'center_mm'"), std::string::npos);
     EXPECT_NE(refusal_of([&] { run(nullptr, &head.truth, {"skull: recipe=bone"}); }).find("no volume"),

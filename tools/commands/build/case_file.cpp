@@ -130,28 +130,38 @@ std::string fixed_rule(Reader rule) {
     return text;
 }
 
-nlohmann::json to_json(const toml::node& node) {
+nlohmann::ordered_json to_json(const toml::node& node) {
     if (const auto text = node.value_exact<std::string>()) return *text;
     if (const auto flag = node.value_exact<bool>()) return *flag;
     if (const auto integer = node.value_exact<std::int64_t>()) return *integer;
     if (const auto number = node.value_exact<double>()) return *number;
-    nlohmann::json list = nlohmann::json::array();
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
     if (const toml::array* array = node.as_array())
         for (const toml::node& item : *array) list.push_back(to_json(item));
     return list;
 }
 
-// A structure's other keys are the recipe's parameters; `palpate segment` knows which exist and refuses the
-// rest.
+// The keys of a table in the order in which they are written; toml++ keeps them by name.
+std::vector<std::string> keys_as_written(const toml::table& table) {
+    std::vector<std::pair<toml::source_position, std::string>> found;
+    for (const auto& [key, node] : table) found.emplace_back(node.source().begin, key.str());
+    std::ranges::sort(found);
+    std::vector<std::string> keys;
+    for (const auto& [position, key] : found) keys.push_back(key);
+    return keys;
+}
+
+// A structure's other keys are the recipe's parameters, cleaning steps in the order written; `palpate
+// segment` knows which exist and refuses the rest.
 StructureSpec structure(Reader reader, const std::filesystem::path& folder) {
     StructureSpec spec;
     spec.name = reader.required<std::string>("name");
     spec.recipe = reader.required<std::string>("recipe");
-    for (const auto& [key, node] : reader.raw())
-        if (key.str() == "file")
-            spec.file = folder / reader.required<std::string>("file");
-        else if (key.str() != "name" && key.str() != "recipe")
-            spec.parameters[std::string(key.str())] = to_json(node);
+    for (const std::string& key : keys_as_written(reader.raw()))
+        if (key == "file" || key == "seeds_file" || key == "scribbles")
+            spec.files[key] = folder / reader.required<std::string>(key);
+        else if (key != "name" && key != "recipe")
+            spec.parameters[key] = to_json(*reader.raw().get(key));
     return spec;
 }
 

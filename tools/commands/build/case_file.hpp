@@ -13,8 +13,9 @@ namespace palpate::build {
 struct StructureSpec {
     std::string name;
     std::string recipe;
-    nlohmann::json parameters = nlohmann::json::object();
-    std::optional<std::filesystem::path> file;  ///< parameter `file` of recipe import: a label map of its own
+    nlohmann::ordered_json parameters = nlohmann::ordered_json::object();  ///< in the order written
+    std::map<std::string, std::filesystem::path>
+        files;  ///< parameters file, seeds_file and scribbles, resolved
 };
 
 /// A mesh or surface that somebody made elsewhere.

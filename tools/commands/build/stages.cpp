@@ -40,13 +40,14 @@ Stage import_labels_stage(const CaseFile& case_file, const std::filesystem::path
     return stage;
 }
 
-// The structures as `palpate segment --recipes` takes them; `file_value` writes the file of an import.
+// The structures as `palpate segment --recipes` takes them; `file_value` writes a file that a recipe reads,
+// under the parameter's name and `key_ending`.
 template <typename FileValue>
-Json recipes_json(const CaseFile& case_file, const std::string& file_key, const FileValue& file_value) {
+Json recipes_json(const CaseFile& case_file, const std::string& key_ending, const FileValue& file_value) {
     Json recipes = Json::array();
     for (const StructureSpec& structure : case_file.structures) {
-        nlohmann::json parameters = structure.parameters;
-        if (structure.file) parameters[file_key] = file_value(*structure.file);
+        Json parameters = structure.parameters;
+        for (const auto& [key, file] : structure.files) parameters[key + key_ending] = file_value(file);
         recipes.push_back(
             {{"name", structure.name}, {"recipe", structure.recipe}, {"parameters", parameters}});
     }
@@ -54,13 +55,13 @@ Json recipes_json(const CaseFile& case_file, const std::string& file_key, const 
 }
 
 Stage segment_stage(const CaseFile& case_file, const std::filesystem::path& parts) {
-    const Json recipes = recipes_json(case_file, "file", [](const auto& file) { return file.string(); });
+    const Json recipes = recipes_json(case_file, "", [](const auto& file) { return file.string(); });
     const std::filesystem::path recipe_file = parts / "recipes.json", output = parts / "labels.seg.nrrd";
     cli::write_text_file(recipe_file, recipes.dump(2) + "\n", true);
 
     Stage stage{"segment", "segment", {"--recipes", recipe_file.string()}, {recipe_file}, {output}};
     for (const StructureSpec& structure : case_file.structures)
-        if (structure.file) stage.inputs.push_back(*structure.file);
+        for (const auto& [key, file] : structure.files) stage.inputs.push_back(file);
     if (case_file.volume) {
         add(stage.arguments, {"--volume", (parts / "volume.nrrd").string()});
         stage.inputs.push_back(parts / "volume.nrrd");
@@ -180,7 +181,7 @@ Json provenance(const CaseFile& case_file, const std::vector<Stage>& stages) {
                                    : std::filesystem::path(argument).filename().string());
         steps.push_back(line);
     }
-    const Json structures = recipes_json(case_file, "file_sha256", sha256_file);
+    const Json structures = recipes_json(case_file, "_sha256", sha256_file);
     return {{"inputs", inputs}, {"structures", structures}, {"steps", steps}};
 }
 

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <fstream>
+#include <gtest/gtest.h>
+
+#include "formats/model/errors.hpp"
+#include "sample_data/phantoms.hpp"
+#include "tests/formats/scratch.hpp"
+#include "tools/imaging/grow_from_seeds.hpp"
+#include "tools/imaging/seeds.hpp"
+
+namespace palpate {
+namespace {
+
+std::filesystem::path written(const sample::Scratch& scratch, const std::string& name,
+                              const std::string& text) {
+    const std::filesystem::path path = scratch / name;
+    std::ofstream(path) << text;
+    return path;
+}
+
+const std::string slicer_list =
+    R"({"@schema": "x", "markups": [{"type": "Fiducial", "coordinateSystem": "RAS",
+    "coordinateUnits": "mm", "controlPoints": [
+    {"id": "1", "label": "liver-1", "position": [1.5, 2, 3], "positionStatus": "defined"},
+    {"id": "2", "label": "", "position": [4, 5, 6]},
+    {"id": "3", "label": "liver-3", "position": [0, 0, 0], "positionStatus": "undefined"}]}]})";
+
+TEST(Seeds, of_slicers_json_are_turned_to_lps_and_named_without_their_number) {
+    const sample::Scratch scratch;
+    const auto seeds = read_seeds(written(scratch, "lesion.mrk.json", slicer_list));
+    ASSERT_EQ(seeds.size(), 2U);
+    EXPECT_EQ(seeds[0].label, "liver");
+    EXPECT_EQ(seeds[0].p_P, Eigen::Vector3d(-1.5, -2, 3));
+    EXPECT_EQ(seeds[1].label, "lesion");  // the file's name stands in
+}
+
+TEST(Seeds, of_fcsv_follow_the_coordinate_system_of_the_header) {
+    const sample::Scratch scratch;
+    const std::string columns = "# columns = id,x,y,z,ow,ox,oy,oz,vis,sel,lock,label,desc,associatedNodeID\n",
+                      point = "vtkMRMLMarkupsFiducialNode_0,1,2,3,0,0,0,1,1,1,0,\"left, upper-1\",,\r\n";
+    for (const auto& [header, expected] :
+         std::vector<std::pair<std::string, Eigen::Vector3d>>{{"# CoordinateSystem = LPS\n", {1, 2, 3}},
+                                                              {"# CoordinateSystem = 1\n", {1, 2, 3}},
+                                                              {"# CoordinateSystem = RAS\r\n", {-1, -2, 3}},
+                                                              {"# CoordinateSystem = 0\n", {-1, -2, 3}},
+                                                              {"", {-1, -2, 3}}}) {
+        const auto seeds = read_seeds(written(scratch, "points.fcsv", header + columns + point));
+        ASSERT_EQ(seeds.size(), 1U);
+        EXPECT_EQ(seeds[0].p_P, expected) << header;
+        EXPECT_EQ(seeds[0].label, "left, upper");
+    }
+}
+
+TEST(Seeds, written_are_read_back_alike) {
+    const sample::Scratch scratch;
+    const std::vector<Seed> seeds{{"liver", {0.1, -2.25, 1e3}}, {"background", {1, 2, 3}}};
+    write_seeds(scratch / "s.mrk.json", seeds);
+    const auto back = read_seeds(scratch / "s.mrk.json");
+    ASSERT_EQ(back.size(), 2U);
+    for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(back[i].label, seeds[i].label);
+        EXPECT_EQ(back[i].p_P, seeds[i].p_P);
+    }
+}
+
+TEST(Seeds, that_cannot_be_read_are_refused) {
+    const sample::Scratch scratch;
+    for (const auto& [name, text] : std::vector<std::pair<std::string, std::string>>{
+             {"a.mrk.json", "{"},
+             {"a.mrk.json", R"({"markups": []})"},
+             {"a.mrk.json",
+              R"({"markups": [{"coordinateSystem": "IJK", "controlPoints": [{"position": [1,2,3]}]}]})"},
+             {"a.mrk.json",
+              R"({"markups": [{"coordinateUnits": "cm", "controlPoints": [{"position": [1,2,3]}]}]})"},
+             {"a.mrk.json", R"({"markups": [{"controlPoints": [{"position": [1,2]}]}]})"},
+             {"a.mrk.json", R"({"markups": [{"controlPoints": [{"position": ["x",2,3]}]}]})"},
+             {"a.mrk.json", R"({"markups": 3})"},
+             {"a.fcsv", "# CoordinateSystem = 2\nid,1,2,3\n"},
+             {"a.fcsv", "id,1,x,3\n"},
+             {"a.fcsv", "id,1\n"},
+             {"a.fcsv", "id,nan,1,2\n"},
+             {"a.fcsv", "# nothing\n"},
+             {"a.txt", "id,1,2,3\n"}})
+        EXPECT_THROW(read_seeds(written(scratch, name, text)), InvalidInput) << name << ": " << text;
+    EXPECT_THROW(read_seeds(scratch / "absent.fcsv"), InvalidInput);
+    EXPECT_THROW(write_seeds(scratch / "a.fcsv", {}), InvalidInput);
+    EXPECT_THROW(write_seeds(scratch / "absent" / "a.mrk.json", {}), SystemFailure);
+}
+
+TEST(Seeds, of_a_structure_are_those_with_its_name_or_all_of_a_single_label) {
+    const std::vector<Seed> one{{"F", {1, 2, 3}}, {"F", {4, 5, 6}}};
+    EXPECT_EQ(seeds_of(one, "liver", "x").size(), 2U);
+    const std::vector<Seed> two{{"Liver", {1, 2, 3}}, {"spleen", {4, 5, 6}}};
+    EXPECT_EQ(seeds_of(two, "liver", "x").at(0).p_P, two[0].p_P);
+    EXPECT_THROW(seeds_of(two, "kidney", "x"), InvalidInput);
+}
+
+const std::vector<Seed> abdomen_seeds{{"liver", {-14, -6, 16}}, {"background", {34, 20, 0}}};
+
+TEST(GrowFromSeeds, labels_race_and_background_stays_zero) {
+    const Phantom abdomen = abdomen_phantom({.noise_hu = 10});
+    const LabelMap map = grow_from_seeds(abdomen.volume, abdomen_seeds);
+    ASSERT_EQ(map.names.size(), 1U);
+    EXPECT_EQ(map.names[0].name, "liver");
+    std::size_t both = 0, sum = 0;
+    for (std::size_t i = 0; i < map.labels.size(); ++i) {
+        both += map.labels[i] == 1 && abdomen.truth.labels[i] == 1;
+        sum += std::size_t{map.labels[i] == 1} + std::size_t{abdomen.truth.labels[i] == 1};
+    }
+    EXPECT_GT(2.0 * static_cast<double>(both) / static_cast<double>(sum), 0.85);
+}
+
+TEST(GrowFromSeeds, preview_lies_on_the_volumes_grid_and_has_few_blocks) {
+    const Phantom abdomen = abdomen_phantom();
+    GrowParameters coarse;
+    coarse.spacing_mm = 4.1;
+    const LabelMap map = grow_from_seeds(abdomen.volume, abdomen_seeds, coarse);
+    EXPECT_TRUE(same_grid(map.grid, abdomen.volume.grid));
+    EXPECT_EQ(map.labels.size(), map.grid.voxel_count());
+    EXPECT_NE(std::ranges::count(map.labels, 1), 0);
+    ImageGrid large;
+    large.size = {512, 512, 119};
+    large.spacing = {0.8, 0.8, 2.5};
+    EXPECT_GT(preview_parameters(large).spacing_mm, 3);
+}
+
+TEST(GrowFromSeeds, a_seed_outside_is_refused_with_label_and_place) {
+    const Phantom abdomen = abdomen_phantom();
+    try {
+        grow_from_seeds(abdomen.volume, std::vector<Seed>{{"liver", {1e4, 0, 0}}});
+        FAIL() << "nothing was refused";
+    } catch (const InvalidInput& error) {
+        EXPECT_NE(std::string(error.what()).find("label 'liver': seed (10000, 0, 0) mm lies outside"),
+                  std::string::npos)
+            << error.what();
+    }
+    EXPECT_THROW(grow_from_seeds(abdomen.volume, {}), InvalidInput);
+}
+
+}  // namespace
+}  // namespace palpate

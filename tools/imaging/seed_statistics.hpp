@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// For this folder only: what the grey values around seeds say about a structure.
+#pragma once
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "formats/model/image_grid.hpp"
+
+namespace palpate {
+
+/// Middle and spread of grey values, insensitive to outliers.
+struct GreyStatistics {
+    double mean = 0;   ///< median
+    double sigma = 0;  ///< 1.4826 times the median absolute deviation
+};
+
+/// Statistics of `values`, which are reordered; zeros if there are none.
+GreyStatistics robust_statistics(std::vector<float>& values);
+
+/// Values within `radius` (mm) of any of `points` (p_P), or of the voxel nearest to each if there are none.
+std::vector<float> values_near(const Volume& volume, std::span<const Eigen::Vector3d> points, double radius);
+
+/// Indices of the voxel that holds `p_P`; throws InvalidInput naming `culprit` (which says whose seed it is),
+/// the point and the volume's extent if it lies outside.
+std::array<std::int32_t, 3> voxel_of_seed(const ImageGrid& grid, const Eigen::Vector3d& p_P,
+                                          const std::string& culprit);
+
+/// "(12, -3.5, 40) mm".
+std::string point_text(const Eigen::Vector3d& p_P);
+
+}  // namespace palpate
