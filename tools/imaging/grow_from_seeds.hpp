@@ -23,7 +23,7 @@ struct GrowParameters {
 /// The result lies on the volume's grid, whatever the spacing it was worked out on. Deterministic: one
 /// thread, integer costs, ties to the seed given first.
 /// Throws InvalidInput if there is no seed, or if one lies outside the volume (naming label and place).
-/// Cost: linear in voxels (bucket queue); on 256 x 256 x 108 voxels, one core, about 1.5 s at the volume's
+/// Cost: linear in voxels (bucket queue); on 256 x 256 x 108 voxels, one core, 0.5 to 1.5 s at the volume's
 /// own spacing and 0.1 s with preview_parameters().
 /// Source: the shortest-path form of grow-cut (Zhu, Kolesov, Gao, Kikinis and Tannenbaum, 2014), with the
 /// grey-value term that noisy CT needs.

@@ -30,8 +30,9 @@ constexpr double local_mm = 12;     // the local mean is taken over Gaussian sur
 constexpr double neck_ratio = 0.4;  // of cut_at_necks()
 constexpr double edge_mm = 4;       // edges are about this wide
 constexpr double regained_mm = 3;   // thinner parts stay this far from thick ones
-constexpr double surroundings_mm = 30;  // kept around what the first round found
-constexpr int rounds = 3;               // after which the local mean hardly changes
+constexpr double surroundings_mm = 60;  // kept around what the first round found
+constexpr int most_rounds = 8;
+constexpr double settled = 0.01;  // share of voxels that a round may still add or lose
 
 // What is looked at, block by block.
 struct Blocks {
@@ -188,11 +189,13 @@ Mask organ_of_blocks(Volume grey, const OrganSeeds& seeds, const OrganParameters
     box.size = part.size;
     for (std::size_t axis = 0; axis < 3; ++axis) box.low[axis] += part.low[axis];
     Mask candidates;
-    for (int round = 1; round < rounds; ++round) {
+    for (int round = 1; round < most_rounds; ++round) {
+        const auto before = static_cast<double>(found.count());
         blocks.edge = std::max(least_edge, edge_factor * median_within(found, blocks.steepness));
         candidates = candidates_of(blocks, p.tolerance_hu, false);
         found = found_in(blocks, seeds, p);
         follow(blocks, found, seeds, p.drift_hu);
+        if (std::abs(static_cast<double>(found.count()) - before) < settled * before) break;
     }
     found = fill_holes(close(pieces_at(found, seeds.points, seed_reach_mm), p.gap_mm));
     return pieces_at(fill_holes(with_rim(found, blocks.grey, blocks.local, candidates)), seeds.points,
