@@ -64,7 +64,8 @@ FoundTetrahedra read_medit(const std::filesystem::path& path) {
             // Everything else (triangles, ridges, normals, ...) is numbers up to the next keyword; the number
             // of entries is not relied on, because TetGen announces too many triangles.
             std::int64_t numbers = -1;  // the first one is that number
-            for (; !file.at_end() && !is_keyword(file.peek()) && file.peek()[0] != '#'; ++numbers) file.word();
+            for (; !file.at_end() && !is_keyword(file.peek()) && file.peek()[0] != '#'; ++numbers)
+                file.word();
             if (const auto kind = kinds.find(keyword); kind != kinds.end() && numbers > 0)
                 (kind->second.solid ? found.solid : found.flat)[kind->second.name] +=
                     numbers / (kind->second.corners + 1);
