@@ -209,6 +209,7 @@ class Surface(MeshingCommand):
                                     self.folder / "a.vtp")["decimation"]
         self.assertLessEqual(decimation["max_distance_mm"], 0.5)
         self.assertEqual(len(decimation["max_distance_at_mm"]), 3)
+        self.assertEqual(decimation["self_intersecting_pairs"], 0)
         (self.folder / "a.vtp").unlink()
         self.expect_refusal(QUALITY, ["300 triangles stay", "mm off at ("], "surface", *arguments, "--max-distance",
                             0.001, "-o", self.folder / "x.vtp")

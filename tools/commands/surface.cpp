@@ -105,7 +105,8 @@ int main(int argc, char** argv) {
                                     {"mean_distance_mm", distance.mean},
                                     {"p95_distance_mm", distance.percentile_95},
                                     {"max_distance_mm", distance.maximum},
-                                    {"max_distance_at_mm", {p.x(), p.y(), p.z()}}};
+                                    {"max_distance_at_mm", {p.x(), p.y(), p.z()}},
+                                    {"self_intersecting_pairs", self_intersections(surface)}};
         }
         const SurfaceQuality quality = measure(surface);
         if (!quality.closed_and_oriented())

@@ -159,13 +159,11 @@ TriangleMesh label_surface(const LabelMap& map, std::span<const std::int32_t> va
                            [](std::uint8_t region) { return region > 0 ? 1.0F : 0.0F; });
     const auto inside = std::ranges::count(indicator.values, 1.0F);
     smooth(indicator);
-    // As many voxels lie above the level as the labels have; half way to the next value, so that unsmoothed
-    // labels are cut at a half.
+    // As many voxels lie above the level as the labels have; labels that are not smoothed are cut at a half.
     std::vector<float> ranked = indicator.values;
     std::ranges::nth_element(ranked, ranked.begin() + inside, std::greater<>());
-    const float below = ranked[static_cast<std::size_t>(inside)];
-    const float above = *std::ranges::min_element(ranked.begin(), ranked.begin() + inside);
-    return isosurface({labels.grid, std::move(indicator.values)}, 0.5 * (above + below));
+    const double level = sigma > 0 ? ranked[static_cast<std::size_t>(inside)] : 0.5F;
+    return isosurface({labels.grid, std::move(indicator.values)}, level);
 }
 
 TriangleMesh keep_large_pieces(const TriangleMesh& surface, std::int64_t min_triangles) {

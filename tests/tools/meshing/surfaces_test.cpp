@@ -147,6 +147,17 @@ TEST(Decimate, keeps_the_distance_asked_for_or_names_the_place_that_does_not) {
     }
 }
 
+TEST(SelfIntersections, balls_that_overlap_have_them_and_one_ball_has_none) {
+    TriangleMesh two = isosurface(cone(Eigen::Matrix3d::Identity(), 10), 100);
+    EXPECT_EQ(self_intersections(two), 0);
+    const TriangleMesh one = two;
+    const auto shift = static_cast<std::int32_t>(two.vertices.size());
+    for (const Eigen::Vector3d& p : one.vertices) two.vertices.push_back(p + Eigen::Vector3d(10, 0.3, 0.2));
+    for (const Triangle& t : one.triangles)
+        two.triangles.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
+    EXPECT_GT(self_intersections(two), 100);
+}
+
 TEST(Decimate, surface_that_is_no_manifold_is_refused) {
     TriangleMesh fin{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, -1, 0}},
                      {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}}};
