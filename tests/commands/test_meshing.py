@@ -98,12 +98,13 @@ class Mesh(MeshingCommand):
             self.assertLess(region["centroid_distance_mm"], 0.05)
             self.assertLess(region["surface_distance_mm"]["mean"], 0.1)  # the facet distance is 0.3
         self.assertEqual(result["attempts"], [{"tetrahedra": result["tetrahedra"], "misses": []}])
-        self.assertEqual(result["contract"]["min_dihedral_deg"], 12)
+        angles = next(check for check in result["checks"] if "dihedral" in check["what"])
+        self.assertEqual((angles["limit"], angles["kept"]), ("12° ... 165°", True))
 
     def test_missed_limits_are_listed_with_every_attempt(self):
         result = self.result_of("mesh", *self.mesh("--max-mean-distance", 0.067, "--attempts", 8))
         first, last = result["attempts"][0], result["attempts"][-1]
-        self.assertIn("mean surface distance", first["misses"][0]["found"])
+        self.assertIn("mean surface distance", first["misses"][0]["what"])
         self.assertEqual(last, {"tetrahedra": result["tetrahedra"], "misses": []})
         self.assertGreater(last["tetrahedra"], first["tetrahedra"])
 

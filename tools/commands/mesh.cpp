@@ -18,18 +18,18 @@ namespace {
 struct Body {
     TetMesh mesh;
     std::int64_t pieces = 0;
-    std::vector<ContractMiss> misses;
-    std::string next_step;  // if there are misses
+    std::vector<ContractCheck> checks;
+    std::string next_step;  // if the contract is missed
     mesh::Json result;
 };
 
 Body make_body(ContractedMesh made) {
-    for (const ContractMiss& miss :
-         made.attempts.size() > 1 ? made.attempts.front().misses : std::vector<ContractMiss>{})
-        spdlog::info("made finer: {} (expected {})", miss.found, miss.limit);
+    if (made.attempts.size() > 1)
+        for (const ContractCheck& miss : made.attempts.front().misses)
+            spdlog::info("made finer: {} was {} (expected {})", miss.what, miss.found, miss.limit);
     Body body;
     body.pieces = made.measures.quality.components;
-    body.misses = made.attempts.back().misses;
+    body.checks = made.checks;
     body.next_step = fmt::format(
         "after {} meshes: choose a smaller cell size, facet distance or --region-cell-size, or a contract "
         "that this body can keep",
@@ -49,7 +49,7 @@ Body take_finished(const std::filesystem::path& path, const FinishedMeshOptions&
     body.next_step = "mend the mesh where it was made, or state a contract that it can keep";
     const MeshQuality quality = measure(body.mesh);
     body.pieces = quality.components;
-    body.misses = shape_misses(contract, body.mesh, quality);
+    body.checks = check_shape(contract, body.mesh, quality);
     body.result = mesh::to_json(body.mesh, quality);
     if (labels_path.empty()) return body;
 
@@ -67,8 +67,8 @@ Body take_finished(const std::filesystem::path& path, const FinishedMeshOptions&
     const RegionLabels labels =
         prepare_domain(map, values, defaults.smoothing, defaults.min_component_volume).labels;
     const MeshMeasures measures = measure(body.mesh, labels, region_surfaces(labels));
-    const auto unfaithful = fidelity_misses(contract, body.mesh, measures, map.grid);
-    body.misses.insert(body.misses.end(), unfaithful.begin(), unfaithful.end());
+    const auto fidelity = check_fidelity(contract, body.mesh, measures, map.grid);
+    body.checks.insert(body.checks.end(), fidelity.begin(), fidelity.end());
     body.result = mesh::to_json(body.mesh, measures);
     return body;
 }
@@ -180,9 +180,9 @@ int main(int argc, char** argv) {
                                 fmt::format("the body has {} separate pieces", body.pieces), "1",
                                 "keep the largest with 'palpate segment --keep-largest', or pass "
                                 "--allow-components and hold each of them"});
-        mesh::require_none(body.misses, output.string(), body.next_step);
+        mesh::require_kept(body.checks, output.string(), body.next_step);
         write_tetrahedra(staged.path(), body.mesh);
-        body.result["contract"] = mesh::to_json(contract);
+        body.result["checks"] = mesh::to_json(body.checks);
         staged.commit();
         return body.result;
     });

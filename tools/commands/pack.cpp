@@ -50,8 +50,25 @@ Json read_provenance(const std::filesystem::path& path) {
     } catch (const Json::parse_error& error) {
         throw InvalidInput({path.string(), error.what(), "JSON", "mend the file"});
     }
+    if (json.contains("schema")) json.erase("schema");  // "palpate.mesh/1" is no path
     refuse_paths(json, path.string());
     return json;
+}
+
+// What `palpate mesh --json` says of bodies' meshes, by body; times and memory differ from run to run and
+// stay out of the asset.
+Json read_mesh_results(const std::vector<std::string>& texts) {
+    Json meshes = Json::object();
+    for (const std::string& text : texts) {
+        const auto equals = text.find('=');
+        if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+            throw UsageError(
+                {"--mesh-result " + text, "cannot be read", "NAME=RESULT.json", "see 'palpate pack --help'"});
+        Json result = read_provenance(text.substr(equals + 1));
+        for (const char* key : {"version", "seconds", "peak_memory_bytes"}) result.erase(key);
+        meshes[text.substr(0, equals)] = std::move(result);
+    }
+    return meshes;
 }
 
 RigidBody read_rigid(const BodyParts& parts) {
@@ -82,7 +99,7 @@ int main(int argc, char** argv) {
                   "its mesh.\n"
                   "The provenance in the asset is the software's versions and the JSON given; no paths."});
     std::string name;
-    std::vector<std::string> rigid, deformable;
+    std::vector<std::string> rigid, deformable, mesh_results;
     std::filesystem::path provenance, output;
     HapticSettings haptics;
     command.option("--name", name, "name of the case; no patient's name")->required();
@@ -94,14 +111,18 @@ int main(int argc, char** argv) {
     command.option("--max-force", haptics.max_force, "largest force on the hand", "N");
     command.option("--max-force-rate", haptics.max_force_rate, "largest change of force per tick of 1 ms",
                    "N");
+    command.option("--mesh-result", mesh_results,
+                   "NAME=RESULT.json: what palpate mesh --json said of a body; repeat for more");
     command.input("--provenance", provenance, "what made the parts (.json)");
     command.output("-o,--output", output, "asset (.vtkhdf)")->required();
     return command.run(argc, argv, [&](cli::Session& session) {
         cli::StagedFile staged = session.stage(output);
         Case patient_case{
             .name = name, .rigid_bodies = {}, .deformable_bodies = {}, .haptics = haptics, .provenance = ""};
-        patient_case.provenance =
-            Json{{"software", cli::software_versions()}, {"build", read_provenance(provenance)}}.dump();
+        patient_case.provenance = Json{{"software", cli::software_versions()},
+                                       {"build", read_provenance(provenance)},
+                                       {"meshes", read_mesh_results(mesh_results)}}
+                                      .dump();
         session.progress.step("read parts", 0);
         for (const std::string& text : rigid)
             patient_case.rigid_bodies.push_back(

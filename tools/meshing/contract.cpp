@@ -65,47 +65,53 @@ MeshMeasures measure(const TetMesh& mesh, const RegionLabels& labels,
             cover_components(mesh, labels)};
 }
 
-std::vector<ContractMiss> shape_misses(const QualityContract& contract, const TetMesh& mesh,
+std::vector<ContractCheck> check_shape(const QualityContract& contract, const TetMesh& mesh,
                                        const MeshQuality& quality) {
-    std::vector<ContractMiss> result;
+    ContractCheck angles{
+        .what = "the range of dihedral angles",
+        .found = fmt::format("{:.1f}° ... {:.1f}°", quality.min_dihedral_deg, quality.max_dihedral_deg),
+        .limit = fmt::format("{:g}° ... {:g}°", contract.min_dihedral_deg, contract.max_dihedral_deg),
+        .kept = quality.min_dihedral_deg >= contract.min_dihedral_deg &&
+                quality.max_dihedral_deg <= contract.max_dihedral_deg};
     for (const WorstTetrahedron& worst : quality.worst)
         if (worst.min_dihedral_deg < contract.min_dihedral_deg ||
-            worst.max_dihedral_deg > contract.max_dihedral_deg)
-            result.push_back(
-                {.found = fmt::format("dihedral angles {:.1f}° ... {:.1f}° at {}", worst.min_dihedral_deg,
-                                      worst.max_dihedral_deg, place(worst.centroid)),
-                 .limit =
-                     fmt::format("{:g}° ... {:g}°", contract.min_dihedral_deg, contract.max_dihedral_deg),
-                 .places = {worst.centroid},
-                 .size = longest_edge(mesh, worst.tetrahedron)});
-    const auto none = [&](std::int64_t count, const char* what) {
-        if (count > 0) result.push_back({.found = fmt::format("{} {}", count, what), .limit = "0"});
+            worst.max_dihedral_deg > contract.max_dihedral_deg) {
+            angles.found +=
+                fmt::format("{} {:.1f}° ... {:.1f}° at {}", angles.places.empty() ? ":" : ",",
+                            worst.min_dihedral_deg, worst.max_dihedral_deg, place(worst.centroid));
+            angles.places.push_back(worst.centroid);
+            angles.size = std::max(angles.size, longest_edge(mesh, worst.tetrahedron));
+        }
+    std::vector<ContractCheck> checks{std::move(angles)};
+    const auto none = [&](const char* what, std::int64_t count) {
+        checks.push_back({.what = what, .found = fmt::format("{}", count), .limit = "0", .kept = count == 0});
     };
-    none(quality.inverted, "inverted tetrahedra");
-    none(quality.boundary.non_manifold_edges, "non-manifold edges of the boundary");
-    none(quality.boundary.open_edges, "open edges of the boundary");
-    return result;
+    none("the number of inverted tetrahedra", quality.inverted);
+    none("the number of non-manifold edges of the boundary", quality.boundary.non_manifold_edges);
+    none("the number of open edges of the boundary", quality.boundary.open_edges);
+    return checks;
 }
 
-std::vector<ContractMiss> fidelity_misses(const QualityContract& contract, const TetMesh& mesh,
+std::vector<ContractCheck> check_fidelity(const QualityContract& contract, const TetMesh& mesh,
                                           const MeshMeasures& measures, const ImageGrid& grid) {
-    std::vector<ContractMiss> result;
+    std::vector<ContractCheck> checks;
     const double coarseness = std::max(1.0, std::cbrt(grid.voxel_volume()));
-    const auto add = [&](const std::string& what, std::int32_t region, const std::string& found,
-                         const std::string& limit) {
+    const auto add = [&](const char* what, std::int32_t region, const std::string& found,
+                         const std::string& limit, bool kept) {
         const std::string owner = region == 0 ? "the body" : "'" + region_name(mesh, region) + "'";
-        result.push_back(
-            {.found = fmt::format("{} of {} is {}", what, owner, found), .limit = limit, .region = region});
+        checks.push_back({.what = fmt::format("{} of {}", what, owner),
+                          .found = found,
+                          .limit = limit,
+                          .kept = kept,
+                          .region = region});
     };
     const auto at_most = [&](const char* what, std::int32_t region, double found, double limit,
-                             const char* unit, const std::string& where = "") {
-        if (!(std::abs(found) <= limit))
-            add(what, region, fmt::format("{:.3f} {}{}", found, unit, where),
-                fmt::format("at most {:.3g} {}", limit, unit));
+                             const char* unit) {
+        add(what, region, fmt::format("{:.3f} {}", found, unit),
+            fmt::format("at most {:.3g} {}", limit, unit), std::abs(found) <= limit);
     };
     const auto at_least = [&](const char* what, std::int32_t region, double found, double limit) {
-        if (!(found >= limit))
-            add(what, region, fmt::format("{:.4f}", found), fmt::format("at least {:g}", limit));
+        add(what, region, fmt::format("{:.4f}", found), fmt::format("at least {:g}", limit), found >= limit);
     };
     const RegionFidelity& body = measures.fidelity.body;
     at_least("the Dice coefficient", 0, body.dice, contract.min_dice);
@@ -116,25 +122,37 @@ std::vector<ContractMiss> fidelity_misses(const QualityContract& contract, const
                 contract.max_volume_error_percent, "%");
         at_least("the Dice coefficient", region.region, region.dice, contract.min_region_dice);
     }
-    for (const ComponentCover& component : measures.components)
-        if (component.covered < 0.5)
-            add(fmt::format("the share in the mesh of the component of {:.0f} mm³ around {}",
-                            component.volume, place(component.centroid)),
-                component.region, fmt::format("{:.0f} %", 100 * component.covered), "at least 50 %");
     for (const RegionDistance& distance : measures.distances) {
         at_most("the mean surface distance", distance.region, distance.mean,
                 contract.max_mean_distance * coarseness, "mm");
         at_most("the 95th percentile of the surface distance", distance.region, distance.percentile_95,
                 contract.max_p95_distance * coarseness, "mm");
-        const std::size_t before = result.size();
         const double limit = contract.max_distance_voxels * grid.spacing.norm();
-        at_most("the largest surface distance", distance.region, distance.maximum, limit, "mm",
-                " at " + place(distance.farthest));
-        if (result.size() > before) {
-            result.back().places = places_beyond(distance, limit);
-            result.back().size = 2 * limit;
-        }
+        at_most("the largest surface distance", distance.region, distance.maximum, limit, "mm");
+        ContractCheck& largest = checks.back();
+        if (largest.kept) continue;
+        largest.found += " at " + place(distance.farthest);
+        largest.places = places_beyond(distance, limit);
+        largest.size = 2 * limit;
     }
+    // A label may have hundreds of components: only those that are missing are listed.
+    const std::size_t before = checks.size();
+    for (const ComponentCover& component : measures.components)
+        if (component.covered < 0.5)
+            add("the share in the mesh of a component", component.region,
+                fmt::format("{:.0f} % ({:.0f} mm³ around {})", 100 * component.covered, component.volume,
+                            place(component.centroid)),
+                "at least 50 %", false);
+    if (checks.size() == before)
+        add("the number of missing components", 0, fmt::format("0 of {}", measures.components.size()), "0",
+            true);
+    return checks;
+}
+
+std::vector<ContractCheck> misses(std::span<const ContractCheck> checks) {
+    std::vector<ContractCheck> result;
+    std::ranges::copy_if(checks, std::back_inserter(result),
+                         [](const ContractCheck& check) { return !check.kept; });
     return result;
 }
 

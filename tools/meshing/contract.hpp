@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,10 +22,11 @@ struct QualityContract {
     double max_centroid_distance = 0.05;  ///< mm, between those of the body's voxels and of its labels
 };
 
-/// One limit that a mesh does not keep, and what should be finer to keep it: the surroundings of places, else
-/// the surface of a region.
-struct ContractMiss {
-    std::string found, limit;                  ///< as a sentence would say them
+/// One limit of the contract against what was measured; if it is not kept, what should be finer: the
+/// surroundings of places, else the surface of a region.
+struct ContractCheck {
+    std::string what, found, limit;  ///< as a sentence would say them: "<what> is <found>"
+    bool kept = false;
     std::int32_t region = 0;                   ///< label value; 0: all regions
     std::vector<Eigen::Vector3d> places = {};  ///< p_P, mm
     double size = 0;                           ///< mm: of the triangles or tetrahedra at the places
@@ -52,12 +54,14 @@ std::string region_name(const TetMesh& mesh, std::int32_t region);
 /// `labels` are those of prepare_domain(), `surfaces` their region_surfaces(). Throws as compare() does.
 MeshMeasures measure(const TetMesh& mesh, const RegionLabels& labels, std::span<const TriangleMesh> surfaces);
 
-/// Lists what a mesh does not keep of the contract; empty if it keeps all. Inverted tetrahedra, non-manifold
-/// and open edges of the boundary, and components of which less than half is there are always misses. `mesh`
-/// names the regions and places.
-std::vector<ContractMiss> shape_misses(const QualityContract& contract, const TetMesh& mesh,
+/// Checks a mesh against the contract. Inverted tetrahedra, non-manifold and open edges of the boundary, and
+/// components of which less than half is there never keep it. `mesh` names the regions and places.
+std::vector<ContractCheck> check_shape(const QualityContract& contract, const TetMesh& mesh,
                                        const MeshQuality& quality);
-std::vector<ContractMiss> fidelity_misses(const QualityContract& contract, const TetMesh& mesh,
+std::vector<ContractCheck> check_fidelity(const QualityContract& contract, const TetMesh& mesh,
                                           const MeshMeasures& measures, const ImageGrid& grid);
+
+/// Those that are not kept.
+std::vector<ContractCheck> misses(std::span<const ContractCheck> checks);
 
 }  // namespace palpate

@@ -18,10 +18,10 @@ void refine_surface(MeshSizing& sizing, std::int32_t region) {
     own->surface_scale *= finer;
 }
 
-void refine_what_missed(MeshSizing& sizing, const std::vector<ContractMiss>& misses, int attempt,
+void refine_what_missed(MeshSizing& sizing, const std::vector<ContractCheck>& misses, int attempt,
                         std::span<const std::int32_t> region_values) {
     std::set<std::int32_t> regions;
-    for (const ContractMiss& miss : misses) {
+    for (const ContractCheck& miss : misses) {
         if (!miss.places.empty())
             sizing.near.push_back({.points = miss.places,
                                    .within = miss.size,
@@ -48,6 +48,8 @@ ContractedMesh mesh_to_contract(const LabelMap& map, std::span<const std::int32_
         sizing.facet_distance =
             std::min(sizing.cell_size / 10,
                      contract.max_p95_distance * std::max(1.0, std::cbrt(map.grid.voxel_volume())));
+    // Fitting and optimising move triangles too: they get what refinement leaves.
+    if (sizing.max_gap == 0) sizing.max_gap = 0.6 * contract.max_distance_voxels * map.grid.spacing.norm();
     progress("smooth labels", 0);
     const MeshDomain domain =
         prepare_domain(map, region_values, sizing.smoothing, sizing.min_component_volume);
@@ -61,9 +63,10 @@ ContractedMesh mesh_to_contract(const LabelMap& map, std::span<const std::int32_
         result.mesh = tetrahedralise(domain, map, sizing, step);
         step("measure against the contract", 0.95);
         result.measures = measure(result.mesh, domain.labels, surfaces);
-        std::vector<ContractMiss> missed = shape_misses(contract, result.mesh, result.measures.quality);
-        const auto unfaithful = fidelity_misses(contract, result.mesh, result.measures, map.grid);
-        missed.insert(missed.end(), unfaithful.begin(), unfaithful.end());
+        result.checks = check_shape(contract, result.mesh, result.measures.quality);
+        const auto fidelity = check_fidelity(contract, result.mesh, result.measures, map.grid);
+        result.checks.insert(result.checks.end(), fidelity.begin(), fidelity.end());
+        const std::vector<ContractCheck> missed = misses(result.checks);
         result.attempts.push_back({result.mesh.tetrahedra.size(), missed});
         if (missed.empty() || attempt == max_attempts) return result;
         refine_what_missed(sizing, missed, attempt, region_values);

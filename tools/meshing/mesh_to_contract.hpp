@@ -10,13 +10,15 @@ namespace palpate {
 /// One mesh on the way to the contract.
 struct MeshAttempt {
     std::size_t tetrahedra = 0;
-    std::vector<ContractMiss> misses;
+    std::vector<ContractCheck> misses;
 };
 
-/// A mesh, what was measured of it, and the attempts that led to it, its own last.
+/// A mesh, what was measured of it, its contract check by check, and the attempts that led to it, its own
+/// last.
 struct ContractedMesh {
     TetMesh mesh;
     MeshMeasures measures;
+    std::vector<ContractCheck> checks;
     std::vector<MeshAttempt> attempts;
 };
 

@@ -25,6 +25,7 @@ void check(const MeshSizing& sizing) {
     require(sizing.cell_size > 0, "cell size", sizing.cell_size, "more than 0 mm");
     require(sizing.facet_size >= 0, "facet size", sizing.facet_size, "0 or more mm");
     require(sizing.facet_distance >= 0, "facet distance", sizing.facet_distance, "0 or more mm");
+    require(sizing.max_gap >= 0, "largest gap", sizing.max_gap, "0 or more mm");
     require(sizing.facet_angle_deg >= 0 && sizing.facet_angle_deg <= 30, "facet angle",
             sizing.facet_angle_deg, "0 ... 30 degrees, beyond which refinement may not end");
     require(sizing.cell_radius_edge >= 2, "cell radius over edge", sizing.cell_radius_edge,
@@ -169,7 +170,7 @@ TetMesh tetrahedralise(const MeshDomain& domain, const LabelMap& map, const Mesh
     const ProgressCallback progress = callback ? callback : [](std::string_view, double) {};
     const auto& [labels, smoothed] = domain;
     SizeField sizes = size_field(sizing, domain, map);
-    const double max_gap = 0.6 * map.grid.spacing.norm();
+    const double max_gap = sizing.max_gap > 0 ? sizing.max_gap : 0.6 * map.grid.spacing.norm();
 
     progress("seed surfaces", 0.2);
     TetMesh mesh = mesh_smoothed_labels(

@@ -74,6 +74,7 @@ std::string html_report(const ReportInputs& inputs) {
     for (const auto& [anchor, title] : {std::pair{"slices", "Slices"},
                                         {"bodies", "Bodies"},
                                         {"mesh", "Meshes"},
+                                        {"contract", "Contract"},
                                         {"worst", "Worst elements"},
                                         {"distances", "Distances"},
                                         {"mechanics", "Materials"},
@@ -88,9 +89,10 @@ std::string html_report(const ReportInputs& inputs) {
            "</style>\n</head>\n<body>\n<main>\n<header>\n<p class=\"kind\">Palpate report</p>\n<h1>" + name +
            "</h1>\n" + verdict(bodies) + key_figures(inputs, bodies) + "</header>\n<nav>" + navigation +
            "</nav>\n" + slices_section(inputs) + bodies_section(patient_case) +
-           mesh_section(patient_case, bodies) + worst_section(bodies) + distances_section(inputs) +
-           mechanics_section(patient_case) + certificate_section(bodies) + touch_section(inputs) +
-           stages_section(inputs.stages) + provenance_section(patient_case.provenance) +
+           mesh_section(patient_case, bodies) + contract_section(patient_case.provenance) +
+           worst_section(bodies) + distances_section(inputs) + mechanics_section(patient_case) +
+           certificate_section(bodies) + touch_section(inputs) + stages_section(inputs.stages) +
+           provenance_section(patient_case.provenance) +
            "<footer>Lengths in mm, positions in the patient frame: L left, P posterior, S superior (LPS). "
            "Not a "
            "medical device; not for diagnosis or treatment.</footer>\n</main>\n</body>\n</html>\n";

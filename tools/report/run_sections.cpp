@@ -126,7 +126,8 @@ std::string stages_section(const std::vector<StageRecord>& stages) {
 }
 
 std::string provenance_section(const std::string& provenance) {
-    const nlohmann::json json = nlohmann::json::parse(provenance, nullptr, false);
+    nlohmann::json json = nlohmann::json::parse(provenance, nullptr, false);
+    if (json.is_object()) json.erase("meshes");  // contract_section() shows them
     std::string content;
     if (provenance.empty()) {
         content = html::missing("The asset carries no provenance.");

@@ -21,6 +21,7 @@ struct MeasuredBody {
 std::string slices_section(const ReportInputs& inputs);
 std::string bodies_section(const Case& patient_case);
 std::string mesh_section(const Case& patient_case, const std::vector<MeasuredBody>& bodies);
+std::string contract_section(const std::string& provenance);
 std::string worst_section(const std::vector<MeasuredBody>& bodies);
 std::string distances_section(const ReportInputs& inputs);
 std::string mechanics_section(const Case& patient_case);

@@ -200,8 +200,12 @@ Stage pack_stage(const CaseFile& case_file, const BuildPaths& paths, const std::
         stage.inputs.push_back(tree);
     };
     for (const RigidSpec& rigid : case_file.rigid) body("--rigid", rigid.name, ".vtp");
-    for (const DeformableSpec& deformable : case_file.deformable)
+    for (const DeformableSpec& deformable : case_file.deformable) {
         body("--deformable", deformable.name, ".body.h5");
+        const auto result = paths.parts / ("mesh-" + deformable.name + ".json");
+        add(stage.arguments, {"--mesh-result", deformable.name + "=" + result.string()});
+        stage.inputs.push_back(result);
+    }
     add_options(stage.arguments, case_file.haptics);
     add(stage.arguments, {"-o", paths.asset.string()});
     return stage;

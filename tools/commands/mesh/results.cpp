@@ -56,36 +56,28 @@ Json to_json(const TetMesh& mesh, const MeshMeasures& measures) {
     return result;
 }
 
-Json to_json(const QualityContract& contract) {
-    return {{"min_dihedral_deg", contract.min_dihedral_deg},
-            {"max_dihedral_deg", contract.max_dihedral_deg},
-            {"max_volume_error_percent", contract.max_volume_error_percent},
-            {"max_mean_distance_mm", contract.max_mean_distance},
-            {"max_p95_distance_mm", contract.max_p95_distance},
-            {"max_distance_voxel_diagonals", contract.max_distance_voxels},
-            {"min_dice", contract.min_dice},
-            {"min_region_dice", contract.min_region_dice},
-            {"max_centroid_distance_mm", contract.max_centroid_distance}};
+Json to_json(std::span<const ContractCheck> checks) {
+    Json list = Json::array();
+    for (const ContractCheck& check : checks)
+        list.push_back(
+            {{"what", check.what}, {"found", check.found}, {"limit", check.limit}, {"kept", check.kept}});
+    return list;
 }
 
 Json to_json(const std::vector<MeshAttempt>& attempts) {
     Json list = Json::array();
-    for (const MeshAttempt& attempt : attempts) {
-        Json missed = Json::array();
-        for (const ContractMiss& miss : attempt.misses)
-            missed.push_back({{"found", miss.found}, {"limit", miss.limit}});
-        list.push_back({{"tetrahedra", attempt.tetrahedra}, {"misses", missed}});
-    }
+    for (const MeshAttempt& attempt : attempts)
+        list.push_back({{"tetrahedra", attempt.tetrahedra}, {"misses", to_json(attempt.misses)}});
     return list;
 }
 
-void require_none(const std::vector<ContractMiss>& misses, const std::string& culprit,
+void require_kept(std::span<const ContractCheck> checks, const std::string& culprit,
                   const std::string& next_step) {
-    if (misses.empty()) return;
     std::string found;
-    for (const ContractMiss& miss : misses)
-        found += fmt::format("{}{} (expected {})", found.empty() ? "" : "; ", miss.found, miss.limit);
-    throw QualityNotMet({culprit, found, "", next_step});
+    for (const ContractCheck& check : misses(checks))
+        found += fmt::format("{}{} is {} (expected {})", found.empty() ? "" : "; ", check.what, check.found,
+                             check.limit);
+    if (!found.empty()) throw QualityNotMet({culprit, found, "", next_step});
 }
 
 }  // namespace palpate::mesh
