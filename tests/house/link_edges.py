@@ -26,6 +26,7 @@ ROOMS = {
     "report": {"model", "asset", "vtk", "json"},
     "cli": {"model", "cli11", "spdlog", "json", "toml"},
     "build": {"model", "asset", "cli", "json", "toml"},
+    "seeds": {"model", "imaging", "vtk"},
     "realtime": set(),
     "collision": {"model"},
     "haptics": {"model", "collision", "realtime"},
@@ -33,7 +34,7 @@ ROOMS = {
     "visual": {"model", "realtime", "vtk"},
     "apps": {"model", "asset", "realtime", "collision", "haptics", "devices"},
 }
-COMMANDS = {"model", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "build", "json"}
+COMMANDS = {"model", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "build", "seeds", "json"}
 APPS = {"model", "asset", "cli", "realtime", "collision", "haptics", "devices", "apps", "json"}
 EXECUTABLES = {
     "palpate": {"cli", "model"},
