@@ -9,7 +9,7 @@ namespace palpate {
 using Eigen::Vector2d;
 
 Layout lay_out(const ImageGrid& grid, const std::array<SliceView, 3>& views, const Vector2d& size,
-               double zoom, const std::array<std::int32_t, 3>& crosshair) {
+               double zoom, const std::array<std::int32_t, 3>& middle) {
     constexpr double status_height = 30, gap = 2, margin = 26;  // pixels; letters stand in the margin
     constexpr double least_share = 0.42, largest_share = 0.62;  // of a side, for the axial pane
     const Vector2d axial = size_of(views[0], grid), coronal = size_of(views[1], grid),
@@ -33,11 +33,11 @@ Layout lay_out(const ImageGrid& grid, const std::array<SliceView, 3>& views, con
         const Eigen::Array2d room = (layout.panes[n].size.array() - 2 * margin).max(1);
         pixel = std::max(pixel, (size_of(views[n], grid).array() / room).maxCoeff());
     }
-    const Eigen::Vector3d meeting(crosshair[0], crosshair[1], crosshair[2]);
+    const Eigen::Vector3d index(middle[0], middle[1], middle[2]);
     for (std::size_t n = 0; n < 3; ++n) {
         layout.panes[n].pixel = pixel / zoom;
         layout.panes[n].center =
-            zoom > 1 ? pane_point(views[n], grid, meeting) : Vector2d(size_of(views[n], grid) / 2);
+            zoom > 1 ? pane_point(views[n], grid, index) : Vector2d(size_of(views[n], grid) / 2);
     }
     return layout;
 }

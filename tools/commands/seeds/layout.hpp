@@ -11,9 +11,9 @@ struct Layout {
     PaneFrame legend, status;        ///< their corners and sizes only
 };
 
-/// Lays out a window of `size` (pixels). At zoom 1 all of each slice is seen; above, the crosshair (a voxel)
-/// is in the middle of each pane.
+/// Lays out a window of `size` (pixels). At zoom 1 all of each slice is seen; above, the voxel `middle` is in
+/// the middle of each pane.
 Layout lay_out(const ImageGrid& grid, const std::array<SliceView, 3>& views, const Eigen::Vector2d& size,
-               double zoom, const std::array<std::int32_t, 3>& crosshair);
+               double zoom, const std::array<std::int32_t, 3>& middle);
 
 }  // namespace palpate

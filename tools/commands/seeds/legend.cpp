@@ -10,15 +10,15 @@
 namespace palpate {
 namespace {
 
+constexpr auto help_keys =
+    "left click\nright click\nX,  U\n0 ... 9\nwheel, arrows\nshift + left, middle\nright drag\n+  -\n"
+    "Z,  H\nS,  Q";
 constexpr auto help_text =
-    "left click  place a seed             0 ... 9  choose the label\n"
-    "right click  remove the nearest      X  remove the last      U  undo\n"
-    "shift + left, or middle  move the crosshair only\n"
-    "wheel, arrow up and down  scroll the slice under the pointer\n"
-    "+ -  grey window      right drag  contrast and brightness\n"
-    "Z  zoom      H  this help      S  save      Q  quit";
+    "place a seed\nremove the nearest seed\nremove the last seed, undo\nchoose the label\n"
+    "scroll the slice under the pointer\nmove the crosshair only\ncontrast and brightness\n"
+    "grey windows for other tissues\nzoom, hide this help\nsave, quit";
 
-constexpr double edge = 16;  // pixels
+constexpr double edge = 16, help_indent = 170;  // pixels
 
 std::string row_text(const SeedState& state, std::size_t number, const Growth* growth) {
     const std::string& label = state.labels[number];
@@ -56,9 +56,12 @@ Legend::Legend(const std::string& title, std::size_t labels) {
         row.key->GetTextProperty()->SetBackgroundOpacity(1);
         rows_.push_back(row);
     }
-    add(grey_, 13, renderer_);
+    add(grey_, 14, renderer_);
     grey_->GetTextProperty()->SetColor(0.65, 0.72, 0.78);
-    add(help_, 13, renderer_);
+    add(help_keys_, 14, renderer_);
+    help_keys_->SetInput(help_keys);
+    help_keys_->GetTextProperty()->BoldOn();
+    add(help_, 14, renderer_);
     help_->SetInput(help_text);
     add(pointer_, 14, status_renderer_);
     add(message_, 14, status_renderer_);
@@ -80,10 +83,16 @@ void Legend::update(const SeedState& state, const GreyPreset& grey, const Growth
             .c_str());
 }
 
+void Legend::toggle_help() {
+    const int shown = help_->GetVisibility();
+    help_->SetVisibility(!shown);
+    help_keys_->SetVisibility(!shown);
+}
+
 void Legend::place(const Layout& layout, const Eigen::Vector2d& window_size) {
     set_viewport(renderer_, layout.legend, window_size);
     set_viewport(status_renderer_, layout.status, window_size);
-    constexpr double title_height = 44, help_height = 140, tallest_row = 30;
+    constexpr double title_height = 44, help_height = 200, tallest_row = 30;
     const double height = layout.legend.size[1];
     title_->SetPosition(edge, height - 14);
     const double room = height - title_height - help_height - 20;
@@ -97,7 +106,8 @@ void Legend::place(const Layout& layout, const Eigen::Vector2d& window_size) {
         y -= row_height;
     }
     grey_->SetPosition(edge, y);
-    help_->SetPosition(edge, 12);
+    help_keys_->SetPosition(edge, 12);
+    help_->SetPosition(edge + help_indent, 12);
     pointer_->SetPosition(edge, 8);
     message_->SetPosition(layout.status.size[0] - edge, 8);
 }

@@ -26,7 +26,7 @@ class Legend {
     void update(const SeedState& state, const GreyPreset& grey, const Growth* growth);
     void set_pointer(const std::string& text) { pointer_->SetInput(text.c_str()); }
     void set_message(const std::string& text) { message_->SetInput(text.c_str()); }
-    void toggle_help() { help_->SetVisibility(!help_->GetVisibility()); }
+    void toggle_help();
     void place(const Layout& layout, const Eigen::Vector2d& window_size);
 
   private:
@@ -34,7 +34,7 @@ class Legend {
         vtkSmartPointer<vtkTextActor> key, text;
     };
     vtkNew<vtkRenderer> renderer_, status_renderer_;
-    vtkNew<vtkTextActor> title_, grey_, help_, pointer_, message_;
+    vtkNew<vtkTextActor> title_, grey_, help_keys_, help_, pointer_, message_;
     std::vector<Row> rows_;  // by label number
 };
 

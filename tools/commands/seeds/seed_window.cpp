@@ -114,7 +114,7 @@ class SeedWindow {
         stale_ = false;
         const int* pixels = window_->GetSize();
         const Vector2d size(pixels[0], pixels[1]);
-        const Layout layout = lay_out(volume_.grid, views_, size, zoom_, state_.crosshair);
+        const Layout layout = layout_for(size);
         for (std::size_t n = 0; n < panes_.size(); ++n) {
             panes_[n].place(layout.panes[n], size);
             if (picture_stale_) panes_[n].update(volume_, state_, grey_, growth_.get());
@@ -124,6 +124,18 @@ class SeedWindow {
         legend_.update(state_, grey_, growth_.get());
         legend_.set_pointer(pointer_text());
         window_->Render();
+    }
+
+    // Zoomed in, what is seen moves only when the crosshair would leave it: a click moves nothing.
+    Layout layout_for(const Vector2d& size) {
+        Layout layout = lay_out(volume_.grid, views_, size, zoom_, zoom_middle_);
+        const Vector3d index(state_.crosshair[0], state_.crosshair[1], state_.crosshair[2]);
+        for (std::size_t n = 0; n < views_.size(); ++n)
+            if (!layout.panes[n].shows(pane_point(views_[n], volume_.grid, index))) {
+                zoom_middle_ = state_.crosshair;
+                return lay_out(volume_.grid, views_, size, zoom_, zoom_middle_);
+            }
+        return layout;
     }
 
     void refresh() { stale_ = picture_stale_ = true; }
@@ -297,7 +309,7 @@ class SeedWindow {
         else if (key == "Down" || key == "Next")
             scroll_under_pointer(-1);
         else if (key == "z")
-            zoom_ = zoom_ < largest_zoom ? 2 * zoom_ : 1;
+            zoom_in();
         else if (key == "h")
             legend_.toggle_help();
         else if (key == "s")
@@ -306,6 +318,11 @@ class SeedWindow {
             grow();
         else if (key == "u" && undo(state_))
             grow();
+    }
+
+    void zoom_in() {
+        zoom_ = zoom_ < largest_zoom ? 2 * zoom_ : 1;
+        zoom_middle_ = state_.crosshair;
     }
 
     void save() {
@@ -335,6 +352,7 @@ class SeedWindow {
     GreyPreset grey_;
     std::size_t preset_ = 0;
     double zoom_ = 1;
+    std::array<std::int32_t, 3> zoom_middle_{0, 0, 0};  // voxel
     vtkNew<vtkRenderWindow> window_;
     vtkNew<vtkRenderWindowInteractor> interactor_;
     vtkNew<vtkCallbackCommand> events_;

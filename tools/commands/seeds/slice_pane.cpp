@@ -23,8 +23,9 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Heights above the picture, towards the eye.
-constexpr double contour_height = 1, crosshair_height = 2, rim_height = 3, seed_height = 4;
+// Heights above the picture, towards the eye, mm. Points are drawn as balls, so the coloured ones must clear
+// their black rims.
+constexpr double contour_height = 1, crosshair_height = 2, rim_height = 3, seed_height = 50;
 constexpr float rim_size = 13, seed_size = 9, contour_width = 2.2F;  // pixels
 constexpr double near_slice = 3;                                     // mm: seeds no further off are drawn
 constexpr double crosshair_gap = 14;                                 // pixels left free about the middle
@@ -33,6 +34,12 @@ void set_geometry(vtkImageData* image, const SlicePicture& picture, const Vector
     image->SetDimensions(picture.width, picture.height, 1);
     image->SetSpacing(voxel[0], voxel[1], 1);
     image->SetOrigin(voxel[0] / 2, voxel[1] / 2, 0);
+}
+
+// Keeps a text legible over a bright picture.
+void set_backing(vtkTextActor* actor) {
+    actor->GetTextProperty()->SetBackgroundColor(0, 0, 0);
+    actor->GetTextProperty()->SetBackgroundOpacity(0.6);
 }
 
 }  // namespace
@@ -75,11 +82,13 @@ SlicePane::SlicePane(const ImageGrid& grid, SliceView view) : grid_(grid), view_
         letters_[edge]->GetTextProperty()->SetJustificationToCentered();
         letters_[edge]->GetTextProperty()->SetVerticalJustificationToCentered();
         letters_[edge]->SetInput(std::string(1, view_.edges[edge]).c_str());
+        set_backing(letters_[edge]);
         renderer_->AddActor2D(letters_[edge]);
     }
     set_type(title_, 13);
     title_->GetTextProperty()->SetColor(0.65, 0.72, 0.78);
     title_->GetTextProperty()->SetVerticalJustificationToTop();
+    set_backing(title_);
     renderer_->AddActor2D(title_);
 
     // The eye is before the picture's z < 0 with v downwards, so u runs to the right.

@@ -76,8 +76,10 @@ SlicePicture slice_picture(const Volume& volume, const SliceView& view, std::int
         cover.resize(pixels);
         std::ranges::transform(shown, cover.begin(),
                                [&](std::uint16_t value) { return value == label.value ? 1.0F : 0.0F; });
-        blur(cover, picture.width, 1, picture.height, picture.width, radius(view.right));
-        blur(cover, picture.height, picture.width, picture.width, 1, radius(view.down));
+        for (int pass = 0; pass < 2; ++pass) {
+            blur(cover, picture.width, 1, picture.height, picture.width, radius(view.right));
+            blur(cover, picture.height, picture.width, picture.width, 1, radius(view.down));
+        }
         const auto colour = label_colour(static_cast<std::size_t>(number));
         for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
             const float share = tint * std::clamp(3 * cover[pixel] - 1, 0.0F, 1.0F);

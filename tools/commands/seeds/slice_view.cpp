@@ -107,4 +107,9 @@ Vector2d PaneFrame::point_at(const Vector2d& position) const {
     return center + Vector2d(from_middle[0], -from_middle[1]);
 }
 
+bool PaneFrame::shows(const Vector2d& point) const {
+    constexpr double inner = 0.45;
+    return ((point - center).array().abs() <= inner * pixel * size.array()).all();
+}
+
 }  // namespace palpate

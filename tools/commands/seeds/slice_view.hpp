@@ -48,6 +48,8 @@ struct PaneFrame {
     bool holds(const Eigen::Vector2d& position) const;
     /// Pane coordinates of a position in the window.
     Eigen::Vector2d point_at(const Eigen::Vector2d& position) const;
+    /// Tells whether pane coordinates are well within what is seen: not in its outermost twentieth.
+    bool shows(const Eigen::Vector2d& point) const;
 };
 
 }  // namespace palpate
