@@ -207,7 +207,8 @@ class OnPhantom(SeedsWindow):
         cases = [
             ([self.volume, "-o", self.folder / "liver.txt"], USAGE, ".mrk.json"),
             ([self.volume, "-o", self.output, "--window-level", "0,40"], USAGE, "--window-level"),
-            ([self.volume, "-o", self.output] + [f"--label=l{n}" for n in range(10)], USAGE, "9 or fewer"),
+            ([self.volume, "-o", self.output] + [f"--label={letter}" for letter in "abcdefghij"], USAGE, "9 or fewer"),
+            ([self.volume, "-o", self.output, "--label", "kidney-2"], USAGE, "kidney-2"),
             ([self.volume, "-o", self.folder / "none" / "a.mrk.json"], INVALID, "folder does not exist"),
             ([self.volume, "-o", self.output, "--seeds", outside], INVALID, "liver"),
             ([self.folder / "nothing.nrrd"], INVALID, "nothing.nrrd"),
@@ -227,8 +228,10 @@ class OnPhantom(SeedsWindow):
 
 @unittest.skipUnless((DATA / "abdomen_ct_spl").is_dir(), "PALPATE_DATA: abdomen_ct_spl is absent")
 class OnRealAbdomen(SeedsWindow):
+    volume = DATA / "abdomen_ct_spl" / "ct.nrrd"
+
     def test_the_liver_is_at_the_left_of_the_axial_slice_and_grows_from_a_click(self):
-        self.open_window(DATA / "abdomen_ct_spl" / "ct.nrrd")
+        self.open_window(self.volume)
         width, height = self.size()
         place = round(width * 0.18), round((height - STATUS_HEIGHT) * 0.29)
         self.click(place)
@@ -238,6 +241,14 @@ class OnRealAbdomen(SeedsWindow):
         result, _ = self.close_window()
         self.assertLess(result["seeds"][0]["position_mm"][0], -50, "the patient's right")
         self.assertGreater(result["regions"][0]["volume_ml"], 300)
+        segmented = subprocess.run(
+            [BIN / "palpate-segment", "--volume", self.volume, "--structure",
+             f"liver: recipe=liver seeds_file={self.output}", "-o", self.folder / "labels.seg.nrrd", "--json", "-"],
+            capture_output=True, text=True, timeout=2 * PATIENCE)
+        self.assertEqual(segmented.returncode, OK, segmented.stderr)
+        liver, = json.loads(segmented.stdout)["labels"]
+        self.assertGreater(liver["volume_ml"], 300)
+        self.assertLess(liver["centroid_mm"][0], 0)
 
 
 if __name__ == "__main__":

@@ -18,6 +18,16 @@ std::string structure_of(const std::filesystem::path& output) {
     return name.substr(0, name.find('.'));
 }
 
+// Readers take a number at a label's end for the point's own, as 3D Slicer writes it.
+void check_label(const std::string& label) {
+    const auto last = label.find_last_not_of("0123456789");
+    const bool numbered =
+        last != std::string::npos && last + 1 < label.size() && (label[last] == '-' || label[last] == '_');
+    if (label.empty() || numbered)
+        throw UsageError({"--label", "'" + label + "'", "a name without '-' or '_' and a number at its end",
+                          "for example 'left kidney'"});
+}
+
 GreyScale greys_of(const Volume& volume, const std::vector<double>& chosen) {
     GreyScale greys = grey_scale(volume);
     if (chosen.empty()) return greys;
@@ -89,6 +99,7 @@ int main(int argc, char** argv) {
     return command.run(argc, argv, [&](cli::Session& session) -> ordered_json {
         if (!output.filename().string().ends_with(".mrk.json"))
             throw UsageError({"--output", output.string(), "a name that ends in .mrk.json", ""});
+        for (const std::string& label : labels) check_label(label);
         session.stage(output);  // refuses now what could not be written after the clicking
         session.progress.step("reading", 0);
         const Volume volume =

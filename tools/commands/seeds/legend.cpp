@@ -75,8 +75,7 @@ void Legend::update(const SeedState& state, const GreyPreset& grey, const Growth
         vtkTextProperty* type = rows_[number].text->GetTextProperty();
         type->SetBold(active);
         type->SetOpacity(active ? 1 : 0.7);
-        rows_[number].text->SetInput(
-            (row_text(state, number, growth) + (active ? "   <  next click" : "")).c_str());
+        rows_[number].text->SetInput((row_text(state, number, growth) + (active ? "   <" : "")).c_str());
     }
     grey_->SetInput(
         fmt::format("grey window: {}, width {:.0f}, level {:.0f}", grey.name, grey.width, grey.level)
@@ -93,19 +92,23 @@ void Legend::place(const Layout& layout, const Eigen::Vector2d& window_size) {
     set_viewport(renderer_, layout.legend, window_size);
     set_viewport(status_renderer_, layout.status, window_size);
     constexpr double title_height = 44, help_height = 200, tallest_row = 30;
-    const double height = layout.legend.size[1];
-    title_->SetPosition(edge, height - 14);
-    const double room = height - title_height - help_height - 20;
-    const double row_height = std::min(tallest_row, room / static_cast<double>(rows_.size() + 1));
-    double y = height - title_height - row_height;
-    // Structures first, the background below them.
-    for (std::size_t n = 1; n <= rows_.size(); ++n) {
-        Row& row = rows_[n % rows_.size()];
-        row.key->SetPosition(edge, y);
-        row.text->SetPosition(edge + 34, y);
-        y -= row_height;
+    constexpr std::size_t one_column = 5;  // labels that fit above the help on a small screen
+    const Eigen::Vector2d size = layout.legend.size;
+    title_->SetPosition(edge, size[1] - 14);
+    const std::size_t columns = rows_.size() > one_column ? 2 : 1,
+                      lines = (rows_.size() + columns - 1) / columns;
+    const double room = size[1] - title_height - help_height - 20;
+    const double row_height = std::min(tallest_row, room / static_cast<double>(lines + 1));
+    const double top = size[1] - title_height - row_height;
+    // Structures first, the background last.
+    for (std::size_t n = 0; n < rows_.size(); ++n) {
+        const Row& row = rows_[(n + 1) % rows_.size()];
+        const double x = edge + static_cast<double>(n / lines) * size[0] / 2,
+                     y = top - static_cast<double>(n % lines) * row_height;
+        row.key->SetPosition(x, y);
+        row.text->SetPosition(x + 34, y);
     }
-    grey_->SetPosition(edge, y);
+    grey_->SetPosition(edge, top - static_cast<double>(lines) * row_height);
     help_keys_->SetPosition(edge, 12);
     help_->SetPosition(edge + help_indent, 12);
     pointer_->SetPosition(edge, 8);

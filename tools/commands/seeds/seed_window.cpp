@@ -159,7 +159,15 @@ class SeedWindow {
         if (grown->map.labels.empty()) return;
         ++growths_;
         longest_growth_ = std::max(longest_growth_, grown->seconds);
-        if (!worker_.busy()) say(fmt::format("grown in {:.2f} s", grown->seconds));
+        if (!worker_.busy()) say(growth_text());
+    }
+
+    std::string growth_text() const {
+        std::string text;
+        for (std::size_t n = 0; n < growth_->map.names.size(); ++n)
+            if (growth_->map.names[n].name == state_.labels[state_.active])
+                text = fmt::format("{} {:.1f} ml, ", growth_->map.names[n].name, growth_->volume_ml[n]);
+        return text + fmt::format("grown in {:.2f} s", growth_->seconds);
     }
 
     Vector2d pointer() const {
@@ -243,6 +251,8 @@ class SeedWindow {
         if (const auto index = index_under(pointer())) {
             place_seed(state_, volume_.grid, *index);
             grow();
+        } else if (pane_at(pointer()) != nullptr) {
+            say("outside the volume");
         }
     }
 
