@@ -85,9 +85,10 @@ int main(int argc, char** argv) {
     command.input("volume", volume_path, "volume, any format that 'palpate import' reads")->required();
     command.output("-o,--output", output, "seeds for 3D Slicer, 'segment' and case files (.mrk.json)")
         ->default_str(output.string());
-    command.option(
-        "--label", labels,
-        "a structure to place seeds in, up to nine [default: the output's name up to its first dot]");
+    command
+        .option("--label", labels,
+                "a structure to place seeds in, up to nine [default: the output's name up to its first dot]")
+        ->allow_extra_args(false);  // the next word may be the volume
     command.input("--seeds", seeds_path, "seeds to start from (.mrk.json, .fcsv)");
     command
         .option("--window-level", window_level,
@@ -95,7 +96,7 @@ int main(int argc, char** argv) {
                 "percentile]",
                 "HU, or the volume's own values")
         ->delimiter(',')
-        ->expected(1, 2);
+        ->allow_extra_args(false);
     return command.run(argc, argv, [&](cli::Session& session) -> ordered_json {
         if (!output.filename().string().ends_with(".mrk.json"))
             throw UsageError({"--output", output.string(), "a name that ends in .mrk.json", ""});
@@ -119,7 +120,7 @@ int main(int argc, char** argv) {
             return output.string();
         };
         session.progress.finish();
-        const SeedWindowResult result = run_seed_window(volume, std::move(settings));
+        const SeedWindowResult result = run_seed_window(volume, settings);
         if (unsaved(result.state)) spdlog::warn("closed without saving the seeds as they were");
         return describe(result, output, written);
     });

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-#include <functional>
 #include <memory>
 #include <string>
 
-#include "tools/commands/seeds/grey_presets.hpp"
-#include "tools/commands/seeds/growth.hpp"
-#include "tools/commands/seeds/seed_state.hpp"
+#include "tools/commands/seeds/seed_editor.hpp"
 
 namespace palpate {
 
@@ -15,8 +12,7 @@ struct SeedWindowSettings {
     std::string title;  ///< the volume's name
     SeedState state;    ///< as start_state() makes it
     GreyScale greys;    ///< at least one preset
-    /// Writes seeds and returns where to; what it throws is shown, and the seeds stay unsaved.
-    std::function<std::string(std::span<const Seed>)> save;
+    SaveSeeds save;     ///< what it throws is shown, and the seeds stay unsaved
 };
 
 /// What the window leaves when it is closed.
@@ -30,6 +26,6 @@ struct SeedWindowResult {
 /// Opens the window and handles mouse and keyboard until it is closed (Q, Escape, its own button; a second
 /// time where seeds are unsaved). One thread draws, another grows. Throws SystemFailure if no X display
 /// answers, InvalidInput if a seed given lies outside the volume.
-SeedWindowResult run_seed_window(const Volume& volume, SeedWindowSettings settings);
+SeedWindowResult run_seed_window(const Volume& volume, const SeedWindowSettings& settings);
 
 }  // namespace palpate

@@ -11,6 +11,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
+constexpr double rim = 1e-6;  // voxels: keeps places on the volume's faces within their voxels when rounded
+
 // For each of x, y, z of the patient the index axis nearest to it, each index axis once.
 std::array<int, 3> nearest_axes(const Eigen::Matrix3d& direction) {
     std::array<int, 3> axes{0, 1, 2}, best = axes;
@@ -65,7 +67,8 @@ double along(const ImageGrid& grid, int axis, bool flipped, double index) {
 
 double index_along(const ImageGrid& grid, int axis, bool flipped, double distance) {
     const double voxels = distance / grid.spacing[axis];
-    return flipped ? grid.size[static_cast<std::size_t>(axis)] - 0.5 - voxels : voxels - 0.5;
+    const double size = grid.size[static_cast<std::size_t>(axis)];
+    return std::clamp(flipped ? size - 0.5 - voxels : voxels - 0.5, -0.5 + rim, size - 0.5 - rim);
 }
 
 }  // namespace
