@@ -221,7 +221,8 @@ class OnPhantom(SeedsWindow):
     def test_without_a_display_the_remedy_is_named(self):
         for display in ({}, {"DISPLAY": ":9999"}):
             environment = {k: v for k, v in os.environ.items() if k != "DISPLAY"} | display
-            run = self.run_seeds(self.volume, "-o", self.output, environment=environment)
+            run = self.run_seeds("--window-level", "400,-40", "--label", "liver", self.volume, "-o", self.output,
+                                 environment=environment)
             self.assertEqual(run.returncode, FAILED)
             self.assertIn("3D Slicer", run.stderr)
 
