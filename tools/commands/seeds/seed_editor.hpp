@@ -28,7 +28,7 @@ class SeedEditor {
     void scroll(const SliceView& view, int steps);
     /// Changes the width of the grey window by a pixel distance to the right, its level by one upwards.
     void drag_grey(double right, double up);
-    /// A key by its X name, lower case; those of `quit` aside, unknown ones do nothing.
+    /// Does what a key stands for, by its X name in lower case; unknown keys do nothing.
     void key(const std::string& name);
     /// Closes; where seeds are unsaved only when asked twice in a row.
     void quit();
