@@ -27,6 +27,7 @@ ROOMS = {
     "cli": {"model", "cli11", "spdlog", "json", "toml"},
     "mesh": {"model", "meshing", "json", "fmt"},
     "build": {"model", "asset", "cli", "json", "toml"},
+    "seeds": {"model", "imaging", "vtk"},
     "realtime": set(),
     "collision": {"model"},
     "haptics": {"model", "collision", "realtime"},
@@ -34,7 +35,7 @@ ROOMS = {
     "visual": {"model", "realtime", "vtk"},
     "apps": {"model", "asset", "realtime", "collision", "haptics", "devices"},
 }
-COMMANDS = {"model", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "build", "mesh", "json"}
+COMMANDS = {"model", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "build", "mesh", "seeds", "json"}
 APPS = {"model", "asset", "cli", "realtime", "collision", "haptics", "devices", "apps", "json"}
 EXECUTABLES = {
     "palpate": {"cli", "model"},

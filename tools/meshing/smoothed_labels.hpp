@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "tools/meshing/region_boxes.hpp"
 #include "tools/meshing/region_labels.hpp"
 
 namespace palpate {
@@ -33,11 +34,9 @@ class SmoothedLabels {
     std::size_t region_count() const { return scores_.size(); }
 
   private:
-    using Index3 = std::array<std::int32_t, 3>;
-
     // A region's smoothed indicator in the box that it reaches; zero elsewhere.
     struct Score {
-        Index3 low{}, size{};
+        IndexBox box;
         double sigma = 0;           // mm
         std::vector<float> values;  // i fastest
         float offset = 0;
@@ -54,6 +53,8 @@ class SmoothedLabels {
     std::vector<float> thinness(const RegionLabels& labels) const;
     std::span<const std::uint8_t> candidates_at(const Index3& voxel) const;
     std::uint8_t winner_at(const Index3& voxel) const;
+
+    static constexpr std::int32_t block_edge = 8;  // voxels
 
     ImageGrid grid_;
     Eigen::Matrix3d index_from_point_;

@@ -30,12 +30,12 @@ struct NearSize {
 
 /// How fine and how faithful a tetrahedral mesh is. Where regions meet, the finer size holds.
 struct MeshSizing {
-    double cell_size = 4;           ///< mm: largest circumradius of a tetrahedron
-    double facet_size = 0;          ///< mm: largest circumradius of a surface triangle; 0: as cell_size
-    double facet_distance = 0;      ///< mm: largest distance of a triangle to the surface; 0: cell_size / 10
+    double cell_size = 4;       ///< mm: largest circumradius of a tetrahedron
+    double facet_size = 0;      ///< mm: largest circumradius of a surface triangle; 0: as cell_size
+    double facet_distance = 0;  ///< mm: largest distance of a triangle to the surface; 0: cell_size / 10
     double max_gap = 0;  ///< mm: how far a triangle may cut an edge or a tip off; 0: 0.6 voxel diagonals
-    double facet_angle_deg = 25;    ///< smallest angle of a surface triangle, up to 30
-    double cell_radius_edge = 2.5;  ///< largest circumradius over shortest edge, 2 or more
+    double facet_angle_deg = 25;           ///< smallest angle of a surface triangle, up to 30
+    double cell_radius_edge = 2.5;         ///< largest circumradius over shortest edge, 2 or more
     std::vector<RegionSize> regions = {};  ///< facet sizes and distances scale with the cell size
     std::vector<NearSize> near = {};       ///< likewise near points and labels
     double smoothing = -1;  ///< mm, Gaussian sigma on the labels; below 0: the largest voxel edge

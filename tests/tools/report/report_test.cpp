@@ -22,7 +22,9 @@ Case hostile_case() {
     patient_case.name = "<script>alert('Doe & \"Co\"')</script>";
     patient_case.deformable_bodies.front().name = "wall</td><img>";
     patient_case.deformable_bodies.front().mesh.region_names.back().name = "tumour <b>";
-    patient_case.provenance = R"({"tool":{"name":"<i>palpate</i>"},"inputs":["a & b"]})";
+    patient_case.provenance =
+        R"({"tool":{"name":"<i>palpate</i>"},"inputs":["a & b"],"meshes":{"cube":{"checks":[)"
+        R"({"what":"the mean surface distance of 'cube'","found":"0.3 mm","limit":"at most 0.25 mm","kept":false}]}}})";
     return patient_case;
 }
 
@@ -158,8 +160,8 @@ TEST_F(ReportTest, page_needs_nothing_from_outside) {
 
 TEST_F(ReportTest, all_sections_are_there) {
     const std::string page = full_page();
-    for (const char* id :
-         {"slices", "bodies", "mesh", "mechanics", "certificate", "touch", "stages", "provenance"}) {
+    for (const char* id : {"slices", "bodies", "mesh", "contract", "mechanics", "certificate", "touch",
+                           "stages", "provenance"}) {
         EXPECT_TRUE(contains(page, "<section id=\"" + std::string(id) + "\">")) << id;
         EXPECT_TRUE(contains(page, "href=\"#" + std::string(id) + "\"")) << id;
     }
@@ -168,6 +170,8 @@ TEST_F(ReportTest, all_sections_are_there) {
     for (const char* figure : {"10\u202f000", "1.25 N", "3.5 mm", "11.25"})
         EXPECT_TRUE(contains(page, figure)) << figure;
     EXPECT_TRUE(contains(page, "3.25 s"));
+    EXPECT_TRUE(contains(page, "at most 0.25 mm"));
+    EXPECT_TRUE(contains(page, "<strong>missed</strong>"));
 }
 
 TEST_F(ReportTest, names_are_escaped) {

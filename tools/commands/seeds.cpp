@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// palpate seeds: a window in which a person clicks into structures and sees them grow.
+#include <algorithm>
+#include <spdlog/spdlog.h>
+
+#include "tools/cli/command.hpp"
+#include "tools/commands/seeds/seed_window.hpp"
+#include "tools/imaging/image_files.hpp"
+
+namespace {
+
+using namespace palpate;
+using nlohmann::ordered_json;
+
+// "liver.mrk.json" holds seeds of the liver.
+std::string structure_of(const std::filesystem::path& output) {
+    const std::string name = output.filename().string();
+    return name.substr(0, name.find('.'));
+}
+
+// Readers take a number at a label's end for the point's own, as 3D Slicer writes it.
+void check_label(const std::string& label) {
+    const auto last = label.find_last_not_of("0123456789");
+    const bool numbered =
+        last != std::string::npos && last + 1 < label.size() && (label[last] == '-' || label[last] == '_');
+    if (label.empty() || numbered)
+        throw UsageError({"--label", "'" + label + "'", "a name without '-' or '_' and a number at its end",
+                          "for example 'left kidney'"});
+}
+
+GreyScale greys_of(const Volume& volume, const std::vector<double>& chosen) {
+    GreyScale greys = grey_scale(volume);
+    if (chosen.empty()) return greys;
+    if (chosen.size() != 2 || chosen[0] <= 0)
+        throw UsageError({"--window-level", fmt::format("{}", fmt::join(chosen, ",")),
+                          "width,level, the width above 0", "for example --window-level 400,40"});
+    greys.presets.insert(greys.presets.begin(), {"your own", chosen[0], chosen[1] + greys.offset});
+    return greys;
+}
+
+ordered_json describe(const SeedWindowResult& result, const std::filesystem::path& output, bool written) {
+    ordered_json seeds = ordered_json::array(), regions = ordered_json::array();
+    for (const Seed& seed : result.state.seeds)
+        seeds.push_back({{"label", seed.label}, {"position_mm", {seed.p_P[0], seed.p_P[1], seed.p_P[2]}}});
+    if (result.growth)
+        for (std::size_t n = 0; n < result.growth->map.names.size(); ++n)
+            regions.push_back(
+                {{"name", result.growth->map.names[n].name}, {"volume_ml", result.growth->volume_ml[n]}});
+    ordered_json description{{"saved", !unsaved(result.state)},
+                             {"seeds", seeds},
+                             {"regions", regions},
+                             {"growths", result.growths},
+                             {"last_growth_seconds", result.growth ? result.growth->seconds : 0.0},
+                             {"longest_growth_seconds", result.longest_growth}};
+    if (written) description["output"] = output.string();
+    return description;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    cli::Command command(
+        {.name = "seeds",
+         .summary =
+             "Opens a window to click seeds into structures, and saves them for 'segment' and case files",
+         .examples = {"palpate seeds volume.nrrd -o liver.mrk.json",
+                      "palpate seeds volume.nrrd --label liver --label tumour -o organs.mrk.json",
+                      "palpate segment --volume volume.nrrd --structure 'liver: recipe=grow-from-seeds "
+                      "seeds_file=liver.mrk.json' -o labels.seg.nrrd"},
+         .notes =
+             "Three linked slices along the volume's own axes, patient's right at the left. A left click "
+             "places a seed of\nthe active label; the region that grows from the seeds is drawn within a "
+             "second, in preview: at coarser voxels\nthan 'segment' uses. Seeds of 'background' (key 0) stop "
+             "it where it leaks.\n\n"
+             "Left click places a seed, right click removes the nearest, X or Delete the last, U undoes.\n"
+             "Shift and left button, or the middle button, move the crosshair only. The wheel, arrow up and "
+             "down scroll the\nslice under the pointer; forward is away from the viewer. 1 ... 9 choose a "
+             "label, 0 the background.\n+ and - change the grey window, a drag with the right button its "
+             "width (sideways) and level (up and down).\nZ zooms about the crosshair, H hides the help, S "
+             "saves, Q or Escape quits, a second time where seeds are not\nsaved. The window needs an X "
+             "display; elsewhere place points in 3D Slicer, whose files are read as well."});
+    std::filesystem::path volume_path, seeds_path, output = "seed.mrk.json";
+    std::vector<std::string> labels;
+    std::vector<double> window_level;
+    command.input("volume", volume_path, "volume, any format that 'palpate import' reads")->required();
+    command.output("-o,--output", output, "seeds for 3D Slicer, 'segment' and case files (.mrk.json)")
+        ->default_str(output.string());
+    command
+        .option("--label", labels,
+                "a structure to place seeds in, up to nine [default: the output's name up to its first dot]")
+        ->allow_extra_args(false);  // the next word may be the volume
+    command.input("--seeds", seeds_path, "seeds to start from (.mrk.json, .fcsv)");
+    command
+        .option("--window-level", window_level,
+                "WIDTH,LEVEL of the grey window at first [default: 400,40 for a CT, else the 1st to 99th "
+                "percentile]",
+                "HU, or the volume's own values")
+        ->delimiter(',')
+        ->allow_extra_args(false);
+    return command.run(argc, argv, [&](cli::Session& session) -> ordered_json {
+        if (!output.filename().string().ends_with(".mrk.json"))
+            throw UsageError({"--output", output.string(), "a name that ends in .mrk.json", ""});
+        for (const std::string& label : labels) check_label(label);
+        session.stage(output);  // refuses now what could not be written after the clicking
+        session.progress.step("reading", 0);
+        const Volume volume =
+            read_volume(volume_path, [](std::string_view text) { spdlog::warn("{}", text); });
+        const std::vector<Seed> seeds = seeds_path.empty() ? std::vector<Seed>{} : read_seeds(seeds_path);
+        if (labels.empty() && seeds.empty()) labels.push_back(structure_of(output));
+        SeedWindowSettings settings{.title = volume_path.filename().string(),
+                                    .state = start_state(volume.grid, labels, seeds),
+                                    .greys = greys_of(volume, window_level),
+                                    .save = {}};
+        bool written = false;
+        settings.save = [&](std::span<const Seed> placed) {
+            cli::StagedFile staged(output, session.force || written);
+            write_seeds(staged.path(), placed);
+            staged.commit();
+            written = true;
+            return output.string();
+        };
+        session.progress.finish();
+        const SeedWindowResult result = run_seed_window(volume, settings);
+        if (unsaved(result.state)) spdlog::warn("closed without saving the seeds as they were");
+        return describe(result, output, written);
+    });
+}
