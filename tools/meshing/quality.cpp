@@ -65,9 +65,23 @@ double radius_ratio(const std::array<Eigen::Vector3d, 4>& p, double volume) {
 
 }  // namespace
 
+// The sine of the dihedral angle at an edge e between faces of areas A and B is 1.5 V |e| / (A B), which is
+// the same for an angle and for what it lacks to 180°.
 double flatness_deg(const TetMesh& mesh, std::size_t t) {
-    const auto [low, high] = std::ranges::minmax(dihedral_angles_deg(corners_of(mesh, t)));
-    return std::min(low, 180 - high);
+    const auto p = corners_of(mesh, t);
+    const std::array<Eigen::Vector3d, 4> face = face_vectors(p);
+    const double volume = six_volume(mesh, t) / 6;
+    std::array<double, 4> squared_area{};
+    for (std::size_t f = 0; f < 4; ++f) squared_area[f] = face[f].squaredNorm();
+    double smallest = 1;
+    for (std::size_t a = 0; a < 4; ++a)
+        for (std::size_t b = a + 1; b < 4; ++b) {
+            // The faces opposite to the two other corners meet in this edge.
+            const std::size_t c = a == 0 ? (b == 1 ? 2 : 1) : 0, d = 6 - a - b - c;
+            smallest = std::min(smallest, 2.25 * volume * volume * (p[b] - p[a]).squaredNorm() /
+                                              (squared_area[c] * squared_area[d]));
+        }
+    return std::asin(std::sqrt(smallest)) * 180 / std::numbers::pi;
 }
 
 SurfaceQuality measure(const TriangleMesh& surface) {
