@@ -112,9 +112,9 @@ void judge(const std::string& mesh_path, const std::string& labels_path) {
     const LabelMap map = read_label_map(labels_path);
     const MeshQuality quality = measure(mesh);
     const std::array<std::int32_t, 1> body{1};
-    const RegionLabels labels = prepare_domain(map, body, -1, 40).labels;
+    const auto [labels, smoothed] = prepare_domain(map, body, -1, 40);
     const RegionFidelity fidelity = compare(mesh, labels).body;
-    const RegionDistance distance = region_distances(mesh, labels, region_surfaces(labels)).front();
+    const RegionDistance distance = region_distances(mesh, labels, region_surfaces(labels, smoothed)).front();
     const TriangleMesh boundary = boundary_surface(mesh).surface;
     std::printf(
         R"({"tetrahedra": %zu, "triangles": %zu, "min_deg": %g, "max_deg": %g, "volume_percent": %g, "dice": %g, )"

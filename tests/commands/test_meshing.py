@@ -102,7 +102,7 @@ class Mesh(MeshingCommand):
         self.assertEqual((angles["limit"], angles["kept"]), ("12° ... 165°", True))
 
     def test_missed_limits_are_listed_with_every_attempt(self):
-        result = self.result_of("mesh", *self.mesh("--max-mean-distance", 0.067, "--attempts", 8))
+        result = self.result_of("mesh", *self.mesh("--max-mean-distance", 0.04, "--attempts", 8))
         first, last = result["attempts"][0], result["attempts"][-1]
         self.assertIn("mean surface distance", first["misses"][0]["what"])
         self.assertEqual(last, {"tetrahedra": result["tetrahedra"], "misses": []})

@@ -60,13 +60,14 @@ Body take_finished(const std::filesystem::path& path, const FinishedMeshOptions&
     if (!std::ranges::all_of(values, [&](std::int32_t value) {
             return std::ranges::find(map.names, value, &Label::value) != map.names.end();
         })) {
-        note("a region of the mesh has no label: it is not measured against the labels");
+        spdlog::warn("a region of the mesh has no label: the mesh is not measured against the labels");
+        body.result["fidelity"] = "not measured";
         return body;
     }
     const MeshSizing defaults;
-    const RegionLabels labels =
-        prepare_domain(map, values, defaults.smoothing, defaults.min_component_volume).labels;
-    const MeshMeasures measures = measure(body.mesh, labels, region_surfaces(labels));
+    const MeshDomain domain = prepare_domain(map, values, defaults.smoothing, defaults.min_component_volume);
+    const MeshMeasures measures =
+        measure(body.mesh, domain.labels, region_surfaces(domain.labels, domain.smoothed));
     const auto fidelity = check_fidelity(contract, body.mesh, measures, map.grid);
     body.checks.insert(body.checks.end(), fidelity.begin(), fidelity.end());
     body.result = mesh::to_json(body.mesh, measures);
@@ -107,27 +108,34 @@ int main(int argc, char** argv) {
         command.option("--region", regions, "label of the body, by name or value; repeat for more");
     auto* const mesh_file = command.input("--mesh-file", mesh_path,
                                           "tetrahedra made elsewhere (.vtu, .vtk, Gmsh .msh, MEDIT .mesh)");
-    mesh_file->excludes(region);
     command.option("--unit", finished.unit, "of that file: um, mm, cm, m or in")->needs(mesh_file);
     command.option("--frame", finished.frame, "of that file: lps or ras; empty: what it states, else lps")
         ->needs(mesh_file);
     command
         .option("--region-name", region_names, "VALUE=NAME: name of a region of that file; repeat for more")
         ->needs(mesh_file);
-    command.option("--cell-size", sizing.cell_size, "largest tetrahedron", "mm");
-    command.option("--region-cell-size", region_sizes,
-                   "NAME=MM: another cell size for one label; otherwise no more than its radius");
-    command.option(
+    auto* const cell_size = command.option("--cell-size", sizing.cell_size, "largest tetrahedron", "mm");
+    auto* const region_cell_size =
+        command.option("--region-cell-size", region_sizes,
+                       "NAME=MM: another cell size for one label; otherwise no more than its radius");
+    auto* const near = command.option(
         "--near", near_sizes,
         "NAME=SIZE,WITHIN or X,Y,Z=SIZE,WITHIN: cells of SIZE as far as WITHIN from a label or a point",
         "mm");
-    command.option("--facet-size", sizing.facet_size, "largest surface triangle; 0: as the cell size", "mm");
-    command.option("--facet-distance", sizing.facet_distance,
-                   "largest distance of triangles to the surface; 0: a tenth of the cell size", "mm");
-    command.option("--smoothing", sizing.smoothing, "Gaussian on labels; below 0: the largest voxel edge",
-                   "mm");
-    command.option("--min-component-volume", sizing.min_component_volume,
-                   "smaller specks and pinholes vanish", "mm³");
+    auto* const facet_size = command.option("--facet-size", sizing.facet_size,
+                                            "largest surface triangle; 0: as the cell size", "mm");
+    auto* const facet_distance = command.option(
+        "--facet-distance", sizing.facet_distance,
+        "largest distance of triangles to the surface; 0: a tenth of the cell size, or the contract's 95th "
+        "percentile if that is less",
+        "mm");
+    auto* const smoothing = command.option("--smoothing", sizing.smoothing,
+                                           "Gaussian on labels; below 0: the largest voxel edge", "mm");
+    auto* const min_component = command.option("--min-component-volume", sizing.min_component_volume,
+                                               "smaller specks and pinholes vanish", "mm³");
+    for (CLI::Option* const option :
+         {region, cell_size, region_cell_size, near, facet_size, facet_distance, smoothing, min_component})
+        mesh_file->excludes(option);
     command.flag("--allow-components", allow_components, "accept a body of several separate pieces");
     command.option("--min-dihedral-deg", contract.min_dihedral_deg,
                    "quality contract: smallest dihedral angle", "degrees");
@@ -147,7 +155,8 @@ int main(int argc, char** argv) {
                    "quality contract: overlap of each re-voxelised region and its label, 0 to 1");
     command.option("--max-centroid-distance", contract.max_centroid_distance,
                    "quality contract: distance of the centroids of body and labels", "mm");
-    command.option("--attempts", attempts, "meshes to make before the contract counts as missed, 1 or more");
+    command.option("--attempts", attempts, "meshes to make before the contract counts as missed, 1 or more")
+        ->check(CLI::Range(1, 100));
     command.output("-o,--output", output, "tetrahedra (.vtu), LPS mm")->required();
 
     return command.run(argc, argv, [&](cli::Session& session) {
@@ -170,7 +179,7 @@ int main(int argc, char** argv) {
             for (const std::string& name : regions)
                 values.push_back(require_label(map, name, labels_path.string()).value);
             for (const std::string& text : region_sizes)
-                sizing.regions.push_back(mesh::parse_region_size(text, map, labels_path.string()));
+                sizing.regions.push_back(mesh::parse_region_size(text, map, values, labels_path.string()));
             for (const std::string& text : near_sizes)
                 sizing.near.push_back(mesh::parse_near(text, map, labels_path.string()));
             body = make_body(mesh_to_contract(map, values, sizing, contract, attempts, progress));

@@ -115,15 +115,60 @@ std::int64_t split_hinges(TetMesh& mesh) {
     return static_cast<std::int64_t>(mesh.rest_positions.size() - nodes_before);
 }
 
+std::int64_t absorb_islands(TetMesh& mesh, double min_volume) {
+    const std::vector<TetFace> faces = sorted_faces(mesh);
+    const auto each_shared_face = [&](const auto& visit) {
+        for (std::size_t i = 1; i < faces.size(); ++i)
+            if (faces[i].sorted_nodes == faces[i - 1].sorted_nodes) visit(faces[i - 1], faces[i]);
+    };
+    DisjointSets islands(mesh.tetrahedra.size());
+    each_shared_face([&](const TetFace& a, const TetFace& b) {
+        if (mesh.regions[a.tet] == mesh.regions[b.tet]) islands.join(a.tet, b.tet);
+    });
+    std::map<std::size_t, double> volumes;                     // by root
+    std::map<std::int32_t, std::size_t> largest;               // root, by region
+    std::map<std::size_t, std::map<std::int32_t, int>> touch;  // faces shared with each region, by root
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+        volumes[islands.root(t)] += six_volume(mesh, t) / 6;
+    for (const auto& [root, volume] : volumes) {
+        const auto [entry, first] = largest.try_emplace(mesh.regions[root], root);
+        if (!first && volume > volumes[entry->second]) entry->second = root;
+    }
+    each_shared_face([&](const TetFace& a, const TetFace& b) {
+        if (mesh.regions[a.tet] == mesh.regions[b.tet]) return;
+        ++touch[islands.root(a.tet)][mesh.regions[b.tet]];
+        ++touch[islands.root(b.tet)][mesh.regions[a.tet]];
+    });
+    std::map<std::size_t, std::int32_t> new_region;
+    for (const auto& [root, regions] : touch)
+        if (volumes[root] < min_volume && largest[mesh.regions[root]] != root)
+            new_region[root] = std::ranges::max_element(regions, {}, [](const auto& region) {
+                                   return region.second;
+                               })->first;
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+        if (const auto found = new_region.find(islands.root(t)); found != new_region.end())
+            mesh.regions[t] = found->second;
+    return static_cast<std::int64_t>(new_region.size());
+}
+
 std::int64_t remove_crumbs(TetMesh& mesh, double min_volume) {
-    const std::vector<std::int32_t> piece = face_components(mesh);
-    std::vector<double> volumes(static_cast<std::size_t>(std::ranges::max(piece)) + 1, 0.0);
-    for (std::size_t t = 0; t < piece.size(); ++t)
-        volumes[static_cast<std::size_t>(piece[t])] += six_volume(mesh, t) / 6;
+    const std::vector<std::int32_t> piece_of = face_components(mesh);
+    std::map<std::int32_t, double> piece_volumes;
+    // The largest piece that holds a region stays, however small.
+    std::map<std::int32_t, std::map<std::int32_t, double>> region_volumes;
+    for (std::size_t t = 0; t < piece_of.size(); ++t) {
+        piece_volumes[piece_of[t]] += six_volume(mesh, t) / 6;
+        region_volumes[mesh.regions[t]][piece_of[t]] += six_volume(mesh, t) / 6;
+    }
+    const auto volume = [](const std::pair<const std::int32_t, double>& piece) { return piece.second; };
+    std::map<std::int32_t, bool> keep_piece;
+    for (const auto& [piece, size] : piece_volumes) keep_piece[piece] = size >= min_volume;
+    for (const auto& [region, pieces] : region_volumes)
+        keep_piece[std::ranges::max_element(pieces, {}, volume)->first] = true;
     std::vector<bool> keep;
-    for (const std::int32_t id : piece) keep.push_back(volumes[static_cast<std::size_t>(id)] >= min_volume);
+    for (const std::int32_t piece : piece_of) keep.push_back(keep_piece[piece]);
     keep_tetrahedra(mesh, keep);
-    return std::ranges::count_if(volumes, [&](double volume) { return volume < min_volume; });
+    return std::ranges::count_if(keep_piece, [](const auto& piece) { return !piece.second; });
 }
 
 std::int64_t part_pinched_edges(TetMesh& mesh) {

@@ -11,8 +11,13 @@ namespace palpate {
 /// new nodes.
 std::int64_t split_hinges(TetMesh& mesh);
 
-/// Removes pieces (connected through faces) of less than `min_volume` mm³ and the nodes that only they use.
-/// Returns the number of pieces removed.
+/// Gives every island of a region (tetrahedra connected through faces) of less than `min_volume` mm³ to the
+/// region that it shares most faces with, but never a region's largest. Returns the number of islands given
+/// away.
+std::int64_t absorb_islands(TetMesh& mesh, double min_volume);
+
+/// Removes pieces (connected through faces) of less than `min_volume` mm³ and the nodes that only they use,
+/// but never the piece that holds most of a region. Returns the number of pieces removed.
 std::int64_t remove_crumbs(TetMesh& mesh, double min_volume);
 
 /// Removes, at every edge that more than two faces of the boundary share, the smallest of the fans of

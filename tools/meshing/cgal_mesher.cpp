@@ -111,7 +111,10 @@ struct ComplexFacet {
 };
 
 ComplexFacet describe(const Complex& complex, const Complex::Facet& facet) {
-    const auto& [cell, opposite] = facet;
+    // The infinite vertex beyond the hull has no position.
+    const auto [cell, opposite] = complex.triangulation().is_infinite(facet.first)
+                                      ? complex.triangulation().mirror_facet(facet)
+                                      : facet;
     ComplexFacet result;
     for (int c = 0; c < 3; ++c)
         result.corners[static_cast<std::size_t>(c)] =

@@ -7,6 +7,7 @@
 #include "formats/model/tet_mesh.hpp"
 #include "formats/model/triangle_mesh.hpp"
 #include "tools/meshing/region_labels.hpp"
+#include "tools/meshing/smoothed_labels.hpp"
 
 namespace palpate {
 
@@ -47,12 +48,14 @@ struct RegionDistance {
     std::vector<FarPlace> far_places;                    ///< those beyond half a voxel diagonal
 };
 
-/// The surface of each region of labels without their stairs: SmoothedLabels with a Gaussian of 0.7 of the
-/// largest voxel edge. In the regions' order.
-std::vector<TriangleMesh> region_surfaces(const RegionLabels& labels);
+/// The surface of each region as SmoothedLabels draw it, in the regions' order. `smoothed` are made of
+/// `labels`.
+std::vector<TriangleMesh> region_surfaces(const RegionLabels& labels, const SmoothedLabels& smoothed);
 
-/// Measures every region of a mesh against its surface of region_surfaces(). Samples: that surface at every
-/// voxel, the mesh's triangles half a voxel diagonal apart. Cost: 1 s for a million samples.
+/// Measures every region of a mesh against its surface of region_surfaces(): how far flat triangles are from
+/// it. How well the smoothed labels keep the voxels themselves, compare() tells. Samples: that surface at
+/// every voxel, the mesh's triangles half a voxel diagonal apart. A region that the mesh lacks is infinitely
+/// far. Cost: 1 s for a million samples.
 std::vector<RegionDistance> region_distances(const TetMesh& mesh, const RegionLabels& labels,
                                              std::span<const TriangleMesh> surfaces);
 

@@ -23,9 +23,10 @@ void refine_what_missed(MeshSizing& sizing, const std::vector<ContractCheck>& mi
     std::set<std::int32_t> regions;
     for (const ContractCheck& miss : misses) {
         if (!miss.places.empty())
-            sizing.near.push_back({.points = miss.places,
-                                   .within = miss.size,
-                                   .cell_size = std::pow(finer, attempt) * miss.size});
+            sizing.near.push_back(
+                {.points = miss.places,
+                 .within = miss.size,
+                 .cell_size = std::min(std::pow(finer, attempt) * miss.size, finer * sizing.cell_size)});
         else if (miss.region > 0)
             regions.insert(miss.region);
         else
@@ -53,7 +54,7 @@ ContractedMesh mesh_to_contract(const LabelMap& map, std::span<const std::int32_
     progress("smooth labels", 0);
     const MeshDomain domain =
         prepare_domain(map, region_values, sizing.smoothing, sizing.min_component_volume);
-    const std::vector<TriangleMesh> surfaces = region_surfaces(domain.labels);
+    const std::vector<TriangleMesh> surfaces = region_surfaces(domain.labels, domain.smoothed);
     ContractedMesh result;
     for (int attempt = 1;; ++attempt) {
         const auto step = [&](std::string_view what, double fraction) {
@@ -68,7 +69,7 @@ ContractedMesh mesh_to_contract(const LabelMap& map, std::span<const std::int32_
         result.checks.insert(result.checks.end(), fidelity.begin(), fidelity.end());
         const std::vector<ContractCheck> missed = misses(result.checks);
         result.attempts.push_back({result.mesh.tetrahedra.size(), missed});
-        if (missed.empty() || attempt == max_attempts) return result;
+        if (missed.empty() || attempt >= max_attempts) return result;
         refine_what_missed(sizing, missed, attempt, region_values);
     }
 }

@@ -2,6 +2,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "tools/meshing/fidelity.hpp"
 #include "tools/meshing/smoothed_labels.hpp"
@@ -76,12 +77,13 @@ double percentile_95(std::vector<double> values) {
 
 }  // namespace
 
-std::vector<TriangleMesh> region_surfaces(const RegionLabels& labels) {
-    constexpr double voxels = 0.7;
-    const SmoothedLabels smoothed(labels, voxels * labels.grid.spacing.maxCoeff());
+std::vector<TriangleMesh> region_surfaces(const RegionLabels& labels, const SmoothedLabels& smoothed) {
+    std::vector<std::int64_t> voxels(labels.values.size() + 1, 0);
+    for (const std::uint8_t region : labels.regions) ++voxels[region];
     std::vector<TriangleMesh> surfaces;
-    for (std::size_t region = 1; region <= smoothed.region_count(); ++region)
-        surfaces.push_back(isosurface(smoothed.leads(static_cast<std::uint8_t>(region)), 0));
+    for (std::size_t region = 1; region < voxels.size(); ++region)
+        surfaces.push_back(region_surface(smoothed, static_cast<std::uint8_t>(region),
+                                          static_cast<double>(voxels[region]) * labels.grid.voxel_volume()));
     return surfaces;
 }
 
@@ -94,6 +96,12 @@ std::vector<RegionDistance> region_distances(const TetMesh& mesh, const RegionLa
         const TriangleMesh& labelled = surfaces[k];
         RegionDistance distance;
         distance.region = labels.values[k];
+        if (around.triangles.empty()) {
+            distance.mean = distance.percentile_95 = distance.maximum =
+                std::numeric_limits<double>::infinity();
+            result.push_back(distance);
+            continue;
+        }
         const auto add_side = [&](const std::vector<Eigen::Vector3d>& points, const TriangleMesh& surface) {
             const std::vector<double> side = distances(points, surface);
             const auto farthest = std::ranges::max_element(side);

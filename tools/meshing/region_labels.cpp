@@ -100,9 +100,9 @@ RegionLabels cut_out_regions(const LabelMap& map, std::span<const std::int32_t> 
     const bool twice = std::ranges::adjacent_find(result.values) != result.values.end();
     if (values.empty() || values.size() > 255 || twice || result.values.front() < 1 ||
         result.values.back() > 65535)
-        throw InvalidInput({"regions",
-                            twice ? "one is named twice" : std::to_string(values.size()) + " named",
-                            "1 ... 255 different label values from 1 to 65535", ""});
+        throw InvalidInput(
+            {"regions", twice ? "one is named twice" : std::to_string(values.size()) + " named",
+             "1 ... 255 different label values from 1 to 65535", "name every label of the body once"});
     const std::vector<std::uint8_t> table = region_table(result.values);
     const IndexBox box = bounding_box(map, table, result.values);
 

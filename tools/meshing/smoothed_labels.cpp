@@ -9,6 +9,7 @@
 namespace palpate {
 namespace {
 
+constexpr float eligible = 0.2F;         // below, a region is too far away to win where others are level
 constexpr double min_agreement = 0.985;  // leaves the mesh some room below a Dice of 0.98
 
 // The share of a region's voxels that keep their label when as many voxels as it has do.
@@ -137,7 +138,8 @@ Volume SmoothedLabels::leads(std::uint8_t region) const {
         grid_.point_of(Eigen::Vector3d(score.box.low[0], score.box.low[1], score.box.low[2]));
     volume.values.reserve(score.values.size());
     for_each_voxel(score.box, [&](const Index3& voxel, std::size_t offset) {
-        volume.values.push_back(lead(region - 1U, voxel, score.values[offset]) + score.offset);
+        const float own = score.values[offset];
+        volume.values.push_back(std::min(lead(region - 1U, voxel, own) + score.offset, own - eligible));
     });
     return volume;
 }
@@ -148,7 +150,7 @@ std::uint8_t SmoothedLabels::winner_at(const Index3& voxel) const {
     for (const std::uint8_t region : candidates_at(voxel)) {
         const float smoothed = scores_[region].at(voxel);
         outside -= smoothed;
-        if (smoothed + scores_[region].offset > best) {
+        if (smoothed >= eligible && smoothed + scores_[region].offset > best) {
             best = smoothed + scores_[region].offset;
             winner = static_cast<std::uint8_t>(region + 1);
         }
@@ -187,7 +189,7 @@ std::uint8_t SmoothedLabels::region_at(const Eigen::Vector3d& p_P) const {
         const float low = along_j(corner);
         const float smoothed = low + high[2] * (along_j(corner + step_k) - low);
         outside -= smoothed;
-        if (smoothed + score.offset > best) {
+        if (smoothed >= eligible && smoothed + score.offset > best) {
             best = smoothed + score.offset;
             winner = static_cast<std::uint8_t>(region + 1);
         }

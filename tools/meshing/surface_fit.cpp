@@ -34,8 +34,8 @@ void move_nodes(TetMesh& mesh, const Eigen::VectorXd& step, double floor_deg) {
     const std::vector<Eigen::Vector3d> before = mesh.rest_positions;
     std::vector<double> lowest(mesh.tetrahedra.size()), fraction(before.size(), 1.0);
     for (std::size_t t = 0; t < lowest.size(); ++t) lowest[t] = std::min(floor_deg, flatness_deg(mesh, t));
-    constexpr int max_halvings = 8;
-    for (int halvings = 0; halvings <= max_halvings; ++halvings) {
+    constexpr int halvings = 8, max_rounds = 100;  // then nodes stay, and those around them may have to
+    for (int round = 0; round < max_rounds; ++round) {
         for (std::size_t node = 0; node < before.size(); ++node)
             mesh.rest_positions[node] =
                 before[node] + fraction[node] * step.segment<3>(3 * static_cast<Eigen::Index>(node));
@@ -48,7 +48,7 @@ void move_nodes(TetMesh& mesh, const Eigen::VectorXd& step, double floor_deg) {
         }
         if (sound) return;
         for (std::size_t node = 0; node < before.size(); ++node)
-            if (halve[node]) fraction[node] = halvings + 1 < max_halvings ? 0.5 * fraction[node] : 0;
+            if (halve[node]) fraction[node] = round < halvings ? 0.5 * fraction[node] : 0;
     }
     mesh.rest_positions = before;
 }

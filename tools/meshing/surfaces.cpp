@@ -15,7 +15,6 @@
 
 #include "formats/model/errors.hpp"
 #include "tools/meshing/disjoint_sets.hpp"
-#include "tools/meshing/gaussian.hpp"
 #include "tools/meshing/quality.hpp"
 #include "tools/meshing/region_labels.hpp"
 #include "tools/meshing/smoothed_labels.hpp"
@@ -147,23 +146,36 @@ void keep_near_labels(Volume& volume, const LabelMap& map, std::span<const std::
         if (!near[v]) volume.values[v] = lowest;
 }
 
+TriangleMesh region_surface(const SmoothedLabels& labels, std::uint8_t region, double volume) {
+    const Volume leads = labels.leads(region);
+    double level = 0, other_level = 0, other_excess = 0;
+    TriangleMesh surface = isosurface(leads, level);
+    constexpr double max_error = 1e-3;
+    constexpr int max_rounds = 4;
+    for (int round = 0; round < max_rounds; ++round) {
+        const SurfaceQuality found = measure(surface);
+        const double excess = found.volume - volume;
+        if (std::abs(excess) < max_error * volume) break;
+        // A lead falls by about one over a voxel; then the secant tells.
+        const double slope = round == 0 ? -found.area * labels.grid().spacing.maxCoeff()
+                                        : (excess - other_excess) / (level - other_level);
+        other_level = level;
+        other_excess = excess;
+        constexpr double reach = 0.5;
+        level = std::clamp(level - excess / slope, -reach, reach);
+        if (!std::isfinite(level) || level == other_level) break;
+        surface = isosurface(leads, level);
+    }
+    return surface;
+}
+
 TriangleMesh label_surface(const LabelMap& map, std::span<const std::int32_t> values, double smoothing) {
     const double sigma = smoothing < 0 ? map.grid.spacing.maxCoeff() : smoothing;
-    const RegionLabels labels = cut_out_regions(map, values, smoothing_margin(map.grid, sigma));
-    FloatImage indicator;
-    indicator.size = labels.grid.size;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        indicator.sigma_voxels[axis] = sigma / labels.grid.spacing[static_cast<Eigen::Index>(axis)];
-    indicator.values.resize(labels.regions.size());
-    std::ranges::transform(labels.regions, indicator.values.begin(),
-                           [](std::uint8_t region) { return region > 0 ? 1.0F : 0.0F; });
-    const auto inside = std::ranges::count(indicator.values, 1.0F);
-    smooth(indicator);
-    // As many voxels lie above the level as the labels have; labels that are not smoothed are cut at a half.
-    std::vector<float> ranked = indicator.values;
-    std::ranges::nth_element(ranked, ranked.begin() + inside, std::greater<>());
-    const double level = sigma > 0 ? ranked[static_cast<std::size_t>(inside)] : 0.5F;
-    return isosurface({labels.grid, std::move(indicator.values)}, level);
+    RegionLabels labels = cut_out_regions(map, values, smoothing_margin(map.grid, sigma));
+    labels.values.resize(1);
+    for (std::uint8_t& region : labels.regions) region = region > 0 ? 1 : 0;
+    const auto voxels = static_cast<double>(std::ranges::count(labels.regions, std::uint8_t{1}));
+    return region_surface(SmoothedLabels(labels, sigma), 1, voxels * map.grid.voxel_volume());
 }
 
 TriangleMesh keep_large_pieces(const TriangleMesh& surface, std::int64_t min_triangles) {

@@ -6,6 +6,7 @@
 #include "formats/model/image_grid.hpp"
 #include "formats/model/label_map.hpp"
 #include "formats/model/triangle_mesh.hpp"
+#include "tools/meshing/smoothed_labels.hpp"
 #include "tools/meshing/surface_distance.hpp"
 
 namespace palpate {
@@ -23,8 +24,12 @@ TriangleMesh isosurface(const Volume& volume, double isovalue);
 /// Throws InvalidInput if the grids differ.
 void keep_near_labels(Volume& volume, const LabelMap& map, std::span<const std::int32_t> values, int reach);
 
-/// Extracts the surface of labels taken together: their indicator smoothed by a Gaussian of `smoothing` mm
-/// (below 0: the largest voxel edge), at the level that keeps the number of voxels inside. Closed and facing
+/// Extracts the surface of one region of smoothed labels at the level where it encloses `volume` mm³, to 0.1
+/// % or as near as four levels come. Closed and facing outwards.
+TriangleMesh region_surface(const SmoothedLabels& labels, std::uint8_t region, double volume);
+
+/// Extracts the surface of labels taken together, as SmoothedLabels smooth them by a Gaussian of `smoothing`
+/// mm (below 0: the largest voxel edge): thin parts, volume and centroid are kept. Closed and facing
 /// outwards. Throws InvalidInput if a label has no voxel.
 TriangleMesh label_surface(const LabelMap& map, std::span<const std::int32_t> values, double smoothing = -1);
 

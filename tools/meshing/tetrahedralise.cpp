@@ -2,6 +2,7 @@
 #include "tools/meshing/tetrahedralise.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <set>
 
@@ -66,20 +67,26 @@ std::vector<double> radii(const RegionLabels& labels) {
     return result;
 }
 
-LocalSizes scaled(const MeshSizing& sizing, double cell_size) {
-    const double scale = cell_size / sizing.cell_size;
-    return {cell_size, scale * (sizing.facet_size > 0 ? sizing.facet_size : sizing.cell_size),
-            scale * (sizing.facet_distance > 0 ? sizing.facet_distance : sizing.cell_size / 10)};
+// The body's sizes; a cell larger than the body says nothing.
+LocalSizes body_sizes(const MeshSizing& sizing, double largest_radius) {
+    const double cell = std::min(sizing.cell_size, largest_radius);
+    return {cell, sizing.facet_size > 0 ? sizing.facet_size : cell,
+            sizing.facet_distance > 0 ? sizing.facet_distance : cell / 10};
 }
 
-std::vector<LocalSizes> sizes_by_region(const MeshSizing& sizing, const RegionLabels& labels) {
+LocalSizes scaled(const LocalSizes& sizes, double cell_size) {
+    const double scale = cell_size / sizes.cell;
+    return {cell_size, scale * sizes.facet, scale * sizes.distance};
+}
+
+std::vector<LocalSizes> sizes_by_region(const MeshSizing& sizing, const LocalSizes& body,
+                                        const std::vector<double>& radius,
+                                        const std::vector<std::int32_t>& values) {
     std::vector<LocalSizes> result;
-    const std::vector<double> radius = radii(labels);
     for (std::size_t k = 0; k < radius.size(); ++k) {
-        const auto found = std::ranges::find(sizing.regions, labels.values[k], &RegionSize::region);
+        const auto found = std::ranges::find(sizing.regions, values[k], &RegionSize::region);
         const RegionSize own = found == sizing.regions.end() ? RegionSize{} : *found;
-        LocalSizes sizes =
-            scaled(sizing, own.cell_size > 0 ? own.cell_size : std::min(sizing.cell_size, radius[k]));
+        LocalSizes sizes = scaled(body, own.cell_size > 0 ? own.cell_size : std::min(body.cell, radius[k]));
         sizes.facet *= own.surface_scale;
         sizes.distance *= own.surface_scale;
         result.push_back(sizes);
@@ -105,16 +112,31 @@ std::vector<Eigen::Vector3d> points_of(const NearSize& near, const LabelMap& map
 }
 
 SizeField size_field(const MeshSizing& sizing, const MeshDomain& domain, const LabelMap& map) {
-    const std::vector<LocalSizes> regions = sizes_by_region(sizing, domain.labels);
-    double edge = sizing.cell_size;
+    const std::vector<double> radius = radii(domain.labels);
+    const LocalSizes body = body_sizes(sizing, *std::ranges::max_element(radius));
+    double edge = body.cell;
     for (const NearSize& near : sizing.near) edge = std::max(edge, near.within);
-    SizeField field(regions, edge);
+    SizeField field(sizes_by_region(sizing, body, radius, domain.labels.values), edge);
     for (const NearSize& near : sizing.near) {
         const double apart = near.points.empty() ? 0.5 * near.within : 0;
         for (const Eigen::Vector3d& p : points_of(near, map, apart))
-            field.add({p, near.within + apart, scaled(sizing, near.cell_size)});
+            field.add({p, near.within + apart, scaled(body, near.cell_size)});
     }
     return field;
+}
+
+// Millions more than this take hours, and nothing can be done with them.
+void require_moderate(const MeshSizing& sizing, const RegionLabels& labels) {
+    constexpr double most = 20e6, per_cubed_size = 4.4;  // measured on a liver
+    double volume = 0;
+    for (std::size_t region = 1; region <= labels.values.size(); ++region)
+        volume += volume_of(labels, region);
+    const double expected = per_cubed_size * volume / std::pow(sizing.cell_size, 3);
+    if (expected > most)
+        throw InvalidInput({"cell size",
+                            fmt::format("{:g} mm would give some {:.0f} million tetrahedra", sizing.cell_size,
+                                        expected / 1e6),
+                            "20 million at most", "choose a larger --cell-size"});
 }
 
 Label label_of(const LabelMap& map, std::int32_t value) {
@@ -149,7 +171,9 @@ void require_every_region(const RegionLabels& labels, const LabelMap& map, doubl
 
 MeshDomain prepare_domain(const LabelMap& map, std::span<const std::int32_t> region_values, double smoothing,
                           double min_component_volume) {
-    const double sigma = smoothing < 0 ? map.grid.spacing.maxCoeff() : smoothing;
+    const double largest_edge = map.grid.spacing.maxCoeff();
+    const double sigma = smoothing < 0 ? largest_edge : smoothing;
+    require(sigma <= 10 * largest_edge, "smoothing", sigma, "10 voxel edges at most");
     RegionLabels labels = cut_out_regions(map, region_values, smoothing_margin(map.grid, sigma));
     absorb_specks(labels, min_component_volume);
     require_every_region(labels, map, min_component_volume);
@@ -169,6 +193,7 @@ TetMesh tetrahedralise(const MeshDomain& domain, const LabelMap& map, const Mesh
     check(sizing);
     const ProgressCallback progress = callback ? callback : [](std::string_view, double) {};
     const auto& [labels, smoothed] = domain;
+    require_moderate(sizing, labels);
     SizeField sizes = size_field(sizing, domain, map);
     const double max_gap = sizing.max_gap > 0 ? sizing.max_gap : 0.6 * map.grid.spacing.norm();
 
@@ -180,7 +205,9 @@ TetMesh tetrahedralise(const MeshDomain& domain, const LabelMap& map, const Mesh
     progress("repair", 0.9);
     split_hinges(mesh);
     part_pinched_edges(mesh);
-    remove_crumbs(mesh, sizing.min_component_volume);
+    // A piece of just the smallest volume is smaller as a mesh, before volumes are matched.
+    absorb_islands(mesh, 0.25 * sizing.min_component_volume);
+    remove_crumbs(mesh, 0.25 * sizing.min_component_volume);
     // Each step leaves the next one a degree to spend.
     lift_flat_tetrahedra(mesh, sizing.min_dihedral_deg + 2, 0.5 * max_gap);
     fit_surface(mesh, smoothed, sizing.min_dihedral_deg + 1, max_gap);

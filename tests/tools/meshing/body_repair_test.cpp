@@ -75,6 +75,24 @@ TetMesh pinched() {
     return mesh;
 }
 
+TEST(AbsorbIslands, small_island_goes_to_the_region_around_it_and_the_largest_stays) {
+    TetMesh mesh = pinched();
+    for (std::size_t t = 0; t < 6; ++t) mesh.regions[t] = 2;  // a cube
+    mesh.regions.back() = 2;                                  // a lone tetrahedron elsewhere
+    EXPECT_EQ(absorb_islands(mesh, 0.5), 1);
+    EXPECT_EQ(mesh.regions.back(), 1);
+    EXPECT_EQ(std::ranges::count(mesh.regions, 2), 6);
+    EXPECT_EQ(absorb_islands(mesh, 100), 0);  // each region's only piece
+}
+
+TEST(RemoveCrumbs, last_piece_of_a_region_stays) {
+    TetMesh mesh = hinged(false);
+    mesh.regions = {1, 2};
+    split_hinges(mesh);
+    EXPECT_EQ(remove_crumbs(mesh, 100), 0);
+    EXPECT_EQ(mesh.tetrahedra.size(), 2U);
+}
+
 TEST(PartPinchedEdges, no_edge_is_left_in_more_than_two_boundary_faces) {
     TetMesh mesh = pinched();
     ASSERT_EQ(split_hinges(mesh), 0);  // the other layers hold the corners together

@@ -174,5 +174,17 @@ TEST(SurfaceDistance, concentric_spheres_are_as_far_apart_as_their_radii) {
     EXPECT_NEAR(surface_distance(inner, inner).maximum, 0, 1e-9);
 }
 
+TEST(LabelSurface, cube_keeps_its_volume_however_it_is_smoothed) {
+    ImageGrid grid;
+    grid.size = {30, 30, 30};
+    LabelMap map{grid, std::vector<std::uint16_t>(grid.voxel_count(), 0), {{1, "cube"}}};
+    for (std::int32_t k = 5; k < 25; ++k)
+        for (std::int32_t j = 5; j < 25; ++j)
+            for (std::int32_t i = 5; i < 25; ++i) map.labels[grid.offset(i, j, k)] = 1;
+    const std::array<std::int32_t, 1> one{1};
+    for (const double smoothing : {-1.0, 0.5, 0.1, 0.0})
+        EXPECT_NEAR(measure(label_surface(map, one, smoothing)).volume, 8000, 8000 * 0.005) << smoothing;
+}
+
 }  // namespace
 }  // namespace palpate

@@ -178,6 +178,33 @@ TEST(Tetrahedralise, cells_near_a_place_or_a_label_are_finer) {
     expect_faithful(fine, map);
 }
 
+TEST(Tetrahedralise, component_just_above_the_speck_limit_is_there) {
+    const LabelMap map = test::paint(
+        test::grid_around(organ_center, Eigen::Matrix3d::Identity(), {30, 30, 30}),
+        [](const Eigen::Vector3d& p) { return (p - organ_center).norm() < 2.2 ? 1 : 0; }, {{1, "speck"}});
+    const double volume = static_cast<double>(std::ranges::count(map.labels, 1)) * map.grid.voxel_volume();
+    const std::array<std::int32_t, 1> one{1};
+    const TetMesh mesh = tetrahedralise(map, one, {.cell_size = 4, .min_component_volume = 0.98 * volume});
+    EXPECT_NEAR(measure(mesh).region_volumes.at(0).volume, volume, 0.05 * volume);
+}
+
+TEST(Tetrahedralise, cell_larger_than_the_body_is_as_good_as_one_of_its_size) {
+    const LabelMap map = organ_with_lesion();
+    const auto count = [&](double cell_size) {
+        return tetrahedralise(map, organ_and_lesion, {.cell_size = cell_size}).tetrahedra.size();
+    };
+    const std::size_t largest = count(1000);
+    for (const double cell_size : {1000.0, 100.0, 1000.0, 50.0}) EXPECT_EQ(count(cell_size), largest);
+}
+
+TEST(Tetrahedralise, unsmoothed_labels_are_meshed) {
+    const LabelMap map = organ_with_lesion();
+    const TetMesh mesh = tetrahedralise(map, organ_and_lesion, {.cell_size = 4, .smoothing = 0});
+    EXPECT_TRUE(measure(mesh).boundary.closed_and_oriented());
+    EXPECT_LT(std::abs(compare(mesh, cut_out_regions(map, organ_and_lesion, 1)).body.volume_error_percent),
+              max_volume_error_percent);
+}
+
 TEST(Tetrahedralise, impossible_requests_are_refused) {
     const LabelMap map = islands();
     const std::array<std::int32_t, 1> label{5}, absent{6};
@@ -186,6 +213,8 @@ TEST(Tetrahedralise, impossible_requests_are_refused) {
     EXPECT_THROW(tetrahedralise(map, twice, coarse), InvalidInput);
     EXPECT_THROW(tetrahedralise(map, {}, coarse), InvalidInput);
     EXPECT_THROW(tetrahedralise(map, label, {.cell_size = 0}), InvalidInput);
+    EXPECT_THROW(tetrahedralise(map, label, {.cell_size = 0.05}), InvalidInput);  // hundreds of millions
+    EXPECT_THROW(tetrahedralise(map, label, {.smoothing = 100}), InvalidInput);
     EXPECT_THROW(tetrahedralise(map, label, {.facet_size = -1}), InvalidInput);
     EXPECT_THROW(tetrahedralise(map, label, {.facet_distance = -1}), InvalidInput);
     EXPECT_THROW(tetrahedralise(map, label, {.facet_angle_deg = 31}), InvalidInput);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/commands/mesh/arguments.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -16,7 +17,8 @@ std::vector<double> parse_numbers(const std::string& text) {
     while (at < end) {
         double value = 0;
         const auto [next, error] = std::from_chars(at, end, value);
-        if (error != std::errc{} || (next < end && *next != ',')) return {};
+        if (error != std::errc{} || !std::isfinite(value) || (next < end && *next != ',') || next + 1 == end)
+            return {};
         numbers.push_back(value);
         at = next + 1;
     }
@@ -25,13 +27,19 @@ std::vector<double> parse_numbers(const std::string& text) {
 
 }  // namespace
 
-RegionSize parse_region_size(const std::string& text, const LabelMap& map, const std::string& culprit) {
+RegionSize parse_region_size(const std::string& text, const LabelMap& map,
+                             const std::vector<std::int32_t>& regions, const std::string& culprit) {
     const std::size_t equals = text.rfind('=');
     const std::vector<double> size =
         equals == std::string::npos ? std::vector<double>{} : parse_numbers(text.substr(equals + 1));
     if (size.size() != 1)
         throw UsageError({"--region-cell-size", "'" + text + "'", "NAME=MM, such as tumour=4", ""});
-    return {.region = require_label(map, text.substr(0, equals), culprit).value, .cell_size = size[0]};
+    const RegionSize result{.region = require_label(map, text.substr(0, equals), culprit).value,
+                            .cell_size = size[0]};
+    if (std::ranges::find(regions, result.region) == regions.end())
+        throw UsageError({"--region-cell-size", "'" + text + "' is no region of the body",
+                          "one of those named with --region", ""});
+    return result;
 }
 
 NearSize parse_near(const std::string& text, const LabelMap& map, const std::string& culprit) {
