@@ -67,10 +67,17 @@ std::string recipe_help() {
         "structure they lie inside. Points are LPS in mm: x,y,z and several as x,y,z;x,y,z (3D Slicer shows "
         "RAS:\n"
         "negate x and y). Cleaning steps (close_mm, open_mm, fill_holes, min_component_ml, keep_largest,\n"
-        "smooth_mm) apply in the order written. Structures of grow-from-seeds compete with each other; "
+        "smooth_mm) apply in the order written, after those that are on by default and not written. "
+        "Structures of "
+        "grow-from-seeds compete with each other; "
         "points\n"
-        "and strokes of other names in their files compete as background. A recipe file is a JSON array of\n"
-        "{\"name\", \"recipe\", \"parameters\"}.\n\nRecipes and their parameters:\n";
+        "and strokes of other names in their files compete as background. Strokes of 'scribbles' are thinned "
+        "evenly, to 25 points a "
+        "label, for\n"
+        "grow-from-seeds to 20000. A recipe file is a JSON array of {\"name\", \"recipe\", \"parameters\"}; "
+        "a "
+        "path\n"
+        "with a blank can only be given there.\n\nRecipes and their parameters:\n";
     for (const std::string& recipe : recipe_names()) {
         text += "  " + recipe + "\n";
         for (const RecipeParameterInfo& info : recipe_parameters(recipe)) {

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <fmt/format.h>
 #include <sstream>
 
 #include "formats/model/errors.hpp"
+#include "tools/imaging/read_image.hpp"
 
 namespace palpate {
 namespace {
@@ -172,6 +174,18 @@ bool is_of(Kind kind, const RecipeValue& value) {
            (kind == Kind::flag && std::holds_alternative<bool>(value));
 }
 
+void check_number(const std::string& structure, const RecipeParameterInfo& info, double number) {
+    const auto expect = [&](bool good, const char* expected) {
+        if (!good) refuse_value(structure, info.name, fmt::format("{}", number), expected);
+    };
+    const bool may_be_infinite = info.name == "lower_hu" || info.name == "upper_hu";
+    expect(!std::isnan(number), "a number");
+    expect(may_be_infinite || std::isfinite(number), "a finite number");
+    if (info.unit == "mm" || info.unit == "ml" || info.name == "drift_hu" || info.name == "contrast_hu")
+        expect(number >= 0, "0 or more");
+    if (info.name == "tolerance" || info.name == "tolerance_hu") expect(number > 0, "above 0");
+}
+
 const RecipeParameterInfo& require_parameter(const StructureRecipe& structure, const std::string& name) {
     const auto found = table().find(structure.recipe);
     if (found == table().end())
@@ -229,24 +243,27 @@ void check_recipe(const StructureRecipe& structure) {
                                  : info.kind == Kind::text    ? "a text"
                                                               : "yes or no";
         if (!is_of(info.kind, value)) refuse_value(structure.name, name, "of another kind", kind);
-        if (const auto* numbers = std::get_if<std::vector<double>>(&value))
+        if (const auto* numbers = std::get_if<std::vector<double>>(&value)) {
             if (numbers->empty() || numbers->size() % 3 != 0 ||
                 (info.name != "seeds_mm" && numbers->size() != 3))
                 refuse_value(structure.name, name, fmt::format("{} numbers", numbers->size()), "x, y, z");
-        if (const auto* number = std::get_if<double>(&value))
-            if ((info.unit == "mm" || info.unit == "ml") && !(*number >= 0))
-                refuse_value(structure.name, name, fmt::format("{}", *number), "0 or more");
+            for (const double number : *numbers)
+                if (!std::isfinite(number))
+                    refuse_value(structure.name, name, fmt::format("{}", number), "finite numbers");
+        }
+        if (const auto* number = std::get_if<double>(&value)) check_number(structure.name, info, *number);
     }
 }
 
 StructureRecipe parse_structure(std::string_view text) {
     const auto malformed = [&](const std::string& found) {
-        return UsageError({"--structure '" + std::string(text) + "'", found, "",
+        return UsageError({"--structure '" + as_utf8(text) + "'", found, "",
                            "write it as 'skull: recipe=bone threshold_hu=226'"});
     };
     const auto colon = text.find(':');
     if (colon == 0 || colon == std::string_view::npos) throw malformed("no name before a colon");
     StructureRecipe structure{std::string(text.substr(0, colon)), "", {}};
+    if (as_utf8(structure.name) != structure.name) throw malformed("the name is no UTF-8 text");
     std::map<std::string, std::string> words;
     std::vector<std::string> order;
     std::istringstream stream{std::string(text.substr(colon + 1))};

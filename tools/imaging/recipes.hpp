@@ -10,8 +10,9 @@ namespace palpate {
 /// Voxels of lower ... upper HU, both included.
 Mask threshold(const Volume& volume, double lower_hu, double upper_hu);
 
-/// How far the values of a CT lie above HU: 1024 if none is negative and soft tissue is found about 1024 and
-/// not about 0, as in files that store value + 1024; else 0.
+/// How far the values of a CT lie above HU, as in files that store value + 1024 or value + 1000: if none is
+/// negative, soft tissue lies about that offset and little between, and the commonest value of the air,
+/// -1000 HU, lies within 10 of 24 (1024) or below (1000). Else 0, also where no air tells the two apart.
 double hounsfield_offset(const Volume& volume);
 
 /// Lowest threshold for bone that is clear of soft tissue: the median of the values of -20 ... 200 HU and
