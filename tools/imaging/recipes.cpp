@@ -92,8 +92,7 @@ Mask threshold(const Volume& volume, double lower_hu, double upper_hu) {
 
 double hounsfield_offset(const Volume& volume) {
     const std::size_t air = commonest_low_value(volume);
-    if (air == 0 || air > 34) return 0;
-    const double offset = air < 14 ? 1000 : 1024;
+    const double offset = air > 0 && air < 14 ? 1000 : 1024;
     std::size_t soft_tissue = 0, between = 0;  // between air and soft tissue lies little but lung
     for (const float value : volume.values) {
         if (value < 0) return 0;

@@ -10,9 +10,10 @@ namespace palpate {
 /// Voxels of lower ... upper HU, both included.
 Mask threshold(const Volume& volume, double lower_hu, double upper_hu);
 
-/// How far the values of a CT lie above HU, as in files that store value + 1024 or value + 1000: if none is
-/// negative, soft tissue lies about that offset and little between, and the commonest value of the air,
-/// -1000 HU, lies within 10 of 24 (1024) or below (1000). Else 0, also where no air tells the two apart.
+/// How far the values of a CT probably lie above HU: 0 if one is negative, or unless soft tissue lies about
+/// the offset and little between it and air; else 1000 if the commonest value of the air (-1000 HU) lies
+/// below 14, and otherwise 1024, the usual one. The air decides no finer: scanners measure it up to 80 HU
+/// off.
 double hounsfield_offset(const Volume& volume);
 
 /// Lowest threshold for bone that is clear of soft tissue: the median of the values of -20 ... 200 HU and
