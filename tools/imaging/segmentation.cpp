@@ -61,11 +61,11 @@ const Volume* in_hounsfield(const Volume* volume, std::optional<Volume>& shifted
     shifted = *volume;
     for (float& value : shifted->values) value -= static_cast<float>(offset);
     if (note)
-        note(
-            fmt::format("no value of the volume is negative and its air lies about {}, so it was taken for "
-                        "HU + {}: {} was "
-                        "subtracted, and thresholds are in HU; give a volume in HU if that is wrong",
-                        offset - 1000, offset, offset));
+        note(fmt::format(
+            "no value of the volume is negative and soft tissue lies about {0}, so it is probably "
+            "stored as HU + {0}: {0} was subtracted, and thresholds are in HU; give a volume in "
+            "HU if that is wrong",
+            offset));
     return &*shifted;
 }
 
