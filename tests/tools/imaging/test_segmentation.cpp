@@ -235,13 +235,13 @@ TEST(Recipes, structures_grown_from_seeds_run_one_race_whatever_their_tolerances
 TEST(Recipes, structures_that_share_a_file_of_seeds_do_not_compete_with_themselves_as_background) {
     const sample::Scratch scratch;
     const Phantom abdomen = abdomen_phantom({.noise_hu = 10});
-    write_seeds(scratch / "s.mrk.json", std::vector<Seed>{{"Liver", {-14, -6, 16}}, {"Rest", {34, 20, 0}}});
+    const Eigen::Vector3d in_liver(-14, -6, 16), in_muscle(34, 20, 0), in_air(0, -58, 0);
+    write_seeds(scratch / "s.mrk.json",
+                std::vector<Seed>{{"Liver", in_liver}, {"Rest", in_muscle}, {"air", in_air}});
     const std::string file = " recipe=grow-from-seeds seeds_file=" + (scratch / "s.mrk.json").string();
-    const LabelMap read = run(&abdomen.volume, nullptr, {"liver:" + file, "rest:" + file}),
-                   given = run(&abdomen.volume, nullptr,
-                               {"liver: recipe=grow-from-seeds seeds=-14,-6,16",
-                                "rest: recipe=grow-from-seeds seeds=34,20,0"});
-    EXPECT_EQ(read.labels, given.labels);
+    const LabelMap map = run(&abdomen.volume, nullptr, {"liver:" + file, "rest:" + file});
+    const std::vector<Seed> seeds{{"liver", in_liver}, {"rest", in_muscle}, {"background", in_air}};
+    EXPECT_EQ(map.labels, grow_from_seeds(abdomen.volume, seeds).labels);
 }
 
 TEST(Recipes, seeds_come_from_points_and_from_strokes_alike) {
