@@ -208,7 +208,7 @@ class OnPhantom(SeedsWindow):
             ([self.volume, "-o", self.folder / "liver.txt"], USAGE, ".mrk.json"),
             ([self.volume, "-o", self.output, "--window-level", "0,40"], USAGE, "--window-level"),
             ([self.volume, "-o", self.output] + [f"--label={letter}" for letter in "abcdefghij"], USAGE, "9 or fewer"),
-            ([self.volume, "-o", self.output, "--label", "kidney-2"], USAGE, "kidney-2"),
+            ([self.volume, "-o", self.output, "--label", ""], USAGE, "--label"),
             ([self.volume, "-o", self.folder / "none" / "a.mrk.json"], INVALID, "folder does not exist"),
             ([self.volume, "-o", self.output, "--seeds", outside], INVALID, "liver"),
             ([self.folder / "nothing.nrrd"], INVALID, "nothing.nrrd"),

@@ -149,6 +149,8 @@ class Segment(ImagingCommand):
         self.expect(self.segment("--structure", "skull: recipe=bone"), USAGE, "--volume: not given")
         self.expect(self.segment("--volume", self.volume, "--structure", "skull recipe=bone"), USAGE,
                     "no name before a colon")
+        self.expect(self.segment("--volume", self.volume, "--structure", "a\udcff: recipe=bone", "--json", "-"), USAGE,
+                    "no UTF-8 text")
         self.expect(self.segment("--volume", self.volume, *self.RECIPES, "--strcture", "x"), USAGE, "--structure")
 
     def test_existing_output_needs_force(self):
@@ -178,7 +180,7 @@ class Segment(ImagingCommand):
         text = self.segment("--help").stdout
         for phrase in ("airway", "bone", "import", "nasopharynx", "sphere", "threshold_hu", "[HU] (default 226)", "liver",
                        "tumour", "vessels", "brain", "grow-from-seeds", "seeds_file", "scribbles", "smooth_mm",
-                       "apply in the order written", "thickness_mm", "[mm] (default 6)"):
+                       "apply in the order written", "thinned evenly", "with a blank", "thickness_mm", "[mm] (default 6)"):
             self.assertIn(phrase, text)
 
 

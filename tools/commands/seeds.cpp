@@ -18,14 +18,8 @@ std::string structure_of(const std::filesystem::path& output) {
     return name.substr(0, name.find('.'));
 }
 
-// Readers take a number at a label's end for the point's own, as 3D Slicer writes it.
 void check_label(const std::string& label) {
-    const auto last = label.find_last_not_of("0123456789");
-    const bool numbered =
-        last != std::string::npos && last + 1 < label.size() && (label[last] == '-' || label[last] == '_');
-    if (label.empty() || numbered)
-        throw UsageError({"--label", "'" + label + "'", "a name without '-' or '_' and a number at its end",
-                          "for example 'left kidney'"});
+    if (label.empty()) throw UsageError({"--label", "is empty", "a name", "for example 'left kidney'"});
 }
 
 GreyScale greys_of(const Volume& volume, const std::vector<double>& chosen) {

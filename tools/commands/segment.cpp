@@ -62,15 +62,18 @@ std::vector<StructureRecipe> read_recipes(const std::filesystem::path& path) {
 
 std::string recipe_help() {
     std::string text =
-        "A structure takes background only, in the order given; a sphere, a tumour or vessels take voxels of "
-        "the\n"
-        "structure they lie inside. Points are LPS in mm: x,y,z and several as x,y,z;x,y,z (3D Slicer shows "
-        "RAS:\n"
-        "negate x and y). Cleaning steps (close_mm, open_mm, fill_holes, min_component_ml, keep_largest,\n"
-        "smooth_mm) apply in the order written. Structures of grow-from-seeds compete with each other; "
-        "points\n"
-        "and strokes of other names in their files compete as background. A recipe file is a JSON array of\n"
-        "{\"name\", \"recipe\", \"parameters\"}.\n\nRecipes and their parameters:\n";
+        "A structure takes background only, in the order given; a sphere, a tumour or vessels take voxels "
+        "of\n"
+        "the structure they lie inside. Points are LPS in mm: x,y,z and several as x,y,z;x,y,z (3D Slicer\n"
+        "shows RAS: negate x and y). Cleaning steps (close_mm, open_mm, fill_holes, min_component_ml,\n"
+        "keep_largest, smooth_mm) apply in the order written, those left at a default before them. "
+        "Structures\n"
+        "of grow-from-seeds compete with each other; points and strokes of other names in their files "
+        "compete\n"
+        "as background. Strokes are thinned evenly, to 25 points a label (grow-from-seeds: 20000). A recipe\n"
+        "file is a JSON array of {\"name\", \"recipe\", \"parameters\"}; a path with a blank can be given "
+        "there\n"
+        "only.\n\nRecipes and their parameters:\n";
     for (const std::string& recipe : recipe_names()) {
         text += "  " + recipe + "\n";
         for (const RecipeParameterInfo& info : recipe_parameters(recipe)) {

@@ -34,11 +34,13 @@ struct Competitor {
     double tolerance = 0;
 };
 
-std::vector<Competitor> competitors_of(const Volume& volume, std::span<const Seed> seeds, double tolerance) {
+std::vector<Competitor> competitors_of(const Volume& volume, std::span<const Seed> seeds,
+                                       const GrowParameters& parameters) {
     std::vector<Competitor> competitors;
     for (const Seed& seed : seeds) {
         auto found = std::ranges::find(competitors, seed.label, &Competitor::label);
-        if (found == competitors.end()) found = competitors.insert(found, {seed.label, {}, {}, tolerance});
+        if (found == competitors.end())
+            found = competitors.insert(found, {seed.label, {}, {}, parameters.tolerance});
         found->points.push_back(seed.p_P);
     }
     const double floor = std::max(smallest_spread * range_of(volume), 1e-6);
@@ -46,6 +48,8 @@ std::vector<Competitor> competitors_of(const Volume& volume, std::span<const See
         std::vector<float> values = values_near(volume, competitor.points, statistics_radius);
         competitor.grey = robust_statistics(values);
         competitor.grey.sigma = std::max(competitor.grey.sigma, floor);
+        if (const auto own = parameters.tolerances.find(competitor.label); own != parameters.tolerances.end())
+            competitor.tolerance = own->second;
         if (competitor.label == "background") competitor.tolerance = std::numeric_limits<double>::infinity();
     }
     return competitors;
@@ -129,7 +133,7 @@ LabelMap grow_from_seeds(const Volume& volume, std::span<const Seed> seeds,
     const bool blocks = block != std::array{1, 1, 1};
     const Volume coarse = blocks ? coarsen(volume, block) : Volume();
     const Volume& worked = blocks ? coarse : volume;
-    const std::vector<Competitor> competitors = competitors_of(worked, seeds, parameters.tolerance);
+    const std::vector<Competitor> competitors = competitors_of(worked, seeds, parameters);
     std::vector<std::uint16_t> owner = Race(worked, competitors).run();
 
     LabelMap map{volume.grid, {}, {}};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <map>
 #include <span>
+#include <string>
 
 #include "formats/model/image_grid.hpp"
 #include "formats/model/label_map.hpp"
@@ -11,6 +13,7 @@ namespace palpate {
 struct GrowParameters {
     double tolerance =
         3;  ///< a label stops at grey values more than this many of its deviations off its mean
+    std::map<std::string, double> tolerances = {};  ///< of labels that have their own
     double spacing_mm = 0;  ///< works on blocks of voxels of about this size; 0 takes the volume's own voxels
 };
 

@@ -96,17 +96,29 @@ std::vector<float> depth_in(const Mask& mask) {
     return distance_to(complement(mask));
 }
 
+Mask mask_of(const LabelMap& map, std::int32_t value) {
+    Mask mask{map.grid, std::vector<std::uint8_t>(map.labels.size())};
+    std::ranges::transform(map.labels, mask.voxels.begin(),
+                           [&](std::uint16_t label) -> std::uint8_t { return label == value; });
+    return mask;
+}
+
+IndexBox voxels_around(const ImageGrid& grid, const Eigen::Vector3d& p_P, double reach) {
+    const Eigen::Array3d center = grid.index_of(p_P), step = reach * grid.spacing.cwiseInverse(),
+                         size = Eigen::Array3i::Map(grid.size.data()).cast<double>();
+    return {(center - step).ceil().max(0).min(size).cast<int>(),
+            (center + step).floor().max(-1).min(size - 1).cast<int>()};
+}
+
 std::optional<std::size_t> nearest_voxel(const Mask& mask, const Eigen::Vector3d& p_P, double reach) {
     const ImageGrid& grid = mask.grid;
-    const Eigen::Vector3d center = grid.index_of(p_P), step = reach * grid.spacing.cwiseInverse();
-    const Eigen::Array3i low = (center - step).array().ceil().cast<int>(),
-                         high = (center + step).array().floor().cast<int>();
+    const auto [low, high] = voxels_around(grid, p_P, reach);
     std::optional<std::size_t> found;
     double nearest = reach * reach;
     for (int k = low[2]; k <= high[2]; ++k)
         for (int j = low[1]; j <= high[1]; ++j)
             for (int i = low[0]; i <= high[0]; ++i) {
-                if (!grid.contains(i, j, k) || !mask.voxels[grid.offset(i, j, k)]) continue;
+                if (!mask.voxels[grid.offset(i, j, k)]) continue;
                 const double squared = (grid.point_of(Eigen::Vector3d(i, j, k)) - p_P).squaredNorm();
                 if (squared > nearest || (found && squared == nearest)) continue;
                 nearest = squared;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "formats/model/image_grid.hpp"
+#include "formats/model/label_map.hpp"
 
 namespace palpate {
 
@@ -54,6 +55,16 @@ std::vector<float> distance_to(const Mask& mask);
 
 /// Distance from each voxel of the mask to the nearest voxel outside it (mm), 0 outside.
 std::vector<float> depth_in(const Mask& mask);
+
+/// The voxels labelled `value`.
+Mask mask_of(const LabelMap& map, std::int32_t value);
+
+/// Indices of voxels, both ends included; empty if `high` is below `low` along an axis.
+struct IndexBox {
+    Eigen::Array3i low, high;
+};
+/// The voxels of the grid whose indices may lie within `reach` (mm) of `p_P` (mm).
+IndexBox voxels_around(const ImageGrid& grid, const Eigen::Vector3d& p_P, double reach);
 
 /// The offset of the voxel of `mask` nearest to `p_P` (mm), at most `reach` (mm) away; none if there is none.
 std::optional<std::size_t> nearest_voxel(const Mask& mask, const Eigen::Vector3d& p_P, double reach);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <optional>
+#include <set>
 
 #include "formats/model/errors.hpp"
 #include "tools/imaging/grow_from_seeds.hpp"
@@ -16,13 +17,6 @@ namespace palpate {
 namespace {
 
 constexpr double cubic_mm_per_ml = 1000;
-
-Mask mask_of(const LabelMap& map, std::int32_t value) {
-    Mask mask{map.grid, std::vector<std::uint8_t>(map.labels.size())};
-    std::ranges::transform(map.labels, mask.voxels.begin(),
-                           [&](std::uint16_t label) -> std::uint8_t { return label == value; });
-    return mask;
-}
 
 Mask labelled(const LabelMap& map) {
     Mask mask{map.grid, std::vector<std::uint8_t>(map.labels.size())};
@@ -92,7 +86,7 @@ std::vector<Seed> seeds_of_strokes(const LabelMap& strokes, std::size_t limit) {
 }
 
 struct NamedSeeds {
-    std::vector<Seed> own, others;  // of the structure, and of other labels in the same files
+    std::vector<Seed> own, all;  // of the structure; whatever the same files hold
 };
 
 NamedSeeds seeds_for(const Parameters& p, const std::string& name, const std::string& culprit,
@@ -100,10 +94,8 @@ NamedSeeds seeds_for(const Parameters& p, const std::string& name, const std::st
     NamedSeeds seeds;
     for (const Eigen::Vector3d& point : p.points("seeds_mm")) seeds.own.push_back({name, point});
     const auto add = [&](const std::vector<Seed>& from) {
-        const std::vector<Seed> own = seeds_of(from, name, culprit);
-        for (const Seed& seed : own) seeds.own.push_back({name, seed.p_P});
-        for (const Seed& seed : from)
-            if (seed.label != own.front().label) seeds.others.push_back(seed);
+        for (const Seed& seed : seeds_of(from, name, culprit)) seeds.own.push_back({name, seed.p_P});
+        seeds.all.insert(seeds.all.end(), from.begin(), from.end());
     };
     if (p.has("seeds_file")) add(read_seeds(p.text("seeds_file")));
     if (p.has("scribbles")) add(seeds_of_strokes(read_label_map(p.text("scribbles")), limit));
@@ -154,7 +146,8 @@ Mask make_liver(const Job& job) {
     parameters.drift_hu = p.number("drift_hu");
     parameters.neck_mm = p.number("neck_mm");
     parameters.gap_mm = p.number("gap_mm");
-    const Mask mask = organ(job.require_volume(), points_for(job), parameters, job.culprit(), job.note);
+    const Mask mask =
+        clip(organ(job.require_volume(), points_for(job), parameters, job.culprit(), job.note), region_of(p));
     const double ml = static_cast<double>(mask.count()) * mask.grid.voxel_volume() / cubic_mm_per_ml;
     if (ml > p.number("largest_ml"))
         throw InvalidInput(
@@ -182,28 +175,34 @@ Mask make_vessels(const Job& job) {
 }
 
 // All structures of this recipe compete, and so does what else their files hold, as background.
-Mask make_grown(const Job& job) {
+LabelMap race(const Job& job) {
     constexpr std::size_t all_strokes = 20'000;
     std::vector<Seed> seeds, others;
-    std::vector<std::string> names;
+    GrowParameters growing;
     for (const StructureRecipe& structure : job.all) {
         if (structure.recipe != job.structure.recipe) continue;
-        NamedSeeds found = seeds_for(Parameters(structure), structure.name,
-                                     "structure '" + structure.name + "'", all_strokes);
+        const Parameters parameters(structure);
+        growing.tolerances[structure.name] = parameters.number("tolerance");
+        const NamedSeeds found =
+            seeds_for(parameters, structure.name, "structure '" + structure.name + "'", all_strokes);
         if (found.own.empty())
             throw InvalidInput({"structure '" + structure.name + "'", "has no seed",
                                 "1 or more points inside it",
                                 "add seeds=x,y,z;..., seeds_file=... or scribbles=..."});
         seeds.insert(seeds.end(), found.own.begin(), found.own.end());
-        others.insert(others.end(), found.others.begin(), found.others.end());
-        names.push_back(structure.name);
+        others.insert(others.end(), found.all.begin(), found.all.end());
     }
+    const auto place = [](const Seed& seed) { return std::array{seed.p_P[0], seed.p_P[1], seed.p_P[2]}; };
+    std::set<std::array<double, 3>> claimed;
+    for (const Seed& seed : seeds) claimed.insert(place(seed));
     for (const Seed& seed : others)
-        if (std::ranges::count(names, seed.label) == 0) seeds.push_back({"background", seed.p_P});
-    GrowParameters parameters;
-    parameters.tolerance = job.parameters.number("tolerance");
-    const LabelMap grown = grow_from_seeds(job.require_volume(), seeds, parameters);
-    return mask_of(grown, require_label(grown, job.structure.name, job.culprit()).value);
+        if (claimed.insert(place(seed)).second) seeds.push_back({"background", seed.p_P});
+    return grow_from_seeds(job.require_volume(), seeds, growing);
+}
+
+Mask make_grown(const Job& job) {
+    if (!job.grown) job.grown = race(job);
+    return mask_of(*job.grown, require_label(*job.grown, job.structure.name, job.culprit()).value);
 }
 
 Mask make_import(const Job& job) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // For this folder only: how each recipe makes its structure.
 #pragma once
+#include <optional>
 #include <span>
 #include <string>
 
@@ -19,6 +20,7 @@ struct Job {
     const LabelMap* prior;
     const LabelMap& map;  ///< the structures made so far
     const NoteSink& note;
+    std::optional<LabelMap>& grown;  ///< what the structures of grow-from-seeds share, once made
 
     std::string culprit() const { return "structure '" + structure.name + "'"; }
     /// Throws InvalidInput if there is none.

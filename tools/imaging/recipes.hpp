@@ -10,8 +10,10 @@ namespace palpate {
 /// Voxels of lower ... upper HU, both included.
 Mask threshold(const Volume& volume, double lower_hu, double upper_hu);
 
-/// How far the values of a CT lie above HU: 1024 if none is negative and soft tissue is found about 1024 and
-/// not about 0, as in files that store value + 1024; else 0.
+/// How far the values of a CT probably lie above HU: 0 if one is negative, or unless soft tissue lies about
+/// the offset and little between it and air; else 1000 if the commonest value of the air (-1000 HU) lies
+/// below 14, and otherwise 1024, the usual one. The air decides no finer: old scanners have it
+/// tens of HU off.
 double hounsfield_offset(const Volume& volume);
 
 /// Lowest threshold for bone that is clear of soft tissue: the median of the values of -20 ... 200 HU and

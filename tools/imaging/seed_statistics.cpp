@@ -7,6 +7,7 @@
 #include <set>
 
 #include "formats/model/errors.hpp"
+#include "tools/imaging/mask.hpp"
 
 namespace palpate {
 namespace {
@@ -31,16 +32,13 @@ std::vector<float> values_near(const Volume& volume, std::span<const Eigen::Vect
     const ImageGrid& grid = volume.grid;
     std::set<std::size_t> found;
     for (const Eigen::Vector3d& point : points) {
-        const Eigen::Vector3d center = grid.index_of(point), reach = radius * grid.spacing.cwiseInverse();
-        const Eigen::Array3i low = (center - reach).array().ceil().cast<int>(),
-                             high = (center + reach).array().floor().cast<int>();
+        const auto [low, high] = voxels_around(grid, point, radius);
         for (int k = low[2]; k <= high[2]; ++k)
             for (int j = low[1]; j <= high[1]; ++j)
                 for (int i = low[0]; i <= high[0]; ++i)
-                    if (grid.contains(i, j, k) &&
-                        (grid.point_of(Eigen::Vector3d(i, j, k)) - point).squaredNorm() <= radius * radius)
+                    if ((grid.point_of(Eigen::Vector3d(i, j, k)) - point).squaredNorm() <= radius * radius)
                         found.insert(grid.offset(i, j, k));
-        const Eigen::Array3i nearest = center.array().round().cast<int>();
+        const Eigen::Array3i nearest = grid.index_of(point).array().round().cast<int>();
         if (grid.contains(nearest[0], nearest[1], nearest[2]))
             found.insert(grid.offset(nearest[0], nearest[1], nearest[2]));
     }

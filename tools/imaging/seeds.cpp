@@ -25,12 +25,17 @@ constexpr const char* schema =
     throw InvalidInput({path.string(), found, expected, next_step});
 }
 
-// "liver-2" and "liver" are points of one structure: Slicer numbers the points of a list.
+// "liver-2" and "liver" are points of one structure: Slicer numbers the points of a list as "%N-%d".
 std::string without_number(const std::string& label) {
     const auto last = label.find_last_not_of("0123456789");
-    const bool numbered = last != std::string::npos && last > 0 && last + 1 < label.size() &&
-                          (label[last] == '-' || label[last] == '_');
+    const bool numbered =
+        last != std::string::npos && last > 0 && last + 1 < label.size() && label[last] == '-';
     return numbered ? label.substr(0, last) : label;
+}
+
+Seed named_seed(const std::string& written, const std::string& if_unnamed, const Eigen::Vector3d& p_P) {
+    if (written.empty()) return {if_unnamed, p_P};
+    return {without_number(written), p_P, written};
 }
 
 std::string stem_of(const std::filesystem::path& path) {
@@ -61,9 +66,8 @@ std::vector<Seed> read_json(const std::filesystem::path& path, std::istream& str
             for (const json& point : list.value("controlPoints", json::array())) {
                 if (point.value("positionStatus", "defined") != "defined") continue;
                 const auto p = point.at("position").get<std::array<double, 3>>();
-                const std::string label = without_number(point.value("label", ""));
-                seeds.push_back(
-                    {label.empty() ? name : label, to_lps(path, system, Eigen::Vector3d(p[0], p[1], p[2]))});
+                seeds.push_back(named_seed(point.value("label", ""), name,
+                                           to_lps(path, system, Eigen::Vector3d(p[0], p[1], p[2]))));
             }
         }
     } catch (const json::exception& error) {
@@ -90,30 +94,36 @@ std::vector<std::string> fields_of(const std::string& line) {
     return fields;
 }
 
+std::string trimmed(const std::string& text) {
+    constexpr const char* blanks = " \t\r";
+    const auto first = text.find_first_not_of(blanks);
+    return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(blanks) + 1 - first);
+}
+
 std::vector<Seed> read_fcsv(const std::filesystem::path& path, std::istream& stream) {
     constexpr std::size_t first_coordinate = 1, label_field = 11;
-    const std::string key = "CoordinateSystem =";
+    const std::string key = "CoordinateSystem =", byte_order_mark = "\xef\xbb\xbf";
     std::string system = "RAS";  // Slicer's default for files that do not say
     std::vector<Seed> seeds;
     std::string line;
     for (int number = 1; std::getline(stream, line); ++number) {
+        if (number == 1 && line.starts_with(byte_order_mark)) line.erase(0, byte_order_mark.size());
         if (const auto found = line.find(key); line.starts_with('#') && found != std::string::npos) {
-            system = line.substr(found + key.size());
-            std::erase_if(system, [](unsigned char c) { return std::isspace(c) != 0; });
+            system = trimmed(line.substr(found + key.size()));
         }
-        if (line.starts_with('#') || line.find_first_not_of(" \t\r") == std::string::npos) continue;
+        if (line.starts_with('#') || trimmed(line).empty()) continue;
         const std::vector<std::string> fields = fields_of(line);
         Eigen::Vector3d position;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const std::string text =
-                fields.size() > first_coordinate + axis ? fields[first_coordinate + axis] : "";
+                fields.size() > first_coordinate + axis ? trimmed(fields[first_coordinate + axis]) : "";
             double& value = position[static_cast<Eigen::Index>(axis)];
             const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
             if (error != std::errc{} || end != text.data() + text.size())
                 refuse(path, fmt::format("line {} has the coordinate '{}'", number, text), "id,x,y,z,...");
         }
-        const std::string label = without_number(fields.size() > label_field ? fields[label_field] : "");
-        seeds.push_back({label.empty() ? stem_of(path) : label, to_lps(path, system, position)});
+        seeds.push_back(named_seed(fields.size() > label_field ? fields[label_field] : "", stem_of(path),
+                                   to_lps(path, system, position)));
     }
     return seeds;
 }
@@ -135,9 +145,11 @@ std::vector<Seed> read_seeds(const std::filesystem::path& path) {
 void write_seeds(const std::filesystem::path& path, std::span<const Seed> seeds) {
     if (!path.filename().string().ends_with(".mrk.json")) refuse(path, "is no list of points", ".mrk.json");
     json points = json::array();
-    for (const Seed& seed : seeds)
-        points.push_back({{"id", std::to_string(points.size() + 1)},
-                          {"label", seed.label},
+    for (const Seed& seed : seeds) {
+        const std::string id = std::to_string(points.size() + 1);
+        const bool number_like = without_number(seed.label) != seed.label;
+        points.push_back({{"id", id},
+                          {"label", number_like ? seed.label + "-" + id : seed.label},
                           {"description", ""},
                           {"associatedNodeID", ""},
                           {"position", {seed.p_P[0], seed.p_P[1], seed.p_P[2]}},
@@ -146,6 +158,7 @@ void write_seeds(const std::filesystem::path& path, std::span<const Seed> seeds)
                           {"locked", false},
                           {"visibility", true},
                           {"positionStatus", "defined"}});
+    }
     const json list{{"type", "Fiducial"},
                     {"coordinateSystem", "LPS"},
                     {"coordinateUnits", "mm"},
@@ -166,12 +179,16 @@ std::vector<Seed> seeds_of(std::span<const Seed> seeds, const std::string& name,
                                [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
         return text;
     };
-    std::vector<Seed> found;
+    const auto matching = [&](const std::string Seed::*text) {
+        std::vector<Seed> found;
+        for (const Seed& seed : seeds)
+            if (lower(seed.*text) == lower(name)) found.push_back(seed);
+        return found;
+    };
+    std::vector<Seed> found = matching(&Seed::label);
+    if (found.empty()) found = matching(&Seed::written);
     std::set<std::string> labels;
-    for (const Seed& seed : seeds) {
-        labels.insert(seed.label);
-        if (lower(seed.label) == lower(name)) found.push_back(seed);
-    }
+    for (const Seed& seed : seeds) labels.insert(seed.label);
     if (found.empty() && labels.size() == 1) found.assign(seeds.begin(), seeds.end());
     if (found.empty())
         throw InvalidInput({culprit, fmt::format("no seed is labelled '{}'", name),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/imaging/segmentation.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <optional>
 
@@ -44,6 +45,15 @@ std::int32_t replaced_label(const LabelMap& map, const StructureRecipe& structur
                : 0;
 }
 
+// A structure may take voxels of the one it lies inside, but not all of them.
+void check_left_over(const LabelMap& map, std::int32_t replaced, const StructureRecipe& structure) {
+    if (replaced == 0 || std::ranges::count(map.labels, replaced) > 0) return;
+    const auto swallowed = std::ranges::find(map.names, replaced, &Label::value);
+    throw InvalidInput({"structure '" + structure.name + "'",
+                        "takes every voxel of '" + swallowed->name + "', which it lies inside",
+                        "a part of them", "make it smaller, or leave '" + swallowed->name + "' larger"});
+}
+
 // The volume in HU: itself, or `shifted` if its values lie above.
 const Volume* in_hounsfield(const Volume* volume, std::optional<Volume>& shifted, const NoteSink& note) {
     const double offset = volume ? hounsfield_offset(*volume) : 0;
@@ -52,9 +62,10 @@ const Volume* in_hounsfield(const Volume* volume, std::optional<Volume>& shifted
     for (float& value : shifted->values) value -= static_cast<float>(offset);
     if (note)
         note(fmt::format(
-            "no value of the volume is negative and soft tissue lies about {}: {} was subtracted to "
-            "get HU, so thresholds are in HU",
-            offset, offset));
+            "no value of the volume is negative and soft tissue lies about {0}, so it is probably "
+            "stored as HU + {0}: {0} was subtracted, and thresholds are in HU; give a volume in "
+            "HU if that is wrong",
+            offset));
     return &*shifted;
 }
 
@@ -71,12 +82,14 @@ LabelMap segment(const Volume* volume, const LabelMap* prior, std::span<const St
     LabelMap map;
     map.grid = volume ? volume->grid : prior->grid;
     map.labels.assign(map.grid.voxel_count(), 0);
+    std::optional<LabelMap> grown;
     for (std::size_t n = 0; n < structures.size(); ++n) {
         const StructureRecipe& structure = structures[n];
         if (progress)
             progress(structure.name, static_cast<double>(n) / static_cast<double>(structures.size()));
         const Parameters parameters(structure);
-        const Mask mask = make_structure({structure, parameters, structures, hounsfield, prior, map, note});
+        const Mask mask =
+            make_structure({structure, parameters, structures, hounsfield, prior, map, note, grown});
         const std::int32_t replaced = replaced_label(map, structure, parameters);
         const auto value = static_cast<std::uint16_t>(n + 1);
         std::size_t taken = 0;
@@ -88,6 +101,7 @@ LabelMap segment(const Volume* volume, const LabelMap* prior, std::span<const St
         if (taken == 0)
             throw InvalidInput(
                 {"structure '" + structure.name + "'", "is empty", "", advice_if_empty(structure.recipe)});
+        check_left_over(map, replaced, structure);
         map.names.push_back({value, structure.name, colour_of(structure, parameters, prior, value)});
     }
     return map;

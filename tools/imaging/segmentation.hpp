@@ -44,11 +44,13 @@ std::vector<std::string> recipe_names();
 std::vector<RecipeParameterInfo> recipe_parameters(const std::string& recipe);
 
 /// Reads "skull: recipe=bone threshold_hu=226"; numbers of a point are separated by commas, points by
-/// semicolons; "seeds" is short for "seeds_mm". Throws UsageError if the text is malformed, InvalidInput as
-/// check_recipe() does.
+/// semicolons; "seeds" is short for "seeds_mm". Throws UsageError if the text is malformed or the name not
+/// UTF-8, InvalidInput as check_recipe() does.
 StructureRecipe parse_structure(std::string_view text);
 
-/// Throws InvalidInput if the recipe or a parameter is unknown (with the nearest names), or of another kind.
+/// Throws InvalidInput if the recipe or a parameter is unknown (with the nearest names), or of another kind,
+/// or if a number is not finite (but lower_hu and upper_hu may be infinite), a length or volume is negative,
+/// a tolerance not above 0.
 void check_recipe(const StructureRecipe& structure);
 
 /// Makes the structures in order, with label values 1, 2, 3 ... A structure takes background voxels only,
@@ -56,11 +58,11 @@ void check_recipe(const StructureRecipe& structure);
 /// steps follow the recipe in the order written. Structures of the recipe "grow-from-seeds" compete with each
 /// other. The result lies on the grid of `volume` or, without one, of `prior`. `prior` is what the recipes
 /// "import" and "brain" read from, resampled to the nearest voxel if its grid differs; either may be null.
-/// A CT without negative values whose soft tissue lies about 1024 is taken to be 1024 above HU. `note`
+/// A CT stored above HU is shifted where hounsfield_offset() can tell by how much. `note`
 /// receives that, and what else a person should look at, one sentence at a time.
-/// Throws InvalidInput naming the structure if it would be empty or implausibly large, if a recipe misses the
-/// volume, the prior or the seeds it needs, if a seed or a label is not where it must be, if a name occurs
-/// twice; as check_recipe() and read_seeds() do.
+/// Throws InvalidInput naming the structure if it would be empty or implausibly large or would leave nothing
+/// of the structure it lies inside, if a recipe misses the volume, the prior or the seeds it needs, if a seed
+/// or a label is not where it must be, if a name occurs twice; as check_recipe() and read_seeds() do.
 LabelMap segment(const Volume* volume, const LabelMap* prior, std::span<const StructureRecipe> structures,
                  const ProgressCallback& progress = {}, const NoteSink& note = {});
 

@@ -138,5 +138,20 @@ TEST(Mask, results_do_not_depend_on_the_number_of_threads) {
     EXPECT_EQ(run(5), alone);
 }
 
+TEST(Mask, only_voxels_of_the_grid_are_looked_at_however_small_they_are) {
+    ImageGrid grid;
+    grid.size = {4, 3, 2};
+    grid.spacing = {1e-9, 1e-9, 1e-9};
+    const IndexBox all = voxels_around(grid, {0, 0, 0}, 100);
+    EXPECT_TRUE((all.low == Eigen::Array3i(0, 0, 0)).all());
+    EXPECT_TRUE((all.high == Eigen::Array3i(3, 2, 1)).all());
+    const IndexBox none = voxels_around(grid, {1e6, 0, 0}, 100);
+    EXPECT_GT(none.low[0], none.high[0]);
+    grid.spacing = {1, 1, 1};
+    const IndexBox part = voxels_around(grid, {2, 1, 0}, 1.2);
+    EXPECT_TRUE((part.low == Eigen::Array3i(1, 0, 0)).all());
+    EXPECT_TRUE((part.high == Eigen::Array3i(3, 2, 1)).all());
+}
+
 }  // namespace
 }  // namespace palpate

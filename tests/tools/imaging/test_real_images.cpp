@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
-#include <cstdlib>
 #include <gtest/gtest.h>
 
 #include "formats/model/errors.hpp"
 #include "tests/tools/imaging/hand_written_images.hpp"
+#include "tests/tools/imaging/real_data.hpp"
 #include "tools/imaging/image_files.hpp"
 #include "tools/imaging/label_names.hpp"
 #include "tools/imaging/label_statistics.hpp"
@@ -12,19 +12,6 @@
 
 namespace palpate {
 namespace {
-
-// The folder or file of a real data set; empty if it is absent.
-std::filesystem::path real_data(const std::string& name) {
-    const char* root = std::getenv("PALPATE_DATA");
-    if (root == nullptr) return {};
-    const auto path = std::filesystem::path(root) / name;
-    return std::filesystem::exists(path) ? path : std::filesystem::path();
-}
-
-// Defines `variable` as the data set's path, or skips the test.
-#define REQUIRE_REAL_DATA(variable, name)                   \
-    const std::filesystem::path variable = real_data(name); \
-    if (variable.empty()) GTEST_SKIP() << "PALPATE_DATA: " << name << " is absent"
 
 double mean_within(const Volume& volume, const LabelMap& labels, std::int32_t value) {
     double sum = 0, count = 0;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The recipes against reference labels of real volumes. Seeds are drawn at random inside the reference, so
 // that nothing depends on chosen points.
-#include <cstdlib>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <random>
 
+#include "tests/tools/imaging/real_data.hpp"
 #include "tools/imaging/image_files.hpp"
 #include "tools/imaging/label_statistics.hpp"
 #include "tools/imaging/mask.hpp"
@@ -14,19 +14,8 @@
 namespace palpate {
 namespace {
 
-// The path of a real file or folder; the test is skipped if it is absent.
-#define REQUIRE_REAL(variable, name)                                          \
-    const char* variable##_root = std::getenv("PALPATE_DATA");                \
-    const std::filesystem::path variable =                                    \
-        std::filesystem::path(variable##_root ? variable##_root : "") / name; \
-    if (variable##_root == nullptr || !std::filesystem::exists(variable))     \
-    GTEST_SKIP() << "PALPATE_DATA: " << name << " is absent"
-
 Mask mask_of(const LabelMap& map, const std::string& name) {
-    const auto value = require_label(map, name, "test").value;
-    Mask mask{map.grid, {}};
-    for (const std::uint16_t label : map.labels) mask.voxels.push_back(label == value);
-    return mask;
+    return mask_of(map, require_label(map, name, "test").value);
 }
 
 double dice(const Mask& a, const Mask& b) {
@@ -68,13 +57,13 @@ constexpr double contrast_dice = 0.92;
 constexpr double plain_dice = 0.88;  // without contrast liver and muscle are alike
 
 TEST(RealSegmentation, liver_with_contrast_from_five_seeds) {
-    REQUIRE_REAL(folder, "abdomen_ct_spl");
+    REQUIRE_REAL_DATA(folder, "abdomen_ct_spl");
     expect_liver(read_volume(folder / "ct.nrrd"), mask_of(read_label_map(folder / "seg.nrrd"), "3"),
                  contrast_dice);
 }
 
 TEST(RealSegmentation, liver_in_a_slab_with_streaks_from_five_seeds) {
-    REQUIRE_REAL(folder, "abdomen_dicom_ts20");
+    REQUIRE_REAL_DATA(folder, "abdomen_dicom_ts20");
     const Volume volume = read_volume(folder / "dicom");
     const LabelMap prior = read_label_map(folder / "seg_totalseg.nii.gz");
     const LabelMap reference = segmented(&volume, &prior, "liver: recipe=import label=5");
@@ -82,13 +71,13 @@ TEST(RealSegmentation, liver_in_a_slab_with_streaks_from_five_seeds) {
 }
 
 TEST(RealSegmentation, liver_without_contrast_from_five_seeds) {
-    REQUIRE_REAL(folder, "abdomen_ct_totalseg3mm");
+    REQUIRE_REAL_DATA(folder, "abdomen_ct_totalseg3mm");
     expect_liver(read_volume(folder / "ct.nii.gz"),
                  mask_of(read_label_map(folder / "seg_totalseg.nii.gz"), "5"), plain_dice);
 }
 
 TEST(RealSegmentation, bone_of_a_head_is_the_threshold_mask_without_its_head_rest) {
-    REQUIRE_REAL(folder, "head_ct_cranium");
+    REQUIRE_REAL_DATA(folder, "head_ct_cranium");
     const Volume volume = read_volume(folder / "head_ct_cranium.nrrd");
     const LabelMap thresholded = read_label_map(folder / "head_ct_cranium_mask_bone.nrrd");
     const Mask reference =
@@ -100,7 +89,7 @@ TEST(RealSegmentation, bone_of_a_head_is_the_threshold_mask_without_its_head_res
 }
 
 TEST(RealSegmentation, airway_of_a_head_is_one_passage_from_nose_to_larynx) {
-    REQUIRE_REAL(file, "head_ct_headsq64/head_ct_headsq64.mhd");
+    REQUIRE_REAL_DATA(file, "head_ct_headsq64/head_ct_headsq64.mhd");
     const Volume volume = read_volume(file);
     const LabelMap map = segmented(&volume, nullptr, "airway: recipe=airway");
     const LabelStatistics airway = label_statistics(map)[0];

@@ -54,14 +54,38 @@ TEST(Seeds, of_fcsv_follow_the_coordinate_system_of_the_header) {
 
 TEST(Seeds, written_are_read_back_alike) {
     const sample::Scratch scratch;
-    const std::vector<Seed> seeds{{"liver", {0.1, -2.25, 1e3}}, {"background", {1, 2, 3}}};
+    const std::vector<Seed> seeds{{"liver", {0.1, -2.25, 1e3}}, {"background", {1, 2, 3}},
+                                  {"label_5", {1, 2, 3}},       {"vein_2", {1, 2, 3}},
+                                  {"x-2", {1, 2, 3}},           {"x-2-3", {1, 2, 3}}};
     write_seeds(scratch / "s.mrk.json", seeds);
     const auto back = read_seeds(scratch / "s.mrk.json");
-    ASSERT_EQ(back.size(), 2U);
-    for (std::size_t i = 0; i < 2; ++i) {
+    ASSERT_EQ(back.size(), seeds.size());
+    for (std::size_t i = 0; i < seeds.size(); ++i) {
         EXPECT_EQ(back[i].label, seeds[i].label);
         EXPECT_EQ(back[i].p_P, seeds[i].p_P);
     }
+}
+
+TEST(Seeds, are_found_by_the_label_as_written_too) {
+    const sample::Scratch scratch;
+    const auto seeds =
+        read_seeds(written(scratch, "points.fcsv",
+                           "1,0,0,1,0,0,0,1,1,1,0,tumour_1,,\n2,0,0,2,0,0,0,1,1,1,0,tumour_2,,\n"
+                           "3,0,0,3,0,0,0,1,1,1,0,node-1,,\n4,0,0,4,0,0,0,1,1,1,0,node-2,,\n"));
+    ASSERT_EQ(seeds.size(), 4U);
+    EXPECT_EQ(seeds_of(seeds, "tumour_2", "x").size(), 1U);
+    EXPECT_EQ(seeds_of(seeds, "tumour_2", "x").at(0).p_P[2], 2);
+    EXPECT_EQ(seeds_of(seeds, "node", "x").size(), 2U);
+    EXPECT_EQ(seeds_of(seeds, "node-2", "x").size(), 1U);
+    EXPECT_EQ(seeds_of(seeds, "node-2", "x").at(0).p_P[2], 4);
+}
+
+TEST(Seeds, of_fcsv_may_have_blanks_before_numbers_and_a_byte_order_mark) {
+    const sample::Scratch scratch;
+    const auto seeds = read_seeds(
+        written(scratch, "points.fcsv", "\xef\xbb\xbf# CoordinateSystem = LPS\n1, 1.5,\t2 , -3\n"));
+    ASSERT_EQ(seeds.size(), 1U);
+    EXPECT_EQ(seeds[0].p_P, Eigen::Vector3d(1.5, 2, -3));
 }
 
 TEST(Seeds, that_cannot_be_read_are_refused) {
@@ -109,6 +133,19 @@ TEST(GrowFromSeeds, labels_race_and_background_stays_zero) {
         sum += std::size_t{map.labels[i] == 1} + std::size_t{abdomen.truth.labels[i] == 1};
     }
     EXPECT_GT(2.0 * static_cast<double>(both) / static_cast<double>(sum), 0.85);
+}
+
+TEST(GrowFromSeeds, a_label_may_have_its_own_tolerance) {
+    const Phantom abdomen = abdomen_phantom({.noise_hu = 10});
+    const std::vector<Seed> seeds{{"liver", {-14, -6, 16}}, {"rest", {34, 20, 0}}};
+    const auto counts = [&](const GrowParameters& parameters) {
+        const LabelMap map = grow_from_seeds(abdomen.volume, seeds, parameters);
+        return std::pair{std::ranges::count(map.labels, 1), std::ranges::count(map.labels, 2)};
+    };
+    GrowParameters narrow;
+    narrow.tolerances["liver"] = 0.5;
+    EXPECT_LT(counts(narrow).first * 2, counts({}).first);
+    EXPECT_GE(counts(narrow).second, counts({}).second);
 }
 
 TEST(GrowFromSeeds, preview_lies_on_the_volumes_grid_and_has_few_blocks) {

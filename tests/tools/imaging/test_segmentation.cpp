@@ -7,6 +7,7 @@
 #include "sample_data/phantoms.hpp"
 #include "tests/formats/scratch.hpp"
 #include "tests/tools/imaging/hand_written_images.hpp"
+#include "tools/imaging/grow_from_seeds.hpp"
 #include "tools/imaging/image_files.hpp"
 #include "tools/imaging/label_names.hpp"
 #include "tools/imaging/label_statistics.hpp"
@@ -190,8 +191,20 @@ TEST(Recipes, bone_finds_a_threshold_clear_of_soft_tissue) {
 
 TEST(Recipes, brain_is_imported_in_one_piece_without_holes) {
     Phantom abdomen = abdomen_phantom();
+    const ImageGrid& grid = abdomen.truth.grid;
+    const auto offset_at = [&](const Eigen::Vector3d& p) {
+        const Eigen::Vector3d at = grid.index_of(p).array().round();
+        return grid.offset(static_cast<int>(at[0]), static_cast<int>(at[1]), static_cast<int>(at[2]));
+    };
+    const std::size_t hole = offset_at({-14, -6, 16}), crumb = offset_at({34, 20, 0});
+    ASSERT_EQ(abdomen.truth.labels[hole], 1);
+    ASSERT_NE(abdomen.truth.labels[crumb], 1);
+    abdomen.truth.labels[hole] = 0;
+    abdomen.truth.labels[crumb] = 1;
     const LabelMap map = run(&abdomen.volume, &abdomen.truth, {"brain: recipe=brain label=liver"});
     EXPECT_EQ(label_statistics(map)[0].components, 1U);
+    EXPECT_EQ(map.labels[hole], 1);
+    EXPECT_EQ(map.labels[crumb], 0);
     const LabelMap all =
         run(&abdomen.volume, &abdomen.truth, {"all: recipe=brain label=* keep_largest=no fill_holes=no"});
     EXPECT_EQ(std::ranges::count(all.labels, 0), std::ranges::count(abdomen.truth.labels, 0));
@@ -206,11 +219,36 @@ TEST(Recipes, structures_grown_from_seeds_share_a_border) {
     EXPECT_GT(label_statistics(map)[1].volume_ml, 100);
 }
 
+TEST(Recipes, structures_grown_from_seeds_run_one_race_whatever_their_tolerances) {
+    const Phantom abdomen = abdomen_phantom({.noise_hu = 10});
+    const LabelMap map = run(&abdomen.volume, nullptr,
+                             {"wide: recipe=grow-from-seeds tolerance=20 seeds=-14,-6,16",
+                              "narrow: recipe=grow-from-seeds tolerance=1 seeds=34,20,0"});
+    GrowParameters parameters;
+    parameters.tolerances = {{"wide", 20}, {"narrow", 1}};
+    const std::vector<Seed> seeds{{"wide", {-14, -6, 16}}, {"narrow", {34, 20, 0}}};
+    EXPECT_EQ(map.labels, grow_from_seeds(abdomen.volume, seeds, parameters).labels);
+    parameters.tolerances["narrow"] = 20;
+    EXPECT_NE(map.labels, grow_from_seeds(abdomen.volume, seeds, parameters).labels);
+}
+
+TEST(Recipes, structures_that_share_a_file_of_seeds_do_not_compete_with_themselves_as_background) {
+    const sample::Scratch scratch;
+    const Phantom abdomen = abdomen_phantom({.noise_hu = 10});
+    const Eigen::Vector3d in_liver(-14, -6, 16), in_muscle(34, 20, 0), in_air(0, -58, 0);
+    write_seeds(scratch / "s.mrk.json",
+                std::vector<Seed>{{"Liver", in_liver}, {"Rest", in_muscle}, {"air", in_air}});
+    const std::string file = " recipe=grow-from-seeds seeds_file=" + (scratch / "s.mrk.json").string();
+    const LabelMap map = run(&abdomen.volume, nullptr, {"liver:" + file, "rest:" + file});
+    const std::vector<Seed> seeds{{"liver", in_liver}, {"rest", in_muscle}, {"background", in_air}};
+    EXPECT_EQ(map.labels, grow_from_seeds(abdomen.volume, seeds).labels);
+}
+
 TEST(Recipes, seeds_come_from_points_and_from_strokes_alike) {
     const sample::Scratch scratch;
     const Phantom abdomen = abdomen_phantom();
     write_seeds(scratch / "points.mrk.json",
-                std::vector<Seed>{{"liver-1", {-14, -6, 16}}, {"other", {34, 20, 0}}});
+                std::vector<Seed>{{"liver", {-14, -6, 16}}, {"other", {34, 20, 0}}});
     LabelMap strokes{abdomen.truth.grid,
                      std::vector<std::uint16_t>(abdomen.truth.labels.size(), 0),
                      {{1, "liver", {}}, {2, "other", {}}}};
@@ -257,6 +295,39 @@ TEST(Segment, values_stored_1024_above_hounsfield_are_told_and_treated_alike) {
         segment(&head.volume, nullptr, bone, {}, [&](std::string_view note) { said += note; });
     EXPECT_EQ(shifted.labels, plain.labels);
     EXPECT_NE(said.find("1024 was subtracted"), std::string::npos);
+}
+
+TEST(Segment, values_stored_1000_above_hounsfield_are_told_from_1024_by_their_air) {
+    Phantom head = head_phantom({.noise_hu = 5});
+    for (const double stored : {1000.0, 1024.0}) {
+        Volume volume = head.volume;
+        for (float& value : volume.values) value = std::max(0.0F, value + static_cast<float>(stored));
+        EXPECT_EQ(hounsfield_offset(volume), stored);
+    }
+    EXPECT_EQ(hounsfield_offset(head.volume), 0);
+    std::string said;
+    for (float& value : head.volume.values) value = std::max(0.0F, value + 1000);
+    const std::vector<StructureRecipe> bone{parse_structure("skull: recipe=bone")};
+    segment(&head.volume, nullptr, bone, {}, [&](std::string_view note) { said += note; });
+    EXPECT_NE(said.find("probably stored as HU + 1000"), std::string::npos) << said;
+}
+
+TEST(Segment, a_structure_swallowed_by_a_later_one_is_refused_with_both_names) {
+    const Phantom abdomen = abdomen_phantom();
+    const std::string refusal = refusal_of([&] {
+        run(nullptr, &abdomen.truth,
+            {"liver: recipe=import", "ball: recipe=sphere inside=liver center_mm=0,0,0 radius_mm=1e4"});
+    });
+    EXPECT_NE(refusal.find("structure 'ball': takes every voxel of 'liver'"), std::string::npos) << refusal;
+}
+
+TEST(Segment, the_livers_volume_is_checked_within_its_region) {
+    const Phantom abdomen = abdomen_phantom();
+    const LabelMap whole = run(&abdomen.volume, nullptr, {small_liver}),
+                   part = run(&abdomen.volume, nullptr,
+                              {small_liver + " center_mm=-14,-6,16 radius_mm=10 largest_ml=20"});
+    EXPECT_GT(label_statistics(whole)[0].volume_ml, 20);
+    EXPECT_LT(label_statistics(part)[0].volume_ml, 5);
 }
 
 TEST(Segment, bad_seeds_and_leaks_are_named) {
@@ -349,6 +420,20 @@ TEST(RecipeParameters, unknown_names_and_wrong_kinds_are_refused_with_the_neares
     for (const char* text : {"", "bone", ": recipe=bone", "s: threshold_hu=3", "s: recipe=bone fast",
                              "s: recipe=bone open_mm=1 open_mm=2"})
         EXPECT_THROW(parse_structure(text), UsageError) << text;
+}
+
+TEST(RecipeParameters, numbers_that_cannot_be_meant_are_refused) {
+    for (const char* text :
+         {"s: recipe=bone threshold_hu=nan", "s: recipe=bone threshold_hu=inf", "s: recipe=bone open_mm=inf",
+          "s: recipe=threshold lower_hu=nan", "s: recipe=liver seeds=1,nan,2",
+          "s: recipe=liver seeds=1,inf,2", "s: recipe=liver tolerance_hu=0", "s: recipe=liver drift_hu=-1",
+          "s: recipe=liver largest_ml=-1", "s: recipe=vessels contrast_hu=-1",
+          "s: recipe=grow-from-seeds tolerance=0", "s: recipe=grow-from-seeds tolerance=-3",
+          "s: recipe=sphere radius_mm=-1", "s: recipe=bone box_min_mm=-inf,0,0 box_max_mm=1,1,1"})
+        EXPECT_THROW(parse_structure(text), InvalidInput) << text;
+    EXPECT_NO_THROW(parse_structure("s: recipe=threshold lower_hu=-inf upper_hu=inf"));
+    EXPECT_THROW(parse_structure("a\xff: recipe=bone"), UsageError);
+    EXPECT_NO_THROW(parse_structure("m\xc3\xa9ninge: recipe=bone"));
 }
 
 TEST(RecipeParameters, are_read_by_kind) {

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstdlib>
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <string>
+
+namespace palpate::testing {
+
+/// The folder or file of a real data set; empty if it is absent.
+inline std::filesystem::path real_data(const std::string& name) {
+    const char* root = std::getenv("PALPATE_DATA");
+    if (root == nullptr) return {};
+    const auto path = std::filesystem::path(root) / name;
+    return std::filesystem::exists(path) ? path : std::filesystem::path();
+}
+
+}  // namespace palpate::testing
+
+/// Defines `variable` as the data set's path, or skips the test.
+#define REQUIRE_REAL_DATA(variable, name)                                     \
+    const std::filesystem::path variable = palpate::testing::real_data(name); \
+    if (variable.empty()) GTEST_SKIP() << "PALPATE_DATA: " << name << " is absent"
