@@ -27,7 +27,12 @@ itk::ImageIOBase::Pointer image_io_of(const std::filesystem::path& path) {
                                                               itk::MetaImageIO::New().GetPointer()};
     for (const auto& io : candidates)
         if (io->CanReadFile(path.c_str())) return io;
-    if (const auto ending = in_lower_case(path.extension().string()); ending == ".hdr" || ending == ".img")
+    const std::string ending = in_lower_case(path.extension().string());
+    if (ending != path.extension()) {  // ITK knows endings in lower case only
+        if (ending == ".nrrd" || ending == ".nhdr") return candidates[0];
+        if (ending == ".mha" || ending == ".mhd") return candidates[1];
+    }
+    if (ending == ".hdr" || ending == ".img")
         throw InvalidInput({path.string(), "is one half of an Analyze or NIfTI pair",
                             "one file that says which way the patient lies", "convert it to .nii.gz"});
     throw InvalidInput({path.string(), "is not a volume",
