@@ -89,6 +89,17 @@ DataSet item(const DataSet& data, const Tag& tag, std::size_t position = 0) {
     return sequence->GetItem(position + 1).GetNestedDataSet();
 }
 
+// A number that may be missing, but not damaged.
+double number_or(double otherwise, const DataSet& data, const Tag& tag, const std::string& file) {
+    if (text(data, tag).empty()) return otherwise;
+    const auto value = numbers(data, tag, 1);
+    if (!value)
+        throw InvalidInput(
+            {file, fmt::format("element ({:04x},{:04x}) is no number", tag.GetGroup(), tag.GetElement()),
+             "a finite number", "copy or export the file again"});
+    return (*value)[0];
+}
+
 // What one set says of the slice: the file's own attributes, or those in its functional groups.
 void take_geometry(DicomSlice& slice, const DataSet& position, const DataSet& orientation,
                    const DataSet& measures, const DataSet& rescale) {
@@ -96,9 +107,9 @@ void take_geometry(DicomSlice& slice, const DataSet& position, const DataSet& or
     if (const auto o = numbers(orientation, Tag(0x0020, 0x0037), 6))
         slice.directions = Eigen::Map<const Eigen::Matrix<double, 3, 2>>(o->data());
     if (const auto s = numbers(measures, Tag(0x0028, 0x0030), 2)) slice.spacing = {(*s)[1], (*s)[0]};
-    if (const auto intercept = numbers(rescale, Tag(0x0028, 0x1052), 1)) slice.intercept = (*intercept)[0];
-    if (const auto slope = numbers(rescale, Tag(0x0028, 0x1053), 1); slope && (*slope)[0] != 0)
-        slice.slope = (*slope)[0];
+    slice.intercept = number_or(slice.intercept, rescale, Tag(0x0028, 0x1052), slice.file);
+    if (const double slope = number_or(slice.slope, rescale, Tag(0x0028, 0x1053), slice.file); slope != 0)
+        slice.slope = slope;
 }
 
 void take_functional_groups(DicomSlice& slice, const DataSet& groups) {

@@ -400,6 +400,8 @@ TEST(Dicom, mixed_damaged_coloured_and_placeless_slices_are_refused_by_name) {
     EXPECT_SAYS(refusal([&](DicomData& s) { s.text(0x00280004, "CS", "ROE JANE"); }), "colours (other)");
     EXPECT_SAYS(refusal([&](DicomData& s) { s.text(0x00200032, "DS", "0\\nan\\0"); }),
                 "4.dcm says not where");
+    for (const std::uint32_t rescale : {0x00281052U, 0x00281053U})
+        EXPECT_SAYS(refusal([&](DicomData& s) { s.text(rescale, "DS", "nan"); }), "is no number");
     EXPECT_SAYS(refusal([&](DicomData& s) { s.text(0x00200032, "DS", "0\\0\\inf"); }),
                 "4.dcm says not where");
     EXPECT_SAYS(refusal([&](DicomData& s) { s.erase(0x00200032); }), "4.dcm says not where");
