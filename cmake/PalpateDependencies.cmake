@@ -22,9 +22,8 @@ if(PALPATE_TOOLS)
     find_package(tomlplusplus 3 REQUIRED)
     # ITK: the reference implementation of volume reading, DICOM geometry and segmentation filters.
     find_package(ITK 5.2 REQUIRED COMPONENTS
-        ITKCommon ITKIOImageBase ITKIONRRD ITKIOMeta ITKImageIntensity ITKThresholding
-        ITKConnectedComponents ITKLabelMap ITKBinaryMathematicalMorphology ITKMathematicalMorphology
-        ITKDistanceMap ITKSmoothing ITKRegionGrowing ITKImageGrid ITKImageFunction ITKImageStatistics)
+        ITKCommon ITKIOImageBase ITKIONRRD ITKIOMeta ITKZLIB
+        ITKConnectedComponents ITKCurvatureFlow ITKDistanceMap ITKLabelMap)
     # DCMTK's dcmseg: the reference reader of DICOM segmentation objects, which ITK and GDCM lack.
     set(PALPATE_DCMTK_LIBRARIES)
     foreach(part seg fg iod data)

@@ -4,6 +4,7 @@ import gzip
 import json
 import os
 import pathlib
+import pty
 import struct
 import subprocess
 import tempfile
@@ -93,6 +94,19 @@ class Import(unittest.TestCase):
         return subprocess.run([BIN / "palpate-import", *map(str, arguments)], text=True, stdout=subprocess.PIPE,
                               stderr=subprocess.PIPE, timeout=60)
 
+    def on_a_terminal(self, *arguments):
+        master, terminal = pty.openpty()
+        with subprocess.Popen([BIN / "palpate-import", *map(str, arguments)], stdout=terminal, stderr=terminal):
+            os.close(terminal)
+            shown = b""
+            try:
+                while more := os.read(master, 4096):
+                    shown += more
+            except OSError:  # the other end is closed
+                pass
+        os.close(master)
+        return shown.decode()
+
     def write(self, name, content):
         path = self.folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -115,16 +129,20 @@ class Import(unittest.TestCase):
         output = self.folder / "v.nrrd"
         refused = self.run_import(self.folder / "in", "-o", output)
         self.assertEqual(refused.returncode, INVALID)
-        for phrase in ("holds 2 series", "7: CT 6 slices of 5 x 4, 0.5 x 0.5 x 2 mm", "arterial", "--series 3"):
+        for phrase in ("holds 2 series", "7: CT 6 slices of 5 x 4, 0.5 x 0.5 x 2 mm", "palpate import ... --series 3"):
             self.assertIn(phrase, refused.stderr)
+        self.assertNotIn("arterial", refused.stderr)
         self.assertFalse(output.exists())
 
         listed = self.run_import(self.folder / "in", "--list", "--json", "-")
         rows = json.loads(listed.stdout)["series"]
-        self.assertEqual([(row["number"], row["slices"], row["description"]) for row in rows],
-                         [("3", 4, "arterial"), ("7", 6, "portal venous Roe")])
+        self.assertEqual([(row["number"], row["slices"]) for row in rows], [("3", 4), ("7", 6)])
         self.assertEqual([rows[0][f"spacing_{axis}_mm"] for axis in "ijk"], [0.5, 0.5, 2])
-        self.assertIn("arterial", self.run_import(self.folder / "in", "--list").stdout)
+        for arguments in (["--list"], ["--list", "--json", "-"]):
+            self.assertNotIn("arterial", self.run_import(self.folder / "in", *arguments).stdout)
+        self.assertIn("arterial", self.on_a_terminal(self.folder / "in", "--list"))
+        self.assertIn("arterial", self.on_a_terminal(self.folder / "in", "-o", output))
+        self.assertNotIn("arterial", self.on_a_terminal(self.folder / "in", "--list", "--json", "-"))
         for wanted in ("3", "arterial", "1.2.826.0.1.99.6"):
             result = self.run_import(self.folder / "in", "--series", wanted, "-o", output, "--force", "--json", "-")
             self.assertEqual(json.loads(result.stdout)["grid"]["size"], [4, 5, 4])
@@ -152,7 +170,10 @@ class Import(unittest.TestCase):
     def test_wrong_combinations_are_usage_errors(self):
         image = self.write("l.nii", nifti(self.labels))
         for arguments in ([image], [image, "--list", "-o", "v.nrrd"], [image, "-o", "v.nrrd", "--label-names", "1=a"],
-                          [image, "-o", "v.nrrd", "--labels", "--overlaps", "both"]):
+                          [image, "-o", "v.nrrd", "--labels", "--overlaps", "both"],
+                          [image, "-o", "v.nrrd", "--overlaps", "later"], [image, "-o", "v.nrrd", "--series", "3"],
+                          [image, "-o", "v.nrrd", "--accept-gaps"],
+                          [self.write("v.nrrd", nrrd(self.labels)), "-o", "w.nrrd", "--nifti-frame", "qform"]):
             self.assertEqual(self.run_import(*arguments).returncode, USAGE, arguments)
 
     def test_labels_are_named_by_file_table_or_value(self):

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include "formats/model/errors.hpp"
 #include "tools/cli/command.hpp"
@@ -36,8 +37,8 @@ nlohmann::ordered_json describe(const LabelMap& map) {
     return result;
 }
 
-// Free text and UIDs may identify a patient: for eyes on a terminal, not for files.
-nlohmann::ordered_json describe(const std::vector<SeriesSummary>& list, bool to_file) {
+// Free text and UIDs may identify a patient: for eyes on a terminal, not for files and logs.
+nlohmann::ordered_json describe(const std::vector<SeriesSummary>& list, bool free_text) {
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
     for (const SeriesSummary& series : list) {
         nlohmann::ordered_json row = {
@@ -46,7 +47,7 @@ nlohmann::ordered_json describe(const std::vector<SeriesSummary>& list, bool to_
             {"columns", series.size[0]},         {"spacing_i_mm", series.spacing[0]},
             {"spacing_j_mm", series.spacing[1]}, {"spacing_k_mm", series.spacing[2]},
             {"localizer", series.localizer}};
-        if (!to_file) {
+        if (free_text) {
             row["description"] = series.description;
             row["uid"] = series.uid;
         }
@@ -80,7 +81,7 @@ int main(int argc, char** argv) {
                   "most a\n"
                   "fifth of its slices. A series' number is its DICOM number where all differ, else its "
                   "place in the\n"
-                  "list.\n"
+                  "list. Descriptions and UIDs, which may identify a patient, are shown on a terminal only.\n"
                   "Label names: 5=liver,4=gallbladder (other values are dropped); "
                   "totalsegmentator:VERSION/TASK, as\n"
                   "v1/total, v2/total, v2/total_mr or v2/head_glands_cavities; or a table file: Slicer "
@@ -108,8 +109,18 @@ int main(int argc, char** argv) {
     command.option("--overlaps", overlaps,
                    "where segments of a label map overlap: refuse, later (in the file) or smaller wins");
     return command.run(argc, argv, [&](cli::Session& session) -> nlohmann::ordered_json {
-        if (!labels && !label_names.empty())
-            throw UsageError({"--label-names", "given without --labels", "", "add --labels"});
+        const auto require = [](bool fits, const char* option, const char* input_kind, const char* advice) {
+            if (!fits) throw UsageError({option, std::string("is for ") + input_kind, "", advice});
+        };
+        std::error_code none;
+        const bool dicom_image = !labels && (std::filesystem::is_directory(input, none) || is_dicom(input));
+        require(labels || label_names.empty(), "--label-names", "label maps", "add --labels");
+        require(labels || !command.app().count("--overlaps"), "--overlaps", "label maps", "add --labels");
+        require(dicom_image || options.series.empty(), "--series", "DICOM images", "leave it out");
+        require(dicom_image || !options.accept_gaps, "--accept-gaps", "DICOM images", "leave it out");
+        require(options.nifti_frame.empty() || is_nifti(input), "--nifti-frame", "NIfTI files",
+                "leave it out");
+        options.show_descriptions = isatty(STDERR_FILENO) == 1;
         if (list != output.empty())
             throw UsageError({"--output", list ? "given with --list" : "not given", "", "give one of them"});
         options.overlaps = overlaps_of(overlaps);
@@ -120,8 +131,8 @@ int main(int argc, char** argv) {
             notes.emplace_back(text);
         };
         if (list) {
-            const auto json = command.app().get_option("--json")->results();
-            return describe(list_series(input, note), !json.empty() && json.front() != "-");
+            const bool as_json = !command.app().get_option("--json")->empty();
+            return describe(list_series(input, note), !as_json && isatty(STDOUT_FILENO) == 1);
         }
         auto staged = session.stage(output);
         session.progress.step("reading", 0);

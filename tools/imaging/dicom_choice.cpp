@@ -11,14 +11,14 @@
 namespace palpate {
 namespace {
 
-std::string listed(const std::vector<DicomSeries>& all) {
+std::string listed(const std::vector<DicomSeries>& all, bool descriptions) {
     std::string list;
     for (const auto& [summary, colours, slices] : all)
-        list += fmt::format("\n  {}: {} {} slices of {} x {}, {:.3g} x {:.3g} x {:.3g} mm{}{}",
-                            summary.number, summary.modality, summary.size[2], summary.size[1],
-                            summary.size[0], summary.spacing[0], summary.spacing[1], summary.spacing[2],
-                            summary.localizer ? ", localizer" : "",
-                            summary.description.empty() ? "" : fmt::format(", \"{}\"", summary.description));
+        list += fmt::format(
+            "\n  {}: {} {} slices of {} x {}, {:.3g} x {:.3g} x {:.3g} mm{}{}", summary.number,
+            summary.modality, summary.size[2], summary.size[1], summary.size[0], summary.spacing[0],
+            summary.spacing[1], summary.spacing[2], summary.localizer ? ", localizer" : "",
+            !descriptions || summary.description.empty() ? "" : fmt::format(", \"{}\"", summary.description));
     return list;
 }
 
@@ -40,12 +40,14 @@ void number_series(std::vector<DicomSeries>& all) {
         all[i].summary.number = std::to_string(keep ? number(all[i]) : static_cast<int>(i + 1));
 }
 
-const DicomSeries& choose_series(const std::vector<DicomSeries>& all, const std::string& wanted,
+const DicomSeries& choose_series(const std::vector<DicomSeries>& all, const ReadOptions& options,
                                  const std::filesystem::path& path, const NoteSink& note) {
+    const std::string& wanted = options.series;
     const auto refuse = [&](const std::string& found) {
         return InvalidInput(
-            {path.string(), found + listed(all), "",
-             "\nchoose one by number, UID or description: '--series " + all.front().summary.number + "'"});
+            {path.string(), found + listed(all, options.show_descriptions), "",
+             "\nchoose one by number, UID or description: with 'palpate import ... --series " +
+                 all.front().summary.number + "'"});
     };
     if (!wanted.empty()) {
         std::vector<const DicomSeries*> found;

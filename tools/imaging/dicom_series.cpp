@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gdcmAttribute.h>
@@ -13,6 +14,7 @@
 #include <sstream>
 
 #include "formats/model/errors.hpp"
+#include "tools/imaging/dicom_codes.hpp"
 #include "tools/imaging/read_image.hpp"
 
 namespace palpate {
@@ -32,16 +34,7 @@ std::string text(const DataSet& data, const Tag& tag) {
     return value;
 }
 
-// A code string (PS3.5, VR CS); empty if it is none, so that no free text passes for one.
-std::string code_text(const DataSet& data, const Tag& tag) {
-    const std::string code = text(data, tag);
-    const bool good = code.size() <= 16 && std::ranges::all_of(code, [](char c) {
-                          return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == ' ';
-                      });
-    return good ? code : "";
-}
-
-// Exactly `count` numbers separated by backslashes.
+// Exactly `count` finite numbers separated by backslashes.
 std::optional<std::vector<double>> numbers(const DataSet& data, const Tag& tag, std::size_t count) {
     std::vector<double> values;
     std::istringstream parts(text(data, tag));
@@ -49,7 +42,8 @@ std::optional<std::vector<double>> numbers(const DataSet& data, const Tag& tag, 
         std::erase_if(part, [](char c) { return c == ' ' || c == '+'; });
         double value = 0;
         const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
-        if (error != std::errc{} || end != part.data() + part.size()) return std::nullopt;
+        if (error != std::errc{} || end != part.data() + part.size() || !std::isfinite(value))
+            return std::nullopt;
         values.push_back(value);
     }
     if (values.size() != count) return std::nullopt;
@@ -95,6 +89,17 @@ DataSet item(const DataSet& data, const Tag& tag, std::size_t position = 0) {
     return sequence->GetItem(position + 1).GetNestedDataSet();
 }
 
+// A number that may be missing, but not damaged.
+double number_or(double otherwise, const DataSet& data, const Tag& tag, const std::string& file) {
+    if (text(data, tag).empty()) return otherwise;
+    const auto value = numbers(data, tag, 1);
+    if (!value)
+        throw InvalidInput(
+            {file, fmt::format("element ({:04x},{:04x}) is no number", tag.GetGroup(), tag.GetElement()),
+             "a finite number", "copy or export the file again"});
+    return (*value)[0];
+}
+
 // What one set says of the slice: the file's own attributes, or those in its functional groups.
 void take_geometry(DicomSlice& slice, const DataSet& position, const DataSet& orientation,
                    const DataSet& measures, const DataSet& rescale) {
@@ -102,9 +107,9 @@ void take_geometry(DicomSlice& slice, const DataSet& position, const DataSet& or
     if (const auto o = numbers(orientation, Tag(0x0020, 0x0037), 6))
         slice.directions = Eigen::Map<const Eigen::Matrix<double, 3, 2>>(o->data());
     if (const auto s = numbers(measures, Tag(0x0028, 0x0030), 2)) slice.spacing = {(*s)[1], (*s)[0]};
-    if (const auto intercept = numbers(rescale, Tag(0x0028, 0x1052), 1)) slice.intercept = (*intercept)[0];
-    if (const auto slope = numbers(rescale, Tag(0x0028, 0x1053), 1); slope && (*slope)[0] != 0)
-        slice.slope = (*slope)[0];
+    slice.intercept = number_or(slice.intercept, rescale, Tag(0x0028, 0x1052), slice.file);
+    if (const double slope = number_or(slice.slope, rescale, Tag(0x0028, 0x1053), slice.file); slope != 0)
+        slice.slope = slope;
 }
 
 void take_functional_groups(DicomSlice& slice, const DataSet& groups) {
@@ -149,11 +154,15 @@ std::string series_key(const DataSet& data, const std::string& uid, bool localiz
 }
 
 std::vector<std::filesystem::path> files_below(const std::filesystem::path& path) {
-    if (!std::filesystem::is_directory(path)) return {path};
+    std::error_code error;  // as of links that lead nowhere or to themselves
+    if (!std::filesystem::is_directory(path, error)) return {path};
     std::vector<std::filesystem::path> files;
     const auto options = std::filesystem::directory_options::skip_permission_denied;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(path, options))
-        if (entry.is_regular_file()) files.push_back(entry.path());
+    for (std::filesystem::recursive_directory_iterator entry(path, options, error), end;
+         !error && entry != end; entry.increment(error))
+        if (std::error_code none; entry->is_regular_file(none)) files.push_back(entry->path());
+    if (error)
+        throw InvalidInput({path.string(), "cannot be listed: " + error.message(), "", "check the folder"});
     std::ranges::sort(files);
     return files;
 }
@@ -207,14 +216,14 @@ std::vector<DicomSeries> scan_dicom(const std::filesystem::path& path, const Not
         DicomSeries& series = by_key[series_key(data, uid, localizer)];
         if (series.slices.empty()) {
             series.summary.number = text(data, Tag(0x0020, 0x0011));
-            series.summary.modality = code_text(data, Tag(0x0008, 0x0060));
+            series.summary.modality = modality_code(text(data, Tag(0x0008, 0x0060)));
             series.summary.description = as_utf8(text(data, Tag(0x0008, 0x103e)));
             series.summary.uid = as_utf8(uid);
             series.summary.localizer = localizer;
         }
         if (const std::string colours = text(data, Tag(0x0028, 0x0004));
             !colours.empty() && !colours.starts_with("MONOCHROME"))
-            series.colours = as_utf8(colours);
+            series.colours = photometric_code(colours);
         series.slices.insert(series.slices.end(), slices.begin(), slices.end());
     }
     for (const auto& [kind, count] : skipped)

@@ -35,9 +35,9 @@ std::vector<DicomSeries> scan_dicom(const std::filesystem::path& path, const Not
 /// Sorts series and numbers them: by DICOM number if all have one of their own, else by place.
 void number_series(std::vector<DicomSeries>& all);
 
-/// The series that `wanted` names, or the one that is meant where none is named, as read_volume() says;
+/// The series that `options` names, or the one that is meant where none is named, as read_volume() says;
 /// throws InvalidInput with the list.
-const DicomSeries& choose_series(const std::vector<DicomSeries>& all, const std::string& wanted,
+const DicomSeries& choose_series(const std::vector<DicomSeries>& all, const ReadOptions& options,
                                  const std::filesystem::path& path, const NoteSink& note);
 
 }  // namespace palpate

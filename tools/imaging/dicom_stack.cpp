@@ -76,9 +76,38 @@ std::vector<ShiftedSlice> distinct_slices(const Volume& volume, std::span<const 
     return slices;
 }
 
+// Slices that each lie well beside their neighbour may yet leave the even grid together.
+void find_drift(StackFault& fault, std::span<const SlicePlace> places, const Eigen::Vector3d& normal,
+                double pixel) {
+    for (std::size_t k = 1; k < places.size(); ++k) {
+        const Eigen::Vector3d path = places[k].origin - places[0].origin;
+        const double along = normal.dot(path), off = along - static_cast<double>(k) * fault.mean_gap,
+                     sideways = (path - along * normal).norm();
+        if (sideways > 0.5 * pixel) {
+            fault.found = fmt::format(
+                "slices are shifted sideways by {:.3f} mm in all (gantry tilt of {:.1f} degrees) between {} "
+                "and {}",
+                sideways, std::atan2(sideways, along) * 180 / std::numbers::pi, places[0].name,
+                places[k].name);
+            fault.expected = "slices stacked along their normal";
+            fault.next_step = "resample the series";
+        } else if (std::abs(off) > 0.5 * fault.mean_gap) {
+            fault.found = fmt::format(
+                "{} lies {:.3f} mm off its place in an even stack, at {:.2f} mm along "
+                "the normal: the spacing changes",
+                places[k].name, std::abs(off), normal.dot(places[k].origin));
+            fault.expected = fmt::format("{:.3f} mm between all slices", fault.mean_gap);
+            fault.next_step = "choose a series of even spacing";
+        } else {
+            continue;
+        }
+        return;
+    }
+}
+
 }  // namespace
 
-StackFault find_stack_fault(std::span<const SlicePlace> places, const Eigen::Vector3d& normal) {
+StackFault find_stack_fault(std::span<const SlicePlace> places, const Eigen::Vector3d& normal, double pixel) {
     const std::vector<double> positions = positions_of(places, normal);
     const double usual = usual_gap(positions);
     StackFault fault;
@@ -105,6 +134,7 @@ StackFault find_stack_fault(std::span<const SlicePlace> places, const Eigen::Vec
             fault.next_step = "resample the series";
         }
     }
+    if (fault.found.empty()) find_drift(fault, places, normal, pixel);
     return fault;
 }
 

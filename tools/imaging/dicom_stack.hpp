@@ -22,8 +22,10 @@ struct StackFault {
 };
 
 /// Looks for doubled, missing, unevenly spaced or sheared slices among `places`, which ascend along the unit
-/// `normal`. Distances may differ by 2 % or 0.011 mm, which positions rounded to 0.01 mm reach.
-StackFault find_stack_fault(std::span<const SlicePlace> places, const Eigen::Vector3d& normal);
+/// `normal`. Distances may differ by 2 % or 0.011 mm, which positions rounded to 0.01 mm reach; over the
+/// whole stack slices may leave the even grid by half a `pixel` (mm) sideways and half a step along the
+/// normal.
+StackFault find_stack_fault(std::span<const SlicePlace> places, const Eigen::Vector3d& normal, double pixel);
 
 /// Interpolates the slices of `volume`, which lie at `places` (ascending along the third direction), linearly
 /// onto an even, untilted grid from the first to the last one, wide enough for all; outside the slices it

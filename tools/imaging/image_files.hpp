@@ -22,9 +22,16 @@ enum class Overlaps {
     smaller_wins  ///< the segment of fewer voxels, the later one of two equals
 };
 
+/// Tells whether a file is DICOM by its preamble.
+bool is_dicom(const std::filesystem::path& path);
+
+/// Tells whether a file is NIfTI by its ending.
+bool is_nifti(const std::filesystem::path& path);
+
 /// What a caller decides where a file leaves it open.
 struct ReadOptions {
     std::string series;                    ///< DICOM: number, UID or description as list_series() gives them
+    bool show_descriptions = false;        ///< DICOM: in a refusal's list; they may identify a patient
     bool accept_gaps = false;              ///< DICOM: resample missing, uneven, doubled or tilted slices
     std::string nifti_frame;               ///< NIfTI: "qform" or "sform" where both are set and disagree
     Overlaps overlaps = Overlaps::refuse;  ///< label maps with segments in several layers

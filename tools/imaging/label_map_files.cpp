@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <sstream>
+#include <unordered_map>
 
 #include "formats/model/errors.hpp"
 #include "tools/imaging/label_names.hpp"
@@ -44,7 +45,9 @@ std::vector<Segment> segments_of(const StoredImage& image, const std::filesystem
         if (!(layer >> segment.layer) || segment.layer >= image.layers)
             throw InvalidInput({path.string(), prefix + "Layer is '" + layer.str() + "'",
                                 fmt::format("one of its {} layers", image.layers), "correct the header"});
-        segment.label.name = *name;
+        segment.label.name = as_utf8(*name);
+        if (segment.label.name.find_first_not_of(' ') == std::string::npos)
+            segment.label.name = fmt::format("label_{}", segment.label.value);
         segment.label.colour = default_label_colour(segment.label.value);
         std::istringstream colour(field(image.header, prefix + "Color").value_or(""));
         if (std::array<float, 3> rgb{}; colour >> rgb[0] >> rgb[1] >> rgb[2]) segment.label.colour = rgb;
@@ -95,8 +98,8 @@ LabelMap several_layers(const StoredImage& image, std::span<const std::uint16_t>
     // Segments of different layers may share a value; then they are numbered in the order of the file.
     std::set<std::int32_t> values;
     for (const Segment& segment : segments) values.insert(segment.label.value);
-    constexpr std::size_t none = static_cast<std::size_t>(-1), value_count = 65536;
-    std::vector<std::size_t> index(image.layers * value_count, none);
+    constexpr std::size_t value_count = 65536;
+    std::unordered_map<std::size_t, std::size_t> index;  // segment by layer and value
     std::vector<Label> names;
     for (std::size_t i = 0; i < segments.size(); ++i) {
         index[segments[i].layer * value_count + static_cast<std::size_t>(segments[i].label.value)] = i;
@@ -105,13 +108,13 @@ LabelMap several_layers(const StoredImage& image, std::span<const std::uint16_t>
     }
     std::vector<std::size_t> voxels(segments.size(), 0);
     const auto segment_at = [&](std::size_t n) {
-        const std::size_t segment = index[n % image.layers * value_count + labels[n]];
-        if (segment == none)
+        const auto segment = index.find(n % image.layers * value_count + labels[n]);
+        if (segment == index.end())
             throw InvalidInput(
                 {path.string(),
                  fmt::format("holds the value {} in layer {}, of no segment", labels[n], n % image.layers),
                  "a segment in the header for each value", "export the segmentation again"});
-        return segment;
+        return segment->second;
     };
     for (std::size_t n = 0; n < labels.size(); ++n)
         if (labels[n] != 0) ++voxels[segment_at(n)];
@@ -135,17 +138,21 @@ LabelMap label_map_of(StoredImage image, const std::filesystem::path& path, cons
 
 LabelMap read_label_map(const std::filesystem::path& path, const NoteSink& note, const ReadOptions& options) {
     itk::Object::GlobalWarningDisplayOff();
-    if (!std::filesystem::is_regular_file(path))
+    if (std::error_code none; !std::filesystem::is_regular_file(path, none))
         throw InvalidInput({path.string(),
-                            std::filesystem::is_directory(path) ? "is a folder" : "no such file",
+                            std::filesystem::is_directory(path, none) ? "is a folder" : "no such file",
                             "a file with a label map, as .seg.nrrd, .nii.gz or DICOM SEG", "check the path"});
-    LabelMap map = is_dicom(path)
-                       ? read_dicom_segmentation(path, note, options.overlaps)
-                       : label_map_of(read_image_file(path, note, options), path, note, options.overlaps);
+    LabelMap map;
+    try {
+        map = is_dicom(path)
+                  ? read_dicom_segmentation(path, note, options.overlaps)
+                  : label_map_of(read_image_file(path, note, options), path, note, options.overlaps);
+    } catch (const std::bad_alloc&) {
+        throw beyond_memory(path);
+    }
     if (map.names.empty())
         throw InvalidInput({path.string(), "is empty: every voxel is background", "",
                             "choose another file or segment again"});
-    for (Label& label : map.names) label.name = as_utf8(label.name);
     make_names_unique(map, note);
     return map;
 }

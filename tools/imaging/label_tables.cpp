@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <charconv>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -71,7 +72,8 @@ bool add(LabelTable& table, std::optional<std::int32_t> value, const std::string
     return true;
 }
 
-// One line of any of the tables in words: value name [R G B ...], or value R G B A visible mesh "name".
+// One line of any of the tables in words: value name [R G B [A]], value name code, or value R G B A visible
+// mesh "name". A name may have blanks.
 bool add_line(LabelTable& table, const std::string& line) {
     std::vector<std::string> words;
     const auto quote = line.find('"');
@@ -85,7 +87,17 @@ bool add_line(LabelTable& table, const std::string& line) {
         return add(table, value, trimmed(line.substr(quote + 1, end - quote - 1)),
                    byte_colour(std::span(words).subspan(1)));
     }
-    return words.size() >= 2 && add(table, value, words[1], byte_colour(std::span(words).subspan(2)));
+    auto first = words.end();  // of the numbers behind the name
+    while (first - words.begin() > 1 && number_of<double>(*(first - 1))) --first;
+    if (words.end() - first > 4) first = words.end() - 4;  // a name that ends with a number, R G B A
+    const std::span<const std::string> numbers(first, words.end());
+    if (first - words.begin() < 2 || number_of<double>(words[1]) || numbers.size() == 2) return false;
+    // A single number is a column of codes, or the end of a name: "vertebra 5".
+    if (const auto code = numbers.size() == 1 ? number_of<std::int32_t>(numbers[0]) : value;
+        code != value && (!code || *code < 1000))
+        return false;
+    return add(table, value, fmt::format("{}", fmt::join(words.begin() + 1, first, " ")),
+               byte_colour(numbers));
 }
 
 // Where BIDS puts what; nothing if the line is no header of such a table.
@@ -124,7 +136,7 @@ LabelTable json_table(const std::string& text, const std::filesystem::path& path
     for (const auto& [key, item] : document.items()) {
         const bool good =
             item.is_number_integer()
-                ? add(table, item.get<std::int32_t>(), key, {})
+                ? add(table, number_of<std::int32_t>(item.dump()), key, {})
                 : item.is_string() && add(table, number_of<std::int32_t>(key), item.get<std::string>(), {});
         if (!good) throw malformed;
     }
@@ -142,9 +154,13 @@ std::string attribute(std::string_view tag, std::string_view name) {
 
 LabelTable parse_xml_label_table(std::string_view xml) {
     LabelTable table;
-    for (auto at = xml.find("<Label "); at != std::string_view::npos; at = xml.find("<Label ", at + 1)) {
-        const auto close = xml.find('>', at), end = xml.find("</Label>", at);
+    constexpr std::size_t longest = 4096;  // of a label with its attributes
+    for (std::size_t at = xml.find("<Label "), end = 0; at != std::string_view::npos;
+         at = xml.find("<Label ", end)) {
+        const auto close = xml.find('>', at);
+        end = xml.find("</Label>", at);
         if (close == std::string_view::npos || end == std::string_view::npos || close > end) break;
+        if (end - at > longest) continue;
         const std::string_view tag = xml.substr(at, close - at);
         std::string name(xml.substr(close + 1, end - close - 1));
         if (const auto data = name.find("<![CDATA["), stop = name.find("]]>");
@@ -166,6 +182,9 @@ LabelTable parse_xml_label_table(std::string_view xml) {
 LabelTable read_label_table(const std::filesystem::path& path) {
     std::ifstream stream(path);
     if (!stream) throw InvalidInput({path.string(), "cannot be read", "", "check the path"});
+    const std::string mark = "\xEF\xBB\xBF";  // of UTF-8
+    for (std::size_t i = 0; i < mark.size() && stream.peek() == static_cast<unsigned char>(mark[i]); ++i)
+        stream.get();
     if (const char first = static_cast<char>((stream >> std::ws).peek()); first == '{' || first == '[')
         return json_table({std::istreambuf_iterator<char>(stream), {}}, path);
     LabelTable table;

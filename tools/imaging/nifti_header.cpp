@@ -165,7 +165,7 @@ Affine nifti_affine(const NiftiHeader& header, const std::filesystem::path& path
                  fmt::format("qform {} and sform {} (RAS mm) are both set and disagree by {:.3g} voxels",
                              rows_of(qform), rows_of(header.sform), voxels),
                  fmt::format("{} at most", agreement_voxels),
-                 "choose with '--nifti-frame qform' or '--nifti-frame sform'"});
+                 "choose with 'palpate import ... --nifti-frame qform' or '... --nifti-frame sform'"});
     }
     if (header.sform_code > 0) return header.sform;
     if (header.qform_code > 0) return qform;

@@ -23,6 +23,8 @@ class NiftiStream {
     /// Reads to the end, which makes zlib check the sum of the contents; throws InvalidInput if it is wrong.
     void read_rest();
 
+    bool packed() { return gzdirect(file_.get()) == 0; }
+
   private:
     std::filesystem::path path_;
     std::unique_ptr<gzFile_s, int (*)(gzFile)> file_;

@@ -116,7 +116,7 @@ void require_one_plane(const DicomSeries& series, const std::filesystem::path& p
 
 Volume read_dicom(const std::filesystem::path& path, const NoteSink& note, const ReadOptions& options) {
     const std::vector<DicomSeries> all = scan_dicom(path, note);
-    DicomSeries series = choose_series(all, options.series, path, note);
+    DicomSeries series = choose_series(all, options, path, note);
     if (series.slices.size() < 2)
         throw InvalidInput({path.string(), "holds a single DICOM slice", "a series of 2 slices or more",
                             "name the folder that holds the whole series"});
@@ -139,17 +139,17 @@ Volume read_dicom(const std::filesystem::path& path, const NoteSink& note, const
     std::vector<SlicePlace> places;
     for (const DicomSlice& slice : series.slices) places.push_back({*slice.origin, name_of(slice)});
     grid.origin = places.front().origin;
-    const StackFault fault = find_stack_fault(places, normal);
+    const StackFault fault = find_stack_fault(places, normal, grid.spacing.head<2>().minCoeff());
     if (!fault.found.empty() && !options.accept_gaps)
         throw InvalidInput({path.string(), fault.found, fault.expected,
-                            fault.next_step + ", or interpolate with --accept-gaps"});
+                            fault.next_step + ", or interpolate with 'palpate import ... --accept-gaps'"});
     grid.spacing[2] = fault.mean_gap > 0 ? fault.mean_gap : 1;
 
     std::set<std::string> files;
     for (const DicomSlice& slice : series.slices) files.insert(slice.file);
     std::uintmax_t bytes = 0;
     for (const std::string& file : files) bytes += std::filesystem::file_size(file);
-    check_claim(grid, bytes, path);
+    check_claim(grid.voxel_count(), bytes, Packing::deflated, path);
     volume.values.resize(grid.voxel_count());
     for (const std::string& file : files) read_pixels(file, series.slices, grid, volume.values);
     return fault.found.empty() ? volume : resample_stack(volume, places, path, note);

@@ -16,6 +16,7 @@
 #include <memory>
 
 #include "formats/model/errors.hpp"
+#include "tools/imaging/dicom_codes.hpp"
 #include "tools/imaging/read_image.hpp"
 #include "tools/imaging/segment_painter.hpp"
 
@@ -37,9 +38,9 @@ class Source {
         OFString modality;
         file_.getDataset()->findAndGetOFString(DCM_Modality, modality);
         if (modality != "SEG")
-            throw InvalidInput({path.string(), "is DICOM of modality '" + std::string(modality.c_str()) + "'",
-                                "a segmentation object (SEG) as a label map",
-                                "leave --labels out to read an image"});
+            throw InvalidInput(
+                {path.string(), "is DICOM of modality '" + modality_code(modality.c_str()) + "'",
+                 "a segmentation object (SEG) as a label map", "leave --labels out to read an image"});
         if (file_.getDataset()->convertToUTF8().bad()) {
             // Names stay in the character set of the file.
         }
@@ -108,7 +109,7 @@ void Source::read_segments() {
         label.value = static_cast<std::int32_t>(number);
         OFString name;
         segment->getSegmentLabel(name);
-        label.name = name.empty() ? fmt::format("label_{}", number) : std::string(name.c_str());
+        label.name = name.empty() ? fmt::format("label_{}", number) : as_utf8(name.c_str());
         label.colour = default_label_colour(label.value);
         Uint16 l = 0, a = 0, b = 0;
         if (segment->getRecommendedDisplayCIELabValue(l, a, b).good() && (l || a || b)) {
@@ -183,7 +184,7 @@ ImageGrid Source::grid(const NoteSink& note) const {
     grid.size = {columns_, rows_, static_cast<std::int32_t>(std::clamp(steps, 1.0, 65535.0)) + 1};
     grid.origin = std::ranges::min_element(frames_, {}, along)->origin;
     check_geometry(grid, path_, note);
-    check_claim(grid, 8 * std::filesystem::file_size(path_), path_);  // a bit per voxel
+    check_claim(grid.voxel_count(), 8 * std::filesystem::file_size(path_), Packing::deflated, path_);  // bits
     return grid;
 }
 

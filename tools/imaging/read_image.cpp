@@ -49,24 +49,35 @@ Volume volume_of(StoredImage image, const std::filesystem::path& path) {
     return {image.grid, float_values(image)};
 }
 
-// Whether every byte above 127 is part of a UTF-8 sequence (its lead and continuation bits, not its range).
+// Well-formed UTF-8 (Unicode 15, table 3-7): no overlong forms, no surrogates, U+10FFFF at most.
 bool is_utf8(std::string_view text) {
     int expected = 0;
+    unsigned lowest = 0x80, highest = 0xBF;  // of the next continuation
     for (const char c : text) {
         const auto byte = static_cast<unsigned char>(c);
-        const bool continues = (byte & 0xC0U) == 0x80;
-        if (continues != (expected > 0)) return false;
-        if (continues)
+        if (expected > 0) {
+            if (byte < lowest || byte > highest) return false;
             --expected;
-        else if (byte >= 0xC2 && byte <= 0xF4)
+            lowest = 0x80;
+            highest = 0xBF;
+        } else if (byte >= 0xC2 && byte <= 0xF4) {
             expected = byte >= 0xF0 ? 3 : byte >= 0xE0 ? 2 : 1;
-        else if (byte >= 0x80)
+            lowest = byte == 0xE0 ? 0xA0 : byte == 0xF0 ? 0x90 : 0x80;
+            highest = byte == 0xED ? 0x9F : byte == 0xF4 ? 0x8F : 0xBF;
+        } else if (byte >= 0x80) {
             return false;
+        }
     }
     return expected == 0;
 }
 
 }  // namespace
+
+std::string in_lower_case(std::string text) {
+    for (char& c : text)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return text;
+}
 
 std::string as_utf8(std::string_view text) {
     const bool good = is_utf8(text);
@@ -87,6 +98,11 @@ bool is_dicom(const std::filesystem::path& path) {
     return first_bytes(path, 132).ends_with("DICM");
 }
 
+bool is_nifti(const std::filesystem::path& path) {
+    const std::string name = in_lower_case(path.filename().string());
+    return name.ends_with(".nii") || name.ends_with(".nii.gz");
+}
+
 void check_size(const std::array<std::int64_t, 3>& size, const std::filesystem::path& path) {
     for (const std::int64_t count : size) {
         if (count > 65535)
@@ -99,10 +115,16 @@ void check_size(const std::array<std::int64_t, 3>& size, const std::filesystem::
     }
 }
 
-void check_claim(const ImageGrid& grid, std::uintmax_t bytes, const std::filesystem::path& path) {
-    if (grid.voxel_count() / 1100 > bytes)
+void check_claim(std::uintmax_t claimed, std::uintmax_t held, Packing packing,
+                 const std::filesystem::path& path) {
+    if (claimed / static_cast<std::uintmax_t>(packing) > held)
         throw InvalidInput(
             {path.string(), "holds fewer voxels than its header claims", "", "check that the file is whole"});
+}
+
+InvalidInput beyond_memory(const std::filesystem::path& path) {
+    return InvalidInput({path.string(), "needs more memory than there is", "",
+                         "crop the volume, or read it on a machine with more memory"});
 }
 
 void set_axes(ImageGrid& grid, const Eigen::Matrix3d& axes) {
@@ -144,8 +166,8 @@ void check_finite(const Volume& volume, const std::filesystem::path& path) {
 
 StoredImage read_image_file(const std::filesystem::path& path, const NoteSink& note,
                             const ReadOptions& options) {
-    const std::string name = path.filename().string();
-    if (name.ends_with(".nii") || name.ends_with(".nii.gz")) return read_nifti(path, note, options);
+    const std::string name = in_lower_case(path.filename().string());
+    if (is_nifti(path)) return read_nifti(path, note, options);
     if (const std::string head = first_bytes(path, 16);
         name.ends_with(".vti") || (name.ends_with(".vtk") && head.starts_with("# vtk")))
         return read_vtk_image(path, note);
@@ -154,11 +176,17 @@ StoredImage read_image_file(const std::filesystem::path& path, const NoteSink& n
 
 Volume read_volume(const std::filesystem::path& path, const NoteSink& note, const ReadOptions& options) {
     itk::Object::GlobalWarningDisplayOff();
-    if (!std::filesystem::exists(path))
+    std::error_code none;
+    if (!std::filesystem::exists(path, none))
         throw InvalidInput({path.string(), "no such file or folder", "", "check the path"});
-    Volume volume = std::filesystem::is_directory(path) || is_dicom(path)
-                        ? read_dicom(path, note, options)
-                        : volume_of(read_image_file(path, note, options), path);
+    Volume volume;
+    try {
+        volume = std::filesystem::is_directory(path, none) || is_dicom(path)
+                     ? read_dicom(path, note, options)
+                     : volume_of(read_image_file(path, note, options), path);
+    } catch (const std::bad_alloc&) {
+        throw beyond_memory(path);
+    }
     check_finite(volume, path);
     const auto [low, high] = std::ranges::minmax(volume.values);
     if (low == high)

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "formats/model/errors.hpp"
 #include "tools/imaging/image_files.hpp"
 
 namespace palpate {
@@ -45,11 +46,11 @@ Volume read_dicom(const std::filesystem::path& path, const NoteSink& note, const
 /// Reads a DICOM segmentation object; throws as read_label_map() does.
 LabelMap read_dicom_segmentation(const std::filesystem::path& path, const NoteSink& note, Overlaps overlaps);
 
+/// ASCII letters in lower case; header fields and file endings are compared so.
+std::string in_lower_case(std::string text);
+
 /// Text of a header as UTF-8: what is none is taken as Latin-1, and control characters become spaces.
 std::string as_utf8(std::string_view text);
-
-/// Tells whether a file is DICOM by its preamble.
-bool is_dicom(const std::filesystem::path& path);
 
 /// Tells whether DCMTK can parse a file as DICOM to its end; GDCM pads pixels that are cut off, and aborts on
 /// some damaged headers.
@@ -61,9 +62,16 @@ void check_geometry(ImageGrid& grid, const std::filesystem::path& path, const No
 /// Throws InvalidInput unless 2 ... 65535 voxels lie along each axis.
 void check_size(const std::array<std::int64_t, 3>& size, const std::filesystem::path& path);
 
-/// Throws InvalidInput if a header claims more voxels than `bytes` of file could hold: zlib shrinks by 1032
-/// at most, so none can make us allocate without end.
-void check_claim(const ImageGrid& grid, std::uintmax_t bytes, const std::filesystem::path& path);
+/// By how much a file may be smaller than its voxels: zlib shrinks by 1032 at most, and "0 " may be a double.
+enum class Packing : std::uintmax_t { none = 1, text = 4, deflated = 1100 };
+
+/// Throws InvalidInput if a header claims more bytes than a file of `held` bytes could hold, so that none can
+/// make us allocate without end.
+void check_claim(std::uintmax_t claimed, std::uintmax_t held, Packing packing,
+                 const std::filesystem::path& path);
+
+/// What to throw where memory does not suffice for a file.
+InvalidInput beyond_memory(const std::filesystem::path& path);
 
 /// A grid's spacing and direction from its voxel axes: columns are the steps of i, j, k in P, mm.
 void set_axes(ImageGrid& grid, const Eigen::Matrix3d& axes);

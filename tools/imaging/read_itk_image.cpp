@@ -2,8 +2,11 @@
 // NRRD and MetaImage, through ITK.
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cmath>
 #include <fmt/format.h>
 #include <fstream>
+#include <iomanip>
 #include <itkMetaDataObject.h>
 #include <itkMetaImageIO.h>
 #include <itkNrrdImageIO.h>
@@ -24,7 +27,12 @@ itk::ImageIOBase::Pointer image_io_of(const std::filesystem::path& path) {
                                                               itk::MetaImageIO::New().GetPointer()};
     for (const auto& io : candidates)
         if (io->CanReadFile(path.c_str())) return io;
-    if (path.extension() == ".hdr" || path.extension() == ".img")
+    const std::string ending = in_lower_case(path.extension().string());
+    if (ending != path.extension()) {  // ITK knows endings in lower case only
+        if (ending == ".nrrd" || ending == ".nhdr") return candidates[0];
+        if (ending == ".mha" || ending == ".mhd") return candidates[1];
+    }
+    if (ending == ".hdr" || ending == ".img")
         throw InvalidInput({path.string(), "is one half of an Analyze or NIfTI pair",
                             "one file that says which way the patient lies", "convert it to .nii.gz"});
     throw InvalidInput({path.string(), "is not a volume",
@@ -53,14 +61,20 @@ ImageGrid grid_of(const itk::ImageIOBase& io, const std::filesystem::path& path)
     return grid;
 }
 
-// The fields "name: value" of an NRRD header, as written.
+std::string trimmed(std::string_view text) {
+    const auto first = text.find_first_not_of(" \t\r");
+    if (first == std::string_view::npos) return {};
+    return std::string(text.substr(first, text.find_last_not_of(" \t\r") + 1 - first));
+}
+
+// The fields "name: value" of an NRRD header; names do not depend on case.
 std::map<std::string, std::string> nrrd_fields(const std::filesystem::path& path) {
     std::ifstream stream(path, std::ios::binary);
     std::map<std::string, std::string> fields;
     for (std::string line; std::getline(stream, line) && !line.empty() && line != "\r";) {
         if (line.ends_with('\r')) line.pop_back();
         if (const auto colon = line.find(": "); colon != std::string::npos && !line.starts_with('#'))
-            fields[line.substr(0, colon)] = line.substr(colon + 2);
+            fields[in_lower_case(line.substr(0, colon))] = trimmed(line.substr(colon + 2));
     }
     return fields;
 }
@@ -76,22 +90,56 @@ Eigen::Matrix3d vectors_of(std::string text) {
     return vectors;
 }
 
+// Units in quotes, one for each axis of space.
+void require_millimetres(const std::string& units, const std::filesystem::path& path) {
+    std::istringstream stream(units);
+    for (std::string unit; stream >> std::quoted(unit);)
+        if (!unit.empty() && unit != "mm" && unit != "millimeter" && unit != "millimeters")
+            throw InvalidInput({path.string(), "has space units " + as_utf8(units).substr(0, 60), "\"mm\"",
+                                "convert it to millimetres"});
+}
+
+// Whether an NRRD header claims more than its files hold, which ITK would first allocate.
+void check_nrrd_claim(std::uintmax_t claimed, const std::filesystem::path& path) {
+    const auto fields = nrrd_fields(path);
+    std::uintmax_t held = std::filesystem::file_size(path);
+    for (const char* key : {"data file", "datafile"}) {
+        if (!fields.contains(key)) continue;
+        std::error_code none;
+        if (const auto file = path.parent_path() / fields.at(key);
+            std::filesystem::is_regular_file(file, none))
+            held += std::filesystem::file_size(file);
+        else  // a list or a pattern of files
+            for (const auto& entry :
+                 std::filesystem::directory_iterator(std::filesystem::absolute(path).parent_path()))
+                if (entry.is_regular_file(none)) held += entry.file_size();
+    }
+    const std::string encoding = fields.contains("encoding") ? in_lower_case(fields.at("encoding")) : "";
+    const bool text = encoding == "text" || encoding == "txt" || encoding == "ascii";
+    check_claim(claimed, held,
+                encoding == "raw" ? Packing::none
+                : text            ? Packing::text
+                                  : Packing::deflated,
+                path);
+}
+
 // ITK before its pull request 5224 (2025) mirrors left-anterior-superior along the wrong axis, and takes
 // spaces that name no patient as LPS.
 void correct_frame(ImageGrid& grid, const std::filesystem::path& path, const NoteSink& note) {
     const auto fields = nrrd_fields(path);
-    const std::string space = fields.contains("space") ? fields.at("space") : "";
+    const std::string space = fields.contains("space") ? in_lower_case(fields.at("space")) : "";
     const auto is = [&](const char* words, const char* letters) {
         return space == words || space == letters;
     };
-    if (is("left-anterior-superior", "LAS") && fields.contains("space directions")) {
+    if (fields.contains("space units")) require_millimetres(fields.at("space units"), path);
+    if (is("left-anterior-superior", "las") && fields.contains("space directions")) {
         Eigen::Matrix3d axes = vectors_of(fields.at("space directions"));
         axes.row(1) *= -1;
         set_axes(grid, axes);
         grid.origin = fields.contains("space origin") ? vectors_of(fields.at("space origin")).col(0).eval()
                                                       : Eigen::Vector3d::Zero();
         grid.origin[1] *= -1;
-    } else if (note && !is("left-posterior-superior", "LPS") && !is("right-anterior-superior", "RAS")) {
+    } else if (note && !is("left-posterior-superior", "lps") && !is("right-anterior-superior", "ras")) {
         note("the header names no patient space; taken as LPS");
     }
 }
@@ -109,25 +157,60 @@ struct MetaData {
     std::size_t offset = 0;
     bool compressed = false;
     bool big_endian = false;
+    bool text = false;
+    bool several_files = false;
+    double slope = 1, intercept = 0;
 };
+
+double number_of(const std::string& key, const std::string& value, const std::filesystem::path& path) {
+    double number = 0;
+    const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
+    if (error != std::errc{} || end != value.data() + value.size() || !(std::abs(number) < 1e12))
+        throw InvalidInput({path.string(), "has " + key + " '" + as_utf8(value).substr(0, 40) + "'",
+                            "a number", "correct the header"});
+    return number;
+}
+
+// Nothing if there is no file of voxels.
 std::optional<MetaData> meta_data_of(const std::filesystem::path& path) {
     std::ifstream stream(path, std::ios::binary);
     MetaData data;
+    double header = 0;  // bytes to skip; -1 lets MetaIO count from the end of the file
     for (std::string line; std::getline(stream, line);) {
-        std::istringstream words(line);
-        std::string key, equals, value;
-        words >> key >> equals >> value;
-        const bool yes = value.starts_with('T') || value.starts_with('t');
+        const auto equals = line.find('=');
+        if (equals == std::string::npos) continue;
+        const std::string key = trimmed(line.substr(0, equals)), value = trimmed(line.substr(equals + 1));
+        const bool yes = value.starts_with('T') || value.starts_with('t') || value == "1";
+        if (key == "BinaryData") data.text = !yes;
+        if (key == "HeaderSize") header = number_of(key, value, path);
+        if (key == "ElementToIntensityFunctionSlope") data.slope = number_of(key, value, path);
+        if (key == "ElementToIntensityFunctionOffset") data.intercept = number_of(key, value, path);
         if (key == "CompressedData") data.compressed = yes;
         if (key == "BinaryDataByteOrderMSB" || key == "ElementByteOrderMSB") data.big_endian = yes;
         if (key != "ElementDataFile") continue;
-        const bool local = value == "LOCAL" || value == "Local" || value == "local";
+        const bool local = in_lower_case(value) == "local";
+        data.several_files = in_lower_case(value).starts_with("list") || value.find('%') != std::string::npos;
+        if (data.several_files) return data;
         data.file = local ? path : path.parent_path() / value;
         data.offset = local ? static_cast<std::size_t>(stream.tellg()) : 0;
+        if (header > 0) data.offset += static_cast<std::size_t>(header);
         if (std::error_code none; std::filesystem::is_regular_file(data.file, none)) return data;
         break;
     }
     return std::nullopt;
+}
+
+void check_meta_claim(const MetaData& data, std::uintmax_t claimed, const std::filesystem::path& path) {
+    if (data.several_files)
+        throw InvalidInput({path.string(),
+                            "keeps its voxels in several files (ElementDataFile LIST or a pattern)",
+                            "one file of voxels", "convert it to .mha or .nrrd"});
+    const std::uintmax_t size = std::filesystem::file_size(data.file);
+    check_claim(claimed, size - std::min<std::uintmax_t>(size, data.offset),
+                data.compressed ? Packing::deflated
+                : data.text     ? Packing::text
+                                : Packing::none,
+                path);
 }
 
 // Whether all of `bytes` came out of the zlib or gzip stream; MetaIO's own reader wants its packed size.
@@ -231,12 +314,14 @@ StoredImage read_itk_image(const std::filesystem::path& path, const NoteSink& no
             whole.SetSize(axis, io->GetDimensions(axis));
         io->SetIORegion(whole);
         const auto meta_data = meta ? meta_data_of(path) : std::nullopt;
-        const bool whole_file =
-            !meta ||
-            (meta_data && (meta_data->compressed ||
-                           std::filesystem::file_size(meta_data->file) >=
-                               meta_data->offset + static_cast<std::size_t>(io->GetImageSizeInBytes())));
-        if (whole_file) image.voxels = read_voxels(*io, count, meta_data);
+        const auto claimed = static_cast<std::uintmax_t>(io->GetImageSizeInBytes());
+        if (!meta) check_nrrd_claim(claimed, path);
+        if (meta_data) {
+            check_meta_claim(*meta_data, claimed, path);
+            image.slope = meta_data->slope;
+            image.intercept = meta_data->intercept;
+        }
+        if (!meta || meta_data) image.voxels = read_voxels(*io, count, meta_data);
         if (std::visit([](const auto& voxels) { return voxels.empty(); }, image.voxels))
             throw InvalidInput({path.string(), "holds fewer voxels than its header claims", "",
                                 "check that the file is whole"});

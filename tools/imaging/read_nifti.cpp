@@ -84,6 +84,25 @@ StoredVoxels read_voxels(NiftiStream& stream, const NiftiHeader& header, std::si
     }
 }
 
+// 1 for a type that is none of those above.
+std::size_t bytes_per_voxel(int datatype) {
+    switch (datatype) {
+        case 4:
+        case 512:
+            return 2;
+        case 8:
+        case 16:
+        case 768:
+            return 4;
+        case 64:
+        case 1024:
+        case 1280:
+            return 8;
+        default:
+            return 1;
+    }
+}
+
 }  // namespace
 
 StoredImage read_nifti(const std::filesystem::path& path, const NoteSink& note, const ReadOptions& options) {
@@ -93,7 +112,6 @@ StoredImage read_nifti(const std::filesystem::path& path, const NoteSink& note, 
     StoredImage image;
     image.grid = grid_of(header, nifti_affine(header, path, note, options.nifti_frame));
     check_geometry(image.grid, path, note);
-    check_claim(image.grid, std::filesystem::file_size(path), path);
     if (const auto offset = static_cast<std::size_t>(std::max<std::int64_t>(header.voxel_offset, 0));
         offset > header.bytes) {
         if (offset > largest_header)
@@ -103,6 +121,8 @@ StoredImage read_nifti(const std::filesystem::path& path, const NoteSink& note, 
         stream.read(extension.data(), extension.size());
         image.labels = parse_xml_label_table(extension);
     }
+    check_claim(image.grid.voxel_count() * bytes_per_voxel(header.datatype), std::filesystem::file_size(path),
+                stream.packed() ? Packing::deflated : Packing::none, path);
     image.voxels = read_voxels(stream, header, image.grid.voxel_count(), path);
     stream.read_rest();
     if (std::isfinite(header.slope) && header.slope != 0) {

@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <array>
 #include <fmt/format.h>
+#include <fstream>
+#include <memory>
 #include <vtkDataArray.h>
 #include <vtkErrorCode.h>
 #include <vtkFieldData.h>
 #include <vtkImageData.h>
+#include <vtkInformation.h>
 #include <vtkLogger.h>
 #include <vtkMatrix3x3.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
 #include <vtkOutputWindow.h>
 #include <vtkPointData.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkStringArray.h>
 #include <vtkStructuredPoints.h>
 #include <vtkStructuredPointsReader.h>
@@ -31,16 +36,36 @@ class Complaints : public vtkOutputWindow {
 };
 vtkStandardNewMacro(Complaints);
 
+// VTK would allocate whatever a header claims; a voxel takes a byte or more where nothing is compressed.
+void check_extent(const std::array<int, 6>& extent, const std::filesystem::path& path) {
+    std::array<std::int64_t, 3> size{};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        size[axis] = std::int64_t{extent[2 * axis + 1]} - extent[2 * axis] + 1;
+    check_size(size, path);
+    std::string head(4096, '\0');
+    std::ifstream(path, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
+    const bool packed = head.find("compressor=") != std::string::npos;
+    check_claim(static_cast<std::uintmax_t>(size[0] * size[1] * size[2]), std::filesystem::file_size(path),
+                packed ? Packing::deflated : Packing::none, path);
+}
+
 template <typename Reader>
 vtkSmartPointer<vtkImageData> output_of(Reader& reader, const std::filesystem::path& path) {
     const vtkSmartPointer<vtkOutputWindow> usual = vtkOutputWindow::GetInstance();
     vtkNew<Complaints> complaints;
     vtkOutputWindow::SetInstance(complaints);
+    const std::unique_ptr<vtkOutputWindow, void (*)(vtkOutputWindow*)> restore(usual,
+                                                                               vtkOutputWindow::SetInstance);
     vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
     vtkObject::GlobalWarningDisplayOn();
     reader.SetFileName(path.c_str());
-    reader.Update();
-    vtkOutputWindow::SetInstance(usual);
+    reader.UpdateInformation();
+    std::array<int, 6> extent{};
+    reader.GetOutputInformation(0)->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent.data());
+    if (!complaints->any) {
+        check_extent(extent, path);
+        reader.Update();
+    }
     if (complaints->any || reader.GetErrorCode() != vtkErrorCode::NoError || reader.GetOutput() == nullptr)
         throw InvalidInput(
             {path.string(), "cannot be read as VTK image data", "",
@@ -49,7 +74,7 @@ vtkSmartPointer<vtkImageData> output_of(Reader& reader, const std::filesystem::p
 }
 
 vtkSmartPointer<vtkImageData> load(const std::filesystem::path& path) {
-    if (path.extension() == ".vti") {
+    if (in_lower_case(path.extension().string()) == ".vti") {
         vtkNew<vtkXMLImageDataReader> reader;
         if (reader->CanReadFile(path.c_str()) == 0)
             throw InvalidInput(

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // For this folder only: segments of several layers put into one label map.
 #pragma once
-#include <map>
 #include <span>
+#include <unordered_map>
 
 #include "tools/imaging/image_files.hpp"
 
@@ -16,13 +16,8 @@ class SegmentPainter {
                    Overlaps rule);
 
     void paint(std::size_t offset, std::size_t segment) {
-        std::uint16_t& winner = winners_[offset];
-        if (winner != 0) {
-            ++shared_[{std::min<std::size_t>(winner - 1U, segment),
-                       std::max<std::size_t>(winner - 1U, segment)}];
-            if (rank_[segment] < rank_[winner - 1U]) return;
-        }
-        winner = static_cast<std::uint16_t>(segment + 1);
+        std::uint32_t& claimants = claimants_[offset];
+        claimants = claimants == 0 ? static_cast<std::uint32_t>(segment + 1) : joined_by(claimants, segment);
     }
 
     /// The map with the segments that occur. Throws InvalidInput naming `path` and the pairs that overlap if
@@ -30,12 +25,16 @@ class SegmentPainter {
     LabelMap finish(const std::filesystem::path& path, const NoteSink& note);
 
   private:
+    std::uint32_t joined_by(std::uint32_t set, std::size_t segment);
+    std::string overlapping_pairs(std::span<const std::size_t> voxels_of_set) const;
+
     ImageGrid grid_;
     std::vector<Label> segments_;
     Overlaps rule_;
-    std::vector<std::size_t> rank_;       // the higher one wins
-    std::vector<std::uint16_t> winners_;  // index of the segment + 1; 0 is background
-    std::map<std::pair<std::size_t, std::size_t>, std::size_t> shared_;  // voxels by pair of segments
+    std::vector<std::size_t> rank_;               // the higher one wins
+    std::vector<std::vector<std::size_t>> sets_;  // of segments: none, each alone, then those that meet
+    std::unordered_map<std::uint64_t, std::uint32_t> joins_;  // set and segment to the set of both
+    std::vector<std::uint32_t> claimants_;                    // the set of each voxel
 };
 
 }  // namespace palpate

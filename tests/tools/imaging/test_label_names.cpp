@@ -113,6 +113,33 @@ TEST(LabelNames, malformed_tables_are_refused_with_their_line) {
               std::string::npos);
 }
 
+TEST(LabelNames, names_may_have_blanks_and_what_is_ambiguous_is_refused) {
+    const TemporaryFolder folder;
+    const auto name = [&](const std::string& line) {
+        write_bytes(folder / "t.txt", line + "\n");
+        return read_label_table(folder / "t.txt").at(1).name;
+    };
+    EXPECT_EQ(name("1 left kidney"), "left kidney");
+    EXPECT_EQ(name("1 left kidney 255 0 0 255"), "left kidney");
+    EXPECT_EQ(name("1 left kidney 255 0 0"), "left kidney");
+    EXPECT_EQ(name("1 left rib 7 255 0 0 255"), "left rib 7");
+    EXPECT_EQ(name("1 3rd ventricle 2001"), "3rd ventricle");
+    EXPECT_EQ(name("\xEF\xBB\xBFindex\tname\n1\tleft kidney"), "left kidney");
+    for (const char* line : {"1 2 liver", "1 vertebra 5", "1 rib 7 8", "1 255 0 0 255"}) {
+        SCOPED_TRACE(line);
+        EXPECT_THROW(name(line), InvalidInput);
+    }
+    EXPECT_THROW(name("{\"labels\": {\"liver\": 4294967297}}"), InvalidInput);
+}
+
+TEST(LabelNames, an_xml_of_many_openings_is_read_once) {
+    std::string xml;
+    for (int n = 0; n < 200000; ++n) xml += "<Label >";
+    const std::string good = "<Label Key=\"5\">liver</Label>";
+    EXPECT_EQ(parse_xml_label_table(xml + "</Label>" + good).at(5).name, "liver");
+    EXPECT_TRUE(parse_xml_label_table("<Label Key=\"5\">" + std::string(10000, 'a') + "</Label>").empty());
+}
+
 TEST(LabelNames, repeated_names_get_numbers) {
     LabelMap map = bare_map();
     map.names[0].name = map.names[1].name = "vein";

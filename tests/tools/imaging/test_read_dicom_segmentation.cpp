@@ -150,6 +150,11 @@ TEST(DicomSeg, overlaps_fractions_frames_off_the_grid_and_images_are_refused) {
     testing::write_bytes(folder / "ct.dcm",
                          testing::ct_slice(grid, grid.origin, std::vector<std::int16_t>(30, 1)).file());
     EXPECT_SAYS(refusal_of(folder / "ct.dcm"), "modality 'CT'");
+    testing::write_bytes(folder / "ct.dcm",
+                         testing::ct_slice(grid, grid.origin, std::vector<std::int16_t>(30, 1))
+                             .text(0x00080060, "CS", "ROE JANE")
+                             .file());
+    EXPECT_SAYS(refusal_of(folder / "ct.dcm"), "modality 'other'");
     const std::string whole = segmentation(grid, {"liver"}, {{1, 0, {1}}, {1, 1, {1}}});
     testing::write_bytes(folder / "cut.dcm", whole.substr(0, whole.size() - 6));
     EXPECT_SAYS(refusal_of(folder / "cut.dcm"), "cannot be read");

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <map>
 #include <numeric>
 #include <zlib.h>
 
@@ -214,6 +215,7 @@ TEST(Nifti, colours_time_series_pairs_and_false_claims_are_refused) {
     EXPECT_SAYS(refusal(344, 'x'), "not a NIfTI file of one piece");
     EXPECT_SAYS(refusal(42, std::int16_t{-4}), "is flat: -4");
     EXPECT_SAYS(refusal(42, std::int16_t{32000}), "fewer voxels than its header claims");
+    EXPECT_SAYS(refusal(46, std::int16_t{12}), "fewer voxels than its header claims");
     EXPECT_SAYS(refusal(108, 1e9F), "claims a header");
     std::string series = good;
     put(series, 40, std::int16_t{4});
@@ -305,6 +307,9 @@ TEST(Nrrd, every_patient_space_becomes_lps_and_others_are_noted) {
                                                 {"RAS", {-1, -1, 1}},
                                                 {"left-anterior-superior", {1, -1, 1}},
                                                 {"LAS", {1, -1, 1}},
+                                                {"las", {1, -1, 1}},
+                                                {"ras", {-1, -1, 1}},
+                                                {"Left-Anterior-Superior", {1, -1, 1}},
                                                 {"scanner-xyz", {1, 1, 1}}}) {
         SCOPED_TRACE(space);
         write_bytes(folder / "v.nrrd",
@@ -322,6 +327,91 @@ TEST(Nrrd, every_patient_space_becomes_lps_and_others_are_noted) {
                   1e-9);
         EXPECT_EQ(notes.empty(), space != "scanner-xyz") << notes;
     }
+}
+
+TEST(Nrrd, units_other_than_millimetres_are_refused_by_name) {
+    const TemporaryFolder folder;
+    const Volume volume = ramp_volume();
+    const auto file = [&](const std::string& units) {
+        return testing::nrrd_file(volume.grid, "float", testing::raw_bytes<float>(volume.values),
+                                  "left-posterior-superior", "space units: " + units + "\n");
+    };
+    write_bytes(folder / "v.nrrd", file("\"mm\" \"mm\" \"mm\""));
+    EXPECT_EQ(read_volume(folder / "v.nrrd").values, volume.values);
+    write_bytes(folder / "v.nrrd", file("\"mm\" \"mm\" \"m\""));
+    EXPECT_SAYS(refusal_of(folder / "v.nrrd"), "space units \"mm\" \"mm\" \"m\"");
+}
+
+TEST(Claims, of_more_voxels_than_a_file_can_hold_are_refused_before_memory_is_taken) {
+    const TemporaryFolder folder;
+    ImageGrid grid = ramp_volume().grid;
+    grid.size = {60000, 60000, 60000};  // 432 TB of int16
+    const std::string data(1000, '\1');
+    std::string packed = testing::nrrd_file(grid, "short", data, "left-posterior-superior");
+    packed.replace(packed.find("raw"), 3, "gzip");
+    std::string meta = testing::meta_file(grid, "MET_SHORT", data);
+    std::map<std::string, std::string> files{
+        {"v.nrrd", testing::nrrd_file(grid, "short", data, "left-posterior-superior")},
+        {"packed.nrrd", packed},
+        {"v.mha", meta},
+        {"packed.mha", meta.insert(meta.find("ElementData"), "CompressedData = True\n")},
+        {"v.vti",
+         "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 59999 0 59999 0 59999\" Origin=\"0 0 0\" "
+         "Spacing=\"1 1 1\"><Piece Extent=\"0 59999 0 59999 0 59999\"><PointData><DataArray type=\"Int16\" "
+         "Name=\"a\" format=\"ascii\">1 2 3</DataArray></PointData></Piece></ImageData></VTKFile>"},
+        {"v.vtk",
+         "# vtk DataFile Version 3.0\nx\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 60000 60000 60000\n"
+         "ORIGIN 1 2 3\nSPACING 1 1 1\nPOINT_DATA 216000000000000\nSCALARS s short 1\n"
+         "LOOKUP_TABLE default\n1 2 3\n"}};
+    for (const auto& [name, file] : files) {
+        write_bytes(folder / name, file);
+        EXPECT_SAYS(refusal_of(folder / name), name + ": holds fewer voxels than its header claims");
+    }
+}
+
+TEST(ReadVolume, endings_do_not_depend_on_case) {
+    const TemporaryFolder folder;
+    const Volume volume = ramp_volume();
+    write_bytes(folder / "V.NII", testing::nifti_file(volume.grid, testing::raw_bytes<float>(volume.values)));
+    write_bytes(folder / "V.MHA",
+                testing::meta_file(volume.grid, "MET_FLOAT", testing::raw_bytes<float>(volume.values)));
+    write_bytes(folder / "V.NRRD",
+                testing::nrrd_file(volume.grid, "float", testing::raw_bytes<float>(volume.values),
+                                   "left-posterior-superior"));
+    for (const char* name : {"V.NII", "V.MHA", "V.NRRD"})
+        EXPECT_EQ(read_volume(folder / name).values, volume.values);
+}
+
+TEST(SegNrrd, three_segments_in_one_voxel_are_three_pairs) {
+    const TemporaryFolder folder;
+    std::string fields;
+    for (int n = 0; n < 3; ++n)
+        fields += fmt::format("Segment{0}_Name:={1}\nSegment{0}_LabelValue:=1\nSegment{0}_Layer:={0}\n", n,
+                              std::array{"a", "b", "c\xed\xa0\x80"}[static_cast<std::size_t>(n)]);
+    std::string voxels(3 * 8, '\0');
+    voxels[0] = voxels[1] = voxels[2] = voxels[3] = voxels[5] = 1;
+    write_bytes(folder / "s.seg.nrrd",
+                "NRRD0004\ntype: unsigned char\ndimension: 4\nspace: LPS\nsizes: 3 2 2 2\n"
+                "space directions: none (1,0,0) (0,1,0) (0,0,1)\nkinds: list domain domain domain\n"
+                "encoding: raw\nspace origin: (1,2,3)\n" +
+                    fields + "\n" + voxels);
+    ReadOptions options;
+    options.overlaps = Overlaps::smaller_wins;
+    std::string notes;
+    const LabelMap map = read_label_map(
+        folder / "s.seg.nrrd", [&](std::string_view note) { notes += note; }, options);
+    EXPECT_SAYS(notes, "'a' and 'b' both claim 1 voxels");
+    EXPECT_SAYS(notes, "'a' and 'c\xc3\xad\xc2\xa0\xc2\x80' both claim 2 voxels");  // a surrogate is no UTF-8
+    EXPECT_SAYS(notes, "'b' and 'c");
+    EXPECT_EQ(map.labels[0], 2);  // 'b' has one voxel
+}
+
+TEST(SegNrrd, a_segment_without_name_is_called_by_its_value) {
+    const TemporaryFolder folder;
+    std::string file = layered_segmentation(false);
+    file.replace(file.find("Name:=vessel"), 12, "Name:=");
+    write_bytes(folder / "s.seg.nrrd", file);
+    EXPECT_EQ(voxels_of(read_label_map(folder / "s.seg.nrrd"), "label_2"), 5U);
 }
 
 TEST(LabelValues, up_to_65535_are_exact_and_beyond_are_refused) {
@@ -375,6 +465,33 @@ TEST(MetaImage, compressed_data_is_read_with_and_without_its_size_and_not_if_cut
             write(packed.substr(0, packed.size() / 2));
             EXPECT_THROW(read_volume(path), InvalidInput);
         }
+}
+
+TEST(MetaImage, slope_blanks_and_header_sizes_are_honoured_and_lists_of_files_refused) {
+    const TemporaryFolder folder;
+    const Volume volume = ramp_volume();
+    const std::string raw = testing::raw_bytes<float>(volume.values), skipped(100, 'H');
+    const auto read = [&](const std::string& fields, const std::string& file) {
+        std::string header = testing::meta_file(volume.grid, "MET_FLOAT", "");
+        header.replace(header.find("ElementDataFile"), std::string::npos,
+                       fields + "ElementDataFile = " + file + "\n");
+        write_bytes(folder / "v.mhd", header);
+        return read_volume(folder / "v.mhd").values;
+    };
+    write_bytes(folder / "my scan.raw", raw);
+    EXPECT_EQ(read("", "my scan.raw"), volume.values);
+    EXPECT_EQ(read("ElementToIntensityFunctionSlope = 2\nElementToIntensityFunctionOffset = -5\n",
+                   "my scan.raw")[3],
+              2 * volume.values[3] - 5);
+    write_bytes(folder / "h.raw", skipped + raw);
+    EXPECT_EQ(read("HeaderSize = 100\n", "h.raw"), volume.values);
+    EXPECT_EQ(read("HeaderSize = -1\n", "h.raw"), volume.values);
+    write_bytes(folder / "h.zraw", skipped + deflated(raw));
+    EXPECT_EQ(read("HeaderSize = 100\nCompressedData=True\n", "h.zraw"), volume.values);
+    for (const char* several : {"LIST\na.raw\nb.raw", "s%02d.raw 0 5 1"}) {
+        EXPECT_THROW(read("", several), InvalidInput);
+        EXPECT_SAYS(refusal_of(folder / "v.mhd"), "voxels in several files");
+    }
 }
 
 TEST(VtkImage, legacy_structured_points_are_read_and_other_data_refused) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/commands/build/stages.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <fmt/format.h>
 
 #include "formats/asset/digest.hpp"
@@ -22,10 +24,19 @@ void add(std::vector<std::string>& arguments, std::initializer_list<std::string>
     arguments.insert(arguments.end(), more);
 }
 
+// A case names one frame for both inputs; import takes it for NIfTI files only.
+void add_import_options(Stage& stage, std::vector<std::string> options, const std::filesystem::path& input) {
+    std::string name = input.filename().string();
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+    if (const auto frame = std::ranges::find(options, "--nifti-frame");
+        frame != options.end() && !name.ends_with(".nii") && !name.ends_with(".nii.gz"))
+        options.erase(frame, frame + 2);
+    stage.arguments.insert(stage.arguments.end(), options.begin(), options.end());
+}
+
 Stage import_volume_stage(const CaseFile& case_file, const std::filesystem::path& output) {
     Stage stage{"import volume", "import", {case_file.volume->string()}, {*case_file.volume}, {output}};
-    stage.arguments.insert(stage.arguments.end(), case_file.volume_options.begin(),
-                           case_file.volume_options.end());
+    add_import_options(stage, case_file.volume_options, *case_file.volume);
     add(stage.arguments, {"-o", output.string()});
     return stage;
 }
@@ -34,8 +45,7 @@ Stage import_labels_stage(const CaseFile& case_file, const std::filesystem::path
     Stage stage{
         "import labels", "import", {case_file.labels->string(), "--labels"}, {*case_file.labels}, {output}};
     if (case_file.label_table) stage.inputs.push_back(*case_file.label_table);
-    stage.arguments.insert(stage.arguments.end(), case_file.labels_options.begin(),
-                           case_file.labels_options.end());
+    add_import_options(stage, case_file.labels_options, *case_file.labels);
     add(stage.arguments, {"-o", output.string()});
     return stage;
 }
