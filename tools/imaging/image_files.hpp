@@ -47,7 +47,8 @@ struct ReadOptions {
 /// agree within a tenth of a voxel. With accept_gaps, slices are interpolated linearly onto an even, untilted
 /// grid between the first and the last one, with a note; doubled slices must then be identical. Throws
 /// InvalidInput if the file is missing, damaged, not three-dimensional, not grey, holds one value only, holds
-/// NaN or infinity, has a spacing that is not positive, directions further off, transforms that disagree
+/// NaN or infinity, claims more voxels than it could hold, keeps a MetaImage's voxels in several files, has
+/// NRRD units other than mm, a spacing that is not positive, directions further off, transforms that disagree
 /// (with both), several series (with the list), or slices that are missing, doubled, unevenly spaced, of
 /// mixed sizes or directions, or sheared (with the place). Cost: one pass over the voxels; memory for the
 /// voxels as stored and in float32.

@@ -21,13 +21,14 @@ std::map<std::int32_t, std::string> parse_label_names(std::string_view text);
 void rename_labels(LabelMap& map, const std::map<std::int32_t, std::string>& names);
 
 /// Reads the labels of a Caret/Connectome Workbench label table, <Label Key="5" Red=".." ..>liver</Label>, in
-/// any XML or none.
+/// any XML or none; one longer than 4096 characters is left out. Cost: linear.
 LabelTable parse_xml_label_table(std::string_view xml);
 
 /// Reads a label table, whichever it is: 3D Slicer's .ctbl and FreeSurfer's (value name R G B A), ITK-SNAP's
 /// label descriptions (value R G B A visible mesh "name"), BIDS' _dseg.tsv (columns index, name and perhaps
 /// color), JSON ({"5": "liver"} or {"labels": {"liver": 5}}), or lines "value name". Background is left out.
-/// Throws InvalidInput naming file and line for anything else or a value beyond 65535.
+/// A name may have blanks; of numbers behind it three or four are a colour and a single one of 1000 or more
+/// is a code. Throws InvalidInput naming file and line for anything else or a value beyond 65535.
 LabelTable read_label_table(const std::filesystem::path& path);
 
 /// TotalSegmentator's table of a version and task, "v2/total"; throws InvalidInput naming the nearest ones.

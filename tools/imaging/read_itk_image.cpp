@@ -111,7 +111,7 @@ void check_nrrd_claim(std::uintmax_t claimed, const std::filesystem::path& path)
             held += std::filesystem::file_size(file);
         else  // a list or a pattern of files
             for (const auto& entry :
-                 std::filesystem::directory_iterator(std::filesystem::absolute(path).parent_path()))
+                 std::filesystem::directory_iterator(std::filesystem::absolute(path).parent_path(), none))
                 if (entry.is_regular_file(none)) held += entry.file_size();
     }
     const std::string encoding = fields.contains("encoding") ? in_lower_case(fields.at("encoding")) : "";

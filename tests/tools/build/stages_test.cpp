@@ -20,6 +20,23 @@ std::string line_of(const std::vector<Stage>& stages, const std::string& name) {
     return line;
 }
 
+TEST(Stages, the_frame_of_nifti_files_is_asked_for_only_where_the_input_is_one) {
+    const fs::path folder = fs::path(testing::TempDir()) / ("palpate_frames_" + std::to_string(getpid()));
+    fs::create_directories(folder / "series");
+    std::ofstream(folder / "l.nii.gz") << "labels";
+    CaseFile file;
+    file.name = "x";
+    file.volume = folder / "series";
+    file.labels = folder / "l.nii.gz";
+    file.volume_options = {"--series", "3", "--nifti-frame", "qform"};
+    file.labels_options = {"--nifti-frame", "qform"};
+    const std::vector<Stage> stages =
+        stages_to_asset(file, {folder / "parts", folder / "x.vtkhdf", folder / "x.html"});
+    EXPECT_NE(line_of(stages, "import volume").find("series --series 3 -o"), std::string::npos);
+    EXPECT_NE(line_of(stages, "import labels").find("--labels --nifti-frame qform -o"), std::string::npos);
+    fs::remove_all(folder);
+}
+
 TEST(Stages, finished_files_replace_image_and_labels_and_their_names_stay_out_of_the_asset) {
     const fs::path folder = fs::path(testing::TempDir()) / ("palpate_stages_" + std::to_string(getpid()));
     fs::create_directories(folder);
