@@ -11,6 +11,12 @@
 #include <fmt/format.h>
 #include <string>
 #include <vector>
+#include <vtkIdList.h>
+#include <vtkNew.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+#include <vtkStaticPointLocator.h>
 
 #include "formats/model/errors.hpp"
 #include "tools/meshing/surfaces.hpp"
@@ -93,6 +99,18 @@ void grow(std::vector<bool>& is_protected, const TriangleMesh& surface, int ring
     }
 }
 
+vtkSmartPointer<vtkStaticPointLocator> locator_of(const std::vector<Eigen::Vector3d>& vertices) {
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    for (const Eigen::Vector3d& vertex : vertices) points->InsertNextPoint(vertex.data());
+    vtkNew<vtkPolyData> data;
+    data->SetPoints(points);
+    auto locator = vtkSmartPointer<vtkStaticPointLocator>::New();
+    locator->SetDataSet(data);
+    locator->BuildLocator();
+    return locator;
+}
+
 // Measures, and protects where the full surface is further than that from the other, or the other from it.
 SurfaceDistance protect_far_places(std::vector<bool>& is_protected, const TriangleMesh& full,
                                    const TriangleMesh& coarse, double max_distance) {
@@ -106,6 +124,8 @@ SurfaceDistance protect_far_places(std::vector<bool>& is_protected, const Triang
                                     on_full = nearest_places(of_coarse, full);
     for (std::size_t i = 0; i < of_full.size(); ++i)
         if (on_coarse[i].distance > max_distance) mark(of_full[i].triangle);
+    const vtkSmartPointer<vtkStaticPointLocator> around = locator_of(full.vertices);
+    vtkNew<vtkIdList> found;
     for (std::size_t i = 0; i < of_coarse.size(); ++i) {
         if (on_full[i].distance <= max_distance) continue;
         // What became this triangle lay around it, not always where the full surface is nearest.
@@ -114,8 +134,8 @@ SurfaceDistance protect_far_places(std::vector<bool>& is_protected, const Triang
         const double reach =
             on_full[i].distance + std::max({(corner(1) - corner(0)).norm(), (corner(2) - corner(1)).norm(),
                                             (corner(0) - corner(2)).norm()});
-        for (std::size_t v = 0; v < far.size(); ++v)
-            if ((full.vertices[v] - of_coarse[i].point).squaredNorm() < reach * reach) far[v] = true;
+        around->FindPointsWithinRadius(reach, of_coarse[i].point.data(), found);
+        for (const vtkIdType v : *found) far[static_cast<std::size_t>(v)] = true;
     }
     constexpr int rings = 2;
     grow(far, full, rings);
@@ -139,7 +159,12 @@ Decimation decimate_within(const TriangleMesh& surface, std::int64_t max_triangl
     for (int round = 0; round < rounds; ++round) {
         Decimation next{decimate_around(surface, max_triangles, is_protected), {}};
         // Protected triangles may leave too few edges to collapse.
-        if (static_cast<std::int64_t>(next.surface.triangles.size()) > max_triangles) break;
+        const std::size_t left = next.surface.triangles.size();
+        if (static_cast<std::int64_t>(left) > max_triangles && round == 0)
+            throw QualityNotMet(
+                {"surface", fmt::format("{} triangles cannot be reached, {} are left", max_triangles, left),
+                 "", "allow more triangles"});
+        if (static_cast<std::int64_t>(left) > max_triangles) break;
         next.distance = protect_far_places(is_protected, surface, next.surface, max_distance);
         if (round == 0 || next.distance.maximum < best.distance.maximum) best = std::move(next);
         if (best.distance.maximum <= max_distance) return best;

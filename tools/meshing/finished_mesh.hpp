@@ -23,9 +23,9 @@ struct FinishedMeshOptions {
 
 /// Reads tetrahedra made elsewhere: `.vtu`, legacy `.vtk`, Gmsh `.msh` (1, 2.2, 4.1), MEDIT `.mesh`.
 /// Positions become mm in LPS. Regions come from CellData region, medit:ref, gmsh:physical or
-/// gmsh:geometrical, Gmsh's physical groups or MEDIT's references; without any, all is region 1. Values below
-/// 1 get the next free one. Names are options.region_names, the file's own, or "region <value>".
-/// `outside_labels` is 0 at the surface.
+/// gmsh:geometrical, Gmsh's physical groups or MEDIT's references; without any, all is region 1. Values
+/// that are no label (1 ... 65535) get the lowest free one, with a note. Names are options.region_names, the
+/// file's own, or "region <value>". `outside_labels` is 0 at the surface.
 ///
 /// Repaired, with a note: inverted tetrahedra (two nodes change places), unused nodes, tetrahedra that are
 /// there twice, parts that touch in a point or edge only (their nodes are doubled). Ignored, with a note:

@@ -4,7 +4,6 @@
 #include <vtkCellArray.h>
 #include <vtkNew.h>
 #include <vtkOBJReader.h>
-#include <vtkPLYReader.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataReader.h>
 #include <vtkSTLReader.h>
@@ -14,6 +13,7 @@
 #include "formats/model/errors.hpp"
 #include "tools/meshing/finished_mesh.hpp"
 #include "tools/meshing/finished_placement.hpp"
+#include "tools/meshing/ply_file.hpp"
 #include "tools/meshing/surface_repair.hpp"
 #include "tools/meshing/vtk_reading.hpp"
 
@@ -33,7 +33,7 @@ vtkSmartPointer<vtkPolyData> read_any(const std::filesystem::path& path) {
     if (extension == ".vtk") return read_as<vtkPolyDataReader>(path, "legacy VTK file with polygons");
     if (extension == ".stl") return read_as<vtkSTLReader>(path, "STL file");
     if (extension == ".obj") return read_as<vtkOBJReader>(path, "Wavefront OBJ file");
-    if (extension == ".ply") return read_as<vtkPLYReader>(path, "PLY file");
+    if (extension == ".ply") return read_ply(path);
     throw InvalidInput({path.string(), "has the extension '" + extension + "'",
                         ".vtp, .vtk, .stl, .obj or .ply",
                         "convert it, for example with meshio or 3D Slicer"});

@@ -153,7 +153,23 @@ void require_no_cracks(const TetMesh& mesh, const std::string& culprit) {
              "join duplicate nodes where it was made ('Coherence Mesh;' in Gmsh)"});
 }
 
-// Values below 1 mean "none" to labels, so they get the next free one; then every value gets its name.
+constexpr std::int32_t last_label = 65535;
+
+// Takes the lowest label that is free.
+std::int32_t take_free_label(std::set<std::int32_t>& taken, const std::string& culprit) {
+    std::int32_t free = 1;
+    for (const std::int32_t label : taken) {
+        if (label > free) break;
+        if (label == free) ++free;
+    }
+    if (free > last_label)
+        throw InvalidInput({culprit, "leaves no label free", fmt::format("{} labels at most", last_label),
+                            "join regions where it was made"});
+    taken.insert(free);
+    return free;
+}
+
+// Values that are no labels get free ones; then every value gets its name.
 void name_regions(TetMesh& mesh, const FoundTetrahedra& found, const FinishedMeshOptions& options,
                   const std::string& culprit, const NoteSink& note) {
     mesh.regions =
@@ -163,7 +179,8 @@ void name_regions(TetMesh& mesh, const FoundTetrahedra& found, const FinishedMes
         if (!values.contains(value))
             throw InvalidInput({culprit, fmt::format("has no region {} to call '{}'", value, name),
                                 fmt::format("one of {}", fmt::join(values, ", ")), ""});
-    std::int32_t free = std::max(*values.rbegin(), 0) + 1;
+    std::set<std::int32_t> taken(values.lower_bound(1), values.upper_bound(last_label));
+    std::map<std::int32_t, std::int32_t> label_of;
     for (const std::int32_t value : values) {
         Label label{value, fmt::format("region {}", value), {}};
         if (const auto known = std::ranges::find(found.names, value, &Label::value);
@@ -171,14 +188,15 @@ void name_regions(TetMesh& mesh, const FoundTetrahedra& found, const FinishedMes
             label = *known;
         if (const auto own = options.region_names.find(value); own != options.region_names.end())
             label.name = own->second;
-        if (value < 1) {
-            label.value = free++;
-            std::ranges::replace(mesh.regions, value, label.value);
+        if (value < 1 || value > last_label) {
+            label.value = take_free_label(taken, culprit);
             if (note) note(fmt::format("{}: region {} became {}", culprit, value, label.value));
         }
         if (label.colour == std::array<float, 3>{}) label.colour = default_label_colour(label.value);
+        label_of[value] = label.value;
         mesh.region_names.push_back(label);
     }
+    for (std::int32_t& region : mesh.regions) region = label_of.at(region);
     std::ranges::sort(mesh.region_names, {}, &Label::value);
 }
 
@@ -221,15 +239,15 @@ TetMesh read_finished_tetrahedra(const std::filesystem::path& path, const Finish
 }
 
 void adopt_labels(TetMesh& mesh, const LabelMap& map) {
-    std::int32_t free = 1;
-    for (const Label& label : map.names) free = std::max(free, label.value + 1);
+    std::set<std::int32_t> taken;
+    for (const Label& label : map.names) taken.insert(label.value);
     std::map<std::int32_t, std::int32_t> value_of;
     bool any = false;
     for (Label& region : mesh.region_names) {
         const auto label = find_label(map, region.name);
         any = any || label;
         const std::int32_t before = region.value;
-        region = label ? *label : Label{free++, region.name, region.colour};
+        region = label ? *label : Label{take_free_label(taken, "label map"), region.name, region.colour};
         value_of[before] = region.value;
     }
     if (!any) {

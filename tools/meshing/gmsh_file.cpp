@@ -90,9 +90,9 @@ class GmshReader {
         for (std::int64_t left = file_.count(); left > 0; --left) {
             const std::int64_t dimension = file_.integer(), value = file_.integer();
             const std::string name(file_.quoted());
-            if (dimension == 3)
-                found_.names.push_back({static_cast<std::int32_t>(value), name,
-                                        default_label_colour(static_cast<std::int32_t>(value))});
+            if (dimension != 3) continue;
+            const std::int32_t group = file_.narrow(value, "physical group");
+            found_.names.push_back({group, name, default_label_colour(group)});
         }
     }
 
@@ -179,8 +179,8 @@ class GmshReader {
             node = known->second;
         }
         found_.tetrahedra.push_back(tet);
-        physical_.push_back(static_cast<std::int32_t>(physical));
-        entity_.push_back(static_cast<std::int32_t>(entity));
+        physical_.push_back(file_.narrow(physical, "physical group"));
+        entity_.push_back(file_.narrow(entity, "geometrical entity"));
     }
 
     void read_elements() {

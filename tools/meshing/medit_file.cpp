@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
+#include <set>
 
 #include "tools/meshing/found_mesh.hpp"
 #include "tools/meshing/scanner.hpp"
@@ -34,9 +35,12 @@ FoundTetrahedra read_medit(const std::filesystem::path& path) {
                   "binary .meshb files: save as .mesh");
     FoundTetrahedra found;
     found.regions_from = "MEDIT references";
+    std::set<std::string_view> seen;
     while (!file.at_end()) {
         const std::string_view keyword = file.word();
         if (keyword == "End") break;
+        if (is_keyword(keyword) && !seen.insert(keyword).second)
+            file.fail(fmt::format("a second section {}", keyword), "one", "join the two");
         if (keyword.starts_with('#')) {
             file.line();
         } else if (keyword == "Dimension") {
@@ -58,7 +62,7 @@ FoundTetrahedra read_medit(const std::filesystem::path& path) {
                                   fmt::format("1 ... {}", found.points.size()), "write the file again");
                     node = static_cast<std::int32_t>(vertex - 1);
                 }
-                found.regions.push_back(static_cast<std::int32_t>(file.integer()));
+                found.regions.push_back(file.narrow(file.integer(), "reference"));
             }
         } else {
             // Everything else (triangles, ridges, normals, ...) is numbers up to the next keyword; the number

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 #include "formats/model/errors.hpp"
 
@@ -69,6 +70,12 @@ std::int64_t Scanner::count() {
     return require_room(integer(), 2);
 }
 
+std::int32_t Scanner::narrow(std::int64_t value, const char* what) const {
+    if (!std::in_range<std::int32_t>(value))
+        fail(fmt::format("{} {}", what, value), "a number of 32 bits", "renumber it where it was made");
+    return static_cast<std::int32_t>(value);
+}
+
 double Scanner::number() {
     const std::string_view text = word();
     double value = 0;
@@ -90,6 +97,10 @@ std::int64_t Scanner::require_room(std::int64_t count, std::size_t bytes) {
         fail(fmt::format("announces {} entries, for which the file is too short", count), "",
              "write the file again");
     return count;
+}
+
+void Scanner::skip(std::int64_t count, std::size_t bytes) {
+    at_ += static_cast<std::size_t>(require_room(count, bytes)) * bytes;
 }
 
 const char* Scanner::take(std::size_t bytes) {

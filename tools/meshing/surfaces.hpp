@@ -51,8 +51,9 @@ struct Decimation {
 };
 
 /// Decimates as decimate() does, and measures. Where either surface is further than `max_distance` mm from
-/// the other at a sample, the full surface is kept and its triangles are saved elsewhere, in up to six
-/// rounds. Throws QualityNotMet naming the distance left and its place if that does not suffice. Cost: that
+/// the other at a sample, the full surface is kept and its triangles are saved elsewhere, in up to eight
+/// rounds. Throws QualityNotMet naming the distance left and its place if that does not suffice, or the
+/// triangles left if `max_triangles` cannot be reached. Cost: that
 /// of decimate() and surface_distance() a round.
 Decimation decimate_within(const TriangleMesh& surface, std::int64_t max_triangles, double max_distance);
 

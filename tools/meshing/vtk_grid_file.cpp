@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
+#include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellTypes.h>
 #include <vtkGenericCell.h>
@@ -9,6 +10,7 @@
 #include <vtkXMLUnstructuredGridReader.h>
 
 #include "formats/model/errors.hpp"
+#include "tools/meshing/finished_placement.hpp"
 #include "tools/meshing/found_mesh.hpp"
 #include "tools/meshing/vtk_reading.hpp"
 
@@ -39,6 +41,8 @@ FoundTetrahedra from_grid(vtkUnstructuredGrid* grid, const std::filesystem::path
         break;
     }
     found.names = read_labels(grid, "region");
+    if (!grid->GetCells() || !grid->GetCells()->IsValid())
+        throw InvalidInput({path.string(), "its cell offsets are inconsistent", "", "write it again"});
     for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell) {
         vtkIdType corners = 0;
         const vtkIdType* nodes = nullptr;
@@ -66,7 +70,7 @@ FoundTetrahedra from_grid(vtkUnstructuredGrid* grid, const std::filesystem::path
 }  // namespace
 
 FoundTetrahedra read_vtk_grid(const std::filesystem::path& path) {
-    if (path.extension() == ".vtu") {
+    if (extension_of(path) == ".vtu") {
         vtkNew<vtkXMLUnstructuredGridReader> reader;
         read_with(*reader, path, "VTK UnstructuredGrid file (.vtu)");
         return from_grid(reader->GetOutput(), path);

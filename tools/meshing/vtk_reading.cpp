@@ -2,6 +2,10 @@
 #include "tools/meshing/vtk_reading.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+#include <new>
 #include <set>
 #include <vtkErrorCode.h>
 #include <vtkExecutive.h>
@@ -14,6 +18,14 @@ namespace palpate {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+bool fits_label(double value) {
+    return std::abs(value) <= std::numeric_limits<std::int32_t>::max() && value == std::floor(value);
+}
+
+}  // namespace
+
 VtkErrorListener::VtkErrorListener() {
     command_->SetClientData(&failed_);
     command_->SetCallback(
@@ -25,7 +37,11 @@ void run_reader(vtkAlgorithm& reader, VtkErrorListener& listener, const fs::path
     reader.AddObserver(vtkCommand::ErrorEvent, listener.command());
     reader.AddObserver(vtkCommand::WarningEvent, listener.command());
     reader.GetExecutive()->AddObserver(vtkCommand::ErrorEvent, listener.command());
-    reader.Update();
+    try {
+        reader.Update();
+    } catch (const std::bad_alloc&) {
+        throw InvalidInput({path.string(), "announces more data than there is memory", "", "write it again"});
+    }
     if (listener.failed() || reader.GetErrorCode() != vtkErrorCode::NoError)
         throw InvalidInput({path.string(), std::string("is not a readable ") + kind, "", "write it again"});
 }
@@ -49,6 +65,7 @@ std::vector<Label> read_labels(vtkDataObject* data, const std::string& prefix) {
     std::vector<Label> labels;
     if (!names || !values || names->GetNumberOfValues() != values->GetNumberOfTuples()) return labels;
     for (vtkIdType i = 0; i < names->GetNumberOfValues(); ++i) {
+        if (!fits_label(values->GetTuple1(i))) continue;
         const auto value = static_cast<std::int32_t>(values->GetTuple1(i));
         Label label{value, names->GetValue(i), default_label_colour(value)};
         if (colours && colours->GetNumberOfComponents() == 3 && i < colours->GetNumberOfTuples())
@@ -67,8 +84,13 @@ std::optional<std::vector<std::int32_t>> read_integers(vtkDataSetAttributes* att
         throw InvalidInput({path.string(), std::string("array '") + name + "' has the wrong size",
                             std::to_string(count) + " values", "write it again"});
     std::vector<std::int32_t> values(count);
-    for (std::size_t i = 0; i < count; ++i)
-        values[i] = static_cast<std::int32_t>(array->GetTuple1(static_cast<vtkIdType>(i)));
+    for (std::size_t i = 0; i < count; ++i) {
+        const double value = array->GetTuple1(static_cast<vtkIdType>(i));
+        if (!fits_label(value))
+            throw InvalidInput({path.string(), fmt::format("array '{}' has the value {}", name, value),
+                                "whole numbers of 32 bits", "renumber it where it was made"});
+        values[i] = static_cast<std::int32_t>(value);
+    }
     return values;
 }
 

@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/meshing/finished_mesh.hpp"
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <unistd.h>
+#include <vtkNew.h>
+#include <vtkPoints.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkUnstructuredGridWriter.h>
 
 #include "formats/model/errors.hpp"
 #include "tools/meshing/mesh_files.hpp"
@@ -42,7 +49,7 @@ class FinishedMesh : public testing::Test {
     std::string refusal(const std::string& name, const std::string& text,
                         const FinishedMeshOptions& options = {}) {
         try {
-            name.ends_with("msh") || name.ends_with("mesh") || name.ends_with("vtk")
+            name.ends_with("msh") || name.ends_with("mesh") || name.ends_with("vtk") || name.ends_with("vtu")
                 ? static_cast<void>(tetrahedra(name, text, options))
                 : static_cast<void>(surface(name, text, options));
         } catch (const Error& error) {
@@ -80,6 +87,13 @@ const std::string medit =
     "MeshVersionFormatted 2\n# by hand\nDimension\n3\nVertices\n6\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n1 1 1 "
     "0\n"
     "8 8 8 0\nRidges\n1\n1\nTriangles\n1\n1 2 3 3\nTetrahedra\n2\n1 2 3 4 5\n2 3 5 4 7\nEnd\n";
+
+// The same two tetrahedra, with the numbers behind CELLS and CELL_TYPES.
+std::string legacy(const std::string& cells, const std::string& types) {
+    return "# vtk DataFile Version 2.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 double\n"
+           "0 0 0 1 0 0 0 1 0 0 0 1 1 1 1\nCELLS " +
+           cells + "\n4 0 1 2 3\n4 1 2 4 3\nCELL_TYPES " + types + "\n10\n10\n";
+}
 
 template <typename T>
 std::string bytes(T value) {
@@ -160,12 +174,108 @@ TEST_F(FinishedMesh, unit_and_frame_place_the_mesh) {
     expect_refusal({"parsec", "mm, cm"}, "1.msh", gmsh_1, options);
 }
 
-TEST_F(FinishedMesh, region_zero_gets_the_next_free_value) {
+TEST_F(FinishedMesh, region_values_that_are_no_labels_get_the_lowest_free_one) {
+    for (const std::string value : {"0", "-3", "65536", "70000"}) {
+        std::string text = medit;
+        text.replace(text.find("3 4 5\n"), 6, "3 4 " + value + "\n");
+        const TetMesh mesh = tetrahedra("m.mesh", text);
+        EXPECT_EQ(mesh.regions, (std::vector<std::int32_t>{1, 7}));
+        EXPECT_EQ(mesh.region_names[0].name, "region " + value);
+        EXPECT_TRUE(noted(("region " + value + " became 1").c_str()));
+    }
+}
+
+TEST_F(FinishedMesh, region_values_of_more_than_32_bits_are_refused) {
     std::string text = medit;
-    text.replace(text.find("3 4 5\n"), 6, "3 4 0\n");
-    const TetMesh mesh = tetrahedra("m.mesh", text);
-    EXPECT_EQ(mesh.regions, (std::vector<std::int32_t>{8, 7}));
-    EXPECT_EQ(mesh.region_names[1].name, "region 0");
+    text.replace(text.find("3 4 5\n"), 6, "3 4 5000000000\n");
+    expect_refusal({"reference 5000000000", "32 bits"}, "m.mesh", text);
+    expect_refusal({"physical group 5000000000", "32 bits"}, "1.msh",
+                   nodes_1 + "$ELM\n1\n1 4 5000000000 1 4 1 2 3 4\n$ENDELM\n");
+    for (const std::string value : {"5000000000", "1.5"})
+        expect_refusal({"array 'region'", "32 bits"}, "r.vtk",
+                       legacy("2 10", "2") +
+                           "CELL_DATA 2\nSCALARS region double 1\nLOOKUP_TABLE default\n1 " + value + "\n");
+}
+
+TEST_F(FinishedMesh, after_the_last_label_free_ones_below_are_taken) {
+    LabelMap map;
+    map.grid.size = {5, 5, 5};
+    map.grid.origin = {-2, -2, -2};
+    map.names = {{1, "kidney", {}}, {65535, "liver", {}}};
+    map.labels.assign(125, 1);
+    TetMesh mesh = tetrahedra("2.msh", gmsh_2);
+    const TetMesh before = mesh;
+    adopt_labels(mesh, map);
+    EXPECT_EQ(mesh.regions, (std::vector<std::int32_t>{65535, 2}));
+    map.names.resize(1);
+    for (std::int32_t value = 2; value <= 65535; ++value)
+        map.names.push_back({value, value == 2 ? "liver" : "other", {}});
+    mesh = before;
+    EXPECT_THROW(adopt_labels(mesh, map), InvalidInput);
+}
+
+TEST_F(FinishedMesh, repeated_sections_of_medit_are_refused) {
+    const std::string open = medit.substr(0, medit.find("End"));
+    expect_refusal({"a second section Vertices"}, "m.mesh", open + "Vertices\n1\n0 0 0 0\nEnd\n");
+    expect_refusal({"a second section Tetrahedra"}, "m.mesh", open + "Tetrahedra\n1\n1 2 3 4 5\nEnd\n");
+}
+
+TEST_F(FinishedMesh, counts_of_legacy_vtk_files_that_contradict_each_other_are_refused) {
+    EXPECT_EQ(tetrahedra("a.vtk", legacy("2 10", "2")).tetrahedra.size(), 2U);
+    expect_refusal({"7 cells that do not fit into 10 numbers"}, "b.vtk", legacy("7 10", "2"));
+    expect_refusal({"2 cells that do not fit into 0 numbers"}, "c.vtk", legacy("2 0", "2"));
+    expect_refusal({"1 cells"}, "d.vtk", legacy("1 5", "2"));
+    expect_refusal({"10 numbers, of which the cells use 5"}, "e.vtk", legacy("1 10", "1"));
+    expect_refusal({"announces 999999999 entries"}, "f.vtk", legacy("2 10", "999999999"));
+    expect_refusal({"a second section cells"}, "g.vtk", legacy("2 10", "2\n10 10\nCELLS 0 0\n"));
+}
+
+TEST_F(FinishedMesh, legacy_vtk_files_of_version_5_are_read_in_either_kind) {
+    const TetMesh mesh = tetrahedra("a.vtk", legacy("2 10", "2"));
+    vtkNew<vtkUnstructuredGrid> grid;
+    vtkNew<vtkPoints> points;
+    for (const Eigen::Vector3d& p : mesh.rest_positions) points->InsertNextPoint(p.data());
+    grid->SetPoints(points);
+    for (const Tetrahedron& t : mesh.tetrahedra) {
+        const std::array<vtkIdType, 4> nodes{t[0], t[1], t[2], t[3]};
+        grid->InsertNextCell(VTK_TETRA, 4, nodes.data());
+    }
+    vtkNew<vtkUnstructuredGridWriter> writer;
+    writer->SetInputData(grid);
+    for (const int kind : {VTK_ASCII, VTK_BINARY})
+        for (const int version : {42, 51}) {
+            const fs::path path = folder_ / "b.vtk";
+            writer->SetFileType(kind);
+            writer->SetFileVersion(version);
+            writer->SetFileName(path.c_str());
+            ASSERT_EQ(writer->Write(), 1);
+            EXPECT_EQ(read_finished_tetrahedra(path, {}).tetrahedra, mesh.tetrahedra) << kind << version;
+        }
+}
+
+std::string vtu(const std::string& points, const std::string& cells, const std::string& components,
+                const std::string& offsets) {
+    return "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\"><UnstructuredGrid>"
+           "<Piece NumberOfPoints=\"" +
+           points + "\" NumberOfCells=\"" + cells +
+           "\"><Points><DataArray type=\"Float64\" NumberOfComponents=\"" + components +
+           "\" format=\"ascii\">0 0 0 10 0 0 0 10 0 0 0 10 10 10 10</DataArray></Points><Cells>"
+           "<DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 1 2 3 1 2 3 4</DataArray>"
+           "<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">" +
+           offsets +
+           "</DataArray><DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">10 10</DataArray></Cells>"
+           "</Piece></UnstructuredGrid></VTKFile>";
+}
+
+TEST_F(FinishedMesh, counts_of_vtk_xml_files_that_cannot_be_are_refused) {
+    EXPECT_EQ(tetrahedra("LIVER.VTU", vtu("5", "2", "3", "4 8")).tetrahedra.size(), 2U);
+    expect_refusal({"NumberOfCells is '999999999999'"}, "a.vtu", vtu("5", "999999999999", "3", "4 8"));
+    expect_refusal({"NumberOfPoints is '-1'"}, "b.vtu", vtu("-1", "2", "3", "4 8"));
+    expect_refusal({"NumberOfComponents is '0'"}, "c.vtu", vtu("5", "2", "0", "4 8"));
+    expect_refusal({"NumberOfComponents is '99999999999999999999'"}, "d.vtu",
+                   vtu("5", "2", "99999999999999999999", "4 8"));
+    for (const char* offsets : {"4 9", "8 4", "-4 8", "4"})
+        expect_refusal({"e.vtu"}, "e.vtu", vtu("5", "2", "3", offsets));
 }
 
 TEST_F(FinishedMesh, medit_files_of_tetgen_that_announce_too_many_triangles_are_read) {
@@ -226,8 +336,8 @@ TEST_F(FinishedMesh, labels_give_regions_their_values_and_the_surface_its_neighb
     map.names = {{1, "kidney", {}}, {3, "liver", {}}};
     map.labels.assign(125, 1);
     adopt_labels(mesh, map);
-    EXPECT_EQ(mesh.regions, (std::vector<std::int32_t>{3, 4}));
-    EXPECT_EQ(mesh.region_names[1].name, "tumour of liver");
+    EXPECT_EQ(mesh.regions, (std::vector<std::int32_t>{3, 2}));
+    EXPECT_EQ(mesh.region_names[0].name, "tumour of liver");
     EXPECT_EQ(mesh.outside_labels, (std::vector<std::int32_t>{1, 1, 1, 1, 1}));
     EXPECT_EQ(mesh.outside_names.at(0).name, "kidney");
     map.names = {{1, "kidney", {}}};
@@ -297,6 +407,71 @@ TEST_F(FinishedMesh, stl_in_either_kind_and_ply_are_read) {
     FinishedMeshOptions options;
     options.frame = "lps";
     expect_refusal({"states RAS"}, "b.stl", binary, options);
+}
+
+// A tetrahedron in PLY, with properties and an element that nobody needs.
+std::string ply(const std::string& format, std::endian order) {
+    std::string text = "ply\r\nformat " + format +
+                       " 1.0\ncomment SPACE=RAS\nelement vertex 4\nproperty double x\nproperty double y\n"
+                       "property uchar red\nproperty double z\nelement face 4\nproperty short flags\n"
+                       "property list uchar int vertex_indices\nelement edge 1\nproperty list uint8 float w\n"
+                       "end_header\n";
+    const auto put = [&](auto value) {
+        std::string raw = bytes(value);
+        if (order != std::endian::native) std::ranges::reverse(raw);
+        text += format == "ascii" ? std::to_string(value) + " " : raw;
+    };
+    for (int v = 0; v < 4; ++v) {
+        put(v == 1 ? 10.0 : 0.0);
+        put(v == 2 ? 10.0 : 0.0);
+        put(std::uint8_t{7});
+        put(v == 3 ? 10.0 : 0.0);
+    }
+    for (const std::array<int, 3>& face :
+         std::vector<std::array<int, 3>>{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}) {
+        put(std::int16_t{-1});
+        put(std::uint8_t{3});
+        for (const int v : face) put(v);
+    }
+    put(std::uint8_t{1});
+    put(0.5F);
+    return text;
+}
+
+TEST_F(FinishedMesh, ply_is_read_in_every_kind_and_refused_when_cut) {
+    for (const auto& [format, order] : {std::pair<std::string, std::endian>{"ascii", std::endian::native},
+                                        {"binary_little_endian", std::endian::little},
+                                        {"binary_big_endian", std::endian::big}}) {
+        SCOPED_TRACE(format);
+        const std::string text = ply(format, order);
+        const TriangleMesh read = surface("a.ply", text);
+        EXPECT_TRUE(measure(read).closed_and_oriented());
+        EXPECT_NEAR(measure(read).volume, 1000.0 / 6, 1e-9);
+        EXPECT_TRUE(noted("in RAS"));
+        const std::size_t end = format == "ascii" ? text.size() - 9 : text.size();  // before the last number
+        for (std::size_t cut = 1; cut < end; ++cut)
+            EXPECT_EQ(refusal("b.ply", text.substr(0, cut)).find("nothing was thrown"), std::string::npos)
+                << cut;
+    }
+}
+
+TEST_F(FinishedMesh, damaged_ply_headers_are_refused) {
+    const std::string sound = ply("binary_little_endian", std::endian::little);
+    const auto with = [&](const std::string& what, const std::string& instead) {
+        std::string text = sound;
+        return text.replace(text.find(what), what.size(), instead);
+    };
+    expect_refusal({"'elemenx' in the header"}, "a.ply", with("element face", "elemenx face"));
+    expect_refusal({"announces 999999999999 entries"}, "a.ply",
+                   with("element face 4", "element face 999999999999"));
+    expect_refusal({"announces -1 entries"}, "a.ply", with("element vertex 4", "element vertex -1"));
+    expect_refusal({"property type '2147483647'"}, "a.ply", with("list uchar int", "list 2147483647 int"));
+    expect_refusal({"without x, y and z"}, "a.ply", with("double y", "double q"));
+    expect_refusal({"without a list vertex_indices"}, "a.ply", with("int vertex_indices", "int corners"));
+    expect_refusal({"announces element vertex twice"}, "a.ply", with("element edge 1", "element vertex 1"));
+    expect_refusal({"holds no faces"}, "a.ply", with("element face", "element fact"));
+    expect_refusal({"names point"}, "a.ply", with(bytes(3) + bytes(2), bytes(-3) + bytes(2)));
+    expect_refusal({"a face of 2 corners"}, "a.ply", with("\x03" + bytes(1), "\x02" + bytes(1)));
 }
 
 TEST_F(FinishedMesh, unsound_surfaces_are_refused_with_their_place) {

@@ -147,6 +147,18 @@ TEST(Decimate, keeps_the_distance_asked_for_or_names_the_place_that_does_not) {
     }
 }
 
+TEST(Decimate, triangles_that_cannot_be_reached_are_named) {
+    const TriangleMesh fine = isosurface(cone(Eigen::Matrix3d::Identity(), 12), 100);
+    try {
+        decimate_within(fine, 2, 100);
+        FAIL() << "no closed surface has 2 triangles";
+    } catch (const QualityNotMet& error) {
+        const std::string message = error.what();
+        EXPECT_NE(message.find("2 triangles cannot be reached, "), std::string::npos) << message;
+        EXPECT_NE(message.find(" are left"), std::string::npos) << message;
+    }
+}
+
 TEST(SelfIntersections, balls_that_overlap_have_them_and_one_ball_has_none) {
     TriangleMesh two = isosurface(cone(Eigen::Matrix3d::Identity(), 10), 100);
     EXPECT_EQ(self_intersections(two), 0);
