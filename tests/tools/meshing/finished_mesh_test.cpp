@@ -227,6 +227,11 @@ TEST_F(FinishedMesh, counts_of_legacy_vtk_files_that_contradict_each_other_are_r
     expect_refusal({"1 cells"}, "d.vtk", legacy("1 5", "2"));
     expect_refusal({"10 numbers, of which the cells use 5"}, "e.vtk", legacy("1 10", "1"));
     expect_refusal({"announces 999999999 entries"}, "f.vtk", legacy("2 10", "999999999"));
+    for (const std::string corner : {"5", "-1", "4294967296"}) {
+        std::string text = legacy("2 10", "2");
+        text.replace(text.find("2 4 3\n"), 6, "2 4 " + corner + "\n");
+        expect_refusal({("names point " + corner).c_str()}, "h.vtk", text);
+    }
     expect_refusal({"a second section cells"}, "g.vtk", legacy("2 10", "2\n10 10\nCELLS 0 0\n"));
 }
 
