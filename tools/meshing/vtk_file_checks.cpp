@@ -150,6 +150,7 @@ void require_plausible_xml(const std::filesystem::path& path) {
         const std::size_t equals = header.find('=', at), open = header.find_first_of("\"'", equals);
         if (open == std::string::npos) return;
         const std::string_view name = header.substr(at, equals - at);
+        if (name.find_first_of("\"'<>") != std::string::npos) continue;  // an array's name
         const std::string_view value =
             header.substr(open + 1, header.find_first_of("\"'", open + 1) - open - 1);
         std::int64_t number = -1;

@@ -274,6 +274,7 @@ std::string vtu(const std::string& points, const std::string& cells, const std::
 
 TEST_F(FinishedMesh, counts_of_vtk_xml_files_that_cannot_be_are_refused) {
     EXPECT_EQ(tetrahedra("LIVER.VTU", vtu("5", "2", "3", "4 8")).tetrahedra.size(), 2U);
+    EXPECT_EQ(tetrahedra("n.vtu", vtu("5", "2", "3\" Name=\"NumberOfBones", "4 8")).tetrahedra.size(), 2U);
     expect_refusal({"NumberOfCells is '999999999999'"}, "a.vtu", vtu("5", "999999999999", "3", "4 8"));
     expect_refusal({"NumberOfPoints is '-1'"}, "b.vtu", vtu("-1", "2", "3", "4 8"));
     expect_refusal({"NumberOfComponents is '0'"}, "c.vtu", vtu("5", "2", "0", "4 8"));
