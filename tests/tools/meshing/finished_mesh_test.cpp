@@ -455,7 +455,7 @@ TEST_F(FinishedMesh, ply_is_read_in_every_kind_and_refused_when_cut) {
         EXPECT_NEAR(measure(read).volume, 1000.0 / 6, 1e-9);
         EXPECT_TRUE(noted("in RAS"));
         const std::size_t end = format == "ascii" ? text.size() - 9 : text.size();  // before the last number
-        for (std::size_t cut = 1; cut < end; ++cut)
+        for (std::size_t cut = 1; cut < end; cut += 7)
             EXPECT_EQ(refusal("b.ply", text.substr(0, cut)).find("nothing was thrown"), std::string::npos)
                 << cut;
     }
