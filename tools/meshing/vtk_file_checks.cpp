@@ -37,7 +37,7 @@ class LegacyCheck {
         file_.line();  // version
         file_.line();  // title
         binary_ = lower(file_.word()) == "binary";
-        std::int64_t cells = 0, types = 0;
+        std::int64_t points = 0, cells = 0, types = 0;
         std::set<std::string> seen;
         while (!file_.at_end()) {
             const std::string keyword = lower(file_.word());
@@ -48,7 +48,7 @@ class LegacyCheck {
             if (!seen.insert(keyword).second) file_.fail("a second section " + keyword, "one", again);
             const std::int64_t count = file_.require_room(file_.integer(), 1);
             if (keyword == "points")
-                skip_values(3 * count, std::string(file_.word()));
+                skip_values(3 * (points = count), std::string(file_.word()));
             else if (keyword == "cell_types")
                 skip_values(types = count, "int");
             else if (const std::int64_t found = check_cells(count); keyword == "cells")
@@ -56,6 +56,10 @@ class LegacyCheck {
         }
         if (cells != types)
             file_.fail(fmt::format("{} cells, but {} cell types", cells, types), "as many", again);
+        if (lowest_corner_ < 0 || highest_corner_ >= points)
+            file_.fail(
+                fmt::format("a cell names point {}", lowest_corner_ < 0 ? lowest_corner_ : highest_corner_),
+                fmt::format("0 ... {} - 1", points), again);
     }
 
   private:
@@ -83,6 +87,12 @@ class LegacyCheck {
                          : file_.raw<std::int32_t>(std::endian::big);
     }
 
+    void take_corner(std::size_t bytes) {
+        const std::int64_t corner = integer(bytes);
+        lowest_corner_ = std::min(lowest_corner_, corner);
+        highest_corner_ = std::max(highest_corner_, corner);
+    }
+
     // Returns the number of cells.
     std::int64_t check_cells(std::int64_t count) {
         const std::int64_t size = file_.require_room(file_.integer(), 1);
@@ -93,7 +103,7 @@ class LegacyCheck {
             const std::int64_t corners = left > 0 ? integer(4) : 0;
             if (left <= 0 || corners < 0 || corners >= left)
                 file_.fail(fmt::format("{} cells that do not fit into {} numbers", count, size), "", again);
-            for (std::int64_t c = 0; c < corners; ++c) integer(4);
+            for (std::int64_t c = 0; c < corners; ++c) take_corner(4);
             left -= corners + 1;
         }
         if (left != 0)
@@ -115,13 +125,16 @@ class LegacyCheck {
         if (last != size)
             file_.fail(fmt::format("offsets that end at {}", last), fmt::format("{}", size), again);
         if (lower(file_.word()) != "connectivity") file_.fail("no CONNECTIVITY after OFFSETS", "", again);
-        skip_values(size, std::string(file_.word()));
+        const std::size_t corner_bytes = size_of(std::string(file_.word()));
+        begin_values();
+        for (std::int64_t c = 0; c < size; ++c) take_corner(corner_bytes);
         return std::max<std::int64_t>(count - 1, 0);
     }
 
     static constexpr const char* again = "write the file again";
     Scanner file_;
     bool binary_ = false;
+    std::int64_t lowest_corner_ = 0, highest_corner_ = -1;
 };
 
 }  // namespace
@@ -137,6 +150,7 @@ void require_plausible_xml(const std::filesystem::path& path) {
         const std::size_t equals = header.find('=', at), open = header.find_first_of("\"'", equals);
         if (open == std::string::npos) return;
         const std::string_view name = header.substr(at, equals - at);
+        if (name.find_first_of("\"'<>") != std::string::npos) continue;  // an array's name
         const std::string_view value =
             header.substr(open + 1, header.find_first_of("\"'", open + 1) - open - 1);
         std::int64_t number = -1;
