@@ -49,7 +49,7 @@ if(PALPATE_TOOLS OR PALPATE_VISUAL)
     # VTK: surface filters, pictures for the report, the trainer's scene; ITK's users know it.
     find_package(VTK 9.1 REQUIRED COMPONENTS
         CommonCore CommonDataModel CommonTransforms FiltersCore FiltersGeneral FiltersGeometry FiltersModeling
-        FiltersSources FiltersVerdict ImagingCore IOGeometry IOHDF IOImage IOLegacy IOPLY IOXML
+        FiltersSources FiltersVerdict ImagingCore IOGeometry IOHDF IOImage IOLegacy IOXML
         InteractionStyle RenderingAnnotation RenderingCore RenderingFreeType RenderingOpenGL2 RenderingUI
         ChartsCore ViewsContext2D)
     # Xlib, which VTK draws through: asks whether a display answers, where VTK would abort.
