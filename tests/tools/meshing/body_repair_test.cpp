@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "formats/model/errors.hpp"
+#include "tests/tools/meshing/cube_mesh.hpp"
 #include "tests/tools/meshing/phantom.hpp"
 #include "tools/meshing/lift_flat_tetrahedra.hpp"
 #include "tools/meshing/quality.hpp"
@@ -57,21 +58,8 @@ TetMesh pinched() {
             for (int i = 0; i <= 2; ++i) mesh.rest_positions.emplace_back(i, j, k);
     for (int k = 0; k < 3; ++k)
         for (int j = 0; j < 2; ++j)
-            for (int i = 0; i < 2; ++i) {
-                if (k == 1 && i == j) continue;
-                for (const auto& [a, b] : {std::pair(0, 1), std::pair(1, 2), std::pair(2, 0), std::pair(1, 0),
-                                           std::pair(2, 1), std::pair(0, 2)}) {
-                    std::array<int, 3> first{i, j, k}, second{i, j, k};
-                    ++first[static_cast<std::size_t>(a)];
-                    ++second[static_cast<std::size_t>(a)];
-                    ++second[static_cast<std::size_t>(b)];
-                    Tetrahedron tet{node(i, j, k), node(first[0], first[1], first[2]),
-                                    node(second[0], second[1], second[2]), node(i + 1, j + 1, k + 1)};
-                    if ((b - a + 3) % 3 == 2) std::swap(tet[1], tet[2]);
-                    mesh.tetrahedra.push_back(tet);
-                    mesh.regions.push_back(1);
-                }
-            }
+            for (int i = 0; i < 2; ++i)
+                if (k != 1 || i != j) test::add_cube(mesh, {i, j, k}, 1, node);
     return mesh;
 }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "formats/model/errors.hpp"
+#include "tests/tools/meshing/cube_mesh.hpp"
 #include "tests/tools/meshing/phantom.hpp"
 #include "tools/meshing/fidelity.hpp"
 
@@ -31,19 +32,7 @@ TetMesh box(int nx, int ny, int nz) {
             for (int i = 0; i <= nx; ++i) mesh.rest_positions.emplace_back(i, j, k);
     for (int k = 0; k < nz; ++k)
         for (int j = 0; j < ny; ++j)
-            for (int i = 0; i < nx; ++i)
-                for (const auto& [a, b] : {std::pair(0, 1), std::pair(1, 2), std::pair(2, 0), std::pair(1, 0),
-                                           std::pair(2, 1), std::pair(0, 2)}) {
-                    std::array<int, 3> first{i, j, k}, second{i, j, k};
-                    ++first[static_cast<std::size_t>(a)];
-                    ++second[static_cast<std::size_t>(a)];
-                    ++second[static_cast<std::size_t>(b)];
-                    Tetrahedron tet{node(i, j, k), node(first[0], first[1], first[2]),
-                                    node(second[0], second[1], second[2]), node(i + 1, j + 1, k + 1)};
-                    if ((b - a + 3) % 3 == 2) std::swap(tet[1], tet[2]);
-                    mesh.tetrahedra.push_back(tet);
-                    mesh.regions.push_back(i < nx / 2 ? 4 : 9);
-                }
+            for (int i = 0; i < nx; ++i) test::add_cube(mesh, {i, j, k}, i < nx / 2 ? 4 : 9, node);
     return mesh;
 }
 
