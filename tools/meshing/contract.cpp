@@ -34,9 +34,9 @@ std::vector<Eigen::Vector3d> places_beyond(const RegionDistance& distance, doubl
     return places;
 }
 
-std::vector<ComponentCover> cover_components(const TetMesh& mesh, const RegionLabels& labels) {
+std::vector<ComponentCover> cover_components(const RegionLabels& labels,
+                                             const std::vector<std::int32_t>& painted) {
     const LabelComponents found = find_components(labels);
-    const std::vector<std::int32_t> painted = voxelise(mesh, labels.grid);
     std::vector<std::int64_t> covered(found.components.size(), 0);
     for (std::size_t v = 0; v < painted.size(); ++v)
         covered[static_cast<std::size_t>(found.component_of[v])] +=
@@ -61,8 +61,9 @@ std::string region_name(const TetMesh& mesh, std::int32_t region) {
 
 MeshMeasures measure(const TetMesh& mesh, const RegionLabels& labels,
                      std::span<const TriangleMesh> surfaces) {
-    return {measure(mesh), compare(mesh, labels), region_distances(mesh, labels, surfaces),
-            cover_components(mesh, labels)};
+    const std::vector<std::int32_t> painted = voxelise(mesh, labels.grid);
+    return {measure(mesh), compare(mesh, labels, painted), region_distances(mesh, labels, surfaces),
+            cover_components(labels, painted)};
 }
 
 std::vector<ContractCheck> check_shape(const QualityContract& contract, const TetMesh& mesh,

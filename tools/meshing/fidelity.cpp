@@ -70,6 +70,10 @@ std::vector<std::int32_t> voxelise(const TetMesh& mesh, const ImageGrid& grid) {
 }
 
 BodyFidelity compare(const TetMesh& mesh, const RegionLabels& labels) {
+    return compare(mesh, labels, voxelise(mesh, labels.grid));
+}
+
+BodyFidelity compare(const TetMesh& mesh, const RegionLabels& labels, std::span<const std::int32_t> painted) {
     // Regions by number, 1, 2, ...; entry 0 is the body.
     std::vector<Overlap> overlaps(labels.values.size() + 1);
     std::map<std::int32_t, std::size_t> number_of;
@@ -85,7 +89,6 @@ BodyFidelity compare(const TetMesh& mesh, const RegionLabels& labels) {
         for (const std::size_t k : {number(mesh.regions[t]), std::size_t{0}})
             overlaps[k].mesh_volume += six_volume(mesh, t) / 6;
 
-    const std::vector<std::int32_t> painted = voxelise(mesh, labels.grid);
     std::size_t offset = 0;
     for (std::int32_t k = 0; k < labels.grid.size[2]; ++k)
         for (std::int32_t j = 0; j < labels.grid.size[1]; ++j)

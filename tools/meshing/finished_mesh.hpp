@@ -32,7 +32,7 @@ struct FinishedMeshOptions {
 /// points, lines, triangles. Refused with InvalidInput naming the place and the next step: other solid cells,
 /// tetrahedra without volume, three or more at one face, two that overlap at a face, faces that lie on each
 /// other without sharing nodes, names for absent regions, unreadable or unknown files.
-/// Cost: O(n log n), 1 s for 500 000 tetrahedra.
+/// Cost: O(n log n).
 TetMesh read_finished_tetrahedra(const std::filesystem::path& path, const FinishedMeshOptions& options,
                                  const NoteSink& note = {});
 

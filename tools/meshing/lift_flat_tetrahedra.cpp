@@ -23,16 +23,14 @@ class Lifter {
         for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
             for (const std::int32_t node : mesh.tetrahedra[t])
                 stars_[static_cast<std::size_t>(node)].push_back(t);
-        const std::vector<TetFace> faces = sorted_faces(mesh);
-        for (std::size_t i = 0; i < faces.size();) {
-            const bool shared = i + 1 < faces.size() && faces[i + 1].sorted_nodes == faces[i].sorted_nodes;
-            if (!shared)
-                add_normal(faces[i]);
-            else if (mesh.regions[faces[i].tet] != mesh.regions[faces[i + 1].tet])
-                // Always seen from the same region, so that the normals of one interface add up.
-                add_normal(mesh.regions[faces[i].tet] < mesh.regions[faces[i + 1].tet] ? faces[i]
-                                                                                       : faces[i + 1]);
-            i += shared ? 2 : 1;
+        for (const InterfaceFace& face : interface_faces(mesh)) {
+            const auto corner = [&](std::size_t c) -> const Eigen::Vector3d& {
+                return start_[static_cast<std::size_t>(face.nodes[c])];
+            };
+            // Always seen from the same region, so that the normals of one interface add up.
+            const double side = face.outer > 0 && face.inner > face.outer ? -1 : 1;
+            const Eigen::Vector3d area = side * (corner(1) - corner(0)).cross(corner(2) - corner(0));
+            for (const std::int32_t node : face.nodes) normals_[static_cast<std::size_t>(node)] += area;
         }
         for (Eigen::Vector3d& normal : normals_) normal.normalize();
     }
@@ -51,16 +49,6 @@ class Lifter {
     }
 
   private:
-    void add_normal(const TetFace& face) {
-        const Tetrahedron& tet = mesh_.tetrahedra[face.tet];
-        const auto corner = [&](std::size_t c) {
-            return static_cast<std::size_t>(tet[tetrahedron_faces[face.face][c]]);
-        };
-        const Eigen::Vector3d area =
-            (start_[corner(1)] - start_[corner(0)]).cross(start_[corner(2)] - start_[corner(0)]);
-        for (std::size_t c = 0; c < 3; ++c) normals_[corner(c)] += area;
-    }
-
     // Interior nodes, which have no normal, may go anywhere.
     bool within_reach(std::size_t node) const {
         if (normals_[node].isZero()) return true;

@@ -15,7 +15,7 @@ namespace palpate {
 /// surface as closely as flat triangles can: nodes that lie on a curved surface leave their triangles all on
 /// one side of it. The displacements d at the nodes are the least-squares fit of the gap g n between
 /// triangles and surface: integral N_i (g n - sum_j N_j d_j) = 0, with linear N. So volumes and centroids
-/// agree too, to first order. Five rounds with the lumped matrix. Cost: 0.1 s for 10 000 surface triangles.
+/// agree too, to first order. Five rounds with the lumped matrix. Cost: O(tetrahedra).
 void fit_surface(TetMesh& mesh, const SmoothedLabels& labels, double floor_deg, double max_distance);
 
 /// Moves the nodes on region interfaces and on the boundary along their normals so that region k gets the

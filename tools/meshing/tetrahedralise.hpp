@@ -65,8 +65,7 @@ MeshDomain prepare_domain(const LabelMap& map, std::span<const std::int32_t> reg
 /// up to two voxel diagonals away.
 ///
 /// Throws InvalidInput for values without voxels and sizes that are not positive. Sequential: equal inputs
-/// give equal bytes on every run. Cost: 25 000 tetrahedra/s, plus 0.1 s per million voxels around the
-/// regions.
+/// give equal bytes on every run. Cost: tests/benchmarks/README.md.
 TetMesh tetrahedralise(const LabelMap& map, std::span<const std::int32_t> region_values,
                        const MeshSizing& sizing, const ProgressCallback& progress = {});
 
