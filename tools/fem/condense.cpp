@@ -38,10 +38,11 @@ ExactCompliance condense(const DeformableBody& body, const ProgressCallback& pro
 
     ExactCompliance result;
     progress("ordering", 0.0);
-    const auto position = surface_last_ordering(body.mesh, body.fixed_nodes, body.contact_nodes);
+    const Discretisation discretisation = discretise(body);
+    const auto position = surface_last_ordering(discretisation, body.contact_nodes);
     progress("assembling the stiffness", 0.05);
     {
-        const LowerSparse stiffness = assemble_stiffness(body.mesh, body.materials, position);
+        const LowerSparse stiffness = assemble_stiffness(body.mesh, body.materials, discretisation, position);
         progress("factorising", 0.1);
         result.lower = SparseCholesky(stiffness, Elimination::as_given).trailing_factor(size);
     }

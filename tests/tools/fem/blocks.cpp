@@ -67,9 +67,10 @@ DeformableBody held_block(std::array<int, 3> cells, const Eigen::Vector3d& size,
 }
 
 Eigen::MatrixXd full_stiffness(const DeformableBody& body) {
-    std::vector<std::int32_t> all(body.mesh.rest_positions.size());
+    const Discretisation discretisation = discretise(body);
+    std::vector<std::int32_t> all(discretisation.node_count);
     std::iota(all.begin(), all.end(), 0);
-    const LowerSparse lower = assemble_stiffness(body.mesh, body.materials, all);
+    const LowerSparse lower = assemble_stiffness(body.mesh, body.materials, discretisation, all);
     const Eigen::MatrixXd dense(lower);
     return dense.selfadjointView<Eigen::Lower>();
 }

@@ -22,12 +22,13 @@ DeformableBody held_block(std::array<int, 3> cells, const Eigen::Vector3d& size,
 std::vector<std::int32_t> nodes_where(const TetMesh& mesh,
                                       const std::function<bool(const Eigen::Vector3d&)>& condition);
 
-/// Displacements (3 per node) under prescribed values on `held` nodes and nodal forces elsewhere, by a dense
-/// solve of the whole system: the oracle that the sparse and condensed paths are held against.
+/// Displacements (3 per node of discretise(body)) under prescribed values on `held` nodes and nodal forces
+/// elsewhere, by a dense solve of the whole system: the oracle that the sparse and condensed paths are held
+/// against.
 Eigen::VectorXd solve_dense(const DeformableBody& body, std::span<const std::int32_t> held,
                             const Eigen::VectorXd& prescribed, const Eigen::VectorXd& forces);
 
-/// The full stiffness, dense, all nodes free, 3n x 3n.
+/// The full stiffness, dense, all n nodes of discretise(body) free, 3n x 3n.
 Eigen::MatrixXd full_stiffness(const DeformableBody& body);
 
 }  // namespace palpate::test

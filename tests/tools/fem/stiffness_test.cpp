@@ -19,7 +19,7 @@ const std::array<Eigen::Vector3d, 4> corner_points{
 constexpr double round_off = 1e-13;
 
 TEST(TetElement, stiffness_annihilates_rigid_motions) {
-    const auto K = tetrahedron_stiffness(corner_points, tissue);
+    const auto K = tetrahedron_stiffness(corner_points, tissue, ElementOrder::linear);
     Eigen::Matrix<double, 12, 6> motions;
     for (int a = 0; a < 4; ++a)
         for (int axis = 0; axis < 3; ++axis) {
@@ -31,7 +31,7 @@ TEST(TetElement, stiffness_annihilates_rigid_motions) {
 }
 
 TEST(TetElement, stiffness_is_symmetric_with_exactly_six_zero_eigenvalues) {
-    const auto K = tetrahedron_stiffness(corner_points, tissue);
+    const auto K = tetrahedron_stiffness(corner_points, tissue, ElementOrder::linear);
     EXPECT_LT((K - K.transpose()).cwiseAbs().maxCoeff(), round_off);
     const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K).eigenvalues();
     EXPECT_LT(values.head(6).cwiseAbs().maxCoeff(), round_off);
@@ -47,7 +47,8 @@ TEST(TetElement, energy_of_uniform_strain_equals_hookes_law) {
     const Eigen::Vector3d a = corner_points[1] - corner_points[0], b = corner_points[2] - corner_points[0],
                           c = corner_points[3] - corner_points[0];
     const double expected = a.cross(b).dot(c) / 6 * (lambda + 2 * mu) * e * e / 2;
-    EXPECT_NEAR(0.5 * u.dot(tetrahedron_stiffness(corner_points, tissue) * u), expected, 1e-12 * expected);
+    EXPECT_NEAR(0.5 * u.dot(tetrahedron_stiffness(corner_points, tissue, ElementOrder::linear) * u), expected,
+                1e-12 * expected);
 }
 
 TEST(Stiffness, assembly_equals_the_sum_of_scattered_elements) {
@@ -59,7 +60,7 @@ TEST(Stiffness, assembly_equals_the_sum_of_scattered_elements) {
         std::array<Eigen::Vector3d, 4> points;
         for (std::size_t c = 0; c < 4; ++c)
             points[c] = body.mesh.rest_positions[static_cast<std::size_t>(tet[c])];
-        const auto K = tetrahedron_stiffness(points, tissue);
+        const auto K = tetrahedron_stiffness(points, tissue, ElementOrder::linear);
         for (int a = 0; a < 4; ++a)
             for (int b = 0; b < 4; ++b)
                 scattered.block<3, 3>(3 * tet[static_cast<std::size_t>(a)],
