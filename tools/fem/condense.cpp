@@ -59,9 +59,10 @@ ExactCompliance condense(const DeformableBody& body, const ProgressCallback& pro
             {body.name, "every surface node is held, so nothing can be touched", "", "hold fewer nodes"});
 
     progress("ordering", 0.0);
-    const auto position = surface_last_ordering(body.mesh, body.fixed_nodes, body.contact_nodes);
+    const Discretisation discretisation = discretise(body);
+    const auto position = surface_last_ordering(discretisation, body.contact_nodes);
     progress("assembling the stiffness", 0.05);
-    LowerSparse stiffness = assemble_stiffness(body.mesh, body.materials, position);
+    LowerSparse stiffness = assemble_stiffness(body.mesh, body.materials, discretisation, position);
     stiffness = with_full_column(stiffness, stiffness.cols() - size);
     progress("factorising", 0.1);
     SparseCholesky factor(stiffness, Elimination::as_given);
