@@ -6,8 +6,8 @@
 #include <lapacke.h>
 #include <random>
 
-#include "tools/fem/boundary_conditions.hpp"
 #include "tools/fem/eigenvalues.hpp"
+#include "tools/fem/rigid_motions.hpp"
 #include "tools/fem/sparse_cholesky.hpp"
 #include "tools/fem/stiffness.hpp"
 

@@ -7,23 +7,15 @@
 #include <utility>
 
 #include "formats/model/errors.hpp"
-#include "tools/fem/boundary_conditions.hpp"
 #include "tools/fem/certificate.hpp"
 #include "tools/fem/eigenvalues.hpp"
+#include "tools/fem/node_rules.hpp"
 #include "tools/fem/ordering.hpp"
+#include "tools/fem/rigid_motions.hpp"
 #include "tools/fem/sparse_cholesky.hpp"
 #include "tools/fem/stiffness.hpp"
 
 namespace palpate {
-namespace {
-
-std::vector<std::int32_t> contact_nodes_of(const DeformableBody& body) {
-    std::vector<std::int32_t> nodes;
-    std::ranges::set_difference(body.boundary.nodes, body.fixed_nodes, std::back_inserter(nodes));
-    return nodes;
-}
-
-}  // namespace
 
 void set_linear_algebra_threads(int threads) {
     openblas_set_num_threads(threads);
@@ -87,7 +79,7 @@ DenseCompliance to_stored(const Eigen::MatrixXd& lower) {
 
 DeformableBody condensed_body(DeformableBody body, const ProgressCallback& progress) {
     body.boundary = boundary_surface(body.mesh);
-    body.contact_nodes = contact_nodes_of(body);
+    body.contact_nodes = contact_surface_of(body);
     const ExactCompliance exact = condense(body, progress);
     progress("storing", 0.8);
     body.compliance = to_stored(exact.lower);
