@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <fmt/format.h>
 #include <set>
 #include <toml++/toml.h>
@@ -49,9 +50,9 @@ class Reader {
         known_.insert(key);
         static const toml::table empty;
         const toml::node* node = table_.get(key);
-        if (node == nullptr) return {empty, file_, where_ + "." + key};
+        if (node == nullptr) return {empty, file_, place_of(key)};
         if (!node->is_table()) fail(*node, key, "has the wrong type", "a table");
-        return {*node->as_table(), file_, where_ + "." + key};
+        return {*node->as_table(), file_, place_of(key)};
     }
 
     // The tables of an array of tables, [[key]].
@@ -64,7 +65,7 @@ class Reader {
         for (const toml::node& item : *node->as_array()) {
             if (!item.is_table())
                 fail(item, key, "has the wrong type", "an array of tables, [[" + key + "]]");
-            readers.emplace_back(*item.as_table(), file_, where_ + key);
+            readers.emplace_back(*item.as_table(), file_, place_of(key));
         }
         return readers;
     }
@@ -79,6 +80,29 @@ class Reader {
         if (values.size() != count)
             fail(table_, key, "cannot be read", std::to_string(count) + " numbers in mm");
         return values;
+    }
+
+    std::optional<std::vector<double>> optional_numbers(const std::string& key, std::size_t count) {
+        known_.insert(key);
+        if (!has(key)) return std::nullopt;
+        return numbers(key, count);
+    }
+
+    // A text that must be one of a few.
+    std::optional<std::string> choice(const std::string& key, const std::vector<std::string>& choices) {
+        const auto text = optional<std::string>(key);
+        if (text && std::ranges::find(choices, *text) == choices.end())
+            fail(*table_.get(key), key, "is '" + *text + "'", fmt::format("{}", fmt::join(choices, ", ")),
+                 "did you mean " + nearest_names(*text, choices).front() + "?");
+        return text;
+    }
+
+    // A number above zero.
+    std::optional<double> positive(const std::string& key) {
+        const auto value = optional<double>(key);
+        if (value && !(*value > 0 && std::isfinite(*value)))
+            fail(*table_.get(key), key, fmt::format("is {}", *value), "a number above 0");
+        return value;
     }
 
     bool has(const std::string& key) const { return table_.contains(key); }
@@ -107,6 +131,8 @@ class Reader {
     }
 
   private:
+    std::string place_of(const std::string& key) const { return where_.empty() ? key : where_ + "." + key; }
+
     const toml::table& table_;
     std::string file_, where_;
     std::set<std::string> known_;
@@ -116,18 +142,50 @@ std::string joined(const std::vector<double>& values) {
     return fmt::format("{}", fmt::join(values, ","));
 }
 
-// { touching = "skull" } or { sphere_mm = [x, y, z, r] } ... as palpate condense --fixed takes it.
-std::string fixed_rule(Reader rule) {
-    std::string text;
-    if (const auto label = rule.optional<std::string>("touching")) text = "touching:" + *label;
-    for (const auto& [key, count] :
-         std::map<std::string, std::size_t>{{"box", 6}, {"sphere", 4}, {"plane", 6}})
-        if (rule.has(key + "_mm")) text = key + ":" + joined(rule.numbers(key + "_mm", count));
-    if (text.empty() || rule.raw().size() != 1)
-        rule.fail(
-            rule.raw(), "fixed", "has a rule that is not understood",
-            "one of { touching = \"label\" }, { box_mm = [6] }, { sphere_mm = [4] }, { plane_mm = [6] }");
-    return text;
+// The rules under `key`, { touching = "skull" } or { sphere_mm = [x, y, z, r] } ..., as palpate condense
+// takes them; files that they name are added to `files`.
+std::vector<std::string> node_rules(Reader& body, const std::string& key, const std::filesystem::path& folder,
+                                    std::vector<std::filesystem::path>& files) {
+    std::vector<std::string> rules;
+    for (Reader table : body.tables(key)) {
+        std::vector<std::string> found;
+        if (const auto label = table.optional<std::string>("touching")) found.push_back("touching:" + *label);
+        if (const auto region = table.optional<std::string>("region")) found.push_back("region:" + *region);
+        for (const auto& [shape, count] :
+             std::map<std::string, std::size_t>{{"box", 6}, {"sphere", 4}, {"plane", 6}})
+            if (const auto numbers = table.optional_numbers(shape + "_mm", count))
+                found.push_back(shape + ":" + joined(*numbers));
+        if (const auto file = table.optional<std::string>("nodes_file")) {
+            files.push_back(folder / *file);
+            found.push_back("nodes:" + files.back().string());
+        }
+        table.refuse_unknown();
+        if (found.size() != 1)
+            body.fail(table.raw(), key, "has a rule that is not understood",
+                      "one of { touching = \"label\" }, { region = \"name\" }, { box_mm = [6] }, { sphere_mm "
+                      "= [4] }, "
+                      "{ plane_mm = [6] }, { nodes_file = \"nodes.txt\" }");
+        rules.push_back(found.front());
+    }
+    return rules;
+}
+
+// How the compliance is computed and stored, as options of palpate condense.
+std::vector<std::string> condense_options(Reader& body) {
+    std::vector<std::string> options;
+    const auto add = [&](const std::string& option, const std::string& value) {
+        options.push_back(option);
+        options.push_back(value);
+    };
+    if (const auto element = body.choice("element", {"linear", "quadratic"})) add("--element", *element);
+    Reader compliance = body.table("compliance");
+    for (const auto& [key, option] : std::map<std::string, std::string>{
+             {"accuracy", "--accuracy"}, {"size_mib", "--size"}, {"memory_gib", "--memory"}})
+        if (const auto value = compliance.positive(key)) add(option, fmt::format("{}", *value));
+    if (const auto form = compliance.choice("representation", {"auto", "dense", "hierarchical"}))
+        add("--representation", *form);
+    compliance.refuse_unknown();
+    return options;
 }
 
 nlohmann::ordered_json to_json(const toml::node& node) {
@@ -232,7 +290,9 @@ DeformableSpec deformable(Reader reader, const std::filesystem::path& folder) {
                                                  {"facet_distance_mm", "--facet-distance"},
                                                  {"smoothing_mm", "--smoothing"}});
     for (Reader place : reader.tables("refine")) spec.near.push_back(near_rule(place));
-    for (Reader rule : reader.tables("fixed")) spec.fixed.push_back(fixed_rule(rule));
+    spec.fixed = node_rules(reader, "fixed", folder, spec.node_files);
+    spec.contact = node_rules(reader, "contact", folder, spec.node_files);
+    spec.condense_options = condense_options(reader);
     for (Reader region : reader.tables("region")) {
         spec.regions.push_back(
             {region.required<std::string>("label"), region.required<double>("youngs_modulus_kpa"),
