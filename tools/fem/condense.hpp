@@ -26,7 +26,8 @@ DenseCompliance to_stored(const Eigen::MatrixXd& lower);
 
 /// Completes a body from its mesh, materials, fixed nodes and, if it names any, contact nodes: boundary,
 /// contact nodes (otherwise every boundary node that is not fixed), compliance and certificate. The OBB tree
-/// stays empty. Throws InvalidInput if contact_surface_of() refuses the contact nodes, and as condense() does.
+/// stays empty. Throws InvalidInput if contact_surface_of() refuses the contact nodes, and as condense()
+/// does.
 DeformableBody condensed_body(DeformableBody body, const ProgressCallback& progress);
 
 /// Limits the threads of the dense kernels.
