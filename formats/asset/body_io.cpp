@@ -12,7 +12,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::int32_t schema = 1;
+constexpr std::int32_t schema = 2;
 constexpr auto any = Hdf5File::any;
 
 // Rows of the asset's arrays are the in-memory values, byte for byte.
@@ -72,11 +72,58 @@ BoundarySurface read_boundary(const Hdf5File& file, const std::string& path, con
     return boundary;
 }
 
-DenseCompliance map_compliance(const Hdf5File& file, const std::string& path, std::size_t node_count) {
+void write_compliance(Hdf5Writer& writer, const std::string& path, const DenseCompliance& compliance) {
+    const std::size_t dofs = compliance.dof_count();
+    writer.dataset(path + "/dense", std::span(compliance.entries.get(), dofs * dofs), {dofs, dofs}, "mm/N");
+}
+
+void write_compliance(Hdf5Writer& writer, const std::string& path, const HierarchicalCompliance& compliance) {
+    const BlockColumns columns = columns_of(compliance.blocks);
+    writer.attribute(path, "depth", compliance.depth);
+    writer.attribute(path, "accuracy", compliance.accuracy);
+    write_rows<std::int32_t>(writer, path + "/order", compliance.order);
+    write_rows<std::int32_t>(writer, path + "/first_child", columns.first_child);
+    write_rows<std::int32_t>(writer, path + "/rank", columns.rank);
+    write_rows<std::int64_t>(writer, path + "/block_values", columns.values);
+    write_rows<std::int64_t>(writer, path + "/block_factors", columns.factors);
+    writer.dataset(path + "/values", std::span(compliance.values.get(), compliance.value_count),
+                   {compliance.value_count}, "mm/N");
+    writer.dataset(path + "/factors", std::span(compliance.factors.get(), compliance.factor_count),
+                   {compliance.factor_count});
+}
+
+DenseCompliance map_dense(const Hdf5File& file, const std::string& path, std::size_t node_count) {
     const auto dofs = static_cast<std::int64_t>(3 * node_count);
-    const std::span<const float> entries = file.dataset<float>(path, {dofs, dofs});
+    const std::span<const float> entries = file.dataset<float>(path + "/dense", {dofs, dofs});
     return {static_cast<std::int32_t>(node_count),
             std::shared_ptr<const float>(file.mapping().owner(), entries.data())};
+}
+
+HierarchicalCompliance map_hierarchical(const Hdf5File& file, const std::string& path, std::size_t node_count) {
+    HierarchicalCompliance compliance;
+    compliance.node_count = static_cast<std::int32_t>(node_count);
+    compliance.depth = file.attribute<std::int32_t>(path, "depth");
+    compliance.accuracy = file.attribute<double>(path, "accuracy");
+    compliance.order = read_rows<std::int32_t, std::int32_t>(file, path + "/order",
+                                                             static_cast<std::int64_t>(node_count));
+    const auto first_child = read_rows<std::int32_t, std::int32_t>(file, path + "/first_child");
+    const auto count = static_cast<std::int64_t>(first_child.size());
+    const auto rank = file.dataset<std::int32_t>(path + "/rank", {count});
+    const auto block_values = file.dataset<std::int64_t>(path + "/block_values", {count});
+    const auto block_factors = file.dataset<std::int64_t>(path + "/block_factors", {count});
+    for (std::size_t b = 0; b < first_child.size(); ++b)
+        compliance.blocks.push_back({first_child[b], rank[b], block_values[b], block_factors[b]});
+    const auto values = file.dataset<float>(path + "/values", {any});
+    compliance.value_count = values.size();
+    compliance.values = std::shared_ptr<const float>(file.mapping().owner(), values.data());
+    const auto factors = file.dataset<std::int16_t>(path + "/factors", {any});
+    compliance.factor_count = factors.size();
+    compliance.factors = std::shared_ptr<const std::int16_t>(file.mapping().owner(), factors.data());
+    check_hierarchical(compliance, file.name() + ": " + path);  // before positions are made of the order
+    compliance.positions.resize(node_count);
+    for (std::size_t p = 0; p < node_count; ++p)
+        compliance.positions[static_cast<std::size_t>(compliance.order[p])] = static_cast<std::int32_t>(p);
+    return compliance;
 }
 
 }  // namespace
@@ -98,7 +145,9 @@ void check_header(const Hdf5File& file, const std::string& kind) {
         throw InvalidInput({file.name(), "has schema " + std::to_string(found_schema),
                             "at most " + std::to_string(schema),
                             "use a newer palpate, or make the file again with this one"});
-    if (found_schema != schema) file.refuse("/palpate", "has schema " + std::to_string(found_schema), "1");
+    if (found_schema != schema)
+        throw InvalidInput({file.name(), "has schema " + std::to_string(found_schema), std::to_string(schema),
+                            "make the file again with this palpate"});
     const std::string found_kind = file.text_attribute("/palpate", "kind");
     if (found_kind != kind)
         throw InvalidInput(
@@ -187,9 +236,10 @@ void write_condensed_body(Hdf5Writer& writer, const std::string& path, const Def
     write_rows<std::int32_t>(writer, path + "/surface_triangles", body.boundary.surface.triangles);
     write_rows<std::int32_t>(writer, path + "/contact_nodes", body.contact_nodes);
 
-    const std::size_t dofs = body.compliance.dof_count();
-    writer.dataset(path + "/compliance", std::span(body.compliance.entries.get(), dofs * dofs), {dofs, dofs},
-                   "mm/N");
+    writer.attribute(path, "element_order", static_cast<std::int32_t>(body.element_order));
+    writer.group(path + "/compliance");
+    std::visit([&](const auto& compliance) { write_compliance(writer, path + "/compliance", compliance); },
+               body.compliance);
     writer.attribute(path + "/compliance", "mechanics_sha256", mechanics);
     writer.group(path + "/certificate");
     visit_certificate(body.certificate, [&](const char* name, const auto& value) {
@@ -214,7 +264,14 @@ DeformableBody read_condensed_body(const Hdf5File& file, const std::string& path
     body.fixed_nodes = read_rows<std::int32_t, std::int32_t>(file, path + "/fixed_nodes");
     body.boundary = read_boundary(file, path, body.mesh);
     body.contact_nodes = read_rows<std::int32_t, std::int32_t>(file, path + "/contact_nodes");
-    body.compliance = map_compliance(file, path + "/compliance", body.contact_nodes.size());
+    const auto element_order = file.attribute<std::int32_t>(path, "element_order");
+    if (element_order != 1 && element_order != 2)
+        file.refuse(path, "has element_order " + std::to_string(element_order), "1 (linear) or 2 (quadratic)");
+    body.element_order = static_cast<ElementOrder>(element_order);
+    if (file.contains(path + "/compliance/dense"))
+        body.compliance = map_dense(file, path + "/compliance", body.contact_nodes.size());
+    else
+        body.compliance = map_hierarchical(file, path + "/compliance", body.contact_nodes.size());
     visit_certificate(body.certificate, [&](const char* name, auto& value) {
         value = file.attribute<std::remove_reference_t<decltype(value)>>(path + "/certificate", name);
     });

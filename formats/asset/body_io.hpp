@@ -37,6 +37,11 @@ void visit_certificate(Certificate& certificate, Visit&& visit) {
     visit("largest_eigenvalue", certificate.largest_eigenvalue);
     visit("condition_number", certificate.condition_number);
     visit("reciprocity", certificate.reciprocity);
+    visit("load_error", certificate.load_error);
+    visit("contact_error", certificate.contact_error);
+    visit("sampled_loads", certificate.sampled_loads);
+    visit("smallest_patch_eigenvalue", certificate.smallest_patch_eigenvalue);
+    visit("discretisation_error", certificate.discretisation_error);
     visit("sampled_columns", certificate.sampled_columns);
     visit("free_dofs", certificate.free_dofs);
 }

@@ -35,4 +35,15 @@ ObbColumns columns_of(const std::vector<ObbNode>& nodes) {
     return columns;
 }
 
+BlockColumns columns_of(const std::vector<ComplianceBlock>& blocks) {
+    BlockColumns columns;
+    for (const ComplianceBlock& block : blocks) {
+        columns.first_child.push_back(block.first_child);
+        columns.rank.push_back(block.rank);
+        columns.values.push_back(block.values);
+        columns.factors.push_back(block.factors);
+    }
+    return columns;
+}
+
 }  // namespace palpate

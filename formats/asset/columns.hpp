@@ -33,4 +33,10 @@ struct ObbColumns {
 };
 ObbColumns columns_of(const std::vector<ObbNode>& nodes);
 
+struct BlockColumns {
+    std::vector<std::int32_t> first_child, rank;
+    std::vector<std::int64_t> values, factors;
+};
+BlockColumns columns_of(const std::vector<ComplianceBlock>& blocks);
+
 }  // namespace palpate

@@ -86,7 +86,8 @@ std::string mechanics_digest(const DeformableBody& body) {
     return sha256(line("rest_positions", body.mesh.rest_positions) +
                   line("tetrahedra", body.mesh.tetrahedra) + line("regions", body.mesh.regions) +
                   line("material_regions", materials.regions) + line("materials", materials.values) +
-                  line("fixed_nodes", body.fixed_nodes));
+                  line("fixed_nodes", body.fixed_nodes) + line("contact_nodes", body.contact_nodes) +
+                  "element_order " + std::to_string(static_cast<std::int32_t>(body.element_order)) + '\n');
 }
 
 }  // namespace palpate

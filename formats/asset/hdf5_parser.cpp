@@ -267,6 +267,8 @@ class Parser {
                               [](unsigned a, std::byte b) { return a == std::to_integer<unsigned>(b); });
         };
         if (kind == 0 && bits[0] == 0x00 && size == 1 && matches({0, 0, 8, 0})) return {ScalarType::uint8, 1};
+        if (kind == 0 && bits[0] == 0x08 && size == 2 && matches({0, 0, 16, 0}))
+            return {ScalarType::int16, 2};
         if (kind == 0 && bits[0] == 0x08 && size == 4 && matches({0, 0, 32, 0}))
             return {ScalarType::int32, 4};
         if (kind == 0 && bits[0] == 0x08 && size == 8 && matches({0, 0, 64, 0}))
@@ -280,7 +282,7 @@ class Parser {
         if (kind == 3 && size > 0) return {ScalarType::text, size};
         if (kind == 9 && (bits[0] & 0x0FU) == 1 && size == 16) return {ScalarType::variable_text, size};
         refuse("has a type of class " + std::to_string(kind) + " and size " + std::to_string(size),
-               "uint8, int32, int64, float32, float64 (little-endian) or text of fixed length");
+               "uint8, int16, int32, int64, float32, float64 (little-endian) or text of fixed length");
     }
 
     // IV.A.2.i.

@@ -12,12 +12,14 @@ namespace palpate {
 /// The element types that an asset may use; all little-endian. `text` is of fixed length; `variable_text`
 /// occurs below /VTKHDF/FieldData alone, for VTK 9.1, which reads no other: it is neither read nor part of
 /// the manifest.
-enum class ScalarType { uint8, int32, int64, float32, float64, text, variable_text };
+enum class ScalarType { uint8, int16, int32, int64, float32, float64, text, variable_text };
 
 template <typename T>
 constexpr ScalarType scalar_type() {
     if constexpr (std::is_same_v<T, std::uint8_t>)
         return ScalarType::uint8;
+    else if constexpr (std::is_same_v<T, std::int16_t>)
+        return ScalarType::int16;
     else if constexpr (std::is_same_v<T, std::int32_t>)
         return ScalarType::int32;
     else if constexpr (std::is_same_v<T, std::int64_t>)

@@ -47,6 +47,8 @@ hid_t number_type(ScalarType type) {
     switch (type) {
         case ScalarType::uint8:
             return H5T_STD_U8LE;
+        case ScalarType::int16:
+            return H5T_STD_I16LE;
         case ScalarType::int32:
             return H5T_STD_I32LE;
         case ScalarType::int64:

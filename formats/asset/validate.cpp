@@ -112,10 +112,12 @@ void check_boundary(const DeformableBody& body, const std::string& where) {
 
     check_ascending(body.fixed_nodes, body.mesh.rest_positions.size(), where + "/fixed_nodes");
     if (body.fixed_nodes.empty()) refuse(where + "/fixed_nodes", "is empty", "nodes that hold the body");
-    std::vector<std::int32_t> contact_nodes;
-    std::ranges::set_difference(boundary.nodes, body.fixed_nodes, std::back_inserter(contact_nodes));
-    if (body.contact_nodes != contact_nodes)
-        refuse(where + "/contact_nodes", "is not the boundary nodes without the fixed ones");
+    check_ascending(body.contact_nodes, body.mesh.rest_positions.size(), where + "/contact_nodes");
+    for (const std::int32_t node : body.contact_nodes)
+        if (!std::ranges::binary_search(boundary.nodes, node) ||
+            std::ranges::binary_search(body.fixed_nodes, node))
+            refuse(where + "/contact_nodes", "node " + std::to_string(node) + " is not free surface",
+                   "boundary nodes that are not fixed");
 }
 
 // A float is finite unless all bits of its exponent are set; as integers, the test runs on whole vectors.
@@ -127,12 +129,7 @@ bool all_finite(std::span<const float> values) {
     return found == 0;
 }
 
-void check_compliance(const DeformableBody& body, const std::string& where) {
-    const DenseCompliance& compliance = body.compliance;
-    if (compliance.node_count < 1 ||
-        static_cast<std::size_t>(compliance.node_count) != body.contact_nodes.size() || !compliance.entries)
-        refuse(where, "has " + std::to_string(compliance.node_count) + " nodes",
-               std::to_string(body.contact_nodes.size()) + " contact nodes, at least one");
+void check_dense(const DenseCompliance& compliance, const std::string& where) {
     const std::size_t dofs = compliance.dof_count();
     if (!all_finite({compliance.entries.get(), dofs * dofs}))
         refuse(where, "has an entry that is not finite");
@@ -141,10 +138,70 @@ void check_compliance(const DeformableBody& body, const std::string& where) {
             refuse(where, "diagonal entry " + std::to_string(dof) + " is not positive");
 }
 
+// Walks the tree of blocks: every block once, parts after their whole, sizes within the values.
+class BlockWalk {
+  public:
+    BlockWalk(const HierarchicalCompliance& compliance, const std::string& where)
+        : c_(compliance), where_(where), seen_(compliance.blocks.size(), false) {}
+
+    void visit(std::size_t index, std::int32_t level, std::int32_t row, std::int32_t column) {
+        if (index >= seen_.size() || seen_[index]) refuse(where_, "has blocks out of place");
+        seen_[index] = true;
+        const ComplianceBlock& block = c_.blocks[index];
+        const std::string name = "block " + std::to_string(index);
+        if (block.first_child != 0) {
+            if (block.first_child <= static_cast<std::int64_t>(index) || level == c_.depth)
+                refuse(where_, name + " has parts out of place");
+            auto part = static_cast<std::size_t>(block.first_child);
+            for (std::int32_t i = 0; i < 2; ++i)
+                for (std::int32_t j = 0; j < (row == column ? i + 1 : 2); ++j)
+                    visit(part++, level + 1, 2 * row + i, 2 * column + j);
+            return;
+        }
+        const auto dofs = [&](std::int32_t cluster) {
+            return 3 * std::int64_t{c_.begin(level, cluster + 1) - c_.begin(level, cluster)};
+        };
+        const bool dense = block.rank == ComplianceBlock::dense;
+        if (!dense && (block.rank < 0 || block.rank > HierarchicalCompliance::max_rank || block.rank % 4 != 0 ||
+                       row == column))
+            refuse(where_, name + " has rank " + std::to_string(block.rank));
+        require_within(dense ? dofs(row) * dofs(column) : block.rank, block.values, c_.value_count, name);
+        if (!dense)
+            require_within((dofs(row) + dofs(column)) * block.rank, block.factors, c_.factor_count, name);
+        if (dense && row == column)
+            for (std::int64_t d = 0; d < dofs(row); ++d)
+                if (!(c_.values.get()[block.values + d * (dofs(row) + 1)] > 0))
+                    refuse(where_, "diagonal entry of " + name + " is not positive");
+    }
+    void require_within(std::int64_t size, std::int64_t offset, std::size_t count, const std::string& name) const {
+        if (offset < 0 || size > static_cast<std::int64_t>(count) - offset)
+            refuse(where_, name + " lies outside the values");
+    }
+    bool all_seen() const { return std::ranges::find(seen_, false) == seen_.end(); }
+
+  private:
+    const HierarchicalCompliance& c_;
+    const std::string& where_;
+    std::vector<bool> seen_;
+};
+
+void check_compliance(const DeformableBody& body, const std::string& where) {
+    if (node_count(body.compliance) < 1 ||
+        static_cast<std::size_t>(node_count(body.compliance)) != body.contact_nodes.size())
+        refuse(where, "has " + std::to_string(node_count(body.compliance)) + " nodes",
+               std::to_string(body.contact_nodes.size()) + " contact nodes, at least one");
+    if (const auto* dense = std::get_if<DenseCompliance>(&body.compliance))
+        check_dense(*dense, where);
+    else
+        check_hierarchical(std::get<HierarchicalCompliance>(body.compliance), where);
+}
+
 void check_certificate(const Certificate& certificate, const std::string& where) {
     for (const double value : {certificate.residual, certificate.residual_double, certificate.asymmetry,
                                certificate.smallest_eigenvalue, certificate.largest_eigenvalue,
-                               certificate.condition_number, certificate.reciprocity})
+                               certificate.condition_number, certificate.reciprocity,
+                               certificate.load_error, certificate.contact_error,
+                               certificate.smallest_patch_eigenvalue, certificate.discretisation_error})
         if (!std::isfinite(value)) refuse(where, "has a figure that is not finite");
 }
 
@@ -165,6 +222,26 @@ void check_name(const std::string& name, const std::string& where) {
     if (name.empty() || name.size() > longest || !printable)
         refuse(where, "has a name that is empty, long or not printable",
                "1 to 255 bytes without control characters");
+}
+
+void check_hierarchical(const HierarchicalCompliance& compliance, const std::string& where) {
+    const auto nodes = static_cast<std::size_t>(compliance.node_count);
+    if (compliance.depth < 0 || compliance.depth > HierarchicalCompliance::deepest ||
+        (std::int64_t{1} << compliance.depth) > std::max<std::int64_t>(1, compliance.node_count))
+        refuse(where, "has depth " + std::to_string(compliance.depth));
+    if (!(compliance.accuracy > 0 && std::isfinite(compliance.accuracy)))
+        refuse(where, "has an accuracy that is not positive");
+    std::vector<char> seen(nodes, 0);
+    if (compliance.order.size() != nodes) refuse(where + "/order", "has another length than contact_nodes");
+    for (const std::int32_t node : compliance.order)
+        if (node < 0 || static_cast<std::size_t>(node) >= nodes ||
+            std::exchange(seen[static_cast<std::size_t>(node)], 1) != 0)
+            refuse(where + "/order", "is not a permutation of the contact nodes");
+    if (!all_finite({compliance.values.get(), compliance.value_count}))
+        refuse(where + "/values", "has an entry that is not finite");
+    BlockWalk walk(compliance, where);
+    walk.visit(0, 0, 0, 0);
+    if (!walk.all_seen()) refuse(where, "has blocks that belong to nothing");
 }
 
 void check_haptics(const HapticSettings& haptics, const std::string& where) {

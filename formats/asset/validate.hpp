@@ -18,6 +18,10 @@ void check_surface(const TriangleMesh& surface, const std::string& where);
 /// each once. O(nodes + triangles).
 void check_obb_tree(const ObbTree& tree, std::size_t triangle_count, const std::string& where);
 
+/// A tree of blocks that covers the matrix once, within its values, all of them finite; an order that is a
+/// permutation; a positive diagonal. `positions` is not looked at. O(values).
+void check_hierarchical(const HierarchicalCompliance& compliance, const std::string& where);
+
 /// Everything about an elastic body but its OBB tree, its boundary recomputed. O(tetrahedra log + entries of
 /// the compliance).
 void check_body(const DeformableBody& body, const std::string& where);

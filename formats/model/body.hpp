@@ -46,9 +46,9 @@ struct DeformableBody {
     std::vector<RegionMaterial> materials;    ///< one per region that occurs in the mesh
     std::vector<std::int32_t> fixed_nodes;    ///< mesh nodes with zero displacement, ascending
     BoundarySurface boundary;                 ///< boundary_surface(mesh)
-    std::vector<std::int32_t> contact_nodes;  ///< mesh node of each compliance block, ascending: the boundary
-                                              ///< nodes that are not fixed
-    DenseCompliance compliance;               ///< over contact_nodes
+    std::vector<std::int32_t> contact_nodes;  ///< mesh node of each compliance block, ascending: some or
+                                              ///< all of the boundary nodes that are not fixed
+    SurfaceCompliance compliance;             ///< over contact_nodes
     Certificate certificate;
     ObbTree obb_tree;  ///< over boundary.surface at rest
 };

@@ -16,6 +16,17 @@ Rows rows_of(const float* values, std::int64_t node, Index width) noexcept {
     return {values + 3 * node * width, 3, width};
 }
 
+using Factors = const std::int16_t*;  // the three rows of a node's part of U or V, each of the block's rank
+
+float dot(Factors row, const float* weights, std::int32_t rank) noexcept {
+    std::array<float, 4> sums{};  // what one vector register takes
+    for (std::int32_t k = 0; k < rank; k += 4)
+        for (std::size_t lane = 0; lane < 4; ++lane)
+            sums[lane] += static_cast<float>(row[static_cast<std::size_t>(k) + lane]) *
+                          weights[static_cast<std::size_t>(k) + lane];
+    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+}
+
 Eigen::Matrix3f block_of(const DenseCompliance& c, std::int32_t a, std::int32_t b) noexcept {
     return DenseRows(c.row(3 * static_cast<std::size_t>(a)) + 3 * static_cast<std::size_t>(b), 3, 3,
                      Eigen::OuterStride<>(static_cast<Index>(c.dof_count())));
@@ -60,15 +71,21 @@ Eigen::Matrix3f block_of(const HierarchicalCompliance& c, std::int32_t a, std::i
                        row_end = c.begin(place.level, place.row + 1),
                        column_begin = c.begin(place.level, place.column),
                        column_end = c.begin(place.level, place.column + 1);
-    const float* values = c.values.get() + block.offset;
+    const float* values = c.values.get() + block.values;
     Eigen::Matrix3f result;
     if (block.rank == ComplianceBlock::dense) {
         const Index width = 3 * Index{column_end - column_begin};
         result = rows_of(values, row - row_begin, width).middleCols<3>(3 * Index{column - column_begin});
     } else {
-        const float* v = values + 3 * std::int64_t{row_end - row_begin} * block.rank;
-        result = rows_of(values, row - row_begin, block.rank)
-                     .lazyProduct(rows_of(v, column - column_begin, block.rank).transpose());
+        const std::int64_t rank = block.rank;
+        Factors u = c.factors.get() + block.factors + 3 * rank * (row - row_begin);
+        Factors v = c.factors.get() + block.factors + 3 * rank * (row_end - row_begin + column - column_begin);
+        std::array<float, HierarchicalCompliance::max_rank> weights;
+        for (Index axis = 0; axis < 3; ++axis) {
+            for (std::int64_t k = 0; k < rank; ++k)
+                weights[static_cast<std::size_t>(k)] = values[k] * static_cast<float>(v[axis * rank + k]);
+            for (Index i = 0; i < 3; ++i) result(i, axis) = dot(u + i * rank, weights.data(), block.rank);
+        }
     }
     if (p < q) result.transposeInPlace();
     return result;
@@ -108,7 +125,7 @@ class Product {
                            row_end = c_.begin(place.level, place.row + 1),
                            column_begin = c_.begin(place.level, place.column),
                            column_end = c_.begin(place.level, place.column + 1);
-        const float* values = c_.values.get() + block.offset;
+        const float* values = c_.values.get() + block.values;
         if (block.rank == ComplianceBlock::dense) {
             const Index width = 3 * Index{column_end - column_begin};
             for (const NodeForce& load : on_columns)
@@ -125,9 +142,10 @@ class Product {
                                         .lazyProduct(load.force);
             return;
         }
-        const float* v = values + 3 * std::int64_t{row_end - row_begin} * block.rank;
-        add_low_rank(values, row_begin, row_end, v, column_begin, block.rank, on_columns);
-        add_low_rank(v, column_begin, column_end, values, row_begin, block.rank, on_rows);
+        Factors u = c_.factors.get() + block.factors;
+        Factors v = u + 3 * std::int64_t{row_end - row_begin} * block.rank;
+        add_low_rank(values, u, row_begin, row_end, v, column_begin, block.rank, on_columns);
+        add_low_rank(values, v, column_begin, column_end, u, row_begin, block.rank, on_rows);
     }
 
   private:
@@ -135,16 +153,26 @@ class Product {
         return u_[static_cast<std::size_t>(c_.order[static_cast<std::size_t>(position)])];
     }
 
-    // u += U Vᵀ f for forces on the rows of V.
-    void add_low_rank(const float* u, std::int32_t u_begin, std::int32_t u_end, const float* v,
+    // Displacements += U diag(s) Vᵀ f for forces on the rows of V.
+    void add_low_rank(const float* s, Factors u, std::int32_t u_begin, std::int32_t u_end, Factors v,
                       std::int32_t v_begin, std::int32_t rank, Loads loads) noexcept {
-        if (loads.empty() || rank == 0) return;
-        Eigen::Map<Eigen::VectorXf> weights(weights_.data(), rank);
-        weights.setZero();
-        for (const NodeForce& load : loads)
-            weights += rows_of(v, load.node - v_begin, rank).transpose().lazyProduct(load.force);
-        for (std::int32_t p = u_begin; p < u_end; ++p)
-            displaced(p) += rows_of(u, p - u_begin, rank).lazyProduct(weights);
+        if (loads.empty()) return;
+        const auto width = static_cast<std::size_t>(rank);
+        std::fill_n(weights_.begin(), width, 0.0F);
+        for (const NodeForce& load : loads) {
+            Factors rows = v + 3 * width * static_cast<std::size_t>(load.node - v_begin);
+            for (std::size_t k = 0; k < width; ++k)
+                weights_[k] += load.force[0] * static_cast<float>(rows[k]) +
+                               load.force[1] * static_cast<float>(rows[width + k]) +
+                               load.force[2] * static_cast<float>(rows[2 * width + k]);
+        }
+        for (std::size_t k = 0; k < width; ++k) weights_[k] *= s[k];
+        for (std::int32_t p = u_begin; p < u_end; ++p) {
+            Factors rows = u + 3 * width * static_cast<std::size_t>(p - u_begin);
+            displaced(p) += Eigen::Vector3f(dot(rows, weights_.data(), rank),
+                                            dot(rows + width, weights_.data(), rank),
+                                            dot(rows + 2 * width, weights_.data(), rank));
+        }
     }
 
     const HierarchicalCompliance& c_;
@@ -177,7 +205,8 @@ std::int32_t node_count(const SurfaceCompliance& compliance) {
 std::size_t value_bytes(const SurfaceCompliance& compliance) {
     if (const auto* dense = std::get_if<DenseCompliance>(&compliance))
         return dense->dof_count() * dense->dof_count() * sizeof(float);
-    return std::get<HierarchicalCompliance>(compliance).value_count * sizeof(float);
+    const auto& blocks = std::get<HierarchicalCompliance>(compliance);
+    return blocks.value_count * sizeof(float) + blocks.factor_count * sizeof(std::int16_t);
 }
 
 Eigen::Matrix3f compliance_block(const SurfaceCompliance& compliance, std::int32_t a,

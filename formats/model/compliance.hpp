@@ -26,8 +26,9 @@ struct ComplianceBlock {
     static constexpr std::int32_t dense = -1;
 
     std::int32_t first_child = 0;  ///< of a split block: index of its first part; 0 of a stored one
-    std::int32_t rank = dense;     ///< of a stored block: r of U Vᵀ, or `dense`
-    std::int64_t offset = 0;       ///< of a stored block: where its values begin
+    std::int32_t rank = dense;     ///< of a stored block: r of U diag(s) Vᵀ, a multiple of 4, or `dense`
+    std::int64_t values = 0;       ///< of a stored block: where its entries, or s, begin in `values`
+    std::int64_t factors = 0;      ///< of one of low rank: where U, then V, begin in `factors`
 };
 
 /// The same matrix C by blocks of low rank (H-matrix; Hackbusch 1999), its lower half alone. Contact nodes
@@ -35,8 +36,9 @@ struct ComplianceBlock {
 /// of level l holds the positions [begin(l, i), begin(l, i + 1)). blocks[0] is the whole matrix. A split
 /// block of clusters I, J has the parts of their halves (I0,J0) (I0,J1) (I1,J0) (I1,J1); where I = J,
 /// (I0,J1) is left out. A stored block holds the rows of I and the columns of J: `dense`, 3|I| x 3|J| values
-/// row-major; or U, 3|I| x r, then V, 3|J| x r, both row-major, for U Vᵀ. Blocks with I = J at the last level
-/// are dense and symmetric bit for bit. In mm/N, float32.
+/// row-major; or U diag(s) Vᵀ with U 3|I| x r, V 3|J| x r, both row-major in 16-bit integers, which keeps
+/// about 2e-5 of a block's norm. Blocks with I = J at the last level are dense and symmetric bit for bit.
+/// `values` are in mm/N, float32.
 struct HierarchicalCompliance {
     static constexpr std::int32_t deepest = 20;     ///< levels that a reader takes
     static constexpr std::int32_t max_rank = 1024;  ///< that a product needs no allocation for
@@ -47,8 +49,10 @@ struct HierarchicalCompliance {
     std::vector<std::int32_t> order;       ///< contact node at each position
     std::vector<std::int32_t> positions;   ///< position of each contact node
     std::vector<ComplianceBlock> blocks;   ///< parts come after the block that they are of
-    std::shared_ptr<const float> values;   ///< of all stored blocks
+    std::shared_ptr<const float> values;   ///< entries of dense blocks, s of the others
     std::size_t value_count = 0;
+    std::shared_ptr<const std::int16_t> factors;  ///< U and V of blocks of low rank
+    std::size_t factor_count = 0;
 
     std::int32_t begin(std::int32_t level, std::int32_t cluster) const {
         return static_cast<std::int32_t>((std::int64_t{node_count} * cluster) >> level);
@@ -67,6 +71,13 @@ struct Certificate {
     double condition_number = 0;     ///< largest / smallest
     double reciprocity = 0;  ///< worst |aᵀCb - bᵀCa| / sqrt(aᵀCa bᵀCb) over random loads of the stored matrix
     std::int32_t sampled_columns = 0;  ///< columns that were re-solved
+    double load_error = 0;             ///< worst |u - u_exact| / |u_exact| of the stored matrix over random
+                                       ///< contact loads and the whole contact surface
+    double contact_error = 0;          ///< the same at the loaded nodes, largest entries instead of norms
+    std::int32_t sampled_loads = 0;    ///< random contact loads
+    double smallest_patch_eigenvalue = 0;  ///< of the stored matrix over the nodes of such a load, mm/N
+    double discretisation_error = -1;  ///< part of the work of a contact load that the elements miss, against
+                                       ///< richer ones: the median over loads; -1 where it was not estimated
     std::int64_t free_dofs = 0;        ///< size of K after removing fixed nodes
 };
 

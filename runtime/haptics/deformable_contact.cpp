@@ -75,10 +75,10 @@ DeformableContact::DeformableContact(const DeformableBody& body, std::int32_t bo
       coupling_compliance_(1 / settings.coupling_stiffness),
       compliance_(body.compliance),
       triangles_(body.boundary.surface.triangles) {
-    if (static_cast<std::size_t>(compliance_.node_count) != body.contact_nodes.size())
+    if (static_cast<std::size_t>(node_count(compliance_)) != body.contact_nodes.size())
         throw InvalidInput(
             {.culprit = body.name,
-             .found = "its compliance has " + std::to_string(compliance_.node_count) + " nodes",
+             .found = "its compliance has " + std::to_string(node_count(compliance_)) + " nodes",
              .expected = std::to_string(body.contact_nodes.size()),
              .next_step = "condense it again with 'palpate condense'"});
     for (const std::int32_t node : body.boundary.nodes) {
@@ -164,14 +164,7 @@ double DeformableContact::compliance_between(const Contact& a, const Contact& b)
         for (std::size_t j = 0; j < 3 && b.vertices[j] >= 0; ++j) {
             const std::int32_t block_j = blocks_[static_cast<std::size_t>(b.vertices[j])];
             if (block_j < 0) continue;
-            double work = 0;
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                const float* row = compliance_.row(3 * static_cast<std::size_t>(block_i) + axis) +
-                                   3 * static_cast<std::size_t>(block_j);
-                const double u = static_cast<double>(row[0]) * n_b[0] + static_cast<double>(row[1]) * n_b[1] +
-                                 static_cast<double>(row[2]) * n_b[2];
-                work += n_a[static_cast<Index>(axis)] * u;
-            }
+            const double work = n_a.dot(compliance_block(compliance_, block_i, block_j).cast<double>() * n_b);
             sum += static_cast<double>(a.weights[i]) * static_cast<double>(b.weights[j]) * work;
         }
     }
@@ -227,23 +220,21 @@ DeformableContact::Outcome DeformableContact::solve(const CollisionSurface& surf
 void DeformableContact::surface_displacement(std::span<const Contact> contacts,
                                              std::span<Vector3f> displacements) const noexcept {
     std::ranges::fill(displacements, Vector3f::Zero());
-    const std::size_t vertices = std::min(displacements.size(), blocks_.size());
+    std::array<NodeForce, 3 * max_contacts> forces;
+    std::size_t count = 0;
     for (const Contact& contact : contacts) {
         if (contact.body != body_index_ || !(contact.force > 0)) continue;
         const Vector3f push = -contact.force * Eigen::Map<const Vector3f>(contact.normal.data());
-        for (std::size_t i = 0; i < 3 && contact.vertices[i] >= 0; ++i) {
-            const std::int32_t block = blocks_[static_cast<std::size_t>(contact.vertices[i])];
-            if (block < 0) continue;
-            // C is symmetric: the column of a degree of freedom is its row, which lies in one piece.
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                const float force = contact.weights[i] * push[static_cast<Index>(axis)];
-                const float* row = compliance_.row(3 * static_cast<std::size_t>(block) + axis);
-                for (std::size_t v = 0; v < vertices; ++v)
-                    if (blocks_[v] >= 0)
-                        displacements[v] += force * Eigen::Map<const Vector3f>(row + 3 * blocks_[v]);
-            }
-        }
+        for (std::size_t i = 0; i < 3 && contact.vertices[i] >= 0; ++i)
+            if (const std::int32_t block = blocks_[static_cast<std::size_t>(contact.vertices[i])];
+                block >= 0 && count < forces.size())
+                forces[count++] = {block, contact.weights[i] * push};
     }
+    const auto contact_nodes = static_cast<std::size_t>(node_count(compliance_));
+    add_displacements(compliance_, std::span(forces).first(count), displacements.first(contact_nodes));
+    // Contact nodes are surface vertices in the same order, so that each goes up to its vertex in place.
+    for (std::size_t v = displacements.size(); v-- > 0;)
+        displacements[v] = blocks_[v] >= 0 ? displacements[static_cast<std::size_t>(blocks_[v])] : Vector3f::Zero();
 }
 
 }  // namespace palpate

@@ -49,8 +49,8 @@ class DeformableContact {
     std::int32_t body_index_;
     double tool_radius_;
     double coupling_compliance_;  // mm/N
-    DenseCompliance compliance_;
-    std::vector<std::int32_t> blocks_;       // compliance block of each surface vertex, -1 for a fixed one
+    SurfaceCompliance compliance_;
+    std::vector<std::int32_t> blocks_;       // compliance block of each surface vertex, -1 for one fixed or left out
     std::vector<Triangle> triangles_;        // surface vertices
     std::vector<Eigen::Vector3f> vertices_;  // at rest, p_P, mm
     std::vector<Eigen::Vector3f> vertex_normals_;  // unit, area-weighted

@@ -117,6 +117,25 @@ class Build(unittest.TestCase):
         self.change("youngs_modulus_kpa = 6.3", "youngs_modulus_kpa = 7")
         self.assertEqual(self.stages_run(), ["condense liver", "pack", "touch", "report"])
 
+    def test_another_contact_surface_or_nodes_file_reruns_only_from_condensation_on(self):
+        nodes = self.folder / "doe_john.txt"
+        nodes.write_text("0\n")
+        self.change("fixed = [", 'contact = [{ plane_mm = [0, 0, 0, 0, -1, 0] }]\nfixed = [{ nodes_file = "doe_john.txt" }, ')
+        self.assertEqual(self.stages_run(), ["condense liver", "pack", "touch", "report"])
+        condensed = [json.loads((folder / "case.parts" / "condense-liver.json").read_text())
+                     for folder in (self.prepared, self.folder)]
+        self.assertLess(condensed[1]["contact_nodes"], condensed[0]["contact_nodes"])
+        self.assertEqual(condensed[1]["fixed_nodes"], condensed[0]["fixed_nodes"] + 1)
+        self.assertNotIn(b"doe_john", (self.folder / "case.vtkhdf").read_bytes())
+
+        self.assertEqual(self.stages_run(), [])
+        nodes.write_text("0\n1\n")
+        self.assertEqual(self.stages_run(), ["condense liver", "pack", "touch", "report"])
+        nodes.write_text("0\nx\n")
+        self.fail(3, "doe_john.txt:2", "'x' is not the index of a node")
+        nodes.unlink()
+        self.fail(3, "doe_john.txt")
+
     def test_another_tool_reruns_only_from_packing_on(self):
         self.change("tool_radius_mm = 4", "tool_radius_mm = 3")
         self.assertEqual(self.stages_run(), ["pack", "touch", "report"])

@@ -100,6 +100,16 @@ TEST(Asset, reading_returns_what_was_written) {
     expect_same(read.deformable_bodies[0].obb_tree, written.deformable_bodies[0].obb_tree);
 }
 
+TEST(Asset, may_hold_a_contact_surface_that_leaves_free_surface_out) {
+    const Scratch scratch;
+    Case written = sample::sample_case(cells);
+    DeformableBody& body = written.deformable_bodies[0];
+    std::erase_if(body.contact_nodes, [](std::int32_t node) { return node % 3 == 0; });
+    body.compliance = sample::kernel_compliance(body.mesh, body.contact_nodes, 5.0, 1.0);
+    write_asset(scratch / "case.vtkhdf", written);
+    expect_same(read_asset(scratch / "case.vtkhdf").deformable_bodies[0], body);
+}
+
 TEST(Asset, may_lack_provenance_outside_labels_and_rigid_bodies) {
     const Scratch scratch;
     Case written = sample::sample_case(1);
@@ -347,8 +357,15 @@ INSTANTIATE_TEST_SUITE_P(
               "is not the boundary"},
         Fault{"surface_node_range", [](auto& b) { b.boundary.nodes[0] = 1'000'000; },
               "surface_nodes: has index 1000000"},
-        Fault{"contact_shifted", [](auto& b) { b.contact_nodes[0] = b.fixed_nodes[0]; },
-              "contact_nodes: is not"},
+        Fault{"contact_fixed", [](auto& b) { b.contact_nodes[0] = b.fixed_nodes[0]; },
+              "contact_nodes: node 0 is not free surface"},
+        Fault{"contact_inside", [](auto& b) { b.contact_nodes[6] = 31; },
+              "contact_nodes: node 31 is not free surface"},
+        Fault{"contact_unsorted", [](auto& b) { std::swap(b.contact_nodes[0], b.contact_nodes[1]); },
+              "contact_nodes: entry 1"},
+        Fault{"contact_twice", [](auto& b) { b.contact_nodes[1] = b.contact_nodes[0]; },
+              "contact_nodes: entry 1"},
+        Fault{"contact_range", [](auto& b) { b.contact_nodes.back() = 125; }, "contact_nodes: entry"},
         Fault{"compliance_nan", [](auto& b) { set_entry(b, 7, 2, NAN); },
               "compliance: has an entry that is not finite"},
         Fault{"compliance_infinite", [](auto& b) { set_entry(b, 7, 2, INFINITY); }, "not finite"},

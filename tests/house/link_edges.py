@@ -26,6 +26,7 @@ ROOMS = {
     "report": {"model", "asset", "vtk", "json"},
     "cli": {"model", "cli11", "spdlog", "json", "toml"},
     "mesh": {"model", "meshing", "json", "fmt"},
+    "condense": {"model", "fem"},
     "build": {"model", "asset", "cli", "json", "toml"},
     "seeds": {"model", "imaging", "vtk"},
     "realtime": set(),
@@ -35,7 +36,7 @@ ROOMS = {
     "visual": {"model", "realtime", "vtk"},
     "apps": {"model", "asset", "realtime", "collision", "haptics", "devices"},
 }
-COMMANDS = {"model", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "build", "mesh", "seeds", "json"}
+COMMANDS = {"model", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "build", "mesh", "condense", "seeds", "json"}
 APPS = {"model", "asset", "cli", "realtime", "collision", "haptics", "devices", "apps", "json"}
 EXECUTABLES = {
     "palpate": {"cli", "model"},

@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <algorithm>
 
 #include "tests/formats/sample_case.hpp"
 
@@ -59,6 +60,22 @@ DeformableBody true_elastic_cube(int cells) {
             entries[i * dofs + j] = static_cast<float>(
                 inverse(std::min(mesh_dof(i), mesh_dof(j)), std::max(mesh_dof(i), mesh_dof(j))));
     body.compliance.entries = std::shared_ptr<const float>(entries, entries.get());
+    return body;
+}
+
+DeformableBody with_contact_nodes(DeformableBody body, const std::vector<std::int32_t>& contact_nodes) {
+    const std::size_t dofs = 3 * contact_nodes.size();
+    const auto whole_dof = [&](std::size_t dof) {
+        const auto block = std::ranges::lower_bound(body.contact_nodes, contact_nodes[dof / 3]);
+        return 3 * static_cast<std::size_t>(block - body.contact_nodes.begin()) + dof % 3;
+    };
+    const std::shared_ptr<float[]> entries(new float[dofs * dofs]);
+    for (std::size_t i = 0; i < dofs; ++i)
+        for (std::size_t j = 0; j < dofs; ++j)
+            entries[i * dofs + j] = body.compliance.row(whole_dof(i))[whole_dof(j)];
+    body.compliance = {static_cast<std::int32_t>(contact_nodes.size()),
+                       std::shared_ptr<const float>(entries, entries.get())};
+    body.contact_nodes = contact_nodes;
     return body;
 }
 

@@ -14,6 +14,10 @@ Eigen::MatrixXd dense_stiffness(const TetMesh& mesh, const Material& material);
 /// without the fixed nodes, restricted to the contact nodes. 5 kPa, Poisson's ratio 0.45.
 DeformableBody true_elastic_cube(int cells);
 
+/// The same body with these contact nodes alone (some of the body's own, ascending), and their rows and
+/// columns of its compliance.
+DeformableBody with_contact_nodes(DeformableBody body, const std::vector<std::int32_t>& contact_nodes);
+
 /// The material of true_elastic_cube().
 Material soft_tissue();
 

@@ -154,6 +154,100 @@ TEST_F(DeformableContactTest, a_foot_on_fixed_nodes_is_as_stiff_as_the_coupling)
     EXPECT_EQ(result_.contacts[0].series_compliance, 2.0F);
 }
 
+// The cube's top is contact surface as far as x = 12 mm and free surface that C leaves out beyond.
+class PartialContactSurface : public ::testing::Test {
+  protected:
+    static constexpr double rim = 12;
+
+    PartialContactSurface() {
+        const DeformableBody whole = sample::true_elastic_cube(5);
+        std::vector<std::int32_t> part;
+        for (const std::int32_t node : whole.contact_nodes)
+            if (whole.mesh.rest_positions[static_cast<std::size_t>(node)].x() <= rim + 1e-9)
+                part.push_back(node);
+        for (Case* c : {&whole_, &part_}) {
+            c->name = "cube";
+            c->haptics = {.tool_radius = 3, .coupling_stiffness = 0.5, .max_force = 50, .max_force_rate = 50};
+        }
+        whole_.deformable_bodies = {whole};
+        part_.deformable_bodies = {sample::with_contact_nodes(whole, part)};
+    }
+
+    static Vector3d go(HapticModel& model, TickResult& result, const Vector3d& p) {
+        DeviceState state;
+        state.position = {p[0], p[1], p[2]};
+        model.tick(state, result);
+        return Eigen::Map<const Vector3d>(result.force.data());
+    }
+
+    Case whole_, part_;
+    TickResult result_{};
+};
+
+TEST_F(PartialContactSurface, feels_like_the_whole_one_within_it_and_rigid_beyond) {
+    HapticModel whole(whole_), part(part_);
+    const Vector3d within(4, 9.7, 22), beyond(18.5, 9.7, 22);  // 1 mm deep
+    for (HapticModel* model : {&whole, &part}) go(*model, result_, within + Vector3d(0, 0, 4));
+    EXPECT_EQ(go(part, result_, within), go(whole, result_, within));
+
+    part.reset();
+    go(part, result_, beyond + Vector3d(0, 0, 4));
+    // As stiff as the coupling, 0.5 N/mm; the god-object's skin is 1e-4 mm.
+    EXPECT_NEAR(go(part, result_, beyond).z(), 0.5 * 1.0, 1e-3);
+    std::vector<Eigen::Vector3f> u(part_.deformable_bodies[0].boundary.nodes.size());
+    part.surface_displacement(0, result_, u);
+    for (const Eigen::Vector3f& displacement : u) EXPECT_EQ(displacement.norm(), 0);
+}
+
+TEST_F(PartialContactSurface, shows_no_displacement_beyond_its_rim) {
+    HapticModel part(part_);
+    go(part, result_, {11, 9.7, 26});
+    go(part, result_, {11, 9.7, 21});
+    const DeformableBody& body = part_.deformable_bodies[0];
+    std::vector<Eigen::Vector3f> u(body.boundary.nodes.size());
+    part.surface_displacement(0, result_, u);
+    float largest = 0;
+    for (std::size_t v = 0; v < u.size(); ++v)
+        if (body.boundary.surface.vertices[v].x() > rim + 1e-9) {
+            EXPECT_EQ(u[v].norm(), 0) << "vertex " << v;
+        } else {
+            largest = std::max(largest, u[v].norm());
+        }
+    EXPECT_GT(largest, 0.5F);
+}
+
+// The foot's share of contact surface falls from 1 to 0 within the rim's triangles, 12 to 16 mm, and the
+// force rises from the tissue's to the coupling's: steeply, but a step ten times as fine changes it a tenth
+// as much.
+TEST_F(PartialContactSurface, is_left_and_entered_without_a_jump_of_the_force) {
+    constexpr double refinement = 10,
+                     slack = 1.5;         // where the force bends, a fine step catches the steepest place
+    const Vector3d start(10, 9.7, 21.5);  // 1.5 mm deep
+    constexpr double way = 7;             // mm, to x = 17 mm, in a triangle that C leaves out wholly
+    HapticModel part(part_);
+    const auto largest_change = [&](int steps) {
+        part.reset();
+        go(part, result_, start + Vector3d(0, 0, 5));
+        const Vector3d soft = go(part, result_, start);
+        Vector3d last = soft;
+        double largest = 0, stiff = 0;
+        for (int step = 1; step <= 2 * steps; ++step) {  // there and back
+            const double x = way * (step <= steps ? step : 2 * steps - step) / steps;
+            const Vector3d force = go(part, result_, start + Vector3d(x, 0, 0));
+            largest = std::max(largest, (force - last).norm());
+            stiff = std::max(stiff, force.z());
+            EXPECT_EQ(result_.status, tick_ok);
+            last = force;
+        }
+        EXPECT_GT(stiff, 2 * soft.z());
+        // A solved contact does not remember the way.
+        EXPECT_NEAR((last - soft).norm(), 0, 1e-4 * soft.norm());
+        return largest;
+    };
+    const double coarse = largest_change(350);  // 0.02 mm, 20 mm/s at 1 kHz
+    EXPECT_LE(largest_change(3500), slack * coarse / refinement);
+}
+
 TEST_F(DeformableContactTest, refuses_a_compliance_of_another_body) {
     Case wrong = cube();
     wrong.deformable_bodies.front().contact_nodes.pop_back();

@@ -1,39 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/fem/condense.hpp"
 
-#include <algorithm>
-#include <charconv>
-
 #include "formats/asset/parts.hpp"
-#include "formats/model/errors.hpp"
 #include "tools/cli/command.hpp"
-#include "tools/fem/boundary_conditions.hpp"
+#include "tools/commands/condense/arguments.hpp"
 #include "tools/meshing/mesh_files.hpp"
 
 namespace {
 using namespace palpate;
-
-// Reads "liver:6.3,0.45": region name, Young's modulus in kPa, Poisson's ratio.
-RegionMaterial parse_material(const std::string& text, const TetMesh& mesh, const std::string& mesh_name) {
-    const auto colon = text.rfind(':');
-    const auto comma = text.find(',', colon == std::string::npos ? 0 : colon);
-    double modulus_kpa = 0, ratio = 0;
-    const auto number = [&](std::size_t begin, std::size_t end, double& value) {
-        return std::from_chars(text.data() + begin, text.data() + end, value).ptr == text.data() + end;
-    };
-    if (colon == std::string::npos || comma == std::string::npos || !number(colon + 1, comma, modulus_kpa) ||
-        !number(comma + 1, text.size(), ratio))
-        throw UsageError({"--material " + text, "cannot be read", "REGION:YOUNGS_MODULUS_KPA,POISSONS_RATIO",
-                          "for example liver:6.3,0.45"});
-    const Label region = require_label(mesh.region_names, text.substr(0, colon), mesh_name);
-    return {region.value, {.youngs_modulus = modulus_kpa * 1e-3, .poissons_ratio = ratio}};
-}
 
 nlohmann::json to_json(const DeformableBody& body) {
     const Certificate& c = body.certificate;
     return {{"name", body.name},
             {"nodes", body.mesh.rest_positions.size()},
             {"tetrahedra", body.mesh.tetrahedra.size()},
+            {"element_order", condensation::name_of(body.element_order)},
             {"surface_nodes", body.boundary.nodes.size()},
             {"fixed_nodes", body.fixed_nodes.size()},
             {"contact_nodes", body.contact_nodes.size()},
@@ -54,39 +35,51 @@ nlohmann::json to_json(const DeformableBody& body) {
 
 int main(int argc, char** argv) {
     std::filesystem::path input, output;
-    std::string name;
-    std::vector<std::string> materials, fixed;
+    std::string name, element = "linear";
+    std::vector<std::string> materials, fixed, contact;
     cli::Command command(
         {.name = "condense",
          .summary = "Computes the exact surface compliance C = (K^-1)_ss of a tetrahedral body, "
                     "with its certificate.",
          .examples = {"palpate condense liver.vtu --material liver:6.3,0.45 --material tumour:30,0.45 "
                       "--fixed sphere:20,60,-40,50 -o liver.body.h5",
-                      "palpate condense wall.vtu --material wall:7.8,0.45 --fixed touching:skull "
-                      "--fixed touching:background -o wall.body.h5"},
-         .notes = "Rules that fix surface nodes: touching:LABEL (what lies beyond the surface; "
-                  "'background' for none), box:x0,y0,z0,x1,y1,z1, sphere:x,y,z,r, "
-                  "plane:x,y,z,nx,ny,nz (the side its normal points to)."});
+                      "palpate condense wall.vtu --material wall:7.8,0.49 --element quadratic "
+                      "--fixed touching:skull --contact touching:background -o wall.body.h5"},
+         .notes = fmt::format(
+             "Rules that pick nodes: {}.\n--fixed and --contact take the same rules, and several add up. "
+             "Rules pick surface nodes; nodes:FILE may hold interior ones too. Only the nodes of the contact "
+             "surface enter C, whose size grows with the square of their number; surface that is neither "
+             "fixed "
+             "nor contact surface deforms with the body here, but feels rigid when it is touched.\n"
+             "Linear tetrahedra are too stiff where Poisson's ratio nears 0.5; quadratic ones are not, and "
+             "have some eight times the unknowns.",
+             node_rule_grammar)});
     command.input("mesh", input, "tetrahedra with CellData 'region' (.vtu), LPS mm")->required();
     command
         .option("--material", materials, "material of a region: REGION:YOUNGS_MODULUS,POISSONS_RATIO",
                 "kPa, 1")
         ->required();
-    command.option("--fixed", fixed, "rule that fixes surface nodes; several add up", "mm");
+    command.option("--fixed", fixed, "rule that fixes nodes; several add up", "mm");
+    command.option("--contact", contact,
+                   "rule that picks the surface nodes that can be touched; several add up; without it, all "
+                   "that are not fixed",
+                   "mm");
+    command.option("--element", element, "tetrahedra: linear (4 nodes) or quadratic (10 nodes)");
     command.option("--name", name, "name of the body; the mesh file's name by default");
     command.output("-o,--output", output, "condensed body (.body.h5)")->required();
     return command.run(argc, argv, [&](cli::Session& session) {
+        const auto fixed_rules = condensation::parse_node_rules("--fixed", fixed);
+        const auto contact_rules = condensation::parse_node_rules("--contact", contact);
+        DeformableBody body;
+        body.element_order = condensation::parse_element_order(element);
         cli::StagedFile staged = session.stage(output);
         set_linear_algebra_threads(session.threads);
-        DeformableBody body;
         body.name = name.empty() ? input.stem().string() : name;
         body.mesh = read_tetrahedra(input);
-        for (const std::string& text : materials)
-            body.materials.push_back(parse_material(text, body.mesh, input.filename().string()));
-        std::ranges::sort(body.materials, {}, &RegionMaterial::region);
-        std::vector<FixedRule> rules;
-        for (const std::string& text : fixed) rules.push_back(parse_fixed_rule(text));
-        body.fixed_nodes = fixed_nodes_of(body.mesh, boundary_surface(body.mesh), rules);
+        body.materials = condensation::parse_materials(materials, body.mesh, input.filename().string());
+        const BoundarySurface boundary = boundary_surface(body.mesh);
+        body.fixed_nodes = fixed_nodes_of(body.mesh, boundary, fixed_rules);
+        body.contact_nodes = contact_nodes_of(body.mesh, boundary, contact_rules, body.fixed_nodes);
         body = condensed_body(std::move(body), [&](std::string_view what, double fraction) {
             session.progress.step(what, fraction);
         });

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "tools/fem/cluster_order.hpp"
+#include "tools/fem/dense_kernels.hpp"
 #include "tools/fem/low_rank.hpp"
-#include "tools/fem/parallel.hpp"
 
 namespace palpate {
 namespace {
@@ -28,8 +28,12 @@ struct Part {
     std::vector<Part> parts;
     std::optional<LowRank> low_rank;
     MatrixXd dense;
-    std::int64_t size = 0;  // numbers that it stores
+    std::int64_t size = 0;  // bytes that it stores
 };
+
+std::int64_t bytes_of(const LowRank& block) {
+    return 2 * block.size() + 4 * block.rank();
+}
 
 // The blocks of one column of clusters, from the diagonal downwards.
 using Column = std::vector<Part>;
@@ -73,7 +77,7 @@ class Compressor {
             else
                 part.low_rank = truncated(block, tolerance(level, i, j));
             if (!part.low_rank) part.dense = std::move(block);
-            part.size = part.low_rank ? part.low_rank->size() : part.dense.size();
+            part.size = part.low_rank ? bytes_of(*part.low_rank) : 4 * part.dense.size();
             column.push_back(std::move(part));
         }
         return column;
@@ -96,12 +100,14 @@ class Compressor {
     }
 
     HierarchicalCompliance stored(const Part& root) && {
-        result_.value_count = static_cast<std::size_t>(root.size);
-        std::shared_ptr<float[]> values(new float[result_.value_count]);
         result_.blocks.resize(1);
-        float* end = values.get();
-        store(root, 0, 0, 0, 0, values.get(), end);
-        result_.values = std::shared_ptr<const float>(values, values.get());
+        store(root, 0, 0, 0, 0);
+        result_.value_count = values_.size();
+        result_.factor_count = factors_.size();
+        const auto values = std::make_shared<std::vector<float>>(std::move(values_));
+        const auto factors = std::make_shared<std::vector<std::int16_t>>(std::move(factors_));
+        result_.values = {values, values->data()};
+        result_.factors = {factors, factors->data()};
         return std::move(result_);
     }
 
@@ -146,13 +152,22 @@ class Compressor {
             factors[k] = part.low_rank ? &*part.low_rank : &dense[k];
         }
         LowRank low_rank = joined(factors, tolerance);
-        if (low_rank.size() > whole.size || low_rank.rank() > HierarchicalCompliance::max_rank) return;
-        whole.size = low_rank.size();
+        if (bytes_of(low_rank) > whole.size || low_rank.rank() > HierarchicalCompliance::max_rank) return;
+        whole.size = bytes_of(low_rank);
         whole.low_rank = std::move(low_rank);
         whole.parts.clear();
     }
 
-    void store(const Part& part, std::size_t index, std::int32_t level, std::int32_t i, std::int32_t j, const float* begin, float*& end) {
+    // Takes the scales of a cluster's nodes back from a factor's rows.
+    MatrixXd unscaled(MatrixXd factor, std::int32_t level, std::int32_t cluster) const {
+        const std::int32_t first = result_.begin(level, cluster);
+        for (Index node = 0; node < factor.rows() / 3; ++node)
+            factor.middleRows<3>(3 * node) =
+                MatrixXd(scales_[static_cast<std::size_t>(first + node)] * factor.middleRows<3>(3 * node));
+        return factor;
+    }
+
+    void store(const Part& part, std::size_t index, std::int32_t level, std::int32_t i, std::int32_t j) {
         if (!part.parts.empty()) {
             const std::size_t first = result_.blocks.size();
             result_.blocks[index].first_child = static_cast<std::int32_t>(first);
@@ -160,34 +175,47 @@ class Compressor {
             std::size_t k = 0;
             for (std::int32_t di = 0; di < 2; ++di)
                 for (std::int32_t dj = 0; dj < (i == j ? di + 1 : 2); ++dj, ++k)
-                    store(part.parts[k], first + k, level + 1, 2 * i + di, 2 * j + dj, begin, end);
+                    store(part.parts[k], first + k, level + 1, 2 * i + di, 2 * j + dj);
             return;
         }
-        result_.blocks[index].offset = end - begin;
-        // Takes the scale of a cluster's nodes back from a factor's rows.
-        const auto append = [&](MatrixXd matrix, std::int32_t cluster) {
-            const std::int32_t first = result_.begin(level, cluster);
-            for (Index node = 0; node < matrix.rows() / 3; ++node)
-                matrix.middleRows<3>(3 * node) =
-                    MatrixXd(scales_[static_cast<std::size_t>(first + node)] * matrix.middleRows<3>(3 * node));
-            Eigen::Map<Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
-                end, matrix.rows(), matrix.cols()) = matrix.cast<float>();
-            end += matrix.size();
-        };
+        ComplianceBlock& block = result_.blocks[index];
+        block.values = static_cast<std::int64_t>(values_.size());
         if (!part.low_rank) {
-            MatrixXd dense = part.dense;
-            const std::int32_t first = result_.begin(level, j);
-            for (Index node = 0; node < dense.cols() / 3; ++node)
-                dense.middleCols<3>(3 * node) *= scales_[static_cast<std::size_t>(first + node)];
-            return append(std::move(dense), i);
+            MatrixXd dense = unscaled(unscaled(part.dense, level, i).transpose(), level, j).transpose();
+            if (i == j) dense = MatrixXd(dense + dense.transpose()) / 2;
+            for (Index row = 0; row < dense.rows(); ++row)
+                for (Index column = 0; column < dense.cols(); ++column)
+                    values_.push_back(static_cast<float>(dense(row, column)));
+            return;
         }
-        result_.blocks[index].rank = static_cast<std::int32_t>(part.low_rank->rank());
-        append(part.low_rank->u, i);
-        append(part.low_rank->v, j);
+        const Index rank = part.low_rank->rank(), padded = (rank + 3) / 4 * 4;
+        block.rank = static_cast<std::int32_t>(padded);
+        block.factors = static_cast<std::int64_t>(factors_.size());
+        Eigen::VectorXd scales = Eigen::VectorXd::Zero(padded);
+        scales.head(rank).setOnes();
+        append_factor(unscaled(part.low_rank->u, level, i), scales);
+        append_factor(unscaled(part.low_rank->v, level, j), scales);
+        for (const double scale : scales) values_.push_back(static_cast<float>(scale));
+    }
+
+    // Rounds each column to 16 bits of its largest entry and multiplies its scale accordingly.
+    void append_factor(const MatrixXd& factor, Eigen::VectorXd& scales) {
+        constexpr double steps = 32767;
+        const Eigen::RowVectorXd largest =
+            factor.cols() > 0 && factor.rows() > 0 ? Eigen::RowVectorXd(factor.cwiseAbs().colwise().maxCoeff())
+                                                   : Eigen::RowVectorXd::Zero(factor.cols());
+        for (Index row = 0; row < factor.rows(); ++row)
+            for (Index k = 0; k < scales.size(); ++k)
+                factors_.push_back(k < factor.cols() && largest[k] > 0
+                                       ? static_cast<std::int16_t>(std::lround(factor(row, k) / largest[k] * steps))
+                                       : std::int16_t{0});
+        for (Index k = 0; k < factor.cols(); ++k) scales[k] *= largest[k] / steps;
     }
 
     const ComplianceRows& rows_;
     HierarchicalCompliance result_;
+    std::vector<float> values_;
+    std::vector<std::int16_t> factors_;
     std::vector<Eigen::Matrix3d> scales_, inverse_scales_;  // by position, mm/N and its inverse
     double entry_error_ = 0;      // of scaled entries, root mean square, in one step
 };

@@ -49,7 +49,7 @@ MatrixXd product(const MatrixXd& a, const MatrixXd& b, bool transpose_b) {
 
 std::optional<LowRank> truncated(MatrixXd matrix, const LowRankTolerance& tolerance) {
     const Index rows = matrix.rows(), columns = matrix.cols();
-    const Index most = (rows * columns - 1) / (rows + columns);
+    const Index most = std::min(rows, columns) - 1;
     MatrixXd q(rows, most), coefficients(columns, most);
     const double row_limit = tolerance.row * tolerance.row, column_limit = tolerance.column * tolerance.column;
     Index rank = 0;

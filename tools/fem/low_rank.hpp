@@ -21,7 +21,7 @@ struct LowRankTolerance {
 };
 
 /// Factorises a matrix within the tolerance by pivoted Gram-Schmidt steps (Businger & Golub 1965), or returns
-/// nothing if that takes as many numbers as the matrix has. 4 rows columns rank flops.
+/// nothing if that takes full rank. 4 rows columns rank flops.
 std::optional<LowRank> truncated(Eigen::MatrixXd matrix, const LowRankTolerance& tolerance);
 
 /// Joins a matrix's four parts (0,0) (0,1) (1,0) (1,1) into one of the least rank within a further tolerance:

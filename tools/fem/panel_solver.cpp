@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/fem/panel_solver.hpp"
 
+#include <algorithm>
 #include <cblas.h>
+#include <utility>
 
 namespace palpate {
 
@@ -14,16 +16,16 @@ PanelSolver::PanelSolver(const SparseCholesky& factor, std::span<const std::int6
     for (std::size_t s = 0; s < factor_.supernode_count(); ++s)
         for (std::int64_t column = factor_.first_column[s]; column < factor_.first_column[s + 1]; ++column)
             supernode_of_[static_cast<std::size_t>(column)] = static_cast<std::int64_t>(s);
-    for (const std::int64_t row : wanted) wanted_.push_back(position_[static_cast<std::size_t>(row)]);
-    needed_ = reached(wanted);
+    needed_.assign(factor_.supernode_count(), 0);
+    for (const std::int64_t row : wanted) {
+        wanted_.push_back(position_[static_cast<std::size_t>(row)]);
+        needed_[static_cast<std::size_t>(supernode_of_[static_cast<std::size_t>(wanted_.back())])] = 1;
+    }
+    needed_ = above(std::move(needed_));
 }
 
-// The supernodes that hold the rows of K, and all that come after them on the way to the root.
-std::vector<char> PanelSolver::reached(std::span<const std::int64_t> rows) const {
-    std::vector<char> marked(factor_.supernode_count(), 0);
-    for (const std::int64_t row : rows)
-        marked[static_cast<std::size_t>(
-            supernode_of_[static_cast<std::size_t>(position_[static_cast<std::size_t>(row)])])] = 1;
+// The marked supernodes and all on their ways to the root.
+std::vector<char> PanelSolver::above(std::vector<char> marked) const {
     for (std::size_t s = 0; s < marked.size(); ++s) {
         const std::int64_t width = factor_.first_column[s + 1] - factor_.first_column[s];
         const std::int64_t first_below = factor_.row_offsets[s] + width;
@@ -34,12 +36,17 @@ std::vector<char> PanelSolver::reached(std::span<const std::int64_t> rows) const
     return marked;
 }
 
-Eigen::MatrixXd PanelSolver::rows(std::span<const std::int64_t> loaded) const {
+Eigen::MatrixXd PanelSolver::solve(std::span<const PanelLoad> entries, Eigen::Index load_count) const {
     // One column per row of L: what a supernode gathers and scatters lies in pieces of `count` numbers.
-    const auto count = static_cast<blasint>(loaded.size());
+    const auto count = static_cast<blasint>(load_count);
     Eigen::MatrixXd x = Eigen::MatrixXd::Zero(count, factor_.size);
-    for (std::size_t c = 0; c < loaded.size(); ++c)
-        x(static_cast<Eigen::Index>(c), position_[static_cast<std::size_t>(loaded[c])]) = 1;
+    std::vector<char> loaded(factor_.supernode_count(), 0);
+    for (const PanelLoad& entry : entries) {
+        const std::int64_t row = position_[static_cast<std::size_t>(entry.row)];
+        x(entry.load, row) += entry.value;
+        loaded[static_cast<std::size_t>(supernode_of_[static_cast<std::size_t>(row)])] = 1;
+    }
+    loaded = above(std::move(loaded));
 
     struct Supernode {
         double *own, *below;          // L's diagonal block and the block below it
@@ -54,15 +61,16 @@ Eigen::MatrixXd PanelSolver::rows(std::span<const std::int64_t> loaded) const {
         return Supernode{values, values + width, factor_.rows.data() + factor_.row_offsets[s] + width, width,
                          height, height - width, factor_.first_column[s]};
     };
-    Eigen::MatrixXd gathered;
-    const std::vector<char> loaded_supernodes = reached(loaded);
-    for (std::size_t s = 0; s < loaded_supernodes.size(); ++s) {
-        if (loaded_supernodes[s] == 0) continue;
+    std::int64_t most_below = 0;
+    for (std::size_t s = 0; s < loaded.size(); ++s)
+        if (loaded[s] != 0 || needed_[s] != 0) most_below = std::max<std::int64_t>(most_below, supernode(s).below_count);
+    Eigen::MatrixXd gathered(count, most_below);
+    for (std::size_t s = 0; s < loaded.size(); ++s) {
+        if (loaded[s] == 0) continue;
         const Supernode n = supernode(s);
         cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, count, n.width, 1.0,
                     n.own, n.height, x.col(n.first).data(), count);
         if (n.below_count == 0) continue;
-        gathered.resize(count, n.below_count);
         cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, count, n.below_count, n.width, 1.0,
                     x.col(n.first).data(), count, n.below, n.height, 0.0, gathered.data(), count);
         for (Eigen::Index r = 0; r < n.below_count; ++r) x.col(n.rows[r]) -= gathered.col(r);
@@ -71,7 +79,6 @@ Eigen::MatrixXd PanelSolver::rows(std::span<const std::int64_t> loaded) const {
         if (needed_[s] == 0) continue;
         const Supernode n = supernode(s);
         if (n.below_count > 0) {
-            gathered.resize(count, n.below_count);
             for (Eigen::Index r = 0; r < n.below_count; ++r) gathered.col(r) = x.col(n.rows[r]);
             cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, count, n.width, n.below_count, -1.0,
                         gathered.data(), count, n.below, n.height, 1.0, x.col(n.first).data(), count);

@@ -22,7 +22,7 @@ struct SparseCholesky::Impl {
         if (elimination == Elimination::fill_reducing) return;
         common.nmethods = 1;
         common.method[0].ordering = CHOLMOD_NATURAL;
-        common.postorder = false;
+        common.postorder = elimination == Elimination::postordered;
     }
     ~Impl() {
         cholmod_l_free_factor(&factor, &common);
@@ -56,10 +56,7 @@ void require_success(const cholmod_common& common, const cholmod_factor* factor)
     if (common.status == CHOLMOD_OUT_OF_MEMORY || common.status == CHOLMOD_TOO_LARGE || factor == nullptr)
         throw std::bad_alloc();
     if (common.status == CHOLMOD_NOT_POSDEF || factor->minor < factor->n)
-        throw InvalidInput(
-            {"stiffness matrix",
-             "not positive definite at row " + std::to_string(factor->minor) + " of the elimination", "",
-             "hold more nodes, or check the mesh for degenerate tetrahedra"});
+        throw NotPositiveDefinite{static_cast<const std::int64_t*>(factor->Perm)[factor->minor]};
 }
 
 }  // namespace
@@ -79,8 +76,8 @@ FactorForecast SparseCholesky::forecast(const LowerSparse& matrix, Elimination e
     impl.factor = cholmod_l_analyze(&view, &impl.common);
     if (impl.factor == nullptr) throw std::bad_alloc();
     return {.flops = impl.common.fl,
-            .entries = static_cast<std::int64_t>(impl.factor->xsize),
-            .work_entries = static_cast<std::int64_t>(impl.factor->maxcsize)};
+            .entries = static_cast<double>(impl.factor->xsize),
+            .work_entries = static_cast<double>(impl.factor->maxcsize)};
 }
 
 SparseCholesky::~SparseCholesky() = default;
@@ -122,7 +119,7 @@ SparseCholesky::Block SparseCholesky::trailing_block(Eigen::Index size) {
     const std::size_t last = view.supernode_count() - 1;
     const std::int64_t height = view.row_offsets[last + 1] - view.row_offsets[last];
     const std::int64_t skipped = view.size - size - view.first_column[last];
-    if (impl_->factor->ordering != CHOLMOD_NATURAL || skipped < 0)
+    if (skipped < 0)
         throw SystemFailure({"CHOLMOD", "did not keep the surface in one supernode", "", "report this mesh"});
     double* values = static_cast<double*>(impl_->factor->x) + view.value_offsets[last];
     return {values + skipped * height + skipped, size, size, Eigen::OuterStride<>(height)};

@@ -11,18 +11,24 @@ namespace palpate {
 
 /// Who chooses the elimination order of a factorisation.
 enum class Elimination {
-    as_given,       ///< rows as they stand, no postordering: the trailing block stays trailing
+    as_given,       ///< rows as they stand: the trailing block stays trailing
+    postordered,    ///< rows as they stand but for a postordering of the elimination tree
     fill_reducing,  ///< CHOLMOD's choice (AMD, METIS)
+};
+
+/// Thrown by a factorisation that meets a pivot that is not positive.
+struct NotPositiveDefinite {
+    std::int64_t row;  ///< of K
 };
 
 /// What a factorisation will take, known before it is made.
 struct FactorForecast {
-    double flops = 0;             ///< multiplications and additions
-    std::int64_t entries = 0;     ///< numbers of L as stored
-    std::int64_t work_entries = 0;  ///< numbers of the largest update between supernodes
+    double flops = 0;         ///< multiplications and additions
+    double entries = 0;       ///< numbers of L as stored
+    double work_entries = 0;  ///< numbers of the largest update between supernodes
 };
 
-/// The columns of L = L's supernodes: neighbouring columns with the same rows below the diagonal, stored
+/// The factor by its supernodes: neighbouring columns with the same rows below the diagonal, stored
 /// together. Supernode s has the columns [first_column[s], first_column[s + 1]) and the rows
 /// rows[row_offsets[s] ...], its own columns first; its values are column-major from value_offsets[s] on,
 /// with as many rows as the supernode has.
@@ -40,8 +46,8 @@ class SparseCholesky {
   public:
     using Block = Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
 
-    /// Factorises the symmetric matrix given by its lower triangle; throws InvalidInput with the row if it is
-    /// not positive definite, std::bad_alloc if memory runs out.
+    /// Factorises the symmetric matrix given by its lower triangle; throws NotPositiveDefinite or, if
+    /// memory runs out, std::bad_alloc.
     SparseCholesky(const LowerSparse& matrix, Elimination elimination);
     ~SparseCholesky();
     SparseCholesky(SparseCholesky&&) noexcept;

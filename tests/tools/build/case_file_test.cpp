@@ -123,11 +123,71 @@ TEST(CaseFile, a_case_without_bodies_or_regions_is_refused) {
               std::string::npos);
 }
 
-TEST(CaseFile, a_fixed_rule_with_too_few_numbers_is_refused) {
-    EXPECT_NE(
-        message("schema = 1\nname = \"x\"\n[[deformable]]\nname = \"y\"\nfixed = [{ sphere_mm = [1, 2] }]\n")
-            .find("4 numbers"),
-        std::string::npos);
+// The minimal case with more lines in its deformable body.
+std::string with_lines(const std::string& lines) {
+    std::string text = minimal;
+    return text.insert(text.find("[[deformable.region]]"), lines);
+}
+
+TEST(CaseFile, nodes_are_held_and_touched_by_the_same_rules) {
+    std::string text = minimal;
+    const std::string rules =
+        "[{ touching = \"background\" }, { region = \"tumour\" }, { box_mm = [0, 0, 0, 1, 2.5, 3] }, "
+        "{ sphere_mm = [1, 2, 3, 4] }, { plane_mm = [0, 0, 0, 0, 0, 1] }, "
+        "{ nodes_file = \"sets/rim.txt\" }]";
+    text.replace(text.find("fixed = "), text.find('\n', text.find("fixed = ")) - text.find("fixed = "),
+                 "fixed = " + rules + "\ncontact = " + rules);
+    const DeformableSpec body = read_case_file(written(text)).deformable.at(0);
+    const auto file = written(text).parent_path() / "sets/rim.txt";
+    const std::vector<std::string> expected{"touching:background", "region:tumour",
+                                            "box:0,0,0,1,2.5,3",   "sphere:1,2,3,4",
+                                            "plane:0,0,0,0,0,1",   "nodes:" + file.string()};
+    EXPECT_EQ(body.fixed, expected);
+    EXPECT_EQ(body.contact, expected);
+    EXPECT_EQ(body.node_files, (std::vector<std::filesystem::path>{file, file}));
+}
+
+TEST(CaseFile, a_rule_that_is_not_understood_is_refused) {
+    const auto of_rule = [](const std::string& rule) {
+        return message(with_lines("contact = [" + rule + "]\n"));
+    };
+    EXPECT_NE(of_rule("{ sphere_mm = [1, 2] }").find("4 numbers"), std::string::npos);
+    EXPECT_NE(of_rule("{ spere_mm = [1, 2, 3, 4] }").find("did you mean sphere_mm"), std::string::npos);
+    EXPECT_NE(of_rule("{ spere_mm = [1, 2, 3, 4] }").find("deformable.contact"), std::string::npos);
+    EXPECT_NE(of_rule("{ touching = 3 }").find("wrong type"), std::string::npos);
+    EXPECT_NE(of_rule("{ touching = \"a\", region = \"b\" }").find("one of { touching"), std::string::npos);
+    EXPECT_NE(of_rule("{ }").find("one of { touching"), std::string::npos);
+    EXPECT_NE(message(with_lines("contact = \"skull\"\n")).find("'contact'"), std::string::npos);
+}
+
+TEST(CaseFile, element_and_compliance_become_options_of_condense) {
+    EXPECT_TRUE(read_case_file(written(minimal)).deformable.at(0).condense_options.empty());
+    const DeformableSpec body =
+        read_case_file(
+            written(with_lines("element = \"quadratic\"\ncompliance = { accuracy = 1e-3, size_mib = 50, "
+                               "memory_gib = 2.5, representation = \"hierarchical\" }\n")))
+            .deformable.at(0);
+    EXPECT_EQ(body.condense_options,
+              (std::vector<std::string>{"--element", "quadratic", "--accuracy", "0.001", "--memory", "2.5",
+                                        "--size", "50", "--representation", "hierarchical"}));
+}
+
+TEST(CaseFile, wrong_values_of_element_and_compliance_are_refused_with_line_and_what_is_meant) {
+    for (const auto& [line, phrase] : std::initializer_list<std::pair<std::string, std::string>>{
+             {"element = \"quadratc\"", "did you mean quadratic"},
+             {"element = 2", "wrong type"},
+             {"elements = \"linear\"", "did you mean element"},
+             {"compliance = { accuracy = 0 }", "is 0 (expected a number above 0)"},
+             {"compliance = { size_mib = -1 }", "is -1"},
+             {"compliance = { memory_gib = nan }", "is nan"},
+             {"compliance = { memory_gib = \"2\" }", "wrong type"},
+             {"compliance = { memory_gb = 2 }", "did you mean memory_gib"},
+             {"compliance = { representation = \"sparse\" }", "(expected auto, dense, hierarchical)"},
+             {"compliance = 3", "a table"}}) {
+        const std::string text = message(with_lines(line + "\n"));
+        EXPECT_NE(text.find(phrase), std::string::npos) << text;
+        EXPECT_NE(text.find("case.toml:13"), std::string::npos) << text;
+    }
 }
 
 TEST(CaseFile, finished_meshes_and_surfaces_need_no_image) {

@@ -75,5 +75,39 @@ TEST(Stages, finished_files_replace_image_and_labels_and_their_names_stay_out_of
     fs::remove_all(folder);
 }
 
+TEST(Stages, rules_and_options_of_a_body_reach_condense_and_its_node_files_decide_about_a_rerun) {
+    const fs::path folder = fs::path(testing::TempDir()) / ("palpate_rules_" + std::to_string(getpid()));
+    fs::create_directories(folder);
+    const fs::path nodes = folder / "doe_john.txt";
+    for (const fs::path& file : {nodes, folder / "liver.msh"}) std::ofstream(file) << "1\n";
+    CaseFile file;
+    file.name = "x";
+    DeformableSpec liver;
+    liver.name = "liver";
+    liver.file = FinishedFile{folder / "liver.msh"};
+    liver.regions = {{"liver", 6, 0.45, {}, 1}};
+    liver.fixed = {"touching:skull", "nodes:" + nodes.string()};
+    liver.contact = {"region:tumour"};
+    liver.node_files = {nodes};
+    liver.condense_options = {"--element", "quadratic", "--accuracy", "0.001"};
+    file.deformable = {liver};
+    const std::vector<Stage> stages =
+        stages_to_asset(file, {folder / "parts", folder / "x.vtkhdf", folder / "x.html"});
+    EXPECT_NE(line_of(stages, "condense liver")
+                  .find(" --fixed touching:skull --fixed nodes:" + nodes.string() +
+                        " --contact region:tumour --element quadratic --accuracy 0.001 -o "),
+              std::string::npos)
+        << line_of(stages, "condense liver");
+    const auto condense = std::ranges::find(stages, "condense liver", &Stage::name);
+    EXPECT_EQ(condense->inputs, (std::vector<fs::path>{folder / "parts" / "liver.vtu", nodes}));
+
+    std::ifstream stream(folder / "parts" / "provenance.json");
+    const std::string provenance{std::istreambuf_iterator<char>(stream), {}};
+    EXPECT_NE(provenance.find("liver_nodes_1_sha256"), std::string::npos);
+    EXPECT_NE(provenance.find("--fixed nodes:liver_nodes_1 "), std::string::npos) << provenance;
+    EXPECT_EQ(provenance.find("doe"), std::string::npos) << provenance;
+    fs::remove_all(folder);
+}
+
 }  // namespace
 }  // namespace palpate::build

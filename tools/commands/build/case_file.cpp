@@ -5,129 +5,62 @@
 #include <cctype>
 #include <fmt/format.h>
 #include <set>
-#include <toml++/toml.h>
 
 #include "formats/model/errors.hpp"
-#include "formats/model/label_map.hpp"
+#include "tools/commands/build/table_reader.hpp"
 
 namespace palpate::build {
 namespace {
-
-// Reads one table and remembers which keys it was asked for, so that the others can be refused.
-class Reader {
-  public:
-    Reader(const toml::table& table, std::string file, std::string where)
-        : table_(table), file_(std::move(file)), where_(std::move(where)) {}
-
-    template <typename T>
-    std::optional<T> optional(const std::string& key) {
-        known_.insert(key);
-        const toml::node* node = table_.get(key);
-        if (node == nullptr) return std::nullopt;
-        if (const auto value = node->value<T>()) return value;
-        fail(*node, key, "has the wrong type",
-             std::is_same_v<T, std::string> ? "text"
-             : std::is_same_v<T, bool>      ? "true or false"
-                                            : "a number");
-    }
-
-    // Text, or a whole number written as text.
-    std::optional<std::string> text_or_number(const std::string& key) {
-        const toml::node* node = table_.get(key);
-        if (node == nullptr || !node->is_integer()) return optional<std::string>(key);
-        return std::to_string(*optional<std::int64_t>(key));
-    }
-
-    template <typename T>
-    T required(const std::string& key) {
-        if (auto value = optional<T>(key)) return *value;
-        fail(table_, key, "is missing", "");
-    }
-
-    // A sub-table; an empty one if it is absent.
-    Reader table(const std::string& key) {
-        known_.insert(key);
-        static const toml::table empty;
-        const toml::node* node = table_.get(key);
-        if (node == nullptr) return {empty, file_, where_ + "." + key};
-        if (!node->is_table()) fail(*node, key, "has the wrong type", "a table");
-        return {*node->as_table(), file_, where_ + "." + key};
-    }
-
-    // The tables of an array of tables, [[key]].
-    std::vector<Reader> tables(const std::string& key) {
-        known_.insert(key);
-        std::vector<Reader> readers;
-        const toml::node* node = table_.get(key);
-        if (node == nullptr) return readers;
-        if (!node->is_array()) fail(*node, key, "has the wrong type", "an array of tables, [[" + key + "]]");
-        for (const toml::node& item : *node->as_array()) {
-            if (!item.is_table())
-                fail(item, key, "has the wrong type", "an array of tables, [[" + key + "]]");
-            readers.emplace_back(*item.as_table(), file_, where_ + key);
-        }
-        return readers;
-    }
-
-    std::vector<double> numbers(const std::string& key, std::size_t count) {
-        known_.insert(key);
-        const toml::array* array = table_.get_as<toml::array>(key);
-        std::vector<double> values;
-        if (array != nullptr)
-            for (const toml::node& item : *array)
-                if (const auto value = item.value<double>()) values.push_back(*value);
-        if (values.size() != count)
-            fail(table_, key, "cannot be read", std::to_string(count) + " numbers in mm");
-        return values;
-    }
-
-    bool has(const std::string& key) const { return table_.contains(key); }
-    const toml::table& raw() const { return table_; }
-
-    // Every key that nobody asked for is an error.
-    void refuse_unknown() const {
-        for (const auto& [key, node] : table_) {
-            const std::string name(key.str());
-            if (known_.contains(name)) continue;
-            const auto near = nearest_names(name, {known_.begin(), known_.end()});
-            std::string hint;
-            for (const std::string& candidate : near)
-                hint += (hint.empty() ? "did you mean " : ", ") + candidate;
-            fail(node, name, "is not known here", "", hint);
-        }
-    }
-
-    [[noreturn]] void fail(const toml::node& node, const std::string& key, const std::string& found,
-                           const std::string& expected, const std::string& next_step = "") const {
-        const auto line = node.source().begin.line;
-        const std::string place = line > 0 ? fmt::format("{}:{}", file_, line) : file_;
-        throw InvalidInput({place,
-                            fmt::format("key '{}'{} {}", key, where_.empty() ? "" : " of " + where_, found),
-                            expected, next_step});
-    }
-
-  private:
-    const toml::table& table_;
-    std::string file_, where_;
-    std::set<std::string> known_;
-};
 
 std::string joined(const std::vector<double>& values) {
     return fmt::format("{}", fmt::join(values, ","));
 }
 
-// { touching = "skull" } or { sphere_mm = [x, y, z, r] } ... as palpate condense --fixed takes it.
-std::string fixed_rule(Reader rule) {
-    std::string text;
-    if (const auto label = rule.optional<std::string>("touching")) text = "touching:" + *label;
-    for (const auto& [key, count] :
-         std::map<std::string, std::size_t>{{"box", 6}, {"sphere", 4}, {"plane", 6}})
-        if (rule.has(key + "_mm")) text = key + ":" + joined(rule.numbers(key + "_mm", count));
-    if (text.empty() || rule.raw().size() != 1)
-        rule.fail(
-            rule.raw(), "fixed", "has a rule that is not understood",
-            "one of { touching = \"label\" }, { box_mm = [6] }, { sphere_mm = [4] }, { plane_mm = [6] }");
-    return text;
+// The rules under `key`, { touching = "skull" } or { sphere_mm = [x, y, z, r] } ..., as palpate condense
+// takes them; files that they name are added to `files`.
+std::vector<std::string> node_rules(TableReader& body, const std::string& key,
+                                    const std::filesystem::path& folder,
+                                    std::vector<std::filesystem::path>& files) {
+    std::vector<std::string> rules;
+    for (TableReader table : body.tables(key)) {
+        std::vector<std::string> found;
+        if (const auto label = table.optional<std::string>("touching")) found.push_back("touching:" + *label);
+        if (const auto region = table.optional<std::string>("region")) found.push_back("region:" + *region);
+        for (const auto& [shape, count] :
+             std::map<std::string, std::size_t>{{"box", 6}, {"sphere", 4}, {"plane", 6}})
+            if (const auto numbers = table.optional_numbers(shape + "_mm", count))
+                found.push_back(shape + ":" + joined(*numbers));
+        if (const auto file = table.optional<std::string>("nodes_file")) {
+            files.push_back(folder / *file);
+            found.push_back("nodes:" + files.back().string());
+        }
+        table.refuse_unknown();
+        if (found.size() != 1)
+            body.fail(table.raw(), key, "has a rule that is not understood",
+                      "one of { touching = \"label\" }, { region = \"name\" }, { box_mm = [6] }, { sphere_mm "
+                      "= [4] }, "
+                      "{ plane_mm = [6] }, { nodes_file = \"nodes.txt\" }");
+        rules.push_back(found.front());
+    }
+    return rules;
+}
+
+// How the compliance is computed and stored, as options of palpate condense.
+std::vector<std::string> condense_options(TableReader& body) {
+    std::vector<std::string> options;
+    const auto add = [&](const std::string& option, const std::string& value) {
+        options.push_back(option);
+        options.push_back(value);
+    };
+    if (const auto element = body.choice("element", {"linear", "quadratic"})) add("--element", *element);
+    TableReader compliance = body.table("compliance");
+    for (const auto& [key, option] : std::map<std::string, std::string>{
+             {"accuracy", "--accuracy"}, {"size_mib", "--size"}, {"memory_gib", "--memory"}})
+        if (const auto value = compliance.positive(key)) add(option, fmt::format("{}", *value));
+    if (const auto form = compliance.choice("representation", {"auto", "dense", "hierarchical"}))
+        add("--representation", *form);
+    compliance.refuse_unknown();
+    return options;
 }
 
 nlohmann::ordered_json to_json(const toml::node& node) {
@@ -153,7 +86,7 @@ std::vector<std::string> keys_as_written(const toml::table& table) {
 
 // A structure's other keys are the recipe's parameters, cleaning steps in the order written; `palpate
 // segment` knows which exist and refuses the rest.
-StructureSpec structure(Reader reader, const std::filesystem::path& folder) {
+StructureSpec structure(TableReader reader, const std::filesystem::path& folder) {
     StructureSpec spec;
     spec.name = reader.required<std::string>("name");
     spec.recipe = reader.required<std::string>("recipe");
@@ -166,7 +99,7 @@ StructureSpec structure(Reader reader, const std::filesystem::path& folder) {
 }
 
 // Bodies name files and stages.
-std::string body_name(Reader& reader) {
+std::string body_name(TableReader& reader) {
     const std::string name = reader.required<std::string>("name");
     const bool fit = !name.empty() && std::ranges::all_of(name, [](unsigned char c) {
         return std::isalnum(c) != 0 || c == '_' || c == '-';
@@ -176,7 +109,7 @@ std::string body_name(Reader& reader) {
 }
 
 // Keys PREFIX_file, PREFIX_unit and PREFIX_frame; with a file, none of the keys that `excluded` names.
-std::optional<FinishedFile> finished_file(Reader& reader, const std::string& prefix,
+std::optional<FinishedFile> finished_file(TableReader& reader, const std::string& prefix,
                                           const std::filesystem::path& folder,
                                           std::initializer_list<const char*> excluded) {
     const auto path = reader.optional<std::string>(prefix + "_file");
@@ -192,7 +125,7 @@ std::optional<FinishedFile> finished_file(Reader& reader, const std::string& pre
     return FinishedFile{folder / *path, unit.value_or("mm"), frame.value_or("")};
 }
 
-RigidSpec rigid(Reader reader, const std::filesystem::path& folder) {
+RigidSpec rigid(TableReader reader, const std::filesystem::path& folder) {
     RigidSpec spec;
     spec.name = body_name(reader);
     spec.file = finished_file(reader, "surface", folder, {"label", "isovalue_hu"});
@@ -205,7 +138,7 @@ RigidSpec rigid(Reader reader, const std::filesystem::path& folder) {
 }
 
 // Optional numbers `key` of a table, under the option names that a command knows them by.
-std::map<std::string, double> options(Reader reader,
+std::map<std::string, double> options(TableReader reader,
                                       const std::map<std::string, std::string>& option_of_key) {
     std::map<std::string, double> values;
     for (const auto& [key, option] : option_of_key)
@@ -215,7 +148,7 @@ std::map<std::string, double> options(Reader reader,
 }
 
 // near = "label" or [x, y, z], within_mm, cell_size_mm: as palpate mesh --near takes it.
-std::string near_rule(Reader& rule) {
+std::string near_rule(TableReader& rule) {
     const bool point = rule.raw().get_as<toml::array>("near") != nullptr;
     const std::string place = point ? joined(rule.numbers("near", 3)) : rule.required<std::string>("near");
     const auto size = rule.required<double>("cell_size_mm"), within = rule.required<double>("within_mm");
@@ -223,7 +156,7 @@ std::string near_rule(Reader& rule) {
     return fmt::format("{}={},{}", place, size, within);
 }
 
-DeformableSpec deformable(Reader reader, const std::filesystem::path& folder) {
+DeformableSpec deformable(TableReader reader, const std::filesystem::path& folder) {
     DeformableSpec spec;
     spec.name = body_name(reader);
     spec.file = finished_file(reader, "mesh", folder, {"mesh"});
@@ -231,9 +164,11 @@ DeformableSpec deformable(Reader reader, const std::filesystem::path& folder) {
                                                  {"facet_size_mm", "--facet-size"},
                                                  {"facet_distance_mm", "--facet-distance"},
                                                  {"smoothing_mm", "--smoothing"}});
-    for (Reader place : reader.tables("refine")) spec.near.push_back(near_rule(place));
-    for (Reader rule : reader.tables("fixed")) spec.fixed.push_back(fixed_rule(rule));
-    for (Reader region : reader.tables("region")) {
+    for (TableReader place : reader.tables("refine")) spec.near.push_back(near_rule(place));
+    spec.fixed = node_rules(reader, "fixed", folder, spec.node_files);
+    spec.contact = node_rules(reader, "contact", folder, spec.node_files);
+    spec.condense_options = condense_options(reader);
+    for (TableReader region : reader.tables("region")) {
         spec.regions.push_back(
             {region.required<std::string>("label"), region.required<double>("youngs_modulus_kpa"),
              region.required<double>("poissons_ratio"), region.optional<double>("cell_size_mm"),
@@ -246,7 +181,7 @@ DeformableSpec deformable(Reader reader, const std::filesystem::path& folder) {
     return spec;
 }
 
-void read_import_options(Reader& input, const std::filesystem::path& folder, CaseFile& result) {
+void read_import_options(TableReader& input, const std::filesystem::path& folder, CaseFile& result) {
     const auto add = [](std::vector<std::string>& options, const std::string& option,
                         const std::string& value) {
         options.push_back(option);
@@ -282,7 +217,7 @@ toml::table parse(const std::filesystem::path& path) {
 
 CaseFile read_case_file(const std::filesystem::path& path) {
     const toml::table document = parse(path);
-    Reader root(document, path.string(), "");
+    TableReader root(document, path.string(), "");
     if (const auto schema = root.required<std::int64_t>("schema"); schema != 1)
         root.fail(*document.get("schema"), "schema", "is " + std::to_string(schema), "1",
                   schema > 1 ? "use a newer palpate" : "");
@@ -293,15 +228,16 @@ CaseFile read_case_file(const std::filesystem::path& path) {
         if (!text) return std::nullopt;
         return path.parent_path() / *text;
     };
-    Reader input = root.table("input");
+    TableReader input = root.table("input");
     result.volume = resolved(input.optional<std::string>("volume"));
     result.labels = resolved(input.optional<std::string>("labels"));
     read_import_options(input, path.parent_path(), result);
     input.refuse_unknown();
-    for (const Reader& table : root.tables("structure"))
+    for (const TableReader& table : root.tables("structure"))
         result.structures.push_back(structure(table, path.parent_path()));
-    for (const Reader& table : root.tables("rigid")) result.rigid.push_back(rigid(table, path.parent_path()));
-    for (const Reader& table : root.tables("deformable"))
+    for (const TableReader& table : root.tables("rigid"))
+        result.rigid.push_back(rigid(table, path.parent_path()));
+    for (const TableReader& table : root.tables("deformable"))
         result.deformable.push_back(deformable(table, path.parent_path()));
     result.haptics = options(root.table("haptics"), {{"tool_radius_mm", "--tool-radius"},
                                                      {"coupling_stiffness_n_per_mm", "--coupling-stiffness"},

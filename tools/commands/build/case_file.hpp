@@ -44,13 +44,16 @@ struct RegionSpec {
     std::optional<std::int64_t> mesh_region;  ///< its value in a finished mesh
 };
 
-/// A deformable body: regions meshed together, or a finished mesh of them, fixed by rules of `palpate
-/// condense --fixed`.
+/// A deformable body: regions meshed together, or a finished mesh of them, with rules of `palpate condense`
+/// for the nodes that are held and for those that can be touched.
 struct DeformableSpec {
     std::string name;
     std::optional<FinishedFile> file;
     std::vector<RegionSpec> regions;
-    std::vector<std::string> fixed;        ///< "touching:skull", "sphere:x,y,z,r", ...
+    std::vector<std::string> fixed;                 ///< "touching:skull", "sphere:x,y,z,r", ...
+    std::vector<std::string> contact;               ///< likewise; none: all that is not fixed
+    std::vector<std::filesystem::path> node_files;  ///< those that rules "nodes:FILE" name, resolved
+    std::vector<std::string> condense_options;      ///< of `palpate condense`: element, accuracy, budgets
     std::vector<std::string> near;         ///< "tumour=3,10", "x,y,z=3,10", as `palpate mesh --near` takes it
     std::map<std::string, double> sizing;  ///< options of `palpate mesh` by name, mm or degrees
 };

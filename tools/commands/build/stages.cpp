@@ -161,6 +161,9 @@ Stage condense_stage(const DeformableSpec& body, const std::filesystem::path& pa
         add(stage.arguments, {"--material", fmt::format("{}:{},{}", region.label, region.youngs_modulus_kpa,
                                                         region.poissons_ratio)});
     for (const std::string& rule : body.fixed) add(stage.arguments, {"--fixed", rule});
+    for (const std::string& rule : body.contact) add(stage.arguments, {"--contact", rule});
+    stage.inputs.insert(stage.inputs.end(), body.node_files.begin(), body.node_files.end());
+    stage.arguments.insert(stage.arguments.end(), body.condense_options.begin(), body.condense_options.end());
     add(stage.arguments, {"-o", output.string()});
     return stage;
 }
@@ -177,7 +180,14 @@ Json provenance(const CaseFile& case_file, const std::vector<Stage>& stages) {
         finished[file->path.string()] = name + file->path.extension().string();
     };
     for (const RigidSpec& body : case_file.rigid) add_finished(body.name, body.file);
-    for (const DeformableSpec& body : case_file.deformable) add_finished(body.name, body.file);
+    for (const DeformableSpec& body : case_file.deformable) {
+        add_finished(body.name, body.file);
+        for (std::size_t i = 0; i < body.node_files.size(); ++i) {
+            const std::string name = fmt::format("{}_nodes_{}", body.name, i + 1);
+            inputs[name + "_sha256"] = content_digest(body.node_files[i]);
+            finished["nodes:" + body.node_files[i].string()] = "nodes:" + name;
+        }
+    }
     Json steps = Json::array();
     for (const Stage& stage : stages) {
         if (stage.command == "import") continue;

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <optional>
+#include <set>
+#include <string>
+#include <toml++/toml.h>
+#include <type_traits>
+#include <vector>
+
+namespace palpate::build {
+
+/// Reads one table of a TOML file and remembers which keys it was asked for, so that the others can be
+/// refused. Everything throws InvalidInput naming file, line and key if a value is missing or has the wrong
+/// type. The table must outlive its reader.
+class TableReader {
+  public:
+    /// `where` is the table's own key, empty for the whole file.
+    TableReader(const toml::table& table, std::string file, std::string where);
+
+    template <typename T>
+    std::optional<T> optional(const std::string& key) {
+        known_.insert(key);
+        const toml::node* node = table_.get(key);
+        if (node == nullptr) return std::nullopt;
+        if (const auto value = node->value<T>()) return value;
+        fail(*node, key, "has the wrong type",
+             std::is_same_v<T, std::string> ? "text"
+             : std::is_same_v<T, bool>      ? "true or false"
+                                            : "a number");
+    }
+
+    template <typename T>
+    T required(const std::string& key) {
+        if (auto value = optional<T>(key)) return *value;
+        fail(table_, key, "is missing", "");
+    }
+
+    /// Text, or a whole number written as text.
+    std::optional<std::string> text_or_number(const std::string& key);
+
+    /// A text that must be one of a few.
+    std::optional<std::string> choice(const std::string& key, const std::vector<std::string>& choices);
+
+    /// A number above zero.
+    std::optional<double> positive(const std::string& key);
+
+    /// Exactly `count` numbers.
+    std::vector<double> numbers(const std::string& key, std::size_t count);
+    std::optional<std::vector<double>> optional_numbers(const std::string& key, std::size_t count);
+
+    /// A sub-table; an empty one if it is absent.
+    TableReader table(const std::string& key);
+
+    /// The tables of an array of tables, [[key]]; none if it is absent.
+    std::vector<TableReader> tables(const std::string& key);
+
+    bool has(const std::string& key) const { return table_.contains(key); }
+    const toml::table& raw() const { return table_; }
+
+    /// Throws for a key that nobody asked for, with the nearest known ones.
+    void refuse_unknown() const;
+
+    /// Throws InvalidInput "file:line: key 'key' of where found (expected ...); next step".
+    [[noreturn]] void fail(const toml::node& node, const std::string& key, const std::string& found,
+                           const std::string& expected, const std::string& next_step = "") const;
+
+  private:
+    std::string place_of(const std::string& key) const;
+
+    const toml::table& table_;
+    std::string file_, where_;
+    std::set<std::string> known_;
+};
+
+}  // namespace palpate::build

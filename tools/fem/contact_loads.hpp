@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "formats/model/body.hpp"
+
+namespace palpate {
+
+/// The forces of one contact.
+using ContactLoad = std::vector<NodeForce>;
+
+/// Nodes that a random contact has at most.
+inline constexpr std::int32_t most_loaded_nodes = 32;
+
+/// Makes random contacts as a tool would: each presses on 1 to most_loaded_nodes neighbouring contact nodes,
+/// with forces into the body, of 0 to 1 N along the normal and up to half as much across. Reads mesh, boundary
+/// and contact_nodes. The same for the same seed.
+std::vector<ContactLoad> random_contact_loads(const DeformableBody& body, std::int32_t count, std::uint64_t seed);
+
+/// How far a compliance's answer to a load is from the exact one.
+struct LoadError {
+    double surface = 0;  ///< |u - u_exact| / |u_exact| over all contact nodes, Euclidean norms
+    double contact = 0;  ///< the largest difference at a loaded node over the largest displacement of one
+};
+
+/// `exact` holds the exact displacement of x, y, z of every contact node, mm.
+LoadError error_of(const SurfaceCompliance& compliance, const ContactLoad& load, const Eigen::VectorXd& exact);
+
+}  // namespace palpate
