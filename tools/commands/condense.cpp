@@ -4,6 +4,7 @@
 #include "formats/asset/parts.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/commands/condense/arguments.hpp"
+#include "tools/fem/parallel.hpp"
 #include "tools/meshing/mesh_files.hpp"
 
 namespace {

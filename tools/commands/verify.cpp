@@ -6,6 +6,7 @@
 #include "formats/model/errors.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/fem/certificate.hpp"
+#include "tools/fem/parallel.hpp"
 
 namespace {
 using namespace palpate;
