@@ -2,7 +2,6 @@
 #include "tools/fem/discretisation.hpp"
 
 #include <algorithm>
-#include <iterator>
 
 #include "tools/fem/sound_tetrahedra.hpp"
 
@@ -29,23 +28,18 @@ std::vector<Edge> edges_of(const TetMesh& mesh) {
     return edges;
 }
 
-std::vector<Edge> held_edges_of_boundary(const TetMesh& mesh, std::span<const std::int32_t> fixed_nodes) {
-    std::vector<bool> held(mesh.rest_positions.size(), false);
-    for (const std::int32_t node : fixed_nodes) held[static_cast<std::size_t>(node)] = true;
+}  // namespace
+
+std::vector<std::array<std::int32_t, 2>> boundary_edges(const TetMesh& mesh) {
     const BoundarySurface boundary = boundary_surface(mesh);
     std::vector<Edge> edges;
     for (const Triangle& t : boundary.surface.triangles)
-        for (std::size_t c = 0; c < 3; ++c) {
-            const std::int32_t a = boundary.nodes[static_cast<std::size_t>(t[c])],
-                               b = boundary.nodes[static_cast<std::size_t>(t[(c + 1) % 3])];
-            if (held[static_cast<std::size_t>(a)] && held[static_cast<std::size_t>(b)])
-                edges.push_back(edge_between(a, b));
-        }
+        for (std::size_t c = 0; c < 3; ++c)
+            edges.push_back(edge_between(boundary.nodes[static_cast<std::size_t>(t[c])],
+                                         boundary.nodes[static_cast<std::size_t>(t[(c + 1) % 3])]));
     sort_and_thin(edges);
     return edges;
 }
-
-}  // namespace
 
 Discretisation discretise(const TetMesh& mesh, ElementOrder order,
                           std::span<const std::int32_t> fixed_nodes) {
@@ -72,9 +66,10 @@ Discretisation discretise(const TetMesh& mesh, ElementOrder order,
         for (const auto& [a, b] : tetrahedron_edges)
             result.elements.push_back(middle_of(edge_between(tet[a], tet[b])));
     }
+    const auto held = [&](std::int32_t node) { return std::ranges::binary_search(fixed_nodes, node); };
     if (!fixed_nodes.empty())
-        std::ranges::transform(held_edges_of_boundary(mesh, fixed_nodes),
-                               std::back_inserter(result.fixed_nodes), middle_of);
+        for (const Edge& edge : boundary_edges(mesh))
+            if (held(edge[0]) && held(edge[1])) result.fixed_nodes.push_back(middle_of(edge));
     return result;
 }
 

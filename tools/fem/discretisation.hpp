@@ -22,7 +22,7 @@ struct Discretisation {
     std::vector<std::array<std::int32_t, 2>> edges;  ///< mesh nodes at the ends of middle node i, whose
                                                      ///< number is (number of mesh nodes) + i; ascending;
                                                      ///< empty if linear
-    std::vector<std::int32_t> fixed_nodes;  ///< with zero displacement, ascending
+    std::vector<std::int32_t> fixed_nodes;           ///< with zero displacement, ascending
 };
 
 /// Numbers the nodes of a mesh's elements. Held are the given mesh nodes (ascending) and, with quadratic
@@ -34,6 +34,9 @@ Discretisation discretise(const TetMesh& mesh, ElementOrder order, std::span<con
 
 /// The same for a body: its mesh, element order and fixed nodes.
 Discretisation discretise(const DeformableBody& body);
+
+/// Returns the edges of the outer boundary's triangles, each once, lower node first, ascending.
+std::vector<std::array<std::int32_t, 2>> boundary_edges(const TetMesh& mesh);
 
 /// Returns the nodes of element t.
 std::span<const std::int32_t> nodes_of_element(const Discretisation& discretisation, std::size_t t);

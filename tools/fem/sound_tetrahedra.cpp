@@ -3,9 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <fmt/format.h>
 #include <numbers>
-#include <string>
 
 #include "formats/model/errors.hpp"
 
@@ -24,43 +23,33 @@ double longest_edge(const TetMesh& mesh, std::size_t t) {
     return std::sqrt(squared);
 }
 
-std::string digits(double value) {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.4g", value);
-    return text.data();
-}
-
-[[noreturn]] void refuse(const TetMesh& mesh, std::size_t t) {
-    std::string nodes;
-    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-    for (std::size_t c = 0; c < 4; ++c) {
-        nodes += (c == 0 ? "" : ", ") + std::to_string(mesh.tetrahedra[t][c]);
-        centre += corner(mesh, t, c) / 4;
-    }
+InvalidInput refusal(const TetMesh& mesh, std::size_t t) {
+    const Tetrahedron& nodes = mesh.tetrahedra[t];
     const double quality = element_quality(mesh, t);
-    const std::string fault = quality <= -smallest_element_quality ? "is inside out"
-                              : std::isfinite(quality)             ? "is flat"
-                                                       : "has corners that are not numbers or coincide";
-    throw InvalidInput(
-        {"tetrahedron " + std::to_string(t),
-         "with nodes " + nodes + " around (" + digits(centre.x()) + ", " + digits(centre.y()) + ", " +
-             digits(centre.z()) + ") mm " + fault + ": its volume is " + digits(six_volume(mesh, t) / 6) +
-             " mm³ at a longest edge of " + digits(longest_edge(mesh, t)) + " mm, quality " + digits(quality),
-         "quality above " + digits(smallest_element_quality) + ", where a regular tetrahedron has 1",
-         quality <= -smallest_element_quality
-             ? "exchange two of its nodes, or mesh again with 'palpate mesh'"
-             : "mesh again with 'palpate mesh', or remove it and close the gap"});
+    const bool inside_out = quality <= -smallest_element_quality;
+    const Eigen::Vector3d centre =
+        (corner(mesh, t, 0) + corner(mesh, t, 1) + corner(mesh, t, 2) + corner(mesh, t, 3)) / 4;
+    return InvalidInput(
+        {fmt::format("tetrahedron {}", t),
+         fmt::format("it is {}: nodes {}, {}, {} and {} around ({:.4g}, {:.4g}, {:.4g}) mm span {:.3g} mm³ "
+                     "over a longest edge of {:.3g} mm, quality {:.2g}",
+                     inside_out ? "inside out" : "flat", nodes[0], nodes[1], nodes[2], nodes[3], centre.x(),
+                     centre.y(), centre.z(), six_volume(mesh, t) / 6, longest_edge(mesh, t), quality),
+         fmt::format("quality above {:.0e}; a regular tetrahedron has 1", smallest_element_quality),
+         inside_out ? "exchange two of its nodes, or mesh again with 'palpate mesh'"
+                    : "merge its nearest nodes, or mesh again with 'palpate mesh'"});
 }
 
 }  // namespace
 
 double element_quality(const TetMesh& mesh, std::size_t t) {
-    return std::numbers::sqrt2 * six_volume(mesh, t) / std::pow(longest_edge(mesh, t), 3);
+    const double longest = longest_edge(mesh, t);
+    return std::numbers::sqrt2 * six_volume(mesh, t) / (longest * longest * longest);
 }
 
 void require_sound_tetrahedra(const TetMesh& mesh) {
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
-        if (!(element_quality(mesh, t) > smallest_element_quality)) refuse(mesh, t);
+        if (!(element_quality(mesh, t) > smallest_element_quality)) throw refusal(mesh, t);
 }
 
 }  // namespace palpate

@@ -64,7 +64,7 @@ ElementStiffness integral_of_gradient_products(const Geometry& geometry, int nod
         const ShapeGradients gradients = geometry.gradients.reshaped();
         return geometry.volume * gradients * gradients.transpose();
     }
-    // Hammer & Stroud: four points of equal weight, each this far towards one corner.
+    // Hammer & Stroud: four points of equal weight, one near each corner; their barycentric coordinates.
     const double near = (5 + 3 * std::sqrt(5.0)) / 20, far = (5 - std::sqrt(5.0)) / 20;
     Eigen::Matrix<double, 30, 4> gradients;
     for (Eigen::Index q = 0; q < 4; ++q) {
