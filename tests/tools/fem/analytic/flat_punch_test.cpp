@@ -13,12 +13,11 @@ namespace {
 
 const Material material{.youngs_modulus = 6e-3, .poissons_ratio = 0.3};
 
-// Force on a punch of radius 1 mm pressed 1 mm deep, over Boussinesq's F = 2 a E d / (1 - nu²) (Sneddon, Int.
-// J. Eng. Sci. 3 (1965) 47-57, section 5). On a quarter of the half-space out to 8 radii. Held at rest there,
-// even a perfect mesh would be too stiff by about a / 8; so the far boundary moves as Boussinesq's point
-// force of the very force F that the punch feels: F = F(d) + F F(lift), where F(lift) is what the far field
-// of 1 N does to a resting punch. What is left is the difference between a disc and a point, of order (a /
-// 8)³.
+// Force on a punch of radius a = 1 mm pressed 1 mm deep, over Boussinesq's F = 2 a E d / (1 - nu²) (Sneddon,
+// Int. J. Eng. Sci. 3 (1965) 47-57). On a quarter of the half-space out to 8 a. Held at rest there, even a
+// perfect mesh would be too stiff by about 1/8; so the far boundary moves as Boussinesq's point force of the
+// very force F that the punch feels: F = F(d) + F F(lift), where F(lift) is what the far field of 1 N does to
+// a resting punch. What is left is the difference between a disc and a point, of order 1/8³.
 double resistance(ElementOrder order, int steps) {
     const ElasticSystem system = elastic_system(half_space_mesh(steps, 8, true), material, order);
     const auto far = on_far_boundary(system.body.mesh);
@@ -48,9 +47,8 @@ double resistance(ElementOrder order, int steps) {
 }
 
 // Prescribed displacements: the force falls towards the exact one. The pressure's singularity at the rim
-// costs O(h) with either element, so the error halves with the mesh and Richardson's extrapolation takes it
-// out; with linear elements once more for O(h²). Extrapolations from meshes this coarse are worth 2 % and 1
-// %.
+// costs O(h) with either element, so Richardson's extrapolation takes it out; with linear elements once more
+// for O(h²). From meshes this coarse that is worth 2 % with linear and 1 % with quadratic elements.
 TEST(LinearTetrahedra, resist_a_flat_punch_as_boussinesq_says) {
     const double coarse = resistance(ElementOrder::linear, 2), middle = resistance(ElementOrder::linear, 4),
                  fine = resistance(ElementOrder::linear, 8);
