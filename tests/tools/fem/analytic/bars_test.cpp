@@ -62,7 +62,8 @@ TEST(QuadraticTetrahedra, bend_a_cantilever_as_timoshenko_says) {
     EXPECT_LT(middle, fine);
 }
 
-// At the same number of nodes across the section they reach far less, and gain with every refinement.
+// With as many nodes across the section (8 cells against 4) they reach 0.88 of it where quadratic ones reach
+// 0.99.
 TEST(LinearTetrahedra, bend_a_cantilever_too_little_and_better_with_every_refinement) {
     const double one = cantilever_ratio(ElementOrder::linear, 1),
                  two = cantilever_ratio(ElementOrder::linear, 2),

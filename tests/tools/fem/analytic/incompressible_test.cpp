@@ -57,7 +57,7 @@ TEST(LinearTetrahedra, lock_as_poissons_ratio_nears_one_half) {
     EXPECT_GT(1 - fine.back(), 0.9 * (1 - coarse.back()));
 }
 
-// What is missing is the flat facets' share of order h², the same at every Poisson's ratio.
+// What is missing is the flat facets' share of order h², much the same at every Poisson's ratio.
 TEST(QuadraticTetrahedra, do_not_lock_as_poissons_ratio_nears_one_half) {
     const auto coarse = reached_at_each_ratio(ElementOrder::quadratic, 8),
                fine = reached_at_each_ratio(ElementOrder::quadratic, 16);
