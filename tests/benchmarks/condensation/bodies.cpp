@@ -71,7 +71,7 @@ void make(const std::filesystem::path& folder, const std::string& name) {
     const std::vector<std::int32_t> values{organ};
     const TetMesh mesh = tetrahedralise(labels, values, sizing);
     write_tetrahedra(path, mesh);
-    const DeformableBody body = held_ellipsoid(mesh);
+    const DeformableBody body = held_body(mesh, ellipsoid_support);
     std::printf("%s: %zu tetrahedra, %zu nodes, %zu contact nodes, %zu held nodes\n", path.c_str(),
                 mesh.tetrahedra.size(), mesh.rest_positions.size(), body.contact_nodes.size(),
                 body.fixed_nodes.size());
