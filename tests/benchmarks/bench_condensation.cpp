@@ -17,6 +17,8 @@
 namespace palpate {
 namespace {
 
+constexpr const char* schema = "palpate.bench.condensation.1";
+
 struct Options {
     std::vector<std::filesystem::path> bodies;
     std::vector<std::string> methods;
@@ -56,9 +58,12 @@ const Method& method_named(const std::string& name) {
 }
 
 Json heading(const std::filesystem::path& path, const DeformableBody& body) {
-    return {{"schema", "palpate.bench.condensation.1"},   {"body", path.stem().string()},
-            {"tetrahedra", body.mesh.tetrahedra.size()},  {"nodes", body.mesh.rest_positions.size()},
-            {"surface_nodes", body.contact_nodes.size()}, {"blas_kernels", openblas_get_corename()}};
+    return {{"schema", schema},
+            {"body", path.stem().string()},
+            {"tetrahedra", body.mesh.tetrahedra.size()},
+            {"nodes", body.mesh.rest_positions.size()},
+            {"surface_nodes", body.contact_nodes.size()},
+            {"blas_kernels", openblas_get_corename()}};
 }
 
 std::vector<Json> measure_body(const Options& options, const std::filesystem::path& path,
@@ -96,7 +101,22 @@ void bench(const Options& options) {
     if (!options.json.empty()) json.open(options.json);
     if (!options.json.empty() && !json)
         throw SystemFailure({options.json.string(), "cannot be written", "", ""});
-    for (const auto& path : options.bodies) print_figures(stdout, measure_body(options, path, json));
+    for (const auto& path : options.bodies) {
+        const std::vector<Json> measurements = measure_body(options, path, json);
+        const std::vector<Figure> figures = figures_of(measurements);
+        print_figures(stdout, measurements, figures);
+        if (!json.is_open()) continue;
+        for (const Figure& figure : figures) {
+            Json line = {{"schema", schema},
+                         {"body", measurements.front()["body"]},
+                         {"surface_nodes", measurements.front()["surface_nodes"]},
+                         {"figure", figure.name},
+                         {"value", figure.value},
+                         {"limit", figure.limit}};
+            if (figure.met) line["met"] = *figure.met;
+            json << line << std::endl;
+        }
+    }
 }
 
 int run(int argc, char** argv) {

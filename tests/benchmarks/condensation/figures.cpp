@@ -4,8 +4,6 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <optional>
-#include <string>
 
 namespace palpate {
 namespace {
@@ -22,110 +20,113 @@ ByMethod fastest(const std::vector<Json>& measurements) {
     return best;
 }
 
-struct Figure {
+struct Limit {
     const char* name;
-    enum class Limit { at_most, at_least } limit;
-    double value;
-    double fewest_nodes, most_nodes;  // surfaces that the limit holds for
-    std::vector<const char*> methods;
-    std::function<double(ByMethod&)> of;
+    std::vector<const char*> methods;  // that must have been measured
+    std::function<double(const ByMethod&)> value;
+    bool at_most;
+    double limit;
+    double fewest_nodes, most_nodes;  // surfaces that the limit is meant for
 };
 
-double ratio(ByMethod& best, const char* above, const char* below, const char* key) {
-    return best[above][key].get<double>() / best[below][key].get<double>();
+std::function<double(const ByMethod&)> value_of(const char* method, const char* key) {
+    return [=](const ByMethod& best) { return best.at(method).at(key).get<double>(); };
 }
 
-std::vector<Figure> all_figures() {
-    constexpr auto at_most = Figure::Limit::at_most, at_least = Figure::Limit::at_least;
+std::function<double(const ByMethod&)> ratio(const char* above, const char* below, const char* key) {
+    return [=](const ByMethod& best) { return value_of(above, key)(best) / value_of(below, key)(best); };
+}
+
+double peak_over_block(const ByMethod& best) {
+    const Json& exact = best.at("exact");
+    return exact.at("peak_bytes").get<double>() / (2 * exact.at("bytes").get<double>());
+}
+
+std::vector<Limit> limits() {
     constexpr double any = INFINITY;
     return {
         {"exact / LAPACK, wall",
-         at_most,
+         {"exact", "lapack"},
+         ratio("exact", "lapack", "seconds"),
+         true,
          1.6,
          1900,
-         5200,
-         {"exact", "lapack"},
-         [](ByMethod& best) { return ratio(best, "exact", "lapack", "seconds"); }},
+         5200},
         {"exact / LAPACK, processor",
-         at_most,
+         {"exact", "lapack"},
+         ratio("exact", "lapack", "cpu_seconds"),
+         true,
          1.6,
          any,
-         any,
-         {"exact", "lapack"},
-         [](ByMethod& best) { return ratio(best, "exact", "lapack", "cpu_seconds"); }},
-        {"exact, peak memory / block in double",
-         at_most,
-         2.5,
-         0,
-         any,
-         {"exact"},
-         [](ByMethod& best) {
-             const Json& exact = best["exact"];
-             return exact["peak_bytes"].get<double>() / (2 * exact["bytes"].get<double>());
-         }},
+         any},
+        {"peak memory / block in double", {"exact"}, peak_over_block, true, 2.5, 0, any},
         {"CHOLMOD solves / exact",
-         at_least,
+         {"cholmod", "exact"},
+         ratio("cholmod", "exact", "seconds"),
+         false,
          3,
          3900,
-         any,
-         {"cholmod", "exact"},
-         [](ByMethod& best) { return ratio(best, "cholmod", "exact", "seconds"); }},
+         any},
         {"iterative as SOFA / exact",
-         at_least,
-         200,
-         0,
-         any,
          {"iterative", "exact"},
-         [](ByMethod& best) { return ratio(best, "iterative", "exact", "seconds"); }},
+         ratio("iterative", "exact", "seconds"),
+         false,
+         200,
+         0,
+         any},
         {"iterative to 1e-6 / exact",
-         at_least,
+         {"iterative_loose", "exact"},
+         ratio("iterative_loose", "exact", "seconds"),
+         false,
          200,
          any,
-         any,
-         {"iterative_loose", "exact"},
-         [](ByMethod& best) { return ratio(best, "iterative_loose", "exact", "seconds"); }},
-        {"residual in double",
-         at_most,
-         1e-10,
-         0,
-         any,
-         {"exact"},
-         [](ByMethod& best) { return best["exact"]["residual_double"].get<double>(); }},
-        {"residual as stored",
-         at_most,
-         1e-6,
-         0,
-         any,
-         {"exact"},
-         [](ByMethod& best) { return best["exact"]["residual_stored"].get<double>(); }},
+         any},
+        {"residual in double", {"exact"}, value_of("exact", "residual_double"), true, 1e-10, 0, any},
+        {"residual as stored", {"exact"}, value_of("exact", "residual_stored"), true, 1e-6, 0, any},
     };
+}
+
+std::string text(const Limit& limit) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%s %g", limit.at_most ? "<=" : ">=", limit.limit);
+    return number;
 }
 
 }  // namespace
 
-void print_figures(std::FILE* file, const std::vector<Json>& measurements) {
-    if (measurements.empty()) return;
-    ByMethod best = fastest(measurements);
-    const Json& any = measurements.front();
-    const double nodes = any["surface_nodes"];
-    std::fprintf(file, "\n%s: %d tetrahedra, %d nodes, %d on the surface to be touched\n",
-                 any["body"].get<std::string>().c_str(), any["tetrahedra"].get<int>(),
-                 any["nodes"].get<int>(), any["surface_nodes"].get<int>());
-    for (auto& [name, m] : best)
-        std::fprintf(file, "    %-38s %10.2f s wall, %10.2f s processor\n", name.c_str(),
-                     m["seconds"].get<double>(), m["cpu_seconds"].get<double>());
-    for (const Figure& figure : all_figures()) {
+std::vector<Figure> figures_of(const std::vector<Json>& measurements) {
+    std::vector<Figure> figures;
+    if (measurements.empty()) return figures;
+    const ByMethod best = fastest(measurements);
+    const double nodes = measurements.front()["surface_nodes"];
+    for (const Limit& limit : limits()) {
         bool measured = true;
-        for (const char* method : figure.methods) measured = measured && best.contains(method);
+        for (const char* method : limit.methods) measured = measured && best.contains(method);
         if (!measured) continue;
-        const double value = figure.of(best);
-        std::fprintf(file, "    %-38s %10.3g", figure.name, value);
-        const bool at_most = figure.limit == Figure::Limit::at_most;
-        if (nodes >= figure.fewest_nodes && nodes <= figure.most_nodes)
-            std::fprintf(file, "   %s %g: %s", at_most ? "<=" : ">=", figure.value,
-                         (at_most ? value <= figure.value : value >= figure.value) ? "met" : "NOT MET");
-        std::fprintf(file, "\n");
+        Figure& figure =
+            figures.emplace_back(Figure{limit.name, limit.value(best), text(limit), std::nullopt});
+        if (nodes >= limit.fewest_nodes && nodes <= limit.most_nodes)
+            figure.met = limit.at_most ? figure.value <= limit.limit : figure.value >= limit.limit;
     }
+    return figures;
+}
+
+void print_figures(std::FILE* file, const std::vector<Json>& measurements,
+                   const std::vector<Figure>& figures) {
+    if (measurements.empty()) return;
+    const Json& body = measurements.front();
+    std::fprintf(file, "\n%s: %d tetrahedra, %d nodes, %d surface nodes\n",
+                 body["body"].get<std::string>().c_str(), body["tetrahedra"].get<int>(),
+                 body["nodes"].get<int>(), body["surface_nodes"].get<int>());
+    for (const auto& [method, m] : fastest(measurements))
+        std::fprintf(file, "    %-31s %10.2f s wall %10.2f s processor\n", method.c_str(),
+                     m["seconds"].get<double>(), m["cpu_seconds"].get<double>());
+    for (const Figure& figure : figures)
+        std::fprintf(file, "    %-31s %10.3g   %s%s\n", figure.name.c_str(), figure.value,
+                     figure.limit.c_str(),
+                     !figure.met   ? ", for information"
+                     : *figure.met ? ": met"
+                                   : ": NOT MET");
     std::fflush(file);
 }
 
