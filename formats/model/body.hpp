@@ -23,6 +23,12 @@ struct RegionMaterial {
     Material material;
 };
 
+/// Polynomial degree of the displacements within a tetrahedron.
+enum class ElementOrder : std::int32_t {
+    linear = 1,     ///< 4 nodes
+    quadratic = 2,  ///< 10 nodes: the corners and the middles of the edges, which are straight
+};
+
 /// A body that does not give way.
 struct RigidBody {
     std::string name;
@@ -34,6 +40,9 @@ struct RigidBody {
 struct DeformableBody {
     std::string name;
     TetMesh mesh;
+    /// quadratic: the middle nodes of edges are unknowns that `mesh` does not list. Fixed nodes, contact
+    /// nodes and the compliance stay over mesh nodes.
+    ElementOrder element_order = ElementOrder::linear;
     std::vector<RegionMaterial> materials;    ///< one per region that occurs in the mesh
     std::vector<std::int32_t> fixed_nodes;    ///< mesh nodes with zero displacement, ascending
     BoundarySurface boundary;                 ///< boundary_surface(mesh)

@@ -22,8 +22,9 @@ struct SolvedColumns {
 
 // Solves K u = e for randomly chosen contact degrees of freedom, with one step of iterative refinement.
 SolvedColumns solve_random_columns(const DeformableBody& body, std::int32_t count, std::uint64_t seed) {
-    const auto position = number_free_nodes(body.mesh.rest_positions.size(), body.fixed_nodes);
-    const LowerSparse stiffness = assemble_stiffness(body.mesh, body.materials, position);
+    const Discretisation discretisation = discretise(body);
+    const auto position = number_free_nodes(discretisation.node_count, discretisation.fixed_nodes);
+    const LowerSparse stiffness = assemble_stiffness(body.mesh, body.materials, discretisation, position);
     const SparseCholesky factor(stiffness, Elimination::fill_reducing);
 
     const auto m3 = static_cast<Eigen::Index>(3 * body.contact_nodes.size());

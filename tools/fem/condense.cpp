@@ -23,11 +23,33 @@ std::vector<std::int32_t> contact_nodes_of(const DeformableBody& body) {
     return nodes;
 }
 
-}  // namespace
-
-void set_linear_algebra_threads(int threads) {
-    openblas_set_num_threads(threads);
+// The matrix with a column that is full below the diagonal: all later columns then fill in, and so stay
+// together in one dense block of the factor.
+LowerSparse with_full_column(const LowerSparse& matrix, Eigen::Index full) {
+    LowerSparse result(matrix.rows(), matrix.cols());
+    result.resizeNonZeros(matrix.nonZeros() + matrix.rows());
+    const auto* outer = matrix.outerIndexPtr();
+    std::int64_t cursor = 0;
+    for (Eigen::Index column = 0; column < matrix.cols(); ++column) {
+        result.outerIndexPtr()[column] = cursor;
+        std::int64_t row = column == full ? column : matrix.rows();
+        const auto append = [&](std::int64_t r, double value) {
+            result.innerIndexPtr()[cursor] = r;
+            result.valuePtr()[cursor++] = value;
+        };
+        for (std::int64_t k = outer[column]; k < outer[column + 1]; ++k) {
+            for (; row < matrix.innerIndexPtr()[k]; ++row) append(row, 0.0);
+            append(matrix.innerIndexPtr()[k], matrix.valuePtr()[k]);
+            if (column == full) ++row;
+        }
+        for (; column == full && row < matrix.rows(); ++row) append(row, 0.0);
+    }
+    result.outerIndexPtr()[matrix.cols()] = cursor;
+    result.resizeNonZeros(cursor);
+    return result;
 }
+
+}  // namespace
 
 ExactCompliance condense(const DeformableBody& body, const ProgressCallback& progress) {
     require_no_rigid_motion(body.mesh, body.fixed_nodes);
@@ -36,38 +58,38 @@ ExactCompliance condense(const DeformableBody& body, const ProgressCallback& pro
         throw InvalidInput(
             {body.name, "every surface node is held, so nothing can be touched", "", "hold fewer nodes"});
 
-    ExactCompliance result;
     progress("ordering", 0.0);
-    const auto position = surface_last_ordering(body.mesh, body.fixed_nodes, body.contact_nodes);
+    const Discretisation discretisation = discretise(body);
+    const auto position = surface_last_ordering(discretisation, body.contact_nodes);
     progress("assembling the stiffness", 0.05);
-    {
-        const LowerSparse stiffness = assemble_stiffness(body.mesh, body.materials, position);
-        progress("factorising", 0.1);
-        result.lower = SparseCholesky(stiffness, Elimination::as_given).trailing_factor(size);
-    }
-    const auto n = static_cast<blasint>(size);
-    result.smallest_eigenvalue = 1.0 / largest_eigenvalue(size, [&](Eigen::VectorXd& v) {
-                                     cblas_dtrmv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, n,
-                                                 result.lower.data(), n, v.data(), 1);
-                                     cblas_dtrmv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, n,
-                                                 result.lower.data(), n, v.data(), 1);
-                                 });
+    LowerSparse stiffness = assemble_stiffness(body.mesh, body.materials, discretisation, position);
+    stiffness = with_full_column(stiffness, stiffness.cols() - size);
+    progress("factorising", 0.1);
+    SparseCholesky factor(stiffness, Elimination::as_given);
+    stiffness = LowerSparse();
+
+    SparseCholesky::Block block = factor.trailing_block(size);
+    const auto n = static_cast<blasint>(size), stride = static_cast<blasint>(block.outerStride());
+    const double smallest = 1.0 / largest_eigenvalue(size, [&](Eigen::VectorXd& v) {
+                                cblas_dtrmv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, n, block.data(),
+                                            stride, v.data(), 1);
+                                cblas_dtrmv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, n,
+                                            block.data(), stride, v.data(), 1);
+                            });
     progress("inverting the surface block", 0.6);
-    const int status = LAPACKE_dpotri(LAPACK_COL_MAJOR, 'L', static_cast<lapack_int>(size),
-                                      result.lower.data(), static_cast<lapack_int>(size));
+    const int status = LAPACKE_dpotri(LAPACK_COL_MAJOR, 'L', n, block.data(), stride);
     if (status != 0)
         throw InvalidInput({body.name, "its surface stiffness is singular at row " + std::to_string(status),
                             "", "hold more nodes"});
     Eigen::VectorXd product(size);
-    result.largest_eigenvalue = largest_eigenvalue(size, [&](Eigen::VectorXd& v) {
-        cblas_dsymv(CblasColMajor, CblasLower, n, 1.0, result.lower.data(), n, v.data(), 1, 0.0,
-                    product.data(), 1);
+    const double largest = largest_eigenvalue(size, [&](Eigen::VectorXd& v) {
+        cblas_dsymv(CblasColMajor, CblasLower, n, 1.0, block.data(), stride, v.data(), 1, 0.0, product.data(), 1);
         v.swap(product);
     });
-    return result;
+    return {std::move(factor), block, smallest, largest};
 }
 
-DenseCompliance to_stored(const Eigen::MatrixXd& lower) {
+DenseCompliance to_stored(const Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>& lower) {
     const auto n = static_cast<std::size_t>(lower.rows());
     std::shared_ptr<float[]> entries(new float[n * n]);
     // Tiles keep both triangles' writes in cache.

@@ -5,9 +5,9 @@
 
 namespace palpate {
 
-/// Estimates the largest eigenvalue of a symmetric positive definite map of `size` unknowns by 60 steps of
-/// power iteration from a fixed start vector; `apply` replaces v by the map's image. A Rayleigh quotient, so
-/// never above the true value.
+/// Estimates the largest eigenvalue of a symmetric positive definite map of `size` unknowns to 1 % by
+/// restarted Lanczos steps from a fixed start (Spectra: Sorensen 1992); `apply` replaces v by the map's image.
+/// A Rayleigh quotient, so never above the true value but for rounding. Deterministic.
 double largest_eigenvalue(Eigen::Index size, const std::function<void(Eigen::VectorXd&)>& apply);
 
 }  // namespace palpate

@@ -10,32 +10,27 @@
 namespace palpate {
 namespace {
 
-struct Graph {
+struct MetisGraph {
     std::vector<idx_t> offsets, neighbours;
 };
 
-// The mesh's edges between nodes with number[node] >= 0, in compressed rows.
-Graph node_graph(const TetMesh& mesh, std::span<const std::int32_t> number, std::size_t count) {
-    std::vector<std::vector<idx_t>> rows(count);
-    for (const Tetrahedron& tet : mesh.tetrahedra)
-        for (const std::int32_t a : tet)
-            for (const std::int32_t b : tet) {
-                const std::int32_t from = number[static_cast<std::size_t>(a)],
-                                   to = number[static_cast<std::size_t>(b)];
-                if (from >= 0 && to >= 0 && from != to) rows[static_cast<std::size_t>(from)].push_back(to);
-            }
-    Graph graph;
-    graph.offsets.push_back(0);
-    for (auto& row : rows) {
-        std::ranges::sort(row);
-        row.erase(std::unique(row.begin(), row.end()), row.end());
-        graph.neighbours.insert(graph.neighbours.end(), row.begin(), row.end());
-        graph.offsets.push_back(static_cast<idx_t>(graph.neighbours.size()));
+// METIS wants no node to be its own neighbour.
+MetisGraph without_loops(const NodeGraph& graph) {
+    MetisGraph result;
+    result.offsets.reserve(graph.offsets.size());
+    result.neighbours.reserve(graph.neighbours.size());
+    result.offsets.push_back(0);
+    for (std::size_t p = 0; p + 1 < graph.offsets.size(); ++p) {
+        for (auto i = static_cast<std::size_t>(graph.offsets[p]);
+             i < static_cast<std::size_t>(graph.offsets[p + 1]); ++i)
+            if (graph.neighbours[i] != static_cast<std::int32_t>(p))
+                result.neighbours.push_back(graph.neighbours[i]);
+        result.offsets.push_back(static_cast<idx_t>(result.neighbours.size()));
     }
-    return graph;
+    return result;
 }
 
-std::vector<idx_t> nested_dissection(Graph graph) {
+std::vector<idx_t> nested_dissection(MetisGraph graph) {
     auto count = static_cast<idx_t>(graph.offsets.size() - 1);
     std::vector<idx_t> permutation(static_cast<std::size_t>(count)),
         position(static_cast<std::size_t>(count));
@@ -54,17 +49,16 @@ std::vector<idx_t> nested_dissection(Graph graph) {
 
 }  // namespace
 
-std::vector<std::int32_t> surface_last_ordering(const TetMesh& mesh,
-                                                std::span<const std::int32_t> fixed_nodes,
+std::vector<std::int32_t> surface_last_ordering(const Discretisation& discretisation,
                                                 std::span<const std::int32_t> contact_nodes) {
-    std::vector<std::int32_t> number(mesh.rest_positions.size(), 0);
-    for (const std::int32_t node : fixed_nodes) number[static_cast<std::size_t>(node)] = -1;
+    std::vector<std::int32_t> number(discretisation.node_count, 0);
+    for (const std::int32_t node : discretisation.fixed_nodes) number[static_cast<std::size_t>(node)] = -1;
     for (const std::int32_t node : contact_nodes) number[static_cast<std::size_t>(node)] = -1;
     std::int32_t interior = 0;
     for (std::int32_t& n : number)
         if (n >= 0) n = interior++;
 
-    const auto position = nested_dissection(node_graph(mesh, number, static_cast<std::size_t>(interior)));
+    const auto position = nested_dissection(without_loops(node_graph(discretisation, number)));
     for (std::int32_t& n : number)
         if (n >= 0) n = position[static_cast<std::size_t>(n)];
     for (std::size_t k = 0; k < contact_nodes.size(); ++k)

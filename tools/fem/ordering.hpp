@@ -4,15 +4,15 @@
 #include <span>
 #include <vector>
 
-#include "formats/model/tet_mesh.hpp"
+#include "tools/fem/discretisation.hpp"
 
 namespace palpate {
 
 /// Orders free nodes for condensation: interior nodes by METIS nested dissection of the interior's own graph,
-/// contact nodes last in the given order. Returns each node's position, -1 for fixed nodes; contact node k is
-/// at position (number of interior nodes) + k. Deterministic. Source: Karypis & Kumar 1998 (METIS_NodeND).
-std::vector<std::int32_t> surface_last_ordering(const TetMesh& mesh,
-                                                std::span<const std::int32_t> fixed_nodes,
+/// contact nodes last in the given order. Middle nodes of edges count as interior wherever they lie. Returns
+/// each node's position, -1 for fixed nodes; contact node k is at position (number of interior nodes) + k.
+/// Deterministic. Source: Karypis & Kumar 1998 (METIS_NodeND).
+std::vector<std::int32_t> surface_last_ordering(const Discretisation& discretisation,
                                                 std::span<const std::int32_t> contact_nodes);
 
 }  // namespace palpate

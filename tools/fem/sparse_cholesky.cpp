@@ -14,11 +14,15 @@ struct SparseCholesky::Impl {
     cholmod_common common{};
     cholmod_factor* factor = nullptr;
 
-    Impl() {
+    explicit Impl(Elimination elimination) {
         cholmod_l_start(&common);
         common.supernodal = CHOLMOD_SUPERNODAL;
         common.final_ll = true;
         common.print = 0;
+        if (elimination == Elimination::fill_reducing) return;
+        common.nmethods = 1;
+        common.method[0].ordering = CHOLMOD_NATURAL;
+        common.postorder = false;
     }
     ~Impl() {
         cholmod_l_free_factor(&factor, &common);
@@ -61,18 +65,22 @@ void require_success(const cholmod_common& common, const cholmod_factor* factor)
 }  // namespace
 
 SparseCholesky::SparseCholesky(const LowerSparse& matrix, Elimination elimination)
-    : impl_(std::make_unique<Impl>()) {
-    cholmod_common& common = impl_->common;
-    if (elimination == Elimination::as_given) {
-        common.nmethods = 1;
-        common.method[0].ordering = CHOLMOD_NATURAL;
-        common.postorder = false;
-    }
+    : impl_(std::make_unique<Impl>(elimination)) {
     cholmod_sparse view = view_of(matrix);
-    impl_->factor = cholmod_l_analyze(&view, &common);
+    impl_->factor = cholmod_l_analyze(&view, &impl_->common);
     if (impl_->factor == nullptr) throw std::bad_alloc();
-    cholmod_l_factorize(&view, impl_->factor, &common);
-    require_success(common, impl_->factor);
+    cholmod_l_factorize(&view, impl_->factor, &impl_->common);
+    require_success(impl_->common, impl_->factor);
+}
+
+FactorForecast SparseCholesky::forecast(const LowerSparse& matrix, Elimination elimination) {
+    Impl impl(elimination);
+    cholmod_sparse view = view_of(matrix);
+    impl.factor = cholmod_l_analyze(&view, &impl.common);
+    if (impl.factor == nullptr) throw std::bad_alloc();
+    return {.flops = impl.common.fl,
+            .entries = static_cast<std::int64_t>(impl.factor->xsize),
+            .work_entries = static_cast<std::int64_t>(impl.factor->maxcsize)};
 }
 
 SparseCholesky::~SparseCholesky() = default;
@@ -95,27 +103,29 @@ Eigen::MatrixXd SparseCholesky::solve(const Eigen::MatrixXd& b) const {
     return result;
 }
 
-Eigen::MatrixXd SparseCholesky::trailing_factor(Eigen::Index size) const {
+SupernodalView SparseCholesky::supernodes() const {
     const cholmod_factor& factor = *impl_->factor;
-    assert(factor.is_super && factor.ordering == CHOLMOD_NATURAL);
-    const auto* super = static_cast<const SuiteSparse_long*>(factor.super);
-    const auto* row_offsets = static_cast<const SuiteSparse_long*>(factor.pi);
-    const auto* value_offsets = static_cast<const SuiteSparse_long*>(factor.px);
-    const auto* rows = static_cast<const SuiteSparse_long*>(factor.s);
-    const auto* values = static_cast<const double*>(factor.x);
-    const auto first = static_cast<SuiteSparse_long>(factor.n) - size;
+    const auto list = [](const void* data, std::size_t count) {
+        return std::span(static_cast<const std::int64_t*>(data), count);
+    };
+    return {.size = static_cast<std::int64_t>(factor.n),
+            .first_column = list(factor.super, factor.nsuper + 1),
+            .row_offsets = list(factor.pi, factor.nsuper + 1),
+            .value_offsets = list(factor.px, factor.nsuper + 1),
+            .rows = list(factor.s, factor.ssize),
+            .permutation = list(factor.Perm, factor.n),
+            .values = static_cast<const double*>(factor.x)};
+}
 
-    Eigen::MatrixXd trailing = Eigen::MatrixXd::Zero(size, size);
-    for (std::size_t s = 0; s < factor.nsuper; ++s) {
-        const SuiteSparse_long height = row_offsets[s + 1] - row_offsets[s];
-        for (SuiteSparse_long column = std::max(super[s], first); column < super[s + 1]; ++column) {
-            const SuiteSparse_long local = column - super[s];
-            const double* source = values + value_offsets[s] + local * height;
-            for (SuiteSparse_long r = local; r < height; ++r)
-                trailing(rows[row_offsets[s] + r] - first, column - first) = source[r];
-        }
-    }
-    return trailing;
+SparseCholesky::Block SparseCholesky::trailing_block(Eigen::Index size) {
+    const SupernodalView view = supernodes();
+    const std::size_t last = view.supernode_count() - 1;
+    const std::int64_t height = view.row_offsets[last + 1] - view.row_offsets[last];
+    const std::int64_t skipped = view.size - size - view.first_column[last];
+    if (impl_->factor->ordering != CHOLMOD_NATURAL || skipped < 0)
+        throw SystemFailure({"CHOLMOD", "did not keep the surface in one supernode", "", "report this mesh"});
+    double* values = static_cast<double*>(impl_->factor->x) + view.value_offsets[last];
+    return {values + skipped * height + skipped, size, size, Eigen::OuterStride<>(height)};
 }
 
 }  // namespace palpate

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <Eigen/Core>
+#include <cstdint>
 #include <memory>
+#include <span>
 
 #include "tools/fem/stiffness.hpp"
 
@@ -13,9 +15,31 @@ enum class Elimination {
     fill_reducing,  ///< CHOLMOD's choice (AMD, METIS)
 };
 
+/// What a factorisation will take, known before it is made.
+struct FactorForecast {
+    double flops = 0;             ///< multiplications and additions
+    std::int64_t entries = 0;     ///< numbers of L as stored
+    std::int64_t work_entries = 0;  ///< numbers of the largest update between supernodes
+};
+
+/// The columns of L = L's supernodes: neighbouring columns with the same rows below the diagonal, stored
+/// together. Supernode s has the columns [first_column[s], first_column[s + 1]) and the rows
+/// rows[row_offsets[s] ...], its own columns first; its values are column-major from value_offsets[s] on,
+/// with as many rows as the supernode has.
+struct SupernodalView {
+    std::int64_t size = 0;
+    std::span<const std::int64_t> first_column, row_offsets, value_offsets, rows;
+    std::span<const std::int64_t> permutation;  ///< row of K at each row of L
+    const double* values = nullptr;
+
+    std::size_t supernode_count() const { return first_column.size() - 1; }
+};
+
 /// A supernodal Cholesky factor K = L Lᵀ (Chen, Davis, Hager, Rajamanickam 2008), 64-bit indices.
 class SparseCholesky {
   public:
+    using Block = Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
+
     /// Factorises the symmetric matrix given by its lower triangle; throws InvalidInput with the row if it is
     /// not positive definite, std::bad_alloc if memory runs out.
     SparseCholesky(const LowerSparse& matrix, Elimination elimination);
@@ -23,12 +47,18 @@ class SparseCholesky {
     SparseCholesky(SparseCholesky&&) noexcept;
     SparseCholesky& operator=(SparseCholesky&&) noexcept;
 
+    /// Analyses the pattern alone.
+    static FactorForecast forecast(const LowerSparse& matrix, Elimination elimination);
+
     /// Solves K x = b for all columns of b.
     Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
 
-    /// Copies the last `size` rows and columns of L (lower triangle, zeros above); needs
-    /// Elimination::as_given.
-    Eigen::MatrixXd trailing_factor(Eigen::Index size) const;
+    SupernodalView supernodes() const;
+
+    /// The last `size` rows and columns of L where they lie (lower triangle; the upper one is undefined). They
+    /// may be written to; L is then no longer a factor. Needs Elimination::as_given and a matrix whose column
+    /// `size` from the end is full, so that they are one supernode; checked.
+    Block trailing_block(Eigen::Index size);
 
   private:
     struct Impl;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/fem/stiffness.hpp"
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <ranges>
 #include <string>
 
 #include "formats/model/errors.hpp"
@@ -22,27 +23,69 @@ Lame lame_parameters(const Material& material) {
     return {e * nu / ((1 + nu) * (1 - 2 * nu)), e / (2 * (1 + nu))};
 }
 
-struct Element {
-    std::array<Eigen::Vector3d, 4> gradients;  // of the shape functions, 1/mm
-    double volume;                             // mm³
+// Gradients of the barycentric coordinates, one a column, 1/mm.
+using BarycentricGradients = Eigen::Matrix<double, 3, 4>;
+// Gradients of all shape functions at one point, stacked as the degrees of freedom are, 1/mm.
+using ShapeGradients = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 30, 1>;
+
+using ElementStiffness = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 30, 30>;
+
+struct Geometry {
+    BarycentricGradients gradients;
+    double volume;  // mm³
 };
 
-Element element_of(const std::array<Eigen::Vector3d, 4>& p) {
+Geometry geometry_of(const std::array<Eigen::Vector3d, 4>& p) {
     Eigen::Matrix3d edges;
     edges << p[1] - p[0], p[2] - p[0], p[3] - p[0];
-    const Eigen::Matrix3d inverse = edges.inverse();
-    Element element;
-    for (int a = 0; a < 3; ++a)
-        element.gradients[static_cast<std::size_t>(a) + 1] = inverse.row(a).transpose();
-    element.gradients[0] = -(element.gradients[1] + element.gradients[2] + element.gradients[3]);
-    element.volume = edges.determinant() / 6;
-    return element;
+    Geometry geometry;
+    geometry.gradients.rightCols<3>() = edges.inverse().transpose();
+    geometry.gradients.col(0) = -geometry.gradients.rightCols<3>().rowwise().sum();
+    geometry.volume = edges.determinant() / 6;
+    return geometry;
 }
 
-Eigen::Matrix3d block(const Element& element, const Lame& lame, std::size_t a, std::size_t b) {
-    const Eigen::Vector3d &ga = element.gradients[a], &gb = element.gradients[b];
-    return element.volume * (lame.lambda * ga * gb.transpose() + lame.mu * gb * ga.transpose() +
-                             lame.mu * ga.dot(gb) * Eigen::Matrix3d::Identity());
+// Corners: N_i = L_i (2 L_i - 1); middles: N_ij = 4 L_i L_j.
+ShapeGradients quadratic_gradients(const BarycentricGradients& g, const Eigen::Vector4d& point) {
+    ShapeGradients gradients(30);
+    for (Eigen::Index i = 0; i < 4; ++i) gradients.segment<3>(3 * i) = (4 * point[i] - 1) * g.col(i);
+    for (std::size_t e = 0; e < 6; ++e) {
+        const auto i = static_cast<Eigen::Index>(tetrahedron_edges[e][0]),
+                   j = static_cast<Eigen::Index>(tetrahedron_edges[e][1]);
+        gradients.segment<3>(3 * (4 + static_cast<Eigen::Index>(e))) =
+            4 * (point[j] * g.col(i) + point[i] * g.col(j));
+    }
+    return gradients;
+}
+
+// The integral of g_a g_bᵀ for all nodes a, b.
+ElementStiffness integral_of_gradient_products(const Geometry& geometry, int nodes_per_element) {
+    if (nodes_per_element == 4) {
+        const ShapeGradients gradients = geometry.gradients.reshaped();
+        return geometry.volume * gradients * gradients.transpose();
+    }
+    // Hammer & Stroud: four points of equal weight, one near each corner; their barycentric coordinates.
+    const double near = (5 + 3 * std::sqrt(5.0)) / 20, far = (5 - std::sqrt(5.0)) / 20;
+    Eigen::Matrix<double, 30, 4> gradients;
+    for (Eigen::Index q = 0; q < 4; ++q) {
+        Eigen::Vector4d point = Eigen::Vector4d::Constant(far);
+        point[q] = near;
+        gradients.col(q) = quadratic_gradients(geometry.gradients, point);
+    }
+    return geometry.volume / 4 * gradients * gradients.transpose();
+}
+
+ElementStiffness element_stiffness(const std::array<Eigen::Vector3d, 4>& corners, const Lame& lame,
+                                   int nodes_per_element) {
+    const ElementStiffness products = integral_of_gradient_products(geometry_of(corners), nodes_per_element);
+    ElementStiffness stiffness = lame.lambda * products;
+    for (Eigen::Index a = 0; a < products.rows(); a += 3)
+        for (Eigen::Index b = 0; b < products.cols(); b += 3) {
+            const Eigen::Matrix3d product = products.block<3, 3>(a, b);
+            stiffness.block<3, 3>(a, b) += lame.mu * product.transpose();
+            stiffness.block<3, 3>(a, b).diagonal().array() += lame.mu * product.trace();
+        }
+    return stiffness;
 }
 
 std::array<Eigen::Vector3d, 4> corners(const TetMesh& mesh, std::size_t t) {
@@ -73,50 +116,18 @@ std::map<std::int32_t, Lame> checked_materials(const TetMesh& mesh,
         if (!lame.try_emplace(region, lame_parameters(material)).second)
             throw InvalidInput({culprit, "given twice", "one material a region", "leave one out"});
     }
-    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
         if (!lame.contains(mesh.regions[t]))
             throw InvalidInput({"region '" + region_name(mesh, mesh.regions[t]) + "'", "has no material", "",
                                 "give it a Young's modulus and a Poisson's ratio"});
-        if (!(six_volume(mesh, t) > 0))
-            throw InvalidInput({"tetrahedron " + std::to_string(t),
-                                "its volume is " + std::to_string(six_volume(mesh, t) / 6) + " mm³",
-                                "more than 0", "mesh again, or reorder its nodes"});
-    }
     return lame;
-}
-
-// For each node position, the positions >= it that share a tetrahedron with it, itself first, ascending.
-std::vector<std::vector<std::int32_t>> lower_neighbours(const TetMesh& mesh,
-                                                        std::span<const std::int32_t> position_of_node,
-                                                        std::size_t position_count) {
-    std::vector<std::vector<std::int32_t>> neighbours(position_count);
-    for (const Tetrahedron& tet : mesh.tetrahedra)
-        for (const std::int32_t a : tet)
-            for (const std::int32_t b : tet) {
-                const std::int32_t column = position_of_node[static_cast<std::size_t>(a)];
-                const std::int32_t row = position_of_node[static_cast<std::size_t>(b)];
-                if (column >= 0 && row >= column) neighbours[static_cast<std::size_t>(column)].push_back(row);
-            }
-    for (auto& list : neighbours) {
-        std::ranges::sort(list);
-        list.erase(std::unique(list.begin(), list.end()), list.end());
-        list.shrink_to_fit();
-    }
-    return neighbours;
 }
 
 }  // namespace
 
-Eigen::Matrix<double, 12, 12> tetrahedron_stiffness(const std::array<Eigen::Vector3d, 4>& points,
-                                                    const Material& material) {
-    const Element element = element_of(points);
-    const Lame lame = lame_parameters(material);
-    Eigen::Matrix<double, 12, 12> stiffness;
-    for (int a = 0; a < 4; ++a)
-        for (int b = 0; b < 4; ++b)
-            stiffness.block<3, 3>(3 * a, 3 * b) =
-                block(element, lame, static_cast<std::size_t>(a), static_cast<std::size_t>(b));
-    return stiffness;
+Eigen::MatrixXd tetrahedron_stiffness(const std::array<Eigen::Vector3d, 4>& corners, const Material& material,
+                                      ElementOrder order) {
+    return element_stiffness(corners, lame_parameters(material), order == ElementOrder::linear ? 4 : 10);
 }
 
 std::vector<std::int32_t> number_free_nodes(std::size_t node_count,
@@ -130,17 +141,24 @@ std::vector<std::int32_t> number_free_nodes(std::size_t node_count,
 }
 
 LowerSparse assemble_stiffness(const TetMesh& mesh, std::span<const RegionMaterial> materials,
+                               const Discretisation& discretisation,
                                std::span<const std::int32_t> position_of_node) {
     const auto lame = checked_materials(mesh, materials);
-    const auto count =
-        static_cast<std::size_t>(std::ranges::count_if(position_of_node, [](auto p) { return p >= 0; }));
-    const auto neighbours = lower_neighbours(mesh, position_of_node, count);
+    const NodeGraph graph = node_graph(discretisation, position_of_node);
+    const std::size_t count = graph.offsets.size() - 1;
+    // The lower triangle's neighbours of a position: itself and those after it.
+    const auto below = [&](std::size_t p) {
+        const auto begin = graph.neighbours.begin();
+        return std::ranges::subrange(std::lower_bound(begin + graph.offsets[p], begin + graph.offsets[p + 1],
+                                                      static_cast<std::int32_t>(p)),
+                                     begin + graph.offsets[p + 1]);
+    };
 
     // The pattern: column 3p + c holds, of each neighbour's 3 rows, those not above the diagonal.
     const auto n = static_cast<std::int64_t>(3 * count);
     LowerSparse stiffness(n, n);
     std::int64_t entries = 0;
-    for (const auto& list : neighbours) entries += 9 * static_cast<std::int64_t>(list.size()) - 3;
+    for (std::size_t p = 0; p < count; ++p) entries += 9 * std::ssize(below(p)) - 3;
     stiffness.resizeNonZeros(entries);
     std::int64_t* outer = stiffness.outerIndexPtr();
     std::int64_t* inner = stiffness.innerIndexPtr();
@@ -148,7 +166,7 @@ LowerSparse assemble_stiffness(const TetMesh& mesh, std::span<const RegionMateri
     for (std::size_t p = 0; p < count; ++p)
         for (std::int64_t c = 0; c < 3; ++c) {
             outer[3 * p + static_cast<std::size_t>(c)] = cursor;
-            for (const std::int32_t row : neighbours[p])
+            for (const std::int32_t row : below(p))
                 for (std::int64_t r = 0; r < 3; ++r)
                     if (3 * std::int64_t{row} + r >= 3 * static_cast<std::int64_t>(p) + c)
                         inner[cursor++] = 3 * std::int64_t{row} + r;
@@ -157,16 +175,18 @@ LowerSparse assemble_stiffness(const TetMesh& mesh, std::span<const RegionMateri
     std::fill_n(stiffness.valuePtr(), entries, 0.0);
 
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
-        const Element element = element_of(corners(mesh, t));
-        const Lame& material = lame.at(mesh.regions[t]);
-        for (std::size_t a = 0; a < 4; ++a)
-            for (std::size_t b = 0; b < 4; ++b) {
-                const std::int32_t column = position_of_node[static_cast<std::size_t>(mesh.tetrahedra[t][a])];
-                const std::int32_t row = position_of_node[static_cast<std::size_t>(mesh.tetrahedra[t][b])];
+        const ElementStiffness element =
+            element_stiffness(corners(mesh, t), lame.at(mesh.regions[t]), discretisation.nodes_per_element);
+        const auto nodes = nodes_of_element(discretisation, t);
+        for (std::size_t a = 0; a < nodes.size(); ++a)
+            for (std::size_t b = 0; b < nodes.size(); ++b) {
+                const std::int32_t column = position_of_node[static_cast<std::size_t>(nodes[a])];
+                const std::int32_t row = position_of_node[static_cast<std::size_t>(nodes[b])];
                 if (column < 0 || row < column) continue;
-                const auto& list = neighbours[static_cast<std::size_t>(column)];
+                const auto list = below(static_cast<std::size_t>(column));
                 const auto rank = std::ranges::lower_bound(list, row) - list.begin();
-                const Eigen::Matrix3d values = block(element, material, b, a);
+                const Eigen::Matrix3d values =
+                    element.block<3, 3>(3 * static_cast<Eigen::Index>(b), 3 * static_cast<Eigen::Index>(a));
                 for (std::int64_t c = 0; c < 3; ++c)
                     for (std::int64_t r = (row == column ? c : 0); r < 3; ++r)
                         stiffness.valuePtr()[outer[3 * std::int64_t{column} + c] + 3 * rank + r - c] +=

@@ -40,6 +40,52 @@ TetMesh block_mesh(std::array<int, 3> cells, const Eigen::Vector3d& size) {
     return mesh;
 }
 
+TetMesh macneal_harder_cube() {
+    TetMesh mesh;
+    // Corners and inner nodes in the same order, so that inner node 8 + c lies towards corner c.
+    mesh.rest_positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+                           {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+    mesh.rest_positions.insert(mesh.rest_positions.end(), {{.249, .342, .192},
+                                                           {.826, .288, .288},
+                                                           {.850, .649, .263},
+                                                           {.273, .750, .230},
+                                                           {.320, .186, .643},
+                                                           {.677, .305, .683},
+                                                           {.788, .693, .644},
+                                                           {.165, .745, .702}});
+    // A hexahedron's sides, outwards, corners numbered as those of the cube.
+    constexpr std::array<std::array<std::size_t, 4>, 6> sides{
+        {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}};
+    using Hexahedron = std::array<std::int32_t, 8>;
+    std::vector<Hexahedron> hexahedra{{8, 9, 10, 11, 12, 13, 14, 15}};
+    for (const auto& side : sides) {
+        Hexahedron outer{};
+        for (std::size_t c = 0; c < 4; ++c) {
+            outer[c] = 8 + static_cast<std::int32_t>(side[c]);
+            outer[4 + c] = static_cast<std::int32_t>(side[c]);
+        }
+        hexahedra.push_back(outer);
+    }
+    // Every quadrilateral is cut from its lowest node, so neighbours agree; a hexahedron is the cone from its
+    // lowest node over the sides that do not contain it.
+    for (const Hexahedron& hexahedron : hexahedra) {
+        const std::int32_t apex = *std::ranges::min_element(hexahedron);
+        for (const auto& side : sides) {
+            std::array<std::int32_t, 4> quad{};
+            for (std::size_t c = 0; c < 4; ++c) quad[c] = hexahedron[side[c]];
+            std::ranges::rotate(quad, std::ranges::min_element(quad));
+            if (quad[0] == apex) continue;
+            mesh.tetrahedra.push_back({apex, quad[0], quad[1], quad[2]});
+            mesh.tetrahedra.push_back({apex, quad[0], quad[2], quad[3]});
+        }
+    }
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+        if (six_volume(mesh, t) < 0) std::swap(mesh.tetrahedra[t][2], mesh.tetrahedra[t][3]);
+    mesh.regions.assign(mesh.tetrahedra.size(), 1);
+    mesh.region_names = {{1, "cube", {1, 0, 0}}};
+    return mesh;
+}
+
 void jitter_interior(TetMesh& mesh, double amount, unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> uniform(-amount, amount);
@@ -66,10 +112,32 @@ DeformableBody held_block(std::array<int, 3> cells, const Eigen::Vector3d& size,
     return body;
 }
 
+std::vector<Eigen::Vector3d> node_positions(const DeformableBody& body) {
+    std::vector<Eigen::Vector3d> positions = body.mesh.rest_positions;
+    for (const auto& [a, b] : discretise(body).edges)
+        positions.push_back(
+            (positions[static_cast<std::size_t>(a)] + positions[static_cast<std::size_t>(b)]) / 2);
+    return positions;
+}
+
+std::vector<std::int32_t> boundary_nodes(const DeformableBody& body) {
+    return discretise(body.mesh, body.element_order, boundary_surface(body.mesh).nodes).fixed_nodes;
+}
+
+Eigen::VectorXd sampled(const DeformableBody& body,
+                        const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& field) {
+    const auto positions = node_positions(body);
+    Eigen::VectorXd u(static_cast<Eigen::Index>(3 * positions.size()));
+    for (std::size_t node = 0; node < positions.size(); ++node)
+        u.segment<3>(static_cast<Eigen::Index>(3 * node)) = field(positions[node]);
+    return u;
+}
+
 Eigen::MatrixXd full_stiffness(const DeformableBody& body) {
-    std::vector<std::int32_t> all(body.mesh.rest_positions.size());
+    const Discretisation discretisation = discretise(body);
+    std::vector<std::int32_t> all(discretisation.node_count);
     std::iota(all.begin(), all.end(), 0);
-    const LowerSparse lower = assemble_stiffness(body.mesh, body.materials, all);
+    const LowerSparse lower = assemble_stiffness(body.mesh, body.materials, discretisation, all);
     const Eigen::MatrixXd dense(lower);
     return dense.selfadjointView<Eigen::Lower>();
 }

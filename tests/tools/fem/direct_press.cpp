@@ -9,8 +9,9 @@
 namespace palpate::test {
 
 Eigen::MatrixXd direct_compliance(const DeformableBody& body, const std::vector<DirectContact>& contacts) {
-    const auto position = number_free_nodes(body.mesh.rest_positions.size(), body.fixed_nodes);
-    const LowerSparse K = assemble_stiffness(body.mesh, body.materials, position);
+    const Discretisation discretisation = discretise(body);
+    const auto position = number_free_nodes(discretisation.node_count, discretisation.fixed_nodes);
+    const LowerSparse K = assemble_stiffness(body.mesh, body.materials, discretisation, position);
     Eigen::MatrixXd loads = Eigen::MatrixXd::Zero(K.rows(), static_cast<Eigen::Index>(contacts.size()));
     for (std::size_t k = 0; k < contacts.size(); ++k)
         for (std::size_t i = 0; i < contacts[k].nodes.size(); ++i) {

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/model/compliance.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace palpate {
+namespace {
+
+using Eigen::Index;
+using Rows = Eigen::Map<const Eigen::Matrix<float, 3, Eigen::Dynamic, Eigen::RowMajor>>;
+using DenseRows = Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>, 0, Eigen::OuterStride<>>;
+
+// The three rows of width `width` that belong to a node.
+Rows rows_of(const float* values, std::int64_t node, Index width) noexcept {
+    return {values + 3 * node * width, 3, width};
+}
+
+Eigen::Matrix3f block_of(const DenseCompliance& c, std::int32_t a, std::int32_t b) noexcept {
+    return DenseRows(c.row(3 * static_cast<std::size_t>(a)) + 3 * static_cast<std::size_t>(b), 3, 3,
+                     Eigen::OuterStride<>(static_cast<Index>(c.dof_count())));
+}
+
+void add_products(const DenseCompliance& c, std::span<const NodeForce> forces,
+                  std::span<Eigen::Vector3f> displacements) noexcept {
+    // C is symmetric: the column of a degree of freedom is its row, which lies in one piece.
+    for (const NodeForce& load : forces)
+        for (Index axis = 0; axis < 3; ++axis) {
+            const float* row = c.row(3 * static_cast<std::size_t>(load.node) + static_cast<std::size_t>(axis));
+            for (std::size_t node = 0; node < displacements.size(); ++node)
+                displacements[node] += load.force[axis] * Eigen::Map<const Eigen::Vector3f>(row + 3 * node);
+        }
+}
+
+// A block and the clusters that it couples.
+struct Place {
+    std::size_t block;
+    std::int32_t level, row, column;
+};
+
+// Part (i, j) of a split block.
+Place part(const HierarchicalCompliance& c, const Place& whole, std::int32_t i, std::int32_t j) noexcept {
+    const bool diagonal = whole.row == whole.column;
+    const std::int32_t index = diagonal ? i + j : 2 * i + j;
+    return {static_cast<std::size_t>(c.blocks[whole.block].first_child + index), whole.level + 1,
+            2 * whole.row + i, 2 * whole.column + j};
+}
+
+Eigen::Matrix3f block_of(const HierarchicalCompliance& c, std::int32_t a, std::int32_t b) noexcept {
+    const std::int32_t p = c.positions[static_cast<std::size_t>(a)],
+                       q = c.positions[static_cast<std::size_t>(b)];
+    const std::int32_t row = std::max(p, q), column = std::min(p, q);
+    Place place{0, 0, 0, 0};
+    while (c.blocks[place.block].first_child > 0)
+        place = part(c, place, row >= c.begin(place.level + 1, 2 * place.row + 1) ? 1 : 0,
+                     column >= c.begin(place.level + 1, 2 * place.column + 1) ? 1 : 0);
+
+    const ComplianceBlock& block = c.blocks[place.block];
+    const std::int32_t row_begin = c.begin(place.level, place.row),
+                       row_end = c.begin(place.level, place.row + 1),
+                       column_begin = c.begin(place.level, place.column),
+                       column_end = c.begin(place.level, place.column + 1);
+    const float* values = c.values.get() + block.offset;
+    Eigen::Matrix3f result;
+    if (block.rank == ComplianceBlock::dense) {
+        const Index width = 3 * Index{column_end - column_begin};
+        result = rows_of(values, row - row_begin, width).middleCols<3>(3 * Index{column - column_begin});
+    } else {
+        const float* v = values + 3 * std::int64_t{row_end - row_begin} * block.rank;
+        result = rows_of(values, row - row_begin, block.rank)
+                     .lazyProduct(rows_of(v, column - column_begin, block.rank).transpose());
+    }
+    if (p < q) result.transposeInPlace();
+    return result;
+}
+
+// Forces by position, ascending.
+using Loads = std::span<const NodeForce>;
+
+Loads within(Loads loads, std::int32_t begin, std::int32_t end) noexcept {
+    const auto first = std::ranges::lower_bound(loads, begin, {}, &NodeForce::node);
+    const auto last = std::ranges::lower_bound(first, loads.end(), end, {}, &NodeForce::node);
+    return {first, last};
+}
+
+class Product {
+  public:
+    Product(const HierarchicalCompliance& compliance, std::span<Eigen::Vector3f> displacements) noexcept
+        : c_(compliance), u_(displacements) {}
+
+    void add(const Place& place, Loads on_rows, Loads on_columns) noexcept {
+        if (on_rows.empty() && on_columns.empty()) return;
+        const bool diagonal = place.row == place.column;
+        const ComplianceBlock& block = c_.blocks[place.block];
+        if (block.first_child > 0) {
+            const std::int32_t row_middle = c_.begin(place.level + 1, 2 * place.row + 1),
+                               column_middle = c_.begin(place.level + 1, 2 * place.column + 1);
+            const std::array rows{within(on_rows, 0, row_middle), within(on_rows, row_middle, c_.node_count)};
+            const std::array columns{within(on_columns, 0, column_middle),
+                                     within(on_columns, column_middle, c_.node_count)};
+            for (std::int32_t i = 0; i < 2; ++i)
+                for (std::int32_t j = 0; j < (diagonal ? i + 1 : 2); ++j)
+                    add(part(c_, place, i, j), rows[static_cast<std::size_t>(i)],
+                        columns[static_cast<std::size_t>(j)]);
+            return;
+        }
+        const std::int32_t row_begin = c_.begin(place.level, place.row),
+                           row_end = c_.begin(place.level, place.row + 1),
+                           column_begin = c_.begin(place.level, place.column),
+                           column_end = c_.begin(place.level, place.column + 1);
+        const float* values = c_.values.get() + block.offset;
+        if (block.rank == ComplianceBlock::dense) {
+            const Index width = 3 * Index{column_end - column_begin};
+            for (const NodeForce& load : on_columns)
+                for (std::int32_t p = row_begin; p < row_end; ++p)
+                    displaced(p) += rows_of(values, p - row_begin, width)
+                                        .middleCols<3>(3 * Index{load.node - column_begin})
+                                        .lazyProduct(load.force);
+            if (diagonal) return;
+            for (const NodeForce& load : on_rows)
+                for (std::int32_t q = column_begin; q < column_end; ++q)
+                    displaced(q) += rows_of(values, load.node - row_begin, width)
+                                        .middleCols<3>(3 * Index{q - column_begin})
+                                        .transpose()
+                                        .lazyProduct(load.force);
+            return;
+        }
+        const float* v = values + 3 * std::int64_t{row_end - row_begin} * block.rank;
+        add_low_rank(values, row_begin, row_end, v, column_begin, block.rank, on_columns);
+        add_low_rank(v, column_begin, column_end, values, row_begin, block.rank, on_rows);
+    }
+
+  private:
+    Eigen::Vector3f& displaced(std::int32_t position) noexcept {
+        return u_[static_cast<std::size_t>(c_.order[static_cast<std::size_t>(position)])];
+    }
+
+    // u += U Vᵀ f for forces on the rows of V.
+    void add_low_rank(const float* u, std::int32_t u_begin, std::int32_t u_end, const float* v,
+                      std::int32_t v_begin, std::int32_t rank, Loads loads) noexcept {
+        if (loads.empty() || rank == 0) return;
+        Eigen::Map<Eigen::VectorXf> weights(weights_.data(), rank);
+        weights.setZero();
+        for (const NodeForce& load : loads)
+            weights += rows_of(v, load.node - v_begin, rank).transpose().lazyProduct(load.force);
+        for (std::int32_t p = u_begin; p < u_end; ++p)
+            displaced(p) += rows_of(u, p - u_begin, rank).lazyProduct(weights);
+    }
+
+    const HierarchicalCompliance& c_;
+    std::span<Eigen::Vector3f> u_;
+    std::array<float, HierarchicalCompliance::max_rank> weights_;
+};
+
+void add_products(const HierarchicalCompliance& c, std::span<const NodeForce> forces,
+                  std::span<Eigen::Vector3f> displacements) noexcept {
+    std::array<NodeForce, 256> loads;  // more forces take several rounds
+    Product product(c, displacements);
+    while (!forces.empty()) {
+        const std::size_t count = std::min(forces.size(), loads.size());
+        for (std::size_t i = 0; i < count; ++i)
+            loads[i] = {c.positions[static_cast<std::size_t>(forces[i].node)], forces[i].force};
+        const Loads chunk = std::span(loads).first(count);
+        std::ranges::sort(loads.begin(), loads.begin() + static_cast<std::ptrdiff_t>(count), {},
+                          &NodeForce::node);
+        product.add({0, 0, 0, 0}, chunk, chunk);
+        forces = forces.subspan(count);
+    }
+}
+
+}  // namespace
+
+std::int32_t node_count(const SurfaceCompliance& compliance) {
+    return std::visit([](const auto& c) { return c.node_count; }, compliance);
+}
+
+std::size_t value_bytes(const SurfaceCompliance& compliance) {
+    if (const auto* dense = std::get_if<DenseCompliance>(&compliance))
+        return dense->dof_count() * dense->dof_count() * sizeof(float);
+    return std::get<HierarchicalCompliance>(compliance).value_count * sizeof(float);
+}
+
+Eigen::Matrix3f compliance_block(const SurfaceCompliance& compliance, std::int32_t a,
+                                 std::int32_t b) noexcept {
+    if (const auto* dense = std::get_if<DenseCompliance>(&compliance)) return block_of(*dense, a, b);
+    return block_of(*std::get_if<HierarchicalCompliance>(&compliance), a, b);
+}
+
+void add_displacements(const SurfaceCompliance& compliance, std::span<const NodeForce> forces,
+                       std::span<Eigen::Vector3f> displacements) noexcept {
+    if (const auto* dense = std::get_if<DenseCompliance>(&compliance))
+        add_products(*dense, forces, displacements);
+    else
+        add_products(*std::get_if<HierarchicalCompliance>(&compliance), forces, displacements);
+}
+
+}  // namespace palpate

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/fem/compress.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "tools/fem/cluster_order.hpp"
+#include "tools/fem/low_rank.hpp"
+#include "tools/fem/parallel.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+constexpr std::int32_t largest_leaf = 32;  // nodes; halves and doubles of it took more bytes
+
+// A block while it is made: split, of low rank, or dense.
+struct Part {
+    std::vector<Part> parts;
+    std::optional<LowRank> low_rank;
+    MatrixXd dense;
+    std::int64_t size = 0;  // numbers that it stores
+};
+
+// The blocks of one column of clusters, from the diagonal downwards.
+using Column = std::vector<Part>;
+
+class Compressor {
+  public:
+    Compressor(std::span<const Eigen::Vector3d> points, const ComplianceRows& rows, double accuracy)
+        : rows_(rows) {
+        result_.node_count = static_cast<std::int32_t>(points.size());
+        result_.accuracy = accuracy;
+        result_.depth = cluster_depth(result_.node_count, largest_leaf);
+        result_.order = cluster_order(points, result_.depth);
+        result_.positions.resize(result_.order.size());
+        for (std::size_t p = 0; p < result_.order.size(); ++p)
+            result_.positions[static_cast<std::size_t>(result_.order[p])] = static_cast<std::int32_t>(p);
+        estimate_scales();
+    }
+
+    std::int32_t depth() const { return result_.depth; }
+    std::int32_t clusters(std::int32_t level) const { return 1 << level; }
+
+    // The column of cluster j at the last level, from its rows of C.
+    Column leaf_column(std::int32_t j) const {
+        const std::int32_t level = result_.depth, first = result_.begin(level, j);
+        const std::int32_t count = result_.begin(level, j + 1) - first;
+        const MatrixXd rows =
+            rows_(std::span(result_.order).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count)));
+        Column column;
+        for (std::int32_t i = j; i < clusters(level); ++i) {
+            const std::int32_t begin = result_.begin(level, i), end = result_.begin(level, i + 1);
+            MatrixXd block(3 * (end - begin), 3 * count);
+            for (std::int32_t p = begin; p < end; ++p)
+                block.middleRows<3>(3 * (p - begin)) =
+                    inverse_scales_[static_cast<std::size_t>(p)] *
+                    rows.middleCols<3>(3 * Index{result_.order[static_cast<std::size_t>(p)]}).transpose();
+            for (std::int32_t p = first; p < first + count; ++p)
+                block.middleCols<3>(3 * (p - first)) *= inverse_scales_[static_cast<std::size_t>(p)];
+            Part part;
+            if (i == j)
+                block = MatrixXd(block + block.transpose()) / 2;
+            else
+                part.low_rank = truncated(block, tolerance(level, i, j));
+            if (!part.low_rank) part.dense = std::move(block);
+            part.size = part.low_rank ? part.low_rank->size() : part.dense.size();
+            column.push_back(std::move(part));
+        }
+        return column;
+    }
+
+    // Block (i, j) of a level from the columns of j's halves.
+    Part join(std::int32_t level, std::int32_t i, std::int32_t j, Column& left, Column& right) const {
+        const auto in_left = [&](std::int32_t row) { return std::move(left[static_cast<std::size_t>(row - 2 * j)]); };
+        const auto in_right = [&](std::int32_t row) {
+            return std::move(right[static_cast<std::size_t>(row - 2 * j - 1)]);
+        };
+        Part whole;
+        whole.parts.push_back(in_left(2 * i));
+        if (i != j) whole.parts.push_back(in_right(2 * i));
+        whole.parts.push_back(in_left(2 * i + 1));
+        whole.parts.push_back(in_right(2 * i + 1));
+        for (const Part& part : whole.parts) whole.size += part.size;
+        if (i != j) replace_by_low_rank(whole, tolerance(level, i, j));
+        return whole;
+    }
+
+    HierarchicalCompliance stored(const Part& root) && {
+        result_.value_count = static_cast<std::size_t>(root.size);
+        std::shared_ptr<float[]> values(new float[result_.value_count]);
+        result_.blocks.resize(1);
+        float* end = values.get();
+        store(root, 0, 0, 0, 0, values.get(), end);
+        result_.values = std::shared_ptr<const float>(values, values.get());
+        return std::move(result_);
+    }
+
+  private:
+    // How strongly each node answers to a force in each direction: S_p² = the mean of C_ipᵀ C_ip over a sample of
+    // nodes i all over the surface. (The few large entries around a node itself are mostly missed, which makes
+    // this a cautious estimate.) Blocks are made of S_i^-1 C_ij S_j^-1: an error of the same size anywhere in
+    // such a block is, for a force in any direction, the same part of the displacement field it causes. Without
+    // this, forces on a slender body along its axis, where it is stiff, drown in the error of those across.
+    void estimate_scales() {
+        std::vector<std::int32_t> sample = result_.order;
+        std::shuffle(sample.begin(), sample.end(), std::mt19937_64(1));
+        sample.resize(std::min<std::size_t>(sample.size(), 2 * largest_leaf));
+        const MatrixXd rows = rows_(sample);
+        double sum = 0;
+        for (const std::int32_t node : result_.order) {
+            const MatrixXd answers = rows.middleCols<3>(3 * Index{node});
+            const Eigen::Matrix3d squared = answers.transpose() * answers / static_cast<double>(rows.rows());
+            const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(squared);
+            scales_.push_back(axes.operatorSqrt());
+            inverse_scales_.push_back(axes.operatorInverseSqrt());
+            sum += squared.trace() / 3;
+        }
+        entry_error_ = result_.accuracy / std::sqrt(sum / result_.node_count * (result_.depth + 1));
+    }
+
+    // Error that one step, truncation or joining, may add to a block; it takes part in no more than depth + 1.
+    LowRankTolerance tolerance(std::int32_t level, std::int32_t i, std::int32_t j) const {
+        const auto dofs = [&](std::int32_t c) {
+            return static_cast<double>(3 * (result_.begin(level, c + 1) - result_.begin(level, c)));
+        };
+        return {.row = entry_error_ * std::sqrt(dofs(j)), .column = entry_error_ * std::sqrt(dofs(i))};
+    }
+
+    static void replace_by_low_rank(Part& whole, const LowRankTolerance& tolerance) {
+        std::array<LowRank, 4> dense;
+        std::array<const LowRank*, 4> factors{};
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Part& part = whole.parts[k];
+            if (!part.parts.empty()) return;
+            if (!part.low_rank) dense[k] = {part.dense, MatrixXd::Identity(part.dense.cols(), part.dense.cols())};
+            factors[k] = part.low_rank ? &*part.low_rank : &dense[k];
+        }
+        LowRank low_rank = joined(factors, tolerance);
+        if (low_rank.size() > whole.size || low_rank.rank() > HierarchicalCompliance::max_rank) return;
+        whole.size = low_rank.size();
+        whole.low_rank = std::move(low_rank);
+        whole.parts.clear();
+    }
+
+    void store(const Part& part, std::size_t index, std::int32_t level, std::int32_t i, std::int32_t j, const float* begin, float*& end) {
+        if (!part.parts.empty()) {
+            const std::size_t first = result_.blocks.size();
+            result_.blocks[index].first_child = static_cast<std::int32_t>(first);
+            result_.blocks.resize(first + part.parts.size());
+            std::size_t k = 0;
+            for (std::int32_t di = 0; di < 2; ++di)
+                for (std::int32_t dj = 0; dj < (i == j ? di + 1 : 2); ++dj, ++k)
+                    store(part.parts[k], first + k, level + 1, 2 * i + di, 2 * j + dj, begin, end);
+            return;
+        }
+        result_.blocks[index].offset = end - begin;
+        // Takes the scale of a cluster's nodes back from a factor's rows.
+        const auto append = [&](MatrixXd matrix, std::int32_t cluster) {
+            const std::int32_t first = result_.begin(level, cluster);
+            for (Index node = 0; node < matrix.rows() / 3; ++node)
+                matrix.middleRows<3>(3 * node) =
+                    MatrixXd(scales_[static_cast<std::size_t>(first + node)] * matrix.middleRows<3>(3 * node));
+            Eigen::Map<Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
+                end, matrix.rows(), matrix.cols()) = matrix.cast<float>();
+            end += matrix.size();
+        };
+        if (!part.low_rank) {
+            MatrixXd dense = part.dense;
+            const std::int32_t first = result_.begin(level, j);
+            for (Index node = 0; node < dense.cols() / 3; ++node)
+                dense.middleCols<3>(3 * node) *= scales_[static_cast<std::size_t>(first + node)];
+            return append(std::move(dense), i);
+        }
+        result_.blocks[index].rank = static_cast<std::int32_t>(part.low_rank->rank());
+        append(part.low_rank->u, i);
+        append(part.low_rank->v, j);
+    }
+
+    const ComplianceRows& rows_;
+    HierarchicalCompliance result_;
+    std::vector<Eigen::Matrix3d> scales_, inverse_scales_;  // by position, mm/N and its inverse
+    double entry_error_ = 0;      // of scaled entries, root mean square, in one step
+};
+
+}  // namespace
+
+HierarchicalCompliance compress(std::span<const Eigen::Vector3d> points, const ComplianceRows& rows,
+                                double accuracy, int threads, const ProgressCallback& progress) {
+    Compressor compressor(points, rows, accuracy);
+    const std::int32_t depth = compressor.depth();
+    const auto column_count = [&](std::int32_t level) { return static_cast<std::size_t>(compressor.clusters(level)); };
+
+    std::mutex telling;
+    std::size_t panels_done = 0;
+    const auto leaf = [&](std::size_t j) {
+        Column column = compressor.leaf_column(static_cast<std::int32_t>(j));
+        const std::lock_guard lock(telling);
+        progress("compressing", static_cast<double>(++panels_done) / static_cast<double>(column_count(depth)));
+        return column;
+    };
+    // A subtree's columns are joined as soon as both halves are there, so that little waits in memory.
+    const std::function<Column(std::int32_t, std::size_t)> column_of = [&](std::int32_t level, std::size_t j) {
+        if (level == depth) return leaf(j);
+        Column left = column_of(level + 1, 2 * j), right = column_of(level + 1, 2 * j + 1);
+        Column column;
+        for (std::size_t i = j; i < column_count(level); ++i)
+            column.push_back(compressor.join(level, static_cast<std::int32_t>(i), static_cast<std::int32_t>(j), left,
+                                             right));
+        return column;
+    };
+    std::int32_t level = std::min(depth, 5);
+    std::vector<Column> columns(column_count(level));
+    for_each_index(columns.size(), threads, [&](std::size_t j) { columns[j] = column_of(level, j); });
+    while (level-- > 0) {
+        std::vector<Column> halves = std::exchange(columns, std::vector<Column>(column_count(level)));
+        std::vector<std::pair<std::size_t, std::size_t>> blocks;
+        for (std::size_t j = 0; j < columns.size(); ++j) {
+            columns[j].resize(columns.size() - j);
+            for (std::size_t i = j; i < columns.size(); ++i) blocks.emplace_back(i, j);
+        }
+        for_each_index(blocks.size(), threads, [&](std::size_t b) {
+            const auto [i, j] = blocks[b];
+            columns[j][i - j] = compressor.join(level, static_cast<std::int32_t>(i), static_cast<std::int32_t>(j),
+                                                halves[2 * j], halves[2 * j + 1]);
+        });
+    }
+    return std::move(compressor).stored(columns[0][0]);
+}
+
+}  // namespace palpate
