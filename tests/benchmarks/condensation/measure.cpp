@@ -69,6 +69,10 @@ Cost cost_of(const std::function<void()>& work) {
             1024 * (std::int64_t{after.ru_maxrss} - std::int64_t{before.ru_maxrss})};
 }
 
+Json to_json(const Cost& cost) {
+    return {{"seconds", cost.seconds}, {"cpu_seconds", cost.cpu_seconds}, {"peak_bytes", cost.peak_bytes}};
+}
+
 Json in_child(const std::function<Json()>& work) {
     int ends[2];
     if (pipe(ends) != 0) throw SystemFailure({"pipe", "cannot be opened", "", ""});

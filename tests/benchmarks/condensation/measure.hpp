@@ -21,6 +21,9 @@ struct Cost {
 /// Runs `work` and measures it. The peak is the process's, so call it first thing in in_child().
 Cost cost_of(const std::function<void()>& work);
 
+/// As "seconds", "cpu_seconds" and "peak_bytes".
+Json to_json(const Cost& cost);
+
 /// Runs `work` in a forked child and returns what it returns, so that each piece of work starts from the same
 /// memory and leaves none behind. Throws SystemFailure with the child's message, or how it died. The calling
 /// process must not run threads of its own (OpenBLAS stops its threads before a fork).

@@ -4,23 +4,22 @@
 #include <Eigen/IterativeLinearSolvers>
 #include <algorithm>
 #include <lapacke.h>
+#include <optional>
 #include <thread>
 
 #include "formats/model/errors.hpp"
+#include "tests/benchmarks/condensation/free_stiffness.hpp"
+#include "tests/benchmarks/condensation/hierarchical.hpp"
 #include "tools/fem/certificate.hpp"
 #include "tools/fem/condense.hpp"
+#include "tools/fem/parallel.hpp"
 #include "tools/fem/sparse_cholesky.hpp"
-#include "tools/fem/stiffness.hpp"
 
 namespace palpate {
 namespace {
 
 Eigen::Index surface_dofs(const DeformableBody& body) {
     return static_cast<Eigen::Index>(3 * body.contact_nodes.size());
-}
-
-Json to_json(const Cost& cost) {
-    return {{"seconds", cost.seconds}, {"cpu_seconds", cost.cpu_seconds}, {"peak_bytes", cost.peak_bytes}};
 }
 
 // Seconds from each report of progress to the next, the last one until now.
@@ -48,16 +47,16 @@ class Stages {
 
 Json measure_exact(const DeformableBody& held, int threads) {
     set_linear_algebra_threads(threads);
-    ExactCompliance exact;
+    std::optional<ExactCompliance> exact;
     Stages stages;
     Json stage_seconds;
     const Cost cost = cost_of([&] {
-        exact = condense(held, stages.callback());
+        exact.emplace(condense(held, stages.callback()));
         stage_seconds = stages.to_json();
     });
     DeformableBody body = held;
-    body.compliance = to_stored(exact.lower);
-    const Certificate certificate = certify(body, exact);
+    body.compliance = to_stored(exact->lower);
+    const Certificate certificate = certify(body, *exact);
     Json result = to_json(cost);
     result["bytes"] = 4 * surface_dofs(body) * surface_dofs(body);
     result["stages"] = stage_seconds;
@@ -98,21 +97,17 @@ Json measure_cholmod(const DeformableBody& body, int threads) {
     Eigen::Index solved = 0;
     const Cost cost = cost_of([&] {
         const double begin = now_seconds();
-        const auto position = number_free_nodes(body.mesh.rest_positions.size(), body.fixed_nodes);
-        const LowerSparse stiffness = assemble_stiffness(body.mesh, body.materials, position);
+        const auto [stiffness, rows] = free_stiffness(body);
         const SparseCholesky factor(stiffness, Elimination::fill_reducing);
         factor_seconds = now_seconds() - begin;
-        const auto row_of = [&](Eigen::Index dof) {
-            const std::int32_t node = body.contact_nodes[static_cast<std::size_t>(dof / 3)];
-            return 3 * Eigen::Index{position[static_cast<std::size_t>(node)]} + dof % 3;
-        };
         for (Eigen::Index p = 0; p < panels && solve_seconds < patience; ++p) {
             const Eigen::Index first = p * panel, width = std::min(panel, n - first);
             Eigen::MatrixXd loads = Eigen::MatrixXd::Zero(stiffness.rows(), width);
-            for (Eigen::Index c = 0; c < width; ++c) loads(row_of(first + c), c) = 1;
+            for (Eigen::Index c = 0; c < width; ++c) loads(rows[static_cast<std::size_t>(first + c)], c) = 1;
             const Eigen::MatrixXd u = factor.solve(loads);
             for (Eigen::Index c = 0; c < width; ++c)
-                for (Eigen::Index dof = 0; dof < n; ++dof) compliance(dof, first + c) = u(row_of(dof), c);
+                for (Eigen::Index dof = 0; dof < n; ++dof)
+                    compliance(dof, first + c) = u(rows[static_cast<std::size_t>(dof)], c);
             solved += width;
             solve_seconds = now_seconds() - begin - factor_seconds;
         }
@@ -138,9 +133,7 @@ struct Iterations {
 template <typename Preconditioner>
 Json measure_iterative(const DeformableBody& body, int threads, const Iterations& until) {
     constexpr Eigen::Index sample = 32;
-    const auto position = number_free_nodes(body.mesh.rest_positions.size(), body.fixed_nodes);
-    const FullSparse stiffness =
-        assemble_stiffness(body.mesh, body.materials, position).selfadjointView<Eigen::Lower>();
+    const FullSparse stiffness = free_stiffness(body).lower.selfadjointView<Eigen::Lower>();
     const Eigen::Index n = stiffness.rows();
     std::vector<Eigen::Index> iterations(sample);
     // Columns one after the other in each thread, so that none waits for another.
@@ -187,6 +180,7 @@ const std::vector<Method>& condensation_methods() {
          [](const DeformableBody& body, int threads) {
              return measure_iterative<Eigen::DiagonalPreconditioner<double>>(body, threads, {1e-6, 5000});
          }},
+        {"hierarchical", false, [](double) { return 0.0; }, measure_hierarchical},
     };
     return methods;
 }

@@ -30,6 +30,7 @@ struct Method {
 /// - iterative: conjugate gradients for every free unknown of all nodes, timed on a sample, with what SOFA's
 ///   PrecomputedConstraintCorrection sets: no preconditioner, |r| <= 1e-20 |b|, at most 5000 iterations.
 /// - iterative_loose: the same as somebody in a hurry would run it: diagonal preconditioner, |r| <= 1e-6 |b|.
+/// - hierarchical: measure_hierarchical().
 const std::vector<Method>& condensation_methods();
 
 }  // namespace palpate
