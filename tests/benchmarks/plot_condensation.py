@@ -6,7 +6,7 @@
 
 Reads the lines of bench_condensation --json: of method "exact" (dense) and "hierarchical", the keys surface_nodes,
 seconds and bytes. Of a body measured several times the fastest counts. Colours are chosen to read on white and on
-near-black, because the page decides. Lines with a figure become the page's table; a figure that misses its limit is bold.
+near-black, because the page decides. Lines with a figure become the page's table, where what misses its limit is bold.
 """
 import argparse
 import json
@@ -215,24 +215,27 @@ def draw(series):
 
 
 def table_of(lines):
-    """One row a body, one column a figure; of a body in several files the last counts."""
+    """One row a figure, one column a body; of a body in several files the last counts. Where the limit depends on the
+    size, all that apply are named."""
     figures = [line for line in lines if "figure" in line]
-    columns = list(dict.fromkeys((line["figure"], line["limit"]) for line in figures))
-    bodies = dict.fromkeys((line["body"].split("_")[0], line["surface_nodes"]) for line in figures)
-    cells = {(line["body"].split("_")[0], line["surface_nodes"], line["figure"]): line for line in figures}
+    cells = {(line["figure"], line["body"]): line for line in figures}
+    bodies = sorted({(line["body"].split("_")[0] != "uniform", line["body"].split("_")[0], line["surface_nodes"],
+                      line["body"]) for line in figures})
 
-    def cell(kind, nodes, figure):
-        line = cells.get((kind, nodes, figure))
+    def cell(figure, body):
+        line = cells.get((figure, body))
         if not line:
             return "–"
-        words = f"{line['value']:.0f}" if line["value"] >= 100 else f"{line['value']:.2g}"
+        words = f"{line['value']:,.0f}".replace(",", " ") if line["value"] >= 100 else f"{line['value']:.2g}"
         return words if line.get("met", True) else f"**{words}**"
 
-    head = [f"{figure} ({limit.replace('<=', '≤').replace('>=', '≥')})" for figure, limit in columns]
-    rows = [[kind, count_text(nodes)] + [cell(kind, nodes, figure) for figure, _ in columns]
-            for kind, nodes in sorted(bodies, key=lambda body: (body[0] != "uniform", body))]
-    return "\n".join("| " + " | ".join(row) + " |"
-                     for row in [["cells", "surface nodes", *head], ["---"] + ["--:"] * (1 + len(head)), *rows])
+    rows = [["", "limit"] + [f"{kind} {count_text(nodes)}" for _, kind, nodes, _ in bodies],
+            ["---", "--:"] + ["--:"] * len(bodies)]
+    for figure in dict.fromkeys(line["figure"] for line in figures):
+        limits = dict.fromkeys(line["limit"] for line in figures if line["figure"] == figure and line["limit"])
+        limit = ", ".join(limits).replace("<=", "≤").replace(">=", "≥")
+        rows.append([figure, limit or "–"] + [cell(figure, body) for _, _, _, body in bodies])
+    return "\n".join("| " + " | ".join(row) + " |" for row in rows)
 
 
 def write_table(page, table):

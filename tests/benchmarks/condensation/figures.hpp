@@ -13,8 +13,8 @@ namespace palpate {
 struct Figure {
     std::string name;
     double value = 0;
-    std::string limit;        ///< "<= 1.6"
-    std::optional<bool> met;  ///< none where the limit is not meant for a surface of this size
+    std::string limit;        ///< "<= 1.6"; empty if none is meant for a surface of this size
+    std::optional<bool> met;  ///< none without a limit
 };
 
 /// Compares the measurements of one body, made in one run, with the limits. Of repeated measurements the
