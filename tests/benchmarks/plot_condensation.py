@@ -21,7 +21,7 @@ SERIES = [("exact", "dense", "#3d84d6"), ("hierarchical", "hierarchical", "#d873
 INK, FAINT = "#768390", "#8b949e"
 WIDTH, HEIGHT = 960, 450
 PANEL = {"top": 92, "height": 280, "width": 320}
-NODE_TICKS = [500, 1000, 2000, 5000, 10000, 20000, 50000]
+NODE_TICKS = [200, 500, 1000, 2000, 5000, 10000, 20000, 50000]
 
 
 def in_units(value, units):
@@ -202,13 +202,15 @@ def draw_quantity(left, series, key, title, less, power, ticks, text_of):
     return parts
 
 
-def draw(series):
+def draw(series, processor):
     parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" '
              f'height="{HEIGHT}" font-family="system-ui, -apple-system, Segoe UI, Helvetica, Arial, sans-serif" '
              'role="img" aria-label="Time and size of a surface compliance against surface nodes">']
     parts.append(text(18, 28, "What a surface compliance costs", 18, INK, weight="600"))
-    for left, quantity in zip((72, 542), QUANTITIES):
-        parts += draw_quantity(left, series, *quantity)
+    for left, (key, title, *rest) in zip((72, 542), QUANTITIES):
+        if processor and key == "seconds":
+            key, title = "cpu_seconds", "Processor time to build"
+        parts += draw_quantity(left, series, key, title, *rest)
     parts.append(text(18, HEIGHT - 8, "Points are measured; dotted: the dense form as the cube (time) and the square "
                                       "(size) of the nodes.", 11))
     return "\n".join([*parts, "</svg>"]) + "\n"
@@ -253,6 +255,8 @@ def main():
     parser.add_argument("lines", nargs="+", type=Path, help="files of bench_condensation --json")
     parser.add_argument("-o", "--output", type=Path, help="SVG to write")
     parser.add_argument("--family", default="graded", help="drawn: bodies whose names begin so [default: graded]")
+    parser.add_argument("--processor", action="store_true",
+                        help="draw the processor's seconds: for a machine that other work shares")
     parser.add_argument("--table", type=Path, help="Markdown page whose table is replaced")
     options = parser.parse_args()
     lines = read_lines(options.lines)
@@ -261,7 +265,7 @@ def main():
     if options.output and not series:
         sys.exit(f"plot_condensation.py: no exact or hierarchical measurement of a body named {options.family}...")
     if options.output:
-        options.output.write_text(draw(series))
+        options.output.write_text(draw(series, options.processor))
     if options.table:
         write_table(options.table, table_of(lines))
 

@@ -88,8 +88,9 @@ int main(int argc, char** argv) try {
     }
     std::vector<std::string> names(argv + 2, argv + argc);
     if (names.empty())
-        names = {"uniform_1200", "uniform_2000", "uniform_2300", "uniform_3000", "uniform_4100",
-                 "uniform_5000", "graded_1200",  "graded_2000",  "graded_2300",  "graded_3000",
+        names = {"uniform_1200", "uniform_2000", "uniform_2300", "uniform_3000",
+                 "uniform_4100", "uniform_5000", "graded_300",   "graded_600",
+                 "graded_1200",  "graded_2000",  "graded_2300",  "graded_3000",
                  "graded_4100",  "graded_5000",  "graded_10000", "graded_20000"};
     std::filesystem::create_directories(argv[1]);
     for (const std::string& name : names) palpate::make(argv[1], name);

@@ -130,12 +130,12 @@ void print_figures(std::FILE* file, const std::vector<Json>& measurements,
     for (const auto& [method, m] : fastest(measurements))
         std::fprintf(file, "    %-35s %10.2f s wall %10.2f s processor\n", method.c_str(),
                      m["seconds"].get<double>(), m["cpu_seconds"].get<double>());
-    for (const Figure& figure : figures)
-        std::fprintf(file, "    %-35s %10.3g   %s%s\n", figure.name.c_str(), figure.value,
-                     figure.limit.c_str(),
-                     !figure.met   ? ""
-                     : *figure.met ? ": met"
-                                   : ": NOT MET");
+    for (const Figure& figure : figures) {
+        std::fprintf(file, "    %-35s %10.3g", figure.name.c_str(), figure.value);
+        if (figure.met)
+            std::fprintf(file, "   %s: %s", figure.limit.c_str(), *figure.met ? "met" : "NOT MET");
+        std::fprintf(file, "\n");
+    }
     std::fflush(file);
 }
 
