@@ -12,6 +12,8 @@
 #include "tests/benchmarks/condensation/ellipsoid.hpp"
 #include "tests/benchmarks/condensation/figures.hpp"
 #include "tests/benchmarks/condensation/methods.hpp"
+#include "tools/fem/condensation_plan.hpp"
+#include "tools/fem/dense_kernels.hpp"
 #include "tools/meshing/mesh_files.hpp"
 
 namespace palpate {
@@ -27,26 +29,6 @@ struct Options {
     int threads = 2;
     int repeats = 3;
 };
-
-// Bytes that a process can take without others being pushed out.
-double free_memory() {
-    std::ifstream meminfo("/proc/meminfo");
-    std::string key;
-    double kib = 0;
-    for (std::string rest; meminfo >> key >> kib; std::getline(meminfo, rest))
-        if (key == "MemAvailable:") return 1024 * kib;
-    return 0;
-}
-
-// OpenBLAS runs its oldest kernels on a processor younger than itself.
-void warn_of_slow_kernels() {
-    if (openblas_get_corename() != std::string_view("Prescott") || !__builtin_cpu_supports("avx2")) return;
-    std::fprintf(
-        stderr,
-        "OpenBLAS does not know this processor and runs kernels for Prescott, about five times too slow; "
-        "set OPENBLAS_CORETYPE=%s\n",
-        __builtin_cpu_supports("avx512f") ? "SkylakeX" : "Haswell");
-}
 
 const Method& method_named(const std::string& name) {
     const auto& methods = condensation_methods();
@@ -68,8 +50,8 @@ Json heading(const std::filesystem::path& path, const DeformableBody& body) {
 
 std::vector<Json> measure_body(const Options& options, const std::filesystem::path& path,
                                std::ofstream& json) {
-    const FixedRule rule =
-        options.fixed.empty() ? FixedRule(ellipsoid_support) : parse_fixed_rule(options.fixed);
+    const NodeRule rule =
+        options.fixed.empty() ? ellipsoid_support : parse_node_rule("--fixed", options.fixed);
     const DeformableBody body = held_body(read_tetrahedra(path), rule);
     const auto dofs = static_cast<double>(3 * body.contact_nodes.size());
     std::vector<Json> measurements;
@@ -77,10 +59,10 @@ std::vector<Json> measure_body(const Options& options, const std::filesystem::pa
         for (const std::string& name : options.methods) {
             const Method& method = method_named(name);
             if (repeat > 0 && !method.repeatable) continue;
-            if (method.memory(dofs) > free_memory()) {
+            if (method.memory(dofs) > available_memory()) {
                 std::fprintf(stderr, "%s: %s left out: it needs about %.1f GB, and %.1f are free\n",
                              path.stem().c_str(), name.c_str(), 1e-9 * method.memory(dofs),
-                             1e-9 * free_memory());
+                             1e-9 * available_memory());
                 continue;
             }
             std::fprintf(stderr, "%s: %s\n", path.stem().c_str(), name.c_str());
@@ -96,7 +78,6 @@ std::vector<Json> measure_body(const Options& options, const std::filesystem::pa
 
 void bench(const Options& options) {
     for (const std::string& name : options.methods) method_named(name);
-    warn_of_slow_kernels();
     std::ofstream json;
     if (!options.json.empty()) json.open(options.json);
     if (!options.json.empty() && !json)
@@ -143,7 +124,10 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace palpate
 
-int main(int argc, char** argv) try { return palpate::run(argc, argv); } catch (const std::exception& error) {
+int main(int argc, char** argv) try {
+    palpate::restart_with_fitting_kernels(argv);
+    return palpate::run(argc, argv);
+} catch (const std::exception& error) {
     std::fprintf(stderr, "bench_condensation: %s\n", error.what());
     return 1;
 }

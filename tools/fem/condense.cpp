@@ -90,6 +90,8 @@ std::vector<Eigen::Vector3d> contact_points(const DeformableBody& body) {
     return points;
 }
 
+}  // namespace
+
 Eigen::MatrixXd columns_of(const ExactCompliance& exact, std::span<const Index> dofs) {
     const Index size = exact.lower.rows();
     Eigen::MatrixXd columns(size, static_cast<Index>(dofs.size()));
@@ -98,8 +100,6 @@ Eigen::MatrixXd columns_of(const ExactCompliance& exact, std::span<const Index> 
             exact.lower.col(dofs[c]).tail(size - dofs[c]);
     return columns;
 }
-
-}  // namespace
 
 ExactCompliance condense_by_trailing_block(const DeformableBody& body, const ProgressCallback& progress) {
     progress("ordering and assembling", 0.0);

@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <memory>
+#include <span>
 
 #include "formats/model/body.hpp"
 #include "formats/model/progress.hpp"
@@ -35,6 +36,9 @@ ExactCompliance condense_by_solves(const DeformableBody& body, int threads, cons
 /// the whole displacement field and of the loaded nodes'.
 HierarchicalCompliance condense_hierarchically(const DeformableBody& body, double accuracy, int threads,
                                                const ProgressCallback& progress);
+
+/// Some columns of C, 3m x |dofs|, mm/N.
+Eigen::MatrixXd columns_of(const ExactCompliance& exact, std::span<const Eigen::Index> dofs);
 
 /// Rounds to the stored form: float32, both triangles, symmetric bit for bit.
 DenseCompliance to_stored(const ExactCompliance& exact);

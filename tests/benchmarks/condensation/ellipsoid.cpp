@@ -7,7 +7,7 @@
 
 namespace palpate {
 
-DeformableBody held_body(TetMesh mesh, const FixedRule& rule) {
+DeformableBody held_body(TetMesh mesh, const NodeRule& rule) {
     DeformableBody body;
     body.name = "body";
     body.mesh = std::move(mesh);

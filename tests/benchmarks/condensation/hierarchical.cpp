@@ -4,14 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
 #include <random>
 
-#include "tests/benchmarks/condensation/free_stiffness.hpp"
-#include "tools/fem/compress.hpp"
-#include "tools/fem/panel_solver.hpp"
-#include "tools/fem/parallel.hpp"
-#include "tools/fem/sparse_cholesky.hpp"
+#include "tools/fem/condense.hpp"
+#include "tools/fem/dense_kernels.hpp"
+#include "tools/fem/free_system.hpp"
 
 namespace palpate {
 namespace {
@@ -25,20 +22,6 @@ std::vector<Eigen::Vector3d> contact_points(const DeformableBody& body) {
     for (const std::int32_t node : body.contact_nodes)
         points.push_back(body.mesh.rest_positions[static_cast<std::size_t>(node)]);
     return points;
-}
-
-SurfaceCompliance compressed(const DeformableBody& body, const FreeStiffness& stiffness,
-                             const SparseCholesky& factor, int threads) {
-    const auto& all = stiffness.surface_rows;
-    const PanelSolver solver(factor, all);
-    const ComplianceRows rows = [&](std::span<const std::int32_t> nodes) {
-        std::vector<std::int64_t> loaded;
-        for (const std::int32_t node : nodes)
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                loaded.push_back(all[3 * static_cast<std::size_t>(node) + axis]);
-        return solver.rows(loaded);
-    };
-    return compress(contact_points(body), rows, accuracy, threads, [](std::string_view, double) {});
 }
 
 // Random forces on a random contact node and those nearest to it.
@@ -73,9 +56,9 @@ float block_sum(const SurfaceCompliance& compliance, const std::vector<NodeForce
     return sum.sum();
 }
 
-Json query(const SurfaceCompliance& compliance, const FreeStiffness& stiffness, const SparseCholesky& factor,
+Json query(const SurfaceCompliance& compliance, const FreeSystem& system, const SparseCholesky& factor,
            const std::vector<Eigen::Vector3d>& points) {
-    const auto& rows = stiffness.surface_rows;
+    const auto& rows = system.contact_rows;
     std::mt19937_64 random(1);
     std::vector<double> block_us, displacements_ms;
     float checksum = 0;
@@ -90,7 +73,7 @@ Json query(const SurfaceCompliance& compliance, const FreeStiffness& stiffness, 
         displacements_ms.push_back(1e3 * (now_seconds() - between));
         block_us.push_back(1e6 * (between - begin));
 
-        Eigen::MatrixXd load = Eigen::MatrixXd::Zero(stiffness.lower.rows(), 1);
+        Eigen::MatrixXd load = Eigen::MatrixXd::Zero(system.stiffness.rows(), 1);
         for (const NodeForce& force : forces)
             for (Eigen::Index axis = 0; axis < 3; ++axis)
                 load(rows[3 * static_cast<std::size_t>(force.node) + static_cast<std::size_t>(axis)], 0) =
@@ -114,17 +97,15 @@ Json query(const SurfaceCompliance& compliance, const FreeStiffness& stiffness, 
 
 Json measure_hierarchical(const DeformableBody& body, int threads) {
     set_linear_algebra_threads(threads);
-    FreeStiffness stiffness;
-    std::optional<SparseCholesky> factor;
     SurfaceCompliance compliance;
     const Cost cost = cost_of([&] {
-        stiffness = free_stiffness(body);
-        factor.emplace(stiffness.lower, Elimination::fill_reducing);
-        compliance = compressed(body, stiffness, *factor, threads);
+        compliance = condense_hierarchically(body, accuracy, threads, [](std::string_view, double) {});
     });
     Json result = to_json(cost);
     result["bytes"] = value_bytes(compliance);
-    result.update(query(compliance, stiffness, *factor, contact_points(body)));
+    const FreeSystem system = assemble_free_system(body, NodeOrder::as_numbered);
+    const SparseCholesky factor = factorise(body, system, Elimination::fill_reducing);
+    result.update(query(compliance, system, factor, contact_points(body)));
     return result;
 }
 

@@ -8,11 +8,11 @@
 #include <thread>
 
 #include "formats/model/errors.hpp"
-#include "tests/benchmarks/condensation/free_stiffness.hpp"
 #include "tests/benchmarks/condensation/hierarchical.hpp"
 #include "tools/fem/certificate.hpp"
 #include "tools/fem/condense.hpp"
-#include "tools/fem/parallel.hpp"
+#include "tools/fem/dense_kernels.hpp"
+#include "tools/fem/free_system.hpp"
 #include "tools/fem/sparse_cholesky.hpp"
 
 namespace palpate {
@@ -45,24 +45,55 @@ class Stages {
     std::vector<double> begins_;
 };
 
-Json measure_exact(const DeformableBody& held, int threads) {
+using ExactWay = ExactCompliance (*)(const DeformableBody&, int threads, const ProgressCallback&);
+
+ExactCompliance by_trailing_block(const DeformableBody& body, int, const ProgressCallback& progress) {
+    return condense_by_trailing_block(body, progress);
+}
+
+Json measure_exact_way(const DeformableBody& held, int threads, ExactWay condense) {
     set_linear_algebra_threads(threads);
     std::optional<ExactCompliance> exact;
     Stages stages;
     Json stage_seconds;
     const Cost cost = cost_of([&] {
-        exact.emplace(condense(held, stages.callback()));
+        exact.emplace(condense(held, threads, stages.callback()));
         stage_seconds = stages.to_json();
     });
     DeformableBody body = held;
-    body.compliance = to_stored(exact->lower);
-    const Certificate certificate = certify(body, *exact);
+    SampledColumns columns = certificate_sample(body);
+    columns.values = columns_of(*exact, columns.dofs);
+    body.compliance = to_stored(*exact);
+    exact.reset();
+    const Certificate certificate = certify(body, columns);
     Json result = to_json(cost);
-    result["bytes"] = 4 * surface_dofs(body) * surface_dofs(body);
+    result["bytes"] = value_bytes(body.compliance);
     result["stages"] = stage_seconds;
     result["residual_double"] = certificate.residual_double;
     result["residual_stored"] = certificate.residual;
     result["condition_number"] = certificate.condition_number;
+    return result;
+}
+
+// What the plan chooses and how long it takes, in a process of its own, so that it leaves no memory behind.
+Json planned(const DeformableBody& body, int threads) {
+    return in_child([&] {
+        const double begin = now_seconds();
+        const CondensationPlan plan = plan_condensation(
+            body,
+            {.representation = Representation::dense, .size_bytes = available_memory(), .threads = threads});
+        return Json{{"planning_seconds", now_seconds() - begin},
+                    {"chosen", name_of(plan.chosen.method)},
+                    {"forecast_seconds", plan.chosen.seconds},
+                    {"forecast_bytes", plan.chosen.memory_bytes}};
+    });
+}
+
+Json measure_exact(const DeformableBody& body, int threads) {
+    const Json plan = planned(body, threads);
+    const bool solves = plan["chosen"] == name_of(CondensationMethod::solves);
+    Json result = measure_exact_way(body, threads, solves ? condense_by_solves : by_trailing_block);
+    result.update(plan);
     return result;
 }
 
@@ -97,7 +128,9 @@ Json measure_cholmod(const DeformableBody& body, int threads) {
     Eigen::Index solved = 0;
     const Cost cost = cost_of([&] {
         const double begin = now_seconds();
-        const auto [stiffness, rows] = free_stiffness(body);
+        const FreeSystem system = assemble_free_system(body, NodeOrder::as_numbered);
+        const LowerSparse& stiffness = system.stiffness;
+        const std::vector<std::int64_t>& rows = system.contact_rows;
         const SparseCholesky factor(stiffness, Elimination::fill_reducing);
         factor_seconds = now_seconds() - begin;
         for (Eigen::Index p = 0; p < panels && solve_seconds < patience; ++p) {
@@ -133,7 +166,8 @@ struct Iterations {
 template <typename Preconditioner>
 Json measure_iterative(const DeformableBody& body, int threads, const Iterations& until) {
     constexpr Eigen::Index sample = 32;
-    const FullSparse stiffness = free_stiffness(body).lower.selfadjointView<Eigen::Lower>();
+    const FullSparse stiffness =
+        assemble_free_system(body, NodeOrder::as_numbered).stiffness.selfadjointView<Eigen::Lower>();
     const Eigen::Index n = stiffness.rows();
     std::vector<Eigen::Index> iterations(sample);
     // Columns one after the other in each thread, so that none waits for another.
@@ -165,11 +199,23 @@ double doubles_squared(double surface_dofs) {
     return 8 * surface_dofs * surface_dofs;
 }
 
+double exact_memory(double surface_dofs) {
+    return 2.5 * doubles_squared(surface_dofs);
+}
+
 }  // namespace
 
 const std::vector<Method>& condensation_methods() {
     static const std::vector<Method> methods{
-        {"exact", true, [](double n) { return 2.5 * doubles_squared(n); }, measure_exact},
+        {"exact", true, exact_memory, measure_exact},
+        {"trailing", true, exact_memory,
+         [](const DeformableBody& body, int threads) {
+             return measure_exact_way(body, threads, by_trailing_block);
+         }},
+        {"solves", true, exact_memory,
+         [](const DeformableBody& body, int threads) {
+             return measure_exact_way(body, threads, condense_by_solves);
+         }},
         {"lapack", true, doubles_squared, measure_lapack},
         {"cholmod", false, [](double n) { return 2 * doubles_squared(n); }, measure_cholmod},
         {"iterative", false, [](double) { return 0.0; },

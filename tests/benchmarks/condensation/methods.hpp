@@ -21,9 +21,11 @@ struct Method {
 };
 
 /// All that are measured, in order:
-/// - exact: condense(), then certify() for the residuals, untimed; "stages" are seconds between its reports
-/// of
-///   progress, "bytes" what an asset stores.
+/// - exact: the faster of the next two by plan_condensation(), which is timed apart ("planning_seconds",
+///   "chosen", "forecast_seconds", "forecast_bytes").
+/// - trailing: condense_by_trailing_block(), then certify() for the residuals, untimed; "stages" are seconds
+///   between its reports of progress, "bytes" what an asset stores.
+/// - solves: condense_by_solves(), the same.
 /// - lapack: dpotrf and dpotri on a dense matrix of as many unknowns as the surface has.
 /// - cholmod: K factorised in CHOLMOD's own order, and solved for every surface unknown in panels of 256;
 ///   panels beyond a minute are not solved but counted ("solved_columns").
