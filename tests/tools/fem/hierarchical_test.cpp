@@ -8,7 +8,7 @@
 namespace palpate {
 namespace {
 
-TEST(HierarchicalCondensation, is_certified_to_its_accuracy) {
+TEST(HierarchicalCondensation, is_certified_to_its_accuracy_and_as_large_as_forecast) {
     DeformableBody body = test::large_block();
     constexpr double accuracy = 1e-3;
     const CondensationPlan plan = plan_condensation(
@@ -24,6 +24,10 @@ TEST(HierarchicalCondensation, is_certified_to_its_accuracy) {
     EXPECT_EQ(c.residual_double, c.residual);  // it never was in double
     EXPECT_LT(c.residual, accuracy);
     EXPECT_GT(c.smallest_patch_eigenvalue, 0);
+    // The forecast is good to a factor of two.
+    const auto bytes = static_cast<double>(value_bytes(body.compliance));
+    EXPECT_LT(plan.chosen.size_bytes, 2 * bytes);
+    EXPECT_GT(plan.chosen.size_bytes, bytes / 2);
 }
 
 TEST(HierarchicalCondensation, gives_the_same_bytes_at_any_number_of_threads_that_solve) {
