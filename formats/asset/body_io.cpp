@@ -99,13 +99,14 @@ DenseCompliance map_dense(const Hdf5File& file, const std::string& path, std::si
             std::shared_ptr<const float>(file.mapping().owner(), entries.data())};
 }
 
-HierarchicalCompliance map_hierarchical(const Hdf5File& file, const std::string& path, std::size_t node_count) {
+HierarchicalCompliance map_hierarchical(const Hdf5File& file, const std::string& path,
+                                        std::size_t node_count) {
     HierarchicalCompliance compliance;
     compliance.node_count = static_cast<std::int32_t>(node_count);
     compliance.depth = file.attribute<std::int32_t>(path, "depth");
     compliance.accuracy = file.attribute<double>(path, "accuracy");
-    compliance.order = read_rows<std::int32_t, std::int32_t>(file, path + "/order",
-                                                             static_cast<std::int64_t>(node_count));
+    compliance.order =
+        read_rows<std::int32_t, std::int32_t>(file, path + "/order", static_cast<std::int64_t>(node_count));
     const auto first_child = read_rows<std::int32_t, std::int32_t>(file, path + "/first_child");
     const auto count = static_cast<std::int64_t>(first_child.size());
     const auto rank = file.dataset<std::int32_t>(path + "/rank", {count});
@@ -266,7 +267,8 @@ DeformableBody read_condensed_body(const Hdf5File& file, const std::string& path
     body.contact_nodes = read_rows<std::int32_t, std::int32_t>(file, path + "/contact_nodes");
     const auto element_order = file.attribute<std::int32_t>(path, "element_order");
     if (element_order != 1 && element_order != 2)
-        file.refuse(path, "has element_order " + std::to_string(element_order), "1 (linear) or 2 (quadratic)");
+        file.refuse(path, "has element_order " + std::to_string(element_order),
+                    "1 (linear) or 2 (quadratic)");
     body.element_order = static_cast<ElementOrder>(element_order);
     if (file.contains(path + "/compliance/dense"))
         body.compliance = map_dense(file, path + "/compliance", body.contact_nodes.size());
