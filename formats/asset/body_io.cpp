@@ -127,6 +127,15 @@ HierarchicalCompliance map_hierarchical(const Hdf5File& file, const std::string&
     return compliance;
 }
 
+SurfaceCompliance map_compliance(const Hdf5File& file, const std::string& path, std::size_t node_count) {
+    const bool dense = file.contains(path + "/dense"), hierarchical = file.contains(path + "/first_child");
+    // Nothing says that the two are equal, and readers would differ in which they take.
+    if (dense && hierarchical) file.refuse(path, "is both dense and hierarchical", "one of the two");
+    if (dense) return map_dense(file, path, node_count);
+    if (hierarchical) return map_hierarchical(file, path, node_count);
+    file.refuse(path, "is neither dense nor hierarchical", "'dense', or 'first_child' and what goes with it");
+}
+
 }  // namespace
 
 void write_header(Hdf5Writer& writer, const std::string& kind) {
@@ -270,10 +279,7 @@ DeformableBody read_condensed_body(const Hdf5File& file, const std::string& path
         file.refuse(path, "has element_order " + std::to_string(element_order),
                     "1 (linear) or 2 (quadratic)");
     body.element_order = static_cast<ElementOrder>(element_order);
-    if (file.contains(path + "/compliance/dense"))
-        body.compliance = map_dense(file, path + "/compliance", body.contact_nodes.size());
-    else
-        body.compliance = map_hierarchical(file, path + "/compliance", body.contact_nodes.size());
+    body.compliance = map_compliance(file, path + "/compliance", body.contact_nodes.size());
     visit_certificate(body.certificate, [&](const char* name, auto& value) {
         value = file.attribute<std::remove_reference_t<decltype(value)>>(path + "/certificate", name);
     });

@@ -234,9 +234,9 @@ class InspectAndVerify(AssetCommand):
     def test_both_refuse_a_newer_schema(self):
         path = self.sample()
         with h5py.File(path, "r+", libver=("v110", "v110")) as file:
-            file["palpate"].attrs.get_id("schema").write(numpy.array(2, "i4"))
+            file["palpate"].attrs.get_id("schema").write(numpy.array(3, "i4"))
         for command in ("inspect", "verify"):
-            self.assertFails(run(BIN / f"palpate-{command}", path), INVALID, "has schema 2", "use a newer palpate")
+            self.assertFails(run(BIN / f"palpate-{command}", path), INVALID, "has schema 3", "use a newer palpate")
 
     def test_both_refuse_what_is_no_asset(self):
         self.asset.write_text("hello")
