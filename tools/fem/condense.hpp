@@ -28,7 +28,8 @@ ExactCompliance condense_by_trailing_block(const DeformableBody& body, const Pro
 
 /// The same by solving for every contact degree of freedom, in panels, with the surface among the other nodes
 /// of a nested dissection: 4 x 3m x (numbers in that factor) flops at most. Less than the trailing block's
-/// where a mesh has few nodes inside. The same bytes at any number of threads.
+/// where a mesh has few nodes inside. The same bytes at any number of `threads`, with the same number of the
+/// dense kernels' threads, which factorise.
 ExactCompliance condense_by_solves(const DeformableBody& body, int threads, const ProgressCallback& progress);
 
 /// The same compressed, never holding C: see compress(). `accuracy` is that of random_contact_loads(), both

@@ -14,8 +14,12 @@ namespace {
 std::string name_of(const DeformableBody& body, const FreeSystem& system, std::int64_t row) {
     const auto found = std::ranges::find(system.position_of_node, static_cast<std::int32_t>(row / 3));
     const auto node = static_cast<std::size_t>(found - system.position_of_node.begin());
-    if (node >= body.mesh.rest_positions.size()) return "the middle of an edge";
-    const Eigen::Vector3d& p = body.mesh.rest_positions[node];
+    const auto& positions = body.mesh.rest_positions;
+    if (node >= positions.size()) {
+        const auto [a, b] = discretise(body).edges[node - positions.size()];
+        return fmt::format("the middle of nodes {} and {}", a, b);
+    }
+    const Eigen::Vector3d& p = positions[node];
     return fmt::format("node {} at ({:.1f}, {:.1f}, {:.1f}) mm", node, p.x(), p.y(), p.z());
 }
 

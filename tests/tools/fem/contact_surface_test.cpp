@@ -4,6 +4,7 @@
 
 #include "formats/model/errors.hpp"
 #include "tests/tools/fem/blocks.hpp"
+#include "tests/tools/fem/compliances.hpp"
 #include "tools/fem/condense.hpp"
 
 namespace palpate {
@@ -11,7 +12,7 @@ namespace {
 
 const Material soft{.youngs_modulus = 6e-3, .poissons_ratio = 0.45};
 
-void no_progress(std::string_view, double) {}
+using test::no_progress;
 
 DeformableBody block() {
     return test::held_block({4, 3, 3}, {8, 6, 7}, soft);
@@ -21,16 +22,19 @@ std::vector<std::int32_t> top_of(const DeformableBody& body) {
     return test::nodes_where(body.mesh, [](const Eigen::Vector3d& p) { return p.z() > 7 - 1e-9; });
 }
 
+class ContactSurfaceBy : public testing::TestWithParam<test::ExactMethod> {};
+
+INSTANTIATE_TEST_SUITE_P(by, ContactSurfaceBy, testing::ValuesIn(test::exact_methods()), test::name_of);
+
 // C belongs to K, not to the choice of nodes: a part of the surface has a part of the whole surface's C.
-TEST(ContactSurface, of_a_part_has_the_rows_and_columns_of_the_whole_compliance) {
+TEST_P(ContactSurfaceBy, of_a_part_has_the_rows_and_columns_of_the_whole_compliance) {
     DeformableBody whole = block();
     whole.boundary = boundary_surface(whole.mesh);
     std::ranges::set_difference(whole.boundary.nodes, whole.fixed_nodes,
                                 std::back_inserter(whole.contact_nodes));
     DeformableBody part = block();
     part.contact_nodes = top_of(part);
-    const Eigen::MatrixXd all = condense(whole, no_progress).lower.selfadjointView<Eigen::Lower>();
-    const Eigen::MatrixXd some = condense(part, no_progress).lower.selfadjointView<Eigen::Lower>();
+    const Eigen::MatrixXd all = GetParam().compliance(whole), some = GetParam().compliance(part);
     std::vector<Eigen::Index> rows;
     for (const std::int32_t node : part.contact_nodes) {
         const auto block_of =
