@@ -43,13 +43,13 @@ struct HierarchicalCompliance {
     static constexpr std::int32_t deepest = 20;     ///< levels that a reader takes
     static constexpr std::int32_t max_rank = 1024;  ///< that a product needs no allocation for
 
-    std::int32_t node_count = 0;           ///< m
-    std::int32_t depth = 0;                ///< level of the smallest clusters
-    double accuracy = 0;                   ///< relative error of displacements that was asked for
-    std::vector<std::int32_t> order;       ///< contact node at each position
-    std::vector<std::int32_t> positions;   ///< position of each contact node
-    std::vector<ComplianceBlock> blocks;   ///< parts come after the block that they are of
-    std::shared_ptr<const float> values;   ///< entries of dense blocks, s of the others
+    std::int32_t node_count = 0;          ///< m
+    std::int32_t depth = 0;               ///< level of the smallest clusters
+    double accuracy = 0;                  ///< relative error of displacements that was asked for
+    std::vector<std::int32_t> order;      ///< contact node at each position
+    std::vector<std::int32_t> positions;  ///< position of each contact node
+    std::vector<ComplianceBlock> blocks;  ///< parts come after the block that they are of
+    std::shared_ptr<const float> values;  ///< entries of dense blocks, s of the others
     std::size_t value_count = 0;
     std::shared_ptr<const std::int16_t> factors;  ///< U and V of blocks of low rank
     std::size_t factor_count = 0;
