@@ -6,6 +6,7 @@
 #include <functional>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <hdf5.h>
 #include <limits>
 #include <map>
 #include <span>
@@ -631,6 +632,20 @@ TEST(Parts, a_compliance_in_both_forms_is_refused) {
     }
     EXPECT_THAT(refusal([&] { read_body_part(scratch / "both.body.h5"); }),
                 HasSubstr("both.body.h5: /palpate/body/compliance: is both dense and hierarchical"));
+}
+
+TEST(Asset, a_compliance_in_neither_form_is_refused) {
+    const Scratch scratch;
+    const auto path = scratch / "neither.vtkhdf";
+    write_asset(path, sample::sample_case(cells));
+    const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+    H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110);
+    const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, access);
+    H5Ldelete(file, "/palpate/bodies/deformable/0/compliance/dense", H5P_DEFAULT);
+    H5Fclose(file);
+    H5Pclose(access);
+    EXPECT_THAT(refusal([&] { read_asset(path, Digests::skip); }),
+                HasSubstr("deformable/0/compliance: is neither dense nor hierarchical"));
 }
 
 struct TreeFault {
