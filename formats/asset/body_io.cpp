@@ -99,13 +99,14 @@ DenseCompliance map_dense(const Hdf5File& file, const std::string& path, std::si
             std::shared_ptr<const float>(file.mapping().owner(), entries.data())};
 }
 
-HierarchicalCompliance map_hierarchical(const Hdf5File& file, const std::string& path, std::size_t node_count) {
+HierarchicalCompliance map_hierarchical(const Hdf5File& file, const std::string& path,
+                                        std::size_t node_count) {
     HierarchicalCompliance compliance;
     compliance.node_count = static_cast<std::int32_t>(node_count);
     compliance.depth = file.attribute<std::int32_t>(path, "depth");
     compliance.accuracy = file.attribute<double>(path, "accuracy");
-    compliance.order = read_rows<std::int32_t, std::int32_t>(file, path + "/order",
-                                                             static_cast<std::int64_t>(node_count));
+    compliance.order =
+        read_rows<std::int32_t, std::int32_t>(file, path + "/order", static_cast<std::int64_t>(node_count));
     const auto first_child = read_rows<std::int32_t, std::int32_t>(file, path + "/first_child");
     const auto count = static_cast<std::int64_t>(first_child.size());
     const auto rank = file.dataset<std::int32_t>(path + "/rank", {count});
@@ -124,6 +125,15 @@ HierarchicalCompliance map_hierarchical(const Hdf5File& file, const std::string&
     for (std::size_t p = 0; p < node_count; ++p)
         compliance.positions[static_cast<std::size_t>(compliance.order[p])] = static_cast<std::int32_t>(p);
     return compliance;
+}
+
+SurfaceCompliance map_compliance(const Hdf5File& file, const std::string& path, std::size_t node_count) {
+    const bool dense = file.contains(path + "/dense"), hierarchical = file.contains(path + "/first_child");
+    // Nothing says that the two are equal, and readers would differ in which they take.
+    if (dense && hierarchical) file.refuse(path, "is both dense and hierarchical", "one of the two");
+    if (dense) return map_dense(file, path, node_count);
+    if (hierarchical) return map_hierarchical(file, path, node_count);
+    file.refuse(path, "is neither dense nor hierarchical", "'dense', or 'first_child' and what goes with it");
 }
 
 }  // namespace
@@ -266,12 +276,10 @@ DeformableBody read_condensed_body(const Hdf5File& file, const std::string& path
     body.contact_nodes = read_rows<std::int32_t, std::int32_t>(file, path + "/contact_nodes");
     const auto element_order = file.attribute<std::int32_t>(path, "element_order");
     if (element_order != 1 && element_order != 2)
-        file.refuse(path, "has element_order " + std::to_string(element_order), "1 (linear) or 2 (quadratic)");
+        file.refuse(path, "has element_order " + std::to_string(element_order),
+                    "1 (linear) or 2 (quadratic)");
     body.element_order = static_cast<ElementOrder>(element_order);
-    if (file.contains(path + "/compliance/dense"))
-        body.compliance = map_dense(file, path + "/compliance", body.contact_nodes.size());
-    else
-        body.compliance = map_hierarchical(file, path + "/compliance", body.contact_nodes.size());
+    body.compliance = map_compliance(file, path + "/compliance", body.contact_nodes.size());
     visit_certificate(body.certificate, [&](const char* name, auto& value) {
         value = file.attribute<std::remove_reference_t<decltype(value)>>(path + "/certificate", name);
     });

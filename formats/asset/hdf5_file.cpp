@@ -12,6 +12,8 @@ std::string name_of(ScalarType type) {
     switch (type) {
         case ScalarType::uint8:
             return "uint8";
+        case ScalarType::int16:
+            return "int16";
         case ScalarType::int32:
             return "int32";
         case ScalarType::int64:

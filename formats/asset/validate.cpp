@@ -162,8 +162,8 @@ class BlockWalk {
             return 3 * std::int64_t{c_.begin(level, cluster + 1) - c_.begin(level, cluster)};
         };
         const bool dense = block.rank == ComplianceBlock::dense;
-        if (!dense && (block.rank < 0 || block.rank > HierarchicalCompliance::max_rank || block.rank % 4 != 0 ||
-                       row == column))
+        if (!dense && (block.rank < 0 || block.rank > HierarchicalCompliance::max_rank ||
+                       block.rank % 4 != 0 || row == column))
             refuse(where_, name + " has rank " + std::to_string(block.rank));
         require_within(dense ? dofs(row) * dofs(column) : block.rank, block.values, c_.value_count, name);
         if (!dense)
@@ -173,7 +173,8 @@ class BlockWalk {
                 if (!(c_.values.get()[block.values + d * (dofs(row) + 1)] > 0))
                     refuse(where_, "diagonal entry of " + name + " is not positive");
     }
-    void require_within(std::int64_t size, std::int64_t offset, std::size_t count, const std::string& name) const {
+    void require_within(std::int64_t size, std::int64_t offset, std::size_t count,
+                        const std::string& name) const {
         if (offset < 0 || size > static_cast<std::int64_t>(count) - offset)
             refuse(where_, name + " lies outside the values");
     }
@@ -197,11 +198,11 @@ void check_compliance(const DeformableBody& body, const std::string& where) {
 }
 
 void check_certificate(const Certificate& certificate, const std::string& where) {
-    for (const double value : {certificate.residual, certificate.residual_double, certificate.asymmetry,
-                               certificate.smallest_eigenvalue, certificate.largest_eigenvalue,
-                               certificate.condition_number, certificate.reciprocity,
-                               certificate.load_error, certificate.contact_error,
-                               certificate.smallest_patch_eigenvalue, certificate.discretisation_error})
+    for (const double value :
+         {certificate.residual, certificate.residual_double, certificate.asymmetry,
+          certificate.smallest_eigenvalue, certificate.largest_eigenvalue, certificate.condition_number,
+          certificate.reciprocity, certificate.load_error, certificate.contact_error,
+          certificate.smallest_patch_eigenvalue, certificate.discretisation_error})
         if (!std::isfinite(value)) refuse(where, "has a figure that is not finite");
 }
 

@@ -37,7 +37,8 @@ void add_products(const DenseCompliance& c, std::span<const NodeForce> forces,
     // C is symmetric: the column of a degree of freedom is its row, which lies in one piece.
     for (const NodeForce& load : forces)
         for (Index axis = 0; axis < 3; ++axis) {
-            const float* row = c.row(3 * static_cast<std::size_t>(load.node) + static_cast<std::size_t>(axis));
+            const float* row =
+                c.row(3 * static_cast<std::size_t>(load.node) + static_cast<std::size_t>(axis));
             for (std::size_t node = 0; node < displacements.size(); ++node)
                 displacements[node] += load.force[axis] * Eigen::Map<const Eigen::Vector3f>(row + 3 * node);
         }
@@ -79,7 +80,8 @@ Eigen::Matrix3f block_of(const HierarchicalCompliance& c, std::int32_t a, std::i
     } else {
         const std::int64_t rank = block.rank;
         Factors u = c.factors.get() + block.factors + 3 * rank * (row - row_begin);
-        Factors v = c.factors.get() + block.factors + 3 * rank * (row_end - row_begin + column - column_begin);
+        Factors v =
+            c.factors.get() + block.factors + 3 * rank * (row_end - row_begin + column - column_begin);
         std::array<float, HierarchicalCompliance::max_rank> weights;
         for (Index axis = 0; axis < 3; ++axis) {
             for (std::int64_t k = 0; k < rank; ++k)
@@ -169,9 +171,9 @@ class Product {
         for (std::size_t k = 0; k < width; ++k) weights_[k] *= s[k];
         for (std::int32_t p = u_begin; p < u_end; ++p) {
             Factors rows = u + 3 * width * static_cast<std::size_t>(p - u_begin);
-            displaced(p) += Eigen::Vector3f(dot(rows, weights_.data(), rank),
-                                            dot(rows + width, weights_.data(), rank),
-                                            dot(rows + 2 * width, weights_.data(), rank));
+            displaced(p) +=
+                Eigen::Vector3f(dot(rows, weights_.data(), rank), dot(rows + width, weights_.data(), rank),
+                                dot(rows + 2 * width, weights_.data(), rank));
         }
     }
 
@@ -207,6 +209,11 @@ std::size_t value_bytes(const SurfaceCompliance& compliance) {
         return dense->dof_count() * dense->dof_count() * sizeof(float);
     const auto& blocks = std::get<HierarchicalCompliance>(compliance);
     return blocks.value_count * sizeof(float) + blocks.factor_count * sizeof(std::int16_t);
+}
+
+double allowed_error(const SurfaceCompliance& compliance) {
+    const auto* blocks = std::get_if<HierarchicalCompliance>(&compliance);
+    return blocks ? blocks->accuracy : 1e-6;
 }
 
 Eigen::Matrix3f compliance_block(const SurfaceCompliance& compliance, std::int32_t a,

@@ -43,13 +43,13 @@ struct HierarchicalCompliance {
     static constexpr std::int32_t deepest = 20;     ///< levels that a reader takes
     static constexpr std::int32_t max_rank = 1024;  ///< that a product needs no allocation for
 
-    std::int32_t node_count = 0;           ///< m
-    std::int32_t depth = 0;                ///< level of the smallest clusters
-    double accuracy = 0;                   ///< relative error of displacements that was asked for
-    std::vector<std::int32_t> order;       ///< contact node at each position
-    std::vector<std::int32_t> positions;   ///< position of each contact node
-    std::vector<ComplianceBlock> blocks;   ///< parts come after the block that they are of
-    std::shared_ptr<const float> values;   ///< entries of dense blocks, s of the others
+    std::int32_t node_count = 0;          ///< m
+    std::int32_t depth = 0;               ///< level of the smallest clusters
+    double accuracy = 0;                  ///< relative error of displacements that was asked for
+    std::vector<std::int32_t> order;      ///< contact node at each position
+    std::vector<std::int32_t> positions;  ///< position of each contact node
+    std::vector<ComplianceBlock> blocks;  ///< parts come after the block that they are of
+    std::shared_ptr<const float> values;  ///< entries of dense blocks, s of the others
     std::size_t value_count = 0;
     std::shared_ptr<const std::int16_t> factors;  ///< U and V of blocks of low rank
     std::size_t factor_count = 0;
@@ -90,6 +90,10 @@ struct NodeForce {
 /// m, and the bytes of the stored values.
 std::int32_t node_count(const SurfaceCompliance& compliance);
 std::size_t value_bytes(const SurfaceCompliance& compliance);
+
+/// The relative error that a sound compliance may have: 1e-6 for a dense one, which float32 rounds by 6e-8;
+/// the accuracy that was asked for otherwise.
+double allowed_error(const SurfaceCompliance& compliance);
 
 /// Returns the displacement of contact node `a` per force on contact node `b`, 3 x 3, mm/N. `a` and `b` must
 /// be in 0 ... m-1 (unchecked). Realtime-safe, thread-safe; a few dozen ns, plus 9 r multiply-adds where the

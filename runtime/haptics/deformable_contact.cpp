@@ -234,7 +234,8 @@ void DeformableContact::surface_displacement(std::span<const Contact> contacts,
     add_displacements(compliance_, std::span(forces).first(count), displacements.first(contact_nodes));
     // Contact nodes are surface vertices in the same order, so that each goes up to its vertex in place.
     for (std::size_t v = displacements.size(); v-- > 0;)
-        displacements[v] = blocks_[v] >= 0 ? displacements[static_cast<std::size_t>(blocks_[v])] : Vector3f::Zero();
+        displacements[v] =
+            blocks_[v] >= 0 ? displacements[static_cast<std::size_t>(blocks_[v])] : Vector3f::Zero();
 }
 
 }  // namespace palpate

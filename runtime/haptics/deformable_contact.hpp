@@ -50,9 +50,10 @@ class DeformableContact {
     double tool_radius_;
     double coupling_compliance_;  // mm/N
     SurfaceCompliance compliance_;
-    std::vector<std::int32_t> blocks_;       // compliance block of each surface vertex, -1 for one fixed or left out
-    std::vector<Triangle> triangles_;        // surface vertices
-    std::vector<Eigen::Vector3f> vertices_;  // at rest, p_P, mm
+    std::vector<std::int32_t>
+        blocks_;  // compliance block of each surface vertex, -1 for one fixed or left out
+    std::vector<Triangle> triangles_;              // surface vertices
+    std::vector<Eigen::Vector3f> vertices_;        // at rest, p_P, mm
     std::vector<Eigen::Vector3f> vertex_normals_;  // unit, area-weighted
     ContactLcp lcp_;
     std::array<std::int64_t, max_contacts> last_active_{};  // what the warm start knows contacts by

@@ -234,9 +234,9 @@ class InspectAndVerify(AssetCommand):
     def test_both_refuse_a_newer_schema(self):
         path = self.sample()
         with h5py.File(path, "r+", libver=("v110", "v110")) as file:
-            file["palpate"].attrs.get_id("schema").write(numpy.array(2, "i4"))
+            file["palpate"].attrs.get_id("schema").write(numpy.array(3, "i4"))
         for command in ("inspect", "verify"):
-            self.assertFails(run(BIN / f"palpate-{command}", path), INVALID, "has schema 2", "use a newer palpate")
+            self.assertFails(run(BIN / f"palpate-{command}", path), INVALID, "has schema 3", "use a newer palpate")
 
     def test_both_refuse_what_is_no_asset(self):
         self.asset.write_text("hello")
@@ -264,11 +264,29 @@ class Specification(AssetCommand):
 
     def test_every_object_of_an_asset_is_in_the_specification(self):
         text = (SOURCE / "formats/asset/SPEC.md").read_text()
-        with h5py.File(self.sample()) as file:
-            names = []
-            file.visititems(lambda path, node: names.extend([path, *node.attrs]))
-        for name in {part for path in names for part in path.split("/") if not part.isdigit()}:
-            self.assertIn(name, text)
+        for form in ([], ["hierarchical"]):
+            subprocess.run([SAMPLE, self.asset, *form], check=True)
+            with h5py.File(self.asset) as file:
+                names = []
+                file.visititems(lambda path, node: names.extend([path, *node.attrs]))
+            for name in {part for path in names for part in path.split("/") if not part.isdigit()}:
+                self.assertRegex(text, rf"\b{re.escape(name)}\b")
+
+    def test_the_reader_of_a_compliance_in_the_specification_finds_the_same_in_both_forms(self):
+        code = re.findall(r"```python\n(.*?)```", (SOURCE / "formats/asset/SPEC.md").read_text(), re.S)[1]
+        reader = {}
+        exec(code, reader)
+        blocks = []
+        for form in ([], ["hierarchical"]):
+            subprocess.run([SAMPLE, self.asset, *form], check=True)
+            with h5py.File(self.asset) as file:
+                body = file["palpate/bodies/deformable/0"]
+                nodes = len(body["contact_nodes"])
+                blocks.append(numpy.array([reader["block"](body["compliance"], a, b)
+                                           for a in range(0, nodes, 5) for b in range(0, nodes, 4)]))
+        # The writer's accuracy, of entries of at most 1 mm/N, and the rounding of factors to 16 bits.
+        self.assertLess(abs(blocks[0] - blocks[1]).max(), 1e-4 + 1e-3)
+        self.assertGreater(abs(blocks[0] - blocks[1]).max(), 0)
 
 
 if __name__ == "__main__":

@@ -2,12 +2,17 @@
 #include "tests/formats/sample_case.hpp"
 
 #include <Eigen/Geometry>
+#include <Eigen/SVD>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <numeric>
+#include <span>
 #include <utility>
+#include <variant>
 
 namespace palpate::sample {
 namespace {
@@ -31,6 +36,38 @@ ObbNode box_around(const TriangleMesh& surface, const std::vector<std::int32_t>&
             .half_extents = (box.sizes() / 2 + Eigen::Vector3d::Constant(padding)).cast<float>(),
             .first = static_cast<std::int32_t>(first),
             .count = static_cast<std::int32_t>(count)};
+}
+
+// The rows of one cluster and the columns of another, in the order of the clusters' positions.
+Eigen::MatrixXd coupling(const DenseCompliance& dense, std::span<const std::int32_t> rows,
+                         std::span<const std::int32_t> columns) {
+    Eigen::MatrixXd block(3 * rows.size(), 3 * columns.size());
+    for (std::size_t i = 0; i < 3 * rows.size(); ++i)
+        for (std::size_t j = 0; j < 3 * columns.size(); ++j)
+            block(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+                static_cast<double>(dense.row(3 * static_cast<std::size_t>(rows[i / 3]) +
+                                              i % 3)[3 * static_cast<std::size_t>(columns[j / 3]) + j % 3]);
+    return block;
+}
+
+// Appends the leading columns row by row, each scaled to the range of 16 bits; returns the units, and appends
+// zeros for columns that the matrix does not have.
+Eigen::VectorXd append_factor(const Eigen::MatrixXd& columns, Eigen::Index kept, Eigen::Index rank,
+                              std::vector<std::int16_t>& factors) {
+    constexpr double largest = 32767;
+    Eigen::VectorXd units = Eigen::VectorXd::Zero(rank);
+    if (kept > 0) units.head(kept) = columns.leftCols(kept).cwiseAbs().colwise().maxCoeff() / largest;
+    for (Eigen::Index row = 0; row < columns.rows(); ++row)
+        for (Eigen::Index k = 0; k < rank; ++k)
+            factors.push_back(k < kept ? static_cast<std::int16_t>(std::lround(columns(row, k) / units[k]))
+                                       : std::int16_t{0});
+    return units;
+}
+
+template <typename T>
+std::shared_ptr<const T> kept_alive(std::vector<T> values) {
+    const auto owner = std::make_shared<std::vector<T>>(std::move(values));
+    return {owner, owner->data()};
 }
 
 }  // namespace
@@ -141,6 +178,81 @@ DenseCompliance kernel_compliance(const TetMesh& mesh, const std::vector<std::in
     return compliance;
 }
 
+HierarchicalCompliance hierarchical(const DenseCompliance& dense, std::vector<std::int32_t> order, int depth,
+                                    double accuracy) {
+    HierarchicalCompliance c;
+    c.node_count = dense.node_count;
+    c.depth = depth;
+    c.accuracy = accuracy;
+    c.positions.resize(order.size());
+    for (std::size_t p = 0; p < order.size(); ++p)
+        c.positions[static_cast<std::size_t>(order[p])] = static_cast<std::int32_t>(p);
+    c.order = std::move(order);
+    const std::size_t entries = dense.dof_count() * dense.dof_count();
+    double largest = 0;
+    for (const float entry : std::span(dense.entries.get(), entries))
+        largest = std::max(largest, std::abs(static_cast<double>(entry)));
+
+    struct Clusters {
+        std::int32_t level, row, column;
+    };
+    std::vector<Clusters> clusters{{0, 0, 0}};
+    std::vector<float> values;
+    std::vector<std::int16_t> factors;
+    for (std::size_t b = 0; b < clusters.size(); ++b) {
+        const auto [level, row, column] = clusters[b];
+        ComplianceBlock& block = c.blocks.emplace_back();
+        if (row - column <= 1 && level < depth) {
+            block.first_child = static_cast<std::int32_t>(clusters.size());
+            for (std::int32_t i = 0; i < 2; ++i)
+                for (std::int32_t j = 0; j < (row == column ? i + 1 : 2); ++j)
+                    clusters.push_back({level + 1, 2 * row + i, 2 * column + j});
+            continue;
+        }
+        const auto positions = [&](std::int32_t cluster) {
+            const auto first = static_cast<std::size_t>(c.begin(level, cluster));
+            return std::span<const std::int32_t>(c.order).subspan(
+                first, static_cast<std::size_t>(c.begin(level, cluster + 1)) - first);
+        };
+        const Eigen::MatrixXd matrix = coupling(dense, positions(row), positions(column));
+        block.values = static_cast<std::int64_t>(values.size());
+        block.factors = static_cast<std::int64_t>(factors.size());
+        if (row - column <= 1) {
+            for (Eigen::Index i = 0; i < matrix.rows(); ++i)
+                for (Eigen::Index j = 0; j < matrix.cols(); ++j)
+                    values.push_back(static_cast<float>(matrix(i, j)));
+            continue;
+        }
+        const Eigen::JacobiSVD<Eigen::MatrixXd> svd(matrix, Eigen::ComputeThinU | Eigen::ComputeThinV);
+        const Eigen::VectorXd& singular = svd.singularValues();
+        const Eigen::Index kept = (singular.array() > accuracy * largest).count(), rank = (kept + 3) / 4 * 4;
+        block.rank = static_cast<std::int32_t>(rank);
+        const Eigen::VectorXd u = append_factor(svd.matrixU(), kept, rank, factors);
+        const Eigen::VectorXd v = append_factor(svd.matrixV(), kept, rank, factors);
+        for (Eigen::Index k = 0; k < rank; ++k)
+            values.push_back(k < kept ? static_cast<float>(singular[k] * u[k] * v[k]) : 0.0F);
+    }
+    c.value_count = values.size();
+    c.values = kept_alive(std::move(values));
+    c.factor_count = factors.size();
+    c.factors = kept_alive(std::move(factors));
+    return c;
+}
+
+DeformableBody with_hierarchical_compliance(DeformableBody body, int depth, double accuracy) {
+    std::vector<std::int32_t> order(body.contact_nodes.size());
+    std::iota(order.begin(), order.end(), 0);
+    const auto position = [&](std::int32_t contact_node) {
+        const Eigen::Vector3d& p = body.mesh.rest_positions[static_cast<std::size_t>(
+            body.contact_nodes[static_cast<std::size_t>(contact_node)])];
+        return std::array{p.x(), p.y(), p.z()};
+    };
+    std::ranges::sort(order, {}, position);
+    body.compliance =
+        hierarchical(std::get<DenseCompliance>(body.compliance), std::move(order), depth, accuracy);
+    return body;
+}
+
 DeformableBody elastic_cube(int cells) {
     const double edge = 20;
     DeformableBody body;
@@ -165,6 +277,11 @@ DeformableBody elastic_cube(int cells) {
                         .condition_number = 120,
                         .reciprocity = 1e-7,
                         .sampled_columns = 16,
+                        .load_error = 3e-7,
+                        .contact_error = 2e-7,
+                        .sampled_loads = 32,
+                        .smallest_patch_eigenvalue = 0.2,
+                        .discretisation_error = 0.05,
                         .free_dofs = static_cast<std::int64_t>(
                             3 * (body.mesh.rest_positions.size() - body.fixed_nodes.size()))};
     body.obb_tree = median_tree(body.boundary.surface, 4);

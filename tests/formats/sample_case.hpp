@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "formats/model/body.hpp"
 
@@ -20,6 +22,16 @@ ObbTree median_tree(const TriangleMesh& surface, std::size_t leaf_size);
 /// bit and positive definite, but not the inverse of any stiffness. `length` is in mm, `scale` in mm/N.
 DenseCompliance kernel_compliance(const TetMesh& mesh, const std::vector<std::int32_t>& nodes, double length,
                                   double scale);
+
+/// The same matrix by blocks. `order` names the contact node at each position. Clusters that follow one
+/// another in it are coupled by dense blocks, all others by blocks of low rank, which leave out singular
+/// values up to `accuracy` (> 0) times the matrix's largest entry: an error of at most that much per entry,
+/// besides the rounding of the factors. A straight use of singular values, which owes nothing to tools/fem.
+HierarchicalCompliance hierarchical(const DenseCompliance& dense, std::vector<std::int32_t> order, int depth,
+                                    double accuracy);
+
+/// The same body with its dense compliance by blocks, contact nodes in the order of x, then y, then z.
+DeformableBody with_hierarchical_compliance(DeformableBody body, int depth, double accuracy);
 
 /// An elastic cube of edge 20 mm held at z = 0, with kernel_compliance(), whose parts belong together.
 DeformableBody elastic_cube(int cells);

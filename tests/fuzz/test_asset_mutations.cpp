@@ -6,9 +6,11 @@
 #include <cstring>
 #include <gtest/gtest.h>
 #include <random>
+#include <utility>
 
 #include "formats/asset/asset.hpp"
 #include "formats/asset/byte_cursor.hpp"
+#include "formats/asset/hdf5_file.hpp"
 #include "tests/formats/sample_case.hpp"
 #include "tests/formats/scratch.hpp"
 #include "tests/fuzz/allocation_gauge.hpp"
@@ -18,8 +20,16 @@ namespace {
 
 using Bytes = std::vector<char>;
 
-Bytes small_asset(const sample::Scratch& scratch) {
+// How the body's compliance is stored.
+enum class Form { dense, hierarchical };
+
+Bytes small_asset(const sample::Scratch& scratch, Form form) {
     Case patient_case = sample::sample_case(2);
+    if (form == Form::hierarchical) {  // 17 contact nodes in clusters of 2 or 3, the tightest there are
+        constexpr double accuracy = 1e-3;
+        DeformableBody& wall = patient_case.deformable_bodies[0];
+        wall = sample::with_hierarchical_compliance(wall, 3, accuracy);
+    }
     RigidBody& skull = patient_case.rigid_bodies[0];
     skull.surface = sample::sphere_surface({40, 10, 10}, 15, 1);
     skull.obb_tree = sample::median_tree(skull.surface, 4);
@@ -51,22 +61,47 @@ std::vector<Block> checksummed_blocks(const Bytes& bytes) {
     return blocks;
 }
 
+// The numbers that say where a compliance's blocks are, a small part of the file that chance would rarely
+// hit; none of a dense one.
+std::vector<Block> arrays_of_blocks(const std::filesystem::path& path) {
+    std::vector<Block> arrays;
+    const Hdf5File file(path);
+    for (const char* name : {"order", "first_child", "rank", "block_values", "block_factors"}) {
+        const std::string array = std::string("/palpate/bodies/deformable/0/compliance/") + name;
+        if (!file.contains(array)) continue;
+        const std::span<const std::byte> bytes = file.objects().at(array).values->bytes;
+        arrays.push_back(
+            {static_cast<std::size_t>(bytes.data() - file.mapping().bytes().data()), bytes.size()});
+    }
+    return arrays;
+}
+
 class Mutator {
   public:
-    Mutator(const Bytes& original, unsigned seed)
-        : original_(original), blocks_(checksummed_blocks(original)), random_(seed) {}
+    Mutator(const Bytes& original, std::vector<Block> arrays, unsigned seed)
+        : original_(original),
+          blocks_(checksummed_blocks(original)),
+          arrays_(std::move(arrays)),
+          random_(seed) {}
 
     std::size_t block_count() const { return blocks_.size(); }
 
     Bytes next() {
         Bytes bytes = original_;
-        switch (below(4)) {
+        switch (below(arrays_.empty() ? 4 : 6)) {
             case 0:
                 bytes.resize(below(bytes.size()));
                 break;
             case 1:
                 for (std::size_t flips = 1 + below(8); flips > 0; --flips) damage(bytes, 0, bytes.size());
                 break;
+            case 4:
+            case 5: {
+                const Block array = arrays_[below(arrays_.size())];
+                for (std::size_t flips = 1 + below(3); flips > 0; --flips)
+                    damage(bytes, array.start, array.size);
+                break;
+            }
             default: {
                 const Block block = blocks_[below(blocks_.size())];
                 for (std::size_t flips = 1 + below(3); flips > 0; --flips)
@@ -104,7 +139,7 @@ class Mutator {
     }
 
     const Bytes& original_;
-    std::vector<Block> blocks_;
+    std::vector<Block> blocks_, arrays_;
     std::mt19937 random_;
 };
 
@@ -113,10 +148,24 @@ struct Outcome {
     int refused = 0;
 };
 
-Outcome read_mutations(Digests digests, int count, unsigned seed) {
+// Looks at all of a compliance, as the runtime may: what a reader lets pass must hold for it.
+void use(const std::vector<DeformableBody>& bodies) {
+    for (const DeformableBody& body : bodies) {
+        const std::int32_t nodes = node_count(body.compliance);
+        std::vector<Eigen::Vector3f> moved(static_cast<std::size_t>(nodes), Eigen::Vector3f::Zero());
+        std::vector<NodeForce> forces;
+        for (std::int32_t node = 0; node < nodes; ++node) {
+            forces.push_back({node, {1, 2, 3}});
+            compliance_block(body.compliance, node, nodes - 1 - node);
+        }
+        add_displacements(body.compliance, forces, moved);
+    }
+}
+
+Outcome read_mutations(Form form, Digests digests, int count, unsigned seed) {
     const sample::Scratch scratch;
-    const Bytes original = small_asset(scratch);
-    Mutator mutator(original, seed);
+    const Bytes original = small_asset(scratch, form);
+    Mutator mutator(original, arrays_of_blocks(scratch / "case.vtkhdf"), seed);
     EXPECT_GT(mutator.block_count(), 60U);  // superblock, groups and datasets
     const auto path = scratch / "mutated.vtkhdf";
     Outcome outcome;
@@ -124,7 +173,7 @@ Outcome read_mutations(Digests digests, int count, unsigned seed) {
     for (int i = 0; i < count; ++i) {
         sample::write_bytes(path, mutator.next());
         try {
-            read_asset(path, digests);
+            use(read_asset(path, digests).deformable_bodies);
             ++outcome.read;
         } catch (const InvalidInput& error) {
             ++outcome.refused;
@@ -137,14 +186,25 @@ Outcome read_mutations(Digests digests, int count, unsigned seed) {
 }
 
 TEST(MutatedAsset, reads_or_is_refused_with_digests_checked) {
-    const Outcome outcome = read_mutations(Digests::check, 5000, 20240611);
+    const Outcome outcome = read_mutations(Form::dense, Digests::check, 5000, 20240611);
     EXPECT_GT(outcome.refused, 4000);
 }
 
 TEST(MutatedAsset, reads_or_is_refused_with_digests_skipped) {
-    const Outcome outcome = read_mutations(Digests::skip, 5000, 7);
+    const Outcome outcome = read_mutations(Form::dense, Digests::skip, 5000, 7);
     EXPECT_GT(outcome.refused, 2500);
     EXPECT_GT(outcome.read, 50);  // or the mutations would never get past the container
+}
+
+TEST(MutatedAsset, with_a_compliance_by_blocks_reads_or_is_refused_with_digests_checked) {
+    const Outcome outcome = read_mutations(Form::hierarchical, Digests::check, 5000, 20240612);
+    EXPECT_GT(outcome.refused, 4000);
+}
+
+TEST(MutatedAsset, with_a_compliance_by_blocks_reads_or_is_refused_with_digests_skipped) {
+    const Outcome outcome = read_mutations(Form::hierarchical, Digests::skip, 5000, 8);
+    EXPECT_GT(outcome.refused, 2500);
+    EXPECT_GT(outcome.read, 50);
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ ROOMS = {
     "report": {"model", "asset", "vtk", "json"},
     "cli": {"model", "cli11", "spdlog", "json", "toml"},
     "mesh": {"model", "meshing", "json", "fmt"},
-    "condense": {"model", "fem"},
+    "condense": {"model", "fem", "json"},
     "build": {"model", "asset", "cli", "json", "toml"},
     "seeds": {"model", "imaging", "vtk"},
     "realtime": set(),

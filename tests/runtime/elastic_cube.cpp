@@ -50,7 +50,8 @@ DeformableBody true_elastic_cube(int cells) {
             K(dof, dof) = 1;
         }
     const Eigen::MatrixXd inverse = K.llt().solve(Eigen::MatrixXd::Identity(K.rows(), K.cols()));
-    const std::size_t dofs = body.compliance.dof_count();
+    auto& compliance = std::get<DenseCompliance>(body.compliance);
+    const std::size_t dofs = compliance.dof_count();
     const std::shared_ptr<float[]> entries(new float[dofs * dofs]);
     const auto mesh_dof = [&](std::size_t dof) {
         return 3 * body.contact_nodes[dof / 3] + static_cast<std::int32_t>(dof % 3);
@@ -59,11 +60,12 @@ DeformableBody true_elastic_cube(int cells) {
         for (std::size_t j = 0; j < dofs; ++j)
             entries[i * dofs + j] = static_cast<float>(
                 inverse(std::min(mesh_dof(i), mesh_dof(j)), std::max(mesh_dof(i), mesh_dof(j))));
-    body.compliance.entries = std::shared_ptr<const float>(entries, entries.get());
+    compliance.entries = std::shared_ptr<const float>(entries, entries.get());
     return body;
 }
 
 DeformableBody with_contact_nodes(DeformableBody body, const std::vector<std::int32_t>& contact_nodes) {
+    const auto& whole = std::get<DenseCompliance>(body.compliance);
     const std::size_t dofs = 3 * contact_nodes.size();
     const auto whole_dof = [&](std::size_t dof) {
         const auto block = std::ranges::lower_bound(body.contact_nodes, contact_nodes[dof / 3]);
@@ -71,10 +73,9 @@ DeformableBody with_contact_nodes(DeformableBody body, const std::vector<std::in
     };
     const std::shared_ptr<float[]> entries(new float[dofs * dofs]);
     for (std::size_t i = 0; i < dofs; ++i)
-        for (std::size_t j = 0; j < dofs; ++j)
-            entries[i * dofs + j] = body.compliance.row(whole_dof(i))[whole_dof(j)];
-    body.compliance = {static_cast<std::int32_t>(contact_nodes.size()),
-                       std::shared_ptr<const float>(entries, entries.get())};
+        for (std::size_t j = 0; j < dofs; ++j) entries[i * dofs + j] = whole.row(whole_dof(i))[whole_dof(j)];
+    body.compliance = DenseCompliance{static_cast<std::int32_t>(contact_nodes.size()),
+                                      std::shared_ptr<const float>(entries, entries.get())};
     body.contact_nodes = contact_nodes;
     return body;
 }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <chrono>
 #include <string>
 #include <string_view>
 
 namespace palpate::cli {
 
-/// Tells on stderr how far long work is: a bar on a terminal, a plain line per step elsewhere. Not
-/// thread-safe.
+/// Tells on stderr how far long work is: a bar with the time left on a terminal, a plain line per step
+/// elsewhere. Not thread-safe.
 class Progress {
   public:
     Progress() = default;
@@ -23,6 +24,9 @@ class Progress {
     void finish();
 
   private:
+    static std::string remaining(std::chrono::duration<double> elapsed, double fraction);
+
+    std::chrono::steady_clock::time_point started_;  // when the bar appeared
     bool quiet_ = false;
     bool terminal_ = false;
     bool open_ = false;

@@ -3,6 +3,8 @@
 
 #include "formats/asset/asset.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/commands/condense/arguments.hpp"
+#include "tools/commands/condense/results.hpp"
 
 namespace {
 using namespace palpate;
@@ -22,7 +24,6 @@ Json row_of(const RigidBody& body) {
 }
 
 Json row_of(const DeformableBody& body) {
-    const auto dofs = static_cast<double>(body.compliance.dof_count());
     return {{"name", body.name},
             {"kind", "deformable"},
             {"nodes", body.mesh.rest_positions.size()},
@@ -31,7 +32,7 @@ Json row_of(const DeformableBody& body) {
             {"surface_nodes", body.boundary.nodes.size()},
             {"fixed_nodes", body.fixed_nodes.size()},
             {"contact_nodes", body.contact_nodes.size()},
-            {"compliance_mb", dofs * dofs * sizeof(float) * 1e-6},
+            {"compliance_mb", static_cast<double>(value_bytes(body.compliance)) * 1e-6},
             {"obb_nodes", body.obb_tree.nodes.size()}};
 }
 
@@ -51,17 +52,12 @@ void add_regions(Json& rows, const DeformableBody& body) {
     }
 }
 
-Json row_of(const std::string& name, const Certificate& certificate) {
-    return {{"body", name},
-            {"residual", certificate.residual},
-            {"residual_double", certificate.residual_double},
-            {"asymmetry", certificate.asymmetry},
-            {"reciprocity", certificate.reciprocity},
-            {"smallest_eigenvalue_mm_per_n", certificate.smallest_eigenvalue},
-            {"largest_eigenvalue_mm_per_n", certificate.largest_eigenvalue},
-            {"condition_number", certificate.condition_number},
-            {"sampled_columns", certificate.sampled_columns},
-            {"free_dofs", certificate.free_dofs}};
+Json row_of(const std::string& name, const DeformableBody& body) {
+    Json row{{"body", name},
+             {"element_order", condensation::name_of(body.element_order)},
+             {"representation", condensation::representation_of(body.compliance)}};
+    row.update(condensation::to_json(body.certificate));
+    return row;
 }
 
 // Provenance is free text to the asset; what is JSON is shown as such.
@@ -87,7 +83,7 @@ int main(int argc, char** argv) {
         for (const DeformableBody& body : patient_case.deformable_bodies) {
             bodies.push_back(row_of(body));
             add_regions(regions, body);
-            certificates.push_back(row_of(body.name, body.certificate));
+            certificates.push_back(row_of(body.name, body));
         }
         const HapticSettings& haptics = patient_case.haptics;
         return Json{{"name", patient_case.name},

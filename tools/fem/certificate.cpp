@@ -65,13 +65,27 @@ class Judge {
     SparseCholesky factor_;
 };
 
+using StoredMatrix = Eigen::Map<const Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
+
+StoredMatrix view_of(const DenseCompliance& compliance) {
+    const auto n = static_cast<Index>(compliance.dof_count());
+    return {compliance.entries.get(), n, n};
+}
+
+// In double for a dense matrix; a hierarchical one multiplies as it does at run time.
 VectorXd product(const SurfaceCompliance& compliance, const VectorXd& forces) {
+    VectorXd result(forces.size());
+    if (const auto* dense = std::get_if<DenseCompliance>(&compliance)) {
+        const StoredMatrix stored = view_of(*dense);
+        for (Index row = 0; row < forces.size(); ++row)
+            result[row] = stored.row(row).cast<double>().dot(forces);
+        return result;
+    }
     std::vector<NodeForce> loads;
     for (Index node = 0; node < forces.size() / 3; ++node)
         loads.push_back({static_cast<std::int32_t>(node), forces.segment<3>(3 * node).cast<float>()});
     std::vector<Eigen::Vector3f> u(loads.size(), Eigen::Vector3f::Zero());
     add_displacements(compliance, loads, u);
-    VectorXd result(forces.size());
     for (std::size_t node = 0; node < u.size(); ++node)
         result.segment<3>(3 * static_cast<Index>(node)) = u[node].cast<double>();
     return result;
@@ -95,13 +109,6 @@ MatrixXd stored_columns(const SurfaceCompliance& compliance, const std::vector<I
                     .col(dofs[c] % 3)
                     .cast<double>();
     return columns;
-}
-
-using StoredMatrix = Eigen::Map<const Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
-
-StoredMatrix view_of(const DenseCompliance& compliance) {
-    const auto n = static_cast<Index>(compliance.dof_count());
-    return {compliance.entries.get(), n, n};
 }
 
 // Of a hierarchical compliance only diagonal blocks could be asymmetric.
@@ -134,9 +141,10 @@ double reciprocity_of(const SurfaceCompliance& compliance, std::uint64_t seed) {
     std::normal_distribution<double> normal;
     const auto load = [&] {
         // Rounded, so that both products see the same forces.
-        return VectorXd(VectorXd::NullaryExpr(3 * Index{node_count(compliance)}, [&] { return normal(random); })
-                            .cast<float>()
-                            .cast<double>());
+        return VectorXd(
+            VectorXd::NullaryExpr(3 * Index{node_count(compliance)}, [&] { return normal(random); })
+                .cast<float>()
+                .cast<double>());
     };
     double worst = 0;
     for (int pair = 0; pair < pairs; ++pair) {
@@ -154,9 +162,10 @@ double smallest_eigenvalue_on(const SurfaceCompliance& compliance, const Contact
     MatrixXd patch(3 * size, 3 * size);
     for (Index i = 0; i < size; ++i)
         for (Index j = 0; j < size; ++j)
-            patch.block<3, 3>(3 * i, 3 * j) = compliance_block(compliance, load[static_cast<std::size_t>(i)].node,
-                                                               load[static_cast<std::size_t>(j)].node)
-                                                  .cast<double>();
+            patch.block<3, 3>(3 * i, 3 * j) =
+                compliance_block(compliance, load[static_cast<std::size_t>(i)].node,
+                                 load[static_cast<std::size_t>(j)].node)
+                    .cast<double>();
     return Eigen::SelfAdjointEigenSolver<MatrixXd>(patch, Eigen::EigenvaluesOnly).eigenvalues()[0];
 }
 
@@ -171,7 +180,8 @@ void try_loads(const DeformableBody& body, const Judge& judge, std::int32_t coun
         MatrixXd forces = MatrixXd::Zero(dof_count(body), static_cast<Index>(some.size()));
         for (std::size_t k = 0; k < some.size(); ++k)
             for (const NodeForce& force : some[k])
-                forces.col(static_cast<Index>(k)).segment<3>(3 * Index{force.node}) += force.force.cast<double>();
+                forces.col(static_cast<Index>(k)).segment<3>(3 * Index{force.node}) +=
+                    force.force.cast<double>();
         const MatrixXd exact = judge.displacements(forces, false);
         for (std::size_t k = 0; k < some.size(); ++k) {
             const LoadError error = error_of(body.compliance, some[k], exact.col(static_cast<Index>(k)));
@@ -218,7 +228,8 @@ Certificate certify(const DeformableBody& body, const SampledColumns& columns) {
     return certificate;
 }
 
-Certificate recertify(const DeformableBody& body, std::int32_t columns, std::int32_t loads, std::uint64_t seed) {
+Certificate recertify(const DeformableBody& body, std::int32_t columns, std::int32_t loads,
+                      std::uint64_t seed) {
     require_no_rigid_motion(body.mesh, body.fixed_nodes);
     Certificate certificate;
     const Index size = dof_count(body);
@@ -234,9 +245,10 @@ Certificate recertify(const DeformableBody& body, std::int32_t columns, std::int
     MatrixXd factor = view_of(*dense).cast<double>();
     const auto n = static_cast<lapack_int>(size);
     if (LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', n, factor.data(), n) != 0) return certificate;
-    certificate.smallest_eigenvalue = 1 / largest_eigenvalue(size, [&](VectorXd& v) {
-                                          LAPACKE_dpotrs(LAPACK_COL_MAJOR, 'L', n, 1, factor.data(), n, v.data(), n);
-                                      });
+    certificate.smallest_eigenvalue =
+        1 / largest_eigenvalue(size, [&](VectorXd& v) {
+            LAPACKE_dpotrs(LAPACK_COL_MAJOR, 'L', n, 1, factor.data(), n, v.data(), n);
+        });
     certificate.condition_number = certificate.largest_eigenvalue / certificate.smallest_eigenvalue;
     return certificate;
 }

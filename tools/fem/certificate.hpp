@@ -30,10 +30,11 @@ SampledColumns certificate_sample(const DeformableBody& body);
 Certificate certify(const DeformableBody& body, const SampledColumns& columns);
 
 /// Rechecks a stored compliance from mesh, materials and fixed nodes alone: residual of `columns` re-solved
-/// columns, asymmetry, reciprocity, error of `loads` random contact loads, eigenvalues. smallest_eigenvalue is
-/// 0 if a dense matrix is not positive definite (LAPACK dpotrf in double); of a hierarchical one, see
+/// columns, asymmetry, reciprocity, error of `loads` random contact loads, eigenvalues. smallest_eigenvalue
+/// is 0 if a dense matrix is not positive definite (LAPACK dpotrf in double); of a hierarchical one, see
 /// smallest_patch_eigenvalue. Throws InvalidInput if the stiffness is singular. Cost: as certify(), and
 /// 1/3 (3m)³ flops for a dense one.
-Certificate recertify(const DeformableBody& body, std::int32_t columns, std::int32_t loads, std::uint64_t seed);
+Certificate recertify(const DeformableBody& body, std::int32_t columns, std::int32_t loads,
+                      std::uint64_t seed);
 
 }  // namespace palpate

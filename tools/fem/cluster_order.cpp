@@ -26,11 +26,12 @@ std::vector<std::int32_t> cluster_order(std::span<const Eigen::Vector3d> points,
             for (auto at = first; at != last; ++at) box.extend(points[static_cast<std::size_t>(*at)]);
             Eigen::Index axis = 0;
             box.sizes().maxCoeff(&axis);
-            std::nth_element(first, begin(level + 1, 2 * cluster + 1), last, [&](std::int32_t a, std::int32_t b) {
-                const double x = points[static_cast<std::size_t>(a)][axis],
-                             y = points[static_cast<std::size_t>(b)][axis];
-                return x < y || (x == y && a < b);
-            });
+            std::nth_element(first, begin(level + 1, 2 * cluster + 1), last,
+                             [&](std::int32_t a, std::int32_t b) {
+                                 const double x = points[static_cast<std::size_t>(a)][axis],
+                                              y = points[static_cast<std::size_t>(b)][axis];
+                                 return x < y || (x == y && a < b);
+                             });
         }
     return order;
 }

@@ -60,7 +60,8 @@ class Compressor {
         const std::int32_t level = result_.depth, first = result_.begin(level, j);
         const std::int32_t count = result_.begin(level, j + 1) - first;
         const MatrixXd rows =
-            rows_(std::span(result_.order).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count)));
+            rows_(std::span(result_.order)
+                      .subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count)));
         Column column;
         for (std::int32_t i = j; i < clusters(level); ++i) {
             const std::int32_t begin = result_.begin(level, i), end = result_.begin(level, i + 1);
@@ -85,7 +86,9 @@ class Compressor {
 
     // Block (i, j) of a level from the columns of j's halves.
     Part join(std::int32_t level, std::int32_t i, std::int32_t j, Column& left, Column& right) const {
-        const auto in_left = [&](std::int32_t row) { return std::move(left[static_cast<std::size_t>(row - 2 * j)]); };
+        const auto in_left = [&](std::int32_t row) {
+            return std::move(left[static_cast<std::size_t>(row - 2 * j)]);
+        };
         const auto in_right = [&](std::int32_t row) {
             return std::move(right[static_cast<std::size_t>(row - 2 * j - 1)]);
         };
@@ -112,11 +115,12 @@ class Compressor {
     }
 
   private:
-    // How strongly each node answers to a force in each direction: S_p² = the mean of C_ipᵀ C_ip over a sample of
-    // nodes i all over the surface. (The few large entries around a node itself are mostly missed, which makes
-    // this a cautious estimate.) Blocks are made of S_i^-1 C_ij S_j^-1: an error of the same size anywhere in
-    // such a block is, for a force in any direction, the same part of the displacement field it causes. Without
-    // this, forces on a slender body along its axis, where it is stiff, drown in the error of those across.
+    // How strongly each node answers to a force in each direction: S_p² = the mean of C_ipᵀ C_ip over a
+    // sample of nodes i all over the surface. (The few large entries around a node itself are mostly missed,
+    // which makes this a cautious estimate.) Blocks are made of S_i^-1 C_ij S_j^-1: an error of the same size
+    // anywhere in such a block is, for a force in any direction, the same part of the displacement field it
+    // causes. Without this, forces on a slender body along its axis, where it is stiff, drown in the error of
+    // those across.
     void estimate_scales() {
         std::vector<std::int32_t> sample = result_.order;
         std::shuffle(sample.begin(), sample.end(), std::mt19937_64(1));
@@ -134,7 +138,8 @@ class Compressor {
         entry_error_ = result_.accuracy / std::sqrt(sum / result_.node_count * (result_.depth + 1));
     }
 
-    // Error that one step, truncation or joining, may add to a block; it takes part in no more than depth + 1.
+    // Error that one step, truncation or joining, may add to a block; it takes part in no more than depth
+    // + 1.
     LowRankTolerance tolerance(std::int32_t level, std::int32_t i, std::int32_t j) const {
         const auto dofs = [&](std::int32_t c) {
             return static_cast<double>(3 * (result_.begin(level, c + 1) - result_.begin(level, c)));
@@ -148,7 +153,8 @@ class Compressor {
         for (std::size_t k = 0; k < 4; ++k) {
             const Part& part = whole.parts[k];
             if (!part.parts.empty()) return;
-            if (!part.low_rank) dense[k] = {part.dense, MatrixXd::Identity(part.dense.cols(), part.dense.cols())};
+            if (!part.low_rank)
+                dense[k] = {part.dense, MatrixXd::Identity(part.dense.cols(), part.dense.cols())};
             factors[k] = part.low_rank ? &*part.low_rank : &dense[k];
         }
         LowRank low_rank = joined(factors, tolerance);
@@ -201,14 +207,15 @@ class Compressor {
     // Rounds each column to 16 bits of its largest entry and multiplies its scale accordingly.
     void append_factor(const MatrixXd& factor, Eigen::VectorXd& scales) {
         constexpr double steps = 32767;
-        const Eigen::RowVectorXd largest =
-            factor.cols() > 0 && factor.rows() > 0 ? Eigen::RowVectorXd(factor.cwiseAbs().colwise().maxCoeff())
-                                                   : Eigen::RowVectorXd::Zero(factor.cols());
+        const Eigen::RowVectorXd largest = factor.cols() > 0 && factor.rows() > 0
+                                               ? Eigen::RowVectorXd(factor.cwiseAbs().colwise().maxCoeff())
+                                               : Eigen::RowVectorXd::Zero(factor.cols());
         for (Index row = 0; row < factor.rows(); ++row)
             for (Index k = 0; k < scales.size(); ++k)
-                factors_.push_back(k < factor.cols() && largest[k] > 0
-                                       ? static_cast<std::int16_t>(std::lround(factor(row, k) / largest[k] * steps))
-                                       : std::int16_t{0});
+                factors_.push_back(
+                    k < factor.cols() && largest[k] > 0
+                        ? static_cast<std::int16_t>(std::lround(factor(row, k) / largest[k] * steps))
+                        : std::int16_t{0});
         for (Index k = 0; k < factor.cols(); ++k) scales[k] *= largest[k] / steps;
     }
 
@@ -217,7 +224,7 @@ class Compressor {
     std::vector<float> values_;
     std::vector<std::int16_t> factors_;
     std::vector<Eigen::Matrix3d> scales_, inverse_scales_;  // by position, mm/N and its inverse
-    double entry_error_ = 0;      // of scaled entries, root mean square, in one step
+    double entry_error_ = 0;  // of scaled entries, root mean square, in one step
 };
 
 }  // namespace
@@ -226,24 +233,28 @@ HierarchicalCompliance compress(std::span<const Eigen::Vector3d> points, const C
                                 double accuracy, int threads, const ProgressCallback& progress) {
     Compressor compressor(points, rows, accuracy);
     const std::int32_t depth = compressor.depth();
-    const auto column_count = [&](std::int32_t level) { return static_cast<std::size_t>(compressor.clusters(level)); };
+    const auto column_count = [&](std::int32_t level) {
+        return static_cast<std::size_t>(compressor.clusters(level));
+    };
 
     std::mutex telling;
     std::size_t panels_done = 0;
     const auto leaf = [&](std::size_t j) {
         Column column = compressor.leaf_column(static_cast<std::int32_t>(j));
         const std::lock_guard lock(telling);
-        progress("compressing", static_cast<double>(++panels_done) / static_cast<double>(column_count(depth)));
+        progress("compressing",
+                 static_cast<double>(++panels_done) / static_cast<double>(column_count(depth)));
         return column;
     };
     // A subtree's columns are joined as soon as both halves are there, so that little waits in memory.
-    const std::function<Column(std::int32_t, std::size_t)> column_of = [&](std::int32_t level, std::size_t j) {
+    const std::function<Column(std::int32_t, std::size_t)> column_of = [&](std::int32_t level,
+                                                                           std::size_t j) {
         if (level == depth) return leaf(j);
         Column left = column_of(level + 1, 2 * j), right = column_of(level + 1, 2 * j + 1);
         Column column;
         for (std::size_t i = j; i < column_count(level); ++i)
-            column.push_back(compressor.join(level, static_cast<std::int32_t>(i), static_cast<std::int32_t>(j), left,
-                                             right));
+            column.push_back(compressor.join(level, static_cast<std::int32_t>(i),
+                                             static_cast<std::int32_t>(j), left, right));
         return column;
     };
     std::int32_t level = std::min(depth, 5);
@@ -258,8 +269,9 @@ HierarchicalCompliance compress(std::span<const Eigen::Vector3d> points, const C
         }
         for_each_index(blocks.size(), threads, [&](std::size_t b) {
             const auto [i, j] = blocks[b];
-            columns[j][i - j] = compressor.join(level, static_cast<std::int32_t>(i), static_cast<std::int32_t>(j),
-                                                halves[2 * j], halves[2 * j + 1]);
+            columns[j][i - j] =
+                compressor.join(level, static_cast<std::int32_t>(i), static_cast<std::int32_t>(j),
+                                halves[2 * j], halves[2 * j + 1]);
         });
     }
     return std::move(compressor).stored(columns[0][0]);

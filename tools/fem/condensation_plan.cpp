@@ -31,20 +31,22 @@ CondensationForecast forecast_trailing_block(const DeformableBody& body, const C
     const FactorForecast factor = SparseCholesky::forecast(system.stiffness, Elimination::as_given);
     const auto n = static_cast<double>(system.contact_rows.size());
     return {.method = CondensationMethod::trailing_block,
-            .seconds = (factor.flops + 2.0 / 3 * n * n * n) / (flops_per_second * trailing_efficiency * options.threads),
+            .seconds = (factor.flops + 2.0 / 3 * n * n * n) /
+                       (flops_per_second * trailing_efficiency * options.threads),
             .memory_bytes = 8 * (factor.entries + std::max(factor.work_entries, n * n / 2)),
             .size_bytes = 4 * n * n};
 }
 
-std::vector<CondensationForecast> forecast_solves(const DeformableBody& body, const CondensationOptions& options,
+std::vector<CondensationForecast> forecast_solves(const DeformableBody& body,
+                                                  const CondensationOptions& options,
                                                   double flops_per_second) {
     const FreeSystem system = assemble_free_system(body, NodeOrder::nested_dissection);
     const FactorForecast factor = SparseCholesky::forecast(system.stiffness, Elimination::postordered);
     const auto n = static_cast<double>(system.contact_rows.size());
     const double rate = flops_per_second * solve_efficiency * options.threads;
     const double seconds = (factor.flops + 4 * n * factor.entries * solve_part) / rate;
-    const double working =
-        8 * (factor.entries + 2 * static_cast<double>(system.stiffness.rows()) * panel_loads * options.threads);
+    const double working = 8 * (factor.entries + 2 * static_cast<double>(system.stiffness.rows()) *
+                                                     panel_loads * options.threads);
     const double digits = std::max(1.0, -std::log10(options.accuracy));
     const double nodes = n / 3, size = hierarchical_bytes * nodes * std::log2(nodes + 2) * digits;
     return {{CondensationMethod::solves, seconds, working + 12 * n * n, 4 * n * n},
@@ -60,9 +62,12 @@ bool fits(const CondensationForecast& forecast, double memory, double size) {
 
 std::string name_of(CondensationMethod method) {
     switch (method) {
-        case CondensationMethod::trailing_block: return "trailing block";
-        case CondensationMethod::solves: return "panels of solves";
-        case CondensationMethod::hierarchical: return "hierarchical";
+        case CondensationMethod::trailing_block:
+            return "trailing block";
+        case CondensationMethod::solves:
+            return "panels of solves";
+        case CondensationMethod::hierarchical:
+            return "hierarchical";
     }
     return "";
 }
@@ -99,21 +104,25 @@ CondensationPlan plan_condensation(const DeformableBody& body, const Condensatio
     plan.reason = "exact, and the faster way to it";
     if (!best && options.representation != Representation::dense) {
         best = chosen(Representation::hierarchical);
-        plan.reason = options.representation == Representation::hierarchical
-                          ? "asked for"
-                          : fmt::format("an exact one takes {} of {} memory and {} of {} size",
-                                        mebibytes(plan.considered[1].memory_bytes), mebibytes(memory),
-                                        mebibytes(plan.considered[1].size_bytes), mebibytes(options.size_bytes));
+        plan.reason =
+            options.representation == Representation::hierarchical
+                ? "asked for"
+                : fmt::format("an exact one takes {} of {} memory and {} of {} size",
+                              mebibytes(plan.considered[1].memory_bytes), mebibytes(memory),
+                              mebibytes(plan.considered[1].size_bytes), mebibytes(options.size_bytes));
     }
     if (!best) {
-        const CondensationForecast& least = plan.considered[options.representation == Representation::dense ? 1 : 2];
+        const CondensationForecast& least =
+            plan.considered[options.representation == Representation::dense ? 1 : 2];
         throw InvalidInput(
             {body.name,
              fmt::format("its compliance of {} contact nodes would take {} of memory and {} of size, {}",
-                         body.contact_nodes.size(), mebibytes(least.memory_bytes), mebibytes(least.size_bytes),
-                         name_of(least.method)),
-             fmt::format("at most {} of memory and {} of size", mebibytes(memory), mebibytes(options.size_bytes)),
-             "allow more with --memory or --size, ask for less with --accuracy or --representation hierarchical, "
+                         body.contact_nodes.size(), mebibytes(least.memory_bytes),
+                         mebibytes(least.size_bytes), name_of(least.method)),
+             fmt::format("at most {} of memory and {} of size", mebibytes(memory),
+                         mebibytes(options.size_bytes)),
+             "allow more with --memory or --size, ask for less with --accuracy or --representation "
+             "hierarchical, "
              "narrow the contact surface with --contact, or mesh with larger cells"});
     }
     plan.chosen = *best;

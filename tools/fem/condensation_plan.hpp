@@ -18,9 +18,9 @@ enum class CondensationMethod { trailing_block, solves, hierarchical };
 /// What a user asks of a condensation.
 struct CondensationOptions {
     Representation representation = Representation::automatic;
-    double accuracy = 1e-3;          ///< of a hierarchical compliance: relative error of displacements
-    double memory_bytes = 0;         ///< that may be in use at once; 0: what the machine has available
-    double size_bytes = 0x1p30;      ///< that the stored compliance may take
+    double accuracy = 1e-3;      ///< of a hierarchical compliance: relative error of displacements
+    double memory_bytes = 0;     ///< that may be in use at once; 0: what the machine has available
+    double size_bytes = 0x1p30;  ///< that the stored compliance may take
     int threads = 1;
 };
 

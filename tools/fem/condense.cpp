@@ -114,12 +114,13 @@ ExactCompliance condense_by_trailing_block(const DeformableBody& body, const Pro
     const int status = LAPACKE_dpotri(LAPACK_COL_MAJOR, 'L', static_cast<lapack_int>(size), block.data(),
                                       static_cast<lapack_int>(block.outerStride()));
     if (status != 0)
-        throw InvalidInput({body.name, "its surface stiffness is singular at row " + std::to_string(status), "",
-                            "hold more nodes"});
+        throw InvalidInput({body.name, "its surface stiffness is singular at row " + std::to_string(status),
+                            "", "hold more nodes"});
     return {factor, {block.data(), size, size, Eigen::OuterStride<>(block.outerStride())}};
 }
 
-ExactCompliance condense_by_solves(const DeformableBody& body, int threads, const ProgressCallback& progress) {
+ExactCompliance condense_by_solves(const DeformableBody& body, int threads,
+                                   const ProgressCallback& progress) {
     constexpr std::size_t panel_nodes = 64;
     progress("ordering and assembling", 0.0);
     const SurfaceSolver solver = [&] {
@@ -131,11 +132,15 @@ ExactCompliance condense_by_solves(const DeformableBody& body, int threads, cons
     const auto lower = std::make_shared<Eigen::MatrixXd>(size, size);
     const std::size_t nodes = body.contact_nodes.size(), panels = (nodes + panel_nodes - 1) / panel_nodes;
     // Neighbours solved together pass through fewer of the factor's columns.
-    const std::vector<std::int32_t> order = cluster_order(contact_points(body), cluster_depth(static_cast<std::int32_t>(nodes), static_cast<std::int32_t>(panel_nodes)));
+    const std::vector<std::int32_t> order = cluster_order(
+        contact_points(body),
+        cluster_depth(static_cast<std::int32_t>(nodes), static_cast<std::int32_t>(panel_nodes)));
     std::mutex telling;
     std::size_t done = 0;
     for_each_index(panels, threads, [&](std::size_t panel) {
-        const auto loaded = std::span(order).subspan(panel * panel_nodes).first(std::min(panel_nodes, nodes - panel * panel_nodes));
+        const auto loaded = std::span(order)
+                                .subspan(panel * panel_nodes)
+                                .first(std::min(panel_nodes, nodes - panel * panel_nodes));
         const Eigen::MatrixXd rows = solver.rows(loaded);
         // Column j from the diagonal down is row j, since C is symmetric.
         for (std::size_t k = 0; k < loaded.size(); ++k)
@@ -152,9 +157,9 @@ ExactCompliance condense_by_solves(const DeformableBody& body, int threads, cons
 
 HierarchicalCompliance condense_hierarchically(const DeformableBody& body, double accuracy, int threads,
                                                const ProgressCallback& progress) {
-    // Blocks are truncated to a part of the accuracy, because near a contact errors of neighbouring blocks add
-    // up; a second attempt is rarely needed.
-    constexpr double share = 0.5, second_share = 0.5;
+    // Blocks are truncated to a part of the accuracy, because near a contact errors of neighbouring blocks
+    // add up; a second attempt is rarely needed.
+    constexpr double share = 0.8, second_share = 0.7;
     constexpr std::int32_t trial_loads = 128;
     constexpr std::uint64_t trial_seed = 3;
     progress("ordering and assembling", 0.0);
@@ -169,9 +174,8 @@ HierarchicalCompliance condense_hierarchically(const DeformableBody& body, doubl
     double tolerance = share * accuracy;
     for (int attempt = 0; attempt < 3; ++attempt) {
         HierarchicalCompliance compliance =
-            compress(contact_points(body), rows, tolerance, threads, [&](std::string_view what, double fraction) {
-                progress(what, 0.05 + 0.9 * fraction);
-            });
+            compress(contact_points(body), rows, tolerance, threads,
+                     [&](std::string_view what, double fraction) { progress(what, 0.05 + 0.9 * fraction); });
         compliance.accuracy = accuracy;
         const SurfaceCompliance stored = compliance;
         double worst = 0;
@@ -195,7 +199,8 @@ DenseCompliance to_stored(const ExactCompliance& exact) {
         for (std::size_t j0 = 0; j0 <= i0; j0 += tile)
             for (std::size_t j = j0; j < std::min(j0 + tile, n); ++j)
                 for (std::size_t i = std::max(i0, j); i < std::min(i0 + tile, n); ++i) {
-                    const auto value = static_cast<float>(exact.lower(static_cast<Index>(i), static_cast<Index>(j)));
+                    const auto value =
+                        static_cast<float>(exact.lower(static_cast<Index>(i), static_cast<Index>(j)));
                     entries[i * n + j] = value;
                     entries[j * n + i] = value;
                 }
@@ -209,7 +214,8 @@ DeformableBody prepared_body(DeformableBody body) {
     return body;
 }
 
-DeformableBody condensed_body(DeformableBody body, const CondensationPlan& plan, const ProgressCallback& progress) {
+DeformableBody condensed_body(DeformableBody body, const CondensationPlan& plan,
+                              const ProgressCallback& progress) {
     constexpr double certifying = 0.85;
     const ProgressCallback condensing = [&](std::string_view what, double fraction) {
         progress(what, certifying * fraction);

@@ -19,11 +19,12 @@ struct ExactCompliance {
 };
 
 /// Computes the compliance of the contact nodes, C = (K^-1)_ss, without a solve: with the surface eliminated
-/// last, K = L Lᵀ gives (K^-1)_ss = (L_ss L_ssᵀ)^-1, which is dpotri on the factor's trailing block, in place.
-/// Reads body.mesh, materials, element_order, fixed_nodes, boundary and contact_nodes; throws InvalidInput if
-/// a rigid motion is left (before factorising) or the stiffness is not positive definite. Cost: the sparse
-/// factor, whose last part takes (3m)³/3 flops, plus 2/3 (3m)³. All of the dense kernels' threads; the same
-/// bytes for the same number of them. Equals the inverse of the condensed stiffness of Bro-Nielsen (1998).
+/// last, K = L Lᵀ gives (K^-1)_ss = (L_ss L_ssᵀ)^-1, which is dpotri on the factor's trailing block, in
+/// place. Reads body.mesh, materials, element_order, fixed_nodes, boundary and contact_nodes; throws
+/// InvalidInput if a rigid motion is left (before factorising) or the stiffness is not positive definite.
+/// Cost: the sparse factor, whose last part takes (3m)³/3 flops, plus 2/3 (3m)³. All of the dense kernels'
+/// threads; the same bytes for the same number of them. Equals the inverse of the condensed stiffness of
+/// Bro-Nielsen (1998).
 ExactCompliance condense_by_trailing_block(const DeformableBody& body, const ProgressCallback& progress);
 
 /// The same by solving for every contact degree of freedom, in panels, with the surface among the other nodes
@@ -32,8 +33,8 @@ ExactCompliance condense_by_trailing_block(const DeformableBody& body, const Pro
 /// dense kernels' threads, which factorise.
 ExactCompliance condense_by_solves(const DeformableBody& body, int threads, const ProgressCallback& progress);
 
-/// The same compressed, never holding C: see compress(). `accuracy` is that of random_contact_loads(), both of
-/// the whole displacement field and of the loaded nodes'.
+/// The same compressed, never holding C: see compress(). `accuracy` is that of random_contact_loads(), both
+/// of the whole displacement field and of the loaded nodes'.
 HierarchicalCompliance condense_hierarchically(const DeformableBody& body, double accuracy, int threads,
                                                const ProgressCallback& progress);
 
@@ -49,7 +50,8 @@ DenseCompliance to_stored(const ExactCompliance& exact);
 DeformableBody prepared_body(DeformableBody body);
 
 /// Adds compliance and certificate to a prepared body, by the plan's method. The OBB tree stays empty.
-DeformableBody condensed_body(DeformableBody body, const CondensationPlan& plan, const ProgressCallback& progress);
+DeformableBody condensed_body(DeformableBody body, const CondensationPlan& plan,
+                              const ProgressCallback& progress);
 
 /// All of it with the default options.
 DeformableBody condensed_body(DeformableBody body, const ProgressCallback& progress);

@@ -27,11 +27,12 @@ std::vector<Eigen::Vector3d> contact_normals(const DeformableBody& body) {
 
 }  // namespace
 
-std::vector<ContactLoad> random_contact_loads(const DeformableBody& body, std::int32_t count, std::uint64_t seed) {
+std::vector<ContactLoad> random_contact_loads(const DeformableBody& body, std::int32_t count,
+                                              std::uint64_t seed) {
     const std::vector<Eigen::Vector3d> normals = contact_normals(body);
     const auto point = [&](std::int32_t contact) {
-        return body.mesh.rest_positions[static_cast<std::size_t>(
-            body.contact_nodes[static_cast<std::size_t>(contact)])];
+        return body.mesh
+            .rest_positions[static_cast<std::size_t>(body.contact_nodes[static_cast<std::size_t>(contact)])];
     };
     std::mt19937_64 random(seed);
     const auto below = [&](std::size_t bound) { return static_cast<std::size_t>(random() % bound); };
@@ -61,7 +62,8 @@ std::vector<ContactLoad> random_contact_loads(const DeformableBody& body, std::i
     return loads;
 }
 
-LoadError error_of(const SurfaceCompliance& compliance, const ContactLoad& load, const Eigen::VectorXd& exact) {
+LoadError error_of(const SurfaceCompliance& compliance, const ContactLoad& load,
+                   const Eigen::VectorXd& exact) {
     std::vector<Eigen::Vector3f> found(static_cast<std::size_t>(exact.size() / 3), Eigen::Vector3f::Zero());
     add_displacements(compliance, load, found);
     const auto difference = [&](std::size_t node) {

@@ -14,9 +14,10 @@ using ContactLoad = std::vector<NodeForce>;
 inline constexpr std::int32_t most_loaded_nodes = 32;
 
 /// Makes random contacts as a tool would: each presses on 1 to most_loaded_nodes neighbouring contact nodes,
-/// with forces into the body, of 0 to 1 N along the normal and up to half as much across. Reads mesh, boundary
-/// and contact_nodes. The same for the same seed.
-std::vector<ContactLoad> random_contact_loads(const DeformableBody& body, std::int32_t count, std::uint64_t seed);
+/// with forces into the body, of 0 to 1 N along the normal and up to half as much across. Reads mesh,
+/// boundary and contact_nodes. The same for the same seed.
+std::vector<ContactLoad> random_contact_loads(const DeformableBody& body, std::int32_t count,
+                                              std::uint64_t seed);
 
 /// How far a compliance's answer to a load is from the exact one.
 struct LoadError {
@@ -25,6 +26,7 @@ struct LoadError {
 };
 
 /// `exact` holds the exact displacement of x, y, z of every contact node, mm.
-LoadError error_of(const SurfaceCompliance& compliance, const ContactLoad& load, const Eigen::VectorXd& exact);
+LoadError error_of(const SurfaceCompliance& compliance, const ContactLoad& load,
+                   const Eigen::VectorXd& exact);
 
 }  // namespace palpate

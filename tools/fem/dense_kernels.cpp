@@ -42,8 +42,8 @@ double dense_flops_per_second() {
     double best = 0;
     for_each_index(3, 1, [&](std::size_t) {
         const auto start = std::chrono::steady_clock::now();
-        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, size, size, size, 1.0, a.data(), size, a.data(), size,
-                    0.0, product.data(), size);
+        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, size, size, size, 1.0, a.data(), size,
+                    a.data(), size, 0.0, product.data(), size);
         const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
         best = std::max(best, 2.0 * size * size * size / seconds.count());
     });

@@ -17,8 +17,9 @@ using Eigen::Index;
 using Eigen::Vector3d;
 using Tractions = std::vector<Vector3d>;  // at each mesh node, N/mm², linear between them on the surface
 
-// Forces on the discretisation's nodes that do the same work as the tractions: integrals over each triangle of
-// traction times shape function, by the integral of barycentric monomials, 2 A a! b! c! / (a + b + c + 2)!.
+// Forces on the discretisation's nodes that do the same work as the tractions: integrals over each triangle
+// of traction times shape function, by the integral of barycentric monomials, 2 A a! b! c! / (a + b + c +
+// 2)!.
 std::vector<Vector3d> consistent_forces(const DeformableBody& body, const Discretisation& discretisation,
                                         const Tractions& tractions) {
     std::map<std::array<std::int32_t, 2>, std::size_t> middle_of;

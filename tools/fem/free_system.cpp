@@ -31,8 +31,9 @@ FreeSystem assemble_free_system(const DeformableBody& body, NodeOrder order) {
     if (order == NodeOrder::as_numbered)
         system.position_of_node = number_free_nodes(discretisation.node_count, discretisation.fixed_nodes);
     else
-        system.position_of_node = surface_last_ordering(
-            discretisation, order == NodeOrder::surface_last ? body.contact_nodes : std::vector<std::int32_t>{});
+        system.position_of_node = surface_last_ordering(discretisation, order == NodeOrder::surface_last
+                                                                            ? body.contact_nodes
+                                                                            : std::vector<std::int32_t>{});
     system.stiffness = assemble_stiffness(body.mesh, body.materials, discretisation, system.position_of_node);
     for (const std::int32_t node : body.contact_nodes)
         for (std::int64_t axis = 0; axis < 3; ++axis)
@@ -45,10 +46,10 @@ SparseCholesky factorise(const DeformableBody& body, const FreeSystem& system, E
     try {
         return {system.stiffness, elimination};
     } catch (const NotPositiveDefinite& failure) {
-        throw InvalidInput({body.name,
-                            "its stiffness is not positive definite at " + name_of(body, system, failure.row), "",
-                            "hold more nodes, or mesh again: a tetrahedron there may be degenerate, or a material "
-                            "far stiffer than its neighbours"});
+        throw InvalidInput(
+            {body.name, "its stiffness is not positive definite at " + name_of(body, system, failure.row), "",
+             "hold more nodes, or mesh again: a tetrahedron there may be degenerate, or a material "
+             "far stiffer than its neighbours"});
     }
 }
 

@@ -26,7 +26,8 @@ LowerSparse submatrix(const LowerSparse& matrix, const std::vector<std::int64_t>
 
 }  // namespace
 
-InteriorElimination::InteriorElimination(const DeformableBody& body, const FreeSystem& system) : system_(system) {
+InteriorElimination::InteriorElimination(const DeformableBody& body, const FreeSystem& system)
+    : system_(system) {
     std::vector<char> contact(static_cast<std::size_t>(system.stiffness.rows()), 0);
     for (const std::int64_t row : system.contact_rows) contact[static_cast<std::size_t>(row)] = 1;
     for (std::size_t row = 0; row < contact.size(); ++row)
@@ -47,9 +48,11 @@ VectorXd InteriorElimination::surface_forces(const VectorXd& displacements) cons
     VectorXd forces = system_.stiffness.selfadjointView<Eigen::Lower>() * u;
     if (interior_) {
         VectorXd inside(static_cast<Index>(interior_rows_.size()));
-        for (Index k = 0; k < inside.size(); ++k) inside[k] = forces[interior_rows_[static_cast<std::size_t>(k)]];
+        for (Index k = 0; k < inside.size(); ++k)
+            inside[k] = forces[interior_rows_[static_cast<std::size_t>(k)]];
         const VectorXd yielded = interior_->solve(inside);
-        for (Index k = 0; k < inside.size(); ++k) u[interior_rows_[static_cast<std::size_t>(k)]] = -yielded[k];
+        for (Index k = 0; k < inside.size(); ++k)
+            u[interior_rows_[static_cast<std::size_t>(k)]] = -yielded[k];
         forces = system_.stiffness.selfadjointView<Eigen::Lower>() * u;
     }
     VectorXd result(displacements.size());

@@ -7,8 +7,8 @@
 
 namespace palpate {
 
-/// The condensed stiffness S = K_ss - K_si K_ii^-1 K_is of the contact nodes (Bro-Nielsen 1998), as a map: the
-/// inverse of C.
+/// The condensed stiffness S = K_ss - K_si K_ii^-1 K_is of the contact nodes (Bro-Nielsen 1998), as a map:
+/// the inverse of C.
 class InteriorElimination {
   public:
     /// Factorises K_ii; throws InvalidInput as factorise(). `system` must outlive this.

@@ -39,9 +39,9 @@ MatrixXd product(const MatrixXd& a, const MatrixXd& b, bool transpose_b) {
     MatrixXd c = MatrixXd::Zero(a.rows(), columns);
     if (c.size() == 0 || a.cols() == 0) return c;
     cblas_dgemm(CblasColMajor, CblasNoTrans, transpose_b ? CblasTrans : CblasNoTrans,
-                static_cast<blasint>(a.rows()), static_cast<blasint>(columns), static_cast<blasint>(a.cols()), 1.0,
-                a.data(), static_cast<blasint>(a.rows()), b.data(), static_cast<blasint>(b.rows()), 0.0, c.data(),
-                static_cast<blasint>(c.rows()));
+                static_cast<blasint>(a.rows()), static_cast<blasint>(columns), static_cast<blasint>(a.cols()),
+                1.0, a.data(), static_cast<blasint>(a.rows()), b.data(), static_cast<blasint>(b.rows()), 0.0,
+                c.data(), static_cast<blasint>(c.rows()));
     return c;
 }
 
@@ -51,7 +51,8 @@ std::optional<LowRank> truncated(MatrixXd matrix, const LowRankTolerance& tolera
     const Index rows = matrix.rows(), columns = matrix.cols();
     const Index most = std::min(rows, columns) - 1;
     MatrixXd q(rows, most), coefficients(columns, most);
-    const double row_limit = tolerance.row * tolerance.row, column_limit = tolerance.column * tolerance.column;
+    const double row_limit = tolerance.row * tolerance.row,
+                 column_limit = tolerance.column * tolerance.column;
     Index rank = 0;
     for (;;) {
         Index pivot = 0;
@@ -72,17 +73,24 @@ LowRank joined(const std::array<const LowRank*, 4>& parts, const LowRankToleranc
     MatrixXd left = beside(p00->v, p10->v), right = beside(p01->v, p11->v);
     const MatrixXd r_top = orthonormalise(top), r_bottom = orthonormalise(bottom),
                    r_left = orthonormalise(left), r_right = orthonormalise(right);
-    const auto head = [](const MatrixXd& r, const LowRank* part) -> MatrixXd { return r.leftCols(part->rank()); };
-    const auto tail = [](const MatrixXd& r, const LowRank* part) -> MatrixXd { return r.rightCols(part->rank()); };
+    const auto head = [](const MatrixXd& r, const LowRank* part) -> MatrixXd {
+        return r.leftCols(part->rank());
+    };
+    const auto tail = [](const MatrixXd& r, const LowRank* part) -> MatrixXd {
+        return r.rightCols(part->rank());
+    };
 
     MatrixXd core(r_top.rows() + r_bottom.rows(), r_left.rows() + r_right.rows());
     core.topLeftCorner(r_top.rows(), r_left.rows()) = product(head(r_top, p00), head(r_left, p00), true);
     core.topRightCorner(r_top.rows(), r_right.rows()) = product(tail(r_top, p01), head(r_right, p01), true);
-    core.bottomLeftCorner(r_bottom.rows(), r_left.rows()) = product(head(r_bottom, p10), tail(r_left, p10), true);
-    core.bottomRightCorner(r_bottom.rows(), r_right.rows()) = product(tail(r_bottom, p11), tail(r_right, p11), true);
+    core.bottomLeftCorner(r_bottom.rows(), r_left.rows()) =
+        product(head(r_bottom, p10), tail(r_left, p10), true);
+    core.bottomRightCorner(r_bottom.rows(), r_right.rows()) =
+        product(tail(r_bottom, p11), tail(r_right, p11), true);
 
     const Index rows = core.rows(), columns = core.cols(), least = std::min(rows, columns);
-    LowRank whole{MatrixXd::Zero(top.rows() + bottom.rows(), 0), MatrixXd::Zero(left.rows() + right.rows(), 0)};
+    LowRank whole{MatrixXd::Zero(top.rows() + bottom.rows(), 0),
+                  MatrixXd::Zero(left.rows() + right.rows(), 0)};
     if (least == 0) return whole;
     MatrixXd u(rows, least), vt(least, columns);
     Eigen::VectorXd values(least);
@@ -93,11 +101,14 @@ LowRank joined(const std::array<const LowRank*, 4>& parts, const LowRankToleranc
     whole.u.resize(Eigen::NoChange, least);
     whole.v.resize(Eigen::NoChange, least);
     const MatrixXd v = vt.transpose();
-    whole.u << product(top, u.topRows(top.cols()), false), product(bottom, u.bottomRows(bottom.cols()), false);
-    whole.v << product(left, v.topRows(left.cols()), false), product(right, v.bottomRows(right.cols()), false);
+    whole.u << product(top, u.topRows(top.cols()), false),
+        product(bottom, u.bottomRows(bottom.cols()), false);
+    whole.v << product(left, v.topRows(left.cols()), false),
+        product(right, v.bottomRows(right.cols()), false);
 
     whole.u *= values.asDiagonal();
-    Eigen::VectorXd row_errors = Eigen::VectorXd::Zero(whole.u.rows()), column_errors = Eigen::VectorXd::Zero(whole.v.rows());
+    Eigen::VectorXd row_errors = Eigen::VectorXd::Zero(whole.u.rows()),
+                    column_errors = Eigen::VectorXd::Zero(whole.v.rows());
     Index rank = least;
     for (; rank > 0; --rank) {
         row_errors += whole.u.col(rank - 1).cwiseAbs2();

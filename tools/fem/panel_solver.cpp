@@ -49,8 +49,8 @@ Eigen::MatrixXd PanelSolver::solve(std::span<const PanelLoad> entries, Eigen::In
     loaded = above(std::move(loaded));
 
     struct Supernode {
-        double *own, *below;          // L's diagonal block and the block below it
-        const std::int64_t* rows;     // below
+        double *own, *below;       // L's diagonal block and the block below it
+        const std::int64_t* rows;  // below
         blasint width, height, below_count;
         std::int64_t first;
     };
@@ -58,12 +58,18 @@ Eigen::MatrixXd PanelSolver::solve(std::span<const PanelLoad> entries, Eigen::In
         const auto width = static_cast<blasint>(factor_.first_column[s + 1] - factor_.first_column[s]);
         const auto height = static_cast<blasint>(factor_.row_offsets[s + 1] - factor_.row_offsets[s]);
         double* values = const_cast<double*>(factor_.values) + factor_.value_offsets[s];
-        return Supernode{values, values + width, factor_.rows.data() + factor_.row_offsets[s] + width, width,
-                         height, height - width, factor_.first_column[s]};
+        return Supernode{values,
+                         values + width,
+                         factor_.rows.data() + factor_.row_offsets[s] + width,
+                         width,
+                         height,
+                         height - width,
+                         factor_.first_column[s]};
     };
     std::int64_t most_below = 0;
     for (std::size_t s = 0; s < loaded.size(); ++s)
-        if (loaded[s] != 0 || needed_[s] != 0) most_below = std::max<std::int64_t>(most_below, supernode(s).below_count);
+        if (loaded[s] != 0 || needed_[s] != 0)
+            most_below = std::max<std::int64_t>(most_below, supernode(s).below_count);
     Eigen::MatrixXd gathered(count, most_below);
     for (std::size_t s = 0; s < loaded.size(); ++s) {
         if (loaded[s] == 0) continue;

@@ -17,7 +17,8 @@ struct PanelLoad {
 };
 
 /// Solves K x = f for many sparse loads at once and a subset of x, from a supernodal factor: only the
-/// supernodes that the loads reach, and those that the wanted rows need, take part. Keeps a view of the factor.
+/// supernodes that the loads reach, and those that the wanted rows need, take part. Keeps a view of the
+/// factor.
 class PanelSolver {
   public:
     /// `wanted` are rows of K.

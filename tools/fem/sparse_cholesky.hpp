@@ -61,9 +61,9 @@ class SparseCholesky {
 
     SupernodalView supernodes() const;
 
-    /// The last `size` rows and columns of L where they lie (lower triangle; the upper one is undefined). They
-    /// may be written to; L is then no longer a factor. Needs Elimination::as_given and a matrix whose column
-    /// `size` from the end is full, so that they are one supernode; checked.
+    /// The last `size` rows and columns of L where they lie (lower triangle; the upper one is undefined).
+    /// They may be written to; L is then no longer a factor. Needs Elimination::as_given and a matrix whose
+    /// column `size` from the end is full, so that they are one supernode; checked.
     Block trailing_block(Eigen::Index size);
 
   private:

@@ -102,24 +102,22 @@ std::string mechanics_section(const Case& patient_case) {
     for (const DeformableBody& body : patient_case.deformable_bodies) {
         const double share = 100.0 * static_cast<double>(body.fixed_nodes.size()) /
                              static_cast<double>(std::max<std::size_t>(1, body.mesh.rest_positions.size()));
-        const double megabytes = 4e-6 * static_cast<double>(body.compliance.dof_count()) *
-                                 static_cast<double>(body.compliance.dof_count());
+        const auto* blocks = std::get_if<HierarchicalCompliance>(&body.compliance);
         content += fmt::format(
             "<p><b>{}</b> is held at {} fixed nodes ({:.1f} % of all). It can be touched at {} contact "
             "nodes; "
-            "its compliance holds {} × {} values, {:.0f} MB, condensed from {} unknowns.</p>\n",
+            "its compliance, {}, takes {:.1f} MB and was condensed from {} unknowns of {} tetrahedra.</p>\n",
             escaped(body.name), count_of(body.fixed_nodes), share, count_of(body.contact_nodes),
-            grouped(static_cast<std::int64_t>(body.compliance.dof_count())),
-            grouped(static_cast<std::int64_t>(body.compliance.dof_count())), megabytes,
-            grouped(body.certificate.free_dofs));
+            blocks ? fmt::format("in blocks of low rank to {:g}", blocks->accuracy) : "exact and dense",
+            1e-6 * static_cast<double>(value_bytes(body.compliance)), grouped(body.certificate.free_dofs),
+            body.element_order == ElementOrder::linear ? "linear" : "quadratic");
     }
     const HapticSettings& haptics = patient_case.haptics;
     content += html::cards({{"Tool radius", significant(haptics.tool_radius), "mm"},
                             {"Coupling stiffness", significant(haptics.coupling_stiffness), "N/mm"},
                             {"Largest force", significant(haptics.max_force), "N"},
                             {"Largest change", significant(haptics.max_force_rate), "N per ms"}});
-    return html::section("mechanics", "Materials and boundary",
-                         "Isotropic linear elasticity on linear tetrahedra.", content);
+    return html::section("mechanics", "Materials and boundary", "Isotropic linear elasticity.", content);
 }
 
 std::string certificate_section(const std::vector<MeasuredBody>& bodies) {

@@ -31,7 +31,7 @@ std::string verdict(const std::vector<MeasuredBody>& bodies) {
     return fmt::format(
         "<div class=\"verdict\"><strong>✓ Verified</strong><div>The asset’s digests match and every figure "
         "of "
-        "the certificate is within its limit. Worst residual {} (limit 1e-6), smallest dihedral angle "
+        "the certificate is within its limit. Worst residual {}, smallest dihedral angle "
         "{:.1f}°.</div></div>\n",
         html::significant(residual, 2), angle);
 }

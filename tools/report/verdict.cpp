@@ -10,25 +10,30 @@ namespace palpate {
 using html::significant;
 
 std::vector<Check> checks_of(const DeformableBody& body, const MeshSummary& mesh) {
-    // float32 rounds a column to 6e-8 of its largest entry; the rest up to the limit is the solver's.
-    constexpr double residual_limit = 1e-6;
-    constexpr double reciprocity_limit = 1e-6;
+    const double limit = allowed_error(body.compliance);
+    const std::string within = "≤ " + significant(limit, 1);
     const Certificate& c = body.certificate;
     return {
-        {"Residual", significant(c.residual, 2), "≤ 1e-6",
+        {"Residual", significant(c.residual, 2), within,
          "Columns of the stored compliance against a fresh solution of the full sparse system: the largest "
-         "difference, relative to the column's largest entry. At 1e-6 a push of 3 N is right to a millionth.",
-         c.residual <= residual_limit},
+         "difference, relative to the column's largest entry.",
+         c.residual <= limit},
+        {"Displacements under contacts", significant(c.load_error, 2), within,
+         "Random contacts of 1 to 32 nodes, " + html::grouped(c.sampled_loads) +
+             " of them: the displaced surface against a fresh solution, the worst relative difference.",
+         c.load_error <= limit},
+        {"At the loaded nodes", significant(c.contact_error, 2), within,
+         "The same where the tool is, which is what a hand feels.", c.contact_error <= limit},
         {"Residual before rounding", significant(c.residual_double, 2), "",
-         "The same in double precision, before the values were rounded to 32 bits for the runtime."},
+         "The first in double precision, before the values were rounded or compressed for the runtime."},
         {"Columns solved again", html::grouped(c.sampled_columns), "≥ 1",
          "How many columns that comparison covers.", c.sampled_columns > 0},
         {"Asymmetry", significant(c.asymmetry, 2), "= 0",
          "Pressing at A and watching B must equal pressing at B and watching A, bit for bit.",
          c.asymmetry == 0},
-        {"Reciprocity", significant(c.reciprocity, 2), "≤ 1e-6",
+        {"Reciprocity", significant(c.reciprocity, 2), within,
          "The same law for whole patterns of load, picked at random: the worst relative difference.",
-         c.reciprocity <= reciprocity_limit},
+         c.reciprocity <= limit},
         {"Smallest eigenvalue", significant(c.smallest_eigenvalue) + " mm/N", "> 0",
          "How little the surface gives way to the load it resists most. Positive means that every contact "
          "has "
@@ -36,8 +41,15 @@ std::vector<Check> checks_of(const DeformableBody& body, const MeshSummary& mesh
          c.smallest_eigenvalue > 0},
         {"Largest eigenvalue", significant(c.largest_eigenvalue) + " mm/N", "",
          "How far the surface gives way to the load it resists least."},
+        {"Smallest eigenvalue on a contact", significant(c.smallest_patch_eigenvalue) + " mm/N", "> 0",
+         "The same of the stored matrix over the nodes of those contacts.", c.smallest_patch_eigenvalue > 0},
         {"Condition number", significant(c.condition_number), "",
          "The ratio of these two; float32 holds seven digits."},
+        {"Missed by the elements",
+         c.discretisation_error < 0 ? "not estimated" : significant(100 * c.discretisation_error, 2) + " %",
+         "",
+         "Part of the work of a contact that richer elements would add (median); "
+         "<code>palpate condense --discretisation-error</code> estimates it."},
         {"Smallest dihedral angle", significant(mesh.min_dihedral_deg) + "°", "> 0°",
          "The sharpest edge of any tetrahedron. Very flat tetrahedra make a body too stiff.",
          mesh.min_dihedral_deg > 0},

@@ -38,6 +38,14 @@ std::string name_of(ElementOrder order) {
     return order == ElementOrder::linear ? "linear" : "quadratic";
 }
 
+Representation parse_representation(const std::string& text) {
+    if (text == "auto") return Representation::automatic;
+    if (text == "dense") return Representation::dense;
+    if (text == "hierarchical") return Representation::hierarchical;
+    throw UsageError(
+        {"--representation " + text, "is no way to store a compliance", "auto, dense or hierarchical", ""});
+}
+
 std::vector<RegionMaterial> parse_materials(const std::vector<std::string>& texts, const TetMesh& mesh,
                                             const std::string& mesh_file) {
     std::vector<RegionMaterial> materials;

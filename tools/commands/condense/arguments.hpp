@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "formats/model/body.hpp"
+#include "tools/fem/condensation_plan.hpp"
 #include "tools/fem/node_rules.hpp"
 
 namespace palpate::condensation {
@@ -13,6 +14,9 @@ namespace palpate::condensation {
 /// "linear" or "quadratic".
 ElementOrder parse_element_order(const std::string& text);
 std::string name_of(ElementOrder order);
+
+/// "auto", "dense" or "hierarchical".
+Representation parse_representation(const std::string& text);
 
 /// "liver:6.3,0.45", one for each region: its name, Young's modulus in kPa, Poisson's ratio. Returned
 /// ascending by region. Throws InvalidInput naming `mesh_file` and the nearest names for a region that the

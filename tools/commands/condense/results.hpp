@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <nlohmann/json.hpp>
+
+#include "formats/model/body.hpp"
+#include "tools/fem/condensation_plan.hpp"
+
+namespace palpate::condensation {
+
+/// What a certificate says, by the names of its figures.
+nlohmann::ordered_json to_json(const Certificate& certificate);
+
+/// What was chosen, why, and every method's forecast.
+nlohmann::ordered_json to_json(const CondensationPlan& plan);
+
+/// "dense", or "hierarchical to 0.001".
+std::string representation_of(const SurfaceCompliance& compliance);
+
+}  // namespace palpate::condensation
