@@ -21,9 +21,9 @@ using ComplianceRows = std::function<Eigen::MatrixXd(std::span<const std::int32_
 /// threads. Cost: the panels, and about 4 m r flops for each of their rows, r being a typical rank.
 /// Source: Grasedyck & Hackbusch, "Construction and arithmetics of H-matrices", Computing 70 (2003).
 ///
-/// Debian's hmat-oss (1.8.1) does not serve: it asks for a matrix block by block, so that a solve, which gives a
-/// whole row, would be made anew for every block of that row; it is GPL, which the runtime that queries C is
-/// not; and its matrices cannot be read in place from a file.
+/// Debian's hmat-oss (1.8.1) does not serve: it asks for a matrix block by block, so that a solve, which
+/// gives a whole row, would be made anew for every block of that row; it is GPL, which the runtime that
+/// queries C is not; and its matrices cannot be read in place from a file.
 HierarchicalCompliance compress(std::span<const Eigen::Vector3d> points, const ComplianceRows& rows,
                                 double accuracy, int threads, const ProgressCallback& progress);
 
