@@ -210,18 +210,18 @@ class InspectAndVerify(AssetCommand):
 
     def test_verify_says_which_check_fails_and_exits_with_4(self):
         checked = run(BIN / "palpate-verify", self.sample())  # its compliance is no stiffness's inverse
-        self.assertFails(checked, QUALITY, "1 of 9 checks failed, first 'wall: residual of 16 re-solved columns'")
+        self.assertFails(checked, QUALITY, "3 of 12 checks failed, first 'wall: residual of 16 re-solved columns'")
         self.assertRegex(checked.stdout, r"residual of 16 re-solved columns +failed")
         self.assertRegex(checked.stdout, r"compliance is symmetric.* ok")
 
     def test_verify_names_the_dataset_that_is_damaged(self):
         path = self.sample()
         with h5py.File(path) as file:
-            offset = file["palpate/bodies/deformable/0/compliance"].id.get_offset()
+            offset = file["palpate/bodies/deformable/0/compliance/dense"].id.get_offset()
         data = bytearray(path.read_bytes())
         data[offset + 4] ^= 1
         path.write_bytes(data)
-        self.assertFails(run(BIN / "palpate-verify", path), INVALID, "compliance: does not match its SHA-256")
+        self.assertFails(run(BIN / "palpate-verify", path), INVALID, "compliance/dense: does not match its SHA-256")
 
     def test_both_refuse_a_truncated_asset(self):
         path = self.sample()

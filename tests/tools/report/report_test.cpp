@@ -236,7 +236,7 @@ TEST_F(ReportTest, a_failed_certificate_is_not_called_verified) {
     patient_case.deformable_bodies.front().certificate.residual = 1e-3;
     const std::string page = html_report({.patient_case = patient_case});
     EXPECT_TRUE(contains(page, "✗ Not verified"));
-    EXPECT_TRUE(contains(page, "Residual is 0.001, must be ≤ 1e-6"));
+    EXPECT_TRUE(contains(page, "Residual is 0.001, must be ≤ 1e-06"));
     EXPECT_FALSE(contains(page, "✓ Verified"));
 }
 
