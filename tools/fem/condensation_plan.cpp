@@ -99,21 +99,22 @@ CondensationPlan plan_condensation(const DeformableBody& body, const Condensatio
         }
         return best;
     };
+    const CondensationForecast& leanest_exact =
+        std::ranges::min(plan.considered[0], plan.considered[1], {}, &CondensationForecast::memory_bytes);
     const CondensationForecast* best = nullptr;
     if (options.representation != Representation::hierarchical) best = chosen(Representation::dense);
     plan.reason = "exact, and the faster way to it";
     if (!best && options.representation != Representation::dense) {
         best = chosen(Representation::hierarchical);
-        plan.reason =
-            options.representation == Representation::hierarchical
-                ? "asked for"
-                : fmt::format("an exact one takes {} of {} memory and {} of {} size",
-                              mebibytes(plan.considered[1].memory_bytes), mebibytes(memory),
-                              mebibytes(plan.considered[1].size_bytes), mebibytes(options.size_bytes));
+        plan.reason = options.representation == Representation::hierarchical
+                          ? "asked for"
+                          : fmt::format("an exact one takes {} of {} memory and {} of {} size",
+                                        mebibytes(leanest_exact.memory_bytes), mebibytes(memory),
+                                        mebibytes(leanest_exact.size_bytes), mebibytes(options.size_bytes));
     }
     if (!best) {
         const CondensationForecast& least =
-            plan.considered[options.representation == Representation::dense ? 1 : 2];
+            options.representation == Representation::dense ? leanest_exact : plan.considered[2];
         throw InvalidInput(
             {body.name,
              fmt::format("its compliance of {} contact nodes would take {} of memory and {} of size, {}",

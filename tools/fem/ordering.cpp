@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <metis.h>
 #include <numeric>
+#include <utility>
 
 #include "formats/model/errors.hpp"
 
@@ -30,7 +31,7 @@ MetisGraph without_loops(const NodeGraph& graph) {
     return result;
 }
 
-std::vector<idx_t> nested_dissection(MetisGraph graph) {
+std::vector<idx_t> nested_dissection(MetisGraph& graph) {
     auto count = static_cast<idx_t>(graph.offsets.size() - 1);
     std::vector<idx_t> permutation(static_cast<std::size_t>(count)),
         position(static_cast<std::size_t>(count));
@@ -47,6 +48,50 @@ std::vector<idx_t> nested_dissection(MetisGraph graph) {
     return position;
 }
 
+// The parent of each position in the elimination tree (Liu 1986), -1 for a root; `node_at` and `position` are
+// the order and its inverse.
+std::vector<idx_t> elimination_tree(const MetisGraph& graph, const std::vector<idx_t>& position,
+                                    const std::vector<idx_t>& node_at) {
+    std::vector<idx_t> parent(position.size(), -1), ancestor(position.size(), -1);
+    for (std::size_t p = 0; p < position.size(); ++p) {
+        const auto node = static_cast<std::size_t>(node_at[p]);
+        for (auto i = static_cast<std::size_t>(graph.offsets[node]);
+             i < static_cast<std::size_t>(graph.offsets[node + 1]); ++i) {
+            idx_t below = position[static_cast<std::size_t>(graph.neighbours[i])];
+            while (below >= 0 && below < static_cast<idx_t>(p)) {
+                const idx_t next =
+                    std::exchange(ancestor[static_cast<std::size_t>(below)], static_cast<idx_t>(p));
+                if (next < 0) parent[static_cast<std::size_t>(below)] = static_cast<idx_t>(p);
+                below = next;
+            }
+        }
+    }
+    return parent;
+}
+
+// Renumbers so that what is eliminated together lies together: each subtree of the elimination tree has
+// consecutive positions. The factor stays the same, its supernodes grow.
+std::vector<idx_t> postordered(const MetisGraph& graph, std::vector<idx_t> position) {
+    std::vector<idx_t> node_at(position.size());
+    for (std::size_t node = 0; node < position.size(); ++node)
+        node_at[static_cast<std::size_t>(position[node])] = static_cast<idx_t>(node);
+    const std::vector<idx_t> parent = elimination_tree(graph, position, node_at);
+    // Positions are given out from the last on: a parent before its children, so that it ends up after them.
+    std::vector<std::vector<idx_t>> children(position.size());
+    std::vector<idx_t> waiting;
+    for (std::size_t p = 0; p < parent.size(); ++p)
+        (parent[p] < 0 ? waiting : children[static_cast<std::size_t>(parent[p])])
+            .push_back(static_cast<idx_t>(p));
+    auto next = static_cast<idx_t>(position.size());
+    while (!waiting.empty()) {
+        const auto p = static_cast<std::size_t>(waiting.back());
+        waiting.pop_back();
+        position[static_cast<std::size_t>(node_at[p])] = --next;
+        waiting.insert(waiting.end(), children[p].begin(), children[p].end());
+    }
+    return position;
+}
+
 }  // namespace
 
 std::vector<std::int32_t> surface_last_ordering(const Discretisation& discretisation,
@@ -58,7 +103,8 @@ std::vector<std::int32_t> surface_last_ordering(const Discretisation& discretisa
     for (std::int32_t& n : number)
         if (n >= 0) n = interior++;
 
-    const auto position = nested_dissection(without_loops(node_graph(discretisation, number)));
+    MetisGraph graph = without_loops(node_graph(discretisation, number));
+    const auto position = postordered(graph, nested_dissection(graph));
     for (std::int32_t& n : number)
         if (n >= 0) n = position[static_cast<std::size_t>(n)];
     for (std::size_t k = 0; k < contact_nodes.size(); ++k)
