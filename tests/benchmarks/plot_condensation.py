@@ -143,8 +143,8 @@ def draw_axes(panel, title, sentence, ticks, text_of):
     return parts
 
 
-def draw_series(panel, points, measured, colour, label, text_of):
-    """Measured points with a line, its extrapolation dashed, the name and the last measured value at the end."""
+def draw_series(panel, points, measured, colour, label, text_of, lift):
+    """Measured points with a line, its extrapolation dashed, the name and the last value at the end, lifted."""
     parts = [f'<path d="{panel.path(points[:measured])}" fill="none" stroke="{colour}" stroke-width="2.5" '
              'stroke-linejoin="round"/>']
     if measured < len(points):
@@ -153,7 +153,7 @@ def draw_series(panel, points, measured, colour, label, text_of):
     parts += [f'<circle cx="{panel.x(nodes):.1f}" cy="{panel.y(value):.1f}" r="3.5" fill="{colour}"/>'
               for nodes, value in points[:measured]]
     nodes, value = points[-1]
-    x, y = panel.x(nodes) + 10, panel.y(value) + 4
+    x, y = panel.x(nodes) + 10, panel.y(value) + 4 - lift
     parts.append(text(x, y, label, 13, colour, weight="600"))
     parts.append(text(x, y + 15, text_of(value) if measured == len(points) else f"≈ {text_of(value)}", 12, colour))
     return parts
@@ -182,6 +182,16 @@ def verdict(curves, less, text_of):
     return None, f"{'hierarchical' if wins == {True} else 'dense'} is {less} at every size measured"
 
 
+def lifts(panel, curves):
+    """How far each curve's name must go up or down so that names at nearly the same height keep apart."""
+    height = 34
+    ends = sorted(curves, key=lambda method: panel.y(curves[method][-1][1]))
+    if len(ends) < 2:
+        return dict.fromkeys(ends, 0)
+    gap = panel.y(curves[ends[1]][-1][1]) - panel.y(curves[ends[0]][-1][1])
+    return {ends[0]: max(0, height - gap) / 2, ends[1]: -max(0, height - gap) / 2}
+
+
 def draw_quantity(left, series, key, title, less, power, ticks, text_of):
     curves = {method: [(nodes, line[key]) for nodes, line in points] for method, points in series.items()}
     measured = {method: len(points) for method, points in curves.items()}
@@ -194,9 +204,10 @@ def draw_quantity(left, series, key, title, less, power, ticks, text_of):
     found, sentence = verdict(curves, less, text_of)
     print(f"{title}: {sentence or 'one form only, nothing to compare'}")
     parts = draw_axes(panel, title, sentence, ticks, text_of)
+    lift = lifts(panel, curves)
     for method, label, colour in SERIES:
         if method in curves:
-            parts += draw_series(panel, curves[method], measured[method], colour, label, text_of)
+            parts += draw_series(panel, curves[method], measured[method], colour, label, text_of, lift[method])
     if found:
         parts += draw_crossover(panel, *found, text_of)
     return parts
