@@ -83,6 +83,13 @@ struct SurfaceSolver {
     }
 };
 
+SurfaceSolver surface_solver(const DeformableBody& body, const ProgressCallback& progress) {
+    progress("ordering and assembling", 0.0);
+    const FreeSystem system = assemble_free_system(body, NodeOrder::nested_dissection);
+    progress("factorising", 0.02);
+    return {body, system};
+}
+
 std::vector<Eigen::Vector3d> contact_points(const DeformableBody& body) {
     std::vector<Eigen::Vector3d> points;
     for (const std::int32_t node : body.contact_nodes)
@@ -122,12 +129,7 @@ ExactCompliance condense_by_trailing_block(const DeformableBody& body, const Pro
 ExactCompliance condense_by_solves(const DeformableBody& body, int threads,
                                    const ProgressCallback& progress) {
     constexpr std::size_t panel_nodes = 64;
-    progress("ordering and assembling", 0.0);
-    const SurfaceSolver solver = [&] {
-        const FreeSystem system = assemble_free_system(body, NodeOrder::nested_dissection);
-        progress("factorising", 0.05);
-        return SurfaceSolver(body, system);
-    }();
+    const SurfaceSolver solver = surface_solver(body, progress);
     const auto size = static_cast<Index>(solver.contact_rows.size());
     const auto lower = std::make_shared<Eigen::MatrixXd>(size, size);
     const std::size_t nodes = body.contact_nodes.size(), panels = (nodes + panel_nodes - 1) / panel_nodes;
@@ -162,12 +164,7 @@ HierarchicalCompliance condense_hierarchically(const DeformableBody& body, doubl
     constexpr double share = 0.8, second_share = 0.7;
     constexpr std::int32_t trial_loads = 128;
     constexpr std::uint64_t trial_seed = 3;
-    progress("ordering and assembling", 0.0);
-    const SurfaceSolver solver = [&] {
-        const FreeSystem system = assemble_free_system(body, NodeOrder::nested_dissection);
-        progress("factorising", 0.02);
-        return SurfaceSolver(body, system);
-    }();
+    const SurfaceSolver solver = surface_solver(body, progress);
     const ComplianceRows rows = [&](std::span<const std::int32_t> nodes) { return solver.rows(nodes); };
     const std::vector<ContactLoad> loads = random_contact_loads(body, trial_loads, trial_seed);
     const Eigen::MatrixXd exact = solver.displacements(loads);
