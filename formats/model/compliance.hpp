@@ -64,7 +64,7 @@ using SurfaceCompliance = std::variant<DenseCompliance, HierarchicalCompliance>;
 /// What was measured about a compliance when it was made.
 struct Certificate {
     double residual = 0;             ///< worst max-norm of (stored C column - re-solved column) / max|column|
-    double residual_double = 0;      ///< the same before rounding or compression
+    double residual_double = 0;      ///< the same before rounding; -1 where C was never there in double
     double asymmetry = 0;            ///< max |C - Cᵀ| / max |C| of the stored matrix; 0 by construction
     double smallest_eigenvalue = 0;  ///< of C, estimated, mm/N
     double largest_eigenvalue = 0;   ///< of C, estimated, mm/N

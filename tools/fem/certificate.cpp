@@ -217,8 +217,7 @@ Certificate certify(const DeformableBody& body, const SampledColumns& columns) {
     const Judge judge(body);
     const MatrixXd solved =
         certify_stored(body, judge, columns.dofs, certificate_loads, certificate_seed, certificate);
-    certificate.residual_double =
-        columns.values.size() > 0 ? worst_residual(columns.values, solved) : certificate.residual;
+    certificate.residual_double = columns.values.size() > 0 ? worst_residual(columns.values, solved) : -1;
     certificate.largest_eigenvalue =
         largest_eigenvalue(dof_count(body), [&](VectorXd& v) { v = judge.displacements(v, false); });
     const InteriorElimination interior(body, judge.system());

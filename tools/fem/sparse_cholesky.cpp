@@ -22,7 +22,7 @@ struct SparseCholesky::Impl {
         if (elimination == Elimination::fill_reducing) return;
         common.nmethods = 1;
         common.method[0].ordering = CHOLMOD_NATURAL;
-        common.postorder = elimination == Elimination::postordered;
+        common.postorder = false;
     }
     ~Impl() {
         cholmod_l_free_factor(&factor, &common);

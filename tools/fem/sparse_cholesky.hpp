@@ -12,7 +12,6 @@ namespace palpate {
 /// Who chooses the elimination order of a factorisation.
 enum class Elimination {
     as_given,       ///< rows as they stand: the trailing block stays trailing
-    postordered,    ///< rows as they stand but for a postordering of the elimination tree
     fill_reducing,  ///< CHOLMOD's choice (AMD, METIS)
 };
 

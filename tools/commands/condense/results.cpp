@@ -9,7 +9,8 @@ using Json = nlohmann::ordered_json;
 
 Json to_json(const Certificate& certificate) {
     return {{"residual", certificate.residual},
-            {"residual_double", certificate.residual_double},
+            {"residual_double",
+             certificate.residual_double < 0 ? Json(nullptr) : Json(certificate.residual_double)},
             {"asymmetry", certificate.asymmetry},
             {"reciprocity", certificate.reciprocity},
             {"smallest_eigenvalue_mm_per_n", certificate.smallest_eigenvalue},
