@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <string_view>
+
+namespace palpate {
+
+/// How contact with the surface is found and kept.
+enum class ContactScheme {
+    single,      ///< published: inside or outside at 30 Hz decides
+    twice,       ///< published: the same, and a second test of the last position between two detections
+    continuous,  ///< ours: every tick sweeps the tool from the last to the present position
+};
+
+inline constexpr std::array<std::string_view, 3> contact_scheme_names{"single", "twice", "continuous"};
+
+}  // namespace palpate

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cstdio>
+
+#include "tests/benchmarks/experiments/experiments.hpp"
+
+namespace palpate::bench {
+namespace {
+
+const std::vector<Experiment> experiments{
+    // name, what it finds out, function
+};
+
+const Experiment& find_experiment(const std::string& name) {
+    const auto found = std::ranges::find(experiments, name, &Experiment::name);
+    if (found != experiments.end()) return *found;
+    std::string names;
+    for (const Experiment& experiment : experiments)
+        names += (names.empty() ? "" : ", ") + std::string(experiment.name);
+    throw UsageError({"experiment", name, names, ""});
+}
+
+nlohmann::ordered_json run(const std::string& name, const Options& options, cli::Session& session) {
+    const Experiment& experiment = find_experiment(name);
+    std::filesystem::create_directories(options.output);
+    const Findings findings = experiment.run(options, session);
+    cli::write_text_file(options.output / (name + ".md"), findings.table, session.force);
+    for (const auto& [picture, svg] : findings.pictures)
+        cli::write_text_file(options.output / (picture + ".svg"), svg, session.force);
+    if (!session.quiet) std::fputs(findings.table.c_str(), stderr);
+    return findings.result;
+}
+
+std::string notes() {
+    std::string text = "Experiments:";
+    for (const Experiment& experiment : experiments)
+        text += fmt::format("\n  {:<10} {}", experiment.name, experiment.summary);
+    return text;
+}
+
+}  // namespace
+}  // namespace palpate::bench
+
+int main(int argc, char** argv) {
+    using namespace palpate;
+    cli::Command command(
+        {.name = "bench",
+         .summary = "Runs an experiment on contact and force: a table, pictures and JSON",
+         .examples = {"palpate bench puncture --surface skull.vtp -o results",
+                      "palpate bench stability --case nasopharynx.vtkhdf --case liver.vtkhdf "
+                      "--json stability.json"},
+         .notes = bench::notes()});
+    std::string name;
+    bench::Options options;
+    command.option("experiment", name, "which one")->required();
+    command.input("--surface", options.surface, "triangles of a bone (.vtp), LPS mm");
+    command.app().add_option("--case", options.cases, "assets (.vtkhdf)")->check(CLI::ExistingFile);
+    command.input("--path", options.path, "hand path: rows 'x y z' (mm), one per millisecond");
+    command.output("-o,--output", options.output, "folder for the table (.md) and the pictures (.svg)");
+    command.option("--seed", options.seed, "of everything random");
+    command.option("--seconds", options.seconds, "how long; 0 is the experiment's own", "s");
+    return command.run(argc, argv, [&](cli::Session& session) { return bench::run(name, options, session); });
+}
