@@ -18,6 +18,7 @@ struct DeviceState {
 struct DeviceLimits {
     double max_force = 0;      ///< N
     double max_stiffness = 0;  ///< N/mm
+    double damping = 0;        ///< N s/mm, the device's own: sampled at period T it bears 2 damping / T
 };
 
 /// A haptic device as the servo loop sees it. read() and write() are called by the haptic thread alone, never
