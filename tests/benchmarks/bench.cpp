@@ -3,12 +3,15 @@
 #include <cstdio>
 
 #include "tests/benchmarks/experiments/experiments.hpp"
+#include "tests/benchmarks/experiments/stability.hpp"
 
 namespace palpate::bench {
 namespace {
 
 const std::vector<Experiment> experiments{
     // name, what it finds out, function
+    {"stability", "jumps, pulls, roughness and energy of force by scheme, and 10 minutes at random",
+     stability},
 };
 
 const Experiment& find_experiment(const std::string& name) {

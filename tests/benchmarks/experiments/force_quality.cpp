@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/benchmarks/experiments/force_quality.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace palpate::bench {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double rounding = 1e-9;  // N mm, of sums over a run
+
+Vector3d vector_of(const std::array<double, 3>& a) {
+    return {a[0], a[1], a[2]};
+}
+
+}  // namespace
+
+RestNormals::RestNormals(const Case& patient_case) {
+    const auto add = [&](const TriangleMesh& mesh) {
+        Surface& surface = surfaces_.emplace_back();
+        surface.triangles = mesh.triangles;
+        surface.triangles_at.resize(mesh.vertices.size());
+        for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+            std::array<Vector3d, 3> p;
+            for (std::size_t corner = 0; corner < 3; ++corner) {
+                const auto v = static_cast<std::size_t>(mesh.triangles[t][corner]);
+                p[corner] = mesh.vertices[v];
+                surface.triangles_at[v].push_back(static_cast<std::int32_t>(t));
+            }
+            surface.normals.push_back((p[1] - p[0]).cross(p[2] - p[0]).normalized());
+        }
+    };
+    for (const RigidBody& body : patient_case.rigid_bodies) add(body.surface);
+    for (const DeformableBody& body : patient_case.deformable_bodies) add(body.boundary.surface);
+}
+
+double RestNormals::pull(const Contact& contact) const {
+    const Surface& surface = surfaces_[static_cast<std::size_t>(contact.body)];
+    std::vector<std::int32_t> holding;  // vertices
+    for (std::size_t i = 0; i < 3; ++i)
+        if (contact.vertices[i] >= 0 && contact.weights[i] > 1e-6F) holding.push_back(contact.vertices[i]);
+    const Vector3d force = static_cast<double>(contact.force) * normal_of(contact);
+    double least = std::numeric_limits<double>::max();
+    for (const std::int32_t t : surface.triangles_at[static_cast<std::size_t>(holding.front())]) {
+        const Triangle& triangle = surface.triangles[static_cast<std::size_t>(t)];
+        const bool holds = std::ranges::all_of(
+            holding, [&](std::int32_t v) { return std::ranges::find(triangle, v) != triangle.end(); });
+        if (holds) least = std::min(least, -force.dot(surface.normals[static_cast<std::size_t>(t)]));
+    }
+    return std::max(0.0, least);
+}
+
+void ForceQuality::Steps::add(double step) {
+    jumps += step > jump_limit * (1 + 1e-9);  // the limiter's own steps are up to the limit
+    largest = std::max(largest, step);
+    squared_sum += step * step;
+}
+
+double ForceQuality::roughness(const Steps& steps) const {
+    constexpr double rate_hz = 1000;
+    return steps_ == 0 ? 0 : rate_hz * std::sqrt(steps.squared_sum / static_cast<double>(steps_));
+}
+
+void ForceQuality::begin_run() {
+    first_ = true;
+    in_episode_ = false;
+}
+
+void ForceQuality::add(const TickResult& result, const Vector3d& tip) {
+    Vector3d sum = Vector3d::Zero();
+    double pull = 0;
+    for (const Contact& contact : result.active_contacts()) {
+        sum += force_on_tool(contact);
+        pull = std::max(pull, normals_.pull(contact));
+    }
+    ++ticks;
+    touching_ticks += result.contact_count > 0;
+    pulling_ticks += pull > pull_limit;
+    strongest_pull = std::max(strongest_pull, pull);
+
+    const Vector3d force = vector_of(result.force);
+    if (!first_) {
+        ++steps_;
+        wanted.add((sum - last_wanted_).norm());
+        rendered.add((force - last_force_).norm());
+        count_energy(force, tip);
+    }
+    first_ = false;
+    last_wanted_ = sum;
+    last_force_ = force;
+    last_tip_ = tip;
+}
+
+// The last force was held while the tip went to `tip`.
+void ForceQuality::count_energy(const Vector3d& force, const Vector3d& tip) {
+    const bool felt = !last_force_.isZero(0) || !force.isZero(0);
+    if (!felt) {
+        in_episode_ = false;
+        return;
+    }
+    if (!in_episode_) {
+        in_episode_ = true;
+        over_ = false;
+        episode_given_ = episode_bound_ = 0;
+        ++episodes;
+    }
+    const Vector3d way = tip - last_tip_;
+    const double length = way.norm(), work = last_force_.dot(way);
+    const double allowed = passivity_.stiffness * length * (length / 2 + std::sqrt(3.0) * passivity_.grain);
+    given += work;
+    bound += allowed;
+    episode_given_ += work;
+    episode_bound_ += allowed;
+    most_given = std::max(most_given, episode_given_);
+    const double over = episode_given_ - episode_bound_;
+    worst_over_bound = std::max(worst_over_bound, over);
+    if (over > rounding && !over_) ++over_bound;
+    over_ = over_ || over > rounding;
+}
+
+}  // namespace palpate::bench
