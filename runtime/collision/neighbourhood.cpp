@@ -115,7 +115,8 @@ std::optional<SweepContact> Neighbourhood::sweep_gathered(const CollisionSurface
         const Float4 near_by = load(&ball_[first]) + half;
         Mask4 candidates = (x * x + y * y + z * z <= near_by * near_by) & (near_by > 0);
         if (!any(candidates)) continue;
-        // A sphere that begins and ends on the same side of a plane, clear of it, does not touch what lies in it.
+        // A sphere that begins and ends on the same side of a plane, clear of it, does not touch what lies in
+        // it.
         const Float4 nx = load(&nx_[first]), ny = load(&ny_[first]), nz = load(&nz_[first]),
                      offset = load(&offset_[first]);
         const Float4 at_a = nx * a[0] + ny * a[1] + nz * a[2] - offset,
@@ -143,7 +144,8 @@ std::optional<SweepContact> Neighbourhood::sweep_sphere(const CollisionSurface& 
     if (!(length > 0)) return std::nullopt;
     double step = room(from, radius);
     if (step < length && step < 0.25 * margin_) {
-        // In contact the way leads far below the surface, and the sphere will not follow: one margin is enough.
+        // In contact the way leads far below the surface, and the sphere will not follow: one margin is
+        // enough.
         if (length > jump * most_margin || !gather(surface, from, radius, std::min(length, margin_)))
             return surface.sweep_sphere(from, to, radius);
         step = room(from, radius);

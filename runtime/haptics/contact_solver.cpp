@@ -36,8 +36,8 @@ double ContactSolver::solve(double coupling) noexcept {
             const auto column = static_cast<Index>(l);
             lcp_.matrix()(row, column) = lcp_.matrix()(column, row) = entry(rows_[k], rows_[l], coupling);
         }
-        lcp_.matrix()(row, row) = entry(rows_[k], rows_[k], coupling) +
-                                  static_cast<double>(rows_[k].contact->series_compliance);
+        lcp_.matrix()(row, row) =
+            entry(rows_[k], rows_[k], coupling) + static_cast<double>(rows_[k].contact->series_compliance);
         if (std::ranges::find(last, rows_[k].key) != last.end()) warm[warm_count++] = k;
     }
     const double residual = lcp_.solve(count_, std::span(warm).first(warm_count));

@@ -10,20 +10,20 @@
 
 namespace palpate {
 
-/// Gathers the contact points of all tools on all bodies and solves them as one problem, warm-started from the
-/// tick before: points of one body give way together, points of one tool share its virtual coupling. The
+/// Gathers the contact points of all tools on all bodies and solves them as one problem, warm-started from
+/// the tick before: points of one body give way together, points of one tool share its virtual coupling. The
 /// equations stand in deformable_contact.cpp. One thread; realtime-safe.
 class ContactSolver {
   public:
     void clear() noexcept { count_ = 0; }
     std::size_t size() const noexcept { return count_; }
 
-    /// Adds a point: `body` is null for one that is rigid, `foot` counts the points of one tool and body that are
-    /// no vertices. The contact must outlive solve(). At most max_contacts (unchecked).
+    /// Adds a point: `body` is null for one that is rigid, `foot` counts the points of one tool and body that
+    /// are no vertices. The contact must outlive solve(). At most max_contacts (unchecked).
     void add(Contact& contact, const DeformableContact* body, std::int32_t tool, std::int32_t foot) noexcept;
 
-    /// Solves with a virtual coupling of compliance `coupling` (mm/N) for each tool and writes the forces into
-    /// the contacts. Returns the worst violation of the contact conditions, mm.
+    /// Solves with a virtual coupling of compliance `coupling` (mm/N) for each tool and writes the forces
+    /// into the contacts. Returns the worst violation of the contact conditions, mm.
     double solve(double coupling) noexcept;
 
   private:

@@ -15,9 +15,9 @@
 //     rho < r from the axis through d along a, below p, and facing a. The tool meets such a vertex where its
 //     sphere passes: n_k = (sqrt(r² - rho²) a - t_k) / r, where t_k is the vertex' offset from the axis,
 //     |t_k| = rho.
-// n_k is the sphere's unit normal at the contact, from tissue to tool. Tissue may slide along the sphere, so only
-// the way along n_k is prescribed: the displaced point x_k + u_k must leave the half-space beyond the sphere's
-// tangent plane,
+// n_k is the sphere's unit normal at the contact, from tissue to tool. Tissue may slide along the sphere, so
+// only the way along n_k is prescribed: the displaced point x_k + u_k must leave the half-space beyond the
+// sphere's tangent plane,
 //     -n_k . (x_k + u_k - d) >= r   <=>   -n_k . u_k >= delta_k,    delta_k = r + n_k . (x_k - d).
 // For a foot in equilibrium delta = |p - d|. A vertex at the rim (rho -> r) has n_k square to the axis and
 // delta_k -> 0. (Prescribing the way along a for all points instead demands |p - d| - r at the rim at once,
@@ -28,14 +28,14 @@
 // The tool itself gives way on the virtual coupling of stiffness K: its centre is d + sum_l f_l n_l / K. So
 //     A f - delta >= 0,  f >= 0,  f . (A f - delta) = 0,
 //     A_kl = sum_ij w_ki w_lj n_k . C_ij n_l + n_k . n_l / K,
-// the first sum only where k and l lie on one body, the second only where they belong to one tool. A point of a
-// rigid body has the second alone. A is symmetric positive semi-definite. The device feels sum_k f_k n_k, never
-// stiffer than K.
+// the first sum only where k and l lie on one body, the second only where they belong to one tool. A point of
+// a rigid body has the second alone. A is symmetric positive semi-definite. The device feels sum_k f_k n_k,
+// never stiffer than K.
 //
-// A vertex enters at the rim, where tissue drawn towards the axis may press on the tool at once. In the outer part
-// of the footprint, where cos = n_k . a < 1/2 (rho > 0.87 r), it bears the less the nearer the rim: a compliance
-// C_kk (1 / (2 cos) - 1) in series, which is 0 at cos = 1/2 and grows without bound towards the rim. Forces so
-// change continuously while the tool slides over the mesh.
+// A vertex enters at the rim, where tissue drawn towards the axis may press on the tool at once. In the outer
+// part of the footprint, where cos = n_k . a < 1/2 (rho > 0.87 r), it bears the less the nearer the rim: a
+// compliance C_kk (1 / (2 cos) - 1) in series, which is 0 at cos = 1/2 and grows without bound towards the
+// rim. Forces so change continuously while the tool slides over the mesh.
 
 namespace palpate {
 namespace {

@@ -21,12 +21,12 @@ class DeformableContact {
     DeformableContact(const DeformableBody& body, std::int32_t body_index);
 
     /// Writes the points in the way of a spherical tool to `points` and returns how many; the shallowest are
-    /// left out if they are too many (contacts_cut). The god-object lies on the rest surface and was last moved
-    /// to `goal`; `device` is where the coupling pulls the tool, which may differ from the goal by how far other
-    /// contacts have moved the surface; all mm. Realtime-safe.
+    /// left out if they are too many (contacts_cut). The god-object lies on the rest surface and was last
+    /// moved to `goal`; `device` is where the coupling pulls the tool, which may differ from the goal by how
+    /// far other contacts have moved the surface; all mm. Realtime-safe.
     std::size_t collect(const CollisionSurface& surface, const GodObject& god_object,
-                        const Eigen::Vector3d& goal, const Eigen::Vector3d& device,
-                        std::span<Contact> points, std::uint32_t& status) const noexcept;
+                        const Eigen::Vector3d& goal, const Eigen::Vector3d& device, std::span<Contact> points,
+                        std::uint32_t& status) const noexcept;
 
     /// sum_ij w_ai w_bj n_a . C_ij n_b: how far point a gives way along -n_a for a unit force at b, mm/N.
     /// Realtime-safe.

@@ -11,9 +11,7 @@ namespace palpate {
 using Eigen::Vector3f;
 
 DeformableContact::DeformableContact(const DeformableBody& body, std::int32_t body_index)
-    : body_index_(body_index),
-      compliance_(body.compliance),
-      triangles_(body.boundary.surface.triangles) {
+    : body_index_(body_index), compliance_(body.compliance), triangles_(body.boundary.surface.triangles) {
     if (static_cast<std::size_t>(node_count(compliance_)) != body.contact_nodes.size())
         throw InvalidInput(
             {.culprit = body.name,

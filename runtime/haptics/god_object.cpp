@@ -43,8 +43,8 @@ bool GodObject::follow_what_is_clear(Surfaces surfaces) noexcept {
     for (std::size_t i = 0; i < obstacles_.size(); ++i) {
         Obstacle& obstacle = obstacles_[i];
         if (!obstacle.followed)
-            obstacle.followed = !surfaces[i]->closest_point(position_, radius_ + skin) &&
-                                surfaces[i]->is_outside(position_);
+            obstacle.followed =
+                !surfaces[i]->closest_point(position_, radius_ + skin) && surfaces[i]->is_outside(position_);
         any_followed_ = any_followed_ || obstacle.followed;
         all_followed_ = all_followed_ && obstacle.followed;
     }
@@ -116,9 +116,11 @@ void GodObject::touch(const Hit& hit, const Vector3d& way) noexcept {
     planes_[plane_count_++] = plane;
 }
 
-// The spring from the sphere to the device presses with its part along wanted - device and drags with its part
-// along wanted - position: where the drag is more than friction holds, the sphere follows until it is not.
-Vector3d GodObject::held_by(const Friction& friction, const Vector3d& device, const Vector3d& wanted) noexcept {
+// The spring from the sphere to the device presses with its part along wanted - device and drags with its
+// part along wanted - position: where the drag is more than friction holds, the sphere follows until it is
+// not.
+Vector3d GodObject::held_by(const Friction& friction, const Vector3d& device,
+                            const Vector3d& wanted) noexcept {
     const Vector3d way = wanted - position_;
     const double drag = way.norm(), press = (wanted - device).norm();
     if (drag <= (at_rest_ ? friction.at_rest : friction.sliding) * press) {
@@ -191,7 +193,8 @@ void GodObject::find_touches(Surfaces surfaces, const Vector3d& device) noexcept
         const TrianglePoint here = closest_point_on_triangle(position_, surfaces[surface]->corners(slot));
         const double distance = std::sqrt(here.squared_distance);
         if (distance > radius_ + 2 * settled) continue;
-        add({here.point, here.barycentric, distance, surfaces[surface]->mesh_triangle(slot), slot, here.feature},
+        add({here.point, here.barycentric, distance, surfaces[surface]->mesh_triangle(slot), slot,
+             here.feature},
             surface);
     }
     if (touch_count_ == 0) {

@@ -19,11 +19,12 @@ struct Friction {
     double sliding = 0;
 };
 
-/// A sphere that follows the device but never enters a surface (Zilles, Salisbury 1995, with the finite radius of
-/// Ruspini, Kolarov, Khatib 1997). Each move sweeps the sphere from where it was towards the device, stops it at
-/// the exact first touch, and lets it slide on in the half-spaces of the surfaces it touched, towards the point
-/// nearest to the device; friction ends the slide where the spring to the device would pull less than Coulomb's
-/// law holds. It keeps `skin` of clearance beyond its radius, so rounding never lets it through at any speed.
+/// A sphere that follows the device but never enters a surface (Zilles, Salisbury 1995, with the finite
+/// radius of Ruspini, Kolarov, Khatib 1997). Each move sweeps the sphere from where it was towards the
+/// device, stops it at the exact first touch, and lets it slide on in the half-spaces of the surfaces it
+/// touched, towards the point nearest to the device; friction ends the slide where the spring to the device
+/// would pull less than Coulomb's law holds. It keeps `skin` of clearance beyond its radius, so rounding
+/// never lets it through at any speed.
 class GodObject {
   public:
     static constexpr double skin = 1e-4;         ///< mm: above rounding (1e-12), below any edge (0.05)
@@ -40,18 +41,19 @@ class GodObject {
     /// For `surface_count` surfaces, which move() then gets in one order always. Allocates.
     GodObject(double radius, std::size_t surface_count) : radius_(radius), obstacles_(surface_count) {}
 
-    /// Lets go: the sphere follows the device freely, and a surface counts again once the sphere is clear of it.
+    /// Lets go: the sphere follows the device freely, and a surface counts again once the sphere is clear of
+    /// it.
     void reset() noexcept;
 
-    /// Moves towards `device` (mm). Returns false while there are surfaces that the tool has not been clear of
-    /// yet; these are not felt.
+    /// Moves towards `device` (mm). Returns false while there are surfaces that the tool has not been clear
+    /// of yet; these are not felt.
     bool move(std::span<const CollisionSurface* const> surfaces, const Eigen::Vector3d& device,
               const Friction& friction = {}) noexcept;
 
     const Eigen::Vector3d& position() const noexcept { return position_; }
     double radius() const noexcept { return radius_; }
-    /// Where the sphere rests on the surface and is held off the device, the nearest first; none if it reached
-    /// the device.
+    /// Where the sphere rests on the surface and is held off the device, the nearest first; none if it
+    /// reached the device.
     std::span<const Touch> touches() const noexcept { return {touches_.data(), touch_count_}; }
     /// What friction holds back: from the sphere to where it would be without friction, mm.
     const Eigen::Vector3d& held_back() const noexcept { return held_back_; }

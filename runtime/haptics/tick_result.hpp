@@ -35,7 +35,7 @@ struct Contact {
     std::array<float, 3> normal{0, 0, 0};              ///< n: unit, from tissue to tool
     float gap = 0;    ///< delta, mm: how far the point must give way along -n
     float force = 0;  ///< f >= 0, N: the tool pushes the tissue by -n f, the tissue the tool by n f
-    float series_compliance = 0;  ///< c, mm/N, in series with the body's own at this point
+    float series_compliance = 0;             ///< c, mm/N, in series with the body's own at this point
     std::array<float, 3> friction{0, 0, 0};  ///< on the tool, N; the opposite on the tissue
 };
 
