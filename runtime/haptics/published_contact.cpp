@@ -54,7 +54,6 @@ PublishedContact::PublishedContact(const Case& patient_case,
                                    ContactScheme scheme)
     : surfaces_(surfaces),
       twice_(scheme == ContactScheme::twice),
-      coupling_stiffness_(patient_case.haptics.coupling_stiffness),
       detections_(std::vector<Detection>(surfaces.size())),
       contacted_(surfaces.size()) {
     for (const RigidBody& body : patient_case.rigid_bodies) triangles_.push_back(body.surface.triangles);
@@ -118,24 +117,25 @@ void PublishedContact::decide(std::size_t body, const Detection& detection, bool
 }
 
 // The force of a body whose surface is `offset` (mm) from the device. Fills what the contact says of it.
-Vector3d PublishedContact::answer(std::size_t body, const Vector3d& offset, Contact& contact) const noexcept {
+Vector3d PublishedContact::answer(std::size_t body, const Vector3d& offset, double coupling_stiffness,
+                                  Contact& contact) const noexcept {
     const Foot& foot = contacted_[body].foot;
     const double depth = offset.dot(foot.normal);
     contact.body = static_cast<std::int32_t>(body);
     contact.triangle = foot.triangle;
     contact.vertices = triangles_[body][static_cast<std::size_t>(foot.triangle)];
     contact.gap = static_cast<float>(depth);
-    contact.series_compliance = static_cast<float>(1 / coupling_stiffness_);
+    contact.series_compliance = static_cast<float>(1 / coupling_stiffness);
     Eigen::Map<Vector3f>(contact.weights.data()) = foot.barycentric.cast<float>();
     const std::size_t rigid_count = surfaces_.size() - elastic_.size();
-    if (body < rigid_count) return coupling_stiffness_ * offset;
+    if (body < rigid_count) return coupling_stiffness * offset;
 
     const Elastic& elastic = elastic_[body - rigid_count];
     std::array<std::int32_t, 3> blocks{};
     std::ranges::transform(contact.vertices, blocks.begin(),
                            [&](std::int32_t v) { return elastic.blocks[static_cast<std::size_t>(v)]; });
     const auto free = std::ranges::count_if(blocks, [](std::int32_t block) { return block >= 0; });
-    if (free == 0) return coupling_stiffness_ * depth * foot.normal;
+    if (free == 0) return coupling_stiffness * depth * foot.normal;
     for (std::size_t vertex = 0; vertex < 3; ++vertex)
         contact.weights[vertex] = blocks[vertex] >= 0 ? 1 / static_cast<float>(free) : 0;
     contact.series_compliance = 0;
@@ -143,7 +143,8 @@ Vector3d PublishedContact::answer(std::size_t body, const Vector3d& offset, Cont
     return -(f_P + f_Q + f_R);
 }
 
-Vector3d PublishedContact::tick(const Vector3d& device, TickResult& result) noexcept {
+Vector3d PublishedContact::tick(const Vector3d& device, double coupling_stiffness,
+                                TickResult& result) noexcept {
     device_.write(std::array{device[0], device[1], device[2]});
     const bool fresh = detections_.refresh();
     Vector3d sum = Vector3d::Zero();
@@ -151,7 +152,8 @@ Vector3d PublishedContact::tick(const Vector3d& device, TickResult& result) noex
         decide(body, detections_.front()[body], fresh, device);
         if (!contacted_[body].render_force) continue;
         Contact contact;
-        const Vector3d force = answer(body, contacted_[body].foot.anchor - device, contact);
+        const Vector3d force =
+            answer(body, contacted_[body].foot.anchor - device, coupling_stiffness, contact);
         sum += force;
         const double magnitude = force.norm(), depth = contact.gap;
         if (depth > result.depth) {

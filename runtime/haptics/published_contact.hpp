@@ -66,10 +66,12 @@ class PublishedContact {
     void detect() noexcept;
 
     /// Servo's side, 1 kHz: takes the latest detection, decides, and returns the force on the device before
-    /// any limit (N) for the end-effector at `device` (p_P, mm, finite). Appends one contact per body felt to
-    /// `result`, with the force's direction as its normal, and a polygon's free vertices weighted alike;
-    /// raises its depth and body. One thread; wait-free and realtime-safe.
-    Eigen::Vector3d tick(const Eigen::Vector3d& device, TickResult& result) noexcept;
+    /// any limit (N) for the end-effector at `device` (p_P, mm, finite) behind a virtual coupling (N/mm).
+    /// Appends one contact per body felt to `result`, with the force's direction as its normal, and a
+    /// polygon's free vertices weighted alike; raises its depth and body. One thread; wait-free and
+    /// realtime-safe.
+    Eigen::Vector3d tick(const Eigen::Vector3d& device, double coupling_stiffness,
+                         TickResult& result) noexcept;
 
   private:
     // Where a body's surface was, or would be, touched.
@@ -97,11 +99,11 @@ class PublishedContact {
     Detection inside_or_outside(std::size_t body, const Eigen::Vector3d& p) const noexcept;
     void decide(std::size_t body, const Detection& detection, bool fresh,
                 const Eigen::Vector3d& device) noexcept;
-    Eigen::Vector3d answer(std::size_t body, const Eigen::Vector3d& offset, Contact& contact) const noexcept;
+    Eigen::Vector3d answer(std::size_t body, const Eigen::Vector3d& offset, double coupling_stiffness,
+                           Contact& contact) const noexcept;
 
     std::span<const std::unique_ptr<CollisionSurface>> surfaces_;
     bool twice_;
-    double coupling_stiffness_;                     // N/mm
     std::vector<std::vector<Triangle>> triangles_;  // of each body
     std::vector<Elastic> elastic_;                  // of the deformable bodies, the last ones
     TripleBuffer<Position> device_{};               // servo to collision loop

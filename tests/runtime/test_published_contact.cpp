@@ -37,7 +37,7 @@ class Published {
 
     Vector3d tick(const Vector3d& device) noexcept {
         result_ = TickResult{};
-        return contact_->tick(device, result_);
+        return contact_->tick(device, stiffness, result_);
     }
     // The collision loop comes by while the device is there.
     void detect_at(const Vector3d& device) noexcept {
