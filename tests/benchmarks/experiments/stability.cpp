@@ -73,7 +73,7 @@ void touch(HapticModel& model, HandPath path, double seconds, ForceQuality& qual
            const std::function<void(const TickResult&)>& sink) {
     model.reset();
     DynamicDevice device(find_device_model(device_name), HandImpedance{}, std::move(path));
-    ServoLoop loop(model, device, 1);
+    ServoLoop loop(model, device);
     quality.begin_run();
     loop.run_virtual(static_cast<std::int64_t>(1000 * seconds), [&](const TickResult& result) {
         quality.add(result, device.position());
@@ -82,7 +82,9 @@ void touch(HapticModel& model, HandPath path, double seconds, ForceQuality& qual
 }
 
 ForceQuality::Passivity passivity_of(const HapticModel& model) {
-    return {model.settings().coupling_stiffness, find_device_model(device_name).encoder_resolution};
+    const DeviceModel& device = find_device_model(device_name);
+    const DeviceLimits limits{device.max_force, device.max_stiffness, device.damping};
+    return {coupling_stiffness(model.settings(), limits), device.encoder_resolution};
 }
 
 // Presses twice, slides, leaves. The published method's end-effector is a point, so depth counts from the
