@@ -36,7 +36,9 @@ constexpr std::string_view method =
     "limiter. "
     "A jump is a step of force above 0.5 N per ms. A force pulls if a contact's, by more than 1e-6 N, is "
     "against "
-    "the outward normals of all triangles that hold the contact's point. Roughness is the RMS of dF/dt. Work "
+    "the outward normals of all triangles that hold the contact's point (on a rigid body with a sphere: of "
+    "all "
+    "that it touches). Roughness is the RMS of dF/dt. Work "
     "is "
     "that of the device on the tip, positive when the hand receives it; an episode lasts while force lasts. "
     "A "
@@ -64,7 +66,7 @@ constexpr std::string_view long_head =
 
 // One way of touching, measured.
 struct Run {
-    ForceQuality quality;
+    ForceFigures figures;
     Series curve;
 };
 
@@ -107,20 +109,22 @@ HandPath press_slide_leave(const TouchPoint& place, double tool_radius) {
 Run run_scheme(const Case& patient_case, const RestNormals& normals, ContactScheme scheme,
                const TouchTarget& target) {
     HapticModel model(patient_case, scheme);
-    Run run{ForceQuality(normals, passivity_of(model)), Series{}};
+    ForceQuality quality(normals, model, passivity_of(model));
+    Run run;
     run.curve.name = scheme_titles[static_cast<std::size_t>(scheme)];
     const HandPath path = press_slide_leave(target.place, model.settings().tool_radius);
     const Eigen::Vector3d outwards = target.place.normal;
-    touch(model, path, path.duration() + 0.5, run.quality, [&](const TickResult& result) {
+    touch(model, path, path.duration() + 0.5, quality, [&](const TickResult& result) {
         run.curve.x.push_back(result.time);
         run.curve.y.push_back(outwards.dot(Eigen::Map<const Eigen::Vector3d>(result.force.data())));
     });
+    run.figures = quality.figures();
     return run;
 }
 
-Json quality_json(const ForceQuality& q) {
-    const auto steps = [&](const ForceQuality::Steps& s) {
-        return Json{{"jumps", s.jumps}, {"largest_step_n", s.largest}, {"roughness_n_per_s", q.roughness(s)}};
+Json figures_json(const ForceFigures& q) {
+    const auto steps = [&](const ForceFigures::Steps& s) {
+        return Json{{"jumps", s.jumps}, {"largest_step_n", s.largest}, {"roughness_n_per_s", s.roughness()}};
     };
     return {{"ticks", q.ticks},
             {"touching_ticks", q.touching_ticks},
@@ -137,11 +141,11 @@ Json quality_json(const ForceQuality& q) {
               {"worst_over_bound_n_mm", q.worst_over_bound}}}};
 }
 
-std::string quality_row(const ForceQuality& q) {
+std::string figures_row(const ForceFigures& q) {
     return fmt::format(
-        "{} | {:.2f} | {:.0f} | {} | {:.2f} | {:.0f} | {} | {:.3f} | {:.2f} | {:.3f} | {} of {} | {:.3f} |\n",
-        q.wanted.jumps, q.wanted.largest, q.roughness(q.wanted), q.rendered.jumps, q.rendered.largest,
-        q.roughness(q.rendered), q.pulling_ticks, q.strongest_pull, q.given, q.most_given, q.over_bound,
+        "{} | {:.2f} | {:.0f} | {} | {:.2f} | {:.0f} | {} | {:.2g} | {:.2f} | {:.3f} | {} of {} | {:.3f} |\n",
+        q.wanted.jumps, q.wanted.largest, q.wanted.roughness(), q.rendered.jumps, q.rendered.largest,
+        q.rendered.roughness(), q.pulling_ticks, q.strongest_pull, q.given, q.most_given, q.over_bound,
         q.episodes, q.worst_over_bound);
 }
 
@@ -168,9 +172,9 @@ Comparison compare_schemes(const Case& patient_case, const RestNormals& normals)
             Run run = run_scheme(patient_case, normals, scheme, target);
             const std::string_view name = contact_scheme_names[static_cast<std::size_t>(scheme)];
             comparison.rows +=
-                fmt::format("| {} | {} | {} | ", patient_case.name, body, name) + quality_row(run.quality);
+                fmt::format("| {} | {} | {} | ", patient_case.name, body, name) + figures_row(run.figures);
             Json entry{{"case", patient_case.name}, {"body", body}, {"scheme", name}};
-            entry.update(quality_json(run.quality));
+            entry.update(figures_json(run.figures));
             comparison.json.push_back(std::move(entry));
             chart.series.push_back(std::move(run.curve));
         }
@@ -196,7 +200,7 @@ TouchTarget random_place(const Case& patient_case, const HapticModel& model, std
 }
 
 struct LongRun {
-    ForceQuality quality;
+    ForceFigures figures;
     std::int64_t visits = 0, visits_inside = 0, not_finite = 0, above_limit = 0;
     double strongest = 0, deepest = 0;
 };
@@ -204,7 +208,8 @@ struct LongRun {
 LongRun push_at_random(const Case& patient_case, const RestNormals& normals, double seconds,
                        std::uint64_t seed, cli::Session& session) {
     HapticModel model(patient_case, ContactScheme::continuous);
-    LongRun run{.quality = ForceQuality(normals, passivity_of(model))};
+    ForceQuality quality(normals, model, passivity_of(model));
+    LongRun run;
     std::mt19937_64 random(seed);
     const double radius = model.settings().tool_radius;
     const ScriptSettings settings{.tool_radius = radius,
@@ -217,7 +222,7 @@ LongRun push_at_random(const Case& patient_case, const RestNormals& normals, dou
         session.progress.step(patient_case.name + ": random", done / seconds);
         const TouchTarget target = random_place(patient_case, model, random);
         RunRecord record(model, nullptr);
-        touch(model, random_path(target.place, settings, random()), visit_s, run.quality,
+        touch(model, random_path(target.place, settings, random()), visit_s, quality,
               [&](const TickResult& result) {
                   const double force = Eigen::Map<const Eigen::Vector3d>(result.force.data()).norm();
                   run.not_finite += !std::isfinite(force);
@@ -228,6 +233,7 @@ LongRun push_at_random(const Case& patient_case, const RestNormals& normals, dou
         run.visits_inside += record.tool_depth() > allowed_depth;
         run.deepest = std::max(run.deepest, record.tool_depth());
     }
+    run.figures = quality.figures();
     return run;
 }
 
@@ -240,12 +246,12 @@ Json long_run_json(const Case& patient_case, const LongRun& run) {
               {"strongest_n", run.strongest},
               {"tool_depth_mm", run.deepest},
               {"visits_deeper_than_0.05_mm", run.visits_inside}};
-    json.update(quality_json(run.quality));
+    json.update(figures_json(run.figures));
     return json;
 }
 
 std::string long_run_row(const Case& patient_case, const LongRun& run) {
-    const ForceQuality& q = run.quality;
+    const ForceFigures& q = run.figures;
     return fmt::format(
         "| {} | {} x {:.0f} | {:.0f} | {} | {} | {} | {:.2g} | {:.4f} | {} | {:.1f} | {:.1f} | {:.3f} | {} "
         "of {} "

@@ -51,6 +51,14 @@ bool on_top_edge(const Vector3d& p) {
     return p.z() == 20 && p.x() == 20;
 }
 
+// What a measurement refers to.
+struct Setting {
+    Case patient_case = cube();
+    RestNormals normals{patient_case};
+    HapticModel model{patient_case};
+    ForceQuality quality(double grain = 0) const { return {normals, model, {stiffness, grain}}; }
+};
+
 TickResult with_force(double force) {
     TickResult result{};
     result.force = {force, 0, 0};
@@ -73,29 +81,43 @@ TEST(RestNormals, at_an_edge_a_force_pulls_only_if_it_is_against_both_faces) {
     EXPECT_NEAR(normals.pull(contact_at(c, 2, on_top_edge, Vector3d(-4, 0, -3) / 5, 1)), 0.6, float_error);
 }
 
-TEST(ForceQuality, counts_jumps_and_the_roughness_of_a_ramp) {
+TEST(RestNormals, of_several_walls_that_are_touched_one_that_pushes_is_enough) {
     const Case c = cube();
     const RestNormals normals(c);
-    ForceQuality quality(normals, {});
+    const Contact contact = contact_at(c, 3, on_top, Vector3d(4, 0, -3) / 5, 1);
+    const TriangleMesh& surface = c.deformable_bodies.front().boundary.surface;
+    const auto side = std::ranges::find_if(surface.triangles, [&](const Triangle& t) {
+        return std::ranges::all_of(
+            t, [&](std::int32_t v) { return surface.vertices[static_cast<std::size_t>(v)].x() == 20; });
+    });
+    ASSERT_NE(side, surface.triangles.end());
+    const std::array touched{static_cast<std::int32_t>(side - surface.triangles.begin())};
+    EXPECT_GT(normals.pull(contact), 0);
+    EXPECT_EQ(normals.pull(contact, touched), 0);
+}
+
+TEST(ForceQuality, counts_jumps_and_the_roughness_of_a_ramp) {
+    const Setting setting;
+    ForceQuality quality = setting.quality();
     quality.begin_run();
     for (int tick = 0; tick <= 100; ++tick) quality.add(with_force(0.01 * tick), Vector3d::Zero());
-    EXPECT_NEAR(quality.roughness(quality.rendered), 10, rounding * 1e3);
-    EXPECT_EQ(quality.rendered.jumps, 0);
+    EXPECT_NEAR(quality.figures().rendered.roughness(), 10, rounding * 1e3);
+    EXPECT_EQ(quality.figures().rendered.jumps, 0);
     quality.add(with_force(1.5), Vector3d::Zero());
-    EXPECT_EQ(quality.rendered.jumps, 0);
+    EXPECT_EQ(quality.figures().rendered.jumps, 0);
     quality.add(with_force(0.9), Vector3d::Zero());
-    EXPECT_EQ(quality.rendered.jumps, 1);
-    EXPECT_NEAR(quality.rendered.largest, 0.6, rounding);
+    EXPECT_EQ(quality.figures().rendered.jumps, 1);
+    EXPECT_NEAR(quality.figures().rendered.largest, 0.6, rounding);
     quality.begin_run();  // what follows has no tick before it
     quality.add(with_force(-3), Vector3d::Zero());
-    EXPECT_EQ(quality.rendered.jumps, 1);
+    EXPECT_EQ(quality.figures().rendered.jumps, 1);
 }
 
 // A wall at x = 0 that is felt where the reading, to a grain, is below it.
-ForceQuality pushed_at_random(const RestNormals& normals, double grain, double gain) {
+ForceFigures pushed_at_random(const Setting& setting, double grain, double gain) {
     std::mt19937_64 random(3);
     std::normal_distribution<double> step(0, 0.03);
-    ForceQuality quality(normals, {stiffness, grain});
+    ForceQuality quality = setting.quality(grain);
     quality.begin_run();
     double x = 0;
     for (int tick = 0; tick < 20000; ++tick) {
@@ -103,30 +125,27 @@ ForceQuality pushed_at_random(const RestNormals& normals, double grain, double g
         quality.add(with_force(read < 0 ? -gain * stiffness * read : 0), {x, 0, 0});
         x = std::clamp(x + step(random), -1.0, 1.0);
     }
-    return quality;
+    return quality.figures();
 }
 
 TEST(ForceQuality, a_sampled_spring_gives_no_more_than_its_bound) {
-    const Case c = cube();
-    const RestNormals normals(c);
+    const Setting setting;
     for (const double grain : {0.0, 0.01, 0.05}) {
-        const ForceQuality quality = pushed_at_random(normals, grain, 1);
-        EXPECT_GT(quality.episodes, 20);
-        EXPECT_EQ(quality.over_bound, 0) << grain;
-        EXPECT_GT(quality.most_given, 0);
+        const ForceFigures figures = pushed_at_random(setting, grain, 1);
+        EXPECT_GT(figures.episodes, 20);
+        EXPECT_EQ(figures.over_bound, 0) << grain;
+        EXPECT_GT(figures.most_given, 0);
     }
 }
 
 TEST(ForceQuality, a_force_that_adds_energy_exceeds_the_bound) {
-    const Case c = cube();
-    const RestNormals normals(c);
-    EXPECT_GT(pushed_at_random(normals, 0, 3).over_bound, 0);  // three times as stiff as is said
+    const Setting setting;
+    EXPECT_GT(pushed_at_random(setting, 0, 3).over_bound, 0);  // three times as stiff as is said
 }
 
 TEST(ForceQuality, a_closed_excursion_gives_half_k_dx_squared_a_tick) {
-    const Case c = cube();
-    const RestNormals normals(c);
-    ForceQuality quality(normals, {stiffness, 0});
+    const Setting setting;
+    ForceQuality quality = setting.quality();
     quality.begin_run();
     double sum = 0, last = 0;
     for (int tick = 0; tick <= 50; ++tick) {
@@ -135,9 +154,9 @@ TEST(ForceQuality, a_closed_excursion_gives_half_k_dx_squared_a_tick) {
         sum += stiffness * (x - last) * (x - last) / 2;
         last = x;
     }
-    EXPECT_NEAR(quality.given, sum, rounding);
-    EXPECT_NEAR(quality.bound, sum, rounding);
-    EXPECT_EQ(quality.episodes, 1);
+    EXPECT_NEAR(quality.figures().given, sum, rounding);
+    EXPECT_NEAR(quality.figures().bound, sum, rounding);
+    EXPECT_EQ(quality.figures().episodes, 1);
 }
 
 }  // namespace
