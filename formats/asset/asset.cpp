@@ -49,6 +49,10 @@ Case read_case(const Hdf5File& file) {
     visit_haptics(patient_case.haptics, [&](const char* name, double& value) {
         value = file.attribute<double>("/palpate/haptics", name);
     });
+    visit_later_haptics(patient_case.haptics, [&](const char* name, double& value) {
+        if (file.has_attribute("/palpate/haptics", name))
+            value = file.attribute<double>("/palpate/haptics", name);
+    });
     patient_case.provenance = file.texts("/palpate/provenance", {}).front();
     check_case(patient_case, file.name());
     return patient_case;
@@ -81,8 +85,11 @@ void write_asset(const std::filesystem::path& path, const Case& patient_case) {
         write_obb_tree(writer, deformable_path(i) + "/obb_tree", body.obb_tree, body.boundary.surface);
     }
     writer.group("/palpate/haptics");
-    visit_haptics(patient_case.haptics,
-                  [&](const char* name, double value) { writer.attribute("/palpate/haptics", name, value); });
+    const auto write = [&](const char* name, double value) {
+        writer.attribute("/palpate/haptics", name, value);
+    };
+    visit_haptics(patient_case.haptics, write);
+    visit_later_haptics(patient_case.haptics, write);
     writer.texts("/palpate/provenance", {patient_case.provenance}, {});
     write_vtk_grid(writer, patient_case);
     writer.finish("/palpate");

@@ -54,4 +54,12 @@ void visit_haptics(Haptics& haptics, Visit&& visit) {
     visit("max_force_rate", haptics.max_force_rate);
 }
 
+/// Settings that older files lack; they mean what HapticSettings{} says then.
+template <typename Haptics, typename Visit>
+void visit_later_haptics(Haptics& haptics, Visit&& visit) {
+    visit("friction_at_rest", haptics.friction_at_rest);
+    visit("friction_sliding", haptics.friction_sliding);
+    visit("shaft_length", haptics.shaft_length);
+}
+
 }  // namespace palpate

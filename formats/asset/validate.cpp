@@ -253,6 +253,14 @@ void check_haptics(const HapticSettings& haptics, const std::string& where) {
              {"max_force_rate", haptics.max_force_rate}})
         if (!(value > 0 && std::isfinite(value)))
             refuse(where, std::string(name) + " is " + std::to_string(value), "a positive number");
+    const auto refuse_unless = [&](bool holds, const char* name, double value, const char* expected) {
+        if (!(holds && std::isfinite(value)))
+            refuse(where, std::string(name) + " is " + std::to_string(value), expected);
+    };
+    refuse_unless(haptics.friction_at_rest >= 0, "friction_at_rest", haptics.friction_at_rest, "0 or more");
+    refuse_unless(haptics.friction_sliding >= 0 && haptics.friction_sliding <= haptics.friction_at_rest,
+                  "friction_sliding", haptics.friction_sliding, "0 to friction_at_rest");
+    refuse_unless(haptics.shaft_length >= 0, "shaft_length", haptics.shaft_length, "0 mm or more");
 }
 
 void check_surface(const TriangleMesh& surface, const std::string& where) {

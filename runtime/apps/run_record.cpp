@@ -53,17 +53,10 @@ double RunRecord::peak_force() const {
 
 double RunRecord::tool_depth_of(const TickResult& result) const {
     if (result.status & (starts_inside | invalid_position)) return 0;
-    // The tool is where the deepest touched rigid body holds it; others may overlap it there.
-    const Contact* holding = nullptr;
-    for (const Contact& contact : result.active_contacts())
-        if (static_cast<std::size_t>(contact.body) < model_.rigid_count() &&
-            (!holding || contact.gap > holding->gap))
-            holding = &contact;
     const double radius = model_.settings().tool_radius;
     const Vector3d tool = vector_of(result.tool_position);
     double depth = result.residual;
     for (std::size_t body = 0; body < model_.rigid_count(); ++body) {
-        if (holding && static_cast<std::size_t>(holding->body) != body) continue;
         const CollisionSurface& surface = model_.surface(body);
         if (const auto nearest = surface.closest_point(tool, radius))
             depth =

@@ -108,6 +108,7 @@ Json peak_json(const TickResult& peak, const Case& patient_case, const HapticMod
             {"device_mm", numbers(peak.device_position)},
             {"force_n", numbers(peak.force)},
             {"depth_mm", peak.depth},
+            {"coupling_stiffness_n_per_mm", model.coupling()},
             {"contacts", contacts}};
 }
 

@@ -16,7 +16,7 @@ namespace palpate {
 class Neighbourhood {
   public:
     /// Forgets what was gathered. Needed only when the surface becomes another one.
-    void clear() noexcept { reach_ = -1; }
+    void clear() noexcept { reach_ = -1, hint_ = -1; }
 
     /// The same as surface.sweep_sphere(from, to, radius): the same fraction and point; where several
     /// triangles are touched at once, the slot may be another. Gathers anew when the sweep leaves the
@@ -33,14 +33,16 @@ class Neighbourhood {
     double room(const Eigen::Vector3d& p, double radius) const noexcept;
     std::optional<SweepContact> sweep_gathered(const CollisionSurface& surface, const Eigen::Vector3d& from,
                                                const Eigen::Vector3d& way, double radius,
-                                               double limit) const noexcept;
+                                               double limit) noexcept;
 
     Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
-    double reach_ = -1;    // mm: whatever is within it of the centre is gathered; negative for nothing
-    double margin_ = 0.3;  // mm beyond the sphere; follows the density of the triangles
+    double reach_ = -1;       // mm: whatever is within it of the centre is gathered; negative for nothing
+    double margin_ = 0.3;     // mm beyond the sphere; follows the density of the triangles
+    std::int32_t hint_ = -1;  // slot of the last contact
     std::size_t count_ = 0;
-    // Relative to the centre, in lanes of four: balls around the triangles, and their planes n . x = offset.
-    alignas(16) std::array<float, capacity> x_, y_, z_, ball_, nx_, ny_, nz_, offset_;
+    // In lanes of four: the smallest circles around the triangles, centres relative to centre_, and unit
+    // normals.
+    alignas(16) std::array<float, capacity> x_, y_, z_, circle_, nx_, ny_, nz_;
     std::array<std::int32_t, capacity> slots_;
 };
 

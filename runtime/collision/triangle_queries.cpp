@@ -74,27 +74,53 @@ TrianglePoint closest_point_on_triangle(const Vector3d& p, const TriangleCorners
     return make_point(p, t, {va / sum, vb / sum, vc / sum}, Feature::face);
 }
 
-std::optional<TriangleContact> sweep_sphere_triangle(const Vector3d& from, const Vector3d& way, double radius,
-                                                     double limit, const TriangleCorners& t) noexcept {
+namespace {
+
+// The touch of a sphere that overlaps the triangle at the start: now, if `way` leads deeper.
+std::optional<TriangleContact> touch_at_start(const Vector3d& from, const Vector3d& way,
+                                              const Vector3d& face_normal,
+                                              const TriangleCorners& t) noexcept {
     const TrianglePoint start = closest_point_on_triangle(from, t);
     const double distance = std::sqrt(start.squared_distance);
-    if (distance - radius > limit * way.norm()) return std::nullopt;
+    if (distance > 0) {
+        const Vector3d normal = (from - start.point) / distance;
+        if (way.dot(normal) >= 0) return std::nullopt;
+        return TriangleContact{0, start.point, normal};
+    }
+    // The centre lies on the triangle: whichever way leads through it is deeper.
+    const double along = way.dot(face_normal);
+    if (along == 0) return std::nullopt;
+    return TriangleContact{0, start.point, along < 0 ? face_normal : Vector3d(-face_normal)};
+}
 
+}  // namespace
+
+std::optional<TriangleContact> sweep_sphere_triangle(const Vector3d& from, const Vector3d& way, double radius,
+                                                     double limit, const TriangleCorners& t) noexcept {
     const Vector3d cross = (t[1] - t[0]).cross(t[2] - t[0]);
     const double twice_area = cross.norm();
     Vector3d face_normal = twice_area > 0 ? Vector3d(cross / twice_area) : Vector3d::Zero();
     if (face_normal.dot(from - t[0]) < 0) face_normal = -face_normal;
-
-    if (distance <= radius) {
-        if (distance > 0) {
-            const Vector3d normal = (from - start.point) / distance;
-            if (way.dot(normal) >= 0) return std::nullopt;
-            return TriangleContact{0, start.point, normal};
+    const double height = face_normal.dot(from - t[0]);
+    const double descent = -face_normal.dot(way);
+    // A point within rounding of an edge is on the face: no gap between a face and its neighbour.
+    const double slack = -1e-12 * twice_area * twice_area;
+    const auto on_face = [&](const Vector3d& point) {
+        const auto inside = [&](std::size_t i, std::size_t j) {
+            return (t[j] - t[i]).cross(point - t[i]).dot(cross) >= slack;
+        };
+        return inside(0, 1) && inside(1, 2) && inside(2, 0);
+    };
+    if (height >= radius && twice_area > 0) {
+        // Clear of the triangle's plane, the sphere must get down to it first.
+        if (height > radius && (descent <= 0 || height - radius > limit * descent)) return std::nullopt;
+        if (descent > 0) {
+            const double fraction = (height - radius) / descent;
+            const Vector3d point = from + fraction * way - radius * face_normal;
+            if (on_face(point)) return TriangleContact{fraction, point, face_normal};
         }
-        // The centre lies on the triangle: whichever way leads through it is deeper.
-        const double along = way.dot(face_normal);
-        if (along == 0) return std::nullopt;
-        return TriangleContact{0, start.point, along < 0 ? face_normal : Vector3d(-face_normal)};
+    } else if (twice_area > 0 && on_face(from - height * face_normal)) {
+        return touch_at_start(from, way, face_normal, t);
     }
 
     TriangleContact best{limit, Vector3d::Zero(), Vector3d::Zero()};
@@ -106,37 +132,24 @@ std::optional<TriangleContact> sweep_sphere_triangle(const Vector3d& from, const
         best = {fraction, point, length > 0 ? Vector3d(offset / length) : face_normal};
         found = true;
     };
-
-    const double height = face_normal.dot(from - t[0]);
-    const double descent = -face_normal.dot(way);
-    if (descent > 0 && height >= radius) {
-        const double fraction = (height - radius) / descent;
-        const Vector3d point = from + fraction * way - radius * face_normal;
-        // A point within rounding of an edge is on the face: no gap between a face and its neighbour.
-        const double slack = -1e-12 * twice_area;
-        const auto inside = [&](std::size_t i, std::size_t j) {
-            return (t[j] - t[i]).cross(point - t[i]).dot(cross) >= slack * twice_area;
-        };
-        if (inside(0, 1) && inside(1, 2) && inside(2, 0)) {
-            consider(fraction, point);
-            if (found) best.normal = face_normal;
-            return found ? std::optional(best) : std::nullopt;
-        }
-    }
-
     const double speed_squared = way.squaredNorm();
     for (const auto& [i, j] : edges) {
         const Vector3d edge = t[j] - t[i], m = from - t[i];
         const double ee = edge.squaredNorm(), ew = edge.dot(way), em = edge.dot(m);
-        const auto corner = first_root(speed_squared, m.dot(way), m.squaredNorm() - radius * radius);
-        if (corner) consider(*corner, t[i]);
+        const double corner_c = m.squaredNorm() - radius * radius;
+        if (corner_c <= 0) return touch_at_start(from, way, face_normal, t);
+        if (const auto corner = first_root(speed_squared, m.dot(way), corner_c)) consider(*corner, t[i]);
         if (!(ee > 0)) continue;
         // The part of the motion and of the start across the edge.
-        const Vector3d across_way = way - edge * (ew / ee), across = m - edge * (em / ee);
-        const auto side = first_root(across_way.squaredNorm(), across.dot(across_way),
-                                     across.squaredNorm() - radius * radius);
+        const double along_way = ew / ee, along_start = em / ee;
+        const Vector3d across = m - edge * along_start;
+        const double side_c = across.squaredNorm() - radius * radius;
+        if (side_c <= 0 && along_start >= 0 && along_start <= 1)
+            return touch_at_start(from, way, face_normal, t);
+        const Vector3d across_way = way - edge * along_way;
+        const auto side = first_root(across_way.squaredNorm(), across.dot(across_way), side_c);
         if (!side) continue;
-        const double along = (em + *side * ew) / ee;
+        const double along = along_start + *side * along_way;
         if (along >= 0 && along <= 1) consider(*side, t[i] + along * edge);
     }
     return found ? std::optional(best) : std::nullopt;

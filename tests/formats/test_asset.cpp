@@ -134,6 +134,8 @@ TEST(Asset, reading_returns_what_was_written) {
     EXPECT_EQ(read.provenance, written.provenance);
     EXPECT_EQ(read.haptics.tool_radius, written.haptics.tool_radius);
     EXPECT_EQ(read.haptics.coupling_stiffness, written.haptics.coupling_stiffness);
+    EXPECT_EQ(read.haptics.friction_sliding, written.haptics.friction_sliding);
+    EXPECT_EQ(read.haptics.shaft_length, written.haptics.shaft_length);
     EXPECT_EQ(read.haptics.max_force, written.haptics.max_force);
     EXPECT_EQ(read.haptics.max_force_rate, written.haptics.max_force_rate);
     ASSERT_EQ(read.rigid_bodies.size(), 1U);

@@ -95,7 +95,10 @@ int main(int argc, char** argv) {
                      {{"tool_radius_mm", haptics.tool_radius},
                       {"coupling_stiffness_n_per_mm", haptics.coupling_stiffness},
                       {"max_force_n", haptics.max_force},
-                      {"max_force_rate_n_per_ms", haptics.max_force_rate}}},
+                      {"max_force_rate_n_per_ms", haptics.max_force_rate},
+                      {"friction_at_rest", haptics.friction_at_rest},
+                      {"friction_sliding", haptics.friction_sliding},
+                      {"shaft_length_mm", haptics.shaft_length}}},
                     {"provenance", provenance_of(patient_case.provenance)}};
     });
 }

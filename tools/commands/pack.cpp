@@ -111,6 +111,12 @@ int main(int argc, char** argv) {
     command.option("--max-force", haptics.max_force, "largest force on the hand", "N");
     command.option("--max-force-rate", haptics.max_force_rate, "largest change of force per tick of 1 ms",
                    "N");
+    command.option("--friction-at-rest", haptics.friction_at_rest,
+                   "force along the surface that a resting tool bears, as part of the one across it");
+    command.option("--friction-sliding", haptics.friction_sliding,
+                   "the same of a sliding tool; at most --friction-at-rest");
+    command.option("--shaft-length", haptics.shaft_length,
+                   "of the tool's shaft behind its tip, as thick as the tip; 0: only the tip is felt", "mm");
     command.option("--mesh-result", mesh_results,
                    "NAME=RESULT.json: what palpate mesh --json said of a body; repeat for more");
     command.input("--provenance", provenance, "what made the parts (.json)");

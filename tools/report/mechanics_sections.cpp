@@ -116,7 +116,10 @@ std::string mechanics_section(const Case& patient_case) {
     content += html::cards({{"Tool radius", significant(haptics.tool_radius), "mm"},
                             {"Coupling stiffness", significant(haptics.coupling_stiffness), "N/mm"},
                             {"Largest force", significant(haptics.max_force), "N"},
-                            {"Largest change", significant(haptics.max_force_rate), "N per ms"}});
+                            {"Largest change", significant(haptics.max_force_rate), "N per ms"},
+                            {"Friction", significant(haptics.friction_at_rest) + " / " +
+                                             significant(haptics.friction_sliding), "at rest / sliding"},
+                            {"Shaft", significant(haptics.shaft_length), "mm"}});
     return html::section("mechanics", "Materials and boundary", "Isotropic linear elasticity.", content);
 }
 

@@ -8,7 +8,8 @@
 
 namespace palpate::test {
 
-Eigen::MatrixXd direct_compliance(const DeformableBody& body, const std::vector<DirectContact>& contacts) {
+Eigen::MatrixXd direct_compliance(const DeformableBody& body, const std::vector<DirectContact>& contacts,
+                                  double coupling_stiffness) {
     const Discretisation discretisation = discretise(body);
     const auto position = number_free_nodes(discretisation.node_count, discretisation.fixed_nodes);
     const LowerSparse K = assemble_stiffness(body.mesh, body.materials, discretisation, position);
@@ -21,8 +22,13 @@ Eigen::MatrixXd direct_compliance(const DeformableBody& body, const std::vector<
                     contacts[k].weights[i] * contacts[k].normal;
         }
     Eigen::MatrixXd A = loads.transpose() * SparseCholesky(K, Elimination::fill_reducing).solve(loads);
-    for (std::size_t k = 0; k < contacts.size(); ++k)
-        A(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)) += contacts[k].series_compliance;
+    for (std::size_t k = 0; k < contacts.size(); ++k) {
+        const auto row = static_cast<Eigen::Index>(k);
+        A(row, row) += contacts[k].series_compliance;
+        for (std::size_t l = 0; l < contacts.size(); ++l)
+            A(row, static_cast<Eigen::Index>(l)) +=
+                contacts[k].normal.dot(contacts[l].normal) / coupling_stiffness;
+    }
     return A;
 }
 

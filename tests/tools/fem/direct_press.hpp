@@ -16,8 +16,10 @@ struct DirectContact {
     double series_compliance;  // mm/N
 };
 
-/// A_kl of contact points from the full sparse stiffness, without the condensed compliance: mm/N.
-Eigen::MatrixXd direct_compliance(const DeformableBody& body, const std::vector<DirectContact>& contacts);
+/// A_kl of one tool's contact points from the full sparse stiffness, without the condensed compliance, behind
+/// a virtual coupling of `coupling_stiffness` (N/mm): mm/N.
+Eigen::MatrixXd direct_compliance(const DeformableBody& body, const std::vector<DirectContact>& contacts,
+                                  double coupling_stiffness);
 
 /// Solves A f = delta on the points with `active`, zero elsewhere.
 Eigen::VectorXd direct_forces(const Eigen::MatrixXd& A, const Eigen::VectorXd& delta,

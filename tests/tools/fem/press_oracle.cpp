@@ -30,7 +30,7 @@ int main(int, char** argv) {
         delta[k] = contact["gap_mm"];
         active.push_back(felt[k] > 0);
     }
-    const Eigen::MatrixXd A = test::direct_compliance(body, contacts);
+    const Eigen::MatrixXd A = test::direct_compliance(body, contacts, peak["coupling_stiffness_n_per_mm"]);
     const Eigen::VectorXd exact = test::direct_forces(A, delta, active);
     std::cout << nlohmann::json{{"felt_n", felt.sum()},
                                 {"exact_n", exact.sum()},

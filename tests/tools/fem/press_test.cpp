@@ -70,7 +70,8 @@ TEST(Press, force_equals_a_direct_sparse_solve_of_the_same_contact) {
     ASSERT_NEAR(deepest.depth, 3.0, 0.05);
 
     const DeformableBody& body = patient.deformable_bodies[0];
-    const Eigen::MatrixXd A = test::direct_compliance(body, direct_contacts(body, contacts));
+    const Eigen::MatrixXd A =
+        test::direct_compliance(body, direct_contacts(body, contacts), model.coupling());
     std::vector<bool> active;
     Eigen::VectorXd felt(contacts.size()), delta(contacts.size());
     for (std::size_t k = 0; k < contacts.size(); ++k) {

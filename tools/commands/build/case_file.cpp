@@ -242,7 +242,10 @@ CaseFile read_case_file(const std::filesystem::path& path) {
     result.haptics = options(root.table("haptics"), {{"tool_radius_mm", "--tool-radius"},
                                                      {"coupling_stiffness_n_per_mm", "--coupling-stiffness"},
                                                      {"max_force_n", "--max-force"},
-                                                     {"max_force_rate_n_per_ms", "--max-force-rate"}});
+                                                     {"max_force_rate_n_per_ms", "--max-force-rate"},
+                                                     {"friction_at_rest", "--friction-at-rest"},
+                                                     {"friction_sliding", "--friction-sliding"},
+                                                     {"shaft_length_mm", "--shaft-length"}});
     result.quality =
         options(root.table("quality"), {{"min_dihedral_deg", "--min-dihedral-deg"},
                                         {"max_dihedral_deg", "--max-dihedral-deg"},
