@@ -72,8 +72,7 @@ void find_nodes(const BodyPair& bodies, std::size_t node_body, const Vector3d& s
                             .node = static_cast<std::int32_t>(v),
                             .polygon = polygons.triangles()[static_cast<std::size_t>(nearest->triangle)],
                             .weights = nearest->barycentric};
-        const auto held = [&](std::int32_t vertex) { return !polygons.is_free(vertex); };
-        if (!nodes.is_free(contact.node) && std::ranges::all_of(contact.polygon, held)) continue;
+        if (!nodes.is_free(contact.node) && !polygons.is_free(contact.polygon)) continue;
         Vector3d outwards = normal_of(polygons, contact.polygon);
         if (nearest->distance > touching)
             outwards = (outside ? p - nearest->point : nearest->point - p) / nearest->distance;
@@ -145,6 +144,10 @@ ElasticSurface::ElasticSurface(const DeformableBody& body)
         const bool free = found != body.contact_nodes.end() && *found == node;
         blocks_.push_back(free ? static_cast<std::int32_t>(found - body.contact_nodes.begin()) : -1);
     }
+}
+
+bool ElasticSurface::is_free(const Triangle& polygon) const noexcept {
+    return std::ranges::any_of(polygon, [&](std::int32_t vertex) { return is_free(vertex); });
 }
 
 Eigen::Matrix3d ElasticSurface::compliance(std::int32_t a, std::int32_t b) const noexcept {

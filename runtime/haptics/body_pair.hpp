@@ -30,6 +30,9 @@ class ElasticSurface {
         return blocks_[static_cast<std::size_t>(vertex)] >= 0;
     }
 
+    /// Tells whether any vertex of a polygon is free.
+    bool is_free(const Triangle& polygon) const noexcept;
+
     /// Displacement of vertex a per force on vertex b, mm/N; zero if one of them is not free. Realtime-safe.
     Eigen::Matrix3d compliance(std::int32_t a, std::int32_t b) const noexcept;
 
@@ -94,9 +97,9 @@ PairSolution solve_exactly(const BodyPair& bodies, std::span<const PairContact> 
 ///    U_B = |f_A| / (|f_A| + |f_B|) FX (eq. 4, 5). Imposing these gives the final forces. Nodes of B inside A
 ///    serve steps 2 to 4 alone: one body gives its nodes, the other its polygons.
 /// Where the paper is silent: a vertex of several polygons moves by the average of what they ask; f_A is that
-/// of the colliding polygon of A whose F is nearest to X; where no polygon of A collides, X takes its place in
-/// steps 2 to 4; where no node of A is inside B, the bodies change places; held vertices stay.
-/// Forces need not balance, and may pull. Cost: four Cholesky factors of C_cc.
+/// of the colliding polygon of A whose F is nearest to X; where no polygon of A collides, X takes its place
+/// in steps 2 to 4; where no node of A is inside B, the bodies change places; what is held stays, and its
+/// counterpart goes all the way. Forces need not balance, and may pull. Cost: four Cholesky factors of C_cc.
 PairSolution split_by_force_ratio(const BodyPair& bodies, std::span<const PairContact> contacts);
 
 }  // namespace palpate

@@ -104,7 +104,9 @@ PairSolution split_by_force_ratio(const BodyPair& bodies, std::span<const PairCo
                                       ? strength(temporary[giver], {&contact.node, 1})
                                       : strength(temporary[giver], nearest->polygon);
         const double sum = node_force + polygon_force;
-        const double node_part = sum > 0 ? polygon_force / sum : 0.5;
+        double node_part = sum > 0 ? polygon_force / sum : 0.5;
+        if (!bodies[giver].is_free(contact.node)) node_part = 0;
+        if (!bodies[1 - giver].is_free(contact.polygon)) node_part = 1;
         of_nodes.ask(contact.node, node_part * way_out(contact, giver));
         for (const std::int32_t vertex : contact.polygon)
             of_polygons.ask(vertex, (1 - node_part) * way_out(contact, 1 - giver));

@@ -317,6 +317,23 @@ TEST(BodyPair, more_contacts_than_the_solver_takes_are_solved_by_exchange) {
     EXPECT_LE(imbalance(solution.forces), 1e-14);
 }
 
+TEST(BodyPair, what_is_held_leaves_all_the_way_to_the_other) {
+    const DeformableBody held = sample::with_contact_nodes(lower(), {lower().contact_nodes.front()});
+    ASSERT_LT(held.mesh.rest_positions[static_cast<std::size_t>(held.contact_nodes[0])].z(), edge);
+    for (const BodyPair& bodies : {pair_of(held, upper(lower())), pair_of(lower(), upper(held))}) {
+        const std::size_t giving =
+            bodies[0].is_free(find_contacts(bodies, pressed(depth), 0)[0].node) ? 0 : 1;
+        const auto contacts = find_contacts(bodies, pressed(depth), 0);
+        for (const PairSolution& solution :
+             {solve_exactly(bodies, contacts), split_by_force_ratio(bodies, {contacts.data(), 1})}) {
+            EXPECT_GE(solution.distances.front(), -inside);
+            EXPECT_EQ(solution.displacements.front()[1 - giving].norm(), 0);
+            EXPECT_NEAR(contacts.front().normal.dot(solution.displacements.front()[giving]),
+                        giving == 0 ? depth : -depth, inside);
+        }
+    }
+}
+
 TEST(BodyPair, without_contact_there_is_no_force) {
     const BodyPair bodies = pair_of(lower(), upper(lower()));
     const auto contacts = find_contacts(bodies, pressed(-depth), 1);
