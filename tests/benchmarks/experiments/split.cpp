@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/benchmarks/experiments/split.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <memory>
+#include <utility>
+
+#include "runtime/haptics/body_pair.hpp"
+#include "tests/benchmarks/condensation/ellipsoid.hpp"
+#include "tests/benchmarks/experiments/chart.hpp"
+#include "tools/fem/condense.hpp"
+#include "tools/meshing/tetrahedralise.hpp"
+#include "tools/obb/build_obb_tree.hpp"
+
+namespace palpate::bench {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector3d;
+
+constexpr std::array stiffness_ratios{1.0, 3.0, 10.0, 100.0};
+constexpr std::array depths{0.5, 1.0, 2.0, 4.0};
+constexpr double margin = 0.3;  // mm: nodes this near may be brought in by deformation
+
+// An ellipsoid about the origin, held in the fifth of its height that lies lowest (side -1) or highest (1).
+struct Ellipsoid {
+    Vector3d semi_axes;
+    double spacing;  // of the mesh, mm
+    double poissons_ratio;
+    double held_side;
+};
+
+DeformableBody body_of(const Ellipsoid& shape) {
+    constexpr std::int32_t organ = 1, border = 3;
+    LabelMap map;
+    map.names = {{organ, "ellipsoid", default_label_colour(organ)}};
+    map.grid.spacing.setOnes();
+    for (Index axis = 0; axis < 3; ++axis) {
+        const double reach = std::ceil(shape.semi_axes[axis]) + border;
+        map.grid.size[static_cast<std::size_t>(axis)] = static_cast<std::int32_t>(2 * reach) + 1;
+        map.grid.origin[axis] = -reach;
+    }
+    for (std::int32_t k = 0; k < map.grid.size[2]; ++k)
+        for (std::int32_t j = 0; j < map.grid.size[1]; ++j)
+            for (std::int32_t i = 0; i < map.grid.size[0]; ++i) {
+                const Vector3d p = map.grid.point_of(Vector3d(i, j, k));
+                map.labels.push_back(p.cwiseQuotient(shape.semi_axes).squaredNorm() <= 1 ? organ : 0);
+            }
+    MeshSizing sizing;
+    sizing.cell_size = 0.87 * shape.spacing;
+    sizing.facet_size = 0.92 * shape.spacing;
+    const double cut = 0.6 * shape.held_side * shape.semi_axes.z();
+    DeformableBody body = held_body(tetrahedralise(map, std::array{organ}, sizing),
+                                    {"plane", BeyondPlane{{0, 0, cut}, {0, 0, shape.held_side}}});
+    for (RegionMaterial& region : body.materials) region.material.poissons_ratio = shape.poissons_ratio;
+    body.compliance = to_stored(condense_by_trailing_block(body, [](std::string_view, double) {}));
+    body.obb_tree = build_obb_tree(body.boundary.surface);
+    return body;
+}
+
+// The same compliance, `stiffness` times as stiff, in a frame whose z axis is turned by `sign`.
+DeformableBody changed(DeformableBody body, double stiffness, double sign) {
+    auto& compliance = std::get<DenseCompliance>(body.compliance);
+    const std::size_t n = compliance.dof_count();
+    const std::shared_ptr<float[]> entries(new float[n * n]);
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < n; ++j)
+            entries[i * n + j] =
+                static_cast<float>((i % 3 == 2 ? sign : 1) * (j % 3 == 2 ? sign : 1) / stiffness) *
+                compliance.row(i)[j];
+    compliance.entries = std::shared_ptr<const float>(entries, entries.get());
+    if (sign > 0) return body;
+    for (Vector3d& p : body.boundary.surface.vertices) p.z() = -p.z();
+    for (Triangle& t : body.boundary.surface.triangles) std::swap(t[1], t[2]);
+    body.obb_tree = build_obb_tree(body.boundary.surface);
+    return body;
+}
+
+double extreme_z(const DeformableBody& body, double sign) {
+    double extreme = -std::numeric_limits<double>::infinity();
+    for (const Vector3d& p : body.boundary.surface.vertices) extreme = std::max(extreme, sign * p.z());
+    return sign * extreme;
+}
+
+double deepest(std::span<const PairContact> contacts) {
+    return contacts.empty() ? 0 : std::max(0.0, std::ranges::max(contacts, {}, &PairContact::gap).gap);
+}
+
+// How deep a node of one deformed surface lies below the other one, mm.
+double gap_left(const std::array<const DeformableBody*, 2>& rest, const BodyPair& bodies,
+                const Vector3d& offset, const PairForces& forces) {
+    const auto deformed = [&](std::size_t side) {
+        DeformableBody body = *rest[side];
+        for (std::size_t v = 0; v < body.boundary.surface.vertices.size(); ++v)
+            for (const VertexForce& load : forces[side])
+                body.boundary.surface.vertices[v] +=
+                    bodies[side].compliance(static_cast<std::int32_t>(v), load.vertex) * load.force;
+        body.obb_tree = build_obb_tree(body.boundary.surface);
+        return ElasticSurface(body);
+    };
+    return deepest(find_contacts({deformed(0), deformed(1)}, offset, 0));
+}
+
+Vector3d net(const std::vector<VertexForce>& forces) {
+    Vector3d sum = Vector3d::Zero();
+    for (const VertexForce& load : forces) sum += load.force;
+    return sum;
+}
+
+// |F_A + F_B| of the larger of both.
+double net_imbalance(const PairForces& forces) {
+    return (net(forces[0]) + net(forces[1])).norm() / std::max(net(forces[0]).norm(), net(forces[1]).norm());
+}
+
+// The forces of the nodes, handed on to the polygons that they are on by the weights of their feet, against
+// those that the split found there: the worst difference, of the largest nodal force.
+double nodal_imbalance(std::span<const PairContact> contacts, const PairForces& forces) {
+    const auto is_inside = [](const PairContact& contact) { return contact.gap > 0; };
+    const auto first = std::ranges::find_if(contacts, is_inside);
+    const std::size_t giver = first->node_body;
+    std::map<std::int32_t, Vector3d> sums;
+    double largest = 0;
+    for (const VertexForce& load : forces[1 - giver]) {
+        sums[load.vertex] = load.force;
+        largest = std::max(largest, load.force.norm());
+    }
+    for (const VertexForce& load : forces[giver]) {
+        const auto on = std::ranges::find_if(contacts, [&](const PairContact& contact) {
+            return is_inside(contact) && contact.node_body == giver && contact.node == load.vertex;
+        });
+        for (std::size_t i = 0; i < 3; ++i)
+            sums.try_emplace(on->polygon[i], Vector3d::Zero()).first->second +=
+                on->weights[static_cast<Index>(i)] * load.force;
+        largest = std::max(largest, load.force.norm());
+    }
+    double worst = 0;
+    for (const auto& [vertex, sum] : sums) worst = std::max(worst, sum.norm());
+    return worst / largest;
+}
+
+struct Timed {
+    PairSolution solution;
+    double milliseconds;
+};
+
+Timed timed(PairSolution (*solve)(const BodyPair&, std::span<const PairContact>), const BodyPair& bodies,
+            std::span<const PairContact> contacts) {
+    const auto start = std::chrono::steady_clock::now();
+    PairSolution solution = solve(bodies, contacts);
+    const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
+    return {std::move(solution), spent.count()};
+}
+
+nlohmann::ordered_json scheme_json(const Timed& timed, const PairSolution& exact, double gap) {
+    const PairSolution& solution = timed.solution;
+    return {{"net_force_a_n", net(solution.forces[0]).norm()},
+            {"net_force_b_n", net(solution.forces[1]).norm()},
+            {"net_imbalance_percent", 100 * net_imbalance(solution.forces)},
+            {"energy_over_exact", solution.energy / exact.energy},
+            {"inside_linearised_mm", std::max(0.0, -std::ranges::min(solution.distances))},
+            {"gap_left_mm", gap},
+            {"milliseconds", timed.milliseconds}};
+}
+
+// One press of B, as it is, into A.
+nlohmann::ordered_json press(const DeformableBody& a, const DeformableBody& b, const BodyPair& bodies,
+                             double depth) {
+    const Vector3d offset(0, 0, extreme_z(a, 1) - extreme_z(b, -1) - depth);
+    const auto contacts = find_contacts(bodies, offset, margin);
+    const auto inside = std::ranges::count_if(contacts, [](const auto& contact) { return contact.gap > 0; });
+    const Timed exact = timed(solve_exactly, bodies, contacts),
+                ratio = timed(split_by_force_ratio, bodies, contacts);
+    const auto gap = [&](const Timed& of) { return gap_left({&a, &b}, bodies, offset, of.solution.forces); };
+    nlohmann::ordered_json row{{"depth_mm", depth},
+                               {"contacts", inside},
+                               {"candidates", contacts.size()},
+                               {"inside_before_mm", deepest(contacts)},
+                               {"split", scheme_json(ratio, exact.solution, gap(ratio))},
+                               {"exact", scheme_json(exact, exact.solution, gap(exact))}};
+    row["split"]["nodal_imbalance_percent"] = 100 * nodal_imbalance(contacts, ratio.solution.forces);
+    return row;
+}
+
+struct Pair {
+    std::string name;
+    DeformableBody a, b;  // equally stiff
+};
+
+std::vector<Pair> pairs() {
+    const Ellipsoid organ{{30, 30, 20}, 5, 0.45, -1};
+    const DeformableBody a = body_of(organ);
+    std::vector<Pair> pairs;
+    pairs.push_back({"alike", a, changed(a, 1, -1)});
+    pairs.push_back({"finer", a, body_of({organ.semi_axes, 3.5, organ.poissons_ratio, 1})});
+    pairs.push_back({"other", a, body_of({{16, 20, 24}, 3.5, 0.3, 1})});
+    return pairs;
+}
+
+constexpr auto preamble =
+    "Two ellipsoids of soft tissue pressed into each other: A has semi-axes 30, 30, 20 mm, nodes 5 mm apart, "
+    "Poisson's ratio 0.45; B is `alike`: the mirror image of A, so that C_B is a multiple of C_A, mirrored; "
+    "`finer`: the same shape, nodes 3.5 mm apart; `other`: semi-axes 16, 20, 24 mm, nodes 3.5 mm apart, "
+    "Poisson's ratio 0.3.\n"
+    "E_B/E_A: stiffness. Depth: B's lowest node below A's highest. Contacts: nodes inside, both ways. Net: "
+    "|F_A + F_B| of the larger force. Nodal: worst difference of a node's force and what its polygon bears, "
+    "of "
+    "the largest nodal force (the exact one is balanced by construction). Energy: elastic, split / exact. "
+    "Left: "
+    "deepest node of a deformed surface below the other.\n\n"
+    "| B | E_B/E_A | depth mm | contacts | net % split | net % exact | nodal % split | energy | left mm "
+    "before | "
+    "left mm split | left mm exact | ms split | ms exact "
+    "|\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+
+std::string table_row(const std::string& name, double ratio, const nlohmann::ordered_json& row) {
+    const auto of = [&](const char* scheme, const char* what) { return row[scheme][what].get<double>(); };
+    return fmt::format(
+        "| {} | {} | {} | {} | {:.1f} | {:.0e} | {:.0f} | {:.2f} | {:.2f} | {:.3f} | {:.3f} | {:.1f} | "
+        "{:.1f} |\n",
+        name, ratio, row["depth_mm"].get<double>(), row["contacts"].get<int>(),
+        of("split", "net_imbalance_percent"), of("exact", "net_imbalance_percent"),
+        of("split", "nodal_imbalance_percent"), of("split", "energy_over_exact"),
+        row["inside_before_mm"].get<double>(), of("split", "gap_left_mm"), of("exact", "gap_left_mm"),
+        of("split", "milliseconds"), of("exact", "milliseconds"));
+}
+
+}  // namespace
+
+Findings split(const Options&, cli::Session& session) {
+    session.progress.step("meshing and condensing", 0);
+    Chart imbalance{.title = "Net force that the split by force ratio leaves, 2 mm deep",
+                    .x_label = "stiffness of B / stiffness of A",
+                    .y_label = "|F_A + F_B| / |F| (%)",
+                    .series = {},
+                    .log_x = true};
+    Chart left{.title = "What is left of the intersection, equally stiff",
+               .x_label = "depth (mm)",
+               .y_label = "deepest node (mm)",
+               .series = {}};
+    Findings findings{
+        .result = {{"schema", "palpate.bench.split/1"}, {"pairs", nlohmann::ordered_json::array()}},
+        .table = preamble,
+        .pictures = {}};
+    const std::vector<Pair> all = pairs();
+    for (std::size_t p = 0; p < all.size(); ++p) {
+        const Pair& pair = all[p];
+        Series net_split{.name = pair.name, .x = {}, .y = {}},
+            left_split{.name = pair.name + ", split", .x = {}, .y = {}},
+            left_exact{.name = pair.name + ", exact", .x = {}, .y = {}};
+        for (const double ratio : stiffness_ratios) {
+            session.progress.step(fmt::format("{}, 1 : {}", pair.name, ratio),
+                                  static_cast<double>(p + 1) / static_cast<double>(all.size() + 1));
+            const DeformableBody b = changed(pair.b, ratio, 1);
+            const BodyPair bodies{ElasticSurface(pair.a), ElasticSurface(b)};
+            for (const double depth : depths) {
+                nlohmann::ordered_json row = press(pair.a, b, bodies, depth);
+                findings.table += table_row(pair.name, ratio, row);
+                if (depth == 2) {
+                    net_split.x.push_back(ratio);
+                    net_split.y.push_back(row["split"]["net_imbalance_percent"]);
+                }
+                if (ratio == 1) {
+                    left_split.x.push_back(depth);
+                    left_split.y.push_back(row["split"]["gap_left_mm"]);
+                    left_exact.x.push_back(depth);
+                    left_exact.y.push_back(row["exact"]["gap_left_mm"]);
+                }
+                row["b"] = pair.name;
+                row["stiffness_ratio"] = ratio;
+                findings.result["pairs"].push_back(std::move(row));
+            }
+        }
+        imbalance.series.push_back(std::move(net_split));
+        left.series.push_back(std::move(left_split));
+        left.series.push_back(std::move(left_exact));
+    }
+    findings.pictures.emplace_back("split", charts_svg({imbalance, left}));
+    return findings;
+}
+
+}  // namespace palpate::bench
