@@ -345,6 +345,21 @@ TEST(BodyPair, without_contact_there_is_no_force) {
     }
 }
 
+TEST(BodyPair, held_vertices_neither_move_nor_are_moved) {
+    const ElasticSurface surface(lower());
+    const auto& nodes = lower().boundary.nodes;
+    const auto vertex_of = [&](std::int32_t node) {
+        return static_cast<std::int32_t>(std::ranges::find(nodes, node) - nodes.begin());
+    };
+    const std::int32_t held = vertex_of(lower().fixed_nodes.back()),
+                       free = vertex_of(lower().contact_nodes[7]);
+    EXPECT_TRUE(surface.is_free(free));
+    EXPECT_FALSE(surface.is_free(held));
+    EXPECT_EQ(surface.compliance(free, held).norm(), 0);
+    EXPECT_EQ(surface.compliance(held, free).norm(), 0);
+    EXPECT_EQ(surface.compliance(free, free), compliance_block(lower().compliance, 7, 7).cast<double>());
+}
+
 TEST(BodyPair, refuses_a_compliance_of_other_nodes) {
     DeformableBody body = lower();
     body.contact_nodes.pop_back();

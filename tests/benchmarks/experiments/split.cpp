@@ -88,15 +88,20 @@ double nodal_imbalance(std::span<const PairContact> contacts, const PairForces& 
 
 struct Timed {
     PairSolution solution;
-    double milliseconds;
+    double milliseconds = std::numeric_limits<double>::infinity();  // the fastest of some
 };
 
 Timed timed(PairSolution (*solve)(const BodyPair&, std::span<const PairContact>), const BodyPair& bodies,
             std::span<const PairContact> contacts) {
-    const auto start = std::chrono::steady_clock::now();
-    PairSolution solution = solve(bodies, contacts);
-    const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
-    return {std::move(solution), spent.count()};
+    constexpr int repetitions = 5;
+    Timed result;
+    for (int i = 0; i < repetitions; ++i) {
+        const auto start = std::chrono::steady_clock::now();
+        result.solution = solve(bodies, contacts);
+        const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
+        result.milliseconds = std::min(result.milliseconds, spent.count());
+    }
+    return result;
 }
 
 nlohmann::ordered_json scheme_json(const Timed& timed, const PairSolution& exact, double gap) {
@@ -154,7 +159,8 @@ shape, nodes 3.5 mm apart; `other`: semi-axes 16, 20, 24 mm, nodes 3.5 mm apart,
 - Nodal: worst difference of a node's force and what its polygon bears, of the largest nodal force. The exact
   solution's is balanced by construction.
 - Energy: elastic, split / exact; below 1 the bodies are not parted.
-- Left: the deepest node of a deformed surface below the other. ms: one solution, matrices and allocation included.
+- Left: the deepest node of a deformed surface below the other. ms: one solution, matrices and allocation included,
+  the fastest of five.
 
 | B | E_B/E_A | depth mm | contacts | net % split | exact | nodal % split | F_A | F_B | energy | left mm before | split | exact | ms split | exact |
 |---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|
