@@ -3,12 +3,14 @@
 #include <cstdio>
 
 #include "tests/benchmarks/experiments/experiments.hpp"
+#include "tests/benchmarks/experiments/split.hpp"
 
 namespace palpate::bench {
 namespace {
 
 const std::vector<Experiment> experiments{
     // name, what it finds out, function
+    {"split", "two deformable bodies: the published split by force ratio against exact contact", split},
 };
 
 const Experiment& find_experiment(const std::string& name) {
