@@ -20,7 +20,8 @@ struct Chart {
 };
 
 /// Draws charts one below the other as one SVG picture, 960 wide, 360 high each, on white, with a legend. Of
-/// many points in one pixel column only the extremes are drawn, so peaks stay.
+/// the many points of a line in one pixel column only the extremes are drawn, so peaks stay; of markers, one
+/// per pixel. Values that are not finite, or not positive on a log axis, interrupt a line.
 std::string charts_svg(const std::vector<Chart>& charts);
 
 }  // namespace palpate::bench

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <functional>
+#include <gtest/gtest.h>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "formats/model/errors.hpp"
+#include "runtime/devices/dynamic_device.hpp"
+#include "tests/runtime/allocation_trap.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double rounding = 1e-11;  // relative, of some thousand exact steps
+constexpr HandImpedance no_hand{.stiffness = 0, .damping = 0};
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+// A tip of 50 g on ideal motors and encoders.
+DeviceModel plain() {
+    return {.name = "plain", .mass_kg = 0.05, .damping = 5e-4, .max_force = infinite};
+}
+
+HandPath at_origin() {
+    return HandPath({{0, Vector3d::Zero()}});
+}
+
+Vector3d position_read(DynamicDevice& device, int tick) {
+    const DeviceState state = device.read(1e-3 * tick);
+    return Eigen::Map<const Vector3d>(state.position.data());
+}
+
+// Kinetic energy and that of the hand's spring towards the origin, N mm.
+double energy_of(const DynamicDevice& device, const DeviceModel& model, const HandImpedance& hand) {
+    return 0.5e-3 * model.mass_kg * device.velocity().squaredNorm() +
+           0.5 * hand.stiffness * device.position().squaredNorm();
+}
+
+TEST(DynamicDevice, a_free_mass_slows_down_with_m_over_b) {
+    DynamicDevice device(plain(), no_hand, at_origin());
+    device.write({2, -1, 0.5});
+    device.read(0.02);
+    device.write({0, 0, 0});
+    const Vector3d position = device.position(), velocity = device.velocity();
+    ASSERT_GT(velocity.norm(), 100);
+    const double tau = 1e-3 * 0.05 / 5e-4, left = std::exp(-0.15 / tau);
+    device.read(0.17);
+    EXPECT_LT((device.velocity() - left * velocity).norm(), rounding * velocity.norm());
+    EXPECT_LT((device.position() - position - tau * (1 - left) * velocity).norm(), rounding * 100);
+}
+
+TEST(DynamicDevice, without_damping_a_constant_force_accelerates_uniformly) {
+    DeviceModel model = plain();
+    model.damping = 0;
+    DynamicDevice device(model, no_hand, at_origin());
+    device.write({0, 0, 2});
+    device.read(0.1);
+    const double acceleration = 2 / 5e-5;  // mm/s²
+    EXPECT_NEAR(device.velocity().z(), acceleration * 0.1, rounding * acceleration);
+    EXPECT_NEAR(device.position().z(), acceleration * 0.005, rounding * acceleration);
+}
+
+TEST(DynamicDevice, a_constant_force_settles_where_the_hands_spring_bears_it) {
+    const HandImpedance hand{.stiffness = 0.3, .damping = 2e-3};
+    DynamicDevice device(plain(), hand, HandPath({{0, {1, 2, 3}}}));
+    device.write({0.6, 0, -0.9});
+    device.read(2);
+    EXPECT_LT((device.position() - Vector3d(1 + 2, 2, 3 - 3)).norm(), 1e-9);
+    EXPECT_LT(device.velocity().norm(), 1e-9);
+}
+
+TEST(DynamicDevice, lags_a_hand_that_moves_uniformly_by_what_its_own_damping_takes) {
+    const HandImpedance hand{.stiffness = 0.3, .damping = 2e-3};
+    DynamicDevice device(plain(), hand, HandPath({{0, {0, 0, 0}}, {3, {300, 0, 0}}}));
+    device.read(2);
+    EXPECT_NEAR(device.velocity().x(), 100, 1e-8);
+    EXPECT_NEAR(device.position().x(), 200 - 5e-4 * 100 / 0.3, 1e-9);
+}
+
+TEST(DynamicDevice, swings_at_the_frequency_of_mass_and_spring) {
+    DeviceModel model = plain();
+    model.damping = 0;
+    const HandImpedance spring{.stiffness = 0.5, .damping = 0};
+    DynamicDevice device(model, spring, at_origin());
+    device.write({1, 0, 0});
+    const double omega = std::sqrt(0.5 / 5e-5);
+    for (int tick = 1; tick <= 300; ++tick) {
+        device.read(1e-3 * tick);
+        EXPECT_NEAR(device.position().x(), 2 * (1 - std::cos(omega * 1e-3 * tick)), 1e-9);
+    }
+}
+
+TEST(DynamicDevice, energy_never_grows_without_force) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    const double noise = 1e-12;  // N mm
+    for (int trial = 0; trial < 50; ++trial) {
+        DeviceModel model = plain();
+        model.mass_kg = 0.02 + 0.1 * uniform(random);
+        model.damping = 2e-3 * uniform(random);
+        model.coulomb_friction = trial % 2 * 0.3 * uniform(random);
+        const HandImpedance hand{.stiffness = uniform(random), .damping = 4e-3 * uniform(random)};
+        DynamicDevice device(model, hand, at_origin());
+        device.write({4 * uniform(random) - 2, 4 * uniform(random) - 2, 4 * uniform(random) - 2});
+        device.read(0.03);
+        device.write({0, 0, 0});
+        double last = energy_of(device, model, hand);
+        ASSERT_GT(last, 0);
+        for (int step = 1; step <= 8000; ++step) {
+            device.read(0.03 + step * DynamicDevice::step_s);
+            const double now = energy_of(device, model, hand);
+            ASSERT_LE(now, last + noise) << "trial " << trial << ", step " << step;
+            last = now;
+        }
+    }
+}
+
+TEST(DynamicDevice, a_tip_at_rest_moves_only_beyond_its_friction) {
+    DeviceModel model = plain();
+    model.coulomb_friction = 0.26;
+    DynamicDevice device(model, no_hand, at_origin());
+    device.write({0.15, -0.15, 0.14});  // 0.254 N
+    device.read(1);
+    EXPECT_EQ(device.position(), Vector3d::Zero());
+    device.write({0.27, 0, 0});
+    device.read(1.1);
+    EXPECT_GT(device.position().x(), 0);
+    EXPECT_EQ(device.position().tail<2>().norm(), 0);
+}
+
+TEST(DynamicDevice, friction_stops_a_sliding_tip_after_m_v_squared_over_twice_the_friction) {
+    DeviceModel model = plain();
+    model.damping = 0;
+    model.coulomb_friction = 0.2;
+    DynamicDevice device(model, no_hand, at_origin());
+    device.write({0, 1.2, 0});
+    device.read(0.01);  // 1 N beyond friction
+    device.write({0, 0, 0});
+    const double speed = device.velocity().norm(), start = device.position().y();
+    EXPECT_NEAR(speed, 1 / 5e-5 * 0.01, 1e-9);
+    device.read(1);
+    EXPECT_NEAR(device.position().y() - start, 5e-5 * speed * speed / (2 * 0.2), 1e-9);
+    EXPECT_EQ(device.velocity(), Vector3d::Zero());
+}
+
+TEST(DynamicDevice, encoders_round_down_to_their_resolution) {
+    DeviceModel model = plain();
+    model.encoder_resolution = 0.055;
+    DynamicDevice device(model, no_hand, HandPath({{0, {0.12, -0.01, 1}}}));
+    const Vector3d read = position_read(device, 0);
+    EXPECT_NEAR(read.x(), 0.11, 1e-12);
+    EXPECT_NEAR(read.y(), -0.055, 1e-12);
+    EXPECT_NEAR(read.z(), 0.99, 1e-12);
+    EXPECT_EQ(device.position(), Vector3d(0.12, -0.01, 1));
+}
+
+TEST(DynamicDevice, a_force_arrives_after_the_delay_and_stays_for_a_period) {
+    for (const int delay : {0, 1, 3}) {
+        DeviceModel model = plain();
+        model.delay_ticks = delay;
+        DynamicDevice device(model, no_hand, at_origin());
+        Vector3d last = Vector3d::Zero();
+        for (int tick = 0; tick < 8; ++tick) {
+            device.read(1e-3 * tick);
+            device.write({tick == 0 ? 1.0 : 0.0, 0, 0});
+            device.read(1e-3 * (tick + 1));
+            EXPECT_EQ(device.velocity().x() > last.x(), tick == delay) << delay << " ticks, tick " << tick;
+            last = device.velocity();
+        }
+    }
+}
+
+TEST(DynamicDevice, motors_saturate_and_keep_the_direction) {
+    DeviceModel model = plain();
+    model.damping = 0;
+    model.max_force = 2.5;
+    DynamicDevice strong(model, no_hand, at_origin()), at_limit(model, no_hand, at_origin());
+    strong.write({30, 0, -40});
+    at_limit.write({1.5, 0, -2});
+    strong.read(0.05);
+    at_limit.read(0.05);
+    EXPECT_LT((strong.position() - at_limit.position()).norm(), rounding * strong.position().norm());
+}
+
+TEST(DynamicDevice, where_it_goes_does_not_depend_on_how_often_it_is_asked) {
+    DeviceModel model = plain();
+    model.coulomb_friction = 0.1;
+    const HandPath path({{0, {0, 0, 0}}, {0.05, {5, 1, 0}}, {0.08, {5, -3, 2}}});
+    DynamicDevice asked(model, {}, path), left_alone(model, {}, path), asked_oddly(model, {}, path);
+    for (int tick = 0; tick < 10; ++tick) {
+        const std::array<double, 3> force{0.1 * tick, -0.2, 0};
+        asked.write(force);
+        left_alone.write(force);
+        asked_oddly.write(force);
+        for (int ms = 1; ms <= 10; ++ms) asked.read(1e-2 * tick + 1e-3 * ms);
+        left_alone.read(1e-2 * (tick + 1));
+        for (const double part : {0.37, 0.1, 1.0}) asked_oddly.read(1e-2 * (tick + part));
+        EXPECT_EQ(asked.position(), left_alone.position());
+        EXPECT_EQ(asked.velocity(), left_alone.velocity());
+        EXPECT_EQ(asked.position(), asked_oddly.position());
+    }
+}
+
+TEST(DynamicDevice, the_same_calls_give_the_same_bits) {
+    const auto run = [] {
+        DynamicDevice device(find_device_model("touch"), {}, HandPath({{0, {0, 0, 0}}, {0.2, {20, 3, -4}}}));
+        std::vector<double> positions;
+        for (int tick = 0; tick < 400; ++tick) {
+            const Vector3d p = position_read(device, tick);
+            device.write({-0.4 * std::max(0.0, p.x() - 3), 0.1, 0});
+            positions.insert(positions.end(), p.begin(), p.end());
+        }
+        return positions;
+    };
+    EXPECT_EQ(run(), run());
+}
+
+TEST(DynamicDevice, reading_and_writing_never_allocate) {
+    DeviceModel model = find_device_model("touch");
+    model.delay_ticks = 2;
+    DynamicDevice device(model, {}, HandPath({{0, {0, 0, 0}}, {0.2, {20, 3, -4}}}));
+    const AllocationTrap trap;
+    for (int tick = 0; tick < 400; ++tick) {
+        device.read(1e-3 * tick);
+        device.write({-0.1, 0, 0.3});
+    }
+    EXPECT_EQ(trap.count(), 0U);
+}
+
+TEST(DynamicDevice, tells_its_limits) {
+    const DynamicDevice device(find_device_model("desktop"), {}, at_origin());
+    EXPECT_EQ(device.limits().max_force, 7.9);
+    EXPECT_EQ(device.limits().max_stiffness, 1.0);
+    EXPECT_EQ(device.limits().damping, find_device_model("desktop").damping);
+}
+
+TEST(DynamicDevice, refuses_figures_that_no_device_has) {
+    const auto refused = [](const std::function<void(DeviceModel&, HandImpedance&)>& spoil) {
+        DeviceModel model = plain();
+        HandImpedance hand;
+        spoil(model, hand);
+        EXPECT_THROW(DynamicDevice(model, hand, at_origin()), InvalidInput);
+    };
+    refused([](DeviceModel& m, HandImpedance&) { m.mass_kg = 0; });
+    refused([](DeviceModel& m, HandImpedance&) { m.damping = -1e-6; });
+    refused([](DeviceModel& m, HandImpedance&) { m.coulomb_friction = std::nan(""); });
+    refused([](DeviceModel& m, HandImpedance&) { m.encoder_resolution = -1; });
+    refused([](DeviceModel& m, HandImpedance&) { m.max_force = std::nan(""); });
+    refused([](DeviceModel& m, HandImpedance&) { m.delay_ticks = -1; });
+    refused([](DeviceModel&, HandImpedance& h) { h.stiffness = -0.1; });
+    refused([](DeviceModel&, HandImpedance& h) { h.damping = infinite; });
+}
+
+TEST(DeviceModel, a_model_is_damped_so_that_its_stated_stiffness_is_the_most_at_1_khz) {
+    ASSERT_EQ(device_models().size(), 3U);
+    for (const DeviceModel& model : device_models())
+        EXPECT_NEAR(2 * model.damping / 1e-3, model.max_stiffness, 1e-12) << model.name;
+    EXPECT_NEAR(find_device_model("touch").damping, 0.25e-3, 1e-15);  // 0.25 N s/m
+    EXPECT_EQ(find_device_model("premium").mass_kg, 0.075);
+}
+
+TEST(DeviceModel, an_unknown_name_is_answered_with_the_known_ones) {
+    try {
+        find_device_model("falcon");
+        FAIL() << "found";
+    } catch (const UsageError& error) {
+        EXPECT_STREQ(error.what(), "device model: falcon (expected touch, desktop, premium)");
+    }
+}
+
+}  // namespace
+}  // namespace palpate
