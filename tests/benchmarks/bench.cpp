@@ -3,12 +3,14 @@
 #include <cstdio>
 
 #include "tests/benchmarks/experiments/experiments.hpp"
+#include "tests/benchmarks/experiments/passivity.hpp"
 
 namespace palpate::bench {
 namespace {
 
 const std::vector<Experiment> experiments{
     // name, what it finds out, function
+    {"passivity", "the stiffest wall that the closed loop bears, against 2b/T", passivity},
 };
 
 const Experiment& find_experiment(const std::string& name) {
