@@ -60,6 +60,12 @@ struct HapticSettings {
         0.5;                      ///< N/mm between tool and device on rigid bodies; 0.5 is a Touch's limit
     double max_force = 3.3;       ///< N, a Touch's limit
     double max_force_rate = 0.5;  ///< N per tick (1 ms)
+    /// Coulomb's law between tool and bodies: what holds a tool at rest, and what drags a sliding one, as
+    /// parts of the normal force; 0 <= sliding <= at rest. Moist tissue under a polished tool has next to
+    /// none.
+    double friction_at_rest = 0, friction_sliding = 0;
+    double shaft_length =
+        0;  ///< mm, of the tool's shaft behind its tip, as thick as the tip; 0: none is felt
 };
 
 /// Everything a trainer needs to touch one patient.

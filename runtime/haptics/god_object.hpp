@@ -3,59 +3,94 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "runtime/collision/collision_surface.hpp"
+#include "runtime/collision/neighbourhood.hpp"
 
 namespace palpate {
 
-/// A frictionless sphere that follows the device but never enters a surface (Zilles, Salisbury 1995, with the
-/// finite radius of Ruspini, Kolarov, Khatib 1997). Each move sweeps the sphere from where it was towards the
+/// Coulomb's law: a tool at rest stays until the tangential force is `at_rest` times the normal one, and then
+/// drags with `sliding` times it. 0 <= sliding <= at_rest.
+struct Friction {
+    double at_rest = 0;
+    double sliding = 0;
+};
+
+/// A sphere that follows the device but never enters a surface (Zilles, Salisbury 1995, with the finite
+/// radius of Ruspini, Kolarov, Khatib 1997). Each move sweeps the sphere from where it was towards the
 /// device, stops it at the exact first touch, and lets it slide on in the half-spaces of the surfaces it
-/// touched, towards the point nearest to the device. It keeps `skin` of clearance beyond its radius, so
-/// rounding never lets it through at any speed.
+/// touched, towards the point nearest to the device; friction ends the slide where the spring to the device
+/// would pull less than Coulomb's law holds. It keeps `skin` of clearance beyond its radius, so rounding
+/// never lets it through at any speed.
 class GodObject {
   public:
     static constexpr double skin = 1e-4;         ///< mm: above rounding (1e-12), below any edge (0.05)
     static constexpr double slide_slack = 0.05;  ///< mm per move
     static constexpr std::size_t max_touches = 4;
 
-    /// One place where the sphere rests on the surface.
+    /// One place where the sphere rests on a surface.
     struct Touch {
         ClosestPoint foot;
         Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, from the foot to the centre
+        std::size_t surface = 0;                           ///< index in what move() was given
     };
 
-    explicit GodObject(double radius) noexcept : radius_(radius) {}
+    /// For `surface_count` surfaces, which move() then gets in one order always. Allocates.
+    GodObject(double radius, std::size_t surface_count) : radius_(radius), obstacles_(surface_count) {}
 
-    /// Lets go: the sphere follows the device freely until it is clear of the surface once.
-    void reset() noexcept { following_ = false; }
+    /// Lets go: the sphere follows the device freely, and a surface counts again once the sphere is clear of
+    /// it.
+    void reset() noexcept;
 
-    /// Moves towards `device` (mm). Returns false while the tool has not been clear of the surface yet; then
-    /// the sphere is at the device and nothing is felt.
-    bool move(const CollisionSurface& surface, const Eigen::Vector3d& device) noexcept;
+    /// Moves towards `device` (mm). Returns false while there are surfaces that the tool has not been clear
+    /// of yet; these are not felt.
+    bool move(std::span<const CollisionSurface* const> surfaces, const Eigen::Vector3d& device,
+              const Friction& friction = {}) noexcept;
 
     const Eigen::Vector3d& position() const noexcept { return position_; }
     double radius() const noexcept { return radius_; }
-    /// Where the sphere rests on the surface and is held off the device; none if it reached the device.
+    /// Where the sphere rests on the surface and is held off the device, the nearest first; none if it
+    /// reached the device.
     std::span<const Touch> touches() const noexcept { return {touches_.data(), touch_count_}; }
+    /// What friction holds back: from the sphere to where it would be without friction, mm.
+    const Eigen::Vector3d& held_back() const noexcept { return held_back_; }
 
   private:
+    struct Obstacle {
+        Neighbourhood near;
+        bool followed = false;  // the tool has been clear of it once
+    };
     struct HalfSpace {
         Eigen::Vector3d normal = Eigen::Vector3d::Zero();
         double offset = 0;  // centre x is admissible where normal . x >= offset
         std::int32_t slot = -1;
+        std::size_t surface = 0;
     };
-    void slide(const CollisionSurface& surface, const Eigen::Vector3d& device) noexcept;
-    void touch(const SweepContact& contact, const Eigen::Vector3d& way) noexcept;
-    void find_touches(const CollisionSurface& surface, const Eigen::Vector3d& device) noexcept;
+    struct Hit {
+        SweepContact contact;
+        std::size_t surface = 0;
+    };
+    using Surfaces = std::span<const CollisionSurface* const>;
+
+    void slide(Surfaces surfaces, const Eigen::Vector3d& device, const Friction& friction) noexcept;
+    std::optional<Hit> sweep(Surfaces surfaces, const Eigen::Vector3d& to) noexcept;
+    void touch(const Hit& hit, const Eigen::Vector3d& way) noexcept;
+    void find_touches(Surfaces surfaces, const Eigen::Vector3d& device) noexcept;
+    bool follow_what_is_clear(Surfaces surfaces) noexcept;
     Eigen::Vector3d nearest_admissible(const Eigen::Vector3d& device) noexcept;
+    Eigen::Vector3d held_by(const Friction& friction, const Eigen::Vector3d& device,
+                            const Eigen::Vector3d& wanted) noexcept;
 
     double radius_;
-    bool following_ = false;
+    std::vector<Obstacle> obstacles_;
+    bool all_followed_ = false, any_followed_ = false;
+    bool at_rest_ = false;  // in the sense of friction
     Eigen::Vector3d position_ = Eigen::Vector3d::Zero();
     Eigen::Vector3d last_device_ = Eigen::Vector3d::Zero();
-    std::int32_t hint_ = -1;
+    Eigen::Vector3d held_back_ = Eigen::Vector3d::Zero();
     std::array<HalfSpace, max_touches> planes_;
     std::size_t plane_count_ = 0;
     std::array<Touch, max_touches> touches_;

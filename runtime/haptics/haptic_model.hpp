@@ -3,38 +3,67 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "formats/model/body.hpp"
 #include "runtime/collision/collision_surface.hpp"
+#include "runtime/haptics/contact_scheme.hpp"
+#include "runtime/haptics/contact_solver.hpp"
 #include "runtime/haptics/deformable_contact.hpp"
 #include "runtime/haptics/force_limiter.hpp"
 #include "runtime/haptics/god_object.hpp"
+#include "runtime/haptics/published_contact.hpp"
 #include "runtime/haptics/tick_result.hpp"
 #include "runtime/realtime/device.hpp"
 
 namespace palpate {
 
+/// The stiffest virtual coupling that keeps a sampled spring passive on a device (N/mm): the least of what
+/// the case asks for, the device's stated maximum, and 2 b / T for a device of damping b read every T = 1 ms
+/// (Colgate, Schenkel 1997, without the wall's own damping; Abbott, Okamura 2005). What a device does not
+/// state does not limit. Throws InvalidInput if a limit is negative or not finite.
+double coupling_stiffness(const HapticSettings& settings, const DeviceLimits& device);
+
 /// A patient ready to be touched: everything is allocated and checked here, so that a tick only computes.
-/// Each body holds its own god-object; their forces add. Rigid bodies answer with
-/// force = coupling_stiffness * (proxy - device), deformable ones with exact unilateral contact on their
-/// compliance (DeformableContact).
+/// `continuous`: each tool holds a god-object on the rigid bodies and one on each deformable body; where only
+/// rigid bodies are touched the force is that of the virtual coupling, stiffness * (proxy - device),
+/// otherwise all contact points are solved together (ContactSolver). `single` and `twice`: see
+/// PublishedContact; they know one tool.
 class HapticModel {
   public:
-    /// Copies what it needs of the case; compliances are shared. Throws InvalidInput if the case has no body
-    /// or its haptic settings make no sense. Linear in the surfaces.
-    explicit HapticModel(const Case& patient_case);
+    /// Copies what it needs of the case; compliances are shared. Throws InvalidInput if the case has no body,
+    /// its haptic settings make no sense, or a published scheme is to have several tools. Linear in the
+    /// surfaces.
+    explicit HapticModel(const Case& patient_case, ContactScheme scheme = ContactScheme::continuous,
+                         std::size_t tool_count = 1);
 
-    /// Forgets all contact; every body counts as not yet felt until the tool is clear of it.
+    /// Limits the virtual coupling to what every device bears: coupling_stiffness(). Not beside a running
+    /// tick.
+    void couple_to(std::span<const DeviceLimits> devices);
+    /// Of the virtual coupling, N/mm.
+    double coupling() const noexcept { return coupling_; }
+
+    /// Forgets all contact; every body counts as not yet felt until the tool is clear of it. Not beside a
+    /// running tick or detection.
     void reset() noexcept;
 
-    /// Computes the force for one device state: finds contacts, solves them, limits the force. Fills `result`
-    /// except tick_ns, wake_latency_ns and overruns. One thread; realtime-safe: no allocation, lock or I/O.
-    void tick(const DeviceState& device, TickResult& result) noexcept;
+    /// Computes the forces for one state of each tool: finds contacts, solves them, limits the forces. Fills
+    /// the results except tick_ns, wake_latency_ns and overruns. As many states and results as tools
+    /// (unchecked). One thread; realtime-safe: no allocation, lock or I/O.
+    void tick(std::span<const DeviceState> devices, std::span<TickResult> results) noexcept;
+    /// The same with one tool.
+    void tick(const DeviceState& device, TickResult& result) noexcept { tick({&device, 1}, {&result, 1}); }
+
+    /// The published schemes' collision loop, to be called 30 times a second from one thread, which may be
+    /// another than tick()'s; nothing for `continuous`.
+    void detect() noexcept;
 
     const HapticSettings& settings() const noexcept { return settings_; }
+    ContactScheme scheme() const noexcept { return scheme_; }
+    std::size_t tool_count() const noexcept { return tools_.size(); }
     std::size_t body_count() const noexcept { return surfaces_.size(); }
     std::size_t rigid_count() const noexcept { return surfaces_.size() - deformable_.size(); }
     const std::string& body_name(std::size_t body) const { return names_[body]; }
@@ -42,25 +71,51 @@ class HapticModel {
     const CollisionSurface& surface(std::size_t body) const { return *surfaces_[body]; }
 
     /// Writes the displacement (mm) of every surface vertex of deformable body `body` (>= rigid_count())
-    /// under the contacts of a tick: u = -sum_k f_k sum_i w_ki C_:i n_k, zero at fixed nodes. `displacements`
-    /// has one entry per surface vertex. Safe beside a running tick; costs 3 m multiply-adds per touched
-    /// degree of freedom.
+    /// under the contacts of a tick: u = -sum_k C (f_k n_k + friction_k), zero at fixed nodes.
+    /// `displacements` has one entry per surface vertex. Safe beside a running tick; costs 3 m multiply-adds
+    /// per touched degree of freedom.
     void surface_displacement(std::size_t body, const TickResult& result,
                               std::span<Eigen::Vector3f> displacements) const noexcept;
 
   private:
-    Eigen::Vector3d touch_rigid(std::size_t body, const Eigen::Vector3d& device, double depth,
-                                TickResult& result) noexcept;
-    Eigen::Vector3d touch_deformable(std::size_t body, const Eigen::Vector3d& device,
-                                     TickResult& result) noexcept;
+    // A tool on one deformable body.
+    struct SoftTouch {
+        GodObject god_object;
+        double grip = 1;  // what friction's mm of drag hold, against those of press: see feel_friction()
+        std::span<Contact> contacts{};  // of this tick, in its tool's result
+    };
+    struct Tool {
+        GodObject on_rigid;
+        std::vector<SoftTouch> on_soft;
+        ForceLimiter limiter;
+        std::vector<Contact> last_contacts;  // of the tick before, at most max_contacts
+        Eigen::Vector3d device = Eigen::Vector3d::Zero();
+        bool present = false;  // the device's position is to be trusted in this tick
+    };
+
+    void begin(Tool& tool, const DeviceState& device, TickResult& result) noexcept;
+    void follow(std::size_t tool, TickResult& result) noexcept;
+    void follow_soft(std::size_t tool, std::size_t soft, TickResult& result) noexcept;
+    Eigen::Vector3d moved_by_others(std::size_t tool, std::size_t soft,
+                                    const Eigen::Vector3d& place) const noexcept;
+    Eigen::Vector3d rigid_force(Tool& tool, TickResult& result) const noexcept;
+    void add_rigid_contacts(std::size_t tool, TickResult& result) noexcept;
+    Eigen::Vector3d contact_force(Tool& tool, TickResult& result) noexcept;
+    Eigen::Vector3d feel_friction(SoftTouch& touch, const DeformableContact& body) const noexcept;
+    void finish(Tool& tool, const Eigen::Vector3d& force, TickResult& result) noexcept;
 
     HapticSettings settings_;
+    ContactScheme scheme_;
+    double coupling_;
+    Friction friction_;
     std::vector<std::string> names_;
     std::vector<std::unique_ptr<CollisionSurface>> surfaces_;  // rigid bodies first
-    std::vector<GodObject> god_objects_;                       // one per body
-    std::vector<std::vector<Triangle>> rigid_triangles_;       // vertex indices, for the record of contacts
+    std::vector<const CollisionSurface*> rigid_surfaces_;
+    std::vector<std::vector<Triangle>> rigid_triangles_;  // vertex indices, for the record of contacts
     std::vector<DeformableContact> deformable_;
-    ForceLimiter limiter_;
+    std::vector<Tool> tools_;
+    ContactSolver solver_;
+    std::optional<PublishedContact> published_;
     std::int64_t tick_ = 0;
 };
 

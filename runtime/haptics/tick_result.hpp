@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -34,15 +35,28 @@ struct Contact {
     std::array<float, 3> normal{0, 0, 0};              ///< n: unit, from tissue to tool
     float gap = 0;    ///< delta, mm: how far the point must give way along -n
     float force = 0;  ///< f >= 0, N: the tool pushes the tissue by -n f, the tissue the tool by n f
-    float series_compliance = 0;  ///< c, mm/N, in series with the body's own at this point
+    float series_compliance = 0;             ///< c, mm/N, in series with the body's own at this point
+    std::array<float, 3> friction{0, 0, 0};  ///< on the tool, N; the opposite on the tissue
 };
 
-/// What one tick saw and did. Plain bytes: crosses threads and goes to disk as it is.
+/// The contact's unit normal, from tissue to tool.
+inline Eigen::Vector3d normal_of(const Contact& contact) noexcept {
+    return Eigen::Map<const Eigen::Vector3f>(contact.normal.data()).cast<double>();
+}
+
+/// What the contact does to the tool, N.
+inline Eigen::Vector3d force_on_tool(const Contact& contact) noexcept {
+    return static_cast<double>(contact.force) * normal_of(contact) +
+           Eigen::Map<const Eigen::Vector3f>(contact.friction.data()).cast<double>();
+}
+
+/// What one tick saw and did with one tool. Plain bytes: crosses threads and goes to disk as it is.
 struct TickResult {
     std::int64_t tick = 0;                           ///< 0 for the first
+    std::int32_t tool = 0;                           ///< which one, from 0 on
     double time = 0;                                 ///< s since the loop started
     std::array<double, 3> device_position{0, 0, 0};  ///< p_P, mm
-    std::array<double, 3> tool_position{0, 0, 0};    ///< the device's, held outside rigid bodies; p_P, mm
+    std::array<double, 3> tool_position{0, 0, 0};    ///< at the other end of the virtual coupling; p_P, mm
     std::array<double, 3> force{0, 0, 0};            ///< on the device, frame P, N
     double depth = 0;        ///< of the device below the deepest touched rest surface, mm
     double residual = 0;     ///< worst violation of the contact conditions, mm

@@ -10,6 +10,7 @@ namespace palpate {
 struct DeviceState {
     double time = 0;                          ///< s since the loop started
     std::array<double, 3> position{0, 0, 0};  ///< of the tool's centre, p_P, mm
+    std::array<double, 3> shaft{0, 0, 0};     ///< unit, from the tip along the tool's shaft; zero: not known
     std::uint32_t buttons = 0;                ///< one bit each
     bool connected = true;                    ///< false: the position is not to be trusted
 };
@@ -18,7 +19,7 @@ struct DeviceState {
 struct DeviceLimits {
     double max_force = 0;      ///< N
     double max_stiffness = 0;  ///< N/mm
-    double damping = 0;        ///< N s/mm, the device's own: sampled at period T it bears 2 damping / T
+    double damping = 0;        ///< of the device itself, N s/mm; 0: not known
 };
 
 /// A haptic device as the servo loop sees it. read() and write() are called by the haptic thread alone, never
