@@ -4,6 +4,7 @@
 
 #include "tests/benchmarks/experiments/experiments.hpp"
 #include "tests/benchmarks/experiments/passivity.hpp"
+#include "tests/benchmarks/experiments/puncture.hpp"
 
 namespace palpate::bench {
 namespace {
@@ -11,6 +12,8 @@ namespace {
 const std::vector<Experiment> experiments{
     // name, what it finds out, function
     {"passivity", "the stiffest wall that the closed loop bears, against 2b/T", passivity},
+    {"puncture", "how often a tool is pushed through a bone, by scheme; the published tables 1 and 2",
+     puncture},
 };
 
 const Experiment& find_experiment(const std::string& name) {
