@@ -10,6 +10,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double tick_s = 1e-3;
+constexpr double just_before = 2;  // mm: beyond what a bump beside the entry holds up
 constexpr HandImpedance hand;
 
 Vector3d vector_of(const std::array<double, 3>& v) {
@@ -52,17 +53,17 @@ Outcome run_approach(HapticModel& model, const DeviceModel& device_model, const 
         device.write(result.force);
         if (detects_at(time, approach.phase)) model.detect();
 
-        const double depth = (device.position() - entry).dot(direction);
+        const Vector3d way = device.position() - entry;
+        const double depth = way.dot(direction);
         const double along = vector_of(result.force).dot(direction);
-        if (contact < 0 && depth >= 0) {
-            contact = time;
-            outcome.contact_speed = device.velocity().dot(direction);
-        }
+        if (depth <= -just_before) outcome.speed = device.velocity().dot(direction);
+        if (contact < 0 && depth >= 0) contact = time;
         if (outcome.latency < 0 && along != 0) {
             outcome.latency = contact < 0 ? 0 : time - contact;
             outcome.depth_at_force = depth;
         }
         outcome.deepest = std::max(outcome.deepest, depth);
+        outcome.aside = std::max(outcome.aside, (way - depth * direction).norm());
         outcome.pull = std::max(outcome.pull, along);
         if (time > end - Approach::judged_s) {
             held_sum -= along;

@@ -24,10 +24,11 @@ struct Approach {
 struct Outcome {
     double held = 0;                   ///< mean force against the approach over the last judged_s, N
     double pull = 0;                   ///< largest force along the approach, N
-    double contact_speed = 0;          ///< of the tip when it first passes the entry, mm/s
-    double latency = -1;               ///< s from there to the first force; -1: there was none
+    double speed = 0;                  ///< of the tip 2 mm before the entry, mm/s
+    double latency = -1;               ///< s from passing the entry to the first force; -1: there was none
     double depth_at_force = 0;         ///< mm behind the entry at the first force
-    double deepest = 0;                ///< mm behind the entry
+    double deepest = 0;                ///< of the tip, mm behind the entry
+    double aside = 0;                  ///< farthest that the tip came off the line of approach, mm
     bool tool_passed_surface = false;  ///< the tool itself, as drawn, crossed or overlapped the surface
 };
 
