@@ -192,9 +192,9 @@ Json fast_table(std::string& table, Bench& bench) {
         lost, chance_text(lost, static_cast<int>(fast_count)), through, pulled);
     if (lost > through)
         table += fmt::format(
-            "\nWhere the hold was lost though the tool never passed the surface, it had slid {:.1f} mm or "
-            "more to "
-            "the side, round an edge of the bone: the contact has no friction.\n",
+            "\nWhere the hold was lost though the tool never passed the surface, the tip had gone {:.1f} mm "
+            "or more "
+            "to the side, without friction: round an edge of the bone or into an opening of it.\n",
             least_aside);
     return {{"approaches", fast_count},
             {"punctures", lost},
