@@ -112,10 +112,27 @@ TEST(DrawPlaces, takes_the_outer_side_and_finds_the_thickness) {
     }
 }
 
+constexpr HapticSettings settings{
+    .tool_radius = 0.5, .coupling_stiffness = 1, .max_force = 7.9, .max_force_rate = 7.9};
+
+TEST(RunApproach, a_wall_thicker_than_the_way_between_detections_holds_with_every_scheme) {
+    constexpr double radius = 40, thickness = 15;
+    const Case c = rigid_case("shell", shell(radius, thickness), settings);
+    for (const ContactScheme scheme :
+         {ContactScheme::single, ContactScheme::twice, ContactScheme::continuous}) {
+        HapticModel model(c, scheme);
+        const Outcome outcome =
+            run_approach(model, find_device_model("desktop"), onto_shell(radius, thickness, 145), false);
+        EXPECT_FALSE(is_puncture(outcome, 1)) << static_cast<int>(scheme);
+        EXPECT_FALSE(is_pulled(outcome));
+        const double detection = scheme == ContactScheme::single ? 1.0 / 30 : 0.002;
+        EXPECT_LE(outcome.latency, detection + 0.001);
+        EXPECT_LT(outcome.deepest, thickness / 2);
+    }
+}
+
 TEST(RunApproach, continuous_contact_holds_on_a_thin_wall_and_single_detection_does_not) {
     constexpr double radius = 40, thickness = 1;
-    const HapticSettings settings{
-        .tool_radius = 0.5, .coupling_stiffness = 1, .max_force = 7.9, .max_force_rate = 7.9};
     const Case c = rigid_case("shell", shell(radius, thickness), settings);
     const DeviceModel& device = find_device_model("desktop");
     HapticModel continuous(c), single(c, ContactScheme::single);

@@ -107,9 +107,9 @@ Json limits_table(std::string& table, cli::Session& session) {
     table += "\n";
     for (const int period : refresh_periods) table += comparison(rows, period);
     table +=
-        "\nNever below 2b/T: the bound is safe. Far above it only where damping stops the mass within a "
-        "refresh "
-        "(m/b < T).\n";
+        "\nA ratio to 2b/T of 1 or more says that the bound is safe. It grows where damping stops the mass "
+        "within "
+        "a refresh (m/b < T).\n";
     return rows;
 }
 
