@@ -90,8 +90,7 @@ GroupRun run_groups(Bench& bench) {
         .approaches = bench.draw(puncture_groups * approaches_per_group,
                                  [&](std::size_t i) { return group_speeds[i / approaches_per_group]; }),
         .outcomes = {},
-        .coupling = bench.coupling(),
-        .tool_radius = settings.tool_radius};
+        .coupling = bench.coupling()};
     for (std::size_t scheme = 0; scheme < run.outcomes.size(); ++scheme)
         run.outcomes[scheme] = bench.run(static_cast<ContactScheme>(scheme), run.approaches);
     return run;

@@ -62,7 +62,7 @@ std::string quartiles(const std::vector<double>& values) {
 struct Expected {
     double missed = 0;    // no detection inside the wall, of a tip that nothing slows down
     double far_half = 0;  // that, or the first detection is nearer to the far side
-    int pressed = 0;      // a point, pressed on an unbroken surface, gets beyond the middle of the wall
+    int pressed = 0;      // a tip pressed on an unbroken surface rests beyond the middle of the wall
     double either = 0;    // far_half or pressed
 };
 
@@ -73,7 +73,7 @@ Expected expect(const GroupRun& run) {
         const double step = held[i].speed / Approach::detections_per_s;
         const double wall = run.approaches[i].place.thickness;
         const double far_half = std::max(0.0, 1 - wall / 2 / step);
-        const bool pressed = held[i].deepest + run.tool_radius > wall / 2;
+        const bool pressed = held[i].held / run.coupling > wall / 2;
         expected.missed += std::max(0.0, 1 - wall / step);
         expected.far_half += far_half;
         expected.pressed += pressed;
@@ -169,12 +169,12 @@ Json add_reasons(std::string& table, const GroupRun& run) {
         "- Late: of 100 approaches at these speeds, {:.1f} should pass the whole wall between two "
         "detections, and "
         "{:.1f} its near half. `twice` detects within a tick, so this is gone.\n"
-        "- Pressed: in {} of 100 the tip gets deeper below an unbroken surface, by the coupling's give under "
-        "the "
-        "hand, than half the wall: as `continuous` shows, plus the radius of its tool, which the published "
-        "point "
-        "lacks. The next detection then anchors on the far side. Neither published scheme helps.\n"
-        "- Together that makes {:.1f} for `single` and {} for `twice`.\n\n"
+        "- Pressed: in {} of 100 the coupling gives way under the hand by more than half the wall, with the "
+        "force that "
+        "`continuous` holds at the end; the next detection then anchors on the far side. Neither published "
+        "scheme "
+        "helps.\n"
+        "- Together that lets expect {:.1f} punctures with `single` and {} with `twice`.\n\n"
         "The publication states neither the bone's thickness, nor the spring's stiffness, nor how hard was "
         "pressed; "
         "its counts follow from these as ours do, so they need not agree.\n\n"

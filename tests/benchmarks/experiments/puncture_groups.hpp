@@ -17,7 +17,6 @@ struct GroupRun {
     std::vector<Approach> approaches;
     std::array<std::vector<Outcome>, contact_scheme_names.size()> outcomes;  // by ContactScheme
     double coupling = 0;                                                     // N/mm
-    double tool_radius = 0;                                                  // of `continuous`, mm
 };
 
 /// Appends the published tables 1 and 2 for every scheme, beside the published figures, and what is known of
