@@ -201,13 +201,14 @@ void add_products(const HierarchicalCompliance& c, std::span<const NodeForce> fo
 }  // namespace
 
 std::int32_t node_count(const SurfaceCompliance& compliance) {
-    return std::visit([](const auto& c) { return c.node_count; }, compliance);
+    if (const auto* dense = std::get_if<DenseCompliance>(&compliance)) return dense->node_count;
+    return std::get_if<HierarchicalCompliance>(&compliance)->node_count;
 }
 
 std::size_t value_bytes(const SurfaceCompliance& compliance) {
     if (const auto* dense = std::get_if<DenseCompliance>(&compliance))
         return dense->dof_count() * dense->dof_count() * sizeof(float);
-    const auto& blocks = std::get<HierarchicalCompliance>(compliance);
+    const auto& blocks = *std::get_if<HierarchicalCompliance>(&compliance);
     return blocks.value_count * sizeof(float) + blocks.factor_count * sizeof(std::int16_t);
 }
 

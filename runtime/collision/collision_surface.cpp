@@ -90,10 +90,4 @@ void CollisionSurface::take_nodes(const ObbTree& tree, double scale, const std::
                std::to_string(triangles_.size()));
 }
 
-TriangleCorners CollisionSurface::corners(std::int32_t slot) const noexcept {
-    const float* c = triangles_[static_cast<std::size_t>(slot)].corners;
-    return {Eigen::Vector3d(c[0], c[1], c[2]), Eigen::Vector3d(c[3], c[4], c[5]),
-            Eigen::Vector3d(c[6], c[7], c[8])};
-}
-
 }  // namespace palpate

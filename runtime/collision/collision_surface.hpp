@@ -60,9 +60,23 @@ class CollisionSurface {
     std::size_t slots_near(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius,
                            std::span<std::int32_t> slots) const noexcept;
 
-    /// Tells whether p (mm) is outside; the surface must be closed (unchecked). Among the triangles that
-    /// share the nearest point, the one most square to p decides.
+    /// Tells whether p (mm) is outside: whether p - q, q the nearest surface point, goes along
+    /// pseudonormal(q). The surface must bound a solid (unchecked); its vertices may be as acute and its
+    /// triangles as thin as they like. A point on the surface is not outside. Source: Baerentzen, Aanaes
+    /// 2005.
     bool is_outside(const Eigen::Vector3d& p) const noexcept;
+
+    /// The published name of the same: -1 inside, +1 outside.
+    int inside_or_outside(const Eigen::Vector3d& p) const noexcept { return is_outside(p) ? 1 : -1; }
+
+    /// The unit normal of the triangle found, out of the surface; of a triangle without area, the
+    /// pseudonormal at the point; zero if no triangle there has area.
+    Eigen::Vector3d outward_normal(const ClosestPoint& found) const noexcept;
+
+    /// The angle-weighted normal at a surface point q (mm), unit: sum of alpha_t n_t over the triangles t
+    /// that hold q, where alpha_t is the angle of the part of t about q: 2 pi on its face, pi on an edge, the
+    /// corner's angle at a corner. Zero if no triangle with area holds q. Source: Baerentzen, Aanaes 2005.
+    Eigen::Vector3d pseudonormal(const Eigen::Vector3d& q) const noexcept;
 
     std::int32_t triangle_count() const noexcept { return static_cast<std::int32_t>(triangles_.size()); }
     std::int32_t mesh_triangle(std::int32_t slot) const noexcept {
@@ -70,6 +84,10 @@ class CollisionSurface {
     }
     /// The corners of a slot's triangle, mm.
     TriangleCorners corners(std::int32_t slot) const noexcept;
+    /// A node of the tree, 0 being the root, for queries that walk it themselves. As ObbTree says, but
+    /// `first` of a leaf is a slot, and the box holds its triangles though axes are unit and square only to
+    /// float32.
+    ObbNode node(std::int32_t index) const noexcept;
 
   private:
     struct FlatTriangle {

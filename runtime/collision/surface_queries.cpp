@@ -186,22 +186,4 @@ std::size_t CollisionSurface::slots_near(const Vector3d& a, const Vector3d& b, d
     return found;
 }
 
-bool CollisionSurface::is_outside(const Vector3d& p) const noexcept {
-    const auto nearest = closest_point(p, std::numeric_limits<double>::max());
-    if (!nearest) return false;
-    std::array<std::int32_t, 64> near;  // more triangles than meet at a vertex of any sound mesh
-    const double touching = 1e-6;       // mm: shared corners are equal bit for bit
-    const std::size_t found =
-        std::min(near.size(), slots_near(nearest->point, nearest->point, touching, near));
-    double side = 0;
-    for (std::size_t i = 0; i < found; ++i) {
-        const TriangleCorners t = corners(near[i]);
-        if (closest_point_on_triangle(nearest->point, t).squared_distance > touching * touching) continue;
-        const Vector3d normal = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
-        const double height = normal.dot(p - nearest->point);
-        if (std::abs(height) > std::abs(side)) side = height;
-    }
-    return side > 0;
-}
-
 }  // namespace palpate

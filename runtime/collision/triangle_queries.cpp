@@ -41,6 +41,21 @@ TrianglePoint closest_point_on_edges(const Vector3d& p, const TriangleCorners& t
     return best;
 }
 
+// The edges, and the face if p lies over it by cross products from its foot, which lose half the digits that
+// products of lengths lose.
+TrianglePoint closest_point_on_thin_triangle(const Vector3d& p, const TriangleCorners& t) noexcept {
+    TrianglePoint best = closest_point_on_edges(p, t);
+    const Vector3d normal = unit_normal(t);
+    const Vector3d foot = p - normal.dot(p - t[0]) * normal;
+    Vector3d weights;
+    for (std::size_t i = 0; i < 3; ++i)
+        weights[static_cast<Eigen::Index>(i)] =
+            normal.dot((t[(i + 1) % 3] - foot).cross(t[(i + 2) % 3] - foot));
+    if (!(weights.minCoeff() > 0)) return best;
+    const TrianglePoint here = make_point(p, t, weights / weights.sum(), Feature::face);
+    return here.squared_distance < best.squared_distance ? here : best;
+}
+
 // The smaller root of |from + s way - axis(s)|² = r², written as a s² + 2 b s + c = 0 with a > 0; nothing if
 // the motion does not approach (b >= 0) or misses. Outside (c > 0) both roots are positive; the form c / (-b
 // + root) loses no digits where contact is near.
@@ -52,6 +67,14 @@ std::optional<double> first_root(double a, double b, double c) noexcept {
 }
 
 }  // namespace
+
+Vector3d unit_normal(const TriangleCorners& t) noexcept {
+    const Vector3d ab = t[1] - t[0], ac = t[2] - t[0];
+    const Vector3d cross = ab.cross(ac);
+    const double length = cross.norm();
+    // Relative to the edges, 1e-14 is fifty times what a cross product loses.
+    return length > 1e-14 * ab.norm() * ac.norm() ? Vector3d(cross / length) : Vector3d::Zero();
+}
 
 TrianglePoint closest_point_on_triangle(const Vector3d& p, const TriangleCorners& t) noexcept {
     const Vector3d ab = t[1] - t[0], ac = t[2] - t[0], ap = p - t[0];
@@ -68,9 +91,9 @@ TrianglePoint closest_point_on_triangle(const Vector3d& p, const TriangleCorners
     // area.
     const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
     const double sum = va + vb + vc;
-    // Relative to the edges, 1e-14 is where these differences are rounding only: no area, no face.
-    if (!(va > 0 && vb > 0 && vc > 0) || sum <= 1e-14 * ab.squaredNorm() * ac.squaredNorm())
-        return closest_point_on_edges(p, t);
+    // Relative to the edges, 1e-6 is where these differences have lost ten digits.
+    if (sum <= 1e-6 * ab.squaredNorm() * ac.squaredNorm()) return closest_point_on_thin_triangle(p, t);
+    if (!(va > 0 && vb > 0 && vc > 0)) return closest_point_on_edges(p, t);
     return make_point(p, t, {va / sum, vb / sum, vc / sum}, Feature::face);
 }
 

@@ -12,6 +12,10 @@ enum class Feature : std::uint8_t { face, edge, vertex };
 
 using TriangleCorners = std::array<Eigen::Vector3d, 3>;  ///< mm
 
+/// The unit normal of triangle `t`, (t1 - t0) x (t2 - t0) normalised; zero where that is rounding only.
+/// Realtime-safe.
+Eigen::Vector3d unit_normal(const TriangleCorners& t) noexcept;
+
 /// The point of a triangle nearest to a query point.
 struct TrianglePoint {
     Eigen::Vector3d point = Eigen::Vector3d::Zero();        ///< mm

@@ -92,7 +92,7 @@ double ContactLcp::solve(std::size_t rows, std::span<const std::size_t> active) 
     double worst = 0;
     for (std::size_t round = 0; round < 4 * rows + 8; ++round) {
         std::bitset<max_contacts> is_active;
-        for (std::size_t i = 0; i < count_; ++i) is_active.set(order_[i]);
+        for (std::size_t i = 0; i < count_; ++i) is_active[order_[i]] = true;
         double lowest = -tolerance;
         std::size_t entering = rows;
         worst = 0;
@@ -103,21 +103,21 @@ double ContactLcp::solve(std::size_t rows, std::span<const std::size_t> active) 
                 w += A_(k, row) * f_[row];
             }
             const auto row = static_cast<std::size_t>(k);
-            worst = std::max(worst, is_active.test(row) ? std::abs(w) : -w);
-            if (is_active.test(row) || set_aside.test(row) || w >= lowest) continue;
+            worst = std::max(worst, is_active[row] ? std::abs(w) : -w);
+            if (is_active[row] || set_aside[row] || w >= lowest) continue;
             lowest = w;
             entering = row;
         }
         if (entering == rows) break;
         if (!append(entering)) {
-            set_aside.set(entering);
+            set_aside[entering] = true;
             continue;
         }
         make_feasible();
         if (f_[static_cast<Index>(entering)] > 0)
             set_aside.reset();
         else
-            set_aside.set(entering);
+            set_aside[entering] = true;
     }
     return worst;
 }

@@ -2,19 +2,22 @@
 #include "runtime/haptics/contact_solver.hpp"
 
 #include <algorithm>
-#include <span>
 
 namespace palpate {
 
 using Eigen::Index;
 using Eigen::Vector3d;
 
-void ContactSolver::add(Contact& contact, const DeformableContact* body, std::int32_t tool,
-                        std::int32_t foot) noexcept {
-    const bool vertex = contact.triangle < 0;
-    const std::int64_t place = vertex ? contact.vertices[0] : (std::int64_t{1} << 32) + foot;
-    rows_[count_++] = {&contact, body, tool,
-                       (std::int64_t{tool} << 56) + (std::int64_t{contact.body} << 40) + place};
+void ContactSolver::add(std::span<Contact> contacts, const DeformableContact* body,
+                        std::int32_t tool) noexcept {
+    std::int64_t feet = 0;
+    for (Contact& contact : contacts) {
+        const bool vertex = contact.triangle < 0;
+        const std::int64_t place = vertex ? contact.vertices[0] : (std::int64_t{1} << 32) + feet++;
+        const std::int64_t side =
+            (std::int64_t{tool} << 16) + (std::int64_t{contact.part} << 8) + contact.body;
+        rows_[count_++] = {&contact, body, tool, (side << 40) + place};
+    }
 }
 
 double ContactSolver::entry(const Row& a, const Row& b, double coupling) const noexcept {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "runtime/haptics/contact_lcp.hpp"
 #include "runtime/haptics/deformable_contact.hpp"
@@ -18,9 +19,9 @@ class ContactSolver {
     void clear() noexcept { count_ = 0; }
     std::size_t size() const noexcept { return count_; }
 
-    /// Adds a point: `body` is null for one that is rigid, `foot` counts the points of one tool and body that
-    /// are no vertices. The contact must outlive solve(). At most max_contacts (unchecked).
-    void add(Contact& contact, const DeformableContact* body, std::int32_t tool, std::int32_t foot) noexcept;
+    /// Adds the points of one part of a tool on one body, which is null if it is rigid. The contacts must
+    /// outlive solve(). At most max_contacts in all (unchecked).
+    void add(std::span<Contact> contacts, const DeformableContact* body, std::int32_t tool) noexcept;
 
     /// Solves with a virtual coupling of compliance `coupling` (mm/N) for each tool and writes the forces
     /// into the contacts. Returns the worst violation of the contact conditions, mm.

@@ -38,6 +38,16 @@ HapticSettings checked(const Case& patient_case) {
     return s;
 }
 
+// Where the spheres of a tool are behind its tip, mm: a radius apart, the surface of the row dips by an
+// eighth of it; a long thin shaft gets fewer.
+std::vector<double> spheres_of(const HapticSettings& settings) {
+    constexpr double most = 48;
+    const double spheres = std::min(most, std::ceil(settings.shaft_length / settings.tool_radius));
+    std::vector<double> places{0};
+    for (double k = 1; k <= spheres; ++k) places.push_back(settings.shaft_length * k / spheres);
+    return places;
+}
+
 }  // namespace
 
 double coupling_stiffness(const HapticSettings& settings, const DeviceLimits& device) {
@@ -71,12 +81,15 @@ HapticModel::HapticModel(const Case& patient_case, ContactScheme scheme, std::si
             std::make_unique<CollisionSurface>(body.boundary.surface, body.obb_tree, body.name));
         deformable_.emplace_back(body, index);
     }
-    const double radius = settings_.tool_radius;
     for (std::size_t t = 0; t < tool_count; ++t) {
-        Tool& tool = tools_.emplace_back(GodObject(radius, rigid_surfaces_.size()), std::vector<SoftTouch>{},
-                                         ForceLimiter(settings_), std::vector<Contact>{});
-        for (std::size_t soft = 0; soft < deformable_.size(); ++soft)
-            tool.on_soft.push_back({GodObject(radius, 1)});
+        Tool& tool =
+            tools_.emplace_back(std::vector<Part>{}, ForceLimiter(settings_), std::vector<Contact>{});
+        for (const double behind_tip : spheres_of(settings_)) {
+            Part& part =
+                tool.parts.emplace_back(behind_tip, GodObject(settings_.tool_radius, rigid_surfaces_.size()));
+            for (std::size_t soft = 0; soft < deformable_.size(); ++soft)
+                part.on_soft.push_back({GodObject(settings_.tool_radius, 1)});
+        }
         tool.last_contacts.reserve(max_contacts);
     }
     if (scheme == ContactScheme::continuous) return;
@@ -94,10 +107,12 @@ void HapticModel::couple_to(std::span<const DeviceLimits> devices) {
 
 void HapticModel::reset() noexcept {
     for (Tool& tool : tools_) {
-        tool.on_rigid.reset();
-        for (SoftTouch& touch : tool.on_soft) {
-            touch.god_object.reset();
-            touch.grip = 1;
+        for (Part& part : tool.parts) {
+            part.on_rigid.reset();
+            for (SoftTouch& touch : part.on_soft) {
+                touch.god_object.reset();
+                touch.grip = 1;
+            }
         }
         tool.limiter.reset();
         tool.last_contacts.clear();

@@ -28,10 +28,11 @@ namespace palpate {
 double coupling_stiffness(const HapticSettings& settings, const DeviceLimits& device);
 
 /// A patient ready to be touched: everything is allocated and checked here, so that a tick only computes.
-/// `continuous`: each tool holds a god-object on the rigid bodies and one on each deformable body; where only
-/// rigid bodies are touched the force is that of the virtual coupling, stiffness * (proxy - device),
-/// otherwise all contact points are solved together (ContactSolver). `single` and `twice`: see
-/// PublishedContact; they know one tool.
+/// `continuous`: a tool is a sphere, or a row of spheres where it has a shaft. Each holds a god-object on the
+/// rigid bodies and one on each deformable body; where only the tip touches, and only rigid bodies, the force
+/// is that of the virtual coupling, stiffness * (proxy - device), otherwise all contact points are solved
+/// together (ContactSolver). The shaft turns as the device says; the torque that would turn it back is not
+/// rendered. `single` and `twice`: see PublishedContact; they know one tip.
 class HapticModel {
   public:
     /// Copies what it needs of the case; compliances are shared. Throws InvalidInput if the case has no body,
@@ -78,30 +79,40 @@ class HapticModel {
                               std::span<Eigen::Vector3f> displacements) const noexcept;
 
   private:
-    // A tool on one deformable body.
+    // A part of a tool on one deformable body.
     struct SoftTouch {
         GodObject god_object;
-        double grip = 1;  // what friction's mm of drag hold, against those of press: see feel_friction()
+        double grip = 1;  // what friction's mm of drag hold, against those of press: see friction_of()
         std::span<Contact> contacts{};  // of this tick, in its tool's result
     };
-    struct Tool {
+    // A sphere of the tool: its tip, or one of those that stand for its shaft.
+    struct Part {
+        double behind_tip = 0;  // mm, along the shaft
         GodObject on_rigid;
-        std::vector<SoftTouch> on_soft;
+        std::vector<SoftTouch> on_soft{};
+        std::span<Contact> rigid_contacts{};               // of this tick, where they are solved
+        Eigen::Vector3d device = Eigen::Vector3d::Zero();  // where the coupling pulls it, mm
+    };
+    struct Tool {
+        std::vector<Part> parts;  // the tip first
         ForceLimiter limiter;
         std::vector<Contact> last_contacts;  // of the tick before, at most max_contacts
-        Eigen::Vector3d device = Eigen::Vector3d::Zero();
-        bool present = false;  // the device's position is to be trusted in this tick
+        std::size_t parts_felt = 0;          // in this tick: none without a trusted position, the tip alone
+                                             // without a shaft's direction
     };
 
     void begin(Tool& tool, const DeviceState& device, TickResult& result) noexcept;
     void follow(std::size_t tool, TickResult& result) noexcept;
-    void follow_soft(std::size_t tool, std::size_t soft, TickResult& result) noexcept;
-    Eigen::Vector3d moved_by_others(std::size_t tool, std::size_t soft,
-                                    const Eigen::Vector3d& place) const noexcept;
-    Eigen::Vector3d rigid_force(Tool& tool, TickResult& result) const noexcept;
+    void follow_soft(std::size_t tool, std::size_t part, std::size_t soft, TickResult& result) noexcept;
     void add_rigid_contacts(std::size_t tool, TickResult& result) noexcept;
-    Eigen::Vector3d contact_force(Tool& tool, TickResult& result) noexcept;
-    Eigen::Vector3d feel_friction(SoftTouch& touch, const DeformableContact& body) const noexcept;
+    Eigen::Vector3d moved_by_others(std::size_t tool, std::size_t part, std::size_t soft,
+                                    const Eigen::Vector3d& place) const noexcept;
+    Contact rigid_contact(const GodObject::Touch& touch, const Eigen::Vector3d& normal,
+                          double gap) const noexcept;
+    Eigen::Vector3d rigid_force(const Part& tip, TickResult& result) const noexcept;
+    Eigen::Vector3d solved_force(Tool& tool, const TickResult& result) const noexcept;
+    Eigen::Vector3d friction_of(const Part& part) const noexcept;
+    Eigen::Vector3d friction_of(SoftTouch& touch, const DeformableContact& body) const noexcept;
     void finish(Tool& tool, const Eigen::Vector3d& force, TickResult& result) noexcept;
 
     HapticSettings settings_;

@@ -35,25 +35,23 @@ void HapticModel::tick(std::span<const DeviceState> devices, std::span<TickResul
     }
     ++tick_;
     if (published_) {
-        if (tools_[0].present)
-            finish(tools_[0], published_->tick(tools_[0].device, coupling_, results[0]), results[0]);
+        if (tools_[0].parts_felt > 0)
+            finish(tools_[0], published_->tick(tools_[0].parts[0].device, coupling_, results[0]), results[0]);
         return;
     }
-    for (std::size_t t = 0; t < tools_.size(); ++t)
-        if (tools_[t].present) follow(t, results[t]);
+    for (std::size_t t = 0; t < tools_.size(); ++t) follow(t, results[t]);
     const double residual = solver_.size() > 0 ? solver_.solve(1 / coupling_) : 0;
     for (std::size_t t = 0; t < tools_.size(); ++t) {
         Tool& tool = tools_[t];
         TickResult& result = results[t];
-        if (!tool.present) continue;
-        const bool soft =
-            std::ranges::any_of(tool.on_soft, [](const SoftTouch& touch) { return !touch.contacts.empty(); });
-        if (soft) {
+        if (tool.parts_felt == 0) continue;
+        if (result.contact_count == 0) {
+            finish(tool, rigid_force(tool.parts[0], result), result);
+        } else {
             result.residual = residual;
             if (!(residual <= unsolved)) result.status |= contact_unsolved;
+            finish(tool, solved_force(tool, result), result);
         }
-        finish(tool, soft ? contact_force(tool, result) : rigid_force(tool, result), result);
-        if (tools_.size() == 1) continue;
         const auto contacts = result.active_contacts();
         tool.last_contacts.assign(contacts.begin(), contacts.end());
     }
@@ -68,38 +66,48 @@ void HapticModel::begin(Tool& tool, const DeviceState& device, TickResult& resul
     result.body = -1;
     result.contact_count = 0;
     result.status = tick_ok;
-    for (SoftTouch& touch : tool.on_soft) touch.contacts = {};
-    tool.device = vector_of(device.position);
-    tool.present = device.connected && tool.device.allFinite();
-    if (tool.present) return;
-    result.status = invalid_position;
-    result.force = array_of(tool.limiter.ramp_to_zero());
-    tool.last_contacts.clear();
+    const Vector3d tip = vector_of(device.position), shaft = vector_of(device.shaft);
+    tool.parts_felt = 0;
+    if (!device.connected || !tip.allFinite() || !shaft.allFinite()) {
+        result.status = invalid_position;
+        result.force = array_of(tool.limiter.ramp_to_zero());
+        tool.last_contacts.clear();
+        return;
+    }
+    tool.parts_felt = shaft.squaredNorm() > 0 ? tool.parts.size() : 1;
+    for (Part& part : tool.parts) part.device = tip + part.behind_tip * shaft;
 }
 
-// Moves the tool's god-objects and gathers the contact points that must be solved.
+// Moves the god-objects of the tool's parts and gathers the contact points that must be solved together.
 void HapticModel::follow(std::size_t t, TickResult& result) noexcept {
     Tool& tool = tools_[t];
-    if (!tool.on_rigid.move(rigid_surfaces_, tool.device, friction_)) result.status |= starts_inside;
-    if (!tool.on_rigid.touches().empty()) {
-        result.depth = (tool.on_rigid.position() - tool.device).norm();
-        result.body = static_cast<std::int32_t>(tool.on_rigid.touches().front().surface);
+    const auto touches = [](const Part& part) { return !part.on_rigid.touches().empty(); };
+    for (std::size_t p = 0; p < tool.parts_felt; ++p) {
+        Part& part = tool.parts[p];
+        if (!part.on_rigid.move(rigid_surfaces_, part.device, friction_)) result.status |= starts_inside;
+        const double depth = (part.on_rigid.position() - part.device).norm();
+        if (!touches(part) || depth <= result.depth) continue;
+        result.depth = depth;
+        result.body = static_cast<std::int32_t>(part.on_rigid.touches().front().surface);
     }
-    for (std::size_t soft = 0; soft < deformable_.size(); ++soft) follow_soft(t, soft, result);
-    if (std::ranges::any_of(tool.on_soft, [](const SoftTouch& touch) { return !touch.contacts.empty(); }))
+    for (std::size_t p = 0; p < tool.parts_felt; ++p)
+        for (std::size_t soft = 0; soft < deformable_.size(); ++soft) follow_soft(t, p, soft, result);
+    const auto felt = std::span(tool.parts).first(tool.parts_felt);
+    if (result.contact_count > 0 || (felt.size() > 1 && std::ranges::any_of(felt.subspan(1), touches)))
         add_rigid_contacts(t, result);
 }
 
 // A tool that rigid bodies hold off goes no deeper into soft ones. On a surface that other contacts have
 // moved, its god-object moves as if the surface were at rest and the tool had moved the other way.
-void HapticModel::follow_soft(std::size_t t, std::size_t soft, TickResult& result) noexcept {
-    Tool& tool = tools_[t];
-    SoftTouch& touch = tool.on_soft[soft];
+void HapticModel::follow_soft(std::size_t t, std::size_t p, std::size_t soft, TickResult& result) noexcept {
+    Part& part = tools_[t].parts[p];
+    SoftTouch& touch = part.on_soft[soft];
+    touch.contacts = {};
     const DeformableContact& body = deformable_[soft];
     const CollisionSurface& surface = *surfaces_[rigid_count() + soft];
     const CollisionSurface* const alone = &surface;
-    const Vector3d& wanted = tool.on_rigid.position();
-    const Vector3d goal = wanted - moved_by_others(t, soft, wanted);
+    const Vector3d& wanted = part.on_rigid.position();
+    const Vector3d goal = wanted - moved_by_others(t, p, soft, wanted);
     const Friction friction{friction_.at_rest * touch.grip, friction_.sliding * touch.grip};
     if (!touch.god_object.move({&alone, 1}, goal, friction)) result.status |= starts_inside;
     if (touch.god_object.touches().empty()) {
@@ -112,108 +120,121 @@ void HapticModel::follow_soft(std::size_t t, std::size_t soft, TickResult& resul
     const std::size_t room = std::min(max_contacts - used, max_contacts - solver_.size());
     const std::span<Contact> points = std::span(result.contacts).subspan(used, room);
     const std::size_t count =
-        body.collect(surface, touch.god_object, goal - held, tool.device - held, points, result.status);
+        body.collect(surface, touch.god_object, goal - held, part.device - held, points, result.status);
     touch.contacts = points.first(count);
+    for (Contact& contact : touch.contacts) contact.part = static_cast<std::int32_t>(p);
     result.contact_count += static_cast<std::int32_t>(count);
-    std::int32_t foot = 0;
-    for (Contact& contact : touch.contacts)
-        solver_.add(contact, &body, static_cast<std::int32_t>(t), contact.triangle < 0 ? 0 : foot++);
+    solver_.add(touch.contacts, &body, static_cast<std::int32_t>(t));
     const double depth = (touch.god_object.position() - goal).norm();
     if (depth <= result.depth) return;
     result.depth = depth;
     result.body = body.body_index();
 }
 
-// How far the contacts of the other tools, as of the last tick, have moved a body's surface beside `place`,
-// mm.
-Vector3d HapticModel::moved_by_others(std::size_t t, std::size_t soft, const Vector3d& place) const noexcept {
+// How far the contacts of all other parts and tools, as of the last tick, have moved a body's surface beside
+// `place`, mm.
+Vector3d HapticModel::moved_by_others(std::size_t t, std::size_t p, std::size_t soft,
+                                      const Vector3d& place) const noexcept {
     Vector3d moved = Vector3d::Zero();
-    if (tools_.size() == 1) return moved;
-    const auto foot = surfaces_[rigid_count() + soft]->closest_point(place, beside_surface);
-    if (!foot) return moved;
+    if (tools_.size() == 1 && tools_[0].parts.size() == 1) return moved;
     const DeformableContact& body = deformable_[soft];
-    const Contact point = body.point_on(*foot);
+    std::optional<Contact> point;
     for (std::size_t other = 0; other < tools_.size(); ++other)
-        if (other != t) moved += body.displacement_at(point, tools_[other].last_contacts);
+        for (const Contact& contact : tools_[other].last_contacts) {
+            const bool own = other == t && contact.part == static_cast<std::int32_t>(p);
+            if (own || contact.body != body.body_index() || !(contact.force > 0)) continue;
+            if (!point) {
+                const auto foot = surfaces_[rigid_count() + soft]->closest_point(place, beside_surface);
+                if (!foot) return moved;
+                point = body.point_on(*foot);
+            }
+            moved += body.displacement_at(*point, {&contact, 1});
+        }
     return moved;
 }
 
-// Where only rigid bodies are touched, the spring to the god-object says it all.
-Vector3d HapticModel::rigid_force(Tool& tool, TickResult& result) const noexcept {
-    if (tool.on_rigid.touches().empty()) return Vector3d::Zero();
-    const Vector3d force = coupling_ * (tool.on_rigid.position() - tool.device);
-    const double magnitude = force.norm();
-    const GodObject::Touch& touch = tool.on_rigid.touches().front();
-    Contact& contact = result.contacts[static_cast<std::size_t>(result.contact_count++)];
-    contact = Contact{};
+Contact HapticModel::rigid_contact(const GodObject::Touch& touch, const Vector3d& normal,
+                                   double gap) const noexcept {
+    Contact contact;
     contact.body = static_cast<std::int32_t>(touch.surface);
     contact.triangle = touch.foot.triangle;
     contact.vertices = rigid_triangles_[touch.surface][static_cast<std::size_t>(touch.foot.triangle)];
     Eigen::Map<Eigen::Vector3f>(contact.weights.data()) = touch.foot.barycentric.cast<float>();
-    // Of several walls that hold the tool, one record: the resultant, less friction.
-    const Vector3d drag = -coupling_ * tool.on_rigid.held_back();
-    const Vector3d press = force - drag;
-    Eigen::Map<Eigen::Vector3f>(contact.normal.data()) = press.normalized().cast<float>();
-    Eigen::Map<Eigen::Vector3f>(contact.friction.data()) = drag.cast<float>();
-    contact.gap = static_cast<float>(magnitude / coupling_);
+    Eigen::Map<Eigen::Vector3f>(contact.normal.data()) = normal.cast<float>();
+    contact.gap = static_cast<float>(gap);
+    return contact;
+}
+
+// Where only the tip touches, and only rigid bodies, the spring to its god-object says it all. Several walls
+// that hold it have one record: their resultant, and friction.
+Vector3d HapticModel::rigid_force(const Part& tip, TickResult& result) const noexcept {
+    if (tip.on_rigid.touches().empty()) return Vector3d::Zero();
+    const Vector3d force = coupling_ * (tip.on_rigid.position() - tip.device);
+    const Vector3d drag = -coupling_ * tip.on_rigid.held_back(), press = force - drag;
+    Contact& contact = result.contacts[static_cast<std::size_t>(result.contact_count++)];
+    contact = rigid_contact(tip.on_rigid.touches().front(), press.normalized(), press.norm() / coupling_);
     contact.force = static_cast<float>(press.norm());
+    Eigen::Map<Eigen::Vector3f>(contact.friction.data()) = drag.cast<float>();
     return force;
 }
 
-// The rigid bodies' hold on a tool that touches soft ones too.
+// The rigid bodies' hold on a tool that is held by more.
 void HapticModel::add_rigid_contacts(std::size_t t, TickResult& result) noexcept {
-    const GodObject& god_object = tools_[t].on_rigid;
-    const Vector3d lifted = god_object.position() + god_object.held_back() - tools_[t].device;
-    std::int32_t foot = 0;
-    for (const GodObject::Touch& touch : god_object.touches()) {
-        if (solver_.size() == max_contacts ||
-            static_cast<std::size_t>(result.contact_count) == max_contacts) {
-            result.status |= contacts_cut;
-            return;
+    Tool& tool = tools_[t];
+    for (std::size_t p = 0; p < tool.parts_felt; ++p) {
+        Part& part = tool.parts[p];
+        const auto first = static_cast<std::size_t>(result.contact_count);
+        const Vector3d lifted = part.on_rigid.position() + part.on_rigid.held_back() - part.device;
+        std::size_t count = 0;
+        for (const GodObject::Touch& touch : part.on_rigid.touches()) {
+            if (solver_.size() + count == max_contacts || first + count == max_contacts) {
+                result.status |= contacts_cut;
+                break;
+            }
+            Contact& contact = result.contacts[first + count++];
+            contact = rigid_contact(touch, touch.normal, touch.normal.dot(lifted));
+            contact.part = static_cast<std::int32_t>(p);
         }
-        Contact& contact = result.contacts[static_cast<std::size_t>(result.contact_count++)];
-        contact = Contact{};
-        contact.body = static_cast<std::int32_t>(touch.surface);
-        contact.triangle = touch.foot.triangle;
-        contact.vertices = rigid_triangles_[touch.surface][static_cast<std::size_t>(touch.foot.triangle)];
-        Eigen::Map<Eigen::Vector3f>(contact.weights.data()) = touch.foot.barycentric.cast<float>();
-        Eigen::Map<Eigen::Vector3f>(contact.normal.data()) = touch.normal.cast<float>();
-        contact.gap = static_cast<float>(touch.normal.dot(lifted));
-        solver_.add(contact, nullptr, static_cast<std::int32_t>(t), foot++);
+        result.contact_count += static_cast<std::int32_t>(count);
+        part.rigid_contacts = std::span(result.contacts).subspan(first, count);
+        solver_.add(part.rigid_contacts, nullptr, static_cast<std::int32_t>(t));
     }
 }
 
-// Sums the solved contacts and lets friction drag on them.
-Vector3d HapticModel::contact_force(Tool& tool, TickResult& result) noexcept {
+Vector3d HapticModel::solved_force(Tool& tool, const TickResult& result) const noexcept {
     Vector3d force = Vector3d::Zero();
-    double rigid_press = 0;
-    for (const Contact& contact : result.active_contacts()) {
+    for (const Contact& contact : result.active_contacts())
         force += static_cast<double>(contact.force) * normal_of(contact);
-        if (static_cast<std::size_t>(contact.body) < rigid_count())
-            rigid_press += static_cast<double>(contact.force);
-    }
     if (!(friction_.at_rest > 0)) return force;
-    for (std::size_t soft = 0; soft < tool.on_soft.size(); ++soft)
-        force += feel_friction(tool.on_soft[soft], deformable_[soft]);
-    Vector3d drag = -coupling_ * tool.on_rigid.held_back();
-    const double most = friction_.at_rest * rigid_press;
-    if (drag.norm() > most) drag *= most / drag.norm();
-    return force + drag;
+    for (Part& part : std::span(tool.parts).first(tool.parts_felt)) {
+        for (std::size_t soft = 0; soft < part.on_soft.size(); ++soft)
+            force += friction_of(part.on_soft[soft], deformable_[soft]);
+        force += friction_of(part);
+    }
+    return force;
+}
+
+Vector3d HapticModel::friction_of(const Part& part) const noexcept {
+    double press = 0;
+    for (const Contact& contact : part.rigid_contacts) press += static_cast<double>(contact.force);
+    const Vector3d drag = -coupling_ * part.on_rigid.held_back();
+    const double most = friction_.at_rest * press, wanted = drag.norm();
+    return wanted > most ? Vector3d(most / wanted * drag) : drag;
 }
 
 // Friction drags the points in proportion to how they are pressed, by as much as it takes to move them,
 // together and along with the virtual coupling, as far as the god-object is held back; by Coulomb's law at
 // most. The grip that makes Coulomb's law in forces one in mm for the god-object is that of this tick, in the
 // next one.
-Vector3d HapticModel::feel_friction(SoftTouch& touch, const DeformableContact& body) const noexcept {
-    const Vector3d& held = touch.god_object.held_back();
-    double press = 0, gap = 0;
+Vector3d HapticModel::friction_of(SoftTouch& touch, const DeformableContact& body) const noexcept {
+    double press = 0, work = 0;
     for (const Contact& contact : touch.contacts) {
         press += static_cast<double>(contact.force);
-        gap += static_cast<double>(contact.force * contact.gap);
+        work += static_cast<double>(contact.force * contact.gap);
     }
+    const Vector3d& held = touch.god_object.held_back();
     const double way = held.norm();
-    if (!(press > 0) || !(way > 0)) return Vector3d::Zero();
+    if (!(work > 0) || !(way > 0)) return Vector3d::Zero();
     const Vector3d along = held / way;
     double compliance = 1 / coupling_;
     for (const Contact& a : touch.contacts)
@@ -221,7 +242,7 @@ Vector3d HapticModel::feel_friction(SoftTouch& touch, const DeformableContact& b
             if (a.force > 0 && b.force > 0)
                 compliance += static_cast<double>(a.force * b.force) / (press * press) *
                               body.compliance_between(a, along, b, along);
-    touch.grip = compliance * press * press / gap;
+    touch.grip = compliance * press * press / work;
     const double drag = std::min(way / compliance, friction_.at_rest * press);
     for (Contact& contact : touch.contacts) {
         const double share = static_cast<double>(contact.force) / press;
@@ -232,7 +253,7 @@ Vector3d HapticModel::feel_friction(SoftTouch& touch, const DeformableContact& b
 
 void HapticModel::finish(Tool& tool, const Vector3d& force, TickResult& result) noexcept {
     if (scheme_ == ContactScheme::continuous)
-        result.tool_position = array_of(tool.device + force / coupling_);
+        result.tool_position = array_of(tool.parts[0].device + force / coupling_);
     result.force = array_of(tool.limiter.limit(force, result.status));
 }
 

@@ -29,6 +29,7 @@ std::string status_text(std::uint32_t status);
 /// One contact point, with all that is needed to compute its force again offline.
 struct Contact {
     std::int32_t body = 0;      ///< 0 ... HapticModel::body_count() - 1: rigid bodies first
+    std::int32_t part = 0;      ///< of the tool: 0 the tip, then along its shaft
     std::int32_t triangle = 0;  ///< of the body's surface; -1 if the point is a vertex
     std::array<std::int32_t, 3> vertices{-1, -1, -1};  ///< of the body's surface; -1: unused
     std::array<float, 3> weights{0, 0, 0};             ///< the point is the weighted sum of the vertices

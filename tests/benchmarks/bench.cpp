@@ -3,6 +3,9 @@
 #include <cstdio>
 
 #include "tests/benchmarks/experiments/experiments.hpp"
+#include "tests/benchmarks/experiments/passivity.hpp"
+#include "tests/benchmarks/experiments/puncture.hpp"
+#include "tests/benchmarks/experiments/split.hpp"
 #include "tests/benchmarks/experiments/stability.hpp"
 
 namespace palpate::bench {
@@ -10,6 +13,10 @@ namespace {
 
 const std::vector<Experiment> experiments{
     // name, what it finds out, function
+    {"passivity", "the stiffest wall that the closed loop bears, against 2b/T", passivity},
+    {"puncture", "how often a tool is pushed through a bone, by scheme; the published tables 1 and 2",
+     puncture},
+    {"split", "two deformable bodies: the published split by force ratio against exact contact", split},
     {"stability", "jumps, pulls, roughness and energy of force by scheme, and 10 minutes at random",
      stability},
 };

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <functional>
 #include <gtest/gtest.h>
@@ -8,6 +7,7 @@
 #include "formats/model/errors.hpp"
 #include "runtime/collision/collision_surface.hpp"
 #include "tests/formats/sample_case.hpp"
+#include "tests/runtime/collision_scene.hpp"
 
 namespace palpate {
 namespace {
@@ -17,53 +17,13 @@ using Eigen::Vector3d;
 // The tree stores boxes, the surface vertices in float32; queries compute in double on those vertices.
 constexpr double tolerance = 1e-9;
 
-// A tree of boxes along the axes of a rotated frame.
-ObbTree tilted_tree(TriangleMesh surface, std::size_t leaf_size) {
-    const Eigen::Matrix3d R_BP = Eigen::AngleAxisd(0.7, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
-    for (Vector3d& vertex : surface.vertices) vertex = R_BP * vertex;
-    ObbTree tree = sample::median_tree(surface, leaf_size);
-    for (ObbNode& node : tree.nodes) {
-        node.center = (R_BP.transpose() * node.center.cast<double>()).cast<float>();
-        node.axes = R_BP.cast<float>();
-        node.half_extents.array() += 1e-4F;
-    }
-    return tree;
-}
-
-// A closed sphere far from the origin, with loose triangles about it, some of them needles and points.
-struct Scene {
-    TriangleMesh mesh = sample::sphere_surface({120, -80, 40}, 12, 2);
-    std::mt19937 generator{11};
-
-    Scene() {
-        for (int i = 0; i < 90; ++i) {
-            const auto first = static_cast<std::int32_t>(mesh.vertices.size());
-            const Vector3d center = point();
-            for (int corner = 0; corner < 3; ++corner)
-                mesh.vertices.push_back(center + 0.1 * (point() - Vector3d(120, -80, 40)));
-            if (i % 10 == 0) mesh.vertices.back() = mesh.vertices[mesh.vertices.size() - 2];
-            if (i % 30 == 0) mesh.vertices[mesh.vertices.size() - 3] = mesh.vertices.back();
-            mesh.triangles.push_back({first, first + 1, first + 2});
-        }
-    }
-    Vector3d point() {
-        std::uniform_real_distribution<double> axis(-20, 20);
-        return Vector3d(120, -80, 40) + Vector3d(axis(generator), axis(generator), axis(generator));
-    }
-};
-
 TEST(CollisionSurface, closest_point_is_that_of_all_triangles) {
     Scene scene;
     const CollisionSurface surface(scene.mesh, tilted_tree(scene.mesh, 3), "scene");
     std::int32_t hint = -1;
     for (int i = 0; i < 10000; ++i) {
-        // Random points, points on the surface, on vertices and on edges.
-        Vector3d p = scene.point();
-        const TriangleCorners t = surface.corners(i % surface.triangle_count());
-        if (i % 4 == 1) p = t[0];
-        if (i % 4 == 2) p = 0.5 * (t[0] + t[1]) + Vector3d(0, 0, 1e-7);
-        if (i % 8 == 3) p = (t[0] + t[1] + t[2]) / 3;
-        const double reach = i % 3 == 0 ? 1.0 : 100.0;
+        const Vector3d p = scene.awkward_point(surface.corners(i % surface.triangle_count()));
+        const double reach = i % 3 == 0 ? 1.0 : 2000.0;
         double best = reach * reach;
         bool expected = false;
         for (std::int32_t slot = 0; slot < surface.triangle_count(); ++slot) {
@@ -87,9 +47,12 @@ TEST(CollisionSurface, sweep_stops_at_the_first_of_all_triangles) {
     std::int32_t hint = -1;
     int touched = 0;
     for (int i = 0; i < 10000; ++i) {
-        const Vector3d from = scene.point();
+        // Through faces, edges and corners, past them at a tangent, and from far away.
+        const TriangleCorners t = surface.corners(i % surface.triangle_count());
+        const Vector3d from = scene.awkward_point(t);
+        const Vector3d aim = i % 3 ? scene.point() : t[0] + 2 * (scene.awkward_point(t) - t[0]);
         const double length = i % 2 ? 1.0 : 0.05;
-        const Vector3d to = from + length * (scene.point() - from);
+        const Vector3d to = from + length * (aim - from);
         const double radius = std::array{0.0, 0.2, 1.0}[static_cast<std::size_t>(i % 3)];
         double first = 2;
         for (std::int32_t slot = 0; slot < surface.triangle_count(); ++slot)

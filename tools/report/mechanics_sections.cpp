@@ -113,13 +113,14 @@ std::string mechanics_section(const Case& patient_case) {
             body.element_order == ElementOrder::linear ? "linear" : "quadratic");
     }
     const HapticSettings& haptics = patient_case.haptics;
-    content += html::cards({{"Tool radius", significant(haptics.tool_radius), "mm"},
-                            {"Coupling stiffness", significant(haptics.coupling_stiffness), "N/mm"},
-                            {"Largest force", significant(haptics.max_force), "N"},
-                            {"Largest change", significant(haptics.max_force_rate), "N per ms"},
-                            {"Friction", significant(haptics.friction_at_rest) + " / " +
-                                             significant(haptics.friction_sliding), "at rest / sliding"},
-                            {"Shaft", significant(haptics.shaft_length), "mm"}});
+    content += html::cards(
+        {{"Tool radius", significant(haptics.tool_radius), "mm"},
+         {"Coupling stiffness", significant(haptics.coupling_stiffness), "N/mm"},
+         {"Largest force", significant(haptics.max_force), "N"},
+         {"Largest change", significant(haptics.max_force_rate), "N per ms"},
+         {"Friction", significant(haptics.friction_at_rest) + " / " + significant(haptics.friction_sliding),
+          "at rest / sliding"},
+         {"Shaft", significant(haptics.shaft_length), "mm"}});
     return html::section("mechanics", "Materials and boundary", "Isotropic linear elasticity.", content);
 }
 

@@ -1,0 +1,89 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Fails if an object file of the tick imports anything that may allocate, lock, throw, wait or do I/O.
+
+tick_imports.py <build folder>     the objects listed below, by what the linker will see of them
+tick_imports.py --objects A.o ...  these objects instead
+
+Every undefined symbol of a listed object must be harmless (HARMLESS) or defined in a listed object, so the list is closed
+under calls: what the tick calls is on it. Calls through virtual functions and function pointers leave no symbol; the
+allocation trap of tests/runtime sees those. Instrumented builds import their sanitizer, so they are not checked.
+"""
+import subprocess
+import sys
+from pathlib import Path
+
+# Target folder: object -> why it is the tick's.
+TICK = {
+    "runtime/collision/CMakeFiles/palpate_collision.dir": {
+        "neighbourhood": "sweeps against the triangles around the tool",
+        "segment_queries": "segments against triangles and surface",
+        "surface_access": "triangles and nodes, read by every query",
+        "surface_normals": "inside or outside, normals",
+        "surface_queries": "nearest point, sweep, triangles near",
+        "tree_pairs": "surface against surface",
+        "triangle_queries": "point and sphere against one triangle",
+    },
+    "runtime/haptics/CMakeFiles/palpate_haptics.dir": {
+        "contact_lcp": "complementarity",
+        "contact_solver": "contacts of one tick, solved together",
+        "deformable_contact": "contact points and displacements of an elastic body",
+        "force_limiter": "force and slew limits",
+        "god_object": "the tool that stays outside",
+    },
+    "runtime/realtime/CMakeFiles/palpate_realtime.dir": {
+        "histogram": "what a tick spent",
+    },
+    "formats/model/CMakeFiles/palpate_model.dir": {
+        "compliance": "blocks and products of the compliance",
+    },
+}
+HARMLESS = {
+    "memcpy": "compilers emit it for copies",
+    "memmove": "the same",
+    "memset": "the same",
+    "memcmp": "the same",
+    "atan2": "arithmetic",
+    "__gxx_personality_v0": "named by the unwind table of every noexcept function: an exception would end the program",
+    "_GLOBAL_OFFSET_TABLE_": "the linker's",
+    "__stack_chk_fail": "reached only by a program that is broken already",
+    "__assert_fail": "the same, in builds with assertions",
+}
+
+
+def symbols(path, *options):
+    """Names as the linker knows them."""
+    lines = subprocess.run(["nm", *options, path], capture_output=True, text=True, check=True).stdout.splitlines()
+    return {line.split()[-1].partition("@")[0] for line in lines if line.strip()}
+
+
+def readable(symbol):
+    return subprocess.run(["c++filt", symbol], capture_output=True, text=True, check=True).stdout.strip()
+
+
+def main(arguments):
+    if arguments[0] == "--objects":
+        objects = [Path(name) for name in arguments[1:]]
+    else:
+        objects = [Path(arguments[0]) / folder / f"{name}.cpp.o" for folder, names in TICK.items() for name in names]
+    missing = [path for path in objects if not path.exists()]
+    for path in missing:
+        print(f"{path}: not there; build it, or correct the list in tests/house/tick_imports.py")
+    if missing:
+        return 1
+    imports = {path: symbols(path, "--undefined-only") for path in objects}
+    if any(name.startswith(("__asan", "__tsan", "__ubsan")) for names in imports.values() for name in names):
+        print("skipped: a sanitizer watches this build")
+        return 0
+    defined = set().union(*(symbols(path, "--defined-only") for path in objects))
+    errors = 0
+    for path, names in imports.items():
+        for name in sorted(names - defined - HARMLESS.keys()):
+            errors += 1
+            print(f"{path.name} imports {readable(name)}, which is neither harmless nor defined in the tick's objects")
+    print(f"{len(objects)} objects of the tick read, {errors} forbidden imports")
+    return 1 if errors else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
