@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/devices/hand_path.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <numbers>
 #include <optional>
+#include <random>
 #include <sstream>
 #include <string>
 
@@ -15,14 +18,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Appends straight motions at one speed.
+// Appends straight motions.
 class Stroke {
   public:
     Stroke(const Vector3d& start, double speed) : keys_{{0, start}}, speed_(speed) {}
 
-    void move_to(const Vector3d& p) {
+    void move_to(const Vector3d& p) { move_to(p, speed_); }
+    void move_to(const Vector3d& p, double speed) {
         const double length = (p - keys_.back().position).norm();
-        if (length > 0) keys_.push_back({keys_.back().time + length / speed_, p});
+        if (length > 0) keys_.push_back({keys_.back().time + length / speed, p});
     }
     void hold(double seconds) {
         if (seconds > 0) keys_.push_back({keys_.back().time + seconds, keys_.back().position});
@@ -49,6 +53,11 @@ void check(const ScriptSettings& settings) {
     require(settings.depth >= 0 && std::isfinite(settings.depth), "--depth", settings.depth, "0 mm or more");
     require(settings.seconds > 0 && std::isfinite(settings.seconds), "--seconds", settings.seconds,
             "more than 0 s");
+}
+
+// A number that depends on the seed alone, not on the library.
+double uniform(std::mt19937_64& random, double low, double high) {
+    return low + (high - low) * std::ldexp(static_cast<double>(random() >> 11), -53);
 }
 
 // The numbers of one row; nothing if something else stands there.
@@ -121,6 +130,31 @@ HandPath slide_path(const TouchPoint& target, const ScriptSettings& settings) {
         stroke.move_to(deep);
     } while (stroke.time() + cycle + out < settings.seconds);
     stroke.move_to(outside);
+    return stroke.path();
+}
+
+HandPath random_path(const TouchPoint& target, const ScriptSettings& settings, std::uint64_t seed) {
+    check(settings);
+    std::mt19937_64 random(seed);
+    const Vector3d outside = centre_at(target, settings, -std::min(target.clearance, 5.0));
+    const Vector3d bitangent = target.normal.cross(target.tangent);
+    const auto somewhere = [&] {
+        const double angle = uniform(random, 0, 2 * std::numbers::pi),
+                     aside = settings.slide_length * std::sqrt(uniform(random, 0, 1)),
+                     depth = uniform(random, 0, settings.depth);
+        return Vector3d(centre_at(target, settings, depth) +
+                        aside * (std::cos(angle) * target.tangent + std::sin(angle) * bitangent));
+    };
+    const auto some_speed = [&] { return settings.speed * uniform(random, 0.1, 1); };
+    Stroke stroke(outside, settings.speed);
+    do {
+        const auto places = static_cast<int>(uniform(random, 1, 5));  // a push, and up to three slides
+        for (int place = 0; place < places; ++place) {
+            stroke.move_to(somewhere(), some_speed());
+            stroke.hold(uniform(random, 0, settings.hold_s));
+        }
+        stroke.move_to(outside, some_speed());
+    } while (stroke.time() < settings.seconds);
     return stroke.path();
 }
 

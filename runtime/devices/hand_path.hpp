@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <cstdint>
 #include <filesystem>
 #include <vector>
 
@@ -48,6 +49,11 @@ HandPath press_path(const TouchPoint& target, const ScriptSettings& settings);
 
 /// Presses once, slides to either side of the point and back until the time is over, then lets go.
 HandPath slide_path(const TouchPoint& target, const ScriptSettings& settings);
+
+/// Pushes at random places within slide_length of the point, as deep as `depth` at most and at a tenth of
+/// `speed` to the whole; holds, slides to others, and leaves; over and over until the time is over, ending
+/// outside. The same seed gives the same path.
+HandPath random_path(const TouchPoint& target, const ScriptSettings& settings, std::uint64_t seed);
 
 /// Reads a path from text: rows "x y z" (mm), one per millisecond, or "t x y z" (s, mm); commas or blanks
 /// between, '#' starts a comment. Throws InvalidInput naming file and line.

@@ -6,6 +6,7 @@
 #include "tests/benchmarks/experiments/passivity.hpp"
 #include "tests/benchmarks/experiments/puncture.hpp"
 #include "tests/benchmarks/experiments/split.hpp"
+#include "tests/benchmarks/experiments/stability.hpp"
 
 namespace palpate::bench {
 namespace {
@@ -16,6 +17,8 @@ const std::vector<Experiment> experiments{
     {"puncture", "how often a tool is pushed through a bone, by scheme; the published tables 1 and 2",
      puncture},
     {"split", "two deformable bodies: the published split by force ratio against exact contact", split},
+    {"stability", "jumps, pulls, roughness and energy of force by scheme, and 10 minutes at random",
+     stability},
 };
 
 const Experiment& find_experiment(const std::string& name) {

@@ -72,12 +72,43 @@ TEST(SlidePath, stays_at_depth_goes_to_both_sides_and_leaves) {
     EXPECT_NEAR(path.at(99).z(), 6, 1e-12);
 }
 
+TEST(RandomPath, stays_within_depth_length_and_speed_and_leaves_at_the_end) {
+    const ScriptSettings settings{
+        .tool_radius = 1, .depth = 2, .speed = 50, .hold_s = 0.1, .slide_length = 3, .seconds = 20};
+    const HandPath path = random_path(target, settings, 5);
+    double deepest = 9, highest = 0, farthest = 0, fastest = 0;
+    for (double t = 0; t < path.duration(); t += 1e-3) {
+        const Vector3d p = path.at(t) - target.point;
+        deepest = std::min(deepest, p.z());
+        highest = std::max(highest, p.z());
+        farthest = std::max(farthest, p.head<2>().norm());
+        fastest = std::max(fastest, (path.at(t + 1e-3) - path.at(t)).norm() * 1e3);
+    }
+    EXPECT_GE(deepest, 1 - 2 - 1e-9);
+    EXPECT_LT(deepest, 1 - 1.8);
+    EXPECT_NEAR(highest, 1 + 2, 1e-9);
+    EXPECT_LE(farthest, 3 + 1e-9);
+    EXPECT_GT(farthest, 2.7);
+    EXPECT_LE(fastest, 50 + 1e-6);
+    EXPECT_GT(fastest, 45);
+    EXPECT_GE(path.duration(), 20);
+    EXPECT_EQ(path.at(99), path.at(0));
+}
+
+TEST(RandomPath, the_seed_decides) {
+    const HandPath a = random_path(target, {}, 1), b = random_path(target, {}, 1),
+                   c = random_path(target, {}, 2);
+    EXPECT_EQ(a.at(1.234), b.at(1.234));
+    EXPECT_NE(a.at(1.234), c.at(1.234));
+}
+
 TEST(Scripts, refuse_settings_that_make_no_motion) {
     const auto refused = [](const std::function<void(ScriptSettings&)>& spoil) {
         ScriptSettings settings;
         spoil(settings);
         EXPECT_THROW(press_path(target, settings), UsageError);
         EXPECT_THROW(slide_path(target, settings), UsageError);
+        EXPECT_THROW(random_path(target, settings, 1), UsageError);
     };
     refused([](ScriptSettings& s) { s.speed = 0; });
     refused([](ScriptSettings& s) { s.depth = -1; });
