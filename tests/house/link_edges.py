@@ -13,7 +13,7 @@ from pathlib import Path
 # Small libraries that bind a room to nothing.
 EVERYWHERE = {"eigen", "fmt", "threads"}
 # What tests stand on, not part of the house.
-TEST_SUPPORT = {"palpate_house", "palpate_phantoms", "palpate_sample_case"}
+TEST_SUPPORT = {"palpate-bench", "palpate_experiments", "palpate_house", "palpate_phantoms", "palpate_sample_case"}
 # What each room may link directly: rooms of ours, and families of other libraries.
 ROOMS = {
     "model": set(),
