@@ -120,8 +120,10 @@ std::optional<TriangleContact> touch_at_start(const Vector3d& from, const Vector
 
 std::optional<TriangleContact> sweep_sphere_triangle(const Vector3d& from, const Vector3d& way, double radius,
                                                      double limit, const TriangleCorners& t) noexcept {
-    const Vector3d cross = (t[1] - t[0]).cross(t[2] - t[0]);
+    const Vector3d ab = t[1] - t[0], ac = t[2] - t[0], cross = ab.cross(ac);
     const double twice_area = cross.norm();
+    // A needle's plane is too uncertain to rule anything out by.
+    const bool sound = twice_area > 1e-4 * (ab.squaredNorm() + ac.squaredNorm());
     Vector3d face_normal = twice_area > 0 ? Vector3d(cross / twice_area) : Vector3d::Zero();
     if (face_normal.dot(from - t[0]) < 0) face_normal = -face_normal;
     const double height = face_normal.dot(from - t[0]);
@@ -134,27 +136,34 @@ std::optional<TriangleContact> sweep_sphere_triangle(const Vector3d& from, const
         };
         return inside(0, 1) && inside(1, 2) && inside(2, 0);
     };
-    if (height >= radius && twice_area > 0) {
-        // Clear of the triangle's plane, the sphere must get down to it first.
-        if (height > radius && (descent <= 0 || height - radius > limit * descent)) return std::nullopt;
-        if (descent > 0) {
-            const double fraction = (height - radius) / descent;
-            const Vector3d point = from + fraction * way - radius * face_normal;
-            if (on_face(point)) return TriangleContact{fraction, point, face_normal};
-        }
-    } else if (twice_area > 0 && on_face(from - height * face_normal)) {
-        return touch_at_start(from, way, face_normal, t);
-    }
-
     TriangleContact best{limit, Vector3d::Zero(), Vector3d::Zero()};
     bool found = false;
-    const auto consider = [&](double fraction, const Vector3d& point) {
+    double earliest = 0;  // edges are not reached before the plane, but their roots lose half the digits
+    const auto consider = [&](double root, const Vector3d& point) {
+        const double fraction = std::max(root, earliest);
         if (fraction > best.fraction || (found && fraction == best.fraction)) return;
         const Vector3d offset = from + fraction * way - point;
         const double length = offset.norm();
         best = {fraction, point, length > 0 ? Vector3d(offset / length) : face_normal};
         found = true;
     };
+    if (height >= radius && twice_area > 0) {
+        // Clear of the triangle's plane, the sphere must get down to it first.
+        if (sound && height > radius && (descent <= 0 || height - radius > limit * descent))
+            return std::nullopt;
+        if (descent > 0) {
+            const double fraction = (height - radius) / descent;
+            const Vector3d point = from + fraction * way - radius * face_normal;
+            if (sound) earliest = fraction;
+            if (fraction <= limit && on_face(point)) {
+                if (sound) return TriangleContact{fraction, point, face_normal};
+                consider(fraction, point);
+            }
+        }
+    } else if (twice_area > 0 && on_face(from - height * face_normal)) {
+        return touch_at_start(from, way, face_normal, t);
+    }
+
     const double speed_squared = way.squaredNorm();
     for (const auto& [i, j] : edges) {
         const Vector3d edge = t[j] - t[i], m = from - t[i];

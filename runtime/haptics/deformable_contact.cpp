@@ -107,6 +107,8 @@ std::size_t DeformableContact::collect(const CollisionSurface& surface, const Go
             contact.vertices = {v, -1, -1};
             contact.weights = {1, 0, 0};
             const FootprintVertex met = meet(lateral, axis, r);
+            // Tissue that faces away from the tool there would be pulled.
+            if (vertex_normals_[vertex].cast<double>().dot(met.normal) <= 0) continue;
             if (met.cosine < 0.5) {
                 const double own = compliance_between(contact, met.normal, contact, met.normal);
                 contact.series_compliance = static_cast<float>(own * (0.5 / std::max(1e-6, met.cosine) - 1));

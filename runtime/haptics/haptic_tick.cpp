@@ -10,8 +10,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double unsolved = 1e-3;      // mm of residual that is reported
-constexpr double beside_surface = 10;  // mm: farther from a body than this, its motion does not matter
+constexpr double unsolved = 1e-3;       // mm of residual that is reported
+constexpr std::int32_t any_rigid = -1;  // in the place of a body
+constexpr double beside_surface = 10;   // mm: farther from a body than this, its motion does not matter
 
 std::array<double, 3> array_of(const Vector3d& v) noexcept {
     return {v[0], v[1], v[2]};
@@ -81,24 +82,39 @@ void HapticModel::begin(Tool& tool, const DeviceState& device, TickResult& resul
 // Moves the god-objects of the tool's parts and gathers the contact points that must be solved together.
 void HapticModel::follow(std::size_t t, TickResult& result) noexcept {
     Tool& tool = tools_[t];
-    const auto touches = [](const Part& part) { return !part.on_rigid.touches().empty(); };
+    bool together = false;
     for (std::size_t p = 0; p < tool.parts_felt; ++p) {
         Part& part = tool.parts[p];
-        if (!part.on_rigid.move(rigid_surfaces_, part.device, friction_)) result.status |= starts_inside;
-        const double depth = (part.on_rigid.position() - part.device).norm();
-        if (!touches(part) || depth <= result.depth) continue;
+        const Vector3d push = pushed_by_others(tool, p, any_rigid);
+        const Vector3d goal = part.device + push;
+        if (!part.on_rigid.move(rigid_surfaces_, goal, friction_)) result.status |= starts_inside;
+        if (part.on_rigid.touches().empty()) continue;
+        together = together || p > 0 || push.squaredNorm() > 0;
+        const double depth = (part.on_rigid.position() - goal).norm();
+        if (depth <= result.depth) continue;
         result.depth = depth;
         result.body = static_cast<std::int32_t>(part.on_rigid.touches().front().surface);
     }
     for (std::size_t p = 0; p < tool.parts_felt; ++p)
         for (std::size_t soft = 0; soft < deformable_.size(); ++soft) follow_soft(t, p, soft, result);
-    const auto felt = std::span(tool.parts).first(tool.parts_felt);
-    if (result.contact_count > 0 || (felt.size() > 1 && std::ranges::any_of(felt.subspan(1), touches)))
-        add_rigid_contacts(t, result);
+    if (together || result.contact_count > 0) add_rigid_contacts(t, result);
 }
 
-// A tool that rigid bodies hold off goes no deeper into soft ones. On a surface that other contacts have
-// moved, its god-object moves as if the surface were at rest and the tool had moved the other way.
+// How far the contacts of the last tick, but for those of this part with `body`, push the tool from where the
+// coupling pulls it, mm.
+Vector3d HapticModel::pushed_by_others(const Tool& tool, std::size_t p, std::int32_t body) const noexcept {
+    Vector3d force = Vector3d::Zero();
+    for (const Contact& contact : tool.last_contacts) {
+        const bool rigid = static_cast<std::size_t>(contact.body) < rigid_count();
+        const bool own = contact.part == static_cast<std::int32_t>(p) &&
+                         (body == any_rigid ? rigid : contact.body == body);
+        if (!own && contact.force > 0) force += force_on_tool(contact);
+    }
+    return force / coupling_;
+}
+
+// On a surface that other contacts have moved, a god-object moves as if the surface were at rest and the tool
+// had moved the other way.
 void HapticModel::follow_soft(std::size_t t, std::size_t p, std::size_t soft, TickResult& result) noexcept {
     Part& part = tools_[t].parts[p];
     SoftTouch& touch = part.on_soft[soft];
@@ -106,7 +122,7 @@ void HapticModel::follow_soft(std::size_t t, std::size_t p, std::size_t soft, Ti
     const DeformableContact& body = deformable_[soft];
     const CollisionSurface& surface = *surfaces_[rigid_count() + soft];
     const CollisionSurface* const alone = &surface;
-    const Vector3d& wanted = part.on_rigid.position();
+    const Vector3d wanted = part.device + pushed_by_others(tools_[t], p, body.body_index());
     const Vector3d goal = wanted - moved_by_others(t, p, soft, wanted);
     const Friction friction{friction_.at_rest * touch.grip, friction_.sliding * touch.grip};
     if (!touch.god_object.move({&alone, 1}, goal, friction)) result.status |= starts_inside;
