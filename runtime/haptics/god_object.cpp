@@ -61,6 +61,17 @@ std::optional<GodObject::Hit> GodObject::sweep(Surfaces surfaces, const Vector3d
     return first;
 }
 
+std::optional<GodObject::Touch> GodObject::touch_on_the_way(Surfaces surfaces, const Vector3d& to) noexcept {
+    const auto hit = sweep(surfaces, to);
+    if (!hit) return std::nullopt;
+    const SweepContact& contact = hit->contact;
+    const TrianglePoint foot =
+        closest_point_on_triangle(contact.point, surfaces[hit->surface]->corners(contact.slot));
+    return Touch{{contact.point, foot.barycentric, radius_, contact.triangle, contact.slot, foot.feature},
+                 contact.normal,
+                 hit->surface};
+}
+
 // One round goes towards the device until nothing is in the way within the half-spaces touched in that round.
 // The half-spaces are those of the first touches, so a sphere that slid off an edge hangs above the surface;
 // further rounds let it down, until a round hardly moves it.

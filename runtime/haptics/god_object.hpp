@@ -50,6 +50,11 @@ class GodObject {
     bool move(std::span<const CollisionSurface* const> surfaces, const Eigen::Vector3d& device,
               const Friction& friction = {}) noexcept;
 
+    /// Where the sphere, on a straight way from its position to `to` (mm), would first touch a surface; it
+    /// stays where it is.
+    std::optional<Touch> touch_on_the_way(std::span<const CollisionSurface* const> surfaces,
+                                          const Eigen::Vector3d& to) noexcept;
+
     const Eigen::Vector3d& position() const noexcept { return position_; }
     double radius() const noexcept { return radius_; }
     /// Where the sphere rests on the surface and is held off the device, the nearest first; none if it

@@ -104,8 +104,8 @@ class HapticModel {
     void begin(Tool& tool, const DeviceState& device, TickResult& result) noexcept;
     void follow(std::size_t tool, TickResult& result) noexcept;
     void follow_soft(std::size_t tool, std::size_t part, std::size_t soft, TickResult& result) noexcept;
+    bool hold_off_rigid(std::span<TickResult> results) noexcept;
     void add_rigid_contacts(std::size_t tool, TickResult& result) noexcept;
-    Eigen::Vector3d pushed_by_others(const Tool& tool, std::size_t part, std::int32_t body) const noexcept;
     Eigen::Vector3d moved_by_others(std::size_t tool, std::size_t part, std::size_t soft,
                                     const Eigen::Vector3d& place) const noexcept;
     Contact rigid_contact(const GodObject::Touch& touch, const Eigen::Vector3d& normal,

@@ -10,9 +10,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double unsolved = 1e-3;       // mm of residual that is reported
-constexpr std::int32_t any_rigid = -1;  // in the place of a body
-constexpr double beside_surface = 10;   // mm: farther from a body than this, its motion does not matter
+constexpr double unsolved = 1e-3;      // mm of residual that is reported
+constexpr int most_rounds = 4;         // of contacts that only the solution of the others meets
+constexpr double beside_surface = 10;  // mm: farther from a body than this, its motion does not matter
 
 std::array<double, 3> array_of(const Vector3d& v) noexcept {
     return {v[0], v[1], v[2]};
@@ -20,6 +20,14 @@ std::array<double, 3> array_of(const Vector3d& v) noexcept {
 
 Vector3d vector_of(const std::array<double, 3>& v) noexcept {
     return Eigen::Map<const Vector3d>(v.data());
+}
+
+// What contacts press the tool with, friction left out, N.
+Vector3d pressed(const TickResult& result) noexcept {
+    Vector3d force = Vector3d::Zero();
+    for (const Contact& contact : result.active_contacts())
+        force += static_cast<double>(contact.force) * normal_of(contact);
+    return force;
 }
 
 }  // namespace
@@ -41,7 +49,9 @@ void HapticModel::tick(std::span<const DeviceState> devices, std::span<TickResul
         return;
     }
     for (std::size_t t = 0; t < tools_.size(); ++t) follow(t, results[t]);
-    const double residual = solver_.size() > 0 ? solver_.solve(1 / coupling_) : 0;
+    double residual = solver_.size() > 0 ? solver_.solve(1 / coupling_) : 0;
+    for (int round = 0; round < most_rounds && hold_off_rigid(results); ++round)
+        residual = solver_.solve(1 / coupling_);
     for (std::size_t t = 0; t < tools_.size(); ++t) {
         Tool& tool = tools_[t];
         TickResult& result = results[t];
@@ -82,35 +92,20 @@ void HapticModel::begin(Tool& tool, const DeviceState& device, TickResult& resul
 // Moves the god-objects of the tool's parts and gathers the contact points that must be solved together.
 void HapticModel::follow(std::size_t t, TickResult& result) noexcept {
     Tool& tool = tools_[t];
-    bool together = false;
+    bool shaft_held = false;
     for (std::size_t p = 0; p < tool.parts_felt; ++p) {
         Part& part = tool.parts[p];
-        const Vector3d push = pushed_by_others(tool, p, any_rigid);
-        const Vector3d goal = part.device + push;
-        if (!part.on_rigid.move(rigid_surfaces_, goal, friction_)) result.status |= starts_inside;
+        if (!part.on_rigid.move(rigid_surfaces_, part.device, friction_)) result.status |= starts_inside;
         if (part.on_rigid.touches().empty()) continue;
-        together = together || p > 0 || push.squaredNorm() > 0;
-        const double depth = (part.on_rigid.position() - goal).norm();
+        shaft_held = shaft_held || p > 0;
+        const double depth = (part.on_rigid.position() - part.device).norm();
         if (depth <= result.depth) continue;
         result.depth = depth;
         result.body = static_cast<std::int32_t>(part.on_rigid.touches().front().surface);
     }
     for (std::size_t p = 0; p < tool.parts_felt; ++p)
         for (std::size_t soft = 0; soft < deformable_.size(); ++soft) follow_soft(t, p, soft, result);
-    if (together || result.contact_count > 0) add_rigid_contacts(t, result);
-}
-
-// How far the contacts of the last tick, but for those of this part with `body`, push the tool from where the
-// coupling pulls it, mm.
-Vector3d HapticModel::pushed_by_others(const Tool& tool, std::size_t p, std::int32_t body) const noexcept {
-    Vector3d force = Vector3d::Zero();
-    for (const Contact& contact : tool.last_contacts) {
-        const bool rigid = static_cast<std::size_t>(contact.body) < rigid_count();
-        const bool own = contact.part == static_cast<std::int32_t>(p) &&
-                         (body == any_rigid ? rigid : contact.body == body);
-        if (!own && contact.force > 0) force += force_on_tool(contact);
-    }
-    return force / coupling_;
+    if (shaft_held || result.contact_count > 0) add_rigid_contacts(t, result);
 }
 
 // On a surface that other contacts have moved, a god-object moves as if the surface were at rest and the tool
@@ -122,7 +117,7 @@ void HapticModel::follow_soft(std::size_t t, std::size_t p, std::size_t soft, Ti
     const DeformableContact& body = deformable_[soft];
     const CollisionSurface& surface = *surfaces_[rigid_count() + soft];
     const CollisionSurface* const alone = &surface;
-    const Vector3d wanted = part.device + pushed_by_others(tools_[t], p, body.body_index());
+    const Vector3d& wanted = part.on_rigid.position();
     const Vector3d goal = wanted - moved_by_others(t, p, soft, wanted);
     const Friction friction{friction_.at_rest * touch.grip, friction_.sliding * touch.grip};
     if (!touch.god_object.move({&alone, 1}, goal, friction)) result.status |= starts_inside;
@@ -194,6 +189,35 @@ Vector3d HapticModel::rigid_force(const Part& tip, TickResult& result) const noe
     return force;
 }
 
+// Soft bodies push the tool away from where the rigid ones were asked: adds the contacts that it would meet
+// on the way. Tells whether there are any.
+bool HapticModel::hold_off_rigid(std::span<TickResult> results) noexcept {
+    bool met = false;
+    for (std::size_t t = 0; t < tools_.size(); ++t) {
+        TickResult& result = results[t];
+        if (tools_[t].parts_felt == 0 || result.contact_count == 0) continue;
+        const Vector3d push = pressed(result) / coupling_;
+        for (std::size_t p = 0; p < tools_[t].parts_felt; ++p) {
+            Part& part = tools_[t].parts[p];
+            const auto touch = part.on_rigid.touch_on_the_way(rigid_surfaces_, part.device + push);
+            if (!touch) continue;
+            const auto at = static_cast<std::size_t>(result.contact_count);
+            if (solver_.size() == max_contacts || at == max_contacts) {
+                result.status |= contacts_cut;
+                continue;
+            }
+            const double gap = touch->normal.dot(touch->foot.point - part.device) + part.on_rigid.radius();
+            Contact& contact = result.contacts[at];
+            contact = rigid_contact(*touch, touch->normal, gap);
+            contact.part = static_cast<std::int32_t>(p);
+            ++result.contact_count;
+            solver_.add({&contact, 1}, nullptr, static_cast<std::int32_t>(t));
+            met = true;
+        }
+    }
+    return met;
+}
+
 // The rigid bodies' hold on a tool that is held by more.
 void HapticModel::add_rigid_contacts(std::size_t t, TickResult& result) noexcept {
     Tool& tool = tools_[t];
@@ -218,9 +242,7 @@ void HapticModel::add_rigid_contacts(std::size_t t, TickResult& result) noexcept
 }
 
 Vector3d HapticModel::solved_force(Tool& tool, const TickResult& result) const noexcept {
-    Vector3d force = Vector3d::Zero();
-    for (const Contact& contact : result.active_contacts())
-        force += static_cast<double>(contact.force) * normal_of(contact);
+    Vector3d force = pressed(result);
     if (!(friction_.at_rest > 0)) return force;
     for (Part& part : std::span(tool.parts).first(tool.parts_felt)) {
         for (std::size_t soft = 0; soft < part.on_soft.size(); ++soft)
