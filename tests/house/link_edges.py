@@ -42,6 +42,7 @@ EXECUTABLES = {
     "palpate": {"cli", "model"},
     "palpate-touch": APPS,
     "palpate-train": APPS | {"visual"},
+    "palpate-bench": COMMANDS | APPS,  # measures both sides
 }
 HEAVY = {"itk", "cgal", "cholmod", "metis", "vtk"}
 LEAN = {"palpate_model", "palpate_asset", "palpate_cli", "palpate_realtime", "palpate_collision", "palpate_haptics",

@@ -62,7 +62,7 @@ TEST(TreePairs, normal_of_a_cut_leads_out_of_a) {
 
 // Everything about pairs, by looking at all of them.
 TEST(TreePairs, pairs_are_those_of_all_triangles) {
-    Scene scene_a(0, 10), scene_b(0, 6);
+    Scene scene_a(0, 6), scene_b(0, 3);
     for (Vector3d& vertex : scene_b.mesh.vertices) vertex -= Scene::middle;
     const CollisionSurface a(scene_a.mesh, tilted_tree(scene_a.mesh, 2), "a");
     const CollisionSurface b(scene_b.mesh, tilted_tree(scene_b.mesh, 2), "b");
