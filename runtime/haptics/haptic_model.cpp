@@ -81,16 +81,17 @@ HapticModel::HapticModel(const Case& patient_case, ContactScheme scheme, std::si
             std::make_unique<CollisionSurface>(body.boundary.surface, body.obb_tree, body.name));
         deformable_.emplace_back(body, index);
     }
+    for (const auto& surface : surfaces_) all_surfaces_.push_back(surface.get());
+    const double radius = settings_.tool_radius;
     for (std::size_t t = 0; t < tool_count; ++t) {
-        Tool& tool =
-            tools_.emplace_back(std::vector<Part>{}, ForceLimiter(settings_), std::vector<Contact>{});
+        Tool& tool = tools_.emplace_back(std::vector<Part>{}, ForceLimiter(settings_),
+                                         std::vector<Contact>(max_contacts));
         for (const double behind_tip : spheres_of(settings_)) {
-            Part& part =
-                tool.parts.emplace_back(behind_tip, GodObject(settings_.tool_radius, rigid_surfaces_.size()));
+            Part& part = tool.parts.emplace_back(behind_tip, GodObject(radius, rigid_surfaces_.size()),
+                                                 GodObject(radius, all_surfaces_.size()));
             for (std::size_t soft = 0; soft < deformable_.size(); ++soft)
-                part.on_soft.push_back({GodObject(settings_.tool_radius, 1)});
+                part.on_soft.push_back({GodObject(radius, 1)});
         }
-        tool.last_contacts.reserve(max_contacts);
     }
     if (scheme == ContactScheme::continuous) return;
     if (tool_count != 1)
@@ -109,13 +110,14 @@ void HapticModel::reset() noexcept {
     for (Tool& tool : tools_) {
         for (Part& part : tool.parts) {
             part.on_rigid.reset();
+            part.on_all.reset();
             for (SoftTouch& touch : part.on_soft) {
                 touch.god_object.reset();
                 touch.grip = 1;
             }
         }
         tool.limiter.reset();
-        tool.last_contacts.clear();
+        tool.last_count = 0;
     }
     if (published_) published_->reset();
     tick_ = 0;

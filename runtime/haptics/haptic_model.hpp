@@ -89,28 +89,33 @@ class HapticModel {
     struct Part {
         double behind_tip = 0;  // mm, along the shaft
         GodObject on_rigid;
+        GodObject on_all;  // as if nothing gave way: no equilibrium is farther from the device
         std::vector<SoftTouch> on_soft{};
         std::span<Contact> rigid_contacts{};               // of this tick, where they are solved
         Eigen::Vector3d device = Eigen::Vector3d::Zero();  // where the coupling pulls it, mm
+        double moved = 0;  // mm, by which other contacts have moved the surfaces beside it
     };
     struct Tool {
         std::vector<Part> parts;  // the tip first
         ForceLimiter limiter;
-        std::vector<Contact> last_contacts;  // of the tick before, at most max_contacts
-        std::size_t parts_felt = 0;          // in this tick: none without a trusted position, the tip alone
-                                             // without a shaft's direction
+        std::vector<Contact> last_contacts;  // of the tick before: room for max_contacts, the first are valid
+        std::size_t last_count = 0;
+        std::size_t parts_felt = 0;  // in this tick: none without a trusted position, the tip alone
+                                     // without a shaft's direction
     };
 
     void begin(Tool& tool, const DeviceState& device, TickResult& result) noexcept;
     void follow(std::size_t tool, TickResult& result) noexcept;
     void follow_soft(std::size_t tool, std::size_t part, std::size_t soft, TickResult& result) noexcept;
     bool hold_off_rigid(std::span<TickResult> results) noexcept;
+    bool within_reach(const Tool& tool, const TickResult& result) const noexcept;
     void add_rigid_contacts(std::size_t tool, TickResult& result) noexcept;
     Eigen::Vector3d moved_by_others(std::size_t tool, std::size_t part, std::size_t soft,
                                     const Eigen::Vector3d& place) const noexcept;
     Contact rigid_contact(const GodObject::Touch& touch, const Eigen::Vector3d& normal,
                           double gap) const noexcept;
-    Eigen::Vector3d rigid_force(const Part& tip, TickResult& result) const noexcept;
+    Eigen::Vector3d rigid_force(const GodObject& tip, const Eigen::Vector3d& device,
+                                TickResult& result) const noexcept;
     Eigen::Vector3d solved_force(Tool& tool, const TickResult& result) const noexcept;
     Eigen::Vector3d friction_of(const Part& part) const noexcept;
     Eigen::Vector3d friction_of(SoftTouch& touch, const DeformableContact& body) const noexcept;
@@ -122,7 +127,7 @@ class HapticModel {
     Friction friction_;
     std::vector<std::string> names_;
     std::vector<std::unique_ptr<CollisionSurface>> surfaces_;  // rigid bodies first
-    std::vector<const CollisionSurface*> rigid_surfaces_;
+    std::vector<const CollisionSurface*> rigid_surfaces_, all_surfaces_;
     std::vector<std::vector<Triangle>> rigid_triangles_;  // vertex indices, for the record of contacts
     std::vector<DeformableContact> deformable_;
     std::vector<Tool> tools_;

@@ -57,14 +57,19 @@ void HapticModel::tick(std::span<const DeviceState> devices, std::span<TickResul
         TickResult& result = results[t];
         if (tool.parts_felt == 0) continue;
         if (result.contact_count == 0) {
-            finish(tool, rigid_force(tool.parts[0], result), result);
-        } else {
+            finish(tool, rigid_force(tool.parts[0].on_rigid, tool.parts[0].device, result), result);
+        } else if (residual <= unsolved && within_reach(tool, result)) {
             result.residual = residual;
-            if (!(residual <= unsolved)) result.status |= contact_unsolved;
             finish(tool, solved_force(tool, result), result);
+        } else {
+            // The contacts contradict each other: nothing gives way.
+            result.status |= contact_unsolved;
+            result.contact_count = 0;
+            finish(tool, rigid_force(tool.parts[0].on_all, tool.parts[0].device, result), result);
         }
         const auto contacts = result.active_contacts();
-        tool.last_contacts.assign(contacts.begin(), contacts.end());
+        std::ranges::copy(contacts, tool.last_contacts.begin());
+        tool.last_count = contacts.size();
     }
 }
 
@@ -82,11 +87,14 @@ void HapticModel::begin(Tool& tool, const DeviceState& device, TickResult& resul
     if (!device.connected || !tip.allFinite() || !shaft.allFinite()) {
         result.status = invalid_position;
         result.force = array_of(tool.limiter.ramp_to_zero());
-        tool.last_contacts.clear();
+        tool.last_count = 0;
         return;
     }
     tool.parts_felt = shaft.squaredNorm() > 0 ? tool.parts.size() : 1;
-    for (Part& part : tool.parts) part.device = tip + part.behind_tip * shaft;
+    for (Part& part : tool.parts) {
+        part.device = tip + part.behind_tip * shaft;
+        part.moved = 0;
+    }
 }
 
 // Moves the god-objects of the tool's parts and gathers the contact points that must be solved together.
@@ -96,6 +104,7 @@ void HapticModel::follow(std::size_t t, TickResult& result) noexcept {
     for (std::size_t p = 0; p < tool.parts_felt; ++p) {
         Part& part = tool.parts[p];
         if (!part.on_rigid.move(rigid_surfaces_, part.device, friction_)) result.status |= starts_inside;
+        if (!deformable_.empty()) part.on_all.move(all_surfaces_, part.device);
         if (part.on_rigid.touches().empty()) continue;
         shaft_held = shaft_held || p > 0;
         const double depth = (part.on_rigid.position() - part.device).norm();
@@ -118,7 +127,9 @@ void HapticModel::follow_soft(std::size_t t, std::size_t p, std::size_t soft, Ti
     const CollisionSurface& surface = *surfaces_[rigid_count() + soft];
     const CollisionSurface* const alone = &surface;
     const Vector3d& wanted = part.on_rigid.position();
-    const Vector3d goal = wanted - moved_by_others(t, p, soft, wanted);
+    const Vector3d moved = moved_by_others(t, p, soft, wanted);
+    part.moved += moved.norm();
+    const Vector3d goal = wanted - moved;
     const Friction friction{friction_.at_rest * touch.grip, friction_.sliding * touch.grip};
     if (!touch.god_object.move({&alone, 1}, goal, friction)) result.status |= starts_inside;
     if (touch.god_object.touches().empty()) {
@@ -151,7 +162,8 @@ Vector3d HapticModel::moved_by_others(std::size_t t, std::size_t p, std::size_t 
     const DeformableContact& body = deformable_[soft];
     std::optional<Contact> point;
     for (std::size_t other = 0; other < tools_.size(); ++other)
-        for (const Contact& contact : tools_[other].last_contacts) {
+        for (const Contact& contact :
+             std::span(tools_[other].last_contacts).first(tools_[other].last_count)) {
             const bool own = other == t && contact.part == static_cast<std::int32_t>(p);
             if (own || contact.body != body.body_index() || !(contact.force > 0)) continue;
             if (!point) {
@@ -169,21 +181,24 @@ Contact HapticModel::rigid_contact(const GodObject::Touch& touch, const Vector3d
     Contact contact;
     contact.body = static_cast<std::int32_t>(touch.surface);
     contact.triangle = touch.foot.triangle;
-    contact.vertices = rigid_triangles_[touch.surface][static_cast<std::size_t>(touch.foot.triangle)];
-    Eigen::Map<Eigen::Vector3f>(contact.weights.data()) = touch.foot.barycentric.cast<float>();
+    if (touch.surface < rigid_count()) {  // a soft body that does not give way gets no vertices to move
+        contact.vertices = rigid_triangles_[touch.surface][static_cast<std::size_t>(touch.foot.triangle)];
+        Eigen::Map<Eigen::Vector3f>(contact.weights.data()) = touch.foot.barycentric.cast<float>();
+    }
     Eigen::Map<Eigen::Vector3f>(contact.normal.data()) = normal.cast<float>();
     contact.gap = static_cast<float>(gap);
     return contact;
 }
 
-// Where only the tip touches, and only rigid bodies, the spring to its god-object says it all. Several walls
+// Where only the tip touches, and nothing gives way, the spring to its god-object says it all. Several walls
 // that hold it have one record: their resultant, and friction.
-Vector3d HapticModel::rigid_force(const Part& tip, TickResult& result) const noexcept {
-    if (tip.on_rigid.touches().empty()) return Vector3d::Zero();
-    const Vector3d force = coupling_ * (tip.on_rigid.position() - tip.device);
-    const Vector3d drag = -coupling_ * tip.on_rigid.held_back(), press = force - drag;
+Vector3d HapticModel::rigid_force(const GodObject& tip, const Vector3d& device,
+                                  TickResult& result) const noexcept {
+    if (tip.touches().empty()) return Vector3d::Zero();
+    const Vector3d force = coupling_ * (tip.position() - device);
+    const Vector3d drag = -coupling_ * tip.held_back(), press = force - drag;
     Contact& contact = result.contacts[static_cast<std::size_t>(result.contact_count++)];
-    contact = rigid_contact(tip.on_rigid.touches().front(), press.normalized(), press.norm() / coupling_);
+    contact = rigid_contact(tip.touches().front(), press.normalized(), press.norm() / coupling_);
     contact.force = static_cast<float>(press.norm());
     Eigen::Map<Eigen::Vector3f>(contact.friction.data()) = drag.cast<float>();
     return force;
@@ -239,6 +254,16 @@ void HapticModel::add_rigid_contacts(std::size_t t, TickResult& result) noexcept
         part.rigid_contacts = std::span(result.contacts).subspan(first, count);
         solver_.add(part.rigid_contacts, nullptr, static_cast<std::int32_t>(t));
     }
+}
+
+// What is in equilibrium is no farther from the device than a tool would be if nothing gave way, for there
+// its energy is higher. In a narrow wedge, where the planes of contact push far beyond the surfaces that they
+// stand for, a solution may be.
+bool HapticModel::within_reach(const Tool& tool, const TickResult& result) const noexcept {
+    double reach = 0;
+    for (const Part& part : std::span(tool.parts).first(tool.parts_felt))
+        reach += (part.on_all.position() - part.device).norm() + part.moved;
+    return pressed(result).norm() <= coupling_ * reach;
 }
 
 Vector3d HapticModel::solved_force(Tool& tool, const TickResult& result) const noexcept {

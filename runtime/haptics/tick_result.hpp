@@ -19,7 +19,7 @@ enum TickStatus : std::uint32_t {
     force_limited = 1U << 1,     ///< cut to HapticSettings::max_force
     rate_limited = 1U << 2,      ///< cut to HapticSettings::max_force_rate
     contacts_cut = 1U << 3,      ///< more contact points than max_contacts: the shallowest were left out
-    contact_unsolved = 1U << 4,  ///< contact forces leave a residual: see TickResult::residual
+    contact_unsolved = 1U << 4,  ///< contacts contradict each other, as in a wedge: no body gave way
     starts_inside = 1U << 5,     ///< a body is not felt until the tool has been clear of it once
 };
 

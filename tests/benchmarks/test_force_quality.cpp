@@ -81,21 +81,6 @@ TEST(RestNormals, at_an_edge_a_force_pulls_only_if_it_is_against_both_faces) {
     EXPECT_NEAR(normals.pull(contact_at(c, 2, on_top_edge, Vector3d(-4, 0, -3) / 5, 1)), 0.6, float_error);
 }
 
-TEST(RestNormals, of_several_walls_that_are_touched_one_that_pushes_is_enough) {
-    const Case c = cube();
-    const RestNormals normals(c);
-    const Contact contact = contact_at(c, 3, on_top, Vector3d(4, 0, -3) / 5, 1);
-    const TriangleMesh& surface = c.deformable_bodies.front().boundary.surface;
-    const auto side = std::ranges::find_if(surface.triangles, [&](const Triangle& t) {
-        return std::ranges::all_of(
-            t, [&](std::int32_t v) { return surface.vertices[static_cast<std::size_t>(v)].x() == 20; });
-    });
-    ASSERT_NE(side, surface.triangles.end());
-    const std::array touched{static_cast<std::int32_t>(side - surface.triangles.begin())};
-    EXPECT_GT(normals.pull(contact), 0);
-    EXPECT_EQ(normals.pull(contact, touched), 0);
-}
-
 TEST(ForceQuality, counts_jumps_and_the_roughness_of_a_ramp) {
     const Setting setting;
     ForceQuality quality = setting.quality();

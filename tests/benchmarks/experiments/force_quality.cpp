@@ -38,24 +38,24 @@ RestNormals::RestNormals(const Case& patient_case) {
     for (const DeformableBody& body : patient_case.deformable_bodies) add(body.boundary.surface);
 }
 
-double RestNormals::pull(const Contact& contact, std::span<const std::int32_t> touched) const {
+double RestNormals::pull(const Contact& contact) const {
     const Surface& surface = surfaces_[static_cast<std::size_t>(contact.body)];
     std::vector<std::int32_t> holding;  // vertices
     for (std::size_t i = 0; i < 3; ++i)
         if (contact.vertices[i] >= 0 && contact.weights[i] > 1e-6F) holding.push_back(contact.vertices[i]);
     const Vector3d force = static_cast<double>(contact.force) * normal_of(contact);
     double least = std::numeric_limits<double>::max();
-    const auto weigh = [&](std::int32_t t) {
-        least = std::min(least, -force.dot(surface.normals[static_cast<std::size_t>(t)]));
-    };
     for (const std::int32_t t : surface.triangles_at[static_cast<std::size_t>(holding.front())]) {
         const Triangle& triangle = surface.triangles[static_cast<std::size_t>(t)];
         const bool holds = std::ranges::all_of(
             holding, [&](std::int32_t v) { return std::ranges::find(triangle, v) != triangle.end(); });
-        if (holds) weigh(t);
+        if (holds) least = std::min(least, -force.dot(normal(static_cast<std::size_t>(contact.body), t)));
     }
-    std::ranges::for_each(touched, weigh);
     return std::max(0.0, least);
+}
+
+const Vector3d& RestNormals::normal(std::size_t body, std::int32_t triangle) const {
+    return surfaces_[body].normals[static_cast<std::size_t>(triangle)];
 }
 
 void ForceFigures::Steps::add(double step) {
@@ -70,22 +70,26 @@ double ForceFigures::Steps::roughness() const {
     return count == 0 ? 0 : rate_hz * std::sqrt(squared_sum / static_cast<double>(count));
 }
 
-// Ours records one contact, the resultant, of all rigid walls that hold the tool.
+// Ours records one contact, the resultant, of all walls that hold the tool and do not give way.
 double ForceQuality::pull_of(const Contact& contact, const TickResult& result) const {
     constexpr double touching = 1e-3;  // mm, above the god-object's skin
-    const auto body = static_cast<std::size_t>(contact.body);
-    if (model_.scheme() != ContactScheme::continuous || body >= model_.rigid_count())
+    const bool gives_way =
+        static_cast<std::size_t>(contact.body) >= model_.rigid_count() && contact.vertices[0] >= 0;
+    if (model_.scheme() != ContactScheme::continuous || gives_way || result.contact_count > 1)
         return normals_.pull(contact);
-    const CollisionSurface& surface = model_.surface(body);
     const Vector3d tool = vector_of(result.tool_position);
     const double reach = model_.settings().tool_radius + touching;
-    std::vector<std::int32_t> slots(surface.slots_near(tool, tool, reach, {}));
-    surface.slots_near(tool, tool, reach, slots);
-    std::vector<std::int32_t> touched;
-    for (const std::int32_t slot : slots)
-        if (closest_point_on_triangle(tool, surface.corners(slot)).squared_distance <= reach * reach)
-            touched.push_back(surface.mesh_triangle(slot));
-    return normals_.pull(contact, touched);
+    const Vector3d force = static_cast<double>(contact.force) * normal_of(contact);
+    double least = -force.dot(normals_.normal(static_cast<std::size_t>(contact.body), contact.triangle));
+    for (std::size_t body = 0; body < model_.body_count(); ++body) {
+        const CollisionSurface& surface = model_.surface(body);
+        std::vector<std::int32_t> slots(surface.slots_near(tool, tool, reach, {}));
+        surface.slots_near(tool, tool, reach, slots);
+        for (const std::int32_t slot : slots)
+            if (closest_point_on_triangle(tool, surface.corners(slot)).squared_distance <= reach * reach)
+                least = std::min(least, -force.dot(normals_.normal(body, surface.mesh_triangle(slot))));
+    }
+    return std::max(0.0, least);
 }
 
 void ForceQuality::begin_run() {

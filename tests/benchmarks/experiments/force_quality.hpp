@@ -20,9 +20,10 @@ class RestNormals {
     explicit RestNormals(const Case& patient_case);
 
     /// How far (N) a contact draws its tool into the body: the part of n f against the outward normals of the
-    /// triangles that hold the contact's point, and of those in `touched`, of the least against; 0 if it is
-    /// against not all of them.
-    double pull(const Contact& contact, std::span<const std::int32_t> touched = {}) const;
+    /// triangles that hold the contact's point, of the least against; 0 if it is against not all of them.
+    double pull(const Contact& contact) const;
+    /// Of a triangle of a body at rest: unit, outwards.
+    const Eigen::Vector3d& normal(std::size_t body, std::int32_t triangle) const;
 
   private:
     struct Surface {
