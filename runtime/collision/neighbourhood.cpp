@@ -108,8 +108,10 @@ bool Neighbourhood::gather(const CollisionSurface& surface, const Vector3d& cent
         count_ = 0;
         const std::size_t found = surface.slots_near(centre, centre, reach_, slots_);
         if (found == 0) {
-            // In the open: as far as the nearest triangle there is nothing to gather.
-            const auto nearest = surface.closest_point(centre, reach_ + most_margin);
+            // In the open: as far as the nearest triangle there is nothing to gather. It is not far from what
+            // the sphere touched or was nearest to before.
+            const auto nearest = surface.closest_point(centre, reach_ + most_margin, hint_);
+            if (nearest) hint_ = nearest->slot;
             reach_ = nearest ? nearest->distance : reach_ + most_margin;
             return true;
         }

@@ -38,7 +38,7 @@ class Neighbourhood {
     Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
     double reach_ = -1;       // mm: whatever is within it of the centre is gathered; negative for nothing
     double margin_ = 0.3;     // mm beyond the sphere; follows the density of the triangles
-    std::int32_t hint_ = -1;  // slot of the last contact
+    std::int32_t hint_ = -1;  // slot of the last contact, or of the nearest triangle
     std::size_t count_ = 0;
     // In lanes of four: the smallest circles around the triangles, centres relative to centre_, and unit
     // normals.
