@@ -12,11 +12,14 @@
 
 namespace palpate {
 
-/// What a run leaves behind, gathered from its ticks outside the haptic thread.
+/// Writes the first row of a log: the names of the columns that RunRecord writes.
+void write_log_head(std::ostream& log);
+
+/// What a run leaves behind of one tool, gathered from its ticks outside the haptic thread.
 class RunRecord {
   public:
     /// Writes one CSV row per tick to `log` if it is not null. Model and stream must outlive the record.
-    RunRecord(const HapticModel& model, std::ostream* log);
+    RunRecord(const HapticModel& model, std::ostream* log) : model_(model), log_(log) {}
 
     void add(const TickResult& result);
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <chrono>
 #include <fstream>
+#include <memory>
 #include <optional>
 #include <spdlog/spdlog.h>
 #include <sstream>
 #include <thread>
+#include <vector>
 
 #include "formats/asset/asset.hpp"
 #include "formats/model/errors.hpp"
@@ -12,6 +15,7 @@
 #include "runtime/apps/run_record.hpp"
 #include "runtime/apps/statistics_json.hpp"
 #include "runtime/apps/touch_target.hpp"
+#include "runtime/devices/dynamic_device.hpp"
 #include "runtime/devices/simulated_device.hpp"
 #include "runtime/haptics/servo_loop.hpp"
 #include "runtime/realtime/process_age.hpp"
@@ -24,8 +28,9 @@ using Json = nlohmann::ordered_json;
 
 struct Options {
     std::filesystem::path asset, log, curve;
-    std::string script = "press", body, target;
+    std::string script = "press", body, target, second, scheme = "continuous", device, shaft;
     double seconds = 10, depth = 3, speed = 20;
+    std::uint64_t seed = 1;
     bool seconds_given = false, virtual_clock = false;
 };
 
@@ -36,14 +41,21 @@ struct Plan {
     double seconds;
 };
 
-std::optional<Eigen::Vector3d> point_of(std::string text) {
+ContactScheme scheme_of(const std::string& name) {
+    const auto found = std::ranges::find(contact_scheme_names, name);
+    if (found == contact_scheme_names.end())
+        throw UsageError({"--scheme", name, "single, twice or continuous", ""});
+    return static_cast<ContactScheme>(found - contact_scheme_names.begin());
+}
+
+std::optional<Eigen::Vector3d> point_of(const char* option, std::string text) {
     if (text.empty()) return std::nullopt;
     std::istringstream stream(text);
     Eigen::Vector3d p;
     char comma = ',', other_comma = ',';
     stream >> p[0] >> comma >> p[1] >> other_comma >> p[2];
     if (!stream || comma != ',' || other_comma != ',' || stream.peek() != EOF)
-        throw UsageError({"--target", text, "x,y,z in mm", ""});
+        throw UsageError({option, text, "x,y,z", ""});
     return p;
 }
 
@@ -61,12 +73,35 @@ Plan plan_of(const Options& options, const Case& patient_case, const HapticModel
     }
     require_positive(options.seconds);
     const TouchTarget target =
-        choose_touch_target(patient_case, model, options.body, point_of(options.target));
-    const ScriptSettings settings{.tool_radius = model.settings().tool_radius,
+        choose_touch_target(patient_case, model, options.body, point_of("--target", options.target));
+    // The published schemes know the tip's centre alone.
+    const bool has_radius = model.scheme() == ContactScheme::continuous;
+    const ScriptSettings settings{.tool_radius = has_radius ? model.settings().tool_radius : 0,
                                   .depth = options.depth,
                                   .speed = options.speed,
                                   .seconds = options.seconds};
-    return {made_to_measure_path(options.script, target.place, settings), target, options.seconds};
+    return {made_to_measure_path(options.script, target.place, settings, options.seed), target,
+            options.seconds};
+}
+
+// From the tip along the shaft: as asked, or straight out of the place that is touched.
+std::array<double, 3> shaft_of(const Options& options, const Plan& plan) {
+    Eigen::Vector3d along = plan.target ? plan.target->place.normal : Eigen::Vector3d::Zero();
+    if (const auto asked = point_of("--shaft", options.shaft)) {
+        if (!(asked->norm() > 0)) throw UsageError({"--shaft", options.shaft, "a direction", ""});
+        along = asked->normalized();
+    }
+    return {along[0], along[1], along[2]};
+}
+
+std::unique_ptr<Device> device_of(const Options& options, const HapticModel& model, HandPath path,
+                                  const std::array<double, 3>& shaft) {
+    if (!options.device.empty())
+        return std::make_unique<DynamicDevice>(find_device_model(options.device), HandImpedance{},
+                                               std::move(path), shaft);
+    const DeviceLimits limits{.max_force = model.settings().max_force,
+                              .max_stiffness = model.settings().coupling_stiffness};
+    return std::make_unique<SimulatedDevice>(std::move(path), limits, shaft);
 }
 
 Json numbers(std::span<const double, 3> v) {
@@ -113,40 +148,54 @@ Json peak_json(const TickResult& peak, const Case& patient_case, const HapticMod
 }
 
 // Ticks in the haptic thread while this one writes the log.
-void run_in_real_time(ServoLoop& loop, RunRecord& record, double seconds) {
+void run_in_real_time(ServoLoop& loop, std::vector<RunRecord>& records, double seconds) {
     TickResult result{};
-    while (record.curve().empty() || record.curve().back().time < seconds) {
+    const auto add = [&] { records[static_cast<std::size_t>(result.tool)].add(result); };
+    while (records.back().curve().empty() || records.back().curve().back().time < seconds) {
         if (loop.ring().pop(result))
-            record.add(result);
+            add();
         else
             std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     loop.stop();
-    while (loop.ring().pop(result)) record.add(result);
+    while (loop.ring().pop(result)) add();
 }
 
 Json touch(const Options& options, cli::Session& session) {
     std::optional<cli::StagedFile> log_file, curve_file;
     std::ofstream log;
-    if (!options.log.empty()) log.open(log_file.emplace(options.log, session.force).path());
+    if (!options.log.empty()) {
+        log.open(log_file.emplace(options.log, session.force).path());
+        write_log_head(log);
+    }
     if (!options.curve.empty()) curve_file.emplace(options.curve, session.force);
 
     const Case patient_case = read_asset(options.asset);
-    HapticModel model(patient_case);
+    HapticModel model(patient_case, scheme_of(options.scheme), options.second.empty() ? 1 : 2);
     const Plan plan = plan_of(options, patient_case, model);
-    SimulatedDevice device(plan.path, {.max_force = model.settings().max_force,
-                                       .max_stiffness = model.settings().coupling_stiffness});
-    ServoLoop loop(model, device);
-    RunRecord record(model, options.log.empty() ? nullptr : &log);
+    const std::array<double, 3> shaft = shaft_of(options, plan);
+    std::vector<std::unique_ptr<Device>> devices;
+    devices.push_back(device_of(options, model, plan.path, shaft));
+    if (!options.second.empty())
+        devices.push_back(device_of(options, model, recorded_path(options.second), shaft));
+    std::vector<Device*> held;
+    std::vector<RunRecord> records;
+    for (const auto& device : devices) {
+        held.push_back(device.get());
+        records.emplace_back(model, options.log.empty() ? nullptr : &log);
+    }
+    ServoLoop loop(model, held);
+    const RunRecord& record = records.front();
     double ready_s = 0;
     if (options.virtual_clock) {
         ready_s = process_age();
-        loop.run_virtual(static_cast<std::int64_t>(1000 * plan.seconds),
-                         [&](const TickResult& result) { record.add(result); });
+        loop.run_virtual(static_cast<std::int64_t>(1000 * plan.seconds), [&](const TickResult& result) {
+            records[static_cast<std::size_t>(result.tool)].add(result);
+        });
     } else {
         loop.start();
         ready_s = process_age();
-        run_in_real_time(loop, record, plan.seconds);
+        run_in_real_time(loop, records, plan.seconds);
     }
 
     // A script's file name may name a patient.
@@ -166,6 +215,9 @@ Json touch(const Options& options, cli::Session& session) {
         if (!setup.ok) spdlog::warn("{}", setup.message);
     Json result{{"case", patient_case.name},
                 {"script", script},
+                {"scheme", options.scheme},
+                {"device", devices.front()->name()},
+                {"coupling_stiffness_n_per_mm", model.coupling()},
                 {"clock", options.virtual_clock ? "virtual" : "real"},
                 {"ready_s", ready_s},
                 {"ticks", statistics.ticks},
@@ -179,6 +231,7 @@ Json touch(const Options& options, cli::Session& session) {
                 {"statuses", record.statuses()}};
     if (plan.target) result["target"] = target_json(*plan.target, model);
     result["peak"] = peak_json(record.peak(), patient_case, model);
+    if (records.size() > 1) result["second_peak"] = peak_json(records[1].peak(), patient_case, model);
     return result;
 }
 
@@ -194,12 +247,16 @@ int main(int argc, char** argv) {
                       "palpate touch case.vtkhdf --script hand.txt --json stats.json"},
          .notes =
              "Scripts: 'press' goes in along the surface's normal, holds 0.5 s and lets go, over and over; "
-             "'slide' presses once and slides 4 mm to either side; a file has rows 'x y z' (mm), one per "
-             "millisecond, or 't x y z' (s, mm). The hand is infinitely stiff: it is where the script says, "
-             "whatever the force."});
+             "'slide' presses once and slides 4 mm to either side; 'random' pushes, slides and leaves; a "
+             "file "
+             "has rows 'x y z' (mm), one per millisecond, or 't x y z' (s, mm). Without --device the hand is "
+             "infinitely stiff: it is where the script says, whatever the force. Schemes: 'continuous' "
+             "sweeps "
+             "the tool every tick; 'single' and 'twice' are the published ones, with a collision loop at 30 "
+             "Hz."});
     Options options;
     command.input("asset", options.asset, "the case (.vtkhdf)")->required();
-    command.option("--script", options.script, "what the hand does: press, slide or a file");
+    command.option("--script", options.script, "what the hand does: press, slide, random or a file");
     const CLI::Option* seconds =
         command.option("--seconds", options.seconds, "how long; of a file, all unless this is given", "s");
     command.option("--depth", options.depth, "how deep the tool's surface goes below the rest surface", "mm");
@@ -208,6 +265,15 @@ int main(int argc, char** argv) {
     command.option(
         "--target", options.target,
         "x,y,z: touch the surface point nearest to it; the most compliant place in reach if not given", "mm");
+    command.option("--second", options.second,
+                   "what a second tool on the same bodies does: a file as for --script");
+    command.option("--scheme", options.scheme, "how contact is found: continuous, single or twice");
+    command.option("--device", options.device,
+                   "simulated device that gives way, in a hand that does: touch, desktop or premium");
+    command.option("--shaft", options.shaft,
+                   "x,y,z: direction from the tip along the shaft, for a case with one; straight out of the "
+                   "target if not given");
+    command.option("--seed", options.seed, "of the script 'random'");
     command.output("--log", options.log, "one row per tick (.csv)");
     command.output("--curve", options.curve, "force and depth over time (.svg)");
     command.flag("--virtual-clock", options.virtual_clock,

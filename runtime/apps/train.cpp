@@ -41,9 +41,10 @@ std::pair<int, int> size_of(const std::string& text) {
 }
 
 HandPath scripted_path(const Options& options, const TouchPoint& place, double tool_radius) {
+    constexpr std::uint64_t seed = 1;  // of the script 'random'
     const ScriptSettings settings{.tool_radius = tool_radius,
                                   .seconds = options.seconds > 0 ? options.seconds : 3600};
-    return is_made_to_measure(options.script) ? made_to_measure_path(options.script, place, settings)
+    return is_made_to_measure(options.script) ? made_to_measure_path(options.script, place, settings, seed)
                                               : recorded_path(options.script);
 }
 
@@ -110,9 +111,11 @@ Json train(const Options& options, cli::Session& session) {
 
     const DeviceLimits limits{.max_force = model.settings().max_force,
                               .max_stiffness = model.settings().coupling_stiffness};
-    GuidedDevice guided({start.x(), start.y(), start.z()}, limits);
+    const std::array<double, 3> shaft{place.normal.x(), place.normal.y(), place.normal.z()};
+    constexpr double hand_speed = 200;  // mm/s
+    GuidedDevice guided({start.x(), start.y(), start.z()}, limits, hand_speed, shaft);
     std::optional<SimulatedDevice> scripted;
-    if (!options.script.empty()) scripted.emplace(scripted_path(options, place, radius), limits);
+    if (!options.script.empty()) scripted.emplace(scripted_path(options, place, radius), limits, shaft);
 
     session.progress.step("opening the window", 0.5);
     WindowSettings window_settings{.width = width, .height = height, .start = start};
@@ -193,7 +196,8 @@ int main(int argc, char** argv) {
     command.option("--size", options.size, "WIDTHxHEIGHT of the window", "pixels");
     command.option("--seconds", options.seconds, "close after this time; 0: when told to", "s");
     command.option("--script", options.script,
-                   "what the hand does instead of mouse and keyboard: press, slide or a file as for 'touch'");
+                   "what the hand does instead of mouse and keyboard: press, slide, random or a file as for "
+                   "'touch'");
     command.option("--body", options.body, "which body to start at; the first deformable one if not given");
     command.output("--screenshot", options.screenshot, "picture of the window at the end (.png)");
     return command.run(argc, argv, [&](cli::Session& session) { return train(options, session); });

@@ -42,10 +42,12 @@ void check(const DeviceModel& model, const HandImpedance& hand) {
 
 }  // namespace
 
-DynamicDevice::DynamicDevice(DeviceModel model, HandImpedance hand, HandPath path)
+DynamicDevice::DynamicDevice(DeviceModel model, HandImpedance hand, HandPath path,
+                             const std::array<double, 3>& shaft)
     : model_(std::move(model)),
       hand_(hand),
       path_(std::move(path)),
+      shaft_(shaft),
       hand_position_(path_.at(0)),
       position_(hand_position_) {
     check(model_, hand_);
@@ -59,6 +61,7 @@ DeviceState DynamicDevice::read(double time) noexcept {
     while (steps_ < last) step(path_.at(static_cast<double>(++steps_) * step_s));
 
     DeviceState state;
+    state.shaft = shaft_;
     state.time = time;
     Eigen::Map<Vector3d> reading(state.position.data());
     reading = position_;

@@ -32,8 +32,10 @@ class DynamicDevice final : public Device {
     static constexpr double step_s = 1e-3 / 16;
 
     /// At rest at time 0 where the path begins. Throws InvalidInput if a figure of model or hand is not
-    /// finite or negative, or the mass is zero; max_force may be infinite.
-    DynamicDevice(DeviceModel model, HandImpedance hand, HandPath path);
+    /// finite or negative, or the mass is zero; max_force may be infinite. `shaft`: see DeviceState; it does
+    /// not turn.
+    DynamicDevice(DeviceModel model, HandImpedance hand, HandPath path,
+                  const std::array<double, 3>& shaft = {0, 0, 0});
 
     std::string name() const override { return "simulated " + model_.name + ", scripted hand"; }
     DeviceLimits limits() const override { return {model_.max_force, model_.max_stiffness, model_.damping}; }
@@ -53,6 +55,7 @@ class DynamicDevice final : public Device {
     DeviceModel model_;
     HandImpedance hand_;
     HandPath path_;
+    std::array<double, 3> shaft_;
     Eigen::Matrix<double, 2, 3>
         transition_;                         // (position, velocity) after a step from (position, velocity, F)
     std::vector<Eigen::Vector3d> commands_;  // a ring of the last delay_ticks + 1

@@ -6,8 +6,9 @@
 
 namespace palpate {
 
-GuidedDevice::GuidedDevice(const std::array<double, 3>& start, DeviceLimits limits, double max_speed)
-    : target_(start), position_(start), limits_(limits), max_speed_(max_speed) {}
+GuidedDevice::GuidedDevice(const std::array<double, 3>& start, DeviceLimits limits, double max_speed,
+                           const std::array<double, 3>& shaft)
+    : target_(start), position_(start), shaft_(shaft), limits_(limits), max_speed_(max_speed) {}
 
 DeviceState GuidedDevice::read(double time) noexcept {
     Eigen::Map<Eigen::Vector3d> position(position_.data());
@@ -19,6 +20,7 @@ DeviceState GuidedDevice::read(double time) noexcept {
     DeviceState state;
     state.time = time;
     state.position = position_;
+    state.shaft = shaft_;
     return state;
 }
 

@@ -12,8 +12,9 @@ namespace palpate {
 /// more than a given speed, so that sweeps stay as fast as a hand's.
 class GuidedDevice final : public Device {
   public:
-    /// `start`: first position and target, p_P, mm. `max_speed`: mm/s.
-    GuidedDevice(const std::array<double, 3>& start, DeviceLimits limits, double max_speed = 200);
+    /// `start`: first position and target, p_P, mm. `max_speed`: mm/s. `shaft`: see DeviceState.
+    GuidedDevice(const std::array<double, 3>& start, DeviceLimits limits, double max_speed = 200,
+                 const std::array<double, 3>& shaft = {0, 0, 0});
 
     /// Sets where to go (p_P, mm). Wait-free; from one thread, while the loop runs or not.
     void set_target(const std::array<double, 3>& position) noexcept { target_.write(position); }
@@ -25,7 +26,7 @@ class GuidedDevice final : public Device {
 
   private:
     TripleBuffer<std::array<double, 3>> target_;
-    std::array<double, 3> position_;
+    std::array<double, 3> position_, shaft_;
     double last_time_ = 0;
     DeviceLimits limits_;
     double max_speed_;

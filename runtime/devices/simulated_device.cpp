@@ -8,6 +8,7 @@ DeviceState SimulatedDevice::read(double time) noexcept {
     DeviceState state;
     state.time = time;
     state.position = {p[0], p[1], p[2]};
+    state.shaft = shaft_;
     return state;
 }
 

@@ -11,7 +11,9 @@ namespace palpate {
 /// A device in a hand of infinite stiffness: it is where its path says, whatever the force.
 class SimulatedDevice final : public Device {
   public:
-    SimulatedDevice(HandPath path, DeviceLimits limits) : path_(std::move(path)), limits_(limits) {}
+    /// `shaft`: see DeviceState.
+    SimulatedDevice(HandPath path, DeviceLimits limits, const std::array<double, 3>& shaft = {0, 0, 0})
+        : path_(std::move(path)), limits_(limits), shaft_(shaft) {}
 
     std::string name() const override { return "simulated, scripted hand"; }
     DeviceLimits limits() const override { return limits_; }
@@ -21,6 +23,7 @@ class SimulatedDevice final : public Device {
   private:
     HandPath path_;
     DeviceLimits limits_;
+    std::array<double, 3> shaft_;
 };
 
 }  // namespace palpate

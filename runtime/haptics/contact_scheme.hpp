@@ -12,6 +12,7 @@ enum class ContactScheme {
     continuous,  ///< ours: every tick sweeps the tool from the last to the present position
 };
 
+/// In the order of ContactScheme.
 inline constexpr std::array<std::string_view, 3> contact_scheme_names{"single", "twice", "continuous"};
 
 }  // namespace palpate

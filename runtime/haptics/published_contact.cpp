@@ -7,20 +7,31 @@
 #include <limits>
 
 namespace palpate {
-namespace {
 
 using Eigen::Index;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-std::vector<std::int32_t> blocks_of_vertices(const DeformableBody& body) {
-    std::vector<std::int32_t> blocks;
-    for (const std::int32_t node : body.boundary.nodes) {
-        const auto found = std::ranges::lower_bound(body.contact_nodes, node);
-        const bool free = found != body.contact_nodes.end() && *found == node;
-        blocks.push_back(free ? static_cast<std::int32_t>(found - body.contact_nodes.begin()) : -1);
+namespace {
+
+// Fixed in size, so that nothing is allocated.
+template <std::size_t count>
+void impose(const SurfaceCompliance& compliance, const std::array<std::int32_t, 3>& blocks,
+            const std::array<std::size_t, 3>& free, const Vector3d& displacement,
+            std::array<Vector3d, 3>& forces) noexcept {
+    constexpr auto n = static_cast<int>(3 * count);
+    Eigen::Matrix<double, n, n> C;
+    Eigen::Matrix<double, n, 1> u;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto row = static_cast<Index>(3 * i);
+        u.template segment<3>(row) = displacement;
+        for (std::size_t j = 0; j < count; ++j)
+            C.template block<3, 3>(row, static_cast<Index>(3 * j)) =
+                compliance_block(compliance, blocks[free[i]], blocks[free[j]]).template cast<double>();
     }
-    return blocks;
+    const Eigen::Matrix<double, n, 1> f = C.ldlt().solve(u);
+    for (std::size_t i = 0; i < count; ++i)
+        forces[free[i]] = f.template segment<3>(static_cast<Index>(3 * i));
 }
 
 }  // namespace
@@ -29,46 +40,14 @@ std::array<Vector3d, 3> impose_displacement(const SurfaceCompliance& compliance,
                                             const std::array<std::int32_t, 3>& blocks,
                                             const Vector3d& displacement) noexcept {
     std::array<std::size_t, 3> free{};
-    Index count = 0;
+    std::size_t count = 0;
     for (std::size_t vertex = 0; vertex < 3; ++vertex)
-        if (blocks[vertex] >= 0) free[static_cast<std::size_t>(count++)] = vertex;
+        if (blocks[vertex] >= 0) free[count++] = vertex;
     std::array<Vector3d, 3> forces{Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
-    if (count == 0) return forces;
-
-    // Of at most nine rows, so that Eigen allocates nothing.
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 9, 9> C(3 * count, 3 * count);
-    Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 9, 1> u(3 * count), f(3 * count);
-    const auto block = [&](Index i) { return blocks[free[static_cast<std::size_t>(i)]]; };
-    for (Index i = 0; i < count; ++i) {
-        u.segment<3>(3 * i) = displacement;
-        for (Index j = 0; j < count; ++j)
-            C.block<3, 3>(3 * i, 3 * j) = compliance_block(compliance, block(i), block(j)).cast<double>();
-    }
-    f = C.ldlt().solve(u);
-    for (Index i = 0; i < count; ++i) forces[free[static_cast<std::size_t>(i)]] = f.segment<3>(3 * i);
+    if (count == 1) impose<1>(compliance, blocks, free, displacement, forces);
+    if (count == 2) impose<2>(compliance, blocks, free, displacement, forces);
+    if (count == 3) impose<3>(compliance, blocks, free, displacement, forces);
     return forces;
-}
-
-PublishedContact::PublishedContact(const Case& patient_case,
-                                   std::span<const std::unique_ptr<CollisionSurface>> surfaces,
-                                   ContactScheme scheme)
-    : surfaces_(surfaces),
-      twice_(scheme == ContactScheme::twice),
-      detections_(std::vector<Detection>(surfaces.size())),
-      contacted_(surfaces.size()) {
-    for (const RigidBody& body : patient_case.rigid_bodies) triangles_.push_back(body.surface.triangles);
-    for (const DeformableBody& body : patient_case.deformable_bodies) {
-        triangles_.push_back(body.boundary.surface.triangles);
-        elastic_.push_back({body.compliance, blocks_of_vertices(body)});
-    }
-}
-
-void PublishedContact::reset() noexcept {
-    device_.write(std::nullopt);
-    std::ranges::fill(detections_.back(), Detection{});
-    detections_.publish();
-    std::ranges::fill(contacted_, Contacted{});
-    last_device_.reset();
 }
 
 PublishedContact::Detection PublishedContact::inside_or_outside(std::size_t body,

@@ -86,6 +86,40 @@ class Touch(SampleAsset):
         self.assertLessEqual(result["penetration"]["tool_mm"], 1e-3)
         self.assertEqual(result["peak"]["contacts"][0]["body"], "skull")
 
+    def second(self):
+        """A second hand, which goes down onto the skull beside the first one's place."""
+        script = self.folder / "second.txt"
+        script.write_text("0 40 10 30\n0.5 40 10 24\n2 40 10 24\n")
+        return script
+
+    def test_two_tools_feel_each_their_own_contact(self):
+        log = self.folder / "both.csv"
+        alone = self.result("--virtual-clock", "--seconds", 1)
+        both = self.result("--virtual-clock", "--seconds", 1, "--second", self.second(), "--log", log)
+        self.assertEqual({row["tool"] for row in self.rows(log)}, {"0", "1"})
+        self.assertAlmostEqual(both["force_peak_n"], alone["force_peak_n"], delta=1e-6)
+        self.assertAlmostEqual(math.hypot(*both["second_peak"]["force_n"]), 1.0, delta=0.05)
+
+    def test_each_scheme_pushes_and_the_published_ones_give_the_same_twice(self):
+        for scheme in ("single", "twice", "continuous"):
+            runs = [self.result("--virtual-clock", "--seconds", 2, "--scheme", scheme, "--device", "desktop")
+                    for _ in range(2)]
+            self.assertEqual(runs[0]["scheme"], scheme)
+            self.assertGreater(runs[0]["force_peak_n"], 0.005)
+            self.assertEqual(runs[0]["peak"], runs[1]["peak"])
+
+    def test_the_coupling_keeps_to_what_the_device_bears(self):
+        result = self.result("--virtual-clock", "--seconds", 1, "--device", "touch")
+        self.assertEqual(result["coupling_stiffness_n_per_mm"], 0.4)  # the case asks for less than a Touch's 0.5
+        self.assertIn("touch", result["device"])
+
+    def test_a_random_hand_is_that_of_its_seed(self):
+        def peak(seed):
+            return self.result("--virtual-clock", "--seconds", 3, "--script", "random", "--seed", seed)["peak"]
+
+        self.assertEqual(peak(1), peak(1))
+        self.assertNotEqual(peak(1), peak(2))
+
     def test_a_target_with_negative_coordinates(self):
         result = self.result("--virtual-clock", "--seconds", 1, "--target", "-5,10,12")
         self.assertEqual(result["target"]["normal"], [-1, 0, 0])
@@ -94,13 +128,17 @@ class Touch(SampleAsset):
         bad = self.folder / "bad.txt"
         bad.write_text("1 2 3\n1 2\n")
         cases = [
-            (["--script", "prod"], 3, "press, slide or a file"),
+            (["--script", "prod"], 3, "press, slide, random or a file"),
             (["--script", bad], 3, "line 2"),
             (["--body", "wal"], 2, "'wall'"),
             (["--target", "1,2"], 2, "--target"),
             (["--target", "1,2,3,4"], 2, "--target"),
             (["--seconds", "0"], 2, "--seconds"),
             (["--speed", "-1"], 2, "--speed"),
+            (["--scheme", "thrice"], 2, "single, twice or continuous"),
+            (["--device", "omni"], 2, "touch, desktop, premium"),
+            (["--shaft", "0,0,0"], 2, "--shaft"),
+            (["--scheme", "twice", "--second", self.second()], 3, "one tool"),
             (["--log", self.folder / "no" / "run.csv"], 3, "folder does not exist"),
         ]
         for options, code, message in cases:

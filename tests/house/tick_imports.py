@@ -30,6 +30,8 @@ TICK = {
         "deformable_contact": "contact points and displacements of an elastic body",
         "force_limiter": "force and slew limits",
         "god_object": "the tool that stays outside",
+        "haptic_tick": "one tick, from positions to forces",
+        "published_contact": "one tick of the published schemes, and their detection",
     },
     "runtime/realtime/CMakeFiles/palpate_realtime.dir": {
         "histogram": "what a tick spent",
