@@ -57,8 +57,8 @@ struct DeformableBody {
 struct HapticSettings {
     double tool_radius = 1.0;  ///< mm
     double coupling_stiffness =
-        0.5;                      ///< N/mm between tool and device on rigid bodies; 0.5 is a Touch's limit
-    double max_force = 3.3;       ///< N, a Touch's limit
+        0.5;                 ///< N/mm, of the virtual coupling of tool and device; 0.5 is a Touch's limit
+    double max_force = 3.3;  ///< N, a Touch's limit
     double max_force_rate = 0.5;  ///< N per tick (1 ms)
     /// Coulomb's law between tool and bodies: what holds a tool at rest, and what drags a sliding one, as
     /// parts of the normal force; 0 <= sliding <= at rest. Moist tissue under a polished tool has next to

@@ -42,7 +42,8 @@ class ServoLoop {
     /// Takes one device for each of the model's tools and couples the model to what all of them bear. Throws
     /// InvalidInput if there are not as many.
     ServoLoop(HapticModel& model, std::span<Device* const> devices, std::size_t ring_capacity = 4096);
-    ServoLoop(HapticModel& model, Device& device) : ServoLoop(model, std::array{&device}) {}
+    ServoLoop(HapticModel& model, Device& device, std::size_t ring_capacity = 4096)
+        : ServoLoop(model, std::array{&device}, ring_capacity) {}
     ServoLoop(const ServoLoop&) = delete;
     ServoLoop& operator=(const ServoLoop&) = delete;
     ~ServoLoop();  ///< stops

@@ -18,7 +18,7 @@ class RecordingDevice final : public Device {
     DeviceLimits limits() const override { return {}; }
     DeviceState read(double time) noexcept override {
         DeviceState state;
-        state.position = {40, 10, time < 0.005 ? 30.0 : 25.0};
+        state.position = {40, 10, time < 0.005 ? 30.0 : 24.5};
         return state;
     }
     void write(const std::array<double, 3>& force) noexcept override { force_ = force; }
@@ -47,6 +47,38 @@ TEST(ServoLoop, every_tick_reaches_the_logger_and_the_latest_the_screen) {
     EXPECT_EQ(statistics.tick_ns.count(), static_cast<std::uint64_t>(statistics.ticks));
     EXPECT_EQ(statistics.setup.size(), 2U);
     EXPECT_GT(record.force[2], 0);
+}
+
+TEST(ServoLoop, published_schemes_detect_beside_the_ticks) {
+    HapticModel model(sample::sample_case(), ContactScheme::twice);
+    RecordingDevice device;
+    ServoLoop loop(model, device, 1024);
+    loop.start();
+    // 1 mm below the skull's top: felt once the collision loop has looked, a thirtieth of a second later.
+    double strongest = 0;
+    for (int frame = 0; frame < 40 && strongest == 0; ++frame) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        strongest = loop.latest().read().force[2];
+    }
+    loop.stop();
+    EXPECT_GT(strongest, 0);
+}
+
+TEST(ServoLoop, each_tool_has_its_device_and_its_results) {
+    HapticModel model(sample::sample_case(), ContactScheme::continuous, 2);
+    RecordingDevice pressing;
+    GuidedDevice away({0, 0, 60}, {}, 200);
+    const std::array<Device*, 2> devices{&pressing, &away};
+    ServoLoop loop(model, devices);
+    std::array<double, 2> strongest{0, 0};
+    loop.run_virtual(20, [&](const TickResult& result) {
+        double& force = strongest[static_cast<std::size_t>(result.tool)];
+        force = std::max(force, result.force[2]);
+    });
+    EXPECT_GT(strongest[0], 0.3);
+    EXPECT_EQ(strongest[1], 0);
+    EXPECT_EQ(loop.latest(0).read().tool, 0);
+    EXPECT_EQ(loop.latest(1).read().tool, 1);
 }
 
 TEST(ServoLoop, a_full_ring_loses_records_and_counts_them) {
