@@ -104,7 +104,8 @@ void HapticModel::follow(std::size_t t, TickResult& result) noexcept {
     for (std::size_t p = 0; p < tool.parts_felt; ++p) {
         Part& part = tool.parts[p];
         if (!part.on_rigid.move(rigid_surfaces_, part.device, friction_)) result.status |= starts_inside;
-        if (!deformable_.empty()) part.on_all.move(all_surfaces_, part.device);
+        // A lone sphere on rigid bodies needs no second one.
+        if (!deformable_.empty() || tool.parts_felt > 1) part.on_all.move(all_surfaces_, part.device);
         if (part.on_rigid.touches().empty()) continue;
         shaft_held = shaft_held || p > 0;
         const double depth = (part.on_rigid.position() - part.device).norm();
