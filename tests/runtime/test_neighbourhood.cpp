@@ -63,8 +63,8 @@ int wander(const CollisionSurface& surface, const Vector3d& middle, double reach
                 at = to;
                 break;
             case 1:
-                heading = (heading - heading.dot(found->normal) * found->normal + 0.01 * anywhere())
-                              .normalized();
+                heading =
+                    (heading - heading.dot(found->normal) * found->normal + 0.01 * anywhere()).normalized();
                 break;
             default:
                 at += std::max(0.0, found->fraction - 1e-3) * (to - at);
@@ -93,8 +93,7 @@ TEST(Neighbourhood, sweeps_like_the_tree_where_triangles_are_finer_than_the_sphe
     // 32 768 triangles of 0.1 mm: more in reach than a neighbourhood holds.
     const TriangleMesh fine = sample::sphere_surface({5, -3, 2}, 5, 6);
     const CollisionSurface surface(fine, sample::median_tree(fine, 4), "fine");
-    for (const double radius : radii)
-        EXPECT_GT(wander(surface, Vector3d(5, -3, 2), 8, radius), sweeps / 50);
+    for (const double radius : radii) EXPECT_GT(wander(surface, Vector3d(5, -3, 2), 8, radius), sweeps / 50);
 }
 
 TEST(Neighbourhood, sweeps_like_the_tree_far_from_the_surface) {
