@@ -134,7 +134,8 @@ Vector3d GodObject::held_by(const Friction& friction, const Vector3d& device,
                             const Vector3d& wanted) noexcept {
     const Vector3d way = wanted - position_;
     const double drag = way.norm(), press = (wanted - device).norm();
-    if (drag <= (at_rest_ ? friction.at_rest : friction.sliding) * press) {
+    // What has just slid up to the sliding coefficient goes on sliding.
+    if (drag <= (at_rest_ ? friction.at_rest * press : friction.sliding * press - tiny)) {
         at_rest_ = true;
         return position_;
     }
