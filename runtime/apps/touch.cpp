@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <memory>
@@ -40,13 +39,6 @@ struct Plan {
     std::optional<TouchTarget> target;
     double seconds;
 };
-
-ContactScheme scheme_of(const std::string& name) {
-    const auto found = std::ranges::find(contact_scheme_names, name);
-    if (found == contact_scheme_names.end())
-        throw UsageError({"--scheme", name, "single, twice or continuous", ""});
-    return static_cast<ContactScheme>(found - contact_scheme_names.begin());
-}
 
 std::optional<Eigen::Vector3d> point_of(const char* option, std::string text) {
     if (text.empty()) return std::nullopt;
@@ -171,7 +163,7 @@ Json touch(const Options& options, cli::Session& session) {
     if (!options.curve.empty()) curve_file.emplace(options.curve, session.force);
 
     const Case patient_case = read_asset(options.asset);
-    HapticModel model(patient_case, scheme_of(options.scheme), options.second.empty() ? 1 : 2);
+    HapticModel model(patient_case, find_contact_scheme(options.scheme), options.second.empty() ? 1 : 2);
     const Plan plan = plan_of(options, patient_case, model);
     const std::array<double, 3> shaft = shaft_of(options, plan);
     std::vector<std::unique_ptr<Device>> devices;

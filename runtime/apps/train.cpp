@@ -25,7 +25,7 @@ using Json = nlohmann::ordered_json;
 
 struct Options {
     std::filesystem::path asset, screenshot;
-    std::string size = "1280x720", script, body;
+    std::string size = "1280x720", script, body, scheme = "continuous";
     double seconds = 0;
 };
 
@@ -104,7 +104,7 @@ Json train(const Options& options, cli::Session& session) {
 
     session.progress.step("reading the case", 0);
     const Case patient_case = read_asset(options.asset);
-    HapticModel model(patient_case);
+    HapticModel model(patient_case, find_contact_scheme(options.scheme));
     const TouchPoint place = choose_touch_target(patient_case, model, options.body, std::nullopt).place;
     const double radius = model.settings().tool_radius;
     const Eigen::Vector3d start = place.point + place.normal * (radius + std::min(5.0, place.clearance));
@@ -198,6 +198,7 @@ int main(int argc, char** argv) {
     command.option("--script", options.script,
                    "what the hand does instead of mouse and keyboard: press, slide, random or a file as for "
                    "'touch'");
+    command.option("--scheme", options.scheme, "how contact is found: continuous, single or twice");
     command.option("--body", options.body, "which body to start at; the first deformable one if not given");
     command.output("--screenshot", options.screenshot, "picture of the window at the end (.png)");
     return command.run(argc, argv, [&](cli::Session& session) { return train(options, session); });

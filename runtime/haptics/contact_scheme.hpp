@@ -15,4 +15,7 @@ enum class ContactScheme {
 /// In the order of ContactScheme.
 inline constexpr std::array<std::string_view, 3> contact_scheme_names{"single", "twice", "continuous"};
 
+/// By name; throws UsageError listing the names.
+ContactScheme find_contact_scheme(std::string_view name);
+
 }  // namespace palpate
