@@ -105,7 +105,7 @@ void HapticModel::follow(std::size_t t, TickResult& result) noexcept {
         Part& part = tool.parts[p];
         if (!part.on_rigid.move(rigid_surfaces_, part.device, friction_)) result.status |= starts_inside;
         // A lone sphere on rigid bodies needs no second one.
-        if (!deformable_.empty() || tool.parts_felt > 1) part.on_all.move(all_surfaces_, part.device);
+        if (!deformable_.empty() || tool.parts.size() > 1) part.on_all.move(all_surfaces_, part.device);
         if (part.on_rigid.touches().empty()) continue;
         shaft_held = shaft_held || p > 0;
         const double depth = (part.on_rigid.position() - part.device).norm();
@@ -261,7 +261,7 @@ void HapticModel::add_rigid_contacts(std::size_t t, TickResult& result) noexcept
 // its energy is higher. In a narrow wedge, where the planes of contact push far beyond the surfaces that they
 // stand for, a solution may be.
 bool HapticModel::within_reach(const Tool& tool, const TickResult& result) const noexcept {
-    double reach = 0;
+    double reach = unsolved;  // room for rounding
     for (const Part& part : std::span(tool.parts).first(tool.parts_felt))
         reach += (part.on_all.position() - part.device).norm() + part.moved;
     return pressed(result).norm() <= coupling_ * reach;

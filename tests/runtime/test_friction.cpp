@@ -206,6 +206,19 @@ TEST(Friction, on_soft_tissue_is_at_most_that_at_rest_in_every_tick) {
         });
 }
 
+TEST(Friction, on_soft_tissue_is_at_most_that_at_rest_while_the_press_trembles) {
+    Case c = with_friction(soft_cube(4));
+    c.haptics.tool_radius = 3;
+    HapticModel model(c);
+    TickResult result{};
+    model.tick(held_at({7, 9.3, 27}), result);
+    for (int tick = 0; tick < 1000; ++tick) {
+        const double depth = 1.5 + 1.4 * std::sin(0.3 * tick);
+        model.tick(held_at({10 + 4 * std::sin(0.02 * tick), 9.3, 23 - depth}), result);
+        ASSERT_LE(drag_of(result).norm(), dry.at_rest * press_of(result) * (1 + 1e-5)) << tick;
+    }
+}
+
 TEST(Friction, on_soft_tissue_tends_to_the_sliding_coefficient) {
     // The god-object slides by the grip of the tick before, so the ratio is off by how much the grip changes
     // in a tick, which is largest over edges of the mesh.

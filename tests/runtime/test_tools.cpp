@@ -115,6 +115,16 @@ TEST(TwoTools, each_feels_less_in_the_dent_of_the_other) {
     EXPECT_LT(force_of(alike[1]).z(), 0.98 * force_of(press(c, {beside})[0]).z());
 }
 
+TEST(TwoTools, touch_nothing_where_the_other_has_pushed_it_away) {
+    const Case c = cube_for_tools(5, 3);
+    const DeviceState deep = held_at({8, 10, 19}), shallow = held_at({10.5, 10, 22.9});
+    EXPECT_GT(press(c, {shallow})[0].contact_count, 0);
+    const TickResult beside = press(c, {deep, shallow})[1];
+    EXPECT_EQ(beside.contact_count, 0);
+    EXPECT_EQ(beside.body, -1);
+    EXPECT_EQ(force_of(beside).norm(), 0);
+}
+
 TEST(TwoTools, that_touch_different_bodies_feel_what_each_feels_alone) {
     Case c = cube_for_tools(3, 2);
     c.deformable_bodies.push_back(moved(c.deformable_bodies[0], {50, 3, 0}));
@@ -188,24 +198,48 @@ TEST(Shaft, laid_over_soft_tissue_is_held_although_the_tip_is_beyond_it) {
     EXPECT_GT(force_of(held).z(), force_of(press(c, {held_at(on_top)})[0]).z());
 }
 
-TEST(Shaft, on_a_plate_presses_with_its_deepest_place_and_never_pulls) {
-    const Case c = with_shaft(plate(), 10);
+// A shaft of 10 mm that wanders over a plate, tilted by as much as `tilt_at` says at t, in s. Returns how
+// many ticks touched.
+template <typename Tilt>
+int wander_on_plate(const Tilt& tilt_at, bool tissue_elsewhere = false) {
+    // mm: what a god-object leaves of a way for the next tick.
+    constexpr double settled = 0.01;
+    Case c = with_shaft(plate(), 10);
+    if (tissue_elsewhere) c.deformable_bodies.push_back(moved(sample::true_elastic_cube(2), {100, 0, 0}));
     HapticModel model(c);
     TickResult result{};
     model.tick(held_at({0, 0, 30}, {0, 0, 1}), result);
     int touched = 0;
     for (int tick = 0; tick < 4000; ++tick) {
-        const double t = 1e-3 * tick, tilt = 0.3 * std::sin(7 * t);
+        const double t = 1e-3 * tick, tilt = tilt_at(t);
         const Vector3d tip(5 * std::sin(t), 5 * std::cos(1.3 * t), 1.5 + 2 * std::sin(3 * t));
         const Vector3d shaft(std::cos(tilt) * std::cos(t), std::cos(tilt) * std::sin(t), std::sin(tilt));
         model.tick(held_at(tip, shaft), result);
         // Points of one normal share one coupling, so the deepest bears all.
         const double deepest = std::max(1 - tip.z(), 1 - (tip + 10 * shaft).z());
         const Vector3d expected(0, 0, 0.5 * std::max(0.0, deepest));
-        EXPECT_NEAR((force_of(result) - expected).norm(), 0, skin) << tick << " " << (force_of(result) - expected).transpose() << " tip " << 1 - tip.z() << " deepest " << deepest << " n " << result.contact_count;
+        EXPECT_NEAR((force_of(result) - expected).norm(), 0, 0.5 * settled) << tick;
+        EXPECT_GE(force_of(result).z(), 0);
+        EXPECT_EQ(result.status, tick_ok) << tick;
+        if (::testing::Test::HasFailure()) return touched;
         touched += deepest > 0;
     }
-    EXPECT_GT(touched, 1000);
+    return touched;
+}
+
+TEST(Shaft, on_a_plate_presses_with_its_deepest_place_and_never_pulls) {
+    for (const bool tissue_elsewhere : {false, true}) {
+        EXPECT_GT(wander_on_plate([](double) { return -0.1; }, tissue_elsewhere), 1000);
+        EXPECT_GT(wander_on_plate([](double) { return 0.1; }, tissue_elsewhere), 1000);
+    }
+}
+
+// Nothing gives way here, so nothing but the coupling decides: a press of 2 mm, near the origin of the frame.
+TEST(Shaft, is_held_wherever_the_plate_is) {
+    Case c = with_shaft(plate(), 1);
+    c.rigid_bodies[0] = rigid("plate", box({-20, -20, -10}, {20, 20, 1}));
+    for (const double x : {0.0, 15.0})
+        EXPECT_NEAR(force_of(press(c, {held_at({x, 0, 0}, {1, 0, 0})})[0]).z(), 0.5 * 2, skin) << x;
 }
 
 TEST(Shaft, away_from_the_body_changes_nothing) {
@@ -287,11 +321,13 @@ TEST(TwoTools, are_never_pulled_by_what_they_touch) {
 
 using Record = std::vector<std::array<TickResult, 2>>;
 
-Record wander_through(HapticModel& model) {
+constexpr int ticks = 2000;
+
+Record wander_through(HapticModel& model, int count) {
     Record record;
     std::array<TickResult, 2> results{};
     model.tick(std::array{held_at({10, 10, 60}), held_at({20, 10, 60})}, results);
-    for (int tick = 0; tick < 4000; ++tick) {
+    for (int tick = 0; tick < count; ++tick) {
         model.tick(wandering(tick), results);
         record.push_back(results);
     }
@@ -315,15 +351,19 @@ void expect_same_bits(const Record& a, const Record& b) {
 TEST(TwoTools, repeat_the_same_bits_on_the_same_way) {
     HapticModel first(all_at_once(0.3), ContactScheme::continuous, 2),
         second(all_at_once(0.3), ContactScheme::continuous, 2);
-    const Record expected = wander_through(first);
-    expect_same_bits(wander_through(second), expected);
+    const Record expected = wander_through(first, ticks);
+    expect_same_bits(wander_through(second, ticks), expected);
 }
 
 TEST(TwoTools, repeat_the_same_bits_after_a_reset) {
     HapticModel model(all_at_once(0.3), ContactScheme::continuous, 2);
-    const Record expected = wander_through(model);
-    model.reset();
-    expect_same_bits(wander_through(model), expected);
+    const Record expected = wander_through(model, ticks);
+    for (const int before : {ticks, 150, 700, 1234, 2100, 3333}) {  // in contact or not
+        model.reset();
+        wander_through(model, before);
+        model.reset();
+        expect_same_bits(wander_through(model, ticks), expected);
+    }
 }
 
 }  // namespace
