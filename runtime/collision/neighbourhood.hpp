@@ -15,8 +15,13 @@ namespace palpate {
 /// sphere on one surface. Realtime-safe: a fixed store, no allocation.
 class Neighbourhood {
   public:
-    /// Forgets what was gathered. Needed only when the surface becomes another one.
-    void clear() noexcept { reach_ = -1, hint_ = -1; }
+    /// Forgets everything, as if it were new.
+    void clear() noexcept {
+        reach_ = -1;
+        margin_ = first_margin;
+        hint_ = -1;
+        count_ = 0;
+    }
 
     /// The same as surface.sweep_sphere(from, to, radius): the same fraction and point; where several
     /// triangles are touched at once, the slot may be another. Gathers anew when the sweep leaves the
@@ -26,6 +31,7 @@ class Neighbourhood {
 
   private:
     static constexpr std::size_t capacity = 256, lanes = 4;
+    static constexpr double first_margin = 0.3;  // mm
 
     bool gather(const CollisionSurface& surface, const Eigen::Vector3d& centre, double radius,
                 double step) noexcept;
@@ -36,9 +42,9 @@ class Neighbourhood {
                                                double limit) noexcept;
 
     Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
-    double reach_ = -1;       // mm: whatever is within it of the centre is gathered; negative for nothing
-    double margin_ = 0.3;     // mm beyond the sphere; follows the density of the triangles
-    std::int32_t hint_ = -1;  // slot of the last contact, or of the nearest triangle
+    double reach_ = -1;  // mm: whatever is within it of the centre is gathered; negative for nothing
+    double margin_ = first_margin;  // mm beyond the sphere; follows the density of the triangles
+    std::int32_t hint_ = -1;        // slot of the last contact, or of the nearest triangle
     std::size_t count_ = 0;
     // In lanes of four: the smallest circles around the triangles, centres relative to centre_, and unit
     // normals.

@@ -39,6 +39,38 @@ void ContactLcp::remove(std::size_t position) noexcept {
     for (std::size_t i = position + 1; i < old_count; ++i) append(order_[i]);
 }
 
+// Lets `row`, which append() has just found to depend on the active ones, take over their forces until one of
+// them bears none, and replaces that one. What it leaves to the others to give way stays the same, and it
+// lowers the minimum, as `row` is violated. False if it bears against them: then no forces hold them all.
+bool ContactLcp::exchange(std::size_t row) noexcept {
+    const auto n = static_cast<Index>(count_);
+    for (Index i = n - 1; i >= 0; --i) {  // the part of each active row in `row`: L' c = what append() left
+        double value = L_(n, i);
+        for (Index j = i + 1; j < n; ++j) value -= L_(j, i) * candidate_[j];
+        candidate_[i] = value / L_(i, i);
+    }
+    double most = 0;
+    std::size_t leaving = count_;
+    for (std::size_t i = 0; i < count_; ++i) {
+        const double part = candidate_[static_cast<Index>(i)];
+        if (!(part > dependent)) continue;
+        const double bears = f_[static_cast<Index>(order_[i])] / part;
+        if (leaving < count_ && bears >= most) continue;
+        most = bears;
+        leaving = i;
+    }
+    if (leaving == count_) return false;
+    for (std::size_t i = 0; i < count_; ++i) {
+        double& force = f_[static_cast<Index>(order_[i])];
+        force = std::max(0.0, force - most * candidate_[static_cast<Index>(i)]);
+    }
+    f_[static_cast<Index>(order_[leaving])] = 0;
+    remove(leaving);
+    if (!append(row)) return false;
+    f_[static_cast<Index>(row)] = most;
+    return true;
+}
+
 // candidate = A_PP^-1 delta_P on the active rows P, in the factor's order.
 void ContactLcp::solve_active() noexcept {
     const auto n = static_cast<Index>(count_);
@@ -109,7 +141,7 @@ double ContactLcp::solve(std::size_t rows, std::span<const std::size_t> active) 
             entering = row;
         }
         if (entering == rows) break;
-        if (!append(entering)) {
+        if (!append(entering) && !exchange(entering)) {
             set_aside[entering] = true;
             continue;
         }

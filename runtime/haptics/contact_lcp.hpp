@@ -12,8 +12,9 @@ namespace palpate {
 /// Solves unilateral contact: f >= 0, w = A f - delta >= 0, f . w = 0, for a symmetric positive definite A of
 /// at most max_contacts rows (mm/N). That is the minimum of f.Af/2 - delta.f over f >= 0, found by the
 /// active-set method of Lawson and Hanson (1974, ch. 23) with an appended Cholesky factor: each step lowers
-/// the minimum, so it ends. Rows that depend linearly on active ones (two contact points at one place) are
-/// left at zero force. Realtime-safe; n³/3 multiply-adds from a cold start, n² from a right warm start.
+/// the minimum, so it ends. A row that depends linearly on active ones (two contact points at one place)
+/// takes the place of one of them. Realtime-safe; n³/3 multiply-adds from a cold start, n² from a right warm
+/// start.
 class ContactLcp {
   public:
     using Matrix = Eigen::Matrix<double, max_contacts, max_contacts>;
@@ -29,6 +30,7 @@ class ContactLcp {
 
   private:
     bool append(std::size_t row) noexcept;
+    bool exchange(std::size_t row) noexcept;
     void remove(std::size_t position) noexcept;
     void solve_active() noexcept;
     void make_feasible() noexcept;

@@ -17,6 +17,8 @@ namespace palpate {
 class ContactSolver {
   public:
     void clear() noexcept { count_ = 0; }
+    /// Forgets the tick before.
+    void reset() noexcept { count_ = last_active_count_ = 0; }
     std::size_t size() const noexcept { return count_; }
 
     /// Adds the points of one part of a tool on one body, which is null if it is rigid. The contacts must

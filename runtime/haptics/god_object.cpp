@@ -18,8 +18,12 @@ constexpr double same_normal = 0.999;  // cosine; feet closer than 2.5 degrees a
 }  // namespace
 
 void GodObject::reset() noexcept {
-    for (Obstacle& obstacle : obstacles_) obstacle.followed = false;
-    all_followed_ = any_followed_ = at_rest_ = false;
+    for (Obstacle& obstacle : obstacles_) {
+        obstacle.followed = false;
+        obstacle.near.clear();
+    }
+    all_followed_ = any_followed_ = false;
+    at_rest_ = true;
 }
 
 bool GodObject::move(Surfaces surfaces, const Vector3d& device, const Friction& friction) noexcept {
@@ -34,7 +38,7 @@ bool GodObject::move(Surfaces surfaces, const Vector3d& device, const Friction& 
     if (plane_count_ > 0 && (position_ - device).norm() > tiny)
         find_touches(surfaces, device);
     else
-        at_rest_ = false;
+        at_rest_ = true;  // what touches next does so at rest
     return all_followed_ || follow_what_is_clear(surfaces);
 }
 

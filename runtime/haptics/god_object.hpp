@@ -92,7 +92,7 @@ class GodObject {
     double radius_;
     std::vector<Obstacle> obstacles_;
     bool all_followed_ = false, any_followed_ = false;
-    bool at_rest_ = false;  // in the sense of friction
+    bool at_rest_ = true;  // in the sense of friction
     Eigen::Vector3d position_ = Eigen::Vector3d::Zero();
     Eigen::Vector3d last_device_ = Eigen::Vector3d::Zero();
     Eigen::Vector3d held_back_ = Eigen::Vector3d::Zero();

@@ -119,6 +119,7 @@ void HapticModel::reset() noexcept {
         tool.limiter.reset();
         tool.last_count = 0;
     }
+    solver_.reset();
     if (published_) published_->reset();
     tick_ = 0;
 }

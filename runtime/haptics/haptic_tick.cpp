@@ -62,10 +62,13 @@ void HapticModel::tick(std::span<const DeviceState> devices, std::span<TickResul
             result.residual = residual;
             finish(tool, solved_force(tool, result), result);
         } else {
-            // The contacts contradict each other: nothing gives way.
+            // The contacts contradict each other: nothing gives way, and the part that is held most decides.
             result.status |= contact_unsolved;
             result.contact_count = 0;
-            finish(tool, rigid_force(tool.parts[0].on_all, tool.parts[0].device, result), result);
+            const Part& held = *std::ranges::max_element(
+                std::span(tool.parts).first(tool.parts_felt), {},
+                [](const Part& part) { return (part.on_all.position() - part.device).squaredNorm(); });
+            finish(tool, rigid_force(held.on_all, held.device, result), result);
         }
         const auto contacts = result.active_contacts();
         std::ranges::copy(contacts, tool.last_contacts.begin());

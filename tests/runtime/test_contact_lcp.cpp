@@ -92,6 +92,39 @@ TEST(ContactLcp, two_points_at_one_place_share_no_contradiction) {
     }
 }
 
+TEST(ContactLcp, the_deeper_of_two_points_at_one_place_takes_over_from_a_warm_start) {
+    ContactLcp lcp;
+    fill(lcp, MatrixXd::Constant(2, 2, 3.0), Eigen::Vector2d(1.0, 2.0));
+    const std::array<std::size_t, 1> shallower{0};
+    EXPECT_LE(lcp.solve(2, shallower), 1e-9);
+    EXPECT_NEAR(lcp.forces()[1], 2.0 / 3, 1e-12);
+    EXPECT_EQ(lcp.forces()[0], 0);
+}
+
+TEST(ContactLcp, solves_points_of_few_places_from_any_warm_start) {
+    // A of low rank, and delta = A g - s of points that some forces g hold: no contradiction.
+    std::mt19937 generator(8);
+    std::uniform_real_distribution<double> unit(0, 1);
+    const auto lcp = std::make_unique<ContactLcp>();
+    for (int i = 0; i < 2000; ++i) {
+        const Index n = 2 + i % 9, rank = 1 + i % 3;
+        MatrixXd normals(n, rank);
+        VectorXd held(n), slack(n);
+        for (Index row = 0; row < n; ++row) {
+            for (Index axis = 0; axis < rank; ++axis) normals(row, axis) = unit(generator) - 0.3;
+            held[row] = unit(generator);
+            slack[row] = unit(generator);
+        }
+        const MatrixXd A = normals * normals.transpose();
+        fill(*lcp, A, A * held - 0.3 * slack);
+        std::vector<std::size_t> warm;
+        for (Index row = 0; row < n; ++row)
+            if (generator() % 2) warm.push_back(static_cast<std::size_t>(row));
+        EXPECT_LE(lcp->solve(static_cast<std::size_t>(n), warm), 1e-6) << i;
+        EXPECT_GE(lcp->forces().head(n).minCoeff(), 0) << i;
+    }
+}
+
 TEST(ContactLcp, nothing_in_contact_gives_no_force) {
     ContactLcp lcp;
     EXPECT_EQ(lcp.solve(0, {}), 0);

@@ -231,6 +231,7 @@ TEST(Shaft, on_a_plate_presses_with_its_deepest_place_and_never_pulls) {
     for (const bool tissue_elsewhere : {false, true}) {
         EXPECT_GT(wander_on_plate([](double) { return -0.1; }, tissue_elsewhere), 1000);
         EXPECT_GT(wander_on_plate([](double) { return 0.1; }, tissue_elsewhere), 1000);
+        EXPECT_GT(wander_on_plate([](double t) { return 0.3 * std::sin(7 * t); }, tissue_elsewhere), 1000);
     }
 }
 
