@@ -37,14 +37,19 @@ PeerTimes time_cgal(const TriangleMesh& surface, std::span<const Eigen::Vector3d
                         tree.build();
                     }));
     Kernel::Point_3 last = point_of(path.front()), hint = triangles.front().vertex(0);
-    for (const Eigen::Vector3d& position : path) {
-        const Kernel::Point_3 p = point_of(position);
-        times.closest.record(nanoseconds_of([&] { hint = tree.closest_point(p, hint); }));
-        if (p != last)
-            times.segment.record(
-                nanoseconds_of([&] { keep(tree.do_intersect(Kernel::Segment_3(last, p))); }));
-        last = p;
-    }
+    Shortest closest, segment;
+    for (int pass = 0; pass < Shortest::passes; ++pass)
+        for (std::size_t i = 0; i < path.size(); ++i) {
+            const Kernel::Point_3 p = point_of(path[i]);
+            closest.record(i, nanoseconds_of([&] { hint = tree.closest_point(p, hint); }));
+            if (i > 0 && p != last) {
+                const Kernel::Segment_3 step(last, p);
+                segment.record(i, nanoseconds_of([&] { keep(tree.do_intersect(step)); }));
+            }
+            last = p;
+        }
+    times.closest = closest.histogram();
+    times.segment = segment.histogram();
     return times;
 }
 

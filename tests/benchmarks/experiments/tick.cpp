@@ -21,7 +21,8 @@ using Json = nlohmann::ordered_json;
 constexpr auto method = R"(# Ticks
 
 What `HapticModel::tick()` takes, one core, wall clock, us. Reading the clock twice is in every figure: {} ns here
-(median). Percentiles are at most 3 % too high. A bold figure misses its limit. Coupling 0.5 N/mm; friction, where
+(median). Percentiles are at most 3 % too high. Every path is run {} times, exactly alike, and of each tick the shortest
+time counts, so that other processes' share drops out; the last table is of single runs. A bold figure misses its limit. Coupling 0.5 N/mm; friction, where
 named, 0.3 at rest and 0.2 sliding. On the bone all ticks of the path count, on soft bodies those that touch.
 Points: contact points that are solved together, and those of them that bear force, mean over the ticks that touch.
 Soft bodies are ellipsoids of 3 kPa with semi-axes 30, 30, 20 mm; a sphere goes half its radius deep and slides 4 mm to
@@ -69,7 +70,8 @@ Json json_row(const TickRow& row) {
         json.update(Json{{"touching", row.run.touching},
                          {"points", row.run.rows},
                          {"points_with_force", row.run.pressed},
-                         {"cut_or_unsolved", row.run.unusual}});
+                         {"cut", row.run.cut},
+                         {"unsolved", row.run.unsolved}});
     if (row.limit_p50 > 0) json["limit_p50_us"] = row.limit_p50;
     if (row.limit_p999 > 0) json["limit_p99.9_us"] = row.limit_p999;
     return json;
@@ -90,7 +92,7 @@ void add_load_rows(LoadRows& found, const std::string& name, HapticModel& model,
         TickRun run;
         std::thread([&] {
             found.scheduling = request_fifo_priority(fifo_priority).message;
-            run = time_ticks(model, {&path, 1}, counted, Pace::every_period);
+            run = time_paced_ticks(model, {&path, 1}, counted);
         }).join();
         found.rows.push_back({.group = "load",
                               .name = name + (busy == 0 ? ", alone" : fmt::format(", {} busy threads", busy)),
@@ -110,7 +112,9 @@ HandPath first_seconds(const HandPath& path, double seconds) {
 
 // How many ticks take longer than so much.
 Series exceedance(const TickRow& row) {
-    Series series{.name = row.name, .x = {}, .y = {}};
+    constexpr std::string_view ours = "continuous, ";
+    const std::string name = row.name.starts_with(ours) ? row.name.substr(ours.size()) : row.name;
+    Series series{.name = name, .x = {}, .y = {}};
     for (const double share :
          {0.9, 0.75, 0.5, 0.25, 0.1, 0.05, 0.02, 0.01, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4}) {
         series.x.push_back(us(row.times, 1 - share));
@@ -120,9 +124,9 @@ Series exceedance(const TickRow& row) {
 }
 
 Chart distribution_chart(const std::vector<TickRow>& rows) {
-    Chart chart{.title = "On the bone: ticks that take longer",
+    Chart chart{.title = "On the bone: how many ticks or queries take longer",
                 .x_label = "us",
-                .y_label = "% of ticks",
+                .y_label = "% of all",
                 .series = {},
                 .log_x = true,
                 .log_y = true};
@@ -165,12 +169,12 @@ void add_table(Findings& findings, const std::string& title, const std::vector<T
 Findings tick(const Options& options, cli::Session& session) {
     if (options.surface.empty() != options.path.empty())
         throw UsageError({"--surface and --path", "only one of them", "both, or neither", ""});
-    const double paced_s = options.seconds > 0 ? options.seconds : 10;
+    const double paced_s = options.seconds > 0 ? options.seconds : 5;
     const Histogram clock = clock_cost();
     Findings findings{.result = {{"schema", "palpate.bench.tick/1"},
                                  {"clock_ns", clock.percentile(0.5)},
                                  {"rows", Json::array()}},
-                      .table = fmt::format(method, clock.percentile(0.5)),
+                      .table = fmt::format(method, clock.percentile(0.5), Shortest::passes),
                       .pictures = {}};
     std::vector<Chart> charts;
     LoadRows load;

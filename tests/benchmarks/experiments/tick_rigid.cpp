@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/benchmarks/experiments/tick_rigid.hpp"
 
+#include <algorithm>
+#include <array>
+#include <optional>
 #include <utility>
 
 #include "tests/benchmarks/experiments/cgal_peer.hpp"
@@ -32,29 +35,29 @@ void add_queries(RigidTicks& found, const TriangleMesh& bone, const HandPath& pa
     found.surface_s =
         1e-9 * static_cast<double>(nanoseconds_of([&] { surface.emplace(bone, tree, "bone"); }));
     const std::vector<Vector3d> positions = positions_of(path);
-    Histogram closest, segment, sweep;
+    Shortest closest, segment, sweep;
     std::int32_t hint = -1;
-    Vector3d last = positions.front();
-    for (const Vector3d& p : positions) {
-        closest.record(nanoseconds_of([&] {
-            if (const auto point = surface->closest_point(p, 1000, hint)) hint = point->slot;
-        }));
-        if (p != last) {
-            segment.record(nanoseconds_of([&] { keep(surface->sweep_sphere(last, p, 0).has_value()); }));
-            sweep.record(nanoseconds_of([&] { keep(surface->sweep_sphere(last, p, 1).has_value()); }));
+    for (int pass = 0; pass < Shortest::passes; ++pass)
+        for (std::size_t i = 0; i < positions.size(); ++i) {
+            const Vector3d &p = positions[i], &last = positions[std::max<std::size_t>(i, 1) - 1];
+            closest.record(i, nanoseconds_of([&] {
+                               if (const auto point = surface->closest_point(p, 1000, hint))
+                                   hint = point->slot;
+                           }));
+            if (p == last) continue;
+            segment.record(i, nanoseconds_of([&] { keep(surface->sweep_sphere(last, p, 0).has_value()); }));
+            sweep.record(i, nanoseconds_of([&] { keep(surface->sweep_sphere(last, p, 1).has_value()); }));
         }
-        last = p;
-    }
     const PeerTimes peer = time_cgal(bone, positions);
     found.cgal_tree_s = peer.build_s;
     const auto add = [&](const char* name, const Histogram& times) {
         found.rows.push_back({.group = "query", .name = name, .times = times, .run = {}});
     };
-    add("closest point", closest);
+    add("closest point", closest.histogram());
     add("closest point, CGAL", peer.closest);
-    add("segment", segment);
+    add("segment", segment.histogram());
     add("segment, CGAL", peer.segment);
-    add("sweep of a 1 mm sphere", sweep);
+    add("sweep of a 1 mm sphere", sweep.histogram());
 }
 
 }  // namespace

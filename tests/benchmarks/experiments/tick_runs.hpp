@@ -27,21 +27,35 @@ void keep(const Value& value) {
     asm volatile("" : : "r,m"(value) : "memory");
 }
 
+/// The shortest of several times of each step of a work that repeats itself exactly: what other processes
+/// take in between drops out, what the work itself takes stays.
+class Shortest {
+  public:
+    static constexpr int passes = 3;
+    void record(std::size_t step, std::uint64_t nanoseconds);
+    Histogram histogram() const;  ///< of the steps that were recorded
+
+  private:
+    std::vector<std::uint64_t> times_;
+};
+
 /// What the ticks along a path took.
 struct TickRun {
     Histogram tick;    ///< HapticModel::tick(), ns
     Histogram detect;  ///< HapticModel::detect(), ns: of the published schemes, 30 in a virtual second
     std::int64_t ticks = 0, touching = 0;
-    std::int64_t unusual = 0;      ///< with TickStatus contacts_cut or contact_unsolved
-    double rows = 0, pressed = 0;  ///< mean contact points of touching ticks, and those with force
+    std::int64_t cut = 0, unsolved = 0;  ///< with TickStatus contacts_cut, contact_unsolved
+    double rows = 0, pressed = 0;        ///< mean contact points of touching ticks, and those with force
 };
 
-enum class Counted { all, touching };            ///< which ticks the histogram holds
-enum class Pace { back_to_back, every_period };  ///< every 1 ms, as a servo loop
+enum class Counted { all, touching };  ///< which ticks the histogram holds
 
-/// Moves one tool along each path, from a reset on.
-TickRun time_ticks(HapticModel& model, std::span<const HandPath> paths, Counted counted,
-                   Pace pace = Pace::back_to_back);
+/// Moves one tool along each path, from a reset on, back to back; of each tick the shortest of several
+/// passes counts.
+TickRun time_ticks(HapticModel& model, std::span<const HandPath> paths, Counted counted);
+
+/// The same once, a tick every 1 ms, as a servo loop has it.
+TickRun time_paced_ticks(HapticModel& model, std::span<const HandPath> paths, Counted counted);
 
 /// Of the ticks after the tool was first clear, those with its surface more than 1e-6 mm below the one rigid
 /// body's. `continuous` only.

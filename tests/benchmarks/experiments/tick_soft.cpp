@@ -77,7 +77,7 @@ TickRow row_of(std::string name, const TickRun& run, std::size_t nodes, int cont
 }  // namespace
 
 SoftTicks soft_ticks(cli::Session& session) {
-    constexpr double seconds = 6;
+    constexpr double seconds = 3;
     std::vector<TickRow> rows, others;
     std::vector<SoftTicks::Point> points;
     std::optional<SoftTouchCase> loaded;
@@ -102,7 +102,7 @@ SoftTicks soft_ticks(cli::Session& session) {
             }
             if (spacing != spacings.back() || contacts != fixed_limit_contacts) continue;
             loaded = SoftTouchCase{soft_case(body, radius, false), contacts,
-                                   slide_at(0, radius, relative_depth * radius, 10)};
+                                   slide_at(0, radius, relative_depth * radius, 5)};
             for (const ContactScheme scheme : {ContactScheme::single, ContactScheme::twice}) {
                 HapticModel model(loaded->patient_case, scheme);
                 const HandPath path = slide_at(0, 0, relative_depth * radius, seconds);
