@@ -7,6 +7,7 @@
 #include "tests/benchmarks/experiments/puncture.hpp"
 #include "tests/benchmarks/experiments/split.hpp"
 #include "tests/benchmarks/experiments/stability.hpp"
+#include "tests/benchmarks/experiments/tick.hpp"
 
 namespace palpate::bench {
 namespace {
@@ -19,6 +20,7 @@ const std::vector<Experiment> experiments{
     {"split", "two deformable bodies: the published split by force ratio against exact contact", split},
     {"stability", "jumps, pulls, roughness and energy of force by scheme, and 10 minutes at random",
      stability},
+    {"tick", "what a tick takes, by scheme, body and contacts, alone and with every core busy", tick},
 };
 
 const Experiment& find_experiment(const std::string& name) {
