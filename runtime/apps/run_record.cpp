@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <iterator>
+#include <limits>
 #include <ostream>
 
 namespace palpate {
@@ -52,14 +53,17 @@ double RunRecord::peak_force() const {
 
 double RunRecord::tool_depth_of(const TickResult& result) const {
     if (result.status & (starts_inside | invalid_position)) return 0;
-    const double radius = model_.settings().tool_radius;
+    // The published schemes know a point.
+    const bool has_radius = model_.scheme() == ContactScheme::continuous;
+    const double radius = has_radius ? model_.settings().tool_radius : 0;
     const Vector3d tool = vector_of(result.tool_position);
     double depth = result.residual;
     for (std::size_t body = 0; body < model_.rigid_count(); ++body) {
         const CollisionSurface& surface = model_.surface(body);
-        if (const auto nearest = surface.closest_point(tool, radius))
-            depth =
-                std::max(depth, radius + (surface.is_outside(tool) ? -nearest->distance : nearest->distance));
+        const bool outside = surface.is_outside(tool);
+        const double far = std::numeric_limits<double>::max();
+        if (const auto nearest = surface.closest_point(tool, outside ? radius : far))
+            depth = std::max(depth, radius + (outside ? -nearest->distance : nearest->distance));
     }
     return depth;
 }

@@ -27,8 +27,8 @@ class RunRecord {
     const TickResult& peak() const { return peak_; }       ///< the tick with the largest force
     double peak_force() const;                             ///< N
     double device_depth() const { return device_depth_; }  ///< deepest below any rest surface, mm
-    /// Deepest that the tool's surface went below the surface it touched: below a rigid one, or what the
-    /// contact solver left of a deformable one, mm.
+    /// Deepest that the surface of the tool's tip went below the surface it touched: below a rigid one, or
+    /// what the contact solver left of a deformable one, mm.
     double tool_depth() const { return tool_depth_; }
     double largest_force_step() const { return largest_force_step_; }  ///< N between successive ticks
     /// How many ticks had each unusual status.

@@ -129,6 +129,8 @@ Json peak_json(const TickResult& peak, const Case& patient_case, const HapticMod
              {"normal", Json::array({contact.normal[0], contact.normal[1], contact.normal[2]})},
              {"gap_mm", contact.gap},
              {"force_n", contact.force},
+             {"friction_n", Json::array({contact.friction[0], contact.friction[1], contact.friction[2]})},
+             {"part", contact.part},
              {"series_compliance_mm_per_n", contact.series_compliance}});
     }
     return {{"t_s", peak.time},
@@ -163,7 +165,11 @@ Json touch(const Options& options, cli::Session& session) {
     if (!options.curve.empty()) curve_file.emplace(options.curve, session.force);
 
     const Case patient_case = read_asset(options.asset);
-    HapticModel model(patient_case, find_contact_scheme(options.scheme), options.second.empty() ? 1 : 2);
+    const ContactScheme scheme = find_contact_scheme(options.scheme);
+    if (!options.second.empty() && scheme != ContactScheme::continuous)
+        throw UsageError({"--second", "with --scheme " + options.scheme, "the scheme 'continuous'",
+                          "the published schemes know one tool"});
+    HapticModel model(patient_case, scheme, options.second.empty() ? 1 : 2);
     const Plan plan = plan_of(options, patient_case, model);
     const std::array<double, 3> shaft = shaft_of(options, plan);
     std::vector<std::unique_ptr<Device>> devices;
@@ -223,7 +229,13 @@ Json touch(const Options& options, cli::Session& session) {
                 {"statuses", record.statuses()}};
     if (plan.target) result["target"] = target_json(*plan.target, model);
     result["peak"] = peak_json(record.peak(), patient_case, model);
-    if (records.size() > 1) result["second_peak"] = peak_json(records[1].peak(), patient_case, model);
+    if (records.size() > 1)
+        result["second"] = {
+            {"force_peak_n", records[1].peak_force()},
+            {"force_step_max_n", records[1].largest_force_step()},
+            {"penetration", {{"device_mm", records[1].device_depth()}, {"tool_mm", records[1].tool_depth()}}},
+            {"statuses", records[1].statuses()},
+            {"peak", peak_json(records[1].peak(), patient_case, model)}};
     return result;
 }
 
@@ -262,12 +274,13 @@ int main(int argc, char** argv) {
     command.option("--scheme", options.scheme, "how contact is found: continuous, single or twice");
     command.option("--device", options.device,
                    "simulated device that gives way, in a hand that does: touch, desktop or premium");
-    command.option("--shaft", options.shaft,
-                   "x,y,z: direction from the tip along the shaft, for a case with one; straight out of the "
-                   "target if not given");
+    command.option(
+        "--shaft", options.shaft,
+        "x,y,z: direction from the tip along the shaft of both tools, for a case with one; straight out "
+        "of the target if not given, and with a file none, so that the tip alone is felt");
     command.option("--seed", options.seed, "of the script 'random'");
     command.output("--log", options.log, "one row per tick (.csv)");
-    command.output("--curve", options.curve, "force and depth over time (.svg)");
+    command.output("--curve", options.curve, "force and depth of the first tool over time (.svg)");
     command.flag("--virtual-clock", options.virtual_clock,
                  "tick as fast as possible; forces do not depend on the machine");
     return command.run(argc, argv, [&](cli::Session& session) {

@@ -115,7 +115,10 @@ Json train(const Options& options, cli::Session& session) {
     constexpr double hand_speed = 200;  // mm/s
     GuidedDevice guided({start.x(), start.y(), start.z()}, limits, hand_speed, shaft);
     std::optional<SimulatedDevice> scripted;
-    if (!options.script.empty()) scripted.emplace(scripted_path(options, place, radius), limits, shaft);
+    if (!options.script.empty())
+        scripted.emplace(
+            scripted_path(options, place, model.scheme() == ContactScheme::continuous ? radius : 0), limits,
+            shaft);
 
     session.progress.step("opening the window", 0.5);
     WindowSettings window_settings{.width = width, .height = height, .start = start};

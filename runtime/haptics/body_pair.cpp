@@ -109,22 +109,26 @@ Eigen::VectorXd complementary_forces(const Eigen::MatrixXd& A, const Eigen::Vect
     rows.resize(std::min(rows.size(), max_contacts));
     const auto lcp = std::make_unique<ContactLcp>();
     const auto count = static_cast<Index>(rows.size());
-    while (true) {
+    Eigen::VectorXd f;
+    for (Index round = 0; round <= delta.size(); ++round) {
         lcp->matrix().topLeftCorner(count, count) = A(rows, rows);
         lcp->gaps().head(count) = delta(rows);
         lcp->solve(rows.size(), {});
-        Eigen::VectorXd f = Eigen::VectorXd::Zero(delta.size());
+        f = Eigen::VectorXd::Zero(delta.size());
         f(rows) = lcp->forces().head(count);
         if (count == delta.size()) return f;
 
         const Eigen::VectorXd w = A * f - delta;
+        Eigen::VectorXd outside = w;
+        outside(rows).setZero();
         Index worst = 0;
-        w.minCoeff(&worst);
+        outside.minCoeff(&worst);
         const auto most_idle =
             std::ranges::max_element(rows, {}, [&](Index row) { return f[row] > 0 ? -1 : w[row]; });
-        if (w[worst] >= -tolerance || !(w[*most_idle] > 0) || f[*most_idle] > 0) return f;
+        if (outside[worst] >= -tolerance || !(w[*most_idle] > 0) || f[*most_idle] > 0) return f;
         *most_idle = worst;
     }
+    return f;
 }
 
 }  // namespace

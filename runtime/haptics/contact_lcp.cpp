@@ -141,12 +141,15 @@ double ContactLcp::solve(std::size_t rows, std::span<const std::size_t> active) 
             entering = row;
         }
         if (entering == rows) break;
-        if (!append(entering) && !exchange(entering)) {
+        // Where a pivot is noise, so is what the active rows leave to this one for the same reason.
+        const auto row = static_cast<Index>(entering);
+        const double noise = dependent * A_(row, row) * f_.head(n).sum();
+        if (!append(entering) && !(-lowest > noise && exchange(entering))) {
             set_aside[entering] = true;
             continue;
         }
         make_feasible();
-        if (f_[static_cast<Index>(entering)] > 0)
+        if (f_[row] > 0)
             set_aside.reset();
         else
             set_aside[entering] = true;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 
 #include "formats/model/body.hpp"
@@ -12,6 +13,9 @@ class ForceLimiter {
   public:
     explicit ForceLimiter(const HapticSettings& settings) noexcept
         : max_force_(settings.max_force), max_step_(settings.max_force_rate) {}
+
+    /// Lowers the largest force (N) to what a device bears.
+    void lower_to(double max_force) noexcept { max_force_ = std::min(max_force_, max_force); }
 
     void reset() noexcept { last_.setZero(); }
 

@@ -102,8 +102,11 @@ HapticModel::HapticModel(const Case& patient_case, ContactScheme scheme, std::si
 
 void HapticModel::couple_to(std::span<const DeviceLimits> devices) {
     coupling_ = settings_.coupling_stiffness;
-    for (const DeviceLimits& device : devices)
+    for (const DeviceLimits& device : devices) {
         coupling_ = std::min(coupling_, coupling_stiffness(settings_, device));
+        if (device.max_force > 0)
+            for (Tool& tool : tools_) tool.limiter.lower_to(device.max_force);
+    }
 }
 
 void HapticModel::reset() noexcept {

@@ -41,8 +41,8 @@ class HapticModel {
     explicit HapticModel(const Case& patient_case, ContactScheme scheme = ContactScheme::continuous,
                          std::size_t tool_count = 1);
 
-    /// Limits the virtual coupling to what every device bears: coupling_stiffness(). Not beside a running
-    /// tick.
+    /// Limits the virtual coupling to what every device bears, coupling_stiffness(), and the force to the
+    /// least of their largest ones. Not beside a running tick.
     void couple_to(std::span<const DeviceLimits> devices);
     /// Of the virtual coupling, N/mm.
     double coupling() const noexcept { return coupling_; }

@@ -46,6 +46,8 @@ void HapticModel::tick(std::span<const DeviceState> devices, std::span<TickResul
     if (published_) {
         if (tools_[0].parts_felt > 0)
             finish(tools_[0], published_->tick(tools_[0].parts[0].device, coupling_, results[0]), results[0]);
+        else
+            published_->lose();
         return;
     }
     for (std::size_t t = 0; t < tools_.size(); ++t) follow(t, results[t]);
@@ -68,7 +70,10 @@ void HapticModel::tick(std::span<const DeviceState> devices, std::span<TickResul
             const Part& held = *std::ranges::max_element(
                 std::span(tool.parts).first(tool.parts_felt), {},
                 [](const Part& part) { return (part.on_all.position() - part.device).squaredNorm(); });
-            finish(tool, rigid_force(held.on_all, held.device, result), result);
+            const Vector3d force = rigid_force(held.on_all, held.device, result);
+            if (result.contact_count > 0)
+                result.contacts[0].part = static_cast<std::int32_t>(&held - tool.parts.data());
+            finish(tool, force, result);
         }
         const auto contacts = result.active_contacts();
         std::ranges::copy(contacts, tool.last_contacts.begin());
@@ -284,9 +289,14 @@ Vector3d HapticModel::solved_force(Tool& tool, const TickResult& result) const n
 Vector3d HapticModel::friction_of(const Part& part) const noexcept {
     double press = 0;
     for (const Contact& contact : part.rigid_contacts) press += static_cast<double>(contact.force);
-    const Vector3d drag = -coupling_ * part.on_rigid.held_back();
+    if (!(press > 0)) return Vector3d::Zero();
+    Vector3d drag = -coupling_ * part.on_rigid.held_back();
     const double most = friction_.at_rest * press, wanted = drag.norm();
-    return wanted > most ? Vector3d(most / wanted * drag) : drag;
+    if (wanted > most) drag *= most / wanted;
+    for (Contact& contact : part.rigid_contacts)
+        Eigen::Map<Eigen::Vector3f>(contact.friction.data()) =
+            (static_cast<double>(contact.force) / press * drag).cast<float>();
+    return drag;
 }
 
 // Friction drags the points in proportion to how they are pressed, by as much as it takes to move them,

@@ -61,6 +61,14 @@ PublishedContact::Detection PublishedContact::inside_or_outside(std::size_t body
             {nearest->point, normal, nearest->barycentric, nearest->triangle}};
 }
 
+void PublishedContact::lose() noexcept {
+    device_.write(std::nullopt);
+    detections_.refresh();
+    detected_ = false;
+    std::ranges::fill(contacted_, Contacted{});
+    last_device_.reset();
+}
+
 void PublishedContact::detect() noexcept {
     const Position& position = device_.read();
     if (!position) return;
@@ -126,9 +134,10 @@ Vector3d PublishedContact::tick(const Vector3d& device, double coupling_stiffnes
                                 TickResult& result) noexcept {
     device_.write(std::array{device[0], device[1], device[2]});
     const bool fresh = detections_.refresh();
+    detected_ = detected_ || fresh;
     Vector3d sum = Vector3d::Zero();
     for (std::size_t body = 0; body < surfaces_.size(); ++body) {
-        decide(body, detections_.front()[body], fresh, device);
+        decide(body, detected_ ? detections_.front()[body] : Detection{}, fresh, device);
         if (!contacted_[body].render_force) continue;
         Contact contact;
         const Vector3d force =

@@ -61,6 +61,10 @@ class PublishedContact {
     /// Forgets positions, detections and contact. Not beside a running detect() or tick().
     void reset() noexcept;
 
+    /// Servo's side, for a tick without a trusted position: drops contact, and every detection up to the
+    /// next.
+    void lose() noexcept;
+
     /// Collision loop's side, 30 Hz: tests the device position of the latest tick on every body. One thread,
     /// which may be another than tick()'s. Two queries of each surface; no allocation or lock.
     void detect() noexcept;
@@ -110,6 +114,7 @@ class PublishedContact {
     TripleBuffer<std::vector<Detection>> detections_;
     std::vector<Contacted> contacted_;            // the servo's
     std::optional<Eigen::Vector3d> last_device_;  // the servo's
+    bool detected_ = false;                       // since the device was last lost
 };
 
 }  // namespace palpate

@@ -34,11 +34,16 @@ const Experiment& find_experiment(const std::string& name) {
 
 nlohmann::ordered_json run(const std::string& name, const Options& options, cli::Session& session) {
     const Experiment& experiment = find_experiment(name);
+    if (!(options.seconds >= 0))
+        throw UsageError({"--seconds", std::to_string(options.seconds), "0 or more", ""});
     std::filesystem::create_directories(options.output);
-    const Findings findings = experiment.run(options, session);
-    cli::write_text_file(options.output / (name + ".md"), findings.table, session.force);
+    cli::StagedFile table = session.stage(options.output / (name + ".md"));
+    Findings findings = experiment.run(options, session);
     for (const auto& [picture, svg] : findings.pictures)
         cli::write_text_file(options.output / (picture + ".svg"), svg, session.force);
+    table.write_text(findings.table);
+    table.commit();
+    findings.result["experiment"] = name;
     if (!session.quiet) std::fputs(findings.table.c_str(), stderr);
     return findings.result;
 }

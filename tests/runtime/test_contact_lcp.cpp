@@ -101,6 +101,16 @@ TEST(ContactLcp, the_deeper_of_two_points_at_one_place_takes_over_from_a_warm_st
     EXPECT_EQ(lcp.forces()[0], 0);
 }
 
+TEST(ContactLcp, two_points_that_differ_by_noise_do_not_take_turns) {
+    ContactLcp lcp;
+    fill(lcp, (MatrixXd(2, 2) << 1, 1 - 4e-6, 1 - 4e-6, 1).finished(), Eigen::Vector2d(1.0, 1.0));
+    for (const std::size_t first : {0U, 1U}) {
+        const std::array<std::size_t, 1> warm{first};
+        EXPECT_LE(lcp.solve(2, warm), 1e-5);
+        EXPECT_EQ(lcp.forces()[static_cast<Index>(first)], 1);
+    }
+}
+
 TEST(ContactLcp, solves_points_of_few_places_from_any_warm_start) {
     // A of low rank, and delta = A g - s of points that some forces g hold: no contradiction.
     std::mt19937 generator(8);

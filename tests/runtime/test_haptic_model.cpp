@@ -119,6 +119,33 @@ TEST(HapticModel, a_position_that_is_not_a_number_ramps_the_force_to_zero_and_sa
     EXPECT_GT(force_of(result).norm(), 1);
 }
 
+TEST(HapticModel, a_device_that_was_lost_and_found_elsewhere_feels_no_old_contact) {
+    for (const ContactScheme scheme : {ContactScheme::single, ContactScheme::twice}) {
+        HapticModel model(patient(), scheme);
+        TickResult result{};
+        model.tick(at({40, 10, 24}), result);
+        model.detect();
+        model.tick(at({40, 10, 24}), result);
+        ASSERT_GT(force_of(result).norm(), 0.1);
+        DeviceState gone = at({40, 10, 24});
+        gone.connected = false;
+        for (int tick = 0; tick < 20; ++tick) model.tick(gone, result);
+        model.tick(at({40, 10, 60}), result);
+        EXPECT_EQ(force_of(result).norm(), 0);
+    }
+}
+
+TEST(HapticModel, the_force_keeps_to_what_the_device_bears) {
+    HapticModel model(patient());
+    const DeviceLimits weak{.max_force = 0.3};
+    model.couple_to({&weak, 1});
+    TickResult result{};
+    model.tick(at({40, 10, 30}), result);
+    for (int tick = 0; tick < 20; ++tick) model.tick(at({40, 10, 22}), result);
+    EXPECT_NEAR(force_of(result).norm(), 0.3, 1e-12);
+    EXPECT_TRUE(result.status & force_limited);
+}
+
 TEST(HapticModel, the_same_path_gives_the_same_bytes) {
     const auto run = [] {
         HapticModel model(patient());

@@ -281,11 +281,8 @@ Findings stability(const Options& options, cli::Session& session) {
         long_rows += long_run_row(patient_case, run);
     }
     session.progress.finish();
-    findings.result = {{"schema", "palpate.bench.stability/1"},
-                       {"device", device_name},
-                       {"seed", options.seed},
-                       {"curves", curves},
-                       {"random", long_runs}};
+    findings.result = {
+        {"device", device_name}, {"seed", options.seed}, {"curves", curves}, {"random", long_runs}};
     findings.table = std::string(method) + std::string(curve_head) + curve_rows + std::string(long_text) +
                      std::string(long_head) + long_rows;
     return findings;

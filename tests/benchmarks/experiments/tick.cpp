@@ -171,9 +171,7 @@ Findings tick(const Options& options, cli::Session& session) {
         throw UsageError({"--surface and --path", "only one of them", "both, or neither", ""});
     const double paced_s = options.seconds > 0 ? options.seconds : 5;
     const Histogram clock = clock_cost();
-    Findings findings{.result = {{"schema", "palpate.bench.tick/1"},
-                                 {"clock_ns", clock.percentile(0.5)},
-                                 {"rows", Json::array()}},
+    Findings findings{.result = {{"clock_ns", clock.percentile(0.5)}, {"rows", Json::array()}},
                       .table = fmt::format(method, clock.percentile(0.5), Shortest::passes),
                       .pictures = {}};
     std::vector<Chart> charts;
