@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "formats/model/errors.hpp"
+#include "runtime/haptics/compliance_blocks.hpp"
 #include "runtime/haptics/contact_lcp.hpp"
 
 namespace palpate {
@@ -137,17 +138,7 @@ ElasticSurface::ElasticSurface(const DeformableBody& body)
     : surface_(body.boundary.surface),
       collision_(surface_, body.obb_tree, body.name),
       compliance_(body.compliance) {
-    if (static_cast<std::size_t>(node_count(compliance_)) != body.contact_nodes.size())
-        throw InvalidInput(
-            {.culprit = body.name,
-             .found = "its compliance has " + std::to_string(node_count(compliance_)) + " nodes",
-             .expected = std::to_string(body.contact_nodes.size()),
-             .next_step = "condense it again with 'palpate condense'"});
-    for (const std::int32_t node : body.boundary.nodes) {
-        const auto found = std::ranges::lower_bound(body.contact_nodes, node);
-        const bool free = found != body.contact_nodes.end() && *found == node;
-        blocks_.push_back(free ? static_cast<std::int32_t>(found - body.contact_nodes.begin()) : -1);
-    }
+    blocks_ = compliance_blocks(body);
 }
 
 bool ElasticSurface::is_free(const Triangle& polygon) const noexcept {
