@@ -65,6 +65,10 @@ class CollisionSurface {
     /// triangles as thin as they like. A point on the surface is not outside. Source: Baerentzen, Aanaes
     /// 2005.
     bool is_outside(const Eigen::Vector3d& p) const noexcept;
+    /// The same where the surface point nearest to p is known.
+    bool is_outside(const Eigen::Vector3d& p, const ClosestPoint& nearest) const noexcept {
+        return pseudonormal(nearest.point).dot(p - nearest.point) > 0;
+    }
 
     /// The published name of the same: -1 inside, +1 outside.
     int inside_or_outside(const Eigen::Vector3d& p) const noexcept { return is_outside(p) ? 1 : -1; }

@@ -66,7 +66,7 @@ Vector3d CollisionSurface::outward_normal(const ClosestPoint& found) const noexc
 
 bool CollisionSurface::is_outside(const Vector3d& p) const noexcept {
     const auto nearest = closest_point(p, std::numeric_limits<double>::max());
-    return nearest && pseudonormal(nearest->point).dot(p - nearest->point) > 0;
+    return nearest && is_outside(p, *nearest);
 }
 
 }  // namespace palpate

@@ -55,10 +55,8 @@ PublishedContact::Detection PublishedContact::inside_or_outside(std::size_t body
     const CollisionSurface& surface = *surfaces_[body];
     const auto nearest = surface.closest_point(p, std::numeric_limits<double>::max());
     if (!nearest) return {};
-    const TriangleCorners t = surface.corners(nearest->slot);
-    const Vector3d normal = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
-    return {surface.is_outside(p) ? 1 : -1,
-            {nearest->point, normal, nearest->barycentric, nearest->triangle}};
+    return {surface.is_outside(p, *nearest) ? 1 : -1,
+            {nearest->point, surface.outward_normal(*nearest), nearest->barycentric, nearest->triangle}};
 }
 
 void PublishedContact::lose() noexcept {

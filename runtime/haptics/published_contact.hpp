@@ -66,7 +66,7 @@ class PublishedContact {
     void lose() noexcept;
 
     /// Collision loop's side, 30 Hz: tests the device position of the latest tick on every body. One thread,
-    /// which may be another than tick()'s. Two queries of each surface; no allocation or lock.
+    /// which may be another than tick()'s. One query of each surface; no allocation or lock.
     void detect() noexcept;
 
     /// Servo's side, 1 kHz: takes the latest detection, decides, and returns the force on the device before
