@@ -52,7 +52,7 @@ double RunRecord::peak_force() const {
 }
 
 double RunRecord::tool_depth_of(const TickResult& result) const {
-    if (result.status & (starts_inside | invalid_position)) return 0;
+    if ((result.status & starts_inside) || (result.faults & distrusted_position)) return 0;
     // The published schemes know a point.
     const bool has_radius = model_.scheme() == ContactScheme::continuous;
     const double radius = has_radius ? model_.settings().tool_radius : 0;

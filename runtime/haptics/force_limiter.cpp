@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/haptics/force_limiter.hpp"
 
+#include <algorithm>
+
 #include "runtime/haptics/tick_result.hpp"
 
 namespace palpate {
@@ -16,13 +18,20 @@ bool shorten(Eigen::Vector3d& v, double limit) noexcept {
 
 }  // namespace
 
-Eigen::Vector3d ForceLimiter::limit(const Eigen::Vector3d& wanted, std::uint32_t& status) noexcept {
-    if (!wanted.allFinite()) {
-        status |= invalid_position;
-        return ramp_to_zero();
-    }
-    Eigen::Vector3d force = wanted;
-    if (shorten(force, max_force_)) status |= force_limited;
+void ForceLimiter::reset() noexcept {
+    last_.setZero();
+    ticks_well_ = ramp_ticks + return_ticks;
+}
+
+Eigen::Vector3d ForceLimiter::limit(const Eigen::Vector3d& wanted, std::uint32_t& faults,
+                                    std::uint32_t& status) noexcept {
+    if (!wanted.allFinite()) faults |= invalid_force;
+    ticks_well_ = faults != no_fault ? 0 : std::min(ticks_well_ + 1, ramp_ticks + return_ticks);
+    if (ticks_well_ > 0 && ticks_well_ < ramp_ticks + return_ticks) status |= coming_back;
+    if (ticks_well_ < ramp_ticks) return ramp_to_zero();
+    const double share = static_cast<double>(ticks_well_ - ramp_ticks) / return_ticks;
+    Eigen::Vector3d force = share * wanted;
+    if (shorten(force, share * max_force_)) status |= force_limited;
     Eigen::Vector3d step = force - last_;
     if (shorten(step, max_step_)) {
         status |= rate_limited;
@@ -34,7 +43,7 @@ Eigen::Vector3d ForceLimiter::limit(const Eigen::Vector3d& wanted, std::uint32_t
 
 Eigen::Vector3d ForceLimiter::ramp_to_zero() noexcept {
     Eigen::Vector3d step = -last_;
-    shorten(step, max_force_ / 20);
+    shorten(step, max_force_ / ramp_ticks);
     last_ += step;
     return last_;
 }

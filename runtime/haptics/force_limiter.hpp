@@ -8,28 +8,36 @@
 
 namespace palpate {
 
-/// Keeps the commanded force within what device and hand may bear. Realtime-safe.
+/// Keeps the commanded force within what device and hand may bear, and takes it away where something is
+/// wrong. Realtime-safe.
 class ForceLimiter {
   public:
+    static constexpr int ramp_ticks = 20;     ///< within which a fault takes any force to zero
+    static constexpr int return_ticks = 500;  ///< over which the force comes back after the last fault
+
     explicit ForceLimiter(const HapticSettings& settings) noexcept
         : max_force_(settings.max_force), max_step_(settings.max_force_rate) {}
 
     /// Lowers the largest force (N) to what a device bears.
     void lower_to(double max_force) noexcept { max_force_ = std::min(max_force_, max_force); }
 
-    void reset() noexcept { last_.setZero(); }
+    void reset() noexcept;
 
     /// Shortens `wanted` (N) to max_force, then lets the force change by at most max_force_rate per tick;
-    /// adds force_limited and rate_limited to `status`. A force that is not finite counts as a fault.
-    Eigen::Vector3d limit(const Eigen::Vector3d& wanted, std::uint32_t& status) noexcept;
-
-    /// Takes the force towards zero, reaching it within 20 ticks from any force.
-    Eigen::Vector3d ramp_to_zero() noexcept;
+    /// adds force_limited and rate_limited to `status`. With any of `faults` (to which a force that is not
+    /// finite adds invalid_force), and for ramp_ticks after, the force goes to zero instead, by
+    /// max_force / ramp_ticks in each tick, then comes back in proportion to the time since (status
+    /// coming_back), so that a hand that pressed on meanwhile is not kicked.
+    Eigen::Vector3d limit(const Eigen::Vector3d& wanted, std::uint32_t& faults,
+                          std::uint32_t& status) noexcept;
 
   private:
+    Eigen::Vector3d ramp_to_zero() noexcept;
+
     double max_force_;
     double max_step_;
     Eigen::Vector3d last_ = Eigen::Vector3d::Zero();
+    int ticks_well_ = ramp_ticks + return_ticks;  // since the last fault; counted no further than this
 };
 
 }  // namespace palpate

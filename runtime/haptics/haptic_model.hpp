@@ -53,14 +53,19 @@ class HapticModel {
 
     /// Computes the forces for one state of each tool: finds contacts, solves them, limits the forces. Fills
     /// the results except tick_ns, wake_latency_ns and overruns. As many states and results as tools
-    /// (unchecked). One thread; realtime-safe: no allocation, lock or I/O.
-    void tick(std::span<const DeviceState> devices, std::span<TickResult> results) noexcept;
+    /// (unchecked). Where a device has a fault, or with any of `faults` (Fault flags) all of them, the force
+    /// goes to zero, see ForceLimiter; contacts are followed as long as the position is trusted. One thread;
+    /// realtime-safe: no allocation, lock or I/O.
+    void tick(std::span<const DeviceState> devices, std::span<TickResult> results,
+              std::uint32_t faults = no_fault) noexcept;
     /// The same with one tool.
     void tick(const DeviceState& device, TickResult& result) noexcept { tick({&device, 1}, {&result, 1}); }
 
     /// The published schemes' collision loop, to be called 30 times a second from one thread, which may be
     /// another than tick()'s; nothing for `continuous`.
     void detect() noexcept;
+    /// The same for a given position of a given tick, as a replay has it (TickResult::detected_tick).
+    void detect_at(const std::array<double, 3>& device, std::int64_t tick) noexcept;
 
     const HapticSettings& settings() const noexcept { return settings_; }
     ContactScheme scheme() const noexcept { return scheme_; }

@@ -36,10 +36,16 @@ void HapticModel::detect() noexcept {
     if (published_) published_->detect();
 }
 
-void HapticModel::tick(std::span<const DeviceState> devices, std::span<TickResult> results) noexcept {
+void HapticModel::detect_at(const std::array<double, 3>& device, std::int64_t tick) noexcept {
+    if (published_) published_->detect_at(device, tick);
+}
+
+void HapticModel::tick(std::span<const DeviceState> devices, std::span<TickResult> results,
+                       std::uint32_t faults) noexcept {
     solver_.clear();
     for (std::size_t t = 0; t < tools_.size(); ++t) {
         results[t].tool = static_cast<std::int32_t>(t);
+        results[t].faults = faults | devices[t].faults;
         begin(tools_[t], devices[t], results[t]);
     }
     ++tick_;
@@ -85,6 +91,9 @@ void HapticModel::begin(Tool& tool, const DeviceState& device, TickResult& resul
     result.tick = tick_;
     result.time = device.time;
     result.device_position = result.tool_position = device.position;
+    result.shaft = device.shaft;
+    result.buttons = device.buttons;
+    result.detected_tick = -1;
     result.depth = 0;
     result.residual = 0;
     result.body = -1;
@@ -92,9 +101,9 @@ void HapticModel::begin(Tool& tool, const DeviceState& device, TickResult& resul
     result.status = tick_ok;
     const Vector3d tip = vector_of(device.position), shaft = vector_of(device.shaft);
     tool.parts_felt = 0;
-    if (!device.connected || !tip.allFinite() || !shaft.allFinite()) {
-        result.status = invalid_position;
-        result.force = array_of(tool.limiter.ramp_to_zero());
+    if (!tip.allFinite() || !shaft.allFinite()) result.faults |= invalid_position;
+    if (result.faults & distrusted_position) {
+        result.force = array_of(tool.limiter.limit(Vector3d::Zero(), result.faults, result.status));
         tool.last_count = 0;
         return;
     }
@@ -331,7 +340,7 @@ Vector3d HapticModel::friction_of(SoftTouch& touch, const DeformableContact& bod
 void HapticModel::finish(Tool& tool, const Vector3d& force, TickResult& result) noexcept {
     if (scheme_ == ContactScheme::continuous)
         result.tool_position = array_of(tool.parts[0].device + force / coupling_);
-    result.force = array_of(tool.limiter.limit(force, result.status));
+    result.force = array_of(tool.limiter.limit(force, result.faults, result.status));
 }
 
 void HapticModel::surface_displacement(std::size_t body, const TickResult& result,

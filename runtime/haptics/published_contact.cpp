@@ -14,6 +14,8 @@ using Eigen::Vector3f;
 
 namespace {
 
+constexpr int stale_ticks = 100;  // three periods of the collision loop
+
 // Fixed in size, so that nothing is allocated.
 template <std::size_t count>
 void impose(const SurfaceCompliance& compliance, const std::array<std::int32_t, 3>& blocks,
@@ -63,17 +65,20 @@ void PublishedContact::lose() noexcept {
     device_.write(std::nullopt);
     detections_.refresh();
     detected_ = false;
+    ticks_undetected_ = 0;
     std::ranges::fill(contacted_, Contacted{});
     last_device_.reset();
 }
 
 void PublishedContact::detect() noexcept {
-    const Position& position = device_.read();
-    if (!position) return;
-    const Eigen::Map<const Vector3d> device(position->data());
-    std::vector<Detection>& detections = detections_.back();
+    if (const std::optional<Asked>& asked = device_.read()) detect_at(asked->device, asked->tick);
+}
+
+void PublishedContact::detect_at(const std::array<double, 3>& device, std::int64_t tick) noexcept {
+    Answered& answer = detections_.back();
     for (std::size_t body = 0; body < surfaces_.size(); ++body)
-        detections[body] = inside_or_outside(body, device);
+        answer.bodies[body] = inside_or_outside(body, Eigen::Map<const Vector3d>(device.data()));
+    answer.tick = tick;
     detections_.publish();
 }
 
@@ -130,12 +135,15 @@ Vector3d PublishedContact::answer(std::size_t body, const Vector3d& offset, doub
 
 Vector3d PublishedContact::tick(const Vector3d& device, double coupling_stiffness,
                                 TickResult& result) noexcept {
-    device_.write(std::array{device[0], device[1], device[2]});
+    device_.write(Asked{{device[0], device[1], device[2]}, result.tick});
     const bool fresh = detections_.refresh();
     detected_ = detected_ || fresh;
+    if (fresh) result.detected_tick = detections_.front().tick;
+    ticks_undetected_ = fresh ? 0 : ticks_undetected_ + 1;
+    if (ticks_undetected_ > stale_ticks) result.faults |= collision_stale;
     Vector3d sum = Vector3d::Zero();
     for (std::size_t body = 0; body < surfaces_.size(); ++body) {
-        decide(body, detected_ ? detections_.front()[body] : Detection{}, fresh, device);
+        decide(body, detected_ ? detections_.front().bodies[body] : Detection{}, fresh, device);
         if (!contacted_[body].render_force) continue;
         Contact contact;
         const Vector3d force =

@@ -68,12 +68,15 @@ class PublishedContact {
     /// Collision loop's side, 30 Hz: tests the device position of the latest tick on every body. One thread,
     /// which may be another than tick()'s. One query of each surface; no allocation or lock.
     void detect() noexcept;
+    /// The same for a given position of a given tick, as a replay has it. Instead of detect().
+    void detect_at(const std::array<double, 3>& device, std::int64_t tick) noexcept;
 
     /// Servo's side, 1 kHz: takes the latest detection, decides, and returns the force on the device before
     /// any limit (N) for the end-effector at `device` (p_P, mm, finite) behind a virtual coupling (N/mm).
     /// Appends one contact per body felt to `result`, with the force's direction as its normal, and a
-    /// polygon's free vertices weighted alike; raises its depth and body. One thread; wait-free and
-    /// realtime-safe.
+    /// polygon's free vertices weighted alike; raises its depth and body; says which tick's position a new
+    /// detection is of, and adds collision_stale to its faults where none has come for a tenth of a second.
+    /// One thread; wait-free and realtime-safe.
     Eigen::Vector3d tick(const Eigen::Vector3d& device, double coupling_stiffness,
                          TickResult& result) noexcept;
 
@@ -98,7 +101,14 @@ class PublishedContact {
         SurfaceCompliance compliance;
         std::vector<std::int32_t> blocks;  // compliance block of each surface vertex, -1 for a fixed one
     };
-    using Position = std::optional<std::array<double, 3>>;
+    struct Asked {
+        std::array<double, 3> device{};  // p_P, mm
+        std::int64_t tick = 0;
+    };
+    struct Answered {
+        std::vector<Detection> bodies;
+        std::int64_t tick = 0;  // of the position
+    };
 
     Detection inside_or_outside(std::size_t body, const Eigen::Vector3d& p) const noexcept;
     void decide(std::size_t body, const Detection& detection, bool fresh,
@@ -110,11 +120,12 @@ class PublishedContact {
     bool twice_;
     std::vector<std::vector<Triangle>> triangles_;  // of each body
     std::vector<Elastic> elastic_;                  // of the deformable bodies, the last ones
-    TripleBuffer<Position> device_{};               // servo to collision loop
-    TripleBuffer<std::vector<Detection>> detections_;
+    TripleBuffer<std::optional<Asked>> device_{};   // servo to collision loop
+    TripleBuffer<Answered> detections_;
     std::vector<Contacted> contacted_;            // the servo's
     std::optional<Eigen::Vector3d> last_device_;  // the servo's
     bool detected_ = false;                       // since the device was last lost
+    int ticks_undetected_ = 0;                    // since the last detection came
 };
 
 }  // namespace palpate

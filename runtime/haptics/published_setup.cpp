@@ -12,7 +12,7 @@ PublishedContact::PublishedContact(const Case& patient_case,
                                    ContactScheme scheme)
     : surfaces_(surfaces),
       twice_(scheme == ContactScheme::twice),
-      detections_(std::vector<Detection>(surfaces.size())),
+      detections_(Answered{std::vector<Detection>(surfaces.size()), 0}),
       contacted_(surfaces.size()) {
     for (const RigidBody& body : patient_case.rigid_bodies) triangles_.push_back(body.surface.triangles);
     for (const DeformableBody& body : patient_case.deformable_bodies) {
@@ -23,10 +23,11 @@ PublishedContact::PublishedContact(const Case& patient_case,
 
 void PublishedContact::reset() noexcept {
     device_.write(std::nullopt);
-    std::ranges::fill(detections_.back(), Detection{});
+    std::ranges::fill(detections_.back().bodies, Detection{});
     detections_.publish();
     std::ranges::fill(contacted_, Contacted{});
     last_device_.reset();
+    ticks_undetected_ = 0;
 }
 
 }  // namespace palpate

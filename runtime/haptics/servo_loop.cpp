@@ -2,20 +2,20 @@
 #include "runtime/haptics/servo_loop.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <string>
+#include <thread>
 
 #include "formats/model/errors.hpp"
+#include "runtime/realtime/periodic_clock.hpp"
 
 namespace palpate {
-namespace {
 
-constexpr int fifo_priority = 80;  // above everything that is not the kernel's own
-
-}  // namespace
-
-ServoLoop::ServoLoop(HapticModel& model, std::span<Device* const> devices, std::size_t ring_capacity)
+ServoLoop::ServoLoop(HapticModel& model, std::span<Device* const> devices, Servo* servo,
+                     std::size_t ring_capacity)
     : model_(model),
       devices_(devices.begin(), devices.end()),
+      servo_(servo ? *servo : own_servo_),
       states_(devices.size()),
       results_(devices.size()),
       ring_(ring_capacity),
@@ -37,83 +37,80 @@ ServoLoop::~ServoLoop() {
 
 void ServoLoop::start() {
     statistics_.setup.push_back(lock_memory());
-    thread_ = std::thread([this] { run(); });
-    ready_.wait(false);
+    servo_.start([this](const ServoTick& wake) { step(wake); });
+    running_ = true;
+    std::ranges::copy(servo_.setup(), std::back_inserter(statistics_.setup));
     if (model_.scheme() != ContactScheme::continuous) collision_.start();
 }
 
 void ServoLoop::stop() {
-    if (!thread_.joinable()) return;
-    stop_requested_.store(true);
-    thread_.join();
+    if (!running_) return;
+    running_ = false;
+    stopping_.store(true);
+    const auto give_up = std::chrono::steady_clock::now() + std::chrono::milliseconds(250);
+    while (!released_.load() && std::chrono::steady_clock::now() < give_up)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    servo_.stop();
     collision_.stop();
-}
-
-void ServoLoop::run() {
-    statistics_.setup.push_back(request_fifo_priority(fifo_priority));
-    PeriodicClock clock(period_ns);
-    ready_.store(true);
-    ready_.notify_one();
-    while (!stop_requested_.load(std::memory_order_relaxed)) {
-        const PeriodicClock::Wake wake = clock.wait();
-        step(1e-9 * static_cast<double>(wake.period * period_ns), wake.latency_ns, clock.overruns());
-    }
-    let_go(clock);
-}
-
-// A hand that presses must not be dropped: the force ends as for a lost device, within 20 ms.
-void ServoLoop::let_go(PeriodicClock& clock) noexcept {
-    constexpr int ramp_ticks = 20;
-    for (int tick = 0; tick < ramp_ticks; ++tick) {
-        clock.wait();
-        for (std::size_t t = 0; t < devices_.size(); ++t) {
-            states_[t] = devices_[t]->read(results_[t].time);
-            states_[t].connected = false;
-        }
-        model_.tick(states_, results_);
-        write_forces();
-    }
-    release();
 }
 
 void ServoLoop::run_virtual(std::int64_t ticks, const std::function<void(const TickResult&)>& sink) {
     for (std::int64_t tick = 1; tick <= ticks; ++tick) {
-        step(1e-9 * static_cast<double>(tick * period_ns), 0, 0);
+        step({1e-9 * static_cast<double>(tick * period_ns), 0, 0});
         for (const TickResult& result : results_) sink(result);
         if (tick * period_ns / CollisionLoop::period_ns > (tick - 1) * period_ns / CollisionLoop::period_ns)
             model_.detect();
     }
-    release();
-}
-
-void ServoLoop::write_forces() noexcept {
-    for (std::size_t t = 0; t < devices_.size(); ++t) devices_[t]->write(results_[t].force);
-}
-
-void ServoLoop::release() noexcept {
     for (Device* device : devices_) device->write({0, 0, 0});
 }
 
-void ServoLoop::step(double time, std::int64_t wake_latency_ns, std::int64_t overruns) noexcept {
+void ServoLoop::set_fault(Fault fault, bool there) noexcept {
+    if (there)
+        faults_.fetch_or(fault, std::memory_order_relaxed);
+    else
+        faults_.fetch_and(~std::uint32_t{fault}, std::memory_order_relaxed);
+}
+
+void ServoLoop::visual_beat() noexcept {
+    visual_beat_ns_.store(monotonic_ns(), std::memory_order_relaxed);
+}
+
+std::uint32_t ServoLoop::faults_of(const ServoTick& wake, std::int64_t now_ns) noexcept {
+    std::uint32_t faults = faults_.load(std::memory_order_relaxed);
+    if (wake.overruns - statistics_.overruns >= late_periods) faults |= tick_late;
+    const std::int64_t beat = visual_beat_ns_.load(std::memory_order_relaxed);
+    if (beat != 0 && now_ns - beat > visual_patience_ns) faults |= visual_stopped;
+    if (stopping_.load(std::memory_order_relaxed)) faults |= servo_stopping;
+    return faults;
+}
+
+void ServoLoop::step(const ServoTick& wake) noexcept {
+    callbacks_.tick();
     const std::int64_t begin = monotonic_ns();
     for (std::size_t t = 0; t < devices_.size(); ++t) {
-        states_[t] = devices_[t]->read(time);
-        states_[t].time = time;
+        states_[t] = devices_[t]->read(wake.time);
+        states_[t].time = wake.time;
     }
-    model_.tick(states_, results_);
-    write_forces();
+    model_.tick(states_, results_, faults_of(wake, begin));
+    for (std::size_t t = 0; t < devices_.size(); ++t) devices_[t]->write(results_[t].force);
     const std::int64_t tick_ns = monotonic_ns() - begin;
     for (std::size_t t = 0; t < devices_.size(); ++t) {
         results_[t].tick_ns = tick_ns;
-        results_[t].wake_latency_ns = wake_latency_ns;
-        results_[t].overruns = static_cast<std::uint32_t>(overruns);
+        results_[t].wake_latency_ns = wake.wake_latency_ns;
+        results_[t].overruns = static_cast<std::uint32_t>(wake.overruns);
         latest_[t]->write(results_[t]);
         ring_.push(results_[t]);
     }
     ++statistics_.ticks;
-    statistics_.overruns = overruns;
+    statistics_.overruns = wake.overruns;
     statistics_.tick_ns.record(static_cast<std::uint64_t>(std::max<std::int64_t>(0, tick_ns)));
-    statistics_.wake_latency_ns.record(static_cast<std::uint64_t>(wake_latency_ns));
+    statistics_.wake_latency_ns.record(static_cast<std::uint64_t>(wake.wake_latency_ns));
+    if (stopping_.load(std::memory_order_relaxed)) count_stopping();
+}
+
+// A hand that presses must not be dropped: the last force has gone to zero before the servo ends.
+void ServoLoop::count_stopping() noexcept {
+    if (++ticks_stopping_ > ForceLimiter::ramp_ticks) released_.store(true, std::memory_order_relaxed);
 }
 
 ServoStatistics ServoLoop::statistics() const {

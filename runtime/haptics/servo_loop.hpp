@@ -7,7 +7,6 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "runtime/haptics/collision_loop.hpp"
@@ -15,9 +14,9 @@
 #include "runtime/haptics/tick_result.hpp"
 #include "runtime/realtime/device.hpp"
 #include "runtime/realtime/histogram.hpp"
-#include "runtime/realtime/periodic_clock.hpp"
+#include "runtime/realtime/servo.hpp"
+#include "runtime/realtime/servo_callbacks.hpp"
 #include "runtime/realtime/spsc_ring.hpp"
-#include "runtime/realtime/thread_setup.hpp"
 #include "runtime/realtime/triple_buffer.hpp"
 
 namespace palpate {
@@ -32,32 +31,45 @@ struct ServoStatistics {
     std::vector<SetupResult> setup;  ///< priority and memory, as granted
 };
 
-/// The haptic thread: at 1 kHz reads the devices, ticks the model, writes the forces, and publishes the
-/// results to the visual side (latest value) and to a logger (every value); for the published schemes also
-/// the collision loop at 30 Hz. Model and devices must outlive the loop and are its own while it runs.
+/// The haptic loop: at 1 kHz reads the devices, ticks the model, writes the forces, and publishes the results
+/// to the visual side (latest value) and to a logger (every value); for the published schemes also the
+/// collision loop at 30 Hz. Model, devices and servo must outlive the loop and are its own while it runs.
 class ServoLoop {
   public:
-    static constexpr std::int64_t period_ns = 1'000'000;
+    static constexpr std::int64_t period_ns = Servo::period_ns;
+    /// So many periods skipped at once are the fault tick_late.
+    static constexpr std::int64_t late_periods = 10;
+    /// So long after the last visual_beat() is the fault visual_stopped.
+    static constexpr std::int64_t visual_patience_ns = 500'000'000;
 
-    /// Takes one device for each of the model's tools and couples the model to what all of them bear. Throws
-    /// InvalidInput if there are not as many.
-    ServoLoop(HapticModel& model, std::span<Device* const> devices, std::size_t ring_capacity = 4096);
+    /// Takes one device for each of the model's tools and couples the model to what all of them bear. Ticks
+    /// in `servo`, or if that is null in a PeriodicServo of its own. Throws InvalidInput if there are not as
+    /// many devices.
+    ServoLoop(HapticModel& model, std::span<Device* const> devices, Servo* servo = nullptr,
+              std::size_t ring_capacity = 4096);
     ServoLoop(HapticModel& model, Device& device, std::size_t ring_capacity = 4096)
-        : ServoLoop(model, std::array{&device}, ring_capacity) {}
+        : ServoLoop(model, std::array{&device}, nullptr, ring_capacity) {}
     ServoLoop(const ServoLoop&) = delete;
     ServoLoop& operator=(const ServoLoop&) = delete;
     ~ServoLoop();  ///< stops
 
-    /// Starts the thread (SCHED_FIFO and locked memory where permitted) and returns once it is set up. Once
-    /// only.
+    /// Locks memory where permitted, starts the servo and returns once it is set up. Once only.
     void start();
-    /// Asks the threads to end, waits for them, and leaves the devices at zero force.
+    /// Takes the forces to zero as for a fault, then ends the servo. A servo that does not tick any more is
+    /// not waited for longer than a quarter of a second.
     void stop();
 
     /// Runs `ticks` ticks in the calling thread as fast as possible; time advances by one period a tick, and
     /// published schemes detect 30 times a second of it. `sink` gets each tool's result of each tick. Instead
     /// of start(): for tests and for runs that must not depend on the machine.
     void run_virtual(std::int64_t ticks, const std::function<void(const TickResult&)>& sink);
+
+    /// Any thread: says that `fault` is there, or gone again. The force goes to zero meanwhile.
+    void set_fault(Fault fault, bool there) noexcept;
+    /// The visual side, once a frame: says that it still draws. Watched from the first call on.
+    void visual_beat() noexcept;
+    /// Runs other threads' functions between two ticks.
+    ServoCallbacks& callbacks() noexcept { return callbacks_; }
 
     /// The latest result of one tool, for one reader.
     TripleBuffer<TickResult>& latest(std::size_t tool = 0) noexcept { return *latest_[tool]; }
@@ -67,23 +79,26 @@ class ServoLoop {
     ServoStatistics statistics() const;
 
   private:
-    void run();
-    void let_go(PeriodicClock& clock) noexcept;
-    void write_forces() noexcept;
-    void release() noexcept;
-    void step(double time, std::int64_t wake_latency_ns, std::int64_t overruns) noexcept;
+    void step(const ServoTick& wake) noexcept;
+    std::uint32_t faults_of(const ServoTick& wake, std::int64_t now_ns) noexcept;
+    void count_stopping() noexcept;
 
     HapticModel& model_;
     std::vector<Device*> devices_;
+    PeriodicServo own_servo_;
+    Servo& servo_;
     std::vector<std::unique_ptr<TripleBuffer<TickResult>>> latest_;  // one per tool, as are the next two
     std::vector<DeviceState> states_;
     std::vector<TickResult> results_;
     SpscRing<TickResult> ring_;
     CollisionLoop collision_;
+    ServoCallbacks callbacks_;
     ServoStatistics statistics_;
-    std::atomic<bool> stop_requested_{false};
-    std::atomic<bool> ready_{false};
-    std::thread thread_;
+    std::atomic<std::uint32_t> faults_{no_fault};  // that other threads have told of
+    std::atomic<std::int64_t> visual_beat_ns_{0};  // 0: never
+    std::atomic<bool> stopping_{false}, released_{false};
+    int ticks_stopping_ = 0;  // the servo's
+    bool running_ = false;
 };
 
 }  // namespace palpate

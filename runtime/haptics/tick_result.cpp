@@ -7,12 +7,12 @@ namespace palpate {
 
 std::string status_text(std::uint32_t status) {
     constexpr std::array<std::pair<std::uint32_t, const char*>, 6> names{
-        {{invalid_position, "invalid_position"},
-         {force_limited, "force_limited"},
+        {{force_limited, "force_limited"},
          {rate_limited, "rate_limited"},
          {contacts_cut, "contacts_cut"},
          {contact_unsolved, "contact_unsolved"},
-         {starts_inside, "starts_inside"}}};
+         {starts_inside, "starts_inside"},
+         {coming_back, "coming_back"}}};
     std::string text;
     for (const auto& [flag, name] : names) {
         if (!(status & flag)) continue;

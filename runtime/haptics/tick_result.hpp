@@ -7,20 +7,23 @@
 #include <string>
 #include <type_traits>
 
+#include "runtime/realtime/fault.hpp"
+
 namespace palpate {
 
 /// Most contact points of one tick; more set TickStatus::contacts_cut.
 inline constexpr std::size_t max_contacts = 64;
 
-/// What was unusual about a tick; flags add up.
+/// What was unusual about a tick's contacts and force; flags add up. Faults, which take the force away, are
+/// told apart.
 enum TickStatus : std::uint32_t {
     tick_ok = 0,
-    invalid_position = 1U << 0,  ///< NaN or disconnected: force ramps to zero
-    force_limited = 1U << 1,     ///< cut to HapticSettings::max_force
-    rate_limited = 1U << 2,      ///< cut to HapticSettings::max_force_rate
-    contacts_cut = 1U << 3,      ///< more contact points than max_contacts: the shallowest were left out
-    contact_unsolved = 1U << 4,  ///< contacts contradict each other, as in a wedge: no body gave way
-    starts_inside = 1U << 5,     ///< a body is not felt until the tool has been clear of it once
+    force_limited = 1U << 0,     ///< cut to HapticSettings::max_force
+    rate_limited = 1U << 1,      ///< cut to HapticSettings::max_force_rate
+    contacts_cut = 1U << 2,      ///< more contact points than max_contacts: the shallowest were left out
+    contact_unsolved = 1U << 3,  ///< contacts contradict each other, as in a wedge: no body gave way
+    starts_inside = 1U << 4,     ///< a body is not felt until the tool has been clear of it once
+    coming_back = 1U << 5,       ///< after a fault, the force returns by and by
 };
 
 /// Names the flags of a status, separated by '+', "ok" for none.
@@ -57,13 +60,18 @@ struct TickResult {
     std::int32_t tool = 0;                           ///< which one, from 0 on
     double time = 0;                                 ///< s since the loop started
     std::array<double, 3> device_position{0, 0, 0};  ///< p_P, mm
+    std::array<double, 3> shaft{0, 0, 0};            ///< as in DeviceState, frame P
     std::array<double, 3> tool_position{0, 0, 0};    ///< at the other end of the virtual coupling; p_P, mm
     std::array<double, 3> force{0, 0, 0};            ///< on the device, frame P, N
-    double depth = 0;        ///< of the device below the deepest touched rest surface, mm
-    double residual = 0;     ///< worst violation of the contact conditions, mm
+    double depth = 0;     ///< of the device below the deepest touched rest surface, mm
+    double residual = 0;  ///< worst violation of the contact conditions, mm
+    std::int64_t detected_tick =
+        -1;                  ///< published schemes: whose position a detection that came in this tick is of
     std::int32_t body = -1;  ///< the deepest touched body, -1 for none
     std::int32_t contact_count = 0;
     std::uint32_t status = tick_ok;              ///< TickStatus flags
+    std::uint32_t faults = no_fault;             ///< Fault flags: the force is on its way to zero, or there
+    std::uint32_t buttons = 0;                   ///< as in DeviceState
     std::uint32_t overruns = 0;                  ///< periods skipped so far
     std::int64_t tick_ns = 0;                    ///< read, contact, force, write
     std::int64_t wake_latency_ns = 0;            ///< woken this long after the deadline

@@ -4,35 +4,53 @@
 #include <cstdint>
 #include <string>
 
+#include "runtime/realtime/fault.hpp"
+
 namespace palpate {
 
 /// What a device reports once per tick.
 struct DeviceState {
     double time = 0;                          ///< s since the loop started
-    std::array<double, 3> position{0, 0, 0};  ///< of the tool's centre, p_P, mm
+    std::array<double, 3> position{0, 0, 0};  ///< of the tool's centre, p_D, mm
     std::array<double, 3> shaft{0, 0, 0};     ///< unit, from the tip along the tool's shaft; zero: not known
-    std::uint32_t buttons = 0;                ///< one bit each
-    bool connected = true;                    ///< false: the position is not to be trusted
+    std::uint32_t buttons = 0;                ///< one bit each, the lowest for the first
+    std::uint32_t faults = no_fault;          ///< Fault flags
 };
 
-/// What a device can render.
+/// What a device can render. Zero: not known.
 struct DeviceLimits {
-    double max_force = 0;      ///< N
-    double max_stiffness = 0;  ///< N/mm
-    double damping = 0;        ///< of the device itself, N s/mm; 0: not known
+    double max_force = 0;                          ///< N
+    double max_stiffness = 0;                      ///< N/mm
+    double damping = 0;                            ///< of the device itself, N s/mm
+    double max_continuous_force = 0;               ///< N, that the motors bear for as long as one likes
+    double rate_hz = 0;                            ///< of its servo
+    std::array<double, 3> workspace_low{0, 0, 0};  ///< mm, corners of the box that the tip reaches, frame D
+    std::array<double, 3> workspace_high{0, 0, 0};
 };
 
-/// A haptic device as the servo loop sees it. read() and write() are called by the haptic thread alone, never
-/// allocate, lock or throw.
+/// Whether a device knows where it is.
+enum class Calibration {
+    ok,
+    needs_update,       ///< calibrate() brings it up to date
+    needs_manual_input  ///< somebody must put the stylus into its inkwell or the arm into its reset position
+};
+
+/// A haptic device as the servo loop sees it; it is open from its construction to its end. read() and
+/// write() are called by the servo's thread alone, in this order in each tick, and never allocate, lock or
+/// throw. The frame D is the device's own; MountedDevice maps it to the patient's, and a simulated device
+/// made in the patient's frame has D = P.
 class Device {
   public:
     virtual ~Device() = default;
     virtual std::string name() const = 0;
     virtual DeviceLimits limits() const = 0;
+    virtual Calibration calibration() { return Calibration::ok; }
+    /// Brings the calibration up to date where calibration() is needs_update.
+    virtual void calibrate() {}
     /// Reads the state at loop time `time` (s); a physical device ignores the argument and reads its
     /// encoders.
     virtual DeviceState read(double time) noexcept = 0;
-    /// Renders `force` (N, frame P) until the next call.
+    /// Renders `force` (N, frame D) until the next call.
     virtual void write(const std::array<double, 3>& force) noexcept = 0;
 };
 

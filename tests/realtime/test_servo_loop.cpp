@@ -32,10 +32,14 @@ TEST(ServoLoop, every_tick_reaches_the_logger_and_the_latest_the_screen) {
     loop.start();
     device.set_target({40, 10, 25});
     std::int64_t logged = 0, last_seen = -1;
+    double strongest = 0;
     TickResult record{};
     for (int frame = 0; frame < 20; ++frame) {
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
-        while (loop.ring().pop(record)) EXPECT_EQ(record.tick, logged++);
+        while (loop.ring().pop(record)) {
+            EXPECT_EQ(record.tick, logged++);
+            strongest = std::max(strongest, record.force[2]);
+        }
         const TickResult& latest = loop.latest().read();
         EXPECT_GE(latest.tick, last_seen);
         last_seen = latest.tick;
@@ -46,7 +50,9 @@ TEST(ServoLoop, every_tick_reaches_the_logger_and_the_latest_the_screen) {
     EXPECT_EQ(statistics.ticks, logged + static_cast<std::int64_t>(statistics.lost_records));
     EXPECT_EQ(statistics.tick_ns.count(), static_cast<std::uint64_t>(statistics.ticks));
     EXPECT_EQ(statistics.setup.size(), 2U);
-    EXPECT_GT(record.force[2], 0);
+    EXPECT_GT(strongest, 0);
+    EXPECT_EQ(record.faults, servo_stopping);
+    EXPECT_EQ(record.force, (std::array<double, 3>{0, 0, 0}));
 }
 
 TEST(ServoLoop, published_schemes_detect_beside_the_ticks) {

@@ -14,20 +14,26 @@ const HapticSettings settings{
     .tool_radius = 1, .coupling_stiffness = 0.5, .max_force = 3, .max_force_rate = 0.5};
 constexpr double rounding = 1e-12;
 
+Vector3d next(ForceLimiter& limiter, const Vector3d& wanted, std::uint32_t faults = no_fault) {
+    std::uint32_t status = tick_ok;
+    return limiter.limit(wanted, faults, status);
+}
+
 TEST(ForceLimiter, passes_small_slow_forces) {
     ForceLimiter limiter(settings);
-    std::uint32_t status = tick_ok;
-    EXPECT_EQ(limiter.limit({0.3, 0, 0}, status), Vector3d(0.3, 0, 0));
-    EXPECT_EQ(limiter.limit({0.3, 0.4, 0}, status), Vector3d(0.3, 0.4, 0));
+    std::uint32_t status = tick_ok, faults = no_fault;
+    EXPECT_EQ(limiter.limit({0.3, 0, 0}, faults, status), Vector3d(0.3, 0, 0));
+    EXPECT_EQ(limiter.limit({0.3, 0.4, 0}, faults, status), Vector3d(0.3, 0.4, 0));
     EXPECT_EQ(status, tick_ok);
+    EXPECT_EQ(faults, no_fault);
 }
 
 TEST(ForceLimiter, reaches_max_force_in_steps_and_no_more) {
     ForceLimiter limiter(settings);
     Vector3d last = Vector3d::Zero();
     for (int tick = 0; tick < 20; ++tick) {
-        std::uint32_t status = tick_ok;
-        const Vector3d force = limiter.limit({0, 0, 100}, status);
+        std::uint32_t status = tick_ok, faults = no_fault;
+        const Vector3d force = limiter.limit({0, 0, 100}, faults, status);
         EXPECT_LE((force - last).norm(), settings.max_force_rate + rounding);
         EXPECT_TRUE(status & force_limited);
         EXPECT_EQ((status & rate_limited) != 0, tick < 5) << tick;
@@ -36,20 +42,45 @@ TEST(ForceLimiter, reaches_max_force_in_steps_and_no_more) {
     EXPECT_NEAR((last - Vector3d(0, 0, 3)).norm(), 0, rounding);
 }
 
-TEST(ForceLimiter, ramps_to_zero_within_20_ticks_of_a_fault) {
+TEST(ForceLimiter, ramps_to_zero_within_20_ticks_of_a_force_that_is_not_a_number) {
     ForceLimiter limiter(settings);
-    std::uint32_t status = tick_ok;
-    for (int tick = 0; tick < 10; ++tick) limiter.limit({3, 0, 0}, status);
+    for (int tick = 0; tick < 10; ++tick) next(limiter, {3, 0, 0});
     double last = 3;
     for (int tick = 0; tick < 20; ++tick) {
-        status = tick_ok;
-        const Vector3d force = limiter.limit({std::numeric_limits<double>::quiet_NaN(), 0, 0}, status);
-        EXPECT_TRUE(status & invalid_position);
+        std::uint32_t status = tick_ok, faults = no_fault;
+        const Vector3d force =
+            limiter.limit({std::numeric_limits<double>::quiet_NaN(), 0, 0}, faults, status);
+        EXPECT_EQ(faults, invalid_force);
         EXPECT_LE(force.norm(), last);
         EXPECT_GE(force.norm(), last - settings.max_force / 20 - rounding);
         last = force.norm();
     }
     EXPECT_NEAR(last, 0, rounding);
+}
+
+TEST(ForceLimiter, a_fault_of_one_tick_still_ends_in_zero_force_20_ticks_later) {
+    ForceLimiter limiter(settings);
+    for (int tick = 0; tick < 10; ++tick) next(limiter, {3, 0, 0});
+    next(limiter, {3, 0, 0}, tick_late);
+    for (int tick = 0; tick < 18; ++tick) EXPECT_GT(next(limiter, {3, 0, 0}).norm(), 0);
+    EXPECT_NEAR(next(limiter, {3, 0, 0}).norm(), 0, rounding);
+}
+
+TEST(ForceLimiter, after_a_fault_the_force_returns_without_a_kick) {
+    ForceLimiter limiter(settings);
+    for (int tick = 0; tick < 10; ++tick) next(limiter, {3, 0, 0});
+    for (int tick = 0; tick < 40; ++tick) next(limiter, {3, 0, 0}, device_lost);
+    double last = 0;
+    const int back = ForceLimiter::ramp_ticks + ForceLimiter::return_ticks;
+    for (int tick = 1; tick <= back; ++tick) {
+        std::uint32_t status = tick_ok, faults = no_fault;
+        // A hand that pressed on meanwhile: far more than the limit is wanted.
+        const double force = limiter.limit({30, 0, 0}, faults, status).norm();
+        EXPECT_LE(force - last, settings.max_force / ForceLimiter::return_ticks + rounding) << tick;
+        EXPECT_EQ((status & coming_back) != 0, tick < back);
+        last = force;
+    }
+    EXPECT_NEAR(last, 3, rounding);
 }
 
 }  // namespace

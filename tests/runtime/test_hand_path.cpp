@@ -138,7 +138,7 @@ TEST(SimulatedDevice, is_where_its_path_says) {
                            {.max_force = 3, .max_stiffness = 0.5});
     const DeviceState state = device.read(0.5);
     EXPECT_EQ(state.position, (std::array<double, 3>{0.5, 1, 1.5}));
-    EXPECT_TRUE(state.connected);
+    EXPECT_EQ(state.faults, no_fault);
     EXPECT_EQ(device.limits().max_force, 3);
 }
 

@@ -108,15 +108,17 @@ TEST(HapticModel, a_position_that_is_not_a_number_ramps_the_force_to_zero_and_sa
     ASSERT_GT(force_of(result).norm(), 1);
     DeviceState bad = at({40, std::numeric_limits<double>::quiet_NaN(), 23});
     DeviceState gone = at({40, 10, 23});
-    gone.connected = false;
+    gone.faults = device_lost;
     for (int tick = 0; tick < 20; ++tick) {
         model.tick(tick % 2 ? bad : gone, result);
-        EXPECT_EQ(result.status, invalid_position);
+        EXPECT_EQ(result.faults, tick % 2 ? invalid_position : device_lost);
         EXPECT_TRUE(force_of(result).allFinite());
     }
     EXPECT_EQ(force_of(result).norm(), 0);
-    for (int tick = 0; tick < 20; ++tick) model.tick(at({40, 10, 23}), result);
+    const int back = ForceLimiter::ramp_ticks + ForceLimiter::return_ticks;
+    for (int tick = 0; tick < back; ++tick) model.tick(at({40, 10, 23}), result);
     EXPECT_GT(force_of(result).norm(), 1);
+    EXPECT_EQ(result.faults, no_fault);
 }
 
 TEST(HapticModel, a_device_that_was_lost_and_found_elsewhere_feels_no_old_contact) {
@@ -128,7 +130,7 @@ TEST(HapticModel, a_device_that_was_lost_and_found_elsewhere_feels_no_old_contac
         model.tick(at({40, 10, 24}), result);
         ASSERT_GT(force_of(result).norm(), 0.1);
         DeviceState gone = at({40, 10, 24});
-        gone.connected = false;
+        gone.faults = device_lost;
         for (int tick = 0; tick < 20; ++tick) model.tick(gone, result);
         model.tick(at({40, 10, 60}), result);
         EXPECT_EQ(force_of(result).norm(), 0);

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/devices/mounted_device.hpp"
+
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+std::array<double, 3> array_of(const Vector3d& v) noexcept {
+    return {v[0], v[1], v[2]};
+}
+
+Vector3d vector_of(const std::array<double, 3>& v) noexcept {
+    return Eigen::Map<const Vector3d>(v.data());
+}
+
+}  // namespace
+
+DeviceLimits MountedDevice::limits() const {
+    DeviceLimits limits = device_.limits();
+    const Vector3d low = vector_of(limits.workspace_low), high = vector_of(limits.workspace_high);
+    const Vector3d middle = X_PD_ * (0.5 * (low + high));
+    const Vector3d half = X_PD_.linear().cwiseAbs() * (0.5 * (high - low));
+    limits.workspace_low = array_of(middle - half);
+    limits.workspace_high = array_of(middle + half);
+    return limits;
+}
+
+DeviceState MountedDevice::read(double time) noexcept {
+    DeviceState state = device_.read(time);
+    state.position = array_of(X_PD_ * vector_of(state.position));
+    state.shaft = array_of(X_PD_.linear() * vector_of(state.shaft));
+    return state;
+}
+
+void MountedDevice::write(const std::array<double, 3>& force) noexcept {
+    device_.write(array_of(X_PD_.linear().transpose() * vector_of(force)));
+}
+
+Eigen::Isometry3d mount_upright(const Vector3d& p_D, const Vector3d& p_P, const Vector3d& up) {
+    Vector3d x = Vector3d::UnitX() - up.x() * up;
+    if (x.squaredNorm() < 1e-6) x = Vector3d::UnitY() - up.y() * up;  // up is along x
+    x.normalize();
+    Eigen::Isometry3d X_PD = Eigen::Isometry3d::Identity();
+    X_PD.linear().col(0) = x;
+    X_PD.linear().col(1) = up;
+    X_PD.linear().col(2) = x.cross(up);
+    X_PD.translation() = p_P - X_PD.linear() * p_D;
+    return X_PD;
+}
+
+Vector3d workspace_middle(const DeviceLimits& limits) {
+    return 0.5 * (vector_of(limits.workspace_low) + vector_of(limits.workspace_high));
+}
+
+}  // namespace palpate

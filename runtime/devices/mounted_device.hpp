@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Geometry>
+#include <string>
+
+#include "runtime/realtime/device.hpp"
+
+namespace palpate {
+
+/// A device at its place in the patient: maps positions and directions from its frame D to P, and forces
+/// back. Lengths and forces keep their size.
+class MountedDevice final : public Device {
+  public:
+    /// `device` must outlive this. `X_PD`: a rigid motion (unchecked), mm.
+    MountedDevice(Device& device, const Eigen::Isometry3d& X_PD) : device_(device), X_PD_(X_PD) {}
+
+    std::string name() const override { return device_.name(); }
+    /// The device's own, its workspace as the box in P around its corners.
+    DeviceLimits limits() const override;
+    Calibration calibration() override { return device_.calibration(); }
+    void calibrate() override { device_.calibrate(); }
+    DeviceState read(double time) noexcept override;
+    void write(const std::array<double, 3>& force) noexcept override;
+
+  private:
+    Device& device_;
+    Eigen::Isometry3d X_PD_;
+};
+
+/// Where a device is mounted so that its y axis (up, on a Phantom) is along `up` and its point `p_D` is at
+/// `p_P` (both mm). `up`: unit; its x axis is as near to the patient's x, from right to left, as that
+/// allows.
+Eigen::Isometry3d mount_upright(const Eigen::Vector3d& p_D, const Eigen::Vector3d& p_P,
+                                const Eigen::Vector3d& up);
+
+/// The middle of a device's workspace, p_D, mm; the origin where the workspace is not known.
+Eigen::Vector3d workspace_middle(const DeviceLimits& limits);
+
+}  // namespace palpate
