@@ -58,6 +58,12 @@ Case read_case(const Hdf5File& file) {
     return patient_case;
 }
 
+template <typename T>
+void own(std::shared_ptr<const T>& values, std::size_t count) {
+    const auto copy = std::make_shared<std::vector<T>>(values.get(), values.get() + count);
+    values = std::shared_ptr<const T>(copy, copy->data());
+}
+
 }  // namespace
 
 void write_asset(const std::filesystem::path& path, const Case& patient_case) {
@@ -109,6 +115,20 @@ Case read_asset(const std::filesystem::path& path, Digests digests) {
         if (checked.valid()) checked.get();
         throw;
     }
+}
+
+Case load_asset(const std::filesystem::path& path) {
+    Case patient_case = read_asset(path);
+    for (DeformableBody& body : patient_case.deformable_bodies) {
+        if (auto* dense = std::get_if<DenseCompliance>(&body.compliance)) {
+            own(dense->entries, dense->dof_count() * dense->dof_count());
+        } else {
+            auto& blocks = std::get<HierarchicalCompliance>(body.compliance);
+            own(blocks.values, blocks.value_count);
+            own(blocks.factors, blocks.factor_count);
+        }
+    }
+    return patient_case;
 }
 
 }  // namespace palpate

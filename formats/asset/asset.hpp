@@ -20,4 +20,8 @@ void write_asset(const std::filesystem::path& path, const Case& patient_case);
 /// the file, the dataset and the remedy.
 Case read_asset(const std::filesystem::path& path, Digests digests = Digests::check);
 
+/// Reads and validates an asset as read_asset() does, and copies it whole, for a loop that must not fall when
+/// the file is shortened or removed under it.
+Case load_asset(const std::filesystem::path& path);
+
 }  // namespace palpate

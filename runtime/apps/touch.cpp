@@ -164,7 +164,7 @@ Json touch(const Options& options, cli::Session& session) {
     }
     if (!options.curve.empty()) curve_file.emplace(options.curve, session.force);
 
-    const Case patient_case = read_asset(options.asset);
+    const Case patient_case = load_asset(options.asset);
     const ContactScheme scheme = find_contact_scheme(options.scheme);
     if (!options.second.empty() && scheme != ContactScheme::continuous)
         throw UsageError({"--second", "with --scheme " + options.scheme, "the scheme 'continuous'",

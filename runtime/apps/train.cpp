@@ -103,7 +103,7 @@ Json train(const Options& options, cli::Session& session) {
     if (!options.screenshot.empty()) picture.emplace(options.screenshot, session.force);
 
     session.progress.step("reading the case", 0);
-    const Case patient_case = read_asset(options.asset);
+    const Case patient_case = load_asset(options.asset);
     HapticModel model(patient_case, find_contact_scheme(options.scheme));
     const TouchPoint place = choose_touch_target(patient_case, model, options.body, std::nullopt).place;
     const double radius = model.settings().tool_radius;

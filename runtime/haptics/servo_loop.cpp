@@ -54,9 +54,10 @@ void ServoLoop::stop() {
     collision_.stop();
 }
 
-void ServoLoop::run_virtual(std::int64_t ticks, const std::function<void(const TickResult&)>& sink) {
+void ServoLoop::run_virtual(std::int64_t ticks, const std::function<void(const TickResult&)>& sink,
+                            const std::function<ServoTick(std::int64_t)>& wake) {
     for (std::int64_t tick = 1; tick <= ticks; ++tick) {
-        step({1e-9 * static_cast<double>(tick * period_ns), 0, 0});
+        step(wake(tick));
         for (const TickResult& result : results_) sink(result);
         if (tick * period_ns / CollisionLoop::period_ns > (tick - 1) * period_ns / CollisionLoop::period_ns)
             model_.detect();

@@ -59,10 +59,16 @@ class ServoLoop {
     /// not waited for longer than a quarter of a second.
     void stop();
 
-    /// Runs `ticks` ticks in the calling thread as fast as possible; time advances by one period a tick, and
-    /// published schemes detect 30 times a second of it. `sink` gets each tool's result of each tick. Instead
-    /// of start(): for tests and for runs that must not depend on the machine.
-    void run_virtual(std::int64_t ticks, const std::function<void(const TickResult&)>& sink);
+    /// Runs `ticks` ticks in the calling thread as fast as possible, the k-th, from 1 on, at `wake(k)`; by
+    /// default one period after the other. Published schemes detect 30 times in a thousand ticks. `sink` gets
+    /// each tool's result of each tick. Instead of start(): for tests and for runs that must not depend on
+    /// the machine.
+    void run_virtual(std::int64_t ticks, const std::function<void(const TickResult&)>& sink,
+                     const std::function<ServoTick(std::int64_t)>& wake = in_time);
+    /// A wake-up that is never late.
+    static ServoTick in_time(std::int64_t tick) noexcept {
+        return {1e-9 * static_cast<double>(tick * period_ns), 0, 0};
+    }
 
     /// Any thread: says that `fault` is there, or gone again. The force goes to zero meanwhile.
     void set_fault(Fault fault, bool there) noexcept;

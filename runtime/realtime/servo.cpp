@@ -22,7 +22,7 @@ void PeriodicServo::stop() {
 }
 
 void PeriodicServo::run(const OnTick& on_tick) {
-    setup_.push_back(request_fifo_priority(fifo_priority));
+    if (priority_ == Priority::fifo) setup_.push_back(request_fifo_priority(fifo_priority));
     PeriodicClock clock(period_ns);
     ready_.store(true);
     ready_.notify_one();

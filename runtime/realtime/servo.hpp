@@ -34,10 +34,12 @@ class Servo {
     virtual std::vector<SetupResult> setup() const { return {}; }
 };
 
-/// A servo in a thread of its own, with SCHED_FIFO where permitted. Starts once only.
+/// A servo in a thread of its own. Starts once only.
 class PeriodicServo final : public Servo {
   public:
-    PeriodicServo() = default;
+    /// With SCHED_FIFO where permitted, or with the priority of any other thread.
+    enum class Priority { fifo, none };
+    explicit PeriodicServo(Priority priority = Priority::fifo) : priority_(priority) {}
     PeriodicServo(const PeriodicServo&) = delete;
     PeriodicServo& operator=(const PeriodicServo&) = delete;
     ~PeriodicServo() override { stop(); }
@@ -49,6 +51,7 @@ class PeriodicServo final : public Servo {
   private:
     void run(const OnTick& on_tick);
 
+    Priority priority_;
     std::vector<SetupResult> setup_;
     std::atomic<bool> stop_requested_{false};
     std::atomic<bool> ready_{false};

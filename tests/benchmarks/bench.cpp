@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "tests/benchmarks/experiments/experiments.hpp"
+#include "tests/benchmarks/experiments/faults.hpp"
 #include "tests/benchmarks/experiments/passivity.hpp"
 #include "tests/benchmarks/experiments/puncture.hpp"
 #include "tests/benchmarks/experiments/split.hpp"
@@ -14,6 +15,7 @@ namespace {
 
 const std::vector<Experiment> experiments{
     // name, what it finds out, function
+    {"faults", "a virtual day of pushing while devices, servo, window and asset fail at random", faults},
     {"passivity", "the stiffest wall that the closed loop bears, against 2b/T", passivity},
     {"puncture", "how often a tool is pushed through a bone, by scheme; the published tables 1 and 2",
      puncture},

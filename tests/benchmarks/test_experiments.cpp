@@ -5,6 +5,7 @@
 
 #include "tests/benchmarks/experiments/approach_run.hpp"
 #include "tests/benchmarks/experiments/approaches.hpp"
+#include "tests/benchmarks/experiments/fault_run.hpp"
 #include "tests/benchmarks/experiments/rigid_case.hpp"
 #include "tests/benchmarks/experiments/statistics.hpp"
 #include "tests/benchmarks/experiments/wall_stability.hpp"
@@ -150,6 +151,32 @@ TEST(RunApproach, continuous_contact_holds_on_a_thin_wall_and_single_detection_d
     const Outcome lost = run_approach(single, device, onto_shell(radius, thickness, 700), false);
     EXPECT_TRUE(is_puncture(lost, 1));
     EXPECT_GT(lost.deepest, 9);
+}
+
+TEST(FaultRun, five_virtual_minutes_keep_to_every_limit_and_report_every_fault_once) {
+    constexpr std::int64_t ticks = 300'000;
+    std::mt19937_64 random(7);
+    for (const ContactScheme scheme : {ContactScheme::continuous, ContactScheme::twice}) {
+        const std::vector<Injection> injections = draw_injections(ticks, random);
+        const FaultRun run = run_with_faults(sample::sample_case(), scheme, find_device_model("touch"),
+                                             injections, ticks, random);
+        EXPECT_EQ(run.ticks, ticks);
+        EXPECT_GT(run.pressing, ticks / 10);
+        EXPECT_EQ(run.reported, static_cast<std::int64_t>(injections.size()));
+        EXPECT_GT(run.reported, 15);
+        EXPECT_EQ(run.missed + run.unexpected, 0);
+        EXPECT_EQ(run.above_limit + run.above_slew + run.not_finite + run.not_gone, 0);
+    }
+}
+
+TEST(FaultRun, a_fault_that_nobody_reports_is_missed) {
+    std::mt19937_64 random(7);
+    // The force is a number here, so no tick tells of it.
+    const FaultRun run =
+        run_with_faults(sample::sample_case(), ContactScheme::continuous, find_device_model("touch"),
+                        {{invalid_force, 100, 200}}, 1000, random);
+    EXPECT_EQ(run.missed, 1);
+    EXPECT_EQ(run.reported, 0);
 }
 
 }  // namespace

@@ -96,6 +96,103 @@ TEST(ServoLoop, a_full_ring_loses_records_and_counts_them) {
     EXPECT_EQ(loop.statistics().lost_records, 6U);
 }
 
+// A servo that ticks when it is told to, with what it is told.
+class HandServo final : public Servo {
+  public:
+    void start(OnTick on_tick) override { tick = std::move(on_tick); }
+    void stop() override {}
+    OnTick tick;
+};
+
+// A loop on a device that presses the skull, ticked by hand.
+class PressedLoop : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        loop_.start();
+        run(40);
+        ASSERT_GT(device_.force_[2], 0.3);
+    }
+    void TearDown() override { loop_.stop(); }
+    void run(int ticks) {
+        for (int i = 0; i < ticks; ++i) servo_.tick({1e-3 * ++ticks_, 0, overruns_});
+    }
+    std::uint32_t faults() { return loop_.latest().read().faults; }
+
+    HapticModel model_{sample::sample_case()};
+    RecordingDevice device_;
+    std::array<Device*, 1> devices_{&device_};
+    HandServo servo_;
+    ServoLoop loop_{model_, devices_, &servo_};
+    int ticks_ = 0;
+    std::int64_t overruns_ = 0;
+};
+
+TEST_F(PressedLoop, a_pause_of_ten_periods_takes_the_force_to_zero_and_brings_it_back) {
+    const double pressed = device_.force_[2];
+    overruns_ = ServoLoop::late_periods - 1;
+    run(1);
+    EXPECT_EQ(faults(), no_fault);
+    overruns_ += ServoLoop::late_periods;
+    run(1);
+    EXPECT_EQ(faults(), tick_late);
+    run(ForceLimiter::ramp_ticks - 1);
+    EXPECT_EQ(device_.force_[2], 0);
+    run(ForceLimiter::return_ticks + 1);
+    EXPECT_NEAR(device_.force_[2], pressed, 1e-9);
+}
+
+TEST_F(PressedLoop, a_fault_told_from_outside_lasts_until_it_is_taken_back) {
+    loop_.set_fault(asset_removed, true);
+    run(100);
+    EXPECT_EQ(faults(), asset_removed);
+    EXPECT_EQ(device_.force_[2], 0);
+    loop_.set_fault(asset_removed, false);
+    run(ForceLimiter::ramp_ticks + 10);
+    EXPECT_EQ(faults(), no_fault);
+    EXPECT_GT(device_.force_[2], 0);
+}
+
+TEST_F(PressedLoop, a_window_that_stops_drawing_is_missed_once_it_has_drawn) {
+    run(1);
+    EXPECT_EQ(faults(), no_fault);
+    loop_.visual_beat();
+    run(1);
+    EXPECT_EQ(faults(), no_fault);
+    std::this_thread::sleep_for(std::chrono::nanoseconds(ServoLoop::visual_patience_ns));
+    run(ForceLimiter::ramp_ticks);
+    EXPECT_EQ(faults(), visual_stopped);
+    EXPECT_EQ(device_.force_[2], 0);
+    loop_.visual_beat();
+    run(1);
+    EXPECT_EQ(faults(), no_fault);
+}
+
+TEST(ServoLoop, a_collision_loop_that_stops_takes_the_force_away) {
+    HapticModel model(sample::sample_case(), ContactScheme::single);
+    DeviceState pressing;
+    pressing.position = {40, 10, 24.5};
+    TickResult result{};
+    model.tick(pressing, result);
+    model.detect();
+    for (int tick = 0; tick < 100; ++tick) model.tick(pressing, result);
+    EXPECT_GT(result.force[2], 0.15);  // a point 0.5 mm deep behind 0.4 N/mm
+    EXPECT_EQ(result.faults, no_fault);
+    for (int tick = 0; tick < 1 + ForceLimiter::ramp_ticks; ++tick) model.tick(pressing, result);
+    EXPECT_EQ(result.faults, collision_stale);
+    EXPECT_EQ(result.force[2], 0);
+}
+
+TEST(ServoLoop, ends_with_a_servo_that_does_not_tick_any_more) {
+    HapticModel model(sample::sample_case());
+    RecordingDevice device;
+    HandServo servo;
+    const std::array<Device*, 1> devices{&device};
+    ServoLoop loop(model, devices, &servo);
+    loop.start();
+    loop.stop();
+    EXPECT_EQ(loop.statistics().ticks, 0);
+}
+
 TEST(ServoLoop, leaves_the_device_without_force) {
     HapticModel model(sample::sample_case());
     RecordingDevice device;

@@ -26,7 +26,10 @@ std::array<Slot, 16> slots;
 
 std::atomic<pid_t> child_to_interrupt{0};
 
+std::atomic<bool> soft{false}, asked{false};
+
 extern "C" void remove_and_exit(int) {
+    if (soft.load() && !asked.exchange(true)) return;
     if (const pid_t child = child_to_interrupt.load(); child > 0) {
         kill(child, SIGTERM);
         waitpid(child, nullptr, 0);
@@ -112,6 +115,14 @@ void remove_staged_files_on_interrupt() {
     action.sa_handler = remove_and_exit;
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
+}
+
+void end_softly_on_interrupt() {
+    soft.store(true);
+}
+
+bool interrupt_asked() {
+    return asked.load();
 }
 
 void pass_interrupts_to(pid_t child) {

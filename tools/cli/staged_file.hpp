@@ -38,6 +38,11 @@ std::string with_final_names(std::string message);
 /// Makes SIGINT and SIGTERM remove all staged files and exit with 130. Called once by Command::run().
 void remove_staged_files_on_interrupt();
 
+/// From now on the first SIGINT or SIGTERM only makes interrupt_asked() true, for a command that has a device
+/// to release; its job ends by throwing Interrupted. A second one does as before.
+void end_softly_on_interrupt();
+bool interrupt_asked();
+
 /// From now on an interrupt is passed on to this child, which is waited for before this process ends; 0 for
 /// none.
 void pass_interrupts_to(pid_t child);
