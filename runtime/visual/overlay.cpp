@@ -13,6 +13,8 @@
 #include <vtkTextActor.h>
 #include <vtkTextProperty.h>
 
+#include "runtime/realtime/fault.hpp"
+
 namespace palpate {
 namespace {
 
@@ -62,6 +64,15 @@ void set_length(vtkPoints* points, double length) {
     points->Modified();
 }
 
+// Why there is no force, one line per fault.
+std::string notice_of(std::uint32_t faults) {
+    std::string notice;
+    for (const FaultText& text : fault_texts())
+        if ((faults & text.fault) && text.fault != servo_stopping)
+            notice += fmt::format("{}no force: {}\n{}", notice.empty() ? "" : "\n", text.cause, text.remedy);
+    return notice;
+}
+
 }  // namespace
 
 Overlay::Overlay(const std::string& title, double max_force, vtkRenderer* renderer) : max_force_(max_force) {
@@ -74,6 +85,9 @@ Overlay::Overlay(const std::string& title, double max_force, vtkRenderer* render
     place(figures_, 0.017, 0.865, 16, false, true, renderer);
     place(title_, 0.983, 0.975, 18, true, true, renderer);
     place(help_, 0.017, 0.025, 14, false, false, renderer);
+    place(notice_, 0.5, 0.86, 20, false, true, renderer);
+    notice_->GetTextProperty()->SetJustificationToCentered();
+    notice_->GetTextProperty()->SetColor(1, 0.75, 0.3);
     title_->SetInput(title.c_str());
     help_->SetInput(help_text);
     help_->GetTextProperty()->SetOpacity(0.75);
@@ -94,6 +108,7 @@ void Overlay::update(const VisualFrame& frame, double frames_per_second) {
                                    std::max(0.0, frame.depth), frame.tick_rate_hz, frame.overruns,
                                    frames_per_second)
                            .c_str());
+    notice_->SetInput(notice_of(frame.faults).c_str());
 }
 
 void Overlay::show_help(bool on) {

@@ -24,7 +24,7 @@ class Overlay {
   private:
     double max_force_;  // N
     std::chrono::steady_clock::time_point last_{};
-    vtkNew<vtkTextActor> force_, figures_, title_, help_;
+    vtkNew<vtkTextActor> force_, figures_, title_, help_, notice_;
     vtkNew<vtkPoints> bar_points_;
     vtkNew<vtkActor2D> bar_, bar_frame_;
 };

@@ -6,6 +6,7 @@
 #include "tests/benchmarks/experiments/faults.hpp"
 #include "tests/benchmarks/experiments/passivity.hpp"
 #include "tests/benchmarks/experiments/puncture.hpp"
+#include "tests/benchmarks/experiments/realtime.hpp"
 #include "tests/benchmarks/experiments/split.hpp"
 #include "tests/benchmarks/experiments/stability.hpp"
 #include "tests/benchmarks/experiments/tick.hpp"
@@ -19,6 +20,8 @@ const std::vector<Experiment> experiments{
     {"passivity", "the stiffest wall that the closed loop bears, against 2b/T", passivity},
     {"puncture", "how often a tool is pushed through a bone, by scheme; the published tables 1 and 2",
      puncture},
+    {"realtime", "ten minutes against the clock beside four busy processes, with and without priority",
+     realtime},
     {"split", "two deformable bodies: the published split by force ratio against exact contact", split},
     {"stability", "jumps, pulls, roughness and energy of force by scheme, and 10 minutes at random",
      stability},
