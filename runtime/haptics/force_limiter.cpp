@@ -8,6 +8,8 @@
 namespace palpate {
 namespace {
 
+constexpr int gentle_ticks = 100;  // that a force takes at least to grow from zero to the largest one
+
 // Shortens `v` to `limit`; tells whether it had to.
 bool shorten(Eigen::Vector3d& v, double limit) noexcept {
     const double length = v.norm();
@@ -32,6 +34,8 @@ Eigen::Vector3d ForceLimiter::limit(const Eigen::Vector3d& wanted, std::uint32_t
     const double share = static_cast<double>(ticks_well_ - ramp_ticks) / return_ticks;
     Eigen::Vector3d force = share * wanted;
     if (shorten(force, share * max_force_)) status |= force_limited;
+    // Where what is wanted jumps, as a published scheme's force does, it still comes back gently.
+    if (share < 1) shorten(force, last_.norm() + max_force_ / gentle_ticks);
     Eigen::Vector3d step = force - last_;
     if (shorten(step, max_step_)) {
         status |= rate_limited;

@@ -27,7 +27,8 @@ class ForceLimiter {
     /// adds force_limited and rate_limited to `status`. With any of `faults` (to which a force that is not
     /// finite adds invalid_force), and for ramp_ticks after, the force goes to zero instead, by
     /// max_force / ramp_ticks in each tick, then comes back in proportion to the time since (status
-    /// coming_back), so that a hand that pressed on meanwhile is not kicked.
+    /// coming_back), growing by at most max_force / 100 a tick, so that a hand that pressed on meanwhile is
+    /// not kicked.
     Eigen::Vector3d limit(const Eigen::Vector3d& wanted, std::uint32_t& faults,
                           std::uint32_t& status) noexcept;
 

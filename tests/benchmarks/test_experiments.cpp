@@ -166,6 +166,7 @@ TEST(FaultRun, five_virtual_minutes_keep_to_every_limit_and_report_every_fault_o
         EXPECT_GT(run.reported, 15);
         EXPECT_EQ(run.missed + run.unexpected, 0);
         EXPECT_EQ(run.above_limit + run.above_slew + run.not_finite + run.not_gone, 0);
+        EXPECT_LE(run.largest_growth, sample::sample_case().haptics.max_force / 100 + 1e-9);
     }
 }
 

@@ -76,7 +76,8 @@ class Watch {
         run_.not_gone += injection && tick - injection->from >= ForceLimiter::ramp_ticks && !force.isZero(0);
         run_.strongest = std::max(run_.strongest, force.norm());
         run_.largest_step = std::max(run_.largest_step, step);
-        if (result.status & coming_back) run_.largest_return_step = std::max(run_.largest_return_step, step);
+        if (result.status & coming_back)
+            run_.largest_growth = std::max(run_.largest_growth, force.norm() - last_.norm());
         last_ = force;
     }
 
@@ -128,7 +129,7 @@ void FaultRun::add(const FaultRun& other) {
     not_gone += other.not_gone;
     strongest = std::max(strongest, other.strongest);
     largest_step = std::max(largest_step, other.largest_step);
-    largest_return_step = std::max(largest_return_step, other.largest_return_step);
+    largest_growth = std::max(largest_growth, other.largest_growth);
 }
 
 FaultRun run_with_faults(const Case& patient_case, ContactScheme scheme, const DeviceModel& device_model,

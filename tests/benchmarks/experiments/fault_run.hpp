@@ -30,10 +30,10 @@ struct FaultRun {
     std::int64_t reported = 0;                     ///< faults
     std::int64_t missed = 0, unexpected = 0;  ///< faults not reported in their first tick; reports of none
     std::int64_t above_limit = 0, above_slew = 0, not_finite = 0;
-    std::int64_t not_gone = 0;       ///< with force 20 ticks after a fault began, while it lasts
-    double strongest = 0;            ///< N
-    double largest_step = 0;         ///< N from tick to tick
-    double largest_return_step = 0;  ///< the same while a force comes back
+    std::int64_t not_gone = 0;  ///< with force 20 ticks after a fault began, while it lasts
+    double strongest = 0;       ///< N
+    double largest_step = 0;    ///< N from tick to tick
+    double largest_growth = 0;  ///< N from tick to tick, of a force that comes back
 
     void add(const FaultRun& other);
 };

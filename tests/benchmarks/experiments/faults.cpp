@@ -24,7 +24,7 @@ constexpr std::string_view text =
     "scheme `twice`.\n\n"
     "| case | virtual time, h | faults | reported | missed | unexpected | above limit | above slew | not "
     "finite | not "
-    "gone | strongest, N | largest step, N | while coming back, N |\n"
+    "gone | strongest, N | largest step, N | growth while coming back, N |\n"
     "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n";
 
 Json json_of(const std::string& name, const FaultRun& run) {
@@ -41,7 +41,7 @@ Json json_of(const std::string& name, const FaultRun& run) {
             {"not_gone_ticks", run.not_gone},
             {"strongest_n", run.strongest},
             {"largest_step_n", run.largest_step},
-            {"largest_return_step_n", run.largest_return_step}};
+            {"largest_growth_n", run.largest_growth}};
 }
 
 std::string row_of(const std::string& name, const FaultRun& run) {
@@ -50,7 +50,7 @@ std::string row_of(const std::string& name, const FaultRun& run) {
     return fmt::format("| {} | {:.1f} | {} | {} | {} | {} | {} | {} | {} | {} | {:.3f} | {:.3f} | {:.4f} |\n",
                        name, static_cast<double>(run.ticks) / 3.6e6, injected, run.reported, run.missed,
                        run.unexpected, run.above_limit, run.above_slew, run.not_finite, run.not_gone,
-                       run.strongest, run.largest_step, run.largest_return_step);
+                       run.strongest, run.largest_step, run.largest_growth);
 }
 
 }  // namespace
