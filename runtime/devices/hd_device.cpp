@@ -26,7 +26,7 @@ bool may_be_the_name(unsigned code) {
 
 std::string text_of(const HdApi& api, unsigned parameter) {
     const char* text = api.get_string(parameter);
-    const bool failed = first_hd_error(api).code != success;
+    const bool failed = take_hd_errors(api).code != success;
     return failed || !text ? "" : text;
 }
 
@@ -40,7 +40,7 @@ HdDevice::HdDevice(const HdApi& api, HdErrorSorter& errors, const std::string& n
     try {
         api_.make_current_device(handle_);
         api_.enable(force_output);
-        if (const HdErrorInfo error = first_hd_error(api_); error.code != success)
+        if (const HdErrorInfo error = take_hd_errors(api_); error.code != success)
             throw SystemFailure(explain_hd_error(culprit + ", force output", error));
         describe(name);
         errors_.add(handle_);
@@ -54,7 +54,7 @@ HdDevice::~HdDevice() {
     api_.make_current_device(handle_);
     api_.disable(force_output);
     api_.disable_device(handle_);
-    first_hd_error(api_);
+    take_hd_errors(api_);
 }
 
 // Returns the first error of those met; none if the device is open.
@@ -75,9 +75,9 @@ HdErrorInfo HdDevice::open_one_of(const std::string& name, bool or_default) {
 }
 
 HdErrorInfo HdDevice::open(const char* name) {
-    first_hd_error(api_);  // what is left there is not about this
+    take_hd_errors(api_);  // what is left there is not about this
     const HdHandle handle = api_.init_device(name);
-    HdErrorInfo error = first_hd_error(api_);
+    HdErrorInfo error = take_hd_errors(api_);
     if (error.code != success && handle != invalid_handle) api_.disable_device(handle);
     if (error.code == success && handle == invalid_handle) error.code = device_fault;
     if (error.code == success) handle_ = handle;
@@ -97,27 +97,27 @@ void HdDevice::describe(const std::string& name) {
     ask_rate();
     std::array<double, 6> box{};
     api_.get_doubles(usable_workspace, box.data());
-    if (first_hd_error(api_).code == success) {
+    if (take_hd_errors(api_).code == success) {
         limits_.workspace_low = {box[0], box[1], box[2]};
         limits_.workspace_high = {box[3], box[4], box[5]};
     }
     int styles = 0;
     api_.get_integers(calibration_style, &styles);
-    if (first_hd_error(api_).code == success) calibration_styles_ = static_cast<unsigned>(styles);
+    if (take_hd_errors(api_).code == success) calibration_styles_ = static_cast<unsigned>(styles);
 }
 
 void HdDevice::ask_rate() {
     api_.make_current_device(handle_);
     int rate = 0;
     api_.get_integers(update_rate, &rate);
-    limits_.rate_hz = first_hd_error(api_).code == success ? rate : nominal(update_rate);
+    limits_.rate_hz = take_hd_errors(api_).code == success ? rate : nominal(update_rate);
 }
 
 // Zero where the driver does not know.
 double HdDevice::nominal(unsigned parameter) const {
     double value = 0;
     api_.get_doubles(parameter, &value);
-    return first_hd_error(api_).code == success && std::isfinite(value) ? value : 0;
+    return take_hd_errors(api_).code == success && std::isfinite(value) ? value : 0;
 }
 
 void HdDevice::calibrate() {

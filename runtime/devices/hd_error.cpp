@@ -89,7 +89,7 @@ ErrorDetail explain_hd_error(const std::string& culprit, const HdErrorInfo& erro
             "", text->fix};
 }
 
-HdErrorInfo first_hd_error(const HdApi& api) noexcept {
+HdErrorInfo take_hd_errors(const HdApi& api) noexcept {
     const HdErrorInfo first = api.get_error();
     HdErrorInfo error = first;
     for (int i = 1; i < most_hd_errors && error.code != success; ++i) error = api.get_error();

@@ -30,11 +30,12 @@ const HdErrorText* find_hd_error(unsigned code) noexcept;
 /// Says of `error`, which `culprit` met, cause and fix.
 ErrorDetail explain_hd_error(const std::string& culprit, const HdErrorInfo& error);
 
-/// Empties the driver's error stack, of the calling thread's calls, and returns its first entry; code 0 if
-/// there is none. Gives up after most_hd_errors, for a driver that has lost its device may never end.
-/// Realtime-safe.
+/// Gives up to empty an error stack after so many: of a driver that has lost its device it may never end.
 inline constexpr int most_hd_errors = 32;
-HdErrorInfo first_hd_error(const HdApi& api) noexcept;
+
+/// Empties the driver's error stack and returns its first entry, which HDAPI has as the latest; code 0 if
+/// there is none. Realtime-safe.
+HdErrorInfo take_hd_errors(const HdApi& api) noexcept;
 
 /// Sorts what the driver's error stack says by device: errors name their device, and one device's may come
 /// up during calls that are for another. Realtime-safe, but for add(); the servo's thread alone.

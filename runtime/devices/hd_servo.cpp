@@ -5,8 +5,10 @@
 #include <chrono>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "formats/model/errors.hpp"
 #include "runtime/devices/hd_error.hpp"
@@ -41,13 +43,13 @@ HdServo::HdServo(const HdApi& api, std::vector<HdDevice*> devices, std::vector<S
 
 void HdServo::start_scheduler() {
     if (scheduler_runs_) return;
-    first_hd_error(api_);
+    take_hd_errors(api_);
     api_.set_scheduler_rate(rate_hz);
-    if (const HdErrorInfo error = first_hd_error(api_); !may_be_ignored(error.code))
+    if (const HdErrorInfo error = take_hd_errors(api_); !may_be_ignored(error.code))
         throw SystemFailure(explain_hd_error("the device's scheduler", error));
     api_.start_scheduler();
     scheduler_runs_ = true;
-    if (const HdErrorInfo error = first_hd_error(api_); error.code != success) {
+    if (const HdErrorInfo error = take_hd_errors(api_); error.code != success) {
         stop();
         throw SystemFailure(explain_hd_error("the device's scheduler", error));
     }
@@ -55,16 +57,27 @@ void HdServo::start_scheduler() {
 }
 
 void HdServo::start(OnTick on_tick) {
+    schedule(std::move(on_tick), std::numeric_limits<std::int64_t>::max());
+}
+
+void HdServo::tick_once(OnTick on_tick) {
+    schedule(std::move(on_tick), 1);
+    end_ticks();
+}
+
+// Returns after the first tick.
+void HdServo::schedule(OnTick on_tick, std::int64_t most_ticks) {
     end_ticks();
     start_scheduler();
     on_tick_ = std::move(on_tick);
+    most_ticks_ = most_ticks;
     tick_ = {};
     ticks_ = last_ns_ = 0;
     ending_ = released_ = ticked_ = false;
     operation_ = api_.schedule_asynchronous(&HdServo::callback, this, highest_priority);
     scheduled_ = true;
     if (wait_for(ticked_, start_patience)) return;
-    const HdErrorInfo error = first_hd_error(api_);
+    const HdErrorInfo error = take_hd_errors(api_);
     stop();
     if (error.code != success) throw SystemFailure(explain_hd_error("the device's scheduler", error));
     throw SystemFailure({"the device's scheduler", "it does not tick", "1000 times a second",
@@ -78,7 +91,7 @@ void HdServo::end_ticks() {
     api_.unschedule(operation_);
     while (inside_.load()) std::this_thread::sleep_for(milliseconds(1));
     scheduled_ = false;
-    first_hd_error(api_);
+    take_hd_errors(api_);
 }
 
 void HdServo::stop() {
@@ -86,7 +99,7 @@ void HdServo::stop() {
     if (!scheduler_runs_) return;
     api_.stop_scheduler();
     scheduler_runs_ = false;
-    first_hd_error(api_);
+    take_hd_errors(api_);
 }
 
 std::vector<SetupResult> HdServo::setup() const {
@@ -111,7 +124,7 @@ unsigned HdServo::callback(void* servo) noexcept {
 // Either end_ticks() sees inside_ and waits, or this sees ending_ and does not tick.
 unsigned HdServo::tick() noexcept {
     inside_.store(true);
-    const bool last = ending_.load();
+    const bool last = ending_.load() || ticks_ == most_ticks_;
     if (!last) {
         time_tick();
         on_tick_(tick_);

@@ -25,8 +25,8 @@ class HdServo final : public Servo {
     /// Starts the scheduler, at 1 kHz where the driver lets itself be told, and the ticks; returns after the
     /// first. Throws SystemFailure with cause and fix.
     void start(OnTick on_tick) override;
-    /// Ends the ticks with one of zero force on all devices. The scheduler goes on.
-    void end_ticks();
+    /// Ticks once, and once more for zero force on all devices; the scheduler goes on. Throws as start().
+    void tick_once(OnTick on_tick);
     /// Ends the ticks, then the scheduler.
     void stop() override;
     /// The rate that the driver tells, then the notes.
@@ -38,6 +38,8 @@ class HdServo final : public Servo {
     void time_tick() noexcept;
     void release() noexcept;
     void start_scheduler();
+    void schedule(OnTick on_tick, std::int64_t most_ticks);
+    void end_ticks();
 
     const HdApi& api_;
     std::vector<HdDevice*> devices_;
@@ -47,8 +49,8 @@ class HdServo final : public Servo {
     bool scheduler_runs_ = false, scheduled_ = false;
     std::atomic<bool> ending_{false}, released_{false}, inside_{false};
     std::atomic<bool> ticked_{false};
-    ServoTick tick_;  // the scheduler's thread's, as are the next two
-    std::int64_t ticks_ = 0;
+    ServoTick tick_;  // the scheduler's thread's, as are the next three
+    std::int64_t ticks_ = 0, most_ticks_ = 0;
     std::int64_t last_ns_ = 0;  // when the last tick began
 };
 

@@ -2,7 +2,6 @@
 #include "runtime/devices/hd_session.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <clocale>
 #include <optional>
@@ -17,10 +16,8 @@
 namespace palpate {
 namespace {
 
-using std::chrono::milliseconds;
-
-constexpr int calibration_attempts = 10;            // each a look apart
-constexpr milliseconds calibration_patience{3000};  // for so many ticks
+constexpr int calibration_attempts = 10;
+constexpr std::chrono::milliseconds between_attempts{100};
 
 /// The process's numbers in the C locale, until it ends.
 class NumbersInC {
@@ -47,38 +44,24 @@ std::vector<std::string> names_of(const HdSettings& settings) {
     return settings.devices;
 }
 
-// While `device` ticks: waits until it has ticked `count` times more.
-void wait_for_ticks(const std::atomic<int>& ticks, int count) {
-    const int until = ticks.load() + count;
-    const auto give_up = std::chrono::steady_clock::now() + calibration_patience;
-    while (ticks.load() < until) {
-        if (std::chrono::steady_clock::now() > give_up)
-            throw SystemFailure({"the device's scheduler", "it has stopped", "1000 ticks a second",
-                                 "check the device's power and cable and start again"});
-        std::this_thread::sleep_for(milliseconds(1));
-    }
-}
-
-// Ticks the devices without force until each knows where it is.
+// Reads the devices, without force, until each knows where it is.
 void calibrate(HdServo& servo, std::span<HdDevice* const> devices) {
-    std::atomic<int> ticks{0};
-    servo.start([&](const ServoTick& tick) {
-        for (HdDevice* device : devices) device->read(tick.time);
-        for (HdDevice* device : devices) device->write({0, 0, 0});
-        ++ticks;
-    });
-    struct EndTicks {
-        HdServo& servo;
-        ~EndTicks() { servo.end_ticks(); }
-    } const end_ticks{servo};
+    const auto look = [&] {
+        servo.tick_once([&](const ServoTick& tick) {
+            for (HdDevice* device : devices) device->read(tick.time);
+            for (HdDevice* device : devices) device->write({0, 0, 0});
+        });
+    };
     const auto needs_update = [](HdDevice* device) {
         return device->calibration() == Calibration::needs_update;
     };
+    look();
     for (int attempt = 0; attempt < calibration_attempts && std::ranges::any_of(devices, needs_update);
          ++attempt) {
+        if (attempt > 0) std::this_thread::sleep_for(between_attempts);
         for (HdDevice* device : devices)
             if (needs_update(device)) device->calibrate();
-        wait_for_ticks(ticks, HdDevice::look_ticks + 1);
+        look();
     }
     for (HdDevice* device : devices)
         if (device->calibration() != Calibration::ok)

@@ -85,15 +85,15 @@ TEST(HdError, a_code_that_hdapi_does_not_define_is_said_to_be_so) {
 
 TEST(HdError, the_first_of_several_errors_is_returned_and_the_stack_is_empty_then) {
     const HdApi& api = driver_with({{comm_error, 0, left}, {frame_error, 0, left}});
-    EXPECT_EQ(first_hd_error(api).code, comm_error);
+    EXPECT_EQ(take_hd_errors(api).code, comm_error);
     EXPECT_TRUE(stack.empty());
-    EXPECT_EQ(first_hd_error(api).code, success);
+    EXPECT_EQ(take_hd_errors(api).code, success);
 }
 
 TEST(HdError, a_stack_that_never_ends_is_given_up) {
     const HdApi& api = driver_with({{comm_error, 0, left}});
     endless = true;
-    EXPECT_EQ(first_hd_error(api).code, comm_error);
+    EXPECT_EQ(take_hd_errors(api).code, comm_error);
     HdErrorSorter sorter(api);
     sorter.add(left);
     sorter.drain();
