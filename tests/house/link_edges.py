@@ -34,6 +34,7 @@ ROOMS = {
     "haptics": {"model", "collision", "realtime"},
     "devices": {"model", "realtime"},
     "visual": {"model", "realtime", "vtk"},
+    "hd_conformance": {"model", "devices", "json"},
     "apps": {"model", "asset", "realtime", "collision", "haptics", "devices"},
 }
 COMMANDS = {"model", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "build", "mesh", "condense", "seeds", "json"}
