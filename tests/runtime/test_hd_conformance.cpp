@@ -195,8 +195,19 @@ TEST_F(HdConformance, frames_nest_but_do_not_come_twice_in_a_tick) {
         frame(device, {0, 0, 0});
         EXPECT_EQ(error(), success);
     });
-    in_servo([&] { hd.hdBeginFrame(device); });
-    in_servo([&] { EXPECT_EQ(error(), frame_error); });
+    in_servo([&] {
+        const Vector force{1, 0, 0};
+        hd.hdBeginFrame(device);
+        hd.hdSetDoublev(current_force, force.data());
+    });
+    in_servo([&] {
+        EXPECT_EQ(error(), frame_error);
+        Vector force{9, 9, 9};
+        hd.hdBeginFrame(device);
+        hd.hdGetDoublev(current_force, force.data());
+        hd.hdEndFrame(device);
+        EXPECT_EQ(force, (Vector{0, 0, 0}));
+    });
 }
 
 TEST_F(HdConformance, each_type_of_parameter_has_its_own_function) {
