@@ -29,12 +29,12 @@ ROOMS = {
     "condense": {"model", "fem", "json"},
     "build": {"model", "asset", "cli", "json", "toml"},
     "seeds": {"model", "imaging", "vtk"},
+    "hd_conformance": {"model", "devices", "json"},
     "realtime": set(),
     "collision": {"model"},
     "haptics": {"model", "collision", "realtime"},
     "devices": {"model", "realtime"},
     "visual": {"model", "realtime", "vtk"},
-    "hd_conformance": {"model", "devices", "json"},
     "apps": {"model", "asset", "realtime", "collision", "haptics", "devices"},
 }
 COMMANDS = {"model", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "build", "mesh", "condense", "seeds", "json"}
