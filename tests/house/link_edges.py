@@ -29,6 +29,7 @@ ROOMS = {
     "condense": {"model", "fem", "json"},
     "build": {"model", "asset", "cli", "json", "toml"},
     "seeds": {"model", "imaging", "vtk"},
+    "hd_conformance": {"model", "devices", "json"},
     "realtime": set(),
     "collision": {"model"},
     "haptics": {"model", "collision", "realtime"},
