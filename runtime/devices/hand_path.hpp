@@ -48,7 +48,7 @@ struct ScriptSettings {
     double depth = 3;         ///< mm, of the tool's surface below the rest surface
     double speed = 20;        ///< mm/s, in and out and along
     double hold_s = 0.5;      ///< s at full depth
-    double tremor = 0.15;     ///< mm to either side, along each axis, of a hand that trembles
+    double tremor = 0.3;      ///< mm to either side, along each axis, of a hand that trembles
     double slide_length = 4;  ///< mm to either side
     double seconds = 10;      ///< s; repeated until this time
 };
@@ -64,11 +64,13 @@ HandPath slide_path(const TouchPoint& target, const ScriptSettings& settings);
 /// outside. The same seed gives the same path.
 HandPath random_path(const TouchPoint& target, const ScriptSettings& settings, std::uint64_t seed);
 
-/// Presses, trembles at full depth until the time is over, then leaves. Physiological tremor: along each
-/// axis three vibrations of 8 to 12 Hz that add up to settings.tremor at most, their frequencies and phases
-/// by the seed; they come and go within half a second. Frequencies: Lakie et al. 2015, J Physiol 593, 4411 (a
-/// peak between 6 and 12 Hz). Size: the default's range is a little more than the 0.2 mm of eye surgeons who
-/// hold still (Riviere, Rader, Khosla 1997, Characteristics of hand motion of eye surgeons).
+/// Presses, trembles at full depth until the time is over, then leaves. Physiological tremor: along each axis
+/// three vibrations of 8 to 12 Hz that add up to settings.tremor at most, their frequencies and phases by the
+/// seed; they come and go within half a second. Frequencies: as usual in the field, a peak between 6 and 12
+/// Hz (Lakie et al. 2015, J Physiol 593, 4411). Size: a choice; the default's 0.12 mm root mean square along
+/// an axis are what an unpractised hand may have where eye surgeons who held still had 0.05 mm (Riviere,
+/// Rader, Khosla 1997, Characteristics of hand motion of eye surgeons). A Touch's friction swallows it in the
+/// hand of usual stiffness.
 HandPath tremble_path(const TouchPoint& target, const ScriptSettings& settings, std::uint64_t seed);
 
 /// Presses, lets go of the device at full depth, goes outside, and takes hold again there half a second after
