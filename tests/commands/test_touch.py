@@ -152,6 +152,24 @@ class Touch(SampleAsset):
         self.assertEqual(result["statuses"], {})
         self.assertLess(result["force_step_max_n"], 0.25)
 
+    def test_motors_that_are_pressed_too_long_warm_up_and_the_force_goes_to_zero(self):
+        script = self.folder / "long.txt"
+        script.write_text("0 40 10 30\n1 40 10 13\n25 40 10 13\n")
+        time, depth, force, _ = self.depths("--script", script, "--device", "touch")
+        # A Touch bears 0.88 N for ever; its motors warm in 100 s: T' = ((F / 0.88)² - T) / 100.
+        temperature, warm = 0.0, None
+        for i, f in enumerate(force):
+            heating = (f / 0.88) ** 2
+            temperature = heating + (temperature - heating) * math.exp(-1e-5)
+            if temperature >= 1:
+                warm = i + 1  # the state at the end of this tick is read by the next
+                break
+        self.assertIsNotNone(warm, "the motors stayed cool")
+        self.assertGreater(time[warm], 10)
+        self.assertGreater(min(force[warm - 100 : warm - 2]), 2)  # two ticks for the log's rounding
+        self.assertEqual(max(force[warm + 22 : warm + 5000]), 0)
+        self.assertGreater(min(depth[warm : warm + 5000]), 1)  # though the hand presses on
+
     def test_a_hand_of_infinite_stiffness_cannot_let_go(self):
         run = self.touch("--virtual-clock", "--script", "let-go")
         self.assertEqual(run.returncode, 2, run.stderr)
