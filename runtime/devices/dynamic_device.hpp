@@ -49,7 +49,8 @@ class DynamicDevice final : public Device {
     std::string name() const override { return "simulated " + model_.name + ", " + hand_->name(); }
     DeviceLimits limits() const override { return limits_of(model_); }
     /// Moves the tip to `time` (to the nearest step; never back) and reads its encoders: each coordinate
-    /// rounded down to their resolution. Cost: 16 steps of 30 ns per ms of time gone.
+    /// rounded down to their resolution. Cost: 16 steps of 20 to 50 ns, by the length of the path, per ms of
+    /// time gone.
     DeviceState read(double time) noexcept override;
     /// `force` must be finite (unchecked); its direction stays where the motors saturate.
     void write(const std::array<double, 3>& force) noexcept override;

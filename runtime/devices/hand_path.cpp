@@ -91,7 +91,7 @@ HandPath read_hand_path(const std::filesystem::path& file) {
             throw InvalidInput({where, std::to_string(row.size()) + " numbers",
                                 columns == 0 ? "3 (x y z, mm) or 4 (t x y z, s and mm)"
                                              : std::to_string(columns) + ", as in the rows before",
-                                "of a recording of one axis name its --column"});
+                                columns == 0 ? "of a recording of one axis name its --column" : ""});
         HandPath::Key key;
         key.time = columns == 4 ? row.front() : 1e-3 * static_cast<double>(keys.size());
         key.position = {row[columns - 3], row[columns - 2], row[columns - 1]};

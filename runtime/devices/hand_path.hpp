@@ -13,7 +13,7 @@ class HandPath {
   public:
     struct Key {
         double time = 0;           ///< s
-        Eigen::Vector3d position;  ///< p_P, mm
+        Eigen::Vector3d position;  ///< mm, in the path's frame: P, or that of the device it moves
         bool holds = true;         ///< from this key to the next, whether the hand holds the device
     };
 
