@@ -12,9 +12,9 @@
 #include "formats/model/errors.hpp"
 #include "runtime/apps/hand_script.hpp"
 #include "runtime/apps/run_record.hpp"
+#include "runtime/apps/simulation.hpp"
 #include "runtime/apps/statistics_json.hpp"
 #include "runtime/apps/touch_target.hpp"
-#include "runtime/devices/dynamic_device.hpp"
 #include "runtime/devices/simulated_device.hpp"
 #include "runtime/haptics/servo_loop.hpp"
 #include "runtime/realtime/process_age.hpp"
@@ -30,6 +30,7 @@ struct Options {
     std::string script = "press", body, target, second, scheme = "continuous", device, shaft;
     double seconds = 10, depth = 3, speed = 20;
     std::uint64_t seed = 1;
+    std::optional<std::size_t> column;
     bool seconds_given = false, virtual_clock = false;
 };
 
@@ -57,13 +58,13 @@ void require_positive(double seconds) {
 }
 
 Plan plan_of(const Options& options, const Case& patient_case, const HapticModel& model) {
-    if (!is_made_to_measure(options.script)) {
+    if (!options.column && !is_made_to_measure(options.script)) {
         HandPath path = recorded_path(options.script);
         const double seconds = options.seconds_given ? options.seconds : path.duration();
         require_positive(seconds);
         return {std::move(path), std::nullopt, seconds};
     }
-    require_positive(options.seconds);
+    if (!options.column) require_positive(options.seconds);
     const TouchTarget target =
         choose_touch_target(patient_case, model, options.body, point_of("--target", options.target));
     // The published schemes know the tip's centre alone.
@@ -72,8 +73,13 @@ Plan plan_of(const Options& options, const Case& patient_case, const HapticModel
                                   .depth = options.depth,
                                   .speed = options.speed,
                                   .seconds = options.seconds};
-    return {made_to_measure_path(options.script, target.place, settings, options.seed), target,
-            options.seconds};
+    if (!options.column)
+        return {made_to_measure_path(options.script, target.place, settings, options.seed), target,
+                options.seconds};
+    HandPath path = recorded_axis_path(options.script, *options.column, target.place, settings);
+    const double seconds = options.seconds_given ? options.seconds : path.duration();
+    require_positive(seconds);
+    return {std::move(path), target, seconds};
 }
 
 // From the tip along the shaft: as asked, or straight out of the place that is touched.
@@ -86,11 +92,10 @@ std::array<double, 3> shaft_of(const Options& options, const Plan& plan) {
     return {along[0], along[1], along[2]};
 }
 
+// `up`: which way out of the patient a device of its own frame is turned.
 std::unique_ptr<Device> device_of(const Options& options, const HapticModel& model, HandPath path,
-                                  const std::array<double, 3>& shaft) {
-    if (!options.device.empty())
-        return std::make_unique<DynamicDevice>(find_device_model(options.device), HandImpedance{},
-                                               std::move(path), shaft);
+                                  const Eigen::Vector3d& up, const std::array<double, 3>& shaft) {
+    if (!options.device.empty()) return simulate(find_device_model(options.device), path, up, shaft);
     const DeviceLimits limits{.max_force = model.settings().max_force,
                               .max_stiffness = model.settings().coupling_stiffness};
     return std::make_unique<SimulatedDevice>(std::move(path), limits, shaft);
@@ -173,9 +178,10 @@ Json touch(const Options& options, cli::Session& session) {
     const Plan plan = plan_of(options, patient_case, model);
     const std::array<double, 3> shaft = shaft_of(options, plan);
     std::vector<std::unique_ptr<Device>> devices;
-    devices.push_back(device_of(options, model, plan.path, shaft));
+    const Eigen::Vector3d up = plan.target ? plan.target->place.normal : anterior;
+    devices.push_back(device_of(options, model, plan.path, up, shaft));
     if (!options.second.empty())
-        devices.push_back(device_of(options, model, recorded_path(options.second), shaft));
+        devices.push_back(device_of(options, model, recorded_path(options.second), anterior, shaft));
     std::vector<Device*> held;
     std::vector<RunRecord> records;
     for (const auto& device : devices) {
@@ -197,7 +203,7 @@ Json touch(const Options& options, cli::Session& session) {
     }
 
     // A script's file name may name a patient.
-    const std::string script = plan.target ? options.script : "file";
+    const std::string script = is_made_to_measure(options.script) ? options.script : "file";
     if (log_file) {
         log.close();
         if (!log) throw SystemFailure({options.log.string(), "could not be written", "", "check free space"});
@@ -250,17 +256,23 @@ int main(int argc, char** argv) {
          .examples = {"palpate touch case.vtkhdf --script press --seconds 10 --log run.csv --curve force.svg",
                       "palpate touch case.vtkhdf --script hand.txt --json stats.json"},
          .notes =
-             "Scripts: 'press' goes in along the surface's normal, holds 0.5 s and lets go, over and over; "
-             "'slide' presses once and slides 4 mm to either side; 'random' pushes, slides and leaves; a "
-             "file "
-             "has rows 'x y z' (mm), one per millisecond, or 't x y z' (s, mm). Without --device the hand is "
-             "infinitely stiff: it is where the script says, whatever the force. Schemes: 'continuous' "
-             "sweeps "
-             "the tool every tick; 'single' and 'twice' are the published ones, with a collision loop at 30 "
-             "Hz."});
+             "Scripts: 'press' goes in along the surface's normal, holds 0.5 s and leaves, over and over; "
+             "'slide' presses once and slides 4 mm to either side; 'tremble' presses and trembles there as "
+             "a hand does, 8 to 12 Hz; 'let-go' presses, lets go of the device, and takes hold again "
+             "outside; 'random' pushes, slides and leaves; a file has rows 'x y z' (mm), one per "
+             "millisecond, or 't x y z' (s, mm); with --column N it is a recording of one axis at 1 kHz, "
+             "which moves along the surface's normal. Without --device the hand is infinitely stiff: it is "
+             "where the script says, whatever the force. A simulated device stands with the middle of its "
+             "workspace where the hand starts, upright on the touched surface; for a path from a file its "
+             "up is the patient's front. Schemes: 'continuous' sweeps the tool every tick; 'single' and "
+             "'twice' are the published ones, with a collision loop at 30 Hz."});
     Options options;
     command.input("asset", options.asset, "the case (.vtkhdf)")->required();
-    command.option("--script", options.script, "what the hand does: press, slide, random or a file");
+    command.option("--script", options.script,
+                   "what the hand does: press, slide, tremble, let-go, random or a file");
+    command.option("--column", options.column,
+                   "which column of the file, from 1, is one axis' motion: its smallest value clear of the "
+                   "surface, its largest --depth deep");
     const CLI::Option* seconds =
         command.option("--seconds", options.seconds, "how long; of a file, all unless this is given", "s");
     command.option("--depth", options.depth, "how deep the tool's surface goes below the rest surface", "mm");
@@ -278,7 +290,7 @@ int main(int argc, char** argv) {
         "--shaft", options.shaft,
         "x,y,z: direction from the tip along the shaft of both tools, for a case with one; straight out "
         "of the target if not given, and with a file none, so that the tip alone is felt");
-    command.option("--seed", options.seed, "of the script 'random'");
+    command.option("--seed", options.seed, "of the scripts 'random' and 'tremble'");
     command.output("--log", options.log, "one row per tick (.csv)");
     command.output("--curve", options.curve, "force and depth of the first tool over time (.svg)");
     command.flag("--virtual-clock", options.virtual_clock,

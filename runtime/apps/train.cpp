@@ -2,6 +2,8 @@
 // palpate train: the trainer's window beside the haptic loop.
 #include <charconv>
 #include <chrono>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <spdlog/spdlog.h>
 #include <thread>
@@ -9,6 +11,7 @@
 #include "formats/asset/asset.hpp"
 #include "formats/model/errors.hpp"
 #include "runtime/apps/hand_script.hpp"
+#include "runtime/apps/simulation.hpp"
 #include "runtime/apps/statistics_json.hpp"
 #include "runtime/apps/touch_target.hpp"
 #include "runtime/devices/guided_device.hpp"
@@ -25,7 +28,7 @@ using Json = nlohmann::ordered_json;
 
 struct Options {
     std::filesystem::path asset, screenshot;
-    std::string size = "1280x720", script, body, scheme = "continuous";
+    std::string size = "1280x720", script, body, scheme = "continuous", device;
     double seconds = 0;
 };
 
@@ -41,11 +44,47 @@ std::pair<int, int> size_of(const std::string& text) {
 }
 
 HandPath scripted_path(const Options& options, const TouchPoint& place, double tool_radius) {
-    constexpr std::uint64_t seed = 1;  // of the script 'random'
+    constexpr std::uint64_t seed = 1;  // of the scripts 'random' and 'tremble'
     const ScriptSettings settings{.tool_radius = tool_radius,
                                   .seconds = options.seconds > 0 ? options.seconds : 3600};
     return is_made_to_measure(options.script) ? made_to_measure_path(options.script, place, settings, seed)
                                               : recorded_path(options.script);
+}
+
+std::array<double, 3> array_of(const Eigen::Vector3d& v) {
+    return {v.x(), v.y(), v.z()};
+}
+
+// What the tool is held by; where mouse and keyboard move it, `guide` takes the places (p_P, mm) they mean.
+struct Held {
+    std::unique_ptr<Device> device;
+    std::function<void(const Eigen::Vector3d&)> guide;
+};
+
+Held device_of(const Options& options, const HapticModel& model, const TouchPoint& place,
+               const Eigen::Vector3d& start) {
+    const DeviceLimits limits{.max_force = model.settings().max_force,
+                              .max_stiffness = model.settings().coupling_stiffness};
+    const std::array<double, 3> shaft = array_of(place.normal);
+    const DeviceModel* simulated = options.device.empty() ? nullptr : &find_device_model(options.device);
+    if (!options.script.empty()) {
+        // The published schemes know the tip's centre alone.
+        const bool has_radius = model.scheme() == ContactScheme::continuous;
+        HandPath path = scripted_path(options, place, has_radius ? model.settings().tool_radius : 0);
+        const Eigen::Vector3d up = is_made_to_measure(options.script) ? place.normal : anterior;
+        const auto by_itself = [](const Eigen::Vector3d&) {};
+        if (simulated) return {simulate(*simulated, path, up, shaft), by_itself};
+        return {std::make_unique<SimulatedDevice>(std::move(path), limits, shaft), by_itself};
+    }
+    if (simulated) {
+        const Eigen::Isometry3d X_PD = placed_at(*simulated, start, place.normal), X_DP = X_PD.inverse();
+        const auto hand = std::make_shared<GuidedHand>(array_of(X_DP * start));
+        return {simulate(*simulated, hand, X_PD, shaft),
+                [hand, X_DP](const Eigen::Vector3d& p) { hand->set_target(array_of(X_DP * p)); }};
+    }
+    auto guided = std::make_unique<GuidedDevice>(array_of(start), limits, GuidedHand::usual_speed, shaft);
+    GuidedDevice& device = *guided;
+    return {std::move(guided), [&device](const Eigen::Vector3d& p) { device.set_target(array_of(p)); }};
 }
 
 // Everything felt since the start, from the ticks that the loop left in its ring.
@@ -109,16 +148,7 @@ Json train(const Options& options, cli::Session& session) {
     const double radius = model.settings().tool_radius;
     const Eigen::Vector3d start = place.point + place.normal * (radius + std::min(5.0, place.clearance));
 
-    const DeviceLimits limits{.max_force = model.settings().max_force,
-                              .max_stiffness = model.settings().coupling_stiffness};
-    const std::array<double, 3> shaft{place.normal.x(), place.normal.y(), place.normal.z()};
-    constexpr double hand_speed = 200;  // mm/s
-    GuidedDevice guided({start.x(), start.y(), start.z()}, limits, hand_speed, shaft);
-    std::optional<SimulatedDevice> scripted;
-    if (!options.script.empty())
-        scripted.emplace(
-            scripted_path(options, place, model.scheme() == ContactScheme::continuous ? radius : 0), limits,
-            shaft);
+    const Held held = device_of(options, model, place, start);
 
     session.progress.step("opening the window", 0.5);
     WindowSettings window_settings{.width = width, .height = height, .start = start};
@@ -132,7 +162,7 @@ Json train(const Options& options, cli::Session& session) {
     frame.device_position = frame.tool_position = start;
     window.show(frame);  // the first frame compiles shaders
 
-    ServoLoop loop(model, scripted ? static_cast<Device&>(*scripted) : guided);
+    ServoLoop loop(model, *held.device);
     Felt felt;
     TickRate rate;
     Histogram frame_ns;
@@ -145,8 +175,7 @@ Json train(const Options& options, cli::Session& session) {
         fill_frame(frame, tick, model);
         frame.tick_rate_hz = rate.update(tick.tick);
         window.show(frame);
-        const Eigen::Vector3d hand = window.hand();
-        guided.set_target({hand.x(), hand.y(), hand.z()});
+        held.guide(window.hand());
         felt.take(loop.ring());
         std::this_thread::sleep_until(frame_began + shortest_frame);
         const auto now = Clock::now();
@@ -165,7 +194,7 @@ Json train(const Options& options, cli::Session& session) {
     for (const SetupResult& setup : statistics.setup)
         if (!setup.ok) spdlog::warn("{}", setup.message);
     return {{"case", patient_case.name},
-            {"device", scripted ? scripted->name() : guided.name()},
+            {"device", held.device->name()},
             {"frames", frame_ns.count()},
             {"frames_per_second", static_cast<double>(frame_ns.count()) / seconds},
             {"frame_ms", percentiles_json(frame_ns, 1e6)},
@@ -198,9 +227,13 @@ int main(int argc, char** argv) {
     command.input("asset", options.asset, "the case (.vtkhdf)")->required();
     command.option("--size", options.size, "WIDTHxHEIGHT of the window", "pixels");
     command.option("--seconds", options.seconds, "close after this time; 0: when told to", "s");
-    command.option("--script", options.script,
-                   "what the hand does instead of mouse and keyboard: press, slide, random or a file as for "
-                   "'touch'");
+    command.option(
+        "--script", options.script,
+        "what the hand does instead of mouse and keyboard: press, slide, tremble, let-go, random or a "
+        "file as for 'touch'");
+    command.option("--device", options.device,
+                   "simulated device that gives way, in a hand that does: touch, desktop or premium; where "
+                   "it stands, see 'touch'");
     command.option("--scheme", options.scheme, "how contact is found: continuous, single or twice");
     command.option("--body", options.body, "which body to start at; the first deformable one if not given");
     command.output("--screenshot", options.screenshot, "picture of the window at the end (.png)");

@@ -17,8 +17,13 @@ constexpr double damping_for(double max_stiffness) {
     return max_stiffness * period / 2;
 }
 
-// Mass at the tip, backdrive friction, resolution: as quoted from the data sheets of SensAble Technologies
-// and 3D Systems; the sheets themselves were not at hand to check them by.
+// A choice: nobody publishes how fast the motors of these devices warm. Small motors take seconds in their
+// windings and minutes as a whole; this lies between, and lets a Touch render its largest force for 7 s.
+constexpr double thermal_time_s = 100;
+
+// Mass at the tip, backdrive friction, resolution, size of the workspace: as quoted from the data sheets of
+// SensAble Technologies and 3D Systems; the sheets themselves were not at hand to check them by. That the
+// workspace's middle is D's origin is a choice; of the Touch, phantom_kinematics.hpp reaches all of it so.
 const std::array<DeviceModel, 3> models{{
     {.name = "touch",  // PHANTOM Omni
      .mass_kg = 0.045,
@@ -27,7 +32,11 @@ const std::array<DeviceModel, 3> models{{
      .encoder_resolution = 0.055,
      .max_force = 3.3,      // HDAPI, HD_NOMINAL_MAX_FORCE
      .max_stiffness = 0.5,  // HDAPI, HD_NOMINAL_MAX_STIFFNESS
-     .delay_ticks = 0},
+     .delay_ticks = 0,
+     .max_continuous_force = 0.88,  // HDAPI, HD_NOMINAL_MAX_CONTINUOUS_FORCE
+     .thermal_time_s = thermal_time_s,
+     .workspace_low = {-80, -60, -35},
+     .workspace_high = {80, 60, 35}},
     {.name = "desktop",  // PHANTOM Desktop, Touch X
      .mass_kg = 0.045,
      .damping = damping_for(1.0),
@@ -35,7 +44,11 @@ const std::array<DeviceModel, 3> models{{
      .encoder_resolution = 0.023,
      .max_force = 7.9,      // HDAPI
      .max_stiffness = 1.0,  // what CHAI3D 3.3 allows it
-     .delay_ticks = 0},
+     .delay_ticks = 0,
+     .max_continuous_force = 1.75,  // data sheet
+     .thermal_time_s = thermal_time_s,
+     .workspace_low = {-80, -60, -60},
+     .workspace_high = {80, 60, 60}},
     {.name = "premium",  // PHANTOM Premium 1.5
      .mass_kg = 0.075,
      .damping = damping_for(0.8),
@@ -43,10 +56,24 @@ const std::array<DeviceModel, 3> models{{
      .encoder_resolution = 0.03,
      .max_force = 8.5,      // data sheet
      .max_stiffness = 0.8,  // what CHAI3D 3.3 allows it
-     .delay_ticks = 0},
+     .delay_ticks = 0,
+     .max_continuous_force = 1.4,  // as a public stand-in for HDAPI states it
+     .thermal_time_s = thermal_time_s,
+     .workspace_low = {-190.5, -133.5, -95.5},
+     .workspace_high = {190.5, 133.5, 95.5}},
 }};
 
 }  // namespace
+
+DeviceLimits limits_of(const DeviceModel& model) {
+    return {.max_force = model.max_force,
+            .max_stiffness = model.max_stiffness,
+            .damping = model.damping,
+            .max_continuous_force = model.max_continuous_force,
+            .rate_hz = 1000,
+            .workspace_low = model.workspace_low,
+            .workspace_high = model.workspace_high};
+}
 
 std::span<const DeviceModel> device_models() {
     return models;

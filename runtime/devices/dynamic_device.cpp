@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <unsupported/Eigen/MatrixFunctions>
+#include <utility>
 
 #include "formats/model/errors.hpp"
 
@@ -36,33 +37,44 @@ void check(const DeviceModel& model, const HandImpedance& hand) {
     not_negative(model.coulomb_friction, "coulomb_friction");
     not_negative(model.encoder_resolution, "encoder_resolution");
     not_negative(model.delay_ticks, "delay_ticks");
+    not_negative(model.max_continuous_force, "max_continuous_force");
+    require(std::isfinite(model.thermal_time_s) && model.thermal_time_s > 0, "thermal_time_s",
+            model.thermal_time_s, "more than 0");
     not_negative(hand.stiffness, "the hand's stiffness");
     not_negative(hand.damping, "the hand's damping");
 }
 
 }  // namespace
 
-DynamicDevice::DynamicDevice(DeviceModel model, HandImpedance hand, HandPath path,
+DynamicDevice::DynamicDevice(DeviceModel model, HandImpedance impedance, std::shared_ptr<Hand> hand,
                              const std::array<double, 3>& shaft)
-    : model_(std::move(model)),
-      hand_(hand),
-      path_(std::move(path)),
-      shaft_(shaft),
-      hand_position_(path_.at(0)),
-      position_(hand_position_) {
-    check(model_, hand_);
+    : model_(std::move(model)), impedance_(impedance), hand_(std::move(hand)), shaft_(shaft) {
+    check(model_, impedance_);
+    const HandWish wish = hand_->at(0);
+    held_ = wish.holds;
+    hand_position_ = position_ = wish.position;
     const double mass = 1e-3 * model_.mass_kg;  // N s²/mm
-    transition_ = transition_of(mass, model_.damping + hand_.damping, hand_.stiffness);
+    held_transition_ = transition_of(mass, model_.damping + impedance_.damping, impedance_.stiffness);
+    free_transition_ = transition_of(mass, model_.damping, 0);
+    cooling_ = std::exp(-step_s / model_.thermal_time_s);
     commands_.assign(static_cast<std::size_t>(model_.delay_ticks) + 1, Vector3d::Zero());
 }
 
+DynamicDevice::DynamicDevice(DeviceModel model, HandImpedance impedance, HandPath path,
+                             const std::array<double, 3>& shaft)
+    : DynamicDevice(std::move(model), impedance, std::make_shared<ScriptedHand>(std::move(path)), shaft) {}
+
 DeviceState DynamicDevice::read(double time) noexcept {
     const std::int64_t last = std::llround(time / step_s);
-    while (steps_ < last) step(path_.at(static_cast<double>(++steps_) * step_s));
+    while (steps_ < last) {
+        step(hand_->at(static_cast<double>(++steps_) * step_s));
+        warm_up();
+    }
 
     DeviceState state;
     state.shaft = shaft_;
     state.time = time;
+    state.faults = warm_ ? motors_warm : no_fault;
     Eigen::Map<Vector3d> reading(state.position.data());
     reading = position_;
     if (const double grain = model_.encoder_resolution; grain > 0)
@@ -70,16 +82,31 @@ DeviceState DynamicDevice::read(double time) noexcept {
     return state;
 }
 
-void DynamicDevice::step(const Vector3d& hand_end) noexcept {
-    const Vector3d hand_begin = hand_position_;
+// Where the hand holds the tip at the end of a step; hand_position_ is where it does at the beginning.
+Vector3d DynamicDevice::grip(const HandWish& wish) noexcept {
+    const bool held_before = std::exchange(held_, wish.holds);
+    if (!held_ || !held_before) {
+        hand_position_ = position_;
+        slack_ = position_ - wish.position;
+        return position_;
+    }
+    const double length = slack_.norm(), shorter = take_up_speed * step_s;
+    slack_ = length > shorter ? Vector3d(slack_ * (1 - shorter / length)) : Vector3d(Vector3d::Zero());
+    return wish.position + slack_;
+}
+
+void DynamicDevice::step(const HandWish& wish) noexcept {
+    const Vector3d hand_end = grip(wish);
+    const Vector3d hand_begin = std::exchange(hand_position_, hand_end);
     const Vector3d hand_velocity = (hand_end - hand_begin) / step_s;
-    hand_position_ = hand_end;
+    const HandImpedance hand = held_ ? impedance_ : HandImpedance{.stiffness = 0, .damping = 0};
+    const Transition& transition = held_ ? held_transition_ : free_transition_;
 
     Vector3d driving = force_;
     const bool rests = velocity_.isZero(0);
     if (const double friction = model_.coulomb_friction; friction > 0) {
         const Vector3d pull =
-            force_ + hand_.stiffness * (hand_begin - position_) + hand_.damping * hand_velocity;
+            force_ + hand.stiffness * (hand_begin - position_) + hand.damping * hand_velocity;
         if (rests && pull.norm() <= friction) return;
         driving -= friction * (rests ? pull : velocity_).normalized();
     }
@@ -87,7 +114,7 @@ void DynamicDevice::step(const Vector3d& hand_end) noexcept {
     const Vector3d offset = position_ - hand_begin, slip = velocity_ - hand_velocity;
     driving -= model_.damping * hand_velocity;
     const auto after = [&](Eigen::Index row) -> Vector3d {
-        return transition_(row, 0) * offset + transition_(row, 1) * slip + transition_(row, 2) * driving;
+        return transition(row, 0) * offset + transition(row, 1) * slip + transition(row, 2) * driving;
     };
     const Vector3d velocity = hand_velocity + after(1);
     const double turn = velocity.dot(velocity_);
@@ -102,6 +129,12 @@ void DynamicDevice::step(const Vector3d& hand_end) noexcept {
     velocity_ = velocity;
 }
 
+void DynamicDevice::warm_up() noexcept {
+    temperature_ = heating_ + cooling_ * (temperature_ - heating_);
+    if (temperature_ >= 1) warm_ = true;
+    if (temperature_ <= cool_enough) warm_ = false;
+}
+
 void DynamicDevice::write(const std::array<double, 3>& force) noexcept {
     const Eigen::Map<const Vector3d> wanted(force.data());
     const double length = wanted.norm();
@@ -109,6 +142,8 @@ void DynamicDevice::write(const std::array<double, 3>& force) noexcept {
         length > model_.max_force ? wanted * (model_.max_force / length) : Vector3d(wanted);
     next_command_ = (next_command_ + 1) % commands_.size();
     force_ = commands_[next_command_];
+    const double lasting = model_.max_continuous_force;
+    heating_ = lasting > 0 ? force_.squaredNorm() / (lasting * lasting) : 0;
 }
 
 }  // namespace palpate

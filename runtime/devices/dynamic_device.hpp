@@ -4,11 +4,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "runtime/devices/device_model.hpp"
-#include "runtime/devices/hand_path.hpp"
+#include "runtime/devices/hand.hpp"
 #include "runtime/realtime/device.hpp"
 
 namespace palpate {
@@ -20,27 +21,36 @@ struct HandImpedance {
     double damping = 2e-3;   ///< N s/mm
 };
 
-/// A simulated device with dynamics, in a hand of finite impedance that follows a path: the closed loop.
-/// Each axis obeys
+/// A simulated device with dynamics, in a hand of finite impedance: the closed loop. Each axis obeys
 ///     m x'' = F - b x' + k_h (h - x) + b_h (h' - x') - f_c x' / |x'|
 /// with the motors' force F as commanded delay_ticks writes ago, the hand's wish h(t) and Coulomb friction
-/// f_c, which holds a tip at rest while everything else stays within f_c. F is held between ticks. Time goes
-/// in steps of 1/16 ms, over which h moves uniformly and friction keeps its direction; the rest is solved
-/// exactly. Same calls, same bits.
+/// f_c, which holds a tip at rest while everything else stays within f_c. F is held between ticks. A hand
+/// that has let go leaves k_h = b_h = 0; it takes hold where the tip is, and draws it to its wish at
+/// take_up_speed beyond its own motion, so that nothing jumps. Time goes in steps of 1/16 ms, over which h
+/// moves uniformly and friction keeps its direction; the rest is solved exactly. The motors' temperature
+/// obeys T' = (F² / F_c² - T) / tau, exactly, with the force F_c that they bear for ever: T = 1 is their
+/// limit. From there until they have cooled to cool_enough the state carries motors_warm; the motors
+/// themselves go on. Same calls, same bits.
 class DynamicDevice final : public Device {
   public:
     static constexpr double step_s = 1e-3 / 16;
+    static constexpr double take_up_speed = 50;  ///< mm/s; a choice
+    static constexpr double cool_enough = 0.9;   ///< of the motors' limit; a choice
 
-    /// At rest at time 0 where the path begins. Throws InvalidInput if a figure of model or hand is not
-    /// finite or negative, or the mass is zero; max_force may be infinite. `shaft`: see DeviceState; it does
-    /// not turn.
-    DynamicDevice(DeviceModel model, HandImpedance hand, HandPath path,
+    /// At rest and cool at time 0 where the hand is. Throws InvalidInput if a figure of model or impedance is
+    /// not finite or negative, or the mass or the thermal time is zero; max_force may be infinite. `hand`, in
+    /// frame D, must not be null (unchecked). `shaft`: see DeviceState; it does not turn.
+    DynamicDevice(DeviceModel model, HandImpedance impedance, std::shared_ptr<Hand> hand,
+                  const std::array<double, 3>& shaft = {0, 0, 0});
+    /// The same in a hand that follows a path.
+    DynamicDevice(DeviceModel model, HandImpedance impedance, HandPath path,
                   const std::array<double, 3>& shaft = {0, 0, 0});
 
-    std::string name() const override { return "simulated " + model_.name + ", scripted hand"; }
-    DeviceLimits limits() const override { return {model_.max_force, model_.max_stiffness, model_.damping}; }
+    std::string name() const override { return "simulated " + model_.name + ", " + hand_->name(); }
+    DeviceLimits limits() const override { return limits_of(model_); }
     /// Moves the tip to `time` (to the nearest step; never back) and reads its encoders: each coordinate
-    /// rounded down to their resolution. Cost: 16 steps of 30 ns per ms of time gone.
+    /// rounded down to their resolution. Cost: 16 steps of 20 to 50 ns, by the length of the path, per ms of
+    /// time gone.
     DeviceState read(double time) noexcept override;
     /// `force` must be finite (unchecked); its direction stays where the motors saturate.
     void write(const std::array<double, 3>& force) noexcept override;
@@ -48,21 +58,32 @@ class DynamicDevice final : public Device {
     /// Where the tip is and how it moves, beyond what encoders tell: mm, mm/s.
     const Eigen::Vector3d& position() const noexcept { return position_; }
     const Eigen::Vector3d& velocity() const noexcept { return velocity_; }
+    /// Of the motors: 0 cool, 1 at their limit, and beyond. From the thread that reads.
+    double motor_temperature() const noexcept { return temperature_; }
 
   private:
-    void step(const Eigen::Vector3d& hand_end) noexcept;
+    // (position, velocity) after a step from (position, velocity, F).
+    using Transition = Eigen::Matrix<double, 2, 3>;
+    Eigen::Vector3d grip(const HandWish& wish) noexcept;
+    void step(const HandWish& wish) noexcept;
+    void warm_up() noexcept;
 
     DeviceModel model_;
-    HandImpedance hand_;
-    HandPath path_;
+    HandImpedance impedance_;
+    std::shared_ptr<Hand> hand_;
     std::array<double, 3> shaft_;
-    Eigen::Matrix<double, 2, 3>
-        transition_;                         // (position, velocity) after a step from (position, velocity, F)
+    Transition held_transition_, free_transition_;
     std::vector<Eigen::Vector3d> commands_;  // a ring of the last delay_ticks + 1
     std::size_t next_command_ = 0;
     std::int64_t steps_ = 0;
+    bool held_;
     Eigen::Vector3d hand_position_, position_;
+    Eigen::Vector3d slack_ = Eigen::Vector3d::Zero();  // from the wish to where the hand took hold
     Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero(), force_ = Eigen::Vector3d::Zero();
+    double heating_ = 0;      // F² / F_c²
+    double temperature_ = 0;  // T
+    double cooling_ = 0;      // what a step leaves of a difference of temperature
+    bool warm_ = false;
 };
 
 }  // namespace palpate

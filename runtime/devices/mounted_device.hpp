@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Geometry>
+#include <memory>
 #include <string>
 
 #include "runtime/realtime/device.hpp"
@@ -13,6 +14,9 @@ class MountedDevice final : public Device {
   public:
     /// `device` must outlive this. `X_PD`: a rigid motion (unchecked), mm.
     MountedDevice(Device& device, const Eigen::Isometry3d& X_PD) : device_(device), X_PD_(X_PD) {}
+    /// The same, owning the device, which must not be null (unchecked).
+    MountedDevice(std::unique_ptr<Device> device, const Eigen::Isometry3d& X_PD)
+        : owned_(std::move(device)), device_(*owned_), X_PD_(X_PD) {}
 
     std::string name() const override { return device_.name(); }
     /// The device's own, its workspace as the box in P around its corners.
@@ -23,6 +27,7 @@ class MountedDevice final : public Device {
     void write(const std::array<double, 3>& force) noexcept override;
 
   private:
+    std::unique_ptr<Device> owned_;  // null: another's
     Device& device_;
     Eigen::Isometry3d X_PD_;
 };

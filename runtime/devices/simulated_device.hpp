@@ -11,9 +11,9 @@ namespace palpate {
 /// A device in a hand of infinite stiffness: it is where its path says, whatever the force.
 class SimulatedDevice final : public Device {
   public:
-    /// `shaft`: see DeviceState.
-    SimulatedDevice(HandPath path, DeviceLimits limits, const std::array<double, 3>& shaft = {0, 0, 0})
-        : path_(std::move(path)), limits_(limits), shaft_(shaft) {}
+    /// `shaft`: see DeviceState. Throws UsageError if the path lets go: without a mass there is no telling
+    /// where the device would go.
+    SimulatedDevice(HandPath path, DeviceLimits limits, const std::array<double, 3>& shaft = {0, 0, 0});
 
     std::string name() const override { return "simulated, scripted hand"; }
     DeviceLimits limits() const override { return limits_; }

@@ -2,6 +2,7 @@
 """palpate-touch on the sample patient: what it writes, what it measures, what it refuses."""
 
 import csv
+import gzip
 import json
 import math
 import os
@@ -120,6 +121,108 @@ class Touch(SampleAsset):
         self.assertEqual(peak(1), peak(1))
         self.assertNotEqual(peak(1), peak(2))
 
+    def depths(self, *options):
+        """Time, depth and size of the force of each tick, and the run's result."""
+        log = self.folder / "run.csv"
+        result = self.result("--virtual-clock", *options, "--log", log, "--force")
+        rows = self.rows(log)
+        force = [math.hypot(*(float(r[f"force_{a}_n"]) for a in "xyz")) for r in rows]
+        return [float(r["t_s"]) for r in rows], [float(r["depth_mm"]) for r in rows], force, result
+
+    def test_a_hand_that_trembles_shakes_the_force_and_one_that_presses_does_not(self):
+        def variation(script):
+            time, _, force, result = self.depths("--script", script, "--device", "premium", "--seconds", 3)
+            self.assertEqual(result["script"], script)
+            held = [f for t, f in zip(time, force) if 1.2 < t < 1.5 or 1.9 < t < 2.2]
+            return max(held) - min(held)
+
+        # The tremor is 0.3 mm to either side at most, of 3 mm.
+        peak = self.result("--virtual-clock", "--seconds", 3, "--device", "premium")["force_peak_n"]
+        self.assertGreater(variation("tremble"), 0.04 * peak)
+        self.assertLess(variation("tremble"), 0.3 * peak)
+
+    def test_a_device_that_is_let_go_gives_way_and_is_taken_up_without_a_kick(self):
+        # The place where a skull pushes hardest, so that the device's friction does not hold it there.
+        options = ("--script", "let-go", "--device", "premium", "--body", "skull", "--seconds", 2.4)
+        time, depth, force, result = self.depths(*options)
+        deep = max(range(len(time)), key=lambda i: depth[i])
+        gone = next(i for i in range(deep, len(time)) if force[i] == 0)
+        self.assertGreater(force[deep], 0.3)
+        self.assertLess(time[gone] - time[deep], 0.6)
+        self.assertEqual(result["statuses"], {})
+        self.assertLess(result["force_step_max_n"], 0.25)
+
+    def test_motors_that_are_pressed_too_long_warm_up_and_the_force_goes_to_zero(self):
+        script = self.folder / "long.txt"
+        script.write_text("0 40 10 30\n1 40 10 13\n25 40 10 13\n")
+        time, depth, force, _ = self.depths("--script", script, "--device", "touch")
+        # A Touch bears 0.88 N for ever; its motors warm in 100 s: T' = ((F / 0.88)² - T) / 100.
+        temperature, warm = 0.0, None
+        for i, f in enumerate(force):
+            heating = (f / 0.88) ** 2
+            temperature = heating + (temperature - heating) * math.exp(-1e-5)
+            if temperature >= 1:
+                warm = i + 1  # the state at the end of this tick is read by the next
+                break
+        self.assertIsNotNone(warm, "the motors stayed cool")
+        self.assertGreater(time[warm], 10)
+        self.assertGreater(min(force[warm - 100 : warm - 2]), 2)  # two ticks for the log's rounding
+        self.assertEqual(max(force[warm + 22 : warm + 5000]), 0)
+        self.assertGreater(min(depth[warm : warm + 5000]), 1)  # though the hand presses on
+
+    def test_a_hand_of_infinite_stiffness_cannot_let_go(self):
+        run = self.touch("--virtual-clock", "--script", "let-go")
+        self.assertEqual(run.returncode, 2, run.stderr)
+        self.assertIn("--device", run.stderr)
+
+    def test_a_simulated_device_is_felt_where_the_rigid_hand_is_whatever_way_the_surface_faces(self):
+        for target in ("-5,10,12", "5,10,40", "5,-30,12"):
+            peaks = [self.result("--virtual-clock", "--seconds", 1, "--target", target, *device)["peak"]
+                     for device in ((), ("--device", "premium"))]
+            rigid, simulated = (p["device_mm"] for p in peaks)
+            # The hand gives way by force and friction over its 0.3 N/mm, and its encoders round.
+            self.assertLess(math.dist(rigid, simulated), 0.6, target)
+            norms = [math.hypot(*p["force_n"]) for p in peaks]
+            along = sum(a * b for a, b in zip(peaks[0]["force_n"], peaks[1]["force_n"]))
+            self.assertGreater(along, 0.99 * norms[0] * norms[1], target)
+
+    def test_one_axis_of_a_recording_moves_the_tool_along_the_normal(self):
+        recording = self.folder / "axis.csv"
+        recording.write_text("% time, angle\n" + "".join(f"{i / 1000},{500 - abs(i - 500)}\n" for i in range(1001)))
+        time, depth, force, result = self.depths("--script", recording, "--column", 2, "--depth", 2)
+        self.assertEqual(result["script"], "file")
+        self.assertEqual(len(time), 1000)
+        self.assertAlmostEqual(max(depth), 2, places=2)
+        for t, d in zip(time, depth):  # from 5 mm clear to 2 mm deep and back
+            self.assertAlmostEqual(d, max(0, 7 * (1 - abs(2 * t - 1)) - 5), delta=1e-3)
+        self.assertEqual(force.index(max(force)), 499)
+
+    def test_a_real_trace_drives_a_run(self):
+        traces = pathlib.Path(os.environ.get("PALPATE_DATA", "/nonexistent")) / "trace_mrdlab"
+        if not traces.is_dir():
+            self.skipTest("PALPATE_DATA has no trace_mrdlab")
+        recording = self.folder / "trace.csv"
+        with gzip.open(traces / "Tool_4_Maryland_L_2_00.csv.gz", "rt") as packed:
+            text = packed.read()
+        recording.write_text(text)
+        # Column 2 is the angle of the tool's input shaft in encoder counts: a hand's slow opening and closing,
+        # which begins and ends at its smallest. The other nine are times, torques, currents and commands.
+        angle = [float(line.split(",")[1]) for line in text.splitlines() if line[:1] not in ("%", "")]
+        time, depth, force, result = self.depths("--script", recording, "--column", 2, "--depth", 3)
+        self.assertEqual(result["ticks"], len(angle) - 1)
+        self.assertEqual(result["statuses"], {})
+        clearance = min(5, result["target"]["clearance_mm"])
+        scale = (clearance + 3) / (max(angle) - min(angle))
+        for i, d in enumerate(depth):  # the first row is at time 0, before the first tick
+            self.assertAlmostEqual(d, max(0, (angle[i + 1] - min(angle)) * scale - clearance), delta=1e-3)
+        # The tissue is linear: the force follows the depth.
+        stiffness = max(force) / max(depth)
+        self.assertGreater(stiffness, 0)
+        for d, f in zip(depth, force):
+            self.assertAlmostEqual(f, stiffness * d, delta=0.05 * max(force))
+        simulated = self.result("--virtual-clock", "--script", recording, "--column", 2, "--device", "desktop")
+        self.assertGreater(simulated["force_peak_n"], 0.8 * max(force))
+
     def test_a_target_with_negative_coordinates(self):
         result = self.result("--virtual-clock", "--seconds", 1, "--target", "-5,10,12")
         self.assertEqual(result["target"]["normal"], [-1, 0, 0])
@@ -128,7 +231,11 @@ class Touch(SampleAsset):
         bad = self.folder / "bad.txt"
         bad.write_text("1 2 3\n1 2\n")
         cases = [
-            (["--script", "prod"], 3, "press, slide, random or a file"),
+            (["--script", "prod"], 3, "press, slide, tremble, let-go, random or a file"),
+            (["--script", "press", "--column", 2], 2, "a file of a recorded axis"),
+            (["--script", "prod", "--column", 2], 3, "no such script or file"),
+            (["--script", bad, "--column", 3], 3, "line 2: no column 3"),
+            (["--script", bad, "--column", 0], 3, "no column 0"),
             (["--script", bad], 3, "line 2"),
             (["--body", "wal"], 2, "'wall'"),
             (["--target", "1,2"], 2, "--target"),

@@ -114,6 +114,29 @@ class Train(SampleAsset):
         self.assertGreater(result["device_travel_mm"], 10)
         self.assertGreater(result["force_peak_n"], 0.01)
 
+    def test_keys_hold_a_simulated_device_that_gives_way(self):
+        process, window = self.open_window("--device", "premium")
+        for _ in range(16):  # half a millimetre each, from 5 mm above the surface: 3 mm deep
+            self.x("xdotool", "key", "w")
+        time.sleep(0.5)
+        self.x("xdotool", "key", "q")
+        result = self.finish(process)
+        self.assertEqual(result["device"], "simulated premium, guided by mouse and keyboard")
+        self.assertGreater(result["force_peak_n"], 0.01)
+        self.assertGreater(result["device_travel_mm"], 6)
+        self.assertLess(result["penetration"]["device_mm"], 4)
+
+    def test_a_script_holds_a_simulated_device(self):
+        for script in ("tremble", "let-go"):
+            run = self.run_train(
+                self.asset, "--script", script, "--device", "desktop", "--seconds", "2", "--json", "-"
+            )
+            self.assertEqual(run.returncode, 0, run.stderr)
+            result = json.loads(run.stdout)
+            self.assertEqual(result["device"], "simulated desktop, scripted hand")
+            self.assertGreater(result["force_peak_n"], 0.01)
+            self.assertLess(result["penetration"]["device_mm"], 3)  # the hand of 0.3 N/mm gives way
+
     def test_left_drag_moves_the_tool_and_right_drag_does_not(self):
         travel = {}
         for button in (1, 3):
@@ -174,6 +197,8 @@ class Train(SampleAsset):
             ([self.asset, "--size", "10x10"], 2, "320x240"),
             ([self.asset, "--script", "dance"], 3, "press, slide"),
             ([self.asset, "--body", "spleen"], 2, "spleen"),
+            ([self.asset, "--device", "omni"], 2, "touch, desktop, premium"),
+            ([self.asset, "--script", "let-go"], 2, "--device"),
             ([self.folder / "nothing.vtkhdf"], 3, "nothing.vtkhdf"),
         ]
         for options, code, words in cases:

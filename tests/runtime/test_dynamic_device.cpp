@@ -3,6 +3,7 @@
 #include <functional>
 #include <gtest/gtest.h>
 #include <limits>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -26,6 +27,11 @@ DeviceModel plain() {
 
 HandPath at_origin() {
     return HandPath({{0, Vector3d::Zero()}});
+}
+
+// Lets go at 0.1 s and takes hold again at 0.6 s, 20 mm from there.
+HandPath letting_go() {
+    return HandPath({{0, {0, 0, 0}}, {0.1, {0, 0, 0}, false}, {0.2, {20, 0, 0}, false}, {0.6, {20, 0, 0}}});
 }
 
 Vector3d position_read(DynamicDevice& device, int tick) {
@@ -221,20 +227,121 @@ TEST(DynamicDevice, the_same_calls_give_the_same_bits) {
 TEST(DynamicDevice, reading_and_writing_never_allocate) {
     DeviceModel model = find_device_model("touch");
     model.delay_ticks = 2;
-    DynamicDevice device(model, {}, HandPath({{0, {0, 0, 0}}, {0.2, {20, 3, -4}}}));
+    DynamicDevice device(model, {}, letting_go());
+    const auto hand = std::make_shared<GuidedHand>(std::array<double, 3>{1, 2, 3});
+    DynamicDevice guided(model, {}, hand);
     const AllocationTrap trap;
-    for (int tick = 0; tick < 400; ++tick) {
-        device.read(1e-3 * tick);
-        device.write({-0.1, 0, 0.3});
+    for (int tick = 0; tick < 700; ++tick) {
+        for (DynamicDevice* each : {&device, &guided}) {
+            each->read(1e-3 * tick);
+            each->write({-0.1, 0, 0.3});
+        }
+        hand->set_target({1, 2, 0.01 * tick});
     }
     EXPECT_EQ(trap.count(), 0U);
 }
 
+TEST(DynamicDevice, motors_warm_to_their_limit_after_tau_log_of_k_squared_over_k_squared_less_one) {
+    DeviceModel model = plain();
+    model.max_continuous_force = 0.9;
+    model.thermal_time_s = 0.5;
+    for (const double k : {1.1, 2.0, 3.5}) {  // times the force they bear for ever
+        DynamicDevice device(model, {}, at_origin());
+        const double warm_after = 0.5 * std::log(k * k / (k * k - 1));
+        device.write({0, -0.9 * k, 0});
+        const double tick = 1e-3;
+        EXPECT_EQ(device.read(warm_after - tick).faults, no_fault) << k;
+        EXPECT_LT(device.motor_temperature(), 1);
+        EXPECT_EQ(device.read(warm_after + tick).faults, motors_warm) << k;
+        device.read(2);
+        EXPECT_NEAR(device.motor_temperature(), k * k * (1 - std::exp(-2 / 0.5)), rounding * k * k);
+    }
+}
+
+TEST(DynamicDevice, motors_stay_warm_until_they_have_cooled_enough) {
+    DeviceModel model = plain();
+    model.max_continuous_force = 1;
+    model.thermal_time_s = 0.5;
+    DynamicDevice device(model, {}, at_origin());
+    device.write({2, 0, 0});
+    device.read(0.4);
+    const double hot = device.motor_temperature();
+    ASSERT_GT(hot, 1.5);
+    device.write({0, 0, 0});
+    const double cool_at = 0.4 + 0.5 * std::log(hot / DynamicDevice::cool_enough);
+    EXPECT_EQ(device.read(cool_at - 1e-3).faults, motors_warm);
+    EXPECT_LT(device.motor_temperature(), 1);  // cooler than the limit and still not let on
+    EXPECT_EQ(device.read(cool_at + 1e-3).faults, no_fault);
+}
+
+TEST(DynamicDevice, motors_bear_their_continuous_force_for_ever) {
+    DeviceModel model = plain();
+    model.max_continuous_force = 0.88;
+    model.thermal_time_s = 0.01;
+    DynamicDevice device(model, {}, at_origin());
+    device.write({0.88, 0, 0});
+    EXPECT_EQ(device.read(10).faults, no_fault);  // a thousand time constants
+    EXPECT_NEAR(device.motor_temperature(), 1, 1e-9);
+}
+
+TEST(DynamicDevice, without_a_hand_it_moves_as_one_that_never_had_one) {
+    DeviceModel model = plain();
+    model.coulomb_friction = 0.05;
+    DynamicDevice let_go(model, {}, letting_go()), alone(model, no_hand, at_origin());
+    let_go.read(0.1 - DynamicDevice::step_s);
+    EXPECT_EQ(let_go.position(), Vector3d::Zero());
+    for (DynamicDevice* device : {&let_go, &alone}) {
+        device->read(0.1 - DynamicDevice::step_s);
+        device->write({0, 0.4, 0});
+        device->read(0.2);
+        device->write({0, 0, 0});
+        device->read(0.59);
+    }
+    ASSERT_GT(alone.position().y(), 10);
+    EXPECT_LT((let_go.position() - alone.position()).norm(), rounding * 100);
+    EXPECT_LT((let_go.velocity() - alone.velocity()).norm(), rounding * 100);
+}
+
+TEST(DynamicDevice, taking_hold_again_makes_no_jump_and_ends_at_the_wish) {
+    const HandImpedance hand{.stiffness = 0.3, .damping = 2e-3};
+    DynamicDevice device(plain(), hand, letting_go());
+    device.read(0.6 - DynamicDevice::step_s);
+    ASSERT_EQ(device.position(), Vector3d::Zero());
+    Vector3d last = device.velocity();
+    // At once the hand's damper takes 0.1 N to bring the tip to take_up_speed, then its spring what the tip
+    // lags; pulled from 20 mm away, that spring alone would begin with 6 N.
+    const double mass = 5e-5, hardest = 1.5 * hand.damping * DynamicDevice::take_up_speed;  // N s²/mm, N
+    for (int step = 0; step < 16000; ++step) {
+        device.read(0.6 + step * DynamicDevice::step_s);
+        const double force = mass * (device.velocity() - last).norm() / DynamicDevice::step_s;
+        ASSERT_LE(force, hardest) << step;
+        EXPECT_LT(device.velocity().norm(), 1.7 * DynamicDevice::take_up_speed);
+        last = device.velocity();
+    }
+    EXPECT_LT((device.position() - Vector3d(20, 0, 0)).norm(), 1e-3);
+}
+
+TEST(DynamicDevice, a_guided_hand_draws_it_to_its_target) {
+    const auto hand = std::make_shared<GuidedHand>(std::array<double, 3>{1, 2, 3}, 200);
+    DynamicDevice device(plain(), {}, hand);
+    EXPECT_EQ(position_read(device, 0), Vector3d(1, 2, 3));
+    hand->set_target({101, 2, 3});
+    position_read(device, 450);
+    EXPECT_NEAR(device.velocity().x(), 200, 0.1);  // the hand's speed, when the spring has stopped swinging
+    EXPECT_LT((position_read(device, 1500) - Vector3d(101, 2, 3)).norm(), 1e-6);
+    EXPECT_EQ(device.name(), "simulated plain, guided by mouse and keyboard");
+}
+
 TEST(DynamicDevice, tells_its_limits) {
-    const DynamicDevice device(find_device_model("desktop"), {}, at_origin());
-    EXPECT_EQ(device.limits().max_force, 7.9);
-    EXPECT_EQ(device.limits().max_stiffness, 1.0);
-    EXPECT_EQ(device.limits().damping, find_device_model("desktop").damping);
+    const DeviceModel& model = find_device_model("desktop");
+    const DeviceLimits limits = DynamicDevice(model, {}, at_origin()).limits();
+    EXPECT_EQ(limits.max_force, 7.9);
+    EXPECT_EQ(limits.max_stiffness, 1.0);
+    EXPECT_EQ(limits.damping, model.damping);
+    EXPECT_EQ(limits.max_continuous_force, 1.75);
+    EXPECT_EQ(limits.rate_hz, 1000);
+    EXPECT_EQ(limits.workspace_low, (std::array<double, 3>{-80, -60, -60}));
+    EXPECT_EQ(limits.workspace_high, (std::array<double, 3>{80, 60, 60}));
 }
 
 TEST(DynamicDevice, refuses_figures_that_no_device_has) {
@@ -250,6 +357,8 @@ TEST(DynamicDevice, refuses_figures_that_no_device_has) {
     refused([](DeviceModel& m, HandImpedance&) { m.encoder_resolution = -1; });
     refused([](DeviceModel& m, HandImpedance&) { m.max_force = std::nan(""); });
     refused([](DeviceModel& m, HandImpedance&) { m.delay_ticks = -1; });
+    refused([](DeviceModel& m, HandImpedance&) { m.max_continuous_force = -1; });
+    refused([](DeviceModel& m, HandImpedance&) { m.thermal_time_s = 0; });
     refused([](DeviceModel&, HandImpedance& h) { h.stiffness = -0.1; });
     refused([](DeviceModel&, HandImpedance& h) { h.damping = infinite; });
 }
@@ -260,6 +369,15 @@ TEST(DeviceModel, a_model_is_damped_so_that_its_stated_stiffness_is_the_most_at_
         EXPECT_NEAR(2 * model.damping / 1e-3, model.max_stiffness, 1e-12) << model.name;
     EXPECT_NEAR(find_device_model("touch").damping, 0.25e-3, 1e-15);  // 0.25 N s/m
     EXPECT_EQ(find_device_model("premium").mass_kg, 0.075);
+}
+
+TEST(DeviceModel, a_model_has_a_workspace_and_bears_less_for_ever_than_at_most) {
+    for (const DeviceModel& model : device_models()) {
+        EXPECT_GT(model.max_continuous_force, 0) << model.name;
+        EXPECT_LT(model.max_continuous_force, model.max_force) << model.name;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            EXPECT_GE(model.workspace_high[axis] - model.workspace_low[axis], 70) << model.name;
+    }
 }
 
 TEST(DeviceModel, an_unknown_name_is_answered_with_the_known_ones) {

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <string>
+
+#include "runtime/devices/hand_path.hpp"
+#include "runtime/realtime/triple_buffer.hpp"
+
+namespace palpate {
+
+/// What a hand wants at one moment.
+struct HandWish {
+    Eigen::Vector3d position;  ///< mm, in the frame of the device it holds
+    bool holds = true;         ///< false: it has let go
+};
+
+/// Where a hand that holds a simulated device wants to be.
+class Hand {
+  public:
+    virtual ~Hand() = default;
+    virtual std::string name() const = 0;
+    /// The wish at `time` (s); times do not fall (unchecked). One thread; realtime-safe.
+    virtual HandWish at(double time) noexcept = 0;
+};
+
+/// A hand that follows a path.
+class ScriptedHand final : public Hand {
+  public:
+    explicit ScriptedHand(HandPath path) : path_(std::move(path)) {}
+    std::string name() const override { return "scripted hand"; }
+    HandWish at(double time) noexcept override { return {path_.at(time), path_.holds_at(time)}; }
+
+  private:
+    HandPath path_;
+};
+
+/// A hand that another thread guides, from mouse or keyboard: it goes straight to its target at no more than
+/// a given speed, so that sweeps stay as fast as a hand's. It never lets go.
+class GuidedHand final : public Hand {
+  public:
+    static constexpr double usual_speed = 200;  ///< mm/s
+
+    /// `start`: first position and target, mm. `max_speed`: mm/s.
+    explicit GuidedHand(const std::array<double, 3>& start, double max_speed = usual_speed)
+        : target_(start), position_(start.data()), max_speed_(max_speed) {}
+
+    /// Sets where to go (mm). Wait-free; from one thread, which may be another than at()'s.
+    void set_target(const std::array<double, 3>& position) noexcept { target_.write(position); }
+
+    std::string name() const override { return "guided by mouse and keyboard"; }
+    HandWish at(double time) noexcept override;
+
+  private:
+    TripleBuffer<std::array<double, 3>> target_;
+    Eigen::Vector3d position_;
+    double last_time_ = 0;
+    double max_speed_;
+};
+
+}  // namespace palpate
