@@ -18,6 +18,7 @@ namespace {
 
 constexpr int calibration_attempts = 10;
 constexpr std::chrono::milliseconds between_attempts{100};
+constexpr std::chrono::milliseconds between_updates{50};
 
 /// The process's numbers in the C locale, until it ends.
 class NumbersInC {
@@ -44,6 +45,10 @@ std::vector<std::string> names_of(const HdSettings& settings) {
     return settings.devices;
 }
 
+bool needs_update(HdDevice* device) {
+    return device->calibration() == Calibration::needs_update;
+}
+
 // Reads the devices, without force, until each knows where it is.
 void calibrate(HdServo& servo, std::span<HdDevice* const> devices) {
     const auto look = [&] {
@@ -51,9 +56,6 @@ void calibrate(HdServo& servo, std::span<HdDevice* const> devices) {
             for (HdDevice* device : devices) device->read(tick.time);
             for (HdDevice* device : devices) device->write({0, 0, 0});
         });
-    };
-    const auto needs_update = [](HdDevice* device) {
-        return device->calibration() == Calibration::needs_update;
     };
     look();
     for (int attempt = 0; attempt < calibration_attempts && std::ranges::any_of(devices, needs_update);
@@ -78,6 +80,7 @@ struct HdSession::Opened {
     std::vector<std::unique_ptr<HdDevice>> owned;
     std::vector<Device*> devices;
     std::optional<HdServo> servo;
+    std::jthread calibrator;
 };
 
 HdSession::HdSession(const HdSettings& settings) {
@@ -98,6 +101,13 @@ HdSession::HdSession(const HdSettings& settings) {
     }
     opened->servo.emplace(api, devices, notes);
     calibrate(*opened->servo, devices);
+    opened->calibrator = std::jthread([devices](const std::stop_token& stop) {
+        while (!stop.stop_requested()) {
+            for (HdDevice* device : devices)
+                if (needs_update(device)) device->calibrate();
+            std::this_thread::sleep_for(between_updates);
+        }
+    });
     opened_ = std::move(opened);
 }
 
