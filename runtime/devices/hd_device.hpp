@@ -42,7 +42,7 @@ class HdDevice final : public Device {
     /// As of the last look: in the first tick and then every look_ticks.
     Calibration calibration() override { return calibration_.load(); }
     /// Brings an automatic or inkwell calibration up to date; the next tick looks again. Other styles need
-    /// somebody's hand: nothing happens.
+    /// somebody's hand: nothing happens. Not beside ticks of several devices.
     void calibrate() override;
     /// What somebody has to do with the stylus to calibrate this device.
     std::string how_to_calibrate() const;

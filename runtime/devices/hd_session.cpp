@@ -70,6 +70,16 @@ void calibrate(HdServo& servo, std::span<HdDevice* const> devices) {
             throw SystemFailure({device->name(), "it is not calibrated", "", device->how_to_calibrate()});
 }
 
+// Beside the servo: where there is one device, the driver's current device cannot be another.
+std::jthread keep_calibrated(HdDevice& device) {
+    return std::jthread([&device](const std::stop_token& stop) {
+        while (!stop.stop_requested()) {
+            if (needs_update(&device)) device.calibrate();
+            std::this_thread::sleep_for(between_updates);
+        }
+    });
+}
+
 }  // namespace
 
 // What ends first stands last.
@@ -101,13 +111,7 @@ HdSession::HdSession(const HdSettings& settings) {
     }
     opened->servo.emplace(api, devices, notes);
     calibrate(*opened->servo, devices);
-    opened->calibrator = std::jthread([devices](const std::stop_token& stop) {
-        while (!stop.stop_requested()) {
-            for (HdDevice* device : devices)
-                if (needs_update(device)) device->calibrate();
-            std::this_thread::sleep_for(between_updates);
-        }
-    });
+    if (devices.size() == 1) opened->calibrator = keep_calibrated(*devices.front());
     opened_ = std::move(opened);
 }
 
