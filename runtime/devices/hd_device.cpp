@@ -125,6 +125,7 @@ void HdDevice::calibrate() {
     if (style == 0) return;
     api_.make_current_device(handle_);
     api_.update_calibration(style);
+    updated_.store(true);
     look_now_.store(true);
 }
 
@@ -160,7 +161,9 @@ DeviceState HdDevice::read(double time) noexcept {
     if (state.faults & motors_warm) warm_ = true;
     if (warm_) state.faults |= motors_warm;
     if (is_frozen) state.faults |= pose_frozen;
-    if (calibration_.load() == Calibration::needs_manual_input) state.faults |= not_calibrated;
+    if (misplaced_) state.faults |= not_calibrated;
+    if (!std::ranges::all_of(position_, [](double p) { return std::isfinite(p); }))
+        state.faults |= invalid_position;
     return state;
 }
 
@@ -179,7 +182,11 @@ void HdDevice::look() noexcept {
     api_.get_doubles(motor_temperature, temperatures.data());
     const double warmest = *std::ranges::max_element(temperatures);
     warm_ = warmest >= (warm_ ? motors_cool : 1);
-    calibration_.store(ask_calibration());
+    const Calibration calibration = ask_calibration();
+    if (calibration == Calibration::ok) updated_.store(false);
+    misplaced_ = calibration == Calibration::needs_manual_input ||
+                 (calibration == Calibration::needs_update && updated_.load());
+    calibration_.store(calibration);
 }
 
 Calibration HdDevice::ask_calibration() noexcept {

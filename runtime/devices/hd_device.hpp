@@ -18,7 +18,8 @@ namespace palpate {
 ///
 /// Faults: motors_warm from the moment a motor's temperature is 1 until all are below motors_cool;
 /// pose_frozen while the pose is the one of encoders without data; not_calibrated while somebody has to move
-/// the stylus for it; the errors of the driver as hd_error_texts() has them, for as long as they come.
+/// the stylus for it, and where an update has not helped; the errors of the driver as hd_error_texts() has
+/// them, for as long as they come.
 class HdDevice final : public Device {
   public:
     static constexpr int look_ticks = 100;    ///< between two looks at temperature and calibration
@@ -41,7 +42,7 @@ class HdDevice final : public Device {
     /// As of the last look: in the first tick and then every look_ticks.
     Calibration calibration() override { return calibration_.load(); }
     /// Brings an automatic or inkwell calibration up to date; the next tick looks again. Other styles need
-    /// somebody's hand: nothing happens.
+    /// somebody's hand: nothing happens. Not beside ticks of several devices.
     void calibrate() override;
     /// What somebody has to do with the stylus to calibrate this device.
     std::string how_to_calibrate() const;
@@ -72,9 +73,9 @@ class HdDevice final : public Device {
     unsigned calibration_styles_ = 0;
     bool opened_instead_ = false;
     std::atomic<Calibration> calibration_{Calibration::ok};
-    std::atomic<bool> look_now_{true};
+    std::atomic<bool> look_now_{true}, updated_{false};
     bool in_frame_ = false;  // the scheduler's thread's, as are the next
-    bool warm_ = false;
+    bool warm_ = false, misplaced_ = false;
     int ticks_to_look_ = 0;
     int ticks_frozen_ = 0;
     std::array<double, 3> position_{0, 0, 0};

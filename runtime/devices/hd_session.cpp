@@ -18,6 +18,7 @@ namespace {
 
 constexpr int calibration_attempts = 10;
 constexpr std::chrono::milliseconds between_attempts{100};
+constexpr std::chrono::milliseconds between_updates{50};
 
 /// The process's numbers in the C locale, until it ends.
 class NumbersInC {
@@ -44,6 +45,10 @@ std::vector<std::string> names_of(const HdSettings& settings) {
     return settings.devices;
 }
 
+bool needs_update(HdDevice* device) {
+    return device->calibration() == Calibration::needs_update;
+}
+
 // Reads the devices, without force, until each knows where it is.
 void calibrate(HdServo& servo, std::span<HdDevice* const> devices) {
     const auto look = [&] {
@@ -51,9 +56,6 @@ void calibrate(HdServo& servo, std::span<HdDevice* const> devices) {
             for (HdDevice* device : devices) device->read(tick.time);
             for (HdDevice* device : devices) device->write({0, 0, 0});
         });
-    };
-    const auto needs_update = [](HdDevice* device) {
-        return device->calibration() == Calibration::needs_update;
     };
     look();
     for (int attempt = 0; attempt < calibration_attempts && std::ranges::any_of(devices, needs_update);
@@ -68,6 +70,16 @@ void calibrate(HdServo& servo, std::span<HdDevice* const> devices) {
             throw SystemFailure({device->name(), "it is not calibrated", "", device->how_to_calibrate()});
 }
 
+// Beside the servo: where there is one device, the driver's current device cannot be another.
+std::jthread keep_calibrated(HdDevice& device) {
+    return std::jthread([&device](const std::stop_token& stop) {
+        while (!stop.stop_requested()) {
+            if (needs_update(&device)) device.calibrate();
+            std::this_thread::sleep_for(between_updates);
+        }
+    });
+}
+
 }  // namespace
 
 // What ends first stands last.
@@ -78,6 +90,7 @@ struct HdSession::Opened {
     std::vector<std::unique_ptr<HdDevice>> owned;
     std::vector<Device*> devices;
     std::optional<HdServo> servo;
+    std::jthread calibrator;
 };
 
 HdSession::HdSession(const HdSettings& settings) {
@@ -98,6 +111,7 @@ HdSession::HdSession(const HdSettings& settings) {
     }
     opened->servo.emplace(api, devices, notes);
     calibrate(*opened->servo, devices);
+    if (devices.size() == 1) opened->calibrator = keep_calibrated(*devices.front());
     opened_ = std::move(opened);
 }
 

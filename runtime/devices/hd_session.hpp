@@ -17,9 +17,12 @@ struct HdSettings {
 };
 
 /// Opened devices of one HDAPI library and the servo that ticks them: devices of the SensAble and 3D Systems
-/// Phantom and Touch families. One at a time in a process; another may be opened after it. However it ends,
-/// the forces go to zero, the scheduler stops and the devices are closed, in this order; a process that is
-/// killed before may find the device blocked until it is plugged in again.
+/// Phantom and Touch families. A single device's calibration is kept up to date by a thread of its own, for
+/// that must not be done in the servo; several are brought up to date when they are opened, for HDAPI has one
+/// current device, and nobody says whether each thread has its own. One at a time in a process; another may
+/// be opened after it. However it ends, the forces go to zero, the scheduler stops and the devices are
+/// closed, in this order; a process that is killed before may find the device blocked until it is plugged in
+/// again.
 class HdSession {
   public:
     /// Loads the library, opens every device, starts the scheduler and brings the calibrations up to date.

@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 # Small libraries that bind a room to nothing.
-EVERYWHERE = {"eigen", "fmt", "threads"}
+EVERYWHERE = {"dl", "eigen", "fmt", "threads"}
 # What tests stand on, not part of the house.
 TEST_SUPPORT = {"palpate-bench", "palpate_experiments", "palpate_house", "palpate_phantoms", "palpate_sample_case"}
 # What each room may link directly: rooms of ours, and families of other libraries.
@@ -51,7 +51,7 @@ LEAN = {"palpate_model", "palpate_asset", "palpate_cli", "palpate_realtime", "pa
 # These two draw, so VTK is theirs; nothing else that is heavy.
 DRAWING = {"palpate_visual", "palpate-train"}
 FAMILIES = {
-    "eigen": r"Eigen3::", "hdf5": r"hdf5|HDF5|/libhdf5|libsz|libz\.|libdl|libm\.|^dl$|^m$", "openssl": r"OpenSSL::",
+    "dl": r"^dl$", "eigen": r"Eigen3::", "hdf5": r"hdf5|HDF5|/libhdf5|libsz|libz\.|libdl|libm\.|^dl$|^m$", "openssl": r"OpenSSL::",
     "dcmtk": r"/libdcm|/libof(?:log|std)",
     "itk": r"ITK|itk|gdcm", "cgal": r"CGAL", "vtk": r"VTK::|X11::", "cholmod": r"cholmod", "metis": r"libmetis",
     "lapack": r"lapacke|openblas", "cli11": r"CLI11::", "spdlog": r"spdlog", "fmt": r"fmt::", "json": r"nlohmann_json",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <limits>
 #include <memory>
 
 #include "formats/model/errors.hpp"
@@ -179,6 +180,27 @@ TEST_F(HdDeviceTest, only_a_calibration_that_needs_a_hand_is_a_fault) {
     EXPECT_EQ(device.calibration(), Calibration::ok);
     behind().calibration = calibration_needs_manual_input;
     EXPECT_EQ(tick(device, HdDevice::look_ticks), not_calibrated);
+}
+
+TEST_F(HdDeviceTest, a_calibration_that_its_update_does_not_help_is_a_fault) {
+    HdDevice& device = open();
+    behind().calibration = calibration_needs_update;
+    tick(device);
+    device.calibrate();
+    behind().calibration = calibration_needs_update;
+    EXPECT_EQ(tick(device), not_calibrated);
+    behind().calibration = calibration_ok;
+    EXPECT_EQ(tick(device, HdDevice::look_ticks), no_fault);
+    behind().calibration = calibration_needs_update;  // another time, before its update
+    EXPECT_EQ(tick(device, HdDevice::look_ticks), no_fault);
+}
+
+TEST_F(HdDeviceTest, a_position_that_is_no_number_is_a_fault_and_has_no_shaft) {
+    HdDevice& device = open();
+    behind().position[1] = behind().stylus[1] = std::numeric_limits<double>::quiet_NaN();
+    const DeviceState state = device.read(0);
+    EXPECT_EQ(state.faults, invalid_position);
+    EXPECT_THAT(state.shaft, ElementsAre(0, 0, 0));
 }
 
 TEST_F(HdDeviceTest, an_encoder_reset_is_never_done_unasked) {
