@@ -222,7 +222,8 @@ struct Session {
 Session run_through_the_library() {
     json keys = json::array();
     json device{{"name", "A"}, {"model", "touch"}};
-    for (const auto& [t, p] : session_keys) keys.push_back({t, p.x(), p.y(), p.z()});
+    for (const HandPath::Key& key : session_keys)
+        keys.push_back({key.time, key.position.x(), key.position.y(), key.position.z()});
     device["path"] = keys;
     HdDevices open(json{{"clock", "virtual"}, {"pause_after_ticks", session_ticks}, {"devices", {device}}},
                    {"A"});
