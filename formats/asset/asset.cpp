@@ -111,4 +111,10 @@ Case read_asset(const std::filesystem::path& path, Digests digests) {
     }
 }
 
+std::string asset_digest(const std::filesystem::path& path) {
+    const Hdf5File file(path);
+    check_header(file, "case");
+    return file.text_attribute("/palpate", "manifest_sha256");
+}
+
 }  // namespace palpate

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
+#include <string>
 
 #include "formats/model/body.hpp"
 
@@ -19,5 +20,9 @@ void write_asset(const std::filesystem::path& path, const Case& patient_case);
 /// file must not be shortened while one lives (replacing it by rename is safe). Throws InvalidInput naming
 /// the file, the dataset and the remedy.
 Case read_asset(const std::filesystem::path& path, Digests digests = Digests::check);
+
+/// The digest of everything in an asset, as the file says it; read_asset() checks it. Throws InvalidInput if
+/// the file is no asset.
+std::string asset_digest(const std::filesystem::path& path);
 
 }  // namespace palpate
