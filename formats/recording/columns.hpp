@@ -9,8 +9,8 @@
 
 namespace palpate {
 
-/// The file stores one array per field; these lists are the only place that names them, for the writer and the
-/// reader. `visit` gets a column's name, its unit and the member.
+/// The file stores one array per field; these lists are the only place that names them, for the writer and
+/// the reader. `visit` gets a column's name, its unit and the member.
 
 template <typename Visit>
 void visit_tick_columns(Visit&& visit) {

@@ -66,10 +66,10 @@ void reserve_space(const std::filesystem::path& path) {
     const int error = file < 0 ? errno : posix_fallocate(file, 0, size);
     if (file >= 0) close(file);
     if (error != 0)
-        throw SystemFailure({path.string(),
-                             "no room for " + std::to_string(size / 1'000'000 + 1) +
-                                 " MB: " + std::strerror(error),
-                             "", "free disk space or record fewer seconds"});
+        throw SystemFailure(
+            {path.string(),
+             "no room for " + std::to_string(size / 1'000'000 + 1) + " MB: " + std::strerror(error), "",
+             "free disk space or record fewer seconds"});
 }
 
 }  // namespace
@@ -148,7 +148,8 @@ RecordingWriter::RecordingWriter(const std::filesystem::path& path) : open_(new 
     });
     at = 0;
     visit_contact_columns([&](const char* name, const char*, auto member) {
-        contact_columns_[at++] = column(std::string("/contacts/") + name, contact_capacity_, field_of(member));
+        contact_columns_[at++] =
+            column(std::string("/contacts/") + name, contact_capacity_, field_of(member));
     });
     rows_per_second_ = 1000 * file.attribute<std::int32_t>("/", "tools");
 }

@@ -18,8 +18,8 @@ namespace palpate {
 void make_recording(const std::filesystem::path& path, const RecordingHead& head, std::int64_t ticks);
 
 /// Fills a recording. Each row is a store into the mapped file, so what has been added survives the end of
-/// the process, however it ends; about once a second the rows are sent on their way to the disk, for a loss of
-/// power. One thread; not realtime-safe, for it may wait for memory or disk: the logger's side of a ring.
+/// the process, however it ends; about once a second the rows are sent on their way to the disk, for a loss
+/// of power. One thread; not realtime-safe, for it may wait for memory or disk: the logger's side of a ring.
 class RecordingWriter {
   public:
     /// Opens what make_recording() made; throws InvalidInput if it is something else, SystemFailure if it
