@@ -61,10 +61,14 @@ void write_head(Hdf5Writer& writer, const RecordingHead& head) {
 
 // So that a full disk is found out now, and not as a crash in the middle of a run.
 void reserve_space(const std::filesystem::path& path) {
-    const auto size = static_cast<off_t>(std::filesystem::file_size(path));
-    const int file = open(path.c_str(), O_RDWR | O_CLOEXEC);
-    const int error = file < 0 ? errno : posix_fallocate(file, 0, size);
-    if (file >= 0) close(file);
+    const std::uintmax_t size = std::filesystem::file_size(path);
+    int error = ENOSPC;
+    // Asked first, so that a vain attempt does not take the space from others meanwhile.
+    if (std::filesystem::space(path).available > size) {
+        const int file = open(path.c_str(), O_RDWR | O_CLOEXEC);
+        error = file < 0 ? errno : posix_fallocate(file, 0, static_cast<off_t>(size));
+        if (file >= 0) close(file);
+    }
     if (error != 0)
         throw SystemFailure(
             {path.string(),
