@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <functional>
@@ -152,6 +153,15 @@ class Outputs {
     std::ofstream log_;
 };
 
+// What a run was like, its recording says.
+void refuse_others(const cli::Command& command, std::initializer_list<const CLI::Option*> of_a_replay) {
+    for (const cli::Parameter& parameter : command.parameters())
+        if (parameter.option->count() > 0 &&
+            std::ranges::find(of_a_replay, parameter.option) == of_a_replay.end())
+            throw UsageError({parameter.option->get_name(), "with --replay", "--log and --curve at most",
+                              "a recording says itself what the run was like"});
+}
+
 std::string force_text(const std::array<double, 3>& f) {
     return fmt::format("({}, {}, {}) N", f[0], f[1], f[2]);
 }
@@ -288,7 +298,7 @@ int main(int argc, char** argv) {
              "kept however the run ends, where other outputs appear whole or not at all. A replay gives its "
              "forces again, bit for bit, or ends with exit code 4."});
     Options options;
-    command.input("asset", options.asset, "the case (.vtkhdf)")->required();
+    const CLI::Option* asset = command.input("asset", options.asset, "the case (.vtkhdf)")->required();
     command.option("--script", options.script, "what the hand does: press, slide, random or a file");
     const CLI::Option* seconds =
         command.option("--seconds", options.seconds, "how long; of a file, all unless this is given", "s");
@@ -308,23 +318,20 @@ int main(int argc, char** argv) {
         "x,y,z: direction from the tip along the shaft of both tools, for a case with one; straight out "
         "of the target if not given, and with a file none, so that the tip alone is felt");
     command.option("--seed", options.seed, "of the script 'random'");
-    command.output("--log", options.log, "one row per tick (.csv)");
-    command.output("--curve", options.curve, "force and depth of the first tool over time (.svg)");
+    const CLI::Option* log = command.output("--log", options.log, "one row per tick (.csv)");
+    const CLI::Option* curve =
+        command.output("--curve", options.curve, "force and depth of the first tool over time (.svg)");
     command.output("--record", options.record, "every tick, from the start on (.h5)");
     command.option("--record-seconds", options.record_seconds,
                    "how much of the run's end a recording holds: 46 MB a minute and tool", "s");
-    CLI::Option* replayed = command.input("--replay", options.replay,
-                                          "recording to give the forces of again, as fast as possible (.h5)");
-    CLI::Option* virtual_clock =
-        command.flag("--virtual-clock", options.virtual_clock,
-                     "tick as fast as possible; forces do not depend on the machine");
-    replayed->excludes(virtual_clock);
-    for (const char* of_a_run :
-         {"--script", "--seconds", "--depth", "--speed", "--body", "--target", "--second", "--scheme",
-          "--device", "--shaft", "--seed", "--record", "--record-seconds"})
-        replayed->excludes(command.app().get_option(of_a_run));
+    const CLI::Option* replay = command.input(
+        "--replay", options.replay,
+        "recording to give the forces of again, as fast as possible; no option of a run goes with it (.h5)");
+    command.flag("--virtual-clock", options.virtual_clock,
+                 "tick as fast as possible; forces do not depend on the machine");
     return command.run(argc, argv, [&](cli::Session& session) {
         options.seconds_given = seconds->count() > 0;
+        if (replay->count() > 0) refuse_others(command, {asset, log, curve, replay});
         return touch(options, session);
     });
 }
