@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A replay gives the forces of a run again, bit for bit, from its start or from wherever it can be taken up.
 #include <gtest/gtest.h>
+#include <limits>
 #include <random>
 
 #include "runtime/apps/replay.hpp"
@@ -44,6 +45,29 @@ HandPath wandering(unsigned seed, double seconds) {
     return HandPath(std::move(keys));
 }
 
+// A device that fails now and then, in each of the ways that a model takes differently.
+class Unreliable final : public Device {
+  public:
+    explicit Unreliable(HandPath path) : hand_(std::move(path), {.max_force = 2}, {0, 0, 1}) {}
+
+    std::string name() const override { return hand_.name(); }
+    DeviceLimits limits() const override { return hand_.limits(); }
+    DeviceState read(double time) noexcept override {
+        DeviceState state = hand_.read(time);
+        state.buttons = ++ticks_ % 2;
+        const unsigned phase = ticks_ % 2000;
+        if (phase > 700 && phase < 720) state.faults = motors_warm;
+        if (phase > 1300 && phase < 1310) state.position[1] = std::numeric_limits<double>::quiet_NaN();
+        if (phase > 1900 && phase < 1905) state.faults = pose_frozen;
+        return state;
+    }
+    void write(const std::array<double, 3>&) noexcept override {}
+
+  private:
+    SimulatedDevice hand_;
+    unsigned ticks_ = 0;
+};
+
 struct Trial {
     Case patient_case;
     ContactScheme scheme;
@@ -54,13 +78,11 @@ struct Trial {
 // The rows of a run, and its model's limits.
 Recording record(const Trial& trial, const sample::Scratch& scratch) {
     HapticModel model(trial.patient_case, trial.scheme, trial.tools);
-    const std::array<double, 3> shaft{0, 0, 1};
-    std::vector<std::unique_ptr<SimulatedDevice>> devices;
+    std::vector<std::unique_ptr<Unreliable>> devices;
     std::vector<Device*> held;
     for (std::size_t t = 0; t < trial.tools; ++t) {
-        devices.push_back(std::make_unique<SimulatedDevice>(
-            wandering(static_cast<unsigned>(7 + t), 1e-3 * static_cast<double>(trial.ticks)),
-            DeviceLimits{.max_force = 2}, shaft));
+        devices.push_back(std::make_unique<Unreliable>(
+            wandering(static_cast<unsigned>(7 + t), 1e-3 * static_cast<double>(trial.ticks))));
         held.push_back(devices.back().get());
     }
     ServoLoop loop(model, held);
