@@ -114,11 +114,13 @@ ReplayOutcome replayed(const Trial& trial, const Recording& recording) {
     return replay(recording, model, [](const TickResult&) {});
 }
 
-// Without its first rows, as where a ring has wrapped.
-Recording from(const Recording& whole, std::size_t first_row) {
-    Recording rest = whole;
-    rest.ticks.erase(rest.ticks.begin(), rest.ticks.begin() + static_cast<std::ptrdiff_t>(first_row));
-    return rest;
+// Some rows of it, as where a ring has wrapped.
+Recording part_of(const Recording& whole, std::size_t first_row, std::size_t rows) {
+    const auto all = std::span(whole.ticks).subspan(first_row);
+    const auto some = all.first(std::min(rows, all.size()));
+    Recording part = whole;
+    part.ticks.assign(some.begin(), some.end());
+    return part;
 }
 
 class Replay : public testing::TestWithParam<Trial> {};
@@ -139,16 +141,15 @@ TEST_P(Replay, from_a_free_tick_in_the_middle_gives_the_same_forces) {
     std::int64_t compared = 0, in_contact = 0;
     for (const RecordedTick& row : recording.ticks) in_contact += row.contact_count > 0;
     ASSERT_GT(in_contact, GetParam().ticks / 20);
-    for (std::size_t first = 101; first < recording.ticks.size(); first += 97) {
-        const ReplayOutcome outcome = replayed(GetParam(), from(recording, first));
+    for (std::size_t first = 101; first < recording.ticks.size(); first += 29) {
+        const ReplayOutcome outcome = replayed(GetParam(), part_of(recording, first, 1000));
         if (!outcome.started) continue;
         compared += outcome.ticks;
         ASSERT_EQ(outcome.different_ticks, 0)
             << "without the first " << first << " rows, tick " << outcome.first_difference->tick
             << " is off by up to " << outcome.largest_difference << " N";
-        EXPECT_EQ(outcome.ticks + outcome.skipped_ticks + outcome.missing_ticks, GetParam().ticks);
     }
-    EXPECT_GT(compared, 20 * GetParam().ticks);
+    EXPECT_GT(compared, 5 * GetParam().ticks);
 }
 
 TEST_P(Replay, goes_on_behind_lost_rows) {
