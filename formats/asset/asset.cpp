@@ -131,4 +131,10 @@ Case load_asset(const std::filesystem::path& path) {
     return patient_case;
 }
 
+std::string asset_digest(const std::filesystem::path& path) {
+    const Hdf5File file(path);
+    check_header(file, "case");
+    return file.text_attribute("/palpate", "manifest_sha256");
+}
+
 }  // namespace palpate

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
+#include <string>
 
 #include "formats/model/body.hpp"
 
@@ -23,5 +24,9 @@ Case read_asset(const std::filesystem::path& path, Digests digests = Digests::ch
 /// Reads and validates an asset as read_asset() does, and copies it whole, for a loop that must not fall when
 /// the file is shortened or removed under it.
 Case load_asset(const std::filesystem::path& path);
+
+/// The digest of everything in an asset, as the file says it; read_asset() checks it. Throws InvalidInput if
+/// the file is no asset.
+std::string asset_digest(const std::filesystem::path& path);
 
 }  // namespace palpate

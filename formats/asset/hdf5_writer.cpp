@@ -158,6 +158,13 @@ void Hdf5Writer::write_dataset(const std::string& path, ScalarType type, std::si
     if (!unit.empty()) attribute(path, "unit", unit);
 }
 
+void Hdf5Writer::reserve_dataset(const std::string& path, ScalarType type, std::size_t element_size,
+                                 const Hdf5Shape& shape, std::string_view unit) {
+    const Handle element(make_type(type, element_size, {}), H5Tclose);
+    create_dataset(path, element, shape, nullptr);
+    if (!unit.empty()) attribute(path, "unit", unit);
+}
+
 void Hdf5Writer::texts(const std::string& path, const std::vector<std::string>& values,
                        const Hdf5Shape& shape) {
     std::size_t width = 1;  // HDF5 has no text of length 0
@@ -202,6 +209,10 @@ void Hdf5Writer::write_attribute(const std::string& path, const std::string& nam
 
 void Hdf5Writer::finish(const std::string& path) {
     attribute(path, "manifest_sha256", manifest_digest(manifest_));
+    close();
+}
+
+void Hdf5Writer::close() {
     const QuietErrors quiet;
     require(H5Fflush(file_, H5F_SCOPE_GLOBAL));
     require(H5Fclose(file_));

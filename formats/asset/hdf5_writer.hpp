@@ -29,6 +29,12 @@ class Hdf5Writer {
                  std::string_view unit = "") {
         write_dataset(path, scalar_type<T>(), sizeof(T), std::as_bytes(values), shape, unit);
     }
+    /// Makes room for values that somebody else writes into the file later, without a digest; finish() is
+    /// not for files with such datasets, close() is.
+    template <typename T>
+    void reserve(const std::string& path, const Hdf5Shape& shape, std::string_view unit = "") {
+        reserve_dataset(path, scalar_type<T>(), sizeof(T), shape, unit);
+    }
     /// Writes texts, each padded with zeros to the longest; `shape` is {} for one text, {n} for n of them.
     void texts(const std::string& path, const std::vector<std::string>& values, const Hdf5Shape& shape);
     /// Writes texts of variable length, without a digest; see ScalarType::variable_text.
@@ -47,10 +53,14 @@ class Hdf5Writer {
 
     /// Adds the manifest's digest to `path` as attribute `manifest_sha256` and closes the file.
     void finish(const std::string& path);
+    /// Closes the file without a manifest.
+    void close();
 
   private:
     void write_dataset(const std::string& path, ScalarType type, std::size_t element_size,
                        std::span<const std::byte> bytes, const Hdf5Shape& shape, std::string_view unit);
+    void reserve_dataset(const std::string& path, ScalarType type, std::size_t element_size,
+                         const Hdf5Shape& shape, std::string_view unit);
     void write_attribute(const std::string& path, const std::string& name, ScalarType type,
                          std::size_t element_size, std::span<const std::byte> bytes, const Hdf5Shape& shape);
     void create_dataset(const std::string& path, std::int64_t type, const Hdf5Shape& shape,

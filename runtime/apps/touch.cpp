@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <chrono>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <spdlog/spdlog.h>
@@ -11,9 +13,12 @@
 #include "formats/asset/asset.hpp"
 #include "formats/model/errors.hpp"
 #include "runtime/apps/hand_script.hpp"
+#include "runtime/apps/replay.hpp"
 #include "runtime/apps/run_record.hpp"
 #include "runtime/apps/simulation.hpp"
+#include "runtime/apps/start_recording.hpp"
 #include "runtime/apps/statistics_json.hpp"
+#include "runtime/apps/touch_json.hpp"
 #include "runtime/apps/touch_target.hpp"
 #include "runtime/devices/simulated_device.hpp"
 #include "runtime/haptics/servo_loop.hpp"
@@ -26,9 +31,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct Options {
-    std::filesystem::path asset, log, curve;
+    std::filesystem::path asset, log, curve, record, replay;
     std::string script = "press", body, target, second, scheme = "continuous", device, shaft;
-    double seconds = 10, depth = 3, speed = 20;
+    double seconds = 10, depth = 3, speed = 20, record_seconds = 300;
     std::uint64_t seed = 1;
     std::optional<std::size_t> column;
     bool seconds_given = false, virtual_clock = false;
@@ -101,74 +106,113 @@ std::unique_ptr<Device> device_of(const Options& options, const HapticModel& mod
     return std::make_unique<SimulatedDevice>(std::move(path), limits, shaft);
 }
 
-Json numbers(std::span<const double, 3> v) {
-    return Json::array({v[0], v[1], v[2]});
-}
-
-Json target_json(const TouchTarget& target, const HapticModel& model) {
-    return {{"body", model.body_name(target.body)},
-            {"triangle", target.triangle},
-            {"point_mm", numbers(std::span<const double, 3>(target.place.point.data(), 3))},
-            {"normal", numbers(std::span<const double, 3>(target.place.normal.data(), 3))},
-            {"clearance_mm", target.place.clearance}};
-}
-
-// The tick of the largest force, with all that is needed to compute it again from the stiffness matrix.
-Json peak_json(const TickResult& peak, const Case& patient_case, const HapticModel& model) {
-    Json contacts = Json::array();
-    for (const Contact& contact : peak.active_contacts()) {
-        const auto body = static_cast<std::size_t>(contact.body);
-        const bool deformable = body >= model.rigid_count();
-        Json nodes = Json::array(), weights = Json::array();
-        for (std::size_t i = 0; i < 3 && contact.vertices[i] >= 0; ++i) {
-            const auto vertex = static_cast<std::size_t>(contact.vertices[i]);
-            const auto* soft =
-                deformable ? &patient_case.deformable_bodies[body - model.rigid_count()] : nullptr;
-            nodes.push_back(soft ? soft->boundary.nodes[vertex] : contact.vertices[i]);
-            weights.push_back(contact.weights[i]);
-        }
-        contacts.push_back(
-            {{"body", model.body_name(body)},
-             {"nodes", nodes},
-             {"weights", weights},
-             {"normal", Json::array({contact.normal[0], contact.normal[1], contact.normal[2]})},
-             {"gap_mm", contact.gap},
-             {"force_n", contact.force},
-             {"friction_n", Json::array({contact.friction[0], contact.friction[1], contact.friction[2]})},
-             {"part", contact.part},
-             {"series_compliance_mm_per_n", contact.series_compliance}});
-    }
-    return {{"t_s", peak.time},
-            {"device_mm", numbers(peak.device_position)},
-            {"force_n", numbers(peak.force)},
-            {"depth_mm", peak.depth},
-            {"coupling_stiffness_n_per_mm", model.coupling()},
-            {"contacts", contacts}};
-}
-
-// Ticks in the haptic thread while this one writes the log.
-void run_in_real_time(ServoLoop& loop, std::vector<RunRecord>& records, double seconds) {
+// Ticks in the haptic thread while this one takes the results.
+void run_in_real_time(ServoLoop& loop, double seconds, const std::function<void(const TickResult&)>& take) {
     TickResult result{};
-    const auto add = [&] { records[static_cast<std::size_t>(result.tool)].add(result); };
-    while (records.back().curve().empty() || records.back().curve().back().time < seconds) {
-        if (loop.ring().pop(result))
-            add();
-        else
-            std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    }
+    double time = 0;
+    const auto pop = [&] {
+        if (!loop.ring().pop(result)) return false;
+        take(result);
+        time = result.time;
+        return true;
+    };
+    while (time < seconds)
+        if (!pop()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
     loop.stop();
-    while (loop.ring().pop(result)) add();
+    while (pop()) {
+    }
+}
+
+// What a run leaves behind besides its recording: whole files or none.
+class Outputs {
+  public:
+    Outputs(const Options& options, const cli::Session& session) : options_(options) {
+        if (!options.log.empty()) {
+            log_.open(log_file_.emplace(options.log, session.force).path());
+            write_log_head(log_);
+        }
+        if (!options.curve.empty()) curve_file_.emplace(options.curve, session.force);
+    }
+
+    /// One for each tool.
+    std::vector<RunRecord> records_of(const HapticModel& model) {
+        return {model.tool_count(), RunRecord(model, log_file_ ? &log_ : nullptr)};
+    }
+
+    void commit(const RunRecord& first, const std::string& title) {
+        if (log_file_) {
+            log_.close();
+            if (!log_)
+                throw SystemFailure({options_.log.string(), "could not be written", "", "check free space"});
+        }
+        if (curve_file_) {
+            curve_file_->write_text(force_curve_svg(first.curve(), title));
+            curve_file_->commit();
+        }
+        if (log_file_) log_file_->commit();
+    }
+
+  private:
+    const Options& options_;
+    std::optional<cli::StagedFile> log_file_, curve_file_;
+    std::ofstream log_;
+};
+
+// What a run was like, its recording says.
+void refuse_others(const cli::Command& command, std::initializer_list<const CLI::Option*> of_a_replay) {
+    for (const cli::Parameter& parameter : command.parameters())
+        if (parameter.option->count() > 0 &&
+            std::ranges::find(of_a_replay, parameter.option) == of_a_replay.end())
+            throw UsageError({parameter.option->get_name(), "with --replay", "--log and --curve at most",
+                              "a recording says itself what the run was like"});
+}
+
+std::string force_text(const std::array<double, 3>& f) {
+    return fmt::format("({}, {}, {}) N", f[0], f[1], f[2]);
+}
+
+Json replay_recording(const Options& options, cli::Session& session) {
+    Outputs outputs(options, session);
+    const Recording recording = read_recording(options.replay);
+    const Case patient_case = read_asset(options.asset);
+    const auto model = model_of(recording, options.replay, options.asset, patient_case);
+    std::vector<RunRecord> records = outputs.records_of(*model);
+    const ReplayOutcome outcome = replay(recording, *model, [&](const TickResult& result) {
+        records[static_cast<std::size_t>(result.tool)].add(result);
+    });
+    if (!outcome.started)
+        throw InvalidInput({options.replay.string(), "no tick from which a replay could start",
+                            "the run's first tick, or three in a row without contact, force and fault",
+                            "record for longer: --record-seconds"});
+    outputs.commit(records.front(), patient_case.name + ": replay");
+    if (recording.rows_unreadable > 0)
+        spdlog::warn("{}: {} rows at the end never reached the disk", options.replay.string(),
+                     recording.rows_unreadable);
+    if (*outcome.started > 0 || outcome.skipped_ticks > 0)
+        spdlog::warn("{}: starts at tick {}; {} ticks are missing, {} were skipped for want of a free one",
+                     options.replay.string(), *outcome.started, outcome.missing_ticks, outcome.skipped_ticks);
+    if (const auto& first = outcome.first_difference)
+        session.shortfall = {
+            options.replay.string(),
+            fmt::format("tick {} of tool {} gives {}; {} of {} ticks differ", first->tick, first->tool,
+                        force_text(first->replayed), outcome.different_ticks, outcome.ticks),
+            "the recorded " + force_text(first->recorded),
+            "the recording is of palpate " + recording.head.palpate_version + ", this is " + cli::version()};
+    Json result{{"case", patient_case.name},
+                {"script", "replay"},
+                {"scheme", recording.head.scheme},
+                {"device", recording.head.devices.front().name},
+                {"coupling_stiffness_n_per_mm", model->coupling()},
+                {"clock", recording.head.clock},
+                {"replay", replay_json(outcome)}};
+    result.update(tool_json(records[0], patient_case, *model));
+    if (records.size() > 1) result["second"] = tool_json(records[1], patient_case, *model);
+    return result;
 }
 
 Json touch(const Options& options, cli::Session& session) {
-    std::optional<cli::StagedFile> log_file, curve_file;
-    std::ofstream log;
-    if (!options.log.empty()) {
-        log.open(log_file.emplace(options.log, session.force).path());
-        write_log_head(log);
-    }
-    if (!options.curve.empty()) curve_file.emplace(options.curve, session.force);
-
+    if (!options.replay.empty()) return replay_recording(options, session);
+    Outputs outputs(options, session);
     const Case patient_case = load_asset(options.asset);
     const ContactScheme scheme = find_contact_scheme(options.scheme);
     if (!options.second.empty() && scheme != ContactScheme::continuous)
@@ -183,65 +227,56 @@ Json touch(const Options& options, cli::Session& session) {
     if (!options.second.empty())
         devices.push_back(device_of(options, model, recorded_path(options.second), anterior, shaft));
     std::vector<Device*> held;
-    std::vector<RunRecord> records;
-    for (const auto& device : devices) {
-        held.push_back(device.get());
-        records.emplace_back(model, options.log.empty() ? nullptr : &log);
-    }
+    for (const auto& device : devices) held.push_back(device.get());
     ServoLoop loop(model, held);
-    const RunRecord& record = records.front();
+
+    const std::string clock = options.virtual_clock ? "virtual" : "real";
+    std::optional<RunRecorder> recorder;
+    if (!options.record.empty())
+        recorder.emplace(start_recording(
+            options.record, recording_head(options.asset, patient_case, model, held, clock, cli::version()),
+            options.record_seconds, session));
+    std::vector<RunRecord> records = outputs.records_of(model);
+    const auto take = [&](const TickResult& result) {
+        records[static_cast<std::size_t>(result.tool)].add(result);
+        if (!recorder) return;
+        recorder->add(result);
+        if (!options.virtual_clock) recorder->set_lost(loop.ring().dropped());
+    };
     double ready_s = 0;
     if (options.virtual_clock) {
         ready_s = process_age();
-        loop.run_virtual(static_cast<std::int64_t>(1000 * plan.seconds), [&](const TickResult& result) {
-            records[static_cast<std::size_t>(result.tool)].add(result);
-        });
+        loop.run_virtual(static_cast<std::int64_t>(1000 * plan.seconds), take);
     } else {
         loop.start();
         ready_s = process_age();
-        run_in_real_time(loop, records, plan.seconds);
+        run_in_real_time(loop, plan.seconds, take);
     }
 
     // A script's file name may name a patient.
     const std::string script = is_made_to_measure(options.script) ? options.script : "file";
-    if (log_file) {
-        log.close();
-        if (!log) throw SystemFailure({options.log.string(), "could not be written", "", "check free space"});
-    }
-    if (curve_file) {
-        curve_file->write_text(force_curve_svg(record.curve(), patient_case.name + ": " + script));
-        curve_file->commit();
-    }
-    if (log_file) log_file->commit();
+    outputs.commit(records.front(), patient_case.name + ": " + script);
 
     const ServoStatistics statistics = loop.statistics();
     for (const SetupResult& setup : statistics.setup)
         if (!setup.ok) spdlog::warn("{}", setup.message);
+    const std::uint64_t lost = options.virtual_clock ? 0 : statistics.lost_records;
     Json result{{"case", patient_case.name},
                 {"script", script},
                 {"scheme", options.scheme},
                 {"device", devices.front()->name()},
                 {"coupling_stiffness_n_per_mm", model.coupling()},
-                {"clock", options.virtual_clock ? "virtual" : "real"},
+                {"clock", clock},
                 {"ready_s", ready_s},
                 {"ticks", statistics.ticks},
                 {"overruns", statistics.overruns},
-                {"lost_log_records", options.virtual_clock ? 0 : statistics.lost_records},
+                {"lost_log_records", lost},
                 {"tick_us", percentiles_json(statistics.tick_ns, 1e3)},
-                {"wake_latency_us", percentiles_json(statistics.wake_latency_ns, 1e3)},
-                {"force_peak_n", record.peak_force()},
-                {"force_step_max_n", record.largest_force_step()},
-                {"penetration", {{"device_mm", record.device_depth()}, {"tool_mm", record.tool_depth()}}},
-                {"statuses", record.statuses()}};
+                {"wake_latency_us", percentiles_json(statistics.wake_latency_ns, 1e3)}};
+    if (recorder) result["recording"] = {{"rows", recorder->rows()}, {"lost_rows", lost}};
     if (plan.target) result["target"] = target_json(*plan.target, model);
-    result["peak"] = peak_json(record.peak(), patient_case, model);
-    if (records.size() > 1)
-        result["second"] = {
-            {"force_peak_n", records[1].peak_force()},
-            {"force_step_max_n", records[1].largest_force_step()},
-            {"penetration", {{"device_mm", records[1].device_depth()}, {"tool_mm", records[1].tool_depth()}}},
-            {"statuses", records[1].statuses()},
-            {"peak", peak_json(records[1].peak(), patient_case, model)}};
+    result.update(tool_json(records[0], patient_case, model));
+    if (records.size() > 1) result["second"] = tool_json(records[1], patient_case, model);
     return result;
 }
 
@@ -273,6 +308,21 @@ int main(int argc, char** argv) {
     command.option("--column", options.column,
                    "which column of the file, from 1, is one axis' motion: its smallest value clear of the "
                    "surface, its largest --depth deep");
+             "Scripts: 'press' goes in along the surface's normal, holds 0.5 s and lets go, over and over; "
+             "'slide' presses once and slides 4 mm to either side; 'random' pushes, slides and leaves; a "
+             "file "
+             "has rows 'x y z' (mm), one per millisecond, or 't x y z' (s, mm). Without --device the hand is "
+             "infinitely stiff: it is where the script says, whatever the force. Schemes: 'continuous' "
+             "sweeps "
+             "the tool every tick; 'single' and 'twice' are the published ones, with a collision loop at 30 "
+             "Hz. "
+             "A recording has every tick of every tool, with its contacts, in a ring of the last "
+             "--record-seconds (formats/recording/SPEC.md, for h5py); it has its name from the start and is "
+             "kept however the run ends, where other outputs appear whole or not at all. A replay gives its "
+             "forces again, bit for bit, or ends with exit code 4."});
+    Options options;
+    const CLI::Option* asset = command.input("asset", options.asset, "the case (.vtkhdf)")->required();
+    command.option("--script", options.script, "what the hand does: press, slide, random or a file");
     const CLI::Option* seconds =
         command.option("--seconds", options.seconds, "how long; of a file, all unless this is given", "s");
     command.option("--depth", options.depth, "how deep the tool's surface goes below the rest surface", "mm");
@@ -293,10 +343,21 @@ int main(int argc, char** argv) {
     command.option("--seed", options.seed, "of the scripts 'random' and 'tremble'");
     command.output("--log", options.log, "one row per tick (.csv)");
     command.output("--curve", options.curve, "force and depth of the first tool over time (.svg)");
+    command.option("--seed", options.seed, "of the script 'random'");
+    const CLI::Option* log = command.output("--log", options.log, "one row per tick (.csv)");
+    const CLI::Option* curve =
+        command.output("--curve", options.curve, "force and depth of the first tool over time (.svg)");
+    command.output("--record", options.record, "every tick, from the start on (.h5)");
+    command.option("--record-seconds", options.record_seconds,
+                   "how much of the run's end a recording holds: 46 MB a minute and tool", "s");
+    const CLI::Option* replay = command.input(
+        "--replay", options.replay,
+        "recording to give the forces of again, as fast as possible; no option of a run goes with it (.h5)");
     command.flag("--virtual-clock", options.virtual_clock,
                  "tick as fast as possible; forces do not depend on the machine");
     return command.run(argc, argv, [&](cli::Session& session) {
         options.seconds_given = seconds->count() > 0;
+        if (replay->count() > 0) refuse_others(command, {asset, log, curve, replay});
         return touch(options, session);
     });
 }

@@ -12,6 +12,7 @@
 #include "formats/model/errors.hpp"
 #include "runtime/apps/hand_script.hpp"
 #include "runtime/apps/simulation.hpp"
+#include "runtime/apps/start_recording.hpp"
 #include "runtime/apps/statistics_json.hpp"
 #include "runtime/apps/touch_target.hpp"
 #include "runtime/devices/guided_device.hpp"
@@ -27,9 +28,9 @@ using Clock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
 
 struct Options {
-    std::filesystem::path asset, screenshot;
+    std::filesystem::path asset, screenshot, record;
     std::string size = "1280x720", script, body, scheme = "continuous", device;
-    double seconds = 0;
+    double seconds = 0, record_seconds = 300;
 };
 
 std::pair<int, int> size_of(const std::string& text) {
@@ -93,15 +94,18 @@ struct Felt {
     double depth_peak = 0;  // mm
     double travel = 0;      // mm, of the device
     std::optional<Eigen::Vector3d> last_position;
+    std::optional<RunRecorder> recorder;
 
     void take(SpscRing<TickResult>& ring) {
         for (TickResult tick; ring.pop(tick);) {
+            if (recorder) recorder->add(tick);
             const Eigen::Vector3d position = Eigen::Map<const Eigen::Vector3d>(tick.device_position.data());
             force_peak = std::max(force_peak, Eigen::Map<const Eigen::Vector3d>(tick.force.data()).norm());
             depth_peak = std::max(depth_peak, tick.depth);
             if (last_position) travel += (position - *last_position).norm();
             last_position = position;
         }
+        if (recorder) recorder->set_lost(ring.dropped());
     }
 };
 
@@ -164,6 +168,11 @@ Json train(const Options& options, cli::Session& session) {
 
     ServoLoop loop(model, *held.device);
     Felt felt;
+    if (!options.record.empty())
+        felt.recorder.emplace(start_recording(
+            options.record,
+            recording_head(options.asset, patient_case, model, {&held, 1}, "real", cli::version()),
+            options.record_seconds, session));
     TickRate rate;
     Histogram frame_ns;
     loop.start();
@@ -193,18 +202,21 @@ Json train(const Options& options, cli::Session& session) {
     const ServoStatistics statistics = loop.statistics();
     for (const SetupResult& setup : statistics.setup)
         if (!setup.ok) spdlog::warn("{}", setup.message);
-    return {{"case", patient_case.name},
-            {"device", held.device->name()},
-            {"frames", frame_ns.count()},
-            {"frames_per_second", static_cast<double>(frame_ns.count()) / seconds},
-            {"frame_ms", percentiles_json(frame_ns, 1e6)},
-            {"ticks", statistics.ticks},
-            {"overruns", statistics.overruns},
-            {"tick_us", percentiles_json(statistics.tick_ns, 1e3)},
-            {"wake_latency_us", percentiles_json(statistics.wake_latency_ns, 1e3)},
-            {"force_peak_n", felt.force_peak},
-            {"penetration", {{"device_mm", felt.depth_peak}}},
-            {"device_travel_mm", felt.travel}};
+    Json result{{"case", patient_case.name},
+                {"device", scripted ? scripted->name() : guided.name()},
+                {"frames", frame_ns.count()},
+                {"frames_per_second", static_cast<double>(frame_ns.count()) / seconds},
+                {"frame_ms", percentiles_json(frame_ns, 1e6)},
+                {"ticks", statistics.ticks},
+                {"overruns", statistics.overruns},
+                {"tick_us", percentiles_json(statistics.tick_ns, 1e3)},
+                {"wake_latency_us", percentiles_json(statistics.wake_latency_ns, 1e3)},
+                {"force_peak_n", felt.force_peak},
+                {"penetration", {{"device_mm", felt.depth_peak}}},
+                {"device_travel_mm", felt.travel}};
+    if (felt.recorder)
+        result["recording"] = {{"rows", felt.recorder->rows()}, {"lost_rows", statistics.lost_records}};
+    return result;
 }
 
 }  // namespace
@@ -236,6 +248,10 @@ int main(int argc, char** argv) {
                    "it stands, see 'touch'");
     command.option("--scheme", options.scheme, "how contact is found: continuous, single or twice");
     command.option("--body", options.body, "which body to start at; the first deformable one if not given");
+    command.output("--record", options.record,
+                   "every tick, for 'palpate touch --replay' (.h5); kept however the trainer ends");
+    command.option("--record-seconds", options.record_seconds,
+                   "how much of the end a recording holds: 46 MB a minute", "s");
     command.output("--screenshot", options.screenshot, "picture of the window at the end (.png)");
     return command.run(argc, argv, [&](cli::Session& session) { return train(options, session); });
 }

@@ -110,8 +110,8 @@ bool Neighbourhood::gather(const CollisionSurface& surface, const Vector3d& cent
         if (found == 0) {
             // In the open: as far as the nearest triangle there is nothing to gather. It is not far from what
             // the sphere touched or was nearest to before.
-            const auto nearest = surface.closest_point(centre, reach_ + most_margin, hint_);
-            if (nearest) hint_ = nearest->slot;
+            const auto nearest = surface.closest_point(centre, reach_ + most_margin, nearest_);
+            if (nearest) nearest_ = nearest->slot;
             reach_ = nearest ? nearest->distance : reach_ + most_margin;
             return true;
         }
@@ -167,7 +167,7 @@ std::optional<SweepContact> Neighbourhood::sweep_gathered(const CollisionSurface
             if (candidates[lane] && slots_[first + lane] != hint_) test(slots_[first + lane]);
     }
     if (best.slot < 0) return std::nullopt;
-    hint_ = best.slot;
+    hint_ = nearest_ = best.slot;
     return best;
 }
 

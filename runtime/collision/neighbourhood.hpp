@@ -19,9 +19,11 @@ class Neighbourhood {
     void clear() noexcept {
         reach_ = -1;
         margin_ = first_margin;
-        hint_ = -1;
+        hint_ = nearest_ = -1;
         count_ = 0;
     }
+    /// Forgets what was touched last, so that what is touched next depends on the sweep alone.
+    void let_go() noexcept { hint_ = -1; }
 
     /// The same as surface.sweep_sphere(from, to, radius): the same fraction and point; where several
     /// triangles are touched at once, the slot may be another. Gathers anew when the sweep leaves the
@@ -44,7 +46,8 @@ class Neighbourhood {
     Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
     double reach_ = -1;  // mm: whatever is within it of the centre is gathered; negative for nothing
     double margin_ = first_margin;  // mm beyond the sphere; follows the density of the triangles
-    std::int32_t hint_ = -1;        // slot of the last contact, or of the nearest triangle
+    std::int32_t hint_ = -1;        // slot of the last contact
+    std::int32_t nearest_ = -1;     // slot of what was last nearest or touched
     std::size_t count_ = 0;
     // In lanes of four: the smallest circles around the triangles, centres relative to centre_, and unit
     // normals.

@@ -26,6 +26,12 @@ void GodObject::reset() noexcept {
     at_rest_ = true;
 }
 
+// What touches next does so at rest, and as if nothing had been touched before.
+void GodObject::let_go() noexcept {
+    at_rest_ = true;
+    for (Obstacle& obstacle : obstacles_) obstacle.near.let_go();
+}
+
 bool GodObject::move(Surfaces surfaces, const Vector3d& device, const Friction& friction) noexcept {
     plane_count_ = 0;
     touch_count_ = 0;
@@ -38,7 +44,7 @@ bool GodObject::move(Surfaces surfaces, const Vector3d& device, const Friction& 
     if (plane_count_ > 0 && (position_ - device).norm() > tiny)
         find_touches(surfaces, device);
     else
-        at_rest_ = true;  // what touches next does so at rest
+        let_go();
     return all_followed_ || follow_what_is_clear(surfaces);
 }
 
@@ -91,19 +97,23 @@ void GodObject::slide(Surfaces surfaces, const Vector3d& device, const Friction&
             const Vector3d wanted = nearest_admissible(device);
             const bool sliding = plane_count_ > 0;
             const bool held = sliding && friction.at_rest > 0;
-            Vector3d way = (held ? held_by(friction, device, wanted) : wanted) - position_;
+            Vector3d goal = held ? held_by(friction, device, wanted) : wanted;
+            Vector3d way = goal - position_;
             if (held) held_back_ = wanted - position_;
             const double length = way.norm();
             if (length <= tiny || (sliding && slide_left <= tiny)) break;
-            if (sliding && length > slide_left) way *= slide_left / length;
+            if (sliding && length > slide_left) {
+                way *= slide_left / length;
+                goal = position_ + way;
+            }
             const Vector3d start = position_;
-            const auto hit = sweep(surfaces, position_ + way);
+            const auto hit = sweep(surfaces, goal);
             ++sweeps;
             blocked = hit.has_value();
             if (blocked)
                 touch(*hit, way);
             else
-                position_ += way;
+                position_ = goal;
             if (sliding) slide_left -= (position_ - start).norm();
             if (held) held_back_ = wanted - position_;
         }

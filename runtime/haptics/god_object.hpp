@@ -80,6 +80,7 @@ class GodObject {
     };
     using Surfaces = std::span<const CollisionSurface* const>;
 
+    void let_go() noexcept;
     void slide(Surfaces surfaces, const Eigen::Vector3d& device, const Friction& friction) noexcept;
     std::optional<Hit> sweep(Surfaces surfaces, const Eigen::Vector3d& to) noexcept;
     void touch(const Hit& hit, const Eigen::Vector3d& way) noexcept;

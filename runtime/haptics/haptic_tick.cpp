@@ -57,6 +57,7 @@ void HapticModel::tick(std::span<const DeviceState> devices, std::span<TickResul
         return;
     }
     for (std::size_t t = 0; t < tools_.size(); ++t) follow(t, results[t]);
+    if (solver_.size() == 0) solver_.reset();  // no contact leaves nothing to start from
     double residual = solver_.size() > 0 ? solver_.solve(1 / coupling_) : 0;
     for (int round = 0; round < most_rounds && hold_off_rigid(results); ++round)
         residual = solver_.solve(1 / coupling_);

@@ -137,6 +137,22 @@ class Train(SampleAsset):
             self.assertGreater(result["force_peak_n"], 0.01)
             self.assertLess(result["penetration"]["device_mm"], 3)  # the hand of 0.3 N/mm gives way
 
+    def test_what_the_hand_did_is_recorded_and_replays(self):
+        recording = self.folder / "trained.h5"
+        process, _ = self.open_window("--record", recording, "--record-seconds", 60)
+        for _ in range(30):
+            self.x("xdotool", "key", "w")
+        self.x("xdotool", "key", "q")
+        result = self.finish(process)
+        self.assertEqual(result["recording"]["rows"] + result["recording"]["lost_rows"], result["ticks"])
+        touch = subprocess.run(
+            [TRAIN.with_name("palpate-touch"), self.asset, "--replay", recording, "--json", "-"],
+            capture_output=True, text=True, timeout=60)
+        self.assertEqual(touch.returncode, 0, touch.stderr)
+        replayed = json.loads(touch.stdout)
+        self.assertEqual(replayed["replay"]["different_ticks"], 0)
+        self.assertEqual(replayed["force_peak_n"], result["force_peak_n"])
+
     def test_left_drag_moves_the_tool_and_right_drag_does_not(self):
         travel = {}
         for button in (1, 3):

@@ -18,6 +18,7 @@ TEST_SUPPORT = {"palpate-bench", "palpate_experiments", "palpate_house", "palpat
 ROOMS = {
     "model": set(),
     "asset": {"model", "hdf5", "openssl", "threads"},
+    "recording": {"model", "asset"},
     "imaging": {"model", "itk", "hdf5", "dcmtk", "vtk", "json"},  # HDF5 is one of ITK's own
     "meshing": {"model", "cgal", "vtk"},
     "obb": {"model"},
@@ -35,10 +36,10 @@ ROOMS = {
     "haptics": {"model", "collision", "realtime"},
     "devices": {"model", "realtime"},
     "visual": {"model", "realtime", "vtk"},
-    "apps": {"model", "asset", "realtime", "collision", "haptics", "devices"},
+    "apps": {"model", "asset", "recording", "json", "realtime", "collision", "haptics", "devices"},
 }
 COMMANDS = {"model", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "build", "mesh", "condense", "seeds", "json"}
-APPS = {"model", "asset", "cli", "realtime", "collision", "haptics", "devices", "apps", "json"}
+APPS = {"model", "asset", "recording", "cli", "realtime", "collision", "haptics", "devices", "apps", "json"}
 EXECUTABLES = {
     "palpate": {"cli", "model"},
     "palpate-touch": APPS,
@@ -46,7 +47,7 @@ EXECUTABLES = {
     "palpate-bench": COMMANDS | APPS,  # measures both sides
 }
 HEAVY = {"itk", "cgal", "cholmod", "metis", "vtk"}
-LEAN = {"palpate_model", "palpate_asset", "palpate_cli", "palpate_realtime", "palpate_collision", "palpate_haptics",
+LEAN = {"palpate_model", "palpate_asset", "palpate_recording", "palpate_cli", "palpate_realtime", "palpate_collision", "palpate_haptics",
         "palpate_devices", "palpate_apps", "palpate-touch"}
 # These two draw, so VTK is theirs; nothing else that is heavy.
 DRAWING = {"palpate_visual", "palpate-train"}

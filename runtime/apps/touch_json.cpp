@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/apps/touch_json.hpp"
+
+#include <span>
+
+namespace palpate {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+Json numbers(std::span<const double, 3> v) {
+    return Json::array({v[0], v[1], v[2]});
+}
+
+}  // namespace
+
+Json target_json(const TouchTarget& target, const HapticModel& model) {
+    return {{"body", model.body_name(target.body)},
+            {"triangle", target.triangle},
+            {"point_mm", numbers(std::span<const double, 3>(target.place.point.data(), 3))},
+            {"normal", numbers(std::span<const double, 3>(target.place.normal.data(), 3))},
+            {"clearance_mm", target.place.clearance}};
+}
+
+namespace {
+
+// The tick of the largest force, with all that is needed to compute it again from the stiffness matrix.
+Json peak_json(const TickResult& peak, const Case& patient_case, const HapticModel& model) {
+    Json contacts = Json::array();
+    for (const Contact& contact : peak.active_contacts()) {
+        const auto body = static_cast<std::size_t>(contact.body);
+        const bool deformable = body >= model.rigid_count();
+        Json nodes = Json::array(), weights = Json::array();
+        for (std::size_t i = 0; i < 3 && contact.vertices[i] >= 0; ++i) {
+            const auto vertex = static_cast<std::size_t>(contact.vertices[i]);
+            const auto* soft =
+                deformable ? &patient_case.deformable_bodies[body - model.rigid_count()] : nullptr;
+            nodes.push_back(soft ? soft->boundary.nodes[vertex] : contact.vertices[i]);
+            weights.push_back(contact.weights[i]);
+        }
+        contacts.push_back(
+            {{"body", model.body_name(body)},
+             {"nodes", nodes},
+             {"weights", weights},
+             {"normal", Json::array({contact.normal[0], contact.normal[1], contact.normal[2]})},
+             {"gap_mm", contact.gap},
+             {"force_n", contact.force},
+             {"friction_n", Json::array({contact.friction[0], contact.friction[1], contact.friction[2]})},
+             {"part", contact.part},
+             {"series_compliance_mm_per_n", contact.series_compliance}});
+    }
+    return {{"t_s", peak.time},
+            {"device_mm", numbers(peak.device_position)},
+            {"force_n", numbers(peak.force)},
+            {"depth_mm", peak.depth},
+            {"coupling_stiffness_n_per_mm", model.coupling()},
+            {"contacts", contacts}};
+}
+
+}  // namespace
+
+Json tool_json(const RunRecord& record, const Case& patient_case, const HapticModel& model) {
+    return {{"force_peak_n", record.peak_force()},
+            {"force_step_max_n", record.largest_force_step()},
+            {"penetration", {{"device_mm", record.device_depth()}, {"tool_mm", record.tool_depth()}}},
+            {"statuses", record.statuses()},
+            {"peak", peak_json(record.peak(), patient_case, model)}};
+}
+
+Json replay_json(const ReplayOutcome& outcome) {
+    Json json{{"ticks", outcome.ticks},
+              {"different_ticks", outcome.different_ticks},
+              {"first_difference", nullptr},
+              {"largest_difference_n", outcome.largest_difference},
+              {"started_at_tick", nullptr},
+              {"missing_ticks", outcome.missing_ticks},
+              {"skipped_ticks", outcome.skipped_ticks}};
+    if (outcome.started) json["started_at_tick"] = *outcome.started;
+    if (const auto& first = outcome.first_difference)
+        json["first_difference"] = {{"tick", first->tick},
+                                    {"tool", first->tool},
+                                    {"recorded_n", numbers(first->recorded)},
+                                    {"replayed_n", numbers(first->replayed)}};
+    return json;
+}
+
+}  // namespace palpate

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <nlohmann/json.hpp>
+
+#include "formats/model/body.hpp"
+#include "runtime/apps/replay.hpp"
+#include "runtime/apps/run_record.hpp"
+#include "runtime/apps/touch_target.hpp"
+
+namespace palpate {
+
+/// Where a script touches.
+nlohmann::ordered_json target_json(const TouchTarget& target, const HapticModel& model);
+
+/// What a run left of one tool: largest force and force step (N), penetration (mm), statuses, and its peak:
+/// the tick of the largest force, with all that is needed to compute it again from the stiffness matrix.
+nlohmann::ordered_json tool_json(const RunRecord& record, const Case& patient_case, const HapticModel& model);
+
+nlohmann::ordered_json replay_json(const ReplayOutcome& outcome);
+
+}  // namespace palpate

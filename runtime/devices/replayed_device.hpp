@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+
+#include "runtime/realtime/device.hpp"
+
+namespace palpate {
+
+/// A device that repeats what another one said, one state per millisecond, whatever the force.
+class ReplayedDevice final : public Device {
+  public:
+    /// `states`: of the ticks at 0, 1, 2 ... ms; their times are not looked at. Throws InvalidInput if there
+    /// is none.
+    ReplayedDevice(std::vector<DeviceState> states, DeviceLimits limits);
+
+    std::string name() const override { return "replayed"; }
+    DeviceLimits limits() const override { return limits_; }
+    /// The state of the tick nearest to `time` (s); the first before all, the last after all.
+    DeviceState read(double time) noexcept override;
+    void write(const std::array<double, 3>&) noexcept override {}
+
+  private:
+    std::vector<DeviceState> states_;
+    DeviceLimits limits_;
+};
+
+}  // namespace palpate
