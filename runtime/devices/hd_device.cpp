@@ -162,8 +162,6 @@ DeviceState HdDevice::read(double time) noexcept {
     if (warm_) state.faults |= motors_warm;
     if (is_frozen) state.faults |= pose_frozen;
     if (misplaced_) state.faults |= not_calibrated;
-    if (!std::ranges::all_of(position_, [](double p) { return std::isfinite(p); }))
-        state.faults |= invalid_position;
     return state;
 }
 

@@ -46,8 +46,8 @@ constexpr std::array<HdErrorText, 21> texts{{
      "unplug the device, plug it in again, and run the driver's setup program as this user (not with sudo); "
      "GTDD_HOME names the folder that has config/<device>.config",
      device_lost},
-    {timer_error, "HD_TIMER_ERROR", "the driver's timer for this device has failed",
-     "close other programs, or permit real-time priority: 'palpate doctor' says how", device_lost},
+    {timer_error, "HD_TIMER_ERROR", "the driver's servo cannot keep its rate",
+     "close other programs, or permit real-time priority: 'palpate doctor' says how", tick_late},
     {illegal_begin, "HD_ILLEGAL_BEGIN", "a frame was begun out of turn", report, device_lost},
     {illegal_end, "HD_ILLEGAL_END", "a frame was ended out of turn", report, device_lost},
     {frame_error, "HD_FRAME_ERROR", "the driver could not exchange a frame with the device",

@@ -18,6 +18,9 @@ constexpr const char* get_driver =
     "install OpenHaptics for Linux and the device's driver from 3D Systems, or give the library's path in "
     "PALPATE_HD_LIBRARY; without a device, use a simulated one";
 
+constexpr const char* check_path =
+    "check the path; without one, libHD.so.3.4, libHD.so and libHD.so.3.0 are tried where the loader looks";
+
 struct Dependency {
     const char* start;  // of the missing file's name
     const char* fix;
@@ -97,7 +100,8 @@ std::span<const char* const> hd_library_names() {
 
 ErrorDetail explain_load_error(const std::string& library, const std::string& message) {
     const std::string missing = missing_file(message);
-    if (missing == library) return {library, "not found", "", get_driver};
+    if (missing == library)
+        return {library, "not found", "", contains(library, "/") ? check_path : get_driver};
     for (const Dependency& dependency : dependencies)
         if (missing.starts_with(dependency.start))
             return {library, "it needs " + missing + ", which is not installed", "", dependency.fix};

@@ -62,9 +62,10 @@ TEST(HdError, faults_take_the_force_away_where_the_device_cannot_render_it) {
     for (const unsigned code :
          {exceeded_max_force, exceeded_max_force_impulse, exceeded_max_velocity, force_error})
         EXPECT_EQ(fault_of(code), device_refused) << code;
-    for (const unsigned code : {bad_handle, device_fault, comm_error, comm_config_error, timer_error,
-                                illegal_begin, illegal_end, frame_error})
+    for (const unsigned code :
+         {bad_handle, device_fault, comm_error, comm_config_error, illegal_begin, illegal_end, frame_error})
         EXPECT_EQ(fault_of(code), device_lost) << code;
+    EXPECT_EQ(fault_of(timer_error), tick_late);
     for (const unsigned code : {invalid_enum, invalid_value, invalid_operation, invalid_input_type,
                                 invalid_priority, scheduler_full})
         EXPECT_EQ(fault_of(code), no_fault) << code;
@@ -115,8 +116,8 @@ TEST(HdErrorSorter, an_error_about_no_known_device_concerns_all) {
     sorter.add(left);
     sorter.add(right);
     sorter.drain();
-    EXPECT_EQ(sorter.take(left), device_lost);
-    EXPECT_EQ(sorter.take(right), device_lost);
+    EXPECT_EQ(sorter.take(left), tick_late);
+    EXPECT_EQ(sorter.take(right), tick_late);
 }
 
 TEST(HdErrorSorter, refuses_more_devices_than_it_has_room_for) {

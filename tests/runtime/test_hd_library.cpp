@@ -81,6 +81,7 @@ TEST(HdLibrary, a_users_path_that_is_not_there_is_invalid_input) {
     const ErrorDetail detail = detail_of<InvalidInput>([] { load_hd_library("/nowhere/libHD.so"); });
     EXPECT_EQ(detail.culprit, "/nowhere/libHD.so");
     EXPECT_EQ(detail.found, "not found");
+    EXPECT_THAT(detail.next_step, HasSubstr("check the path"));
 }
 
 TEST(HdLibrary, the_environment_names_the_library_where_no_path_is_given) {
