@@ -6,12 +6,14 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "formats/model/errors.hpp"
+#include "tests/formats/scratch.hpp"
 #include "tests/runtime/hd_library/hd_functions.hpp"
 #include "tests/runtime/hd_library/hd_script.hpp"
 #include "tests/runtime/hd_library/touch_angles.hpp"
@@ -121,17 +123,22 @@ TEST_F(HdConformance, refuses_to_open_as_the_script_says) {
     }
 }
 
-TEST_F(HdConformance, a_library_unloaded_and_loaded_again_opens_nothing) {
+TEST_F(HdConformance, a_library_loaded_again_opens_nothing_and_a_file_may_be_its_script) {
     // Tests before this one in the same process hold it too: each look takes one hold more, then two go.
     while (void* object = dlopen(library_path().c_str(), RTLD_NOW | RTLD_NOLOAD)) {
         dlclose(object);
         dlclose(object);
     }
+    const sample::Scratch scratch;
+    std::ofstream(scratch / "script.json") << R"({"devices":[{"name":"of the file"}]})";
+    setenv("PALPATE_HD_SCRIPT", (scratch / "script.json").c_str(), 1);
     Functions again(library_path());
     EXPECT_EQ(again.hdInitDevice(nullptr), invalid_handle);
     EXPECT_EQ(again.hdGetError().code, device_fault);
     unsetenv("PALPATE_HD_UNLOADED_IN");
     EXPECT_NE(again.hdInitDevice(nullptr), invalid_handle);
+    EXPECT_STREQ(again.hdGetString(device_serial), "of the file");  // the first opening read the script
+    unsetenv("PALPATE_HD_SCRIPT");
     hd.configure = again.configure;
 }
 
