@@ -50,10 +50,10 @@ Json examine(const Options& options, cli::Session& session) {
 
     const std::size_t problems = count(findings, Level::problem), warnings = count(findings, Level::warning);
     const std::string ready_for = options.simulated ? "the simulated device" : "a device";
-    session.text = fmt::format("{}\n{} for {}: {} problems, {} warnings\n", report_text(findings),
+    session.text = fmt::format("{}\n{} for {}; problems: {}, warnings: {}\n", report_text(findings),
                                problems == 0 ? "ready" : "not ready", ready_for, problems, warnings);
     if (problems > 0)
-        session.shortfall = ErrorDetail{"this machine", fmt::format("is not ready for {}", ready_for), "",
+        session.shortfall = ErrorDetail{"this machine", fmt::format("not ready for {}", ready_for), "",
                                         "mend the problems above and run this again"};
     return {{"ready_for", options.simulated ? "simulation" : "device"},
             {"ready", problems == 0},

@@ -13,7 +13,7 @@ struct OpenedDevice {
     std::string name;
     Calibration calibration = Calibration::ok;
     DeviceLimits limits;
-    std::span<const DeviceState> first_states;  ///< of its first ticks, in the device's own frame
+    std::span<const DeviceState> first_states{};  ///< of its first ticks, in the device's own frame
 };
 
 /// Checks a device once it has been opened: calibration, faults, whether it moves off the pose that its

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/doctor/environment_checks.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace palpate {
@@ -13,6 +14,14 @@ bool holds_device(const Machine& machine, const std::filesystem::path& folder) {
     return std::filesystem::is_regular_file(in_root(machine, folder / "config/Default Device.config"), error);
 }
 
+// Devices set up under other names than "Default Device".
+std::ptrdiff_t named_devices(const Machine& machine, const std::filesystem::path& folder) {
+    std::error_code error;
+    const std::filesystem::directory_iterator files(in_root(machine, folder / "config"), error);
+    return std::count_if(begin(files), end(files),
+                         [](const auto& file) { return file.path().extension() == ".config"; });
+}
+
 Finding driver_folder(const Machine& machine) {
     Finding finding{"device_config", group, Level::problem, "", ""};
     const std::string asked = variable(machine, "GTDD_HOME");
@@ -23,11 +32,18 @@ Finding driver_folder(const Machine& machine) {
     if (!asked.empty() && holds_device(machine, asked)) {
         finding.level = Level::ok;
         finding.found = fmt::format("{}/config/Default Device.config (GTDD_HOME)", asked);
+    } else if (const auto named =
+                   named_devices(machine, asked.empty() ? of_user : std::filesystem::path(asked));
+               named > 0 && holder.empty()) {
+        finding.level = Level::warning;
+        finding.found = fmt::format("{} devices set up, none of them as 'Default Device'", named);
+        finding.fix = "# open them by their names, or set one up as 'Default Device':\nbin/Touch_Setup";
     } else if (!asked.empty()) {
         finding.found = fmt::format("GTDD_HOME={} holds no 'config/Default Device.config'", asked);
         finding.fix = holder.empty()
                           ? "# run the driver's set-up as yourself, not with sudo:\nbin/Touch_Setup"
-                          : fmt::format("export GTDD_HOME={}", holder.string());
+                          : fmt::format("export GTDD_HOME={0}; echo 'export GTDD_HOME={0}' >> ~/.profile",
+                                        holder.string());
     } else if (!holder.empty()) {
         finding.level = Level::ok;
         finding.found = fmt::format("{}/config/Default Device.config", holder.string());
@@ -59,7 +75,8 @@ Finding locale(const Machine& machine) {
 
 Finding display(const Machine& machine) {
     const std::string name = variable(machine, "DISPLAY");
-    if (!name.empty()) return {"display", group, Level::ok, name, ""};
+    if (!name.empty())
+        return {"display", group, Level::ok, name.starts_with(':') ? name : "of another machine", ""};
     return {"display", group, Level::warning, "no DISPLAY: 'train' has no window, 'touch' needs none",
             "# log in to a desktop, or give it a screen that nobody sees:\n"
             "sudo apt install xvfb && xvfb-run palpate train case.vtkhdf"};

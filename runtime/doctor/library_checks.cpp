@@ -47,7 +47,7 @@ std::string fix_of(const LibraryPlace& place, const std::string& name) {
         case Standing::damaged:
             break;
     }
-    return fmt::format("sudo rm {}\n", place.file.string()) + source_of(name);
+    return source_of(name);
 }
 
 std::string told(const LibraryPlace& place) {
