@@ -135,9 +135,10 @@ struct Needs {
 
 Findings library_findings(const Machine& machine) {
     const std::string asked = variable(machine, variable_name);
-    const auto library = asked.empty()                          ? device_library(machine)
-                         : asked.find('/') == std::string::npos ? find_library(machine, asked)
-                                                                : library_at(machine, asked);
+    const auto library = asked.empty() ? device_library(machine)
+                         : asked.find('/') == std::string::npos
+                             ? find_library(machine, asked)
+                             : library_at(machine, std::filesystem::absolute(asked));
     Findings findings{library_finding(library, asked)};
     if (!library || library->standing != Standing::loads) return findings;
     Needs needs{machine};

@@ -34,7 +34,7 @@ std::uint64_t limit_of(int resource) {
 
 SetupResult try_fifo() {
     SetupResult result;
-    std::thread([&] { result = request_fifo_priority(80); }).join();
+    std::thread([&] { result = request_fifo_priority(Machine::asked_priority); }).join();
     return result;
 }
 

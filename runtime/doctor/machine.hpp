@@ -14,6 +14,7 @@ namespace palpate {
 /// What the checks know of a machine beside its files.
 struct Machine {
     static constexpr std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
+    static constexpr int asked_priority = 80;  ///< of SCHED_FIFO, as PeriodicServo asks
 
     std::filesystem::path root = "/";  ///< below which /proc, /sys, /etc and the libraries lie
     std::string user;                  ///< who runs this, or who asked sudo to
@@ -23,7 +24,7 @@ struct Machine {
     std::map<std::string, std::string> environment;
     unsigned cores = 1;                    ///< that this process may use
     SetupResult fifo;                      ///< SCHED_FIFO, tried on a thread
-    std::uint64_t fifo_limit = 0;          ///< highest priority that an unprivileged process may ask for
+    std::uint64_t fifo_limit = 0;          ///< highest that an unprivileged process may ask
     SetupResult locked_memory;             ///< all pages of this process, tried and let go
     std::uint64_t locked_bytes_limit = 0;  ///< that an unprivileged process may lock
     double clock_resolution_ns = 0;        ///< of the monotonic clock's timers

@@ -40,11 +40,12 @@ bool hypervisor(const Machine& machine) {
     return (" " + flags + " ").find(" hypervisor ") != std::string::npos;
 }
 
+// How this user comes by real-time priority and locked memory.
 std::string permit_fix(const Machine& machine) {
     if (in_container(machine))
         return "# start the container with these options:\n"
                "docker run --cap-add SYS_NICE --ulimit rtprio=99 --ulimit memlock=-1:-1 ...";
-    if (text_of(machine, limits_file).value_or("").find(machine.user) != std::string::npos)
+    if (text_of(machine, limits_file).value_or("").find(machine.user + " ") != std::string::npos)
         return fmt::format("# {} names you, but this session is older: log out and in again", limits_file);
     return fmt::format(
         "printf '%s\\n' '{0} - rtprio 99' '{0} - memlock unlimited' | sudo tee {1}\n"
@@ -67,9 +68,13 @@ Finding fifo(const Machine& machine, Purpose purpose) {
     Finding finding{"fifo", group, Level::ok, "SCHED_FIFO is permitted", ""};
     if (machine.fifo.ok) return finding;
     finding.level = lack_of(purpose);
-    finding.found =
-        fmt::format("SCHED_FIFO is refused: priority 80 asked, limit {} (RLIMIT_RTPRIO)", machine.fifo_limit);
-    finding.fix = permit_fix(machine);
+    finding.found = fmt::format("SCHED_FIFO is refused: priority {} asked, limit {} (RLIMIT_RTPRIO)",
+                                Machine::asked_priority, machine.fifo_limit);
+    // sched(7): with real-time group scheduling a control group without a share may have no such thread.
+    finding.fix = machine.fifo_limit >= Machine::asked_priority
+                      ? "# the limit allows it and the control group of this session does not:\n"
+                        "sudo sysctl -w kernel.sched_rt_runtime_us=-1"
+                      : permit_fix(machine);
     return finding;
 }
 
@@ -133,7 +138,10 @@ Finding governor(const Machine& machine) {
     return {"governor", group, Level::warning,
             fmt::format("{} on {} of {} cores; a core that slows down wakes late", fmt::join(others, ", "),
                         slow, cores),
-            "echo performance | sudo tee /sys/devices/system/cpu/cpu*/cpufreq/scaling_governor"};
+            "echo performance | sudo tee /sys/devices/system/cpu/cpu*/cpufreq/scaling_governor\n"
+            "# that lasts until the next start; for good:\n"
+            "sudo apt install cpufrequtils && echo GOVERNOR=performance | sudo tee "
+            "/etc/default/cpufrequtils"};
 }
 
 Finding isolation(const Machine& machine) {
@@ -157,7 +165,9 @@ Finding real_time_share(const Machine& machine) {
         finding.found = fmt::format("real-time threads may run {} of {} us", *runtime, period);
         if (2 * *runtime < period) {  // less than half of each period
             finding.level = Level::warning;
-            finding.fix = "sudo sysctl -w kernel.sched_rt_runtime_us=950000";
+            finding.fix =
+                "echo kernel.sched_rt_runtime_us=950000 | sudo tee /etc/sysctl.d/99-palpate.conf && "
+                "sudo sysctl --system";
         }
     }
     return finding;

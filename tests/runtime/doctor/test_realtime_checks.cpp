@@ -47,14 +47,21 @@ TEST_F(RealtimeChecks, a_refused_priority_is_a_problem_for_a_device_and_a_warnin
               "/etc/security/limits.d/99-palpate.conf\n# then log out and in again");
 }
 
+TEST_F(RealtimeChecks, a_priority_refused_within_its_limit_is_the_control_groups_doing) {
+    machine.fifo.ok = false;
+    EXPECT_THAT(check("fifo").fix, HasSubstr("sysctl -w kernel.sched_rt_runtime_us=-1"));
+}
+
 TEST_F(RealtimeChecks, a_permission_given_after_the_login_asks_for_another_login) {
     machine.fifo.ok = false;
+    machine.fifo_limit = 0;
     machine.write("/etc/security/limits.d/99-palpate.conf", "ada - rtprio 99\nada - memlock unlimited\n");
     EXPECT_THAT(check("fifo").fix, HasSubstr("this session is older: log out and in again"));
 }
 
 TEST_F(RealtimeChecks, a_container_is_permitted_from_outside) {
     machine.fifo.ok = false;
+    machine.fifo_limit = 0;
     machine.write("/.dockerenv", "");
     EXPECT_THAT(check("fifo").fix, HasSubstr("--cap-add SYS_NICE"));
     EXPECT_EQ(check("virtualisation").found, "a container");
