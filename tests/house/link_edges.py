@@ -35,6 +35,7 @@ ROOMS = {
     "collision": {"model"},
     "haptics": {"model", "collision", "realtime"},
     "devices": {"model", "realtime"},
+    "doctor": {"model", "realtime", "haptics", "devices", "json"},
     "visual": {"model", "realtime", "vtk"},
     "apps": {"model", "asset", "recording", "json", "realtime", "collision", "haptics", "devices"},
 }
@@ -43,12 +44,14 @@ APPS = {"model", "asset", "recording", "cli", "realtime", "collision", "haptics"
 EXECUTABLES = {
     "palpate": {"cli", "model"},
     "palpate-touch": APPS,
+    "palpate-doctor": APPS | {"doctor"},
     "palpate-train": APPS | {"visual"},
     "palpate-bench": COMMANDS | APPS,  # measures both sides
 }
 HEAVY = {"itk", "cgal", "cholmod", "metis", "vtk"}
-LEAN = {"palpate_model", "palpate_asset", "palpate_recording", "palpate_cli", "palpate_realtime", "palpate_collision", "palpate_haptics",
-        "palpate_devices", "palpate_apps", "palpate-touch"}
+LEAN = {"palpate_model", "palpate_asset", "palpate_recording", "palpate_cli", "palpate_realtime", "palpate_collision",
+        "palpate_haptics", "palpate_devices", "palpate_openigtlink", "palpate_apps", "palpate_doctor", "palpate-touch",
+        "palpate-doctor"}
 # These two draw, so VTK is theirs; nothing else that is heavy.
 DRAWING = {"palpate_visual", "palpate-train"}
 FAMILIES = {
@@ -59,6 +62,7 @@ FAMILIES = {
     "toml": r"tomlplusplus", "threads": r"Threads::", "house": r"palpate_house",
 }
 FORBIDDEN_SONAMES = {"palpate-touch": r"libITK|libitk|libCGAL|libcholmod|libmetis|libvtk",
+                     "palpate-doctor": r"libITK|libitk|libCGAL|libcholmod|libmetis|libvtk",
                      "palpate-train": r"libITK|libitk|libCGAL|libcholmod|libmetis"}
 
 

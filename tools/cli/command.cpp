@@ -166,7 +166,8 @@ int Command::parse(int argc, char** argv) {
     return ExitCode::usage;
 }
 
-void Command::emit(nlohmann::ordered_json result, double seconds, StagedFile* json_file) const {
+void Command::emit(nlohmann::ordered_json result, const std::string& text, double seconds,
+                   StagedFile* json_file) const {
     result["schema"] = "palpate." + text_.name + "/1";
     result["version"] = version();
     result["seconds"] = seconds;
@@ -176,6 +177,8 @@ void Command::emit(nlohmann::ordered_json result, double seconds, StagedFile* js
         json_file->commit();
     } else if (json_path_ == "-") {
         std::cout << result.dump(2) << '\n';
+    } else if (!text.empty()) {
+        std::cout << text;
     } else {
         print_lines(result, "");
     }
@@ -206,7 +209,7 @@ int Command::run(int argc, char** argv, const std::function<nlohmann::ordered_js
         if (!json_path_.empty() && json_path_ != "-") json_file.emplace(json_path_, force_);
         nlohmann::ordered_json result = job(session);
         session.progress.finish();
-        emit(std::move(result),
+        emit(std::move(result), session.text,
              std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
              json_file ? &*json_file : nullptr);
         std::cout.flush();

@@ -55,6 +55,8 @@ struct Session {
     Progress progress;   ///< talks on stderr, silent with --quiet
     /// Set by a job whose result is worth printing though a contract is not met: exit code 4.
     std::optional<ErrorDetail> shortfall;
+    /// Set by a job that has something better for a person to read than lines "name value".
+    std::string text;
 
     /// Opens an output that appears whole at commit() or not at all; an existing file without --force throws
     /// InvalidInput.
@@ -114,7 +116,8 @@ class Command {
     static std::string finite_number(const std::string& text);
     CLI::Option* remember(Parameter::Kind kind, CLI::Option* option, const std::string& help);
     int parse(int argc, char** argv);
-    void emit(nlohmann::ordered_json result, double seconds, StagedFile* json_file) const;
+    void emit(nlohmann::ordered_json result, const std::string& text, double seconds,
+              StagedFile* json_file) const;
 
     CommandText text_;
     CLI::App app_;

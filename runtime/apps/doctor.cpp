@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "formats/asset/asset.hpp"
+#include "runtime/apps/statistics_json.hpp"
+#include "runtime/doctor/case_checks.hpp"
+#include "runtime/doctor/environment_checks.hpp"
+#include "runtime/doctor/library_checks.hpp"
+#include "runtime/doctor/realtime_checks.hpp"
+#include "runtime/doctor/report.hpp"
+#include "runtime/doctor/wake_ups.hpp"
+#include "tools/cli/command.hpp"
+
+namespace palpate {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+    std::filesystem::path asset;
+    double seconds = 3;
+    bool simulated = false;
+};
+
+void append(Findings& findings, Findings more) {
+    findings.insert(findings.end(), std::make_move_iterator(more.begin()),
+                    std::make_move_iterator(more.end()));
+}
+
+Json measured_json(const WakeUps& wake_ups) {
+    return {{"real_time", wake_ups.real_time},
+            {"deadlines", wake_ups.late_ns.count()},
+            {"missed", wake_ups.missed},
+            {"wake_latency_us", percentiles_json(wake_ups.late_ns, 1e3)}};
+}
+
+Json examine(const Options& options, cli::Session& session) {
+    if (!(options.seconds >= 0.1 && options.seconds <= 3600))
+        throw UsageError({"--seconds", fmt::format("{}", options.seconds), "0.1 to 3600", ""});
+    const Purpose purpose = options.simulated ? Purpose::simulation : Purpose::device;
+    const Machine machine = this_machine();
+    Findings findings = realtime_findings(machine, purpose);
+    const WakeUps servo = measure_servo(options.seconds);
+    const WakeUps without = measure_without_priority(options.seconds);
+    append(findings, wake_up_findings(servo, without, purpose));
+    if (purpose == Purpose::device) append(findings, library_findings(machine));
+    append(findings, environment_findings(machine, purpose));
+    if (purpose == Purpose::device) append(findings, usb_findings(machine, find_usb_devices(machine)));
+    if (!options.asset.empty()) append(findings, case_findings(read_asset(options.asset)));
+
+    const std::size_t problems = count(findings, Level::problem), warnings = count(findings, Level::warning);
+    const std::string ready_for = options.simulated ? "the simulated device" : "a device";
+    session.text = fmt::format("{}\n{} for {}; problems: {}, warnings: {}\n", report_text(findings),
+                               problems == 0 ? "ready" : "not ready", ready_for, problems, warnings);
+    if (problems > 0)
+        session.shortfall = ErrorDetail{"this machine", fmt::format("not ready for {}", ready_for), "",
+                                        "mend the problems above and run this again"};
+    return {{"ready_for", options.simulated ? "simulation" : "device"},
+            {"ready", problems == 0},
+            {"problems", problems},
+            {"warnings", warnings},
+            {"rate_held_hz", rate_held(servo)},
+            {"measured", {{"servo", measured_json(servo)}, {"without_priority", measured_json(without)}}},
+            {"findings", report_json(findings, machine)}};
+}
+
+}  // namespace
+}  // namespace palpate
+
+int main(int argc, char** argv) {
+    using namespace palpate;
+    cli::Command command(
+        {.name = "doctor",
+         .summary = "Examines this machine: real-time permissions, timing, device library, surroundings",
+         .examples = {"palpate doctor case.vtkhdf", "palpate doctor --simulated --json machine.json"},
+         .notes =
+             "Each finding is ok, a warning or a problem, and what is wrong comes with shell lines that mend "
+             "it. Exits with 0 if nothing is a problem, warnings or not, and with 4 if this machine is not "
+             "ready for a device. Where there is no device, as in continuous integration, --simulated leaves "
+             "out what only a device needs and takes a refused real-time priority for a warning. The rate "
+             "held is the highest of 1000, 500 and 250 Hz whose period is longer than what 99.9 % of the "
+             "wake-ups are late by and 100 us for the tick. No device is opened. JSON is for support: it "
+             "names neither user nor machine nor home."});
+    Options options;
+    command.input("case", options.asset, "hold this case (.vtkhdf) against each device");
+    command.option("--seconds", options.seconds, "of each of the two measurements, 0.1 to 3600", "s");
+    command.flag("--simulated", options.simulated, "ask only for what the simulated device needs");
+    return command.run(argc, argv, [&](cli::Session& session) { return examine(options, session); });
+}
