@@ -33,11 +33,12 @@ ROOMS = {
     "collision": {"model"},
     "haptics": {"model", "collision", "realtime"},
     "devices": {"model", "realtime"},
+    "openigtlink": {"model", "realtime", "haptics", "igtl"},
     "visual": {"model", "realtime", "vtk"},
     "apps": {"model", "asset", "realtime", "collision", "haptics", "devices"},
 }
 COMMANDS = {"model", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "build", "mesh", "condense", "seeds", "json"}
-APPS = {"model", "asset", "cli", "realtime", "collision", "haptics", "devices", "apps", "json"}
+APPS = {"model", "asset", "cli", "realtime", "collision", "haptics", "devices", "openigtlink", "apps", "json"}
 EXECUTABLES = {
     "palpate": {"cli", "model"},
     "palpate-touch": APPS,
@@ -46,12 +47,12 @@ EXECUTABLES = {
 }
 HEAVY = {"itk", "cgal", "cholmod", "metis", "vtk"}
 LEAN = {"palpate_model", "palpate_asset", "palpate_cli", "palpate_realtime", "palpate_collision", "palpate_haptics",
-        "palpate_devices", "palpate_apps", "palpate-touch"}
+        "palpate_devices", "palpate_openigtlink", "palpate_apps", "palpate-touch"}
 # These two draw, so VTK is theirs; nothing else that is heavy.
 DRAWING = {"palpate_visual", "palpate-train"}
 FAMILIES = {
     "eigen": r"Eigen3::", "hdf5": r"hdf5|HDF5|/libhdf5|libsz|libz\.|libdl|libm\.|^dl$|^m$", "openssl": r"OpenSSL::",
-    "dcmtk": r"/libdcm|/libof(?:log|std)",
+    "dcmtk": r"/libdcm|/libof(?:log|std)", "igtl": r"OpenIGTLink::",
     "itk": r"ITK|itk|gdcm", "cgal": r"CGAL", "vtk": r"VTK::|X11::", "cholmod": r"cholmod", "metis": r"libmetis",
     "lapack": r"lapacke|openblas", "cli11": r"CLI11::", "spdlog": r"spdlog", "fmt": r"fmt::", "json": r"nlohmann_json",
     "toml": r"tomlplusplus", "threads": r"Threads::", "house": r"palpate_house",
