@@ -85,6 +85,7 @@ void SessionStream::publish(const TickResult& result,
     const auto tool = static_cast<std::size_t>(result.tool);
     if (tool >= shown_.size()) return;
     Shown& shown = shown_[tool]->back();
+    shown.known = true;
     shown.result = result;
     shown.point_count = std::min(contact_points.size(), result.active_contacts().size());
     for (std::size_t i = 0; i < shown.point_count; ++i)
@@ -135,7 +136,8 @@ void SessionStream::compose() {
     if (!frame_is_new_) return;
     frame_.clear();
     const std::uint64_t time = message_time();
-    for (std::size_t tool = 0; tool < shown_.size(); ++tool) append_tool(shown_[tool]->front(), tool, time);
+    for (std::size_t tool = 0; tool < shown_.size(); ++tool)
+        if (shown_[tool]->front().known) append_tool(shown_[tool]->front(), tool, time);
 }
 
 void SessionStream::append_tool(const Shown& shown, std::size_t tool, std::uint64_t time) {
@@ -169,11 +171,11 @@ void SessionStream::append_tool(const Shown& shown, std::size_t tool, std::uint6
 void SessionStream::serve(Client& client, std::uint32_t faults) {
     drain(client);
     client.faults |= faults;
+    client.behind |= frame_is_new_;
     flush(client);
     if (!client.socket.is_open()) return;
-    const bool due = frame_is_new_ || (!client.greeted && !frame_.empty());
     if (!client.unsent.empty()) {
-        skipped_ += due ? 1 : 0;
+        skipped_ += frame_is_new_ ? 1 : 0;
         if (steady_clock::now() - client.last_progress > stall_patience) {
             client.socket = {};
             ++dropped_;
@@ -186,10 +188,11 @@ void SessionStream::serve(Client& client, std::uint32_t faults) {
         client.told_faults = client.faults;
     }
     client.faults = no_fault;
-    if (due) {
+    if (client.behind && !frame_.empty()) {
         client.unsent.insert(client.unsent.end(), frame_.begin(), frame_.end());
         ++frames_;
     }
+    client.behind = false;
     client.greeted = true;
     flush(client);
 }

@@ -83,6 +83,7 @@ class SessionStream {
         TickResult result;
         std::array<std::array<double, 3>, max_contacts> points{};
         std::size_t point_count = 0;
+        bool known = false;
     };
     struct Client {
         TcpSocket socket;
@@ -90,6 +91,7 @@ class SessionStream {
         std::chrono::steady_clock::time_point last_progress;
         std::uint32_t faults = no_fault, told_faults = no_fault;  // since the last status; in it
         bool greeted = false;
+        bool behind = true;  // has not got the latest frame
     };
 
     void run();
