@@ -17,6 +17,15 @@ find_package(spdlog REQUIRED)
 find_package(fmt REQUIRED)
 find_package(nlohmann_json 3 REQUIRED)
 
+# OpenIGTLink: the protocol by which trackers and 3D Slicer exchange poses; its C structures and CRC, and in
+# tests its own sockets as the peer. Debian's UseOpenIGTLink.cmake changes global flags (-fno-tree-vectorize,
+# include folders) and its config names no target, so the target is ours.
+find_path(PALPATE_OPENIGTLINK_INCLUDE igtl_header.h PATH_SUFFIXES openigtlink REQUIRED)
+find_library(PALPATE_OPENIGTLINK_LIBRARY OpenIGTLink REQUIRED)
+add_library(OpenIGTLink::OpenIGTLink UNKNOWN IMPORTED)
+set_target_properties(OpenIGTLink::OpenIGTLink PROPERTIES IMPORTED_LOCATION "${PALPATE_OPENIGTLINK_LIBRARY}"
+    INTERFACE_INCLUDE_DIRECTORIES "${PALPATE_OPENIGTLINK_INCLUDE}")
+
 if(PALPATE_TOOLS)
     # toml++: case files; keeps line and column of every value for error messages.
     find_package(tomlplusplus 3 REQUIRED)

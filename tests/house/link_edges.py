@@ -36,11 +36,12 @@ ROOMS = {
     "haptics": {"model", "collision", "realtime"},
     "devices": {"model", "realtime"},
     "doctor": {"model", "realtime", "haptics", "devices", "json"},
+    "openigtlink": {"model", "realtime", "haptics", "igtl"},
     "visual": {"model", "realtime", "vtk"},
-    "apps": {"model", "asset", "recording", "json", "realtime", "collision", "haptics", "devices"},
+    "apps": {"model", "asset", "recording", "json", "realtime", "collision", "haptics", "devices", "openigtlink"},
 }
 COMMANDS = {"model", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "build", "mesh", "condense", "seeds", "json"}
-APPS = {"model", "asset", "recording", "cli", "realtime", "collision", "haptics", "devices", "apps", "json"}
+APPS = {"model", "asset", "recording", "cli", "realtime", "collision", "haptics", "devices", "openigtlink", "apps", "json"}
 EXECUTABLES = {
     "palpate": {"cli", "model"},
     "palpate-touch": APPS,
@@ -56,7 +57,7 @@ LEAN = {"palpate_model", "palpate_asset", "palpate_recording", "palpate_cli", "p
 DRAWING = {"palpate_visual", "palpate-train"}
 FAMILIES = {
     "dl": r"^dl$", "eigen": r"Eigen3::", "hdf5": r"hdf5|HDF5|/libhdf5|libsz|libz\.|libdl|libm\.|^dl$|^m$", "openssl": r"OpenSSL::",
-    "dcmtk": r"/libdcm|/libof(?:log|std)",
+    "dcmtk": r"/libdcm|/libof(?:log|std)", "igtl": r"OpenIGTLink::",
     "itk": r"ITK|itk|gdcm", "cgal": r"CGAL", "vtk": r"VTK::|X11::", "cholmod": r"cholmod", "metis": r"libmetis",
     "lapack": r"lapacke|openblas", "cli11": r"CLI11::", "spdlog": r"spdlog", "fmt": r"fmt::", "json": r"nlohmann_json",
     "toml": r"tomlplusplus", "threads": r"Threads::", "house": r"palpate_house",
