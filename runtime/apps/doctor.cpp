@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <atomic>
+#include <chrono>
 #include <fmt/format.h>
+#include <span>
+#include <thread>
 
 #include "formats/asset/asset.hpp"
+#include "runtime/apps/physical_devices.hpp"
 #include "runtime/apps/statistics_json.hpp"
+#include "runtime/devices/hd_session.hpp"
 #include "runtime/doctor/case_checks.hpp"
+#include "runtime/doctor/device_checks.hpp"
 #include "runtime/doctor/environment_checks.hpp"
 #include "runtime/doctor/library_checks.hpp"
 #include "runtime/doctor/realtime_checks.hpp"
@@ -18,6 +25,7 @@ using Json = nlohmann::ordered_json;
 
 struct Options {
     std::filesystem::path asset;
+    std::string device;
     double seconds = 3;
     bool simulated = false;
 };
@@ -25,6 +33,41 @@ struct Options {
 void append(Findings& findings, Findings more) {
     findings.insert(findings.end(), std::make_move_iterator(more.begin()),
                     std::make_move_iterator(more.end()));
+}
+
+// Opens devices and looks at their first half second; no force is rendered.
+Findings opened_device_findings(const std::string& text) {
+    constexpr std::size_t ticks = 500;
+    const std::optional<PhysicalDevice> asked = parse_physical_device(text);
+    if (!asked || asked->tracker)
+        throw UsageError({"--device", text, "openhaptics, openhaptics:NAME or openhaptics:NAME,NAME", ""});
+    Findings findings;
+    try {
+        HdSession session({{}, asked->driver_names});
+        const std::span<Device* const> devices = session.devices();
+        std::vector<std::vector<DeviceState>> states(devices.size(), std::vector<DeviceState>(ticks));
+        std::atomic<std::size_t> seen{0};
+        session.servo().start([&](const ServoTick& wake) {
+            const std::size_t tick = seen.load();
+            for (std::size_t i = 0; i < devices.size(); ++i) {
+                const DeviceState state = devices[i]->read(wake.time);
+                if (tick < ticks) states[i][tick] = state;
+            }
+            for (Device* device : devices) device->write({0, 0, 0});
+            if (tick < ticks) seen.store(tick + 1);
+        });
+        for (int i = 0; i < 200 && seen.load() < ticks; ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        session.servo().stop();
+        for (std::size_t i = 0; i < devices.size(); ++i)
+            append(findings,
+                   device_findings({devices[i]->name(), devices[i]->calibration(), devices[i]->limits(),
+                                    std::span(states[i]).first(seen.load())}));
+    } catch (const Error& error) {
+        findings.push_back(
+            {"device", "device", Level::problem, error.what(), "# " + error.detail().next_step});
+    }
+    return findings;
 }
 
 Json measured_json(const WakeUps& wake_ups) {
@@ -46,6 +89,7 @@ Json examine(const Options& options, cli::Session& session) {
     if (purpose == Purpose::device) append(findings, library_findings(machine));
     append(findings, environment_findings(machine, purpose));
     if (purpose == Purpose::device) append(findings, usb_findings(machine, find_usb_devices(machine)));
+    if (!options.device.empty()) append(findings, opened_device_findings(options.device));
     if (!options.asset.empty()) append(findings, case_findings(read_asset(options.asset)));
 
     const std::size_t problems = count(findings, Level::problem), warnings = count(findings, Level::warning);
@@ -79,11 +123,15 @@ int main(int argc, char** argv) {
              "ready for a device. Where there is no device, as in continuous integration, --simulated leaves "
              "out what only a device needs and takes a refused real-time priority for a warning. The rate "
              "held is the highest of 1000, 500 and 250 Hz whose period is longer than what 99.9 % of the "
-             "wake-ups are late by and 100 us for the tick. No device is opened. JSON is for support: it "
+             "wake-ups are late by and 100 us for the tick. A device is opened only with --device: its "
+             "calibration, its first pose and its workspace are looked at, and it renders no force. JSON is "
+             "for support: it "
              "names neither user nor machine nor home."});
     Options options;
     command.input("case", options.asset, "hold this case (.vtkhdf) against each device");
     command.option("--seconds", options.seconds, "of each of the two measurements, 0.1 to 3600", "s");
+    command.option("--device", options.device,
+                   "also open this one for half a second: openhaptics or openhaptics:NAME[,NAME]");
     command.flag("--simulated", options.simulated, "ask only for what the simulated device needs");
     return command.run(argc, argv, [&](cli::Session& session) { return examine(options, session); });
 }

@@ -29,7 +29,8 @@ std::string csv_field(const std::string& text) {
 
 void write_log_head(std::ostream& log) {
     log << "t_s,device_x_mm,device_y_mm,device_z_mm,tool_x_mm,tool_y_mm,tool_z_mm,force_x_n,force_y_n,"
-           "force_z_n,depth_mm,contacts,body,triangle,tick_us,wake_us,status,tool\n";
+           "force_z_n,depth_mm,contacts,body,triangle,tick_us,wake_us,status,tool,"
+           "faults\n";
 }
 
 void RunRecord::add(const TickResult& result) {
@@ -76,11 +77,11 @@ void RunRecord::write_row(const TickResult& r) {
     fmt::format_to(
         std::back_inserter(row),
         "{:.3f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.5f},{:.5f},{:.5f},{:.4f},{},{},{},{:.2f},"
-        "{:.2f},{},{}\n",
+        "{:.2f},{},{},{}\n",
         r.time, d[0], d[1], d[2], t[0], t[1], t[2], f[0], f[1], f[2], r.depth, r.contact_count,
         r.body < 0 ? "" : csv_field(model_.body_name(static_cast<std::size_t>(r.body))),
         r.contact_count > 0 ? r.contacts[0].triangle : -1, 1e-3 * static_cast<double>(r.tick_ns),
-        1e-3 * static_cast<double>(r.wake_latency_ns), status_text(r.status), r.tool);
+        1e-3 * static_cast<double>(r.wake_latency_ns), status_text(r.status), r.tool, fault_names(r.faults));
     log_->write(row.data(), static_cast<std::streamsize>(row.size()));
 }
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <chrono>
-#include <fstream>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -13,13 +11,19 @@
 #include "formats/asset/asset.hpp"
 #include "formats/model/errors.hpp"
 #include "runtime/apps/hand_script.hpp"
-#include "runtime/apps/replay.hpp"
+#include "runtime/apps/live_stream.hpp"
+#include "runtime/apps/physical_devices.hpp"
 #include "runtime/apps/run_record.hpp"
+#include "runtime/apps/run_recorder.hpp"
+#include "runtime/apps/run_watch.hpp"
 #include "runtime/apps/simulation.hpp"
 #include "runtime/apps/start_recording.hpp"
 #include "runtime/apps/statistics_json.hpp"
 #include "runtime/apps/touch_json.hpp"
+#include "runtime/apps/touch_outputs.hpp"
+#include "runtime/apps/touch_replay.hpp"
 #include "runtime/apps/touch_target.hpp"
+#include "runtime/devices/mounted_device.hpp"
 #include "runtime/devices/simulated_device.hpp"
 #include "runtime/haptics/servo_loop.hpp"
 #include "runtime/realtime/process_age.hpp"
@@ -32,7 +36,7 @@ using Json = nlohmann::ordered_json;
 
 struct Options {
     std::filesystem::path asset, log, curve, record, replay;
-    std::string script = "press", body, target, second, scheme = "continuous", device, shaft;
+    std::string script = "press", body, target, second, scheme = "continuous", device, shaft, stream;
     double seconds = 10, depth = 3, speed = 20, record_seconds = 300;
     std::uint64_t seed = 1;
     std::optional<std::size_t> column;
@@ -41,7 +45,7 @@ struct Options {
 
 // What the hand does, and where if that was chosen here.
 struct Plan {
-    HandPath path;
+    std::optional<HandPath> path;  // none where a person's hand moves
     std::optional<TouchTarget> target;
     double seconds;
 };
@@ -62,8 +66,8 @@ void require_positive(double seconds) {
     if (!(seconds >= 1e-3)) throw UsageError({"--seconds", std::to_string(seconds), "0.001 or more", ""});
 }
 
-Plan plan_of(const Options& options, const Case& patient_case, const HapticModel& model) {
-    if (!options.column && !is_made_to_measure(options.script)) {
+Plan plan_of(const Options& options, bool physical, const Case& patient_case, const HapticModel& model) {
+    if (!physical && !options.column && !is_made_to_measure(options.script)) {
         HandPath path = recorded_path(options.script);
         const double seconds = options.seconds_given ? options.seconds : path.duration();
         require_positive(seconds);
@@ -72,6 +76,7 @@ Plan plan_of(const Options& options, const Case& patient_case, const HapticModel
     if (!options.column) require_positive(options.seconds);
     const TouchTarget target =
         choose_touch_target(patient_case, model, options.body, point_of("--target", options.target));
+    if (physical) return {std::nullopt, target, options.seconds};
     // The published schemes know the tip's centre alone.
     const bool has_radius = model.scheme() == ContactScheme::continuous;
     const ScriptSettings settings{.tool_radius = has_radius ? model.settings().tool_radius : 0,
@@ -106,139 +111,104 @@ std::unique_ptr<Device> device_of(const Options& options, const HapticModel& mod
     return std::make_unique<SimulatedDevice>(std::move(path), limits, shaft);
 }
 
-// Ticks in the haptic thread while this one takes the results.
+// The devices of a run, one for each tool.
+struct Held {
+    std::unique_ptr<PhysicalDevices> physical;
+    std::vector<std::unique_ptr<Device>> simulated;
+    std::vector<Device*> devices;
+    Servo* servo = nullptr;  // null: the loop's own
+};
+
+Held hold(const Options& options, const std::optional<PhysicalDevice>& physical, const Plan& plan,
+          const HapticModel& model) {
+    Held held;
+    const Eigen::Vector3d up = plan.target ? plan.target->place.normal : anterior;
+    if (physical) {
+        const Eigen::Vector3d start = start_outside(plan.target->place, model.settings().tool_radius);
+        held.physical = std::make_unique<PhysicalDevices>(*physical, start, upright(up));
+        held.devices = held.physical->devices();
+        held.servo = held.physical->servo();
+        return held;
+    }
+    const std::array<double, 3> shaft = shaft_of(options, plan);
+    held.simulated.push_back(device_of(options, model, *plan.path, up, shaft));
+    if (!options.second.empty())
+        held.simulated.push_back(device_of(options, model, recorded_path(options.second), anterior, shaft));
+    for (const auto& device : held.simulated) held.devices.push_back(device.get());
+    return held;
+}
+
+// Ticks in the haptic thread while this one takes the results, until the time is over or the user asks.
 void run_in_real_time(ServoLoop& loop, double seconds, const std::function<void(const TickResult&)>& take) {
+    constexpr std::chrono::seconds patience{5};
     TickResult result{};
-    double time = 0;
+    auto last_tick = std::chrono::steady_clock::now();
     const auto pop = [&] {
         if (!loop.ring().pop(result)) return false;
         take(result);
-        time = result.time;
         return true;
     };
-    while (time < seconds)
-        if (!pop()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    while (result.time < seconds && !cli::interrupt_asked()) {
+        const auto now = std::chrono::steady_clock::now();
+        if (pop())
+            last_tick = now;
+        else if (now - last_tick > patience)
+            throw SystemFailure({"the servo", "has not ticked for 5 s", "1000 ticks a second",
+                                 "check the device's cable, then 'palpate doctor'"});
+        else
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
     loop.stop();
     while (pop()) {
     }
 }
 
-// What a run leaves behind besides its recording: whole files or none.
-class Outputs {
-  public:
-    Outputs(const Options& options, const cli::Session& session) : options_(options) {
-        if (!options.log.empty()) {
-            log_.open(log_file_.emplace(options.log, session.force).path());
-            write_log_head(log_);
-        }
-        if (!options.curve.empty()) curve_file_.emplace(options.curve, session.force);
-    }
-
-    /// One for each tool.
-    std::vector<RunRecord> records_of(const HapticModel& model) {
-        return {model.tool_count(), RunRecord(model, log_file_ ? &log_ : nullptr)};
-    }
-
-    void commit(const RunRecord& first, const std::string& title) {
-        if (log_file_) {
-            log_.close();
-            if (!log_)
-                throw SystemFailure({options_.log.string(), "could not be written", "", "check free space"});
-        }
-        if (curve_file_) {
-            curve_file_->write_text(force_curve_svg(first.curve(), title));
-            curve_file_->commit();
-        }
-        if (log_file_) log_file_->commit();
-    }
-
-  private:
-    const Options& options_;
-    std::optional<cli::StagedFile> log_file_, curve_file_;
-    std::ofstream log_;
-};
-
-// What a run was like, its recording says.
-void refuse_others(const cli::Command& command, std::initializer_list<const CLI::Option*> of_a_replay) {
-    for (const cli::Parameter& parameter : command.parameters())
-        if (parameter.option->count() > 0 &&
-            std::ranges::find(of_a_replay, parameter.option) == of_a_replay.end())
-            throw UsageError({parameter.option->get_name(), "with --replay", "--log and --curve at most",
-                              "a recording says itself what the run was like"});
-}
-
-std::string force_text(const std::array<double, 3>& f) {
-    return fmt::format("({}, {}, {}) N", f[0], f[1], f[2]);
-}
-
-Json replay_recording(const Options& options, cli::Session& session) {
-    Outputs outputs(options, session);
-    const Recording recording = read_recording(options.replay);
-    const Case patient_case = read_asset(options.asset);
-    const auto model = model_of(recording, options.replay, options.asset, patient_case);
-    std::vector<RunRecord> records = outputs.records_of(*model);
-    const ReplayOutcome outcome = replay(recording, *model, [&](const TickResult& result) {
-        records[static_cast<std::size_t>(result.tool)].add(result);
-    });
-    if (!outcome.started)
-        throw InvalidInput({options.replay.string(), "no tick from which a replay could start",
-                            "the run's first tick, or three in a row without contact, force and fault",
-                            "record for longer: --record-seconds"});
-    outputs.commit(records.front(), patient_case.name + ": replay");
-    if (recording.rows_unreadable > 0)
-        spdlog::warn("{}: {} rows at the end never reached the disk", options.replay.string(),
-                     recording.rows_unreadable);
-    if (*outcome.started > 0 || outcome.skipped_ticks > 0)
-        spdlog::warn("{}: starts at tick {}; {} ticks are missing, {} were skipped for want of a free one",
-                     options.replay.string(), *outcome.started, outcome.missing_ticks, outcome.skipped_ticks);
-    if (const auto& first = outcome.first_difference)
-        session.shortfall = {
-            options.replay.string(),
-            fmt::format("tick {} of tool {} gives {}; {} of {} ticks differ", first->tick, first->tool,
-                        force_text(first->replayed), outcome.different_ticks, outcome.ticks),
-            "the recorded " + force_text(first->recorded),
-            "the recording is of palpate " + recording.head.palpate_version + ", this is " + cli::version()};
-    Json result{{"case", patient_case.name},
-                {"script", "replay"},
-                {"scheme", recording.head.scheme},
-                {"device", recording.head.devices.front().name},
-                {"coupling_stiffness_n_per_mm", model->coupling()},
-                {"clock", recording.head.clock},
-                {"replay", replay_json(outcome)}};
-    result.update(tool_json(records[0], patient_case, *model));
-    if (records.size() > 1) result["second"] = tool_json(records[1], patient_case, *model);
-    return result;
+// A combination of options that makes no sense, with what to do.
+void refuse_contradictions(const Options& options, const std::optional<PhysicalDevice>& physical) {
+    const bool continuous = find_contact_scheme(options.scheme) == ContactScheme::continuous;
+    if (!options.second.empty() && !continuous)
+        throw UsageError({"--second", "with --scheme " + options.scheme, "the scheme 'continuous'",
+                          "the published schemes know one tool"});
+    if (options.virtual_clock && !options.stream.empty())
+        throw UsageError({"--stream", "with --virtual-clock", "the real clock", ""});
+    if (!physical) return;
+    const std::string with = "with --device " + options.device;
+    if (options.virtual_clock)
+        throw UsageError({"--virtual-clock", with, "the real clock", "a hand keeps its own time"});
+    if (!options.second.empty())
+        throw UsageError({"--second", with, "--device openhaptics:NAME,NAME", "a hand holds each device"});
+    if (options.column) throw UsageError({"--column", with, "a simulated device", ""});
 }
 
 Json touch(const Options& options, cli::Session& session) {
-    if (!options.replay.empty()) return replay_recording(options, session);
-    Outputs outputs(options, session);
+    TouchOutputs outputs(options.log, options.curve, session);
+    if (!options.replay.empty()) return replay_recording(options.replay, options.asset, outputs, session);
+    const std::optional<PhysicalDevice> physical = parse_physical_device(options.device);
+    refuse_contradictions(options, physical);
     const Case patient_case = load_asset(options.asset);
-    const ContactScheme scheme = find_contact_scheme(options.scheme);
-    if (!options.second.empty() && scheme != ContactScheme::continuous)
-        throw UsageError({"--second", "with --scheme " + options.scheme, "the scheme 'continuous'",
-                          "the published schemes know one tool"});
-    HapticModel model(patient_case, scheme, options.second.empty() ? 1 : 2);
-    const Plan plan = plan_of(options, patient_case, model);
-    const std::array<double, 3> shaft = shaft_of(options, plan);
-    std::vector<std::unique_ptr<Device>> devices;
-    const Eigen::Vector3d up = plan.target ? plan.target->place.normal : anterior;
-    devices.push_back(device_of(options, model, plan.path, up, shaft));
-    if (!options.second.empty())
-        devices.push_back(device_of(options, model, recorded_path(options.second), anterior, shaft));
-    std::vector<Device*> held;
-    for (const auto& device : devices) held.push_back(device.get());
-    ServoLoop loop(model, held);
+    const std::size_t simulated_tools = options.second.empty() ? 1 : 2;
+    HapticModel model(patient_case, find_contact_scheme(options.scheme),
+                      physical ? physical->tool_count() : simulated_tools);
+    const Plan plan = plan_of(options, physical.has_value(), patient_case, model);
+    if (!options.virtual_clock) cli::end_softly_on_interrupt();
+    const Held held = hold(options, physical, plan, model);
+    ServoLoop loop(model, held.devices, held.servo);
 
     const std::string clock = options.virtual_clock ? "virtual" : "real";
     std::optional<RunRecorder> recorder;
     if (!options.record.empty())
         recorder.emplace(start_recording(
-            options.record, recording_head(options.asset, patient_case, model, held, clock, cli::version()),
+            options.record,
+            recording_head(options.asset, patient_case, model, held.devices, clock, cli::version()),
             options.record_seconds, session));
+    std::optional<LiveStream> stream;
+    if (!options.stream.empty()) stream.emplace(options.stream, patient_case, model.tool_count());
     std::vector<RunRecord> records = outputs.records_of(model);
+    RunWatch watch(options.asset, loop, [](const std::string& sentence) { spdlog::warn("{}", sentence); });
     const auto take = [&](const TickResult& result) {
         records[static_cast<std::size_t>(result.tool)].add(result);
+        watch.add(result);
+        if (stream) stream->show(result);
         if (!recorder) return;
         recorder->add(result);
         if (!options.virtual_clock) recorder->set_lost(loop.ring().dropped());
@@ -252,10 +222,16 @@ Json touch(const Options& options, cli::Session& session) {
         ready_s = process_age();
         run_in_real_time(loop, plan.seconds, take);
     }
+    if (cli::interrupt_asked()) {
+        spdlog::warn("interrupted: the force has gone to zero, only a recording is kept");
+        throw cli::Interrupted();
+    }
 
     // A script's file name may name a patient.
-    const std::string script = is_made_to_measure(options.script) ? options.script : "file";
-    outputs.commit(records.front(), patient_case.name + ": " + script);
+    const std::string script = physical                             ? "none"
+                               : is_made_to_measure(options.script) ? options.script
+                                                                    : "file";
+    outputs.commit(records.front(), patient_case.name + ": " + (physical ? options.device : script));
 
     const ServoStatistics statistics = loop.statistics();
     for (const SetupResult& setup : statistics.setup)
@@ -264,7 +240,7 @@ Json touch(const Options& options, cli::Session& session) {
     Json result{{"case", patient_case.name},
                 {"script", script},
                 {"scheme", options.scheme},
-                {"device", devices.front()->name()},
+                {"device", held.devices.front()->name()},
                 {"coupling_stiffness_n_per_mm", model.coupling()},
                 {"clock", clock},
                 {"ready_s", ready_s},
@@ -272,7 +248,8 @@ Json touch(const Options& options, cli::Session& session) {
                 {"overruns", statistics.overruns},
                 {"lost_log_records", lost},
                 {"tick_us", percentiles_json(statistics.tick_ns, 1e3)},
-                {"wake_latency_us", percentiles_json(statistics.wake_latency_ns, 1e3)}};
+                {"wake_latency_us", percentiles_json(statistics.wake_latency_ns, 1e3)},
+                {"faults", watch.faults_json()}};
     if (recorder) result["recording"] = {{"rows", recorder->rows()}, {"lost_rows", lost}};
     if (plan.target) result["target"] = target_json(*plan.target, model);
     result.update(tool_json(records[0], patient_case, model));
@@ -287,7 +264,7 @@ int main(int argc, char** argv) {
     using namespace palpate;
     cli::Command command(
         {.name = "touch",
-         .summary = "Touches an asset with a simulated device at 1 kHz, without a window",
+         .summary = "Touches an asset at 1 kHz with a simulated or a real device, without a window",
          .examples = {"palpate touch case.vtkhdf --script press --seconds 10 --log run.csv --curve force.svg",
                       "palpate touch case.vtkhdf --script hand.txt --json stats.json"},
          .notes =
@@ -297,32 +274,26 @@ int main(int argc, char** argv) {
              "outside; 'random' pushes, slides and leaves; a file has rows 'x y z' (mm), one per "
              "millisecond, or 't x y z' (s, mm); with --column N it is a recording of one axis at 1 kHz, "
              "which moves along the surface's normal. Without --device the hand is infinitely stiff: it is "
-             "where the script says, whatever the force. A simulated device stands with the middle of its "
+             "where the script says, whatever the force.\n"
+             "Devices: touch, desktop and premium are simulated, in a hand that gives way; openhaptics, "
+             "openhaptics:NAME and openhaptics:NAME,NAME (one tool each) are Phantoms and Touches on the "
+             "driver's library, which PALPATE_HD_LIBRARY may name; igtl:HOST:PORT or igtl:HOST:PORT/NAME is "
+             "a tracker's tool over OpenIGTLink, without force. A device stands with the middle of its "
              "workspace where the hand starts, upright on the touched surface; for a path from a file its "
-             "up is the patient's front. Schemes: 'continuous' sweeps the tool every tick; 'single' and "
-             "'twice' are the published ones, with a collision loop at 30 Hz."});
-    Options options;
-    command.input("asset", options.asset, "the case (.vtkhdf)")->required();
-    command.option("--script", options.script,
-                   "what the hand does: press, slide, tremble, let-go, random or a file");
-    command.option("--column", options.column,
-                   "which column of the file, from 1, is one axis' motion: its smallest value clear of the "
-                   "surface, its largest --depth deep");
-             "Scripts: 'press' goes in along the surface's normal, holds 0.5 s and lets go, over and over; "
-             "'slide' presses once and slides 4 mm to either side; 'random' pushes, slides and leaves; a "
-             "file "
-             "has rows 'x y z' (mm), one per millisecond, or 't x y z' (s, mm). Without --device the hand is "
-             "infinitely stiff: it is where the script says, whatever the force. Schemes: 'continuous' "
-             "sweeps "
-             "the tool every tick; 'single' and 'twice' are the published ones, with a collision loop at 30 "
-             "Hz. "
+             "up is the patient's front. 'palpate doctor' says what a device lacks.\n"
+             "Schemes: 'continuous' sweeps the tool every tick; 'single' and 'twice' are the published "
+             "ones, with a collision loop at 30 Hz.\n"
              "A recording has every tick of every tool, with its contacts, in a ring of the last "
              "--record-seconds (formats/recording/SPEC.md, for h5py); it has its name from the start and is "
              "kept however the run ends, where other outputs appear whole or not at all. A replay gives its "
              "forces again, bit for bit, or ends with exit code 4."});
     Options options;
     const CLI::Option* asset = command.input("asset", options.asset, "the case (.vtkhdf)")->required();
-    command.option("--script", options.script, "what the hand does: press, slide, random or a file");
+    command.option("--script", options.script,
+                   "what the hand does: press, slide, tremble, let-go, random or a file");
+    command.option("--column", options.column,
+                   "which column of the file, from 1, is one axis' motion: its smallest value clear of the "
+                   "surface, its largest --depth deep");
     const CLI::Option* seconds =
         command.option("--seconds", options.seconds, "how long; of a file, all unless this is given", "s");
     command.option("--depth", options.depth, "how deep the tool's surface goes below the rest surface", "mm");
@@ -335,18 +306,17 @@ int main(int argc, char** argv) {
                    "what a second tool on the same bodies does: a file as for --script");
     command.option("--scheme", options.scheme, "how contact is found: continuous, single or twice");
     command.option("--device", options.device,
-                   "simulated device that gives way, in a hand that does: touch, desktop or premium");
+                   "touch, desktop, premium, openhaptics[:NAME[,NAME]] or igtl:HOST:PORT[/NAME]");
     command.option(
         "--shaft", options.shaft,
         "x,y,z: direction from the tip along the shaft of both tools, for a case with one; straight out "
         "of the target if not given, and with a file none, so that the tip alone is felt");
     command.option("--seed", options.seed, "of the scripts 'random' and 'tremble'");
-    command.output("--log", options.log, "one row per tick (.csv)");
-    command.output("--curve", options.curve, "force and depth of the first tool over time (.svg)");
-    command.option("--seed", options.seed, "of the script 'random'");
     const CLI::Option* log = command.output("--log", options.log, "one row per tick (.csv)");
     const CLI::Option* curve =
         command.output("--curve", options.curve, "force and depth of the first tool over time (.svg)");
+    command.option("--stream", options.stream,
+                   "PORT or ADDRESS:PORT at which 3D Slicer and others see the session over OpenIGTLink");
     command.output("--record", options.record, "every tick, from the start on (.h5)");
     command.option("--record-seconds", options.record_seconds,
                    "how much of the run's end a recording holds: 46 MB a minute and tool", "s");
@@ -357,7 +327,7 @@ int main(int argc, char** argv) {
                  "tick as fast as possible; forces do not depend on the machine");
     return command.run(argc, argv, [&](cli::Session& session) {
         options.seconds_given = seconds->count() > 0;
-        if (replay->count() > 0) refuse_others(command, {asset, log, curve, replay});
+        if (replay->count() > 0) refuse_beside_replay(command, {asset, log, curve, replay});
         return touch(options, session);
     });
 }

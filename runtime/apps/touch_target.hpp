@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
 #include <optional>
 #include <string>
 
@@ -24,5 +25,10 @@ struct TouchTarget {
 /// to it. Throws UsageError for an unknown name, InvalidInput if the tool reaches no triangle.
 TouchTarget choose_touch_target(const Case& patient_case, const HapticModel& model,
                                 const std::string& body_name, const std::optional<Eigen::Vector3d>& near);
+
+/// Where the centre of a tool of that radius (mm) starts: 5 mm clear of the place, or as far as it is free.
+inline Eigen::Vector3d start_outside(const TouchPoint& place, double tool_radius) {
+    return place.point + place.normal * (tool_radius + std::min(5.0, place.clearance));
+}
 
 }  // namespace palpate

@@ -11,6 +11,9 @@
 #include "formats/asset/asset.hpp"
 #include "formats/model/errors.hpp"
 #include "runtime/apps/hand_script.hpp"
+#include "runtime/apps/live_stream.hpp"
+#include "runtime/apps/physical_devices.hpp"
+#include "runtime/apps/run_watch.hpp"
 #include "runtime/apps/simulation.hpp"
 #include "runtime/apps/start_recording.hpp"
 #include "runtime/apps/statistics_json.hpp"
@@ -29,7 +32,7 @@ using Json = nlohmann::ordered_json;
 
 struct Options {
     std::filesystem::path asset, screenshot, record;
-    std::string size = "1280x720", script, body, scheme = "continuous", device;
+    std::string size = "1280x720", script, body, scheme = "continuous", device, stream;
     double seconds = 0, record_seconds = 300;
 };
 
@@ -56,10 +59,16 @@ std::array<double, 3> array_of(const Eigen::Vector3d& v) {
     return {v.x(), v.y(), v.z()};
 }
 
-// What the tool is held by; where mouse and keyboard move it, `guide` takes the places (p_P, mm) they mean.
+// What the tools are held by; where mouse and keyboard move one, `guide` takes the places (p_P, mm) they
+// mean.
 struct Held {
-    std::unique_ptr<Device> device;
-    std::function<void(const Eigen::Vector3d&)> guide;
+    std::unique_ptr<Device> device = nullptr;
+    std::function<void(const Eigen::Vector3d&)> guide = [](const Eigen::Vector3d&) {};
+    std::unique_ptr<PhysicalDevices> physical = nullptr;
+
+    std::vector<Device*> devices() const {
+        return physical ? physical->devices() : std::vector{device.get()};
+    }
 };
 
 Held device_of(const Options& options, const HapticModel& model, const TouchPoint& place,
@@ -73,9 +82,8 @@ Held device_of(const Options& options, const HapticModel& model, const TouchPoin
         const bool has_radius = model.scheme() == ContactScheme::continuous;
         HandPath path = scripted_path(options, place, has_radius ? model.settings().tool_radius : 0);
         const Eigen::Vector3d up = is_made_to_measure(options.script) ? place.normal : anterior;
-        const auto by_itself = [](const Eigen::Vector3d&) {};
-        if (simulated) return {simulate(*simulated, path, up, shaft), by_itself};
-        return {std::make_unique<SimulatedDevice>(std::move(path), limits, shaft), by_itself};
+        if (simulated) return {.device = simulate(*simulated, path, up, shaft)};
+        return {.device = std::make_unique<SimulatedDevice>(std::move(path), limits, shaft)};
     }
     if (simulated) {
         const Eigen::Isometry3d X_PD = placed_at(*simulated, start, place.normal), X_DP = X_PD.inverse();
@@ -90,15 +98,17 @@ Held device_of(const Options& options, const HapticModel& model, const TouchPoin
 
 // Everything felt since the start, from the ticks that the loop left in its ring.
 struct Felt {
-    double force_peak = 0;  // N
-    double depth_peak = 0;  // mm
-    double travel = 0;      // mm, of the device
-    std::optional<Eigen::Vector3d> last_position;
+    double force_peak = 0;                         // N
+    double depth_peak = 0;                         // mm
+    double travel = 0;                             // mm, of the device
+    std::optional<Eigen::Vector3d> last_position;  // of the first tool
     std::optional<RunRecorder> recorder;
 
-    void take(SpscRing<TickResult>& ring) {
+    void take(SpscRing<TickResult>& ring, RunWatch& watch) {
         for (TickResult tick; ring.pop(tick);) {
+            watch.add(tick);
             if (recorder) recorder->add(tick);
+            if (tick.tool != 0) continue;
             const Eigen::Vector3d position = Eigen::Map<const Eigen::Vector3d>(tick.device_position.data());
             force_peak = std::max(force_peak, Eigen::Map<const Eigen::Vector3d>(tick.force.data()).norm());
             depth_peak = std::max(depth_peak, tick.depth);
@@ -147,16 +157,23 @@ Json train(const Options& options, cli::Session& session) {
 
     session.progress.step("reading the case", 0);
     const Case patient_case = load_asset(options.asset);
-    HapticModel model(patient_case, find_contact_scheme(options.scheme));
+    const std::optional<PhysicalDevice> physical = parse_physical_device(options.device);
+    if (physical && !options.script.empty())
+        throw UsageError({"--script", "with --device " + options.device, "a simulated device", ""});
+    HapticModel model(patient_case, find_contact_scheme(options.scheme),
+                      physical ? physical->tool_count() : 1);
     const TouchPoint place = choose_touch_target(patient_case, model, options.body, std::nullopt).place;
-    const double radius = model.settings().tool_radius;
-    const Eigen::Vector3d start = place.point + place.normal * (radius + std::min(5.0, place.clearance));
-
-    const Held held = device_of(options, model, place, start);
-
-    session.progress.step("opening the window", 0.5);
+    const Eigen::Vector3d start = start_outside(place, model.settings().tool_radius);
     WindowSettings window_settings{.width = width, .height = height, .start = start};
     window_settings.sight = choose_sight(patient_case, place.point, place.normal);
+
+    cli::end_softly_on_interrupt();
+    const Held held = physical ? Held{.physical = std::make_unique<PhysicalDevices>(
+                                          *physical, start, window_settings.sight.axes())}
+                               : device_of(options, model, place, start);
+    const std::vector<Device*> devices = held.devices();
+
+    session.progress.step("opening the window", 0.5);
     TrainWindow window(patient_case, window_settings);
     session.progress.finish();
 
@@ -166,12 +183,15 @@ Json train(const Options& options, cli::Session& session) {
     frame.device_position = frame.tool_position = start;
     window.show(frame);  // the first frame compiles shaders
 
-    ServoLoop loop(model, *held.device);
+    ServoLoop loop(model, devices, held.physical ? held.physical->servo() : nullptr);
+    RunWatch watch(options.asset, loop, [](const std::string& sentence) { spdlog::warn("{}", sentence); });
+    std::optional<LiveStream> stream;
+    if (!options.stream.empty()) stream.emplace(options.stream, patient_case, model.tool_count());
     Felt felt;
     if (!options.record.empty())
         felt.recorder.emplace(start_recording(
             options.record,
-            recording_head(options.asset, patient_case, model, {&held, 1}, "real", cli::version()),
+            recording_head(options.asset, patient_case, model, devices, "real", cli::version()),
             options.record_seconds, session));
     TickRate rate;
     Histogram frame_ns;
@@ -179,13 +199,19 @@ Json train(const Options& options, cli::Session& session) {
     const auto began = Clock::now();
     auto frame_began = began;
     const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - began).count(); };
-    while (!window.closed() && (options.seconds <= 0 || elapsed() < options.seconds)) {
+    while (!window.closed() && !cli::interrupt_asked() &&
+           (options.seconds <= 0 || elapsed() < options.seconds)) {
         const TickResult& tick = loop.latest().read();
         fill_frame(frame, tick, model);
+        frame.faults = watch.recent(tick.time);
         frame.tick_rate_hz = rate.update(tick.tick);
         window.show(frame);
+        loop.visual_beat();
         held.guide(window.hand());
-        felt.take(loop.ring());
+        felt.take(loop.ring(), watch);
+        if (stream)
+            for (std::size_t tool = 0; tool < model.tool_count(); ++tool)
+                stream->show(tool == 0 ? tick : loop.latest(tool).read());
         std::this_thread::sleep_until(frame_began + shortest_frame);
         const auto now = Clock::now();
         frame_ns.record(static_cast<std::uint64_t>(std::chrono::nanoseconds(now - frame_began).count()));
@@ -193,7 +219,11 @@ Json train(const Options& options, cli::Session& session) {
     }
     const double seconds = elapsed();
     loop.stop();
-    felt.take(loop.ring());
+    felt.take(loop.ring(), watch);
+    if (cli::interrupt_asked()) {
+        spdlog::warn("interrupted: the force has gone to zero, only a recording is kept");
+        throw cli::Interrupted();
+    }
     if (picture) {
         window.save_picture(picture->path());
         picture->commit();
@@ -203,7 +233,7 @@ Json train(const Options& options, cli::Session& session) {
     for (const SetupResult& setup : statistics.setup)
         if (!setup.ok) spdlog::warn("{}", setup.message);
     Json result{{"case", patient_case.name},
-                {"device", scripted ? scripted->name() : guided.name()},
+                {"device", devices.front()->name()},
                 {"frames", frame_ns.count()},
                 {"frames_per_second", static_cast<double>(frame_ns.count()) / seconds},
                 {"frame_ms", percentiles_json(frame_ns, 1e6)},
@@ -213,7 +243,8 @@ Json train(const Options& options, cli::Session& session) {
                 {"wake_latency_us", percentiles_json(statistics.wake_latency_ns, 1e3)},
                 {"force_peak_n", felt.force_peak},
                 {"penetration", {{"device_mm", felt.depth_peak}}},
-                {"device_travel_mm", felt.travel}};
+                {"device_travel_mm", felt.travel},
+                {"faults", watch.faults_json()}};
     if (felt.recorder)
         result["recording"] = {{"rows", felt.recorder->rows()}, {"lost_rows", statistics.lost_records}};
     return result;
@@ -230,11 +261,15 @@ int main(int argc, char** argv) {
          .examples = {"palpate train case.vtkhdf",
                       "palpate train case.vtkhdf --script press --seconds 10 --screenshot press.png"},
          .notes =
-             "Without a device, mouse and keyboard move the hand: drag with the left button in the plane of "
-             "view, turn the wheel or press W and S for depth, step with the arrow keys. Drag with the right "
-             "button to turn the view; + and - zoom, C cuts the bodies open, B hides the rigid ones, R goes "
-             "back to the start, H hides the hints, Q or Escape closes. The window needs an X display; "
-             "on a machine without one use 'xvfb-run'."});
+             "Mouse and keyboard move the hand: drag with the left button in the plane of view, turn the "
+             "wheel or press W and S for depth, step with the arrow keys. Drag with the right button to turn "
+             "the view; + and - zoom, C cuts the bodies open, B hides the rigid ones, R goes back to the "
+             "start, H hides the hints, Q or Escape closes. The window needs an X display; on a machine "
+             "without one use 'xvfb-run'.\n"
+             "With --device openhaptics[:NAME[,NAME]] or igtl:HOST:PORT[/NAME], as for 'touch', a person's "
+             "hand moves the tool. A device of OpenHaptics stands before the picture: its right, up and "
+             "towards the user are those of the first view. With touch, desktop or premium mouse and "
+             "keyboard, or a script, hold a simulated device that gives way."});
     Options options;
     command.input("asset", options.asset, "the case (.vtkhdf)")->required();
     command.option("--size", options.size, "WIDTHxHEIGHT of the window", "pixels");
@@ -244,8 +279,9 @@ int main(int argc, char** argv) {
         "what the hand does instead of mouse and keyboard: press, slide, tremble, let-go, random or a "
         "file as for 'touch'");
     command.option("--device", options.device,
-                   "simulated device that gives way, in a hand that does: touch, desktop or premium; where "
-                   "it stands, see 'touch'");
+                   "touch, desktop, premium, openhaptics[:NAME[,NAME]] or igtl:HOST:PORT[/NAME]");
+    command.option("--stream", options.stream,
+                   "PORT or ADDRESS:PORT at which 3D Slicer and others see the session over OpenIGTLink");
     command.option("--scheme", options.scheme, "how contact is found: continuous, single or twice");
     command.option("--body", options.body, "which body to start at; the first deformable one if not given");
     command.output("--record", options.record,

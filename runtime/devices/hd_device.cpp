@@ -93,7 +93,7 @@ void HdDevice::describe(const std::string& name) {
     limits_.max_force = nominal(nominal_max_force);
     limits_.max_continuous_force = nominal(nominal_max_continuous_force);
     limits_.max_stiffness = nominal(nominal_max_stiffness);
-    limits_.damping = nominal(nominal_max_damping);
+    limits_.max_damping = nominal(nominal_max_damping);
     ask_rate();
     std::array<double, 6> box{};
     api_.get_doubles(usable_workspace, box.data());

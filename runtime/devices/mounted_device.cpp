@@ -39,16 +39,24 @@ void MountedDevice::write(const std::array<double, 3>& force) noexcept {
     device_.write(array_of(X_PD_.linear().transpose() * vector_of(force)));
 }
 
-Eigen::Isometry3d mount_upright(const Vector3d& p_D, const Vector3d& p_P, const Vector3d& up) {
+Eigen::Isometry3d mount(const Eigen::Matrix3d& R_PD, const Vector3d& p_D, const Vector3d& p_P) {
+    Eigen::Isometry3d X_PD = Eigen::Isometry3d::Identity();
+    X_PD.linear() = R_PD;
+    X_PD.translation() = p_P - R_PD * p_D;
+    return X_PD;
+}
+
+Eigen::Matrix3d upright(const Vector3d& up) {
     Vector3d x = Vector3d::UnitX() - up.x() * up;
     if (x.squaredNorm() < 1e-6) x = Vector3d::UnitY() - up.y() * up;  // up is along x
     x.normalize();
-    Eigen::Isometry3d X_PD = Eigen::Isometry3d::Identity();
-    X_PD.linear().col(0) = x;
-    X_PD.linear().col(1) = up;
-    X_PD.linear().col(2) = x.cross(up);
-    X_PD.translation() = p_P - X_PD.linear() * p_D;
-    return X_PD;
+    Eigen::Matrix3d R_PD;
+    R_PD << x, up, x.cross(up);
+    return R_PD;
+}
+
+Eigen::Isometry3d mount_upright(const Vector3d& p_D, const Vector3d& p_P, const Vector3d& up) {
+    return mount(upright(up), p_D, p_P);
 }
 
 Vector3d workspace_middle(const DeviceLimits& limits) {

@@ -32,9 +32,14 @@ class MountedDevice final : public Device {
     Eigen::Isometry3d X_PD_;
 };
 
-/// Where a device is mounted so that its y axis (up, on a Phantom) is along `up` and its point `p_D` is at
-/// `p_P` (both mm). `up`: unit; its x axis is as near to the patient's x, from right to left, as that
-/// allows.
+/// Where a device is mounted that is turned by R_PD, and whose point `p_D` is at `p_P` (both mm).
+Eigen::Isometry3d mount(const Eigen::Matrix3d& R_PD, const Eigen::Vector3d& p_D, const Eigen::Vector3d& p_P);
+
+/// How a device is turned, R_PD, so that its y axis (up, on a Phantom) is along `up` (unit); its x axis is as
+/// near to the patient's x, from right to left, as that allows.
+Eigen::Matrix3d upright(const Eigen::Vector3d& up);
+
+/// Both together.
 Eigen::Isometry3d mount_upright(const Eigen::Vector3d& p_D, const Eigen::Vector3d& p_P,
                                 const Eigen::Vector3d& up);
 

@@ -22,11 +22,9 @@ Edges sorted_edges(const Eigen::Vector3d& size) {
     return edges;
 }
 
-// Nominal workspaces, as quoted from the data sheets; see device_model.cpp.
 Edges workspace_of(const DeviceModel& model) {
-    if (model.name == "touch") return {160, 120, 70};
-    if (model.name == "desktop") return {160, 120, 120};
-    return {381, 267, 191};
+    return sorted_edges(Eigen::Map<const Eigen::Vector3d>(model.workspace_high.data()) -
+                        Eigen::Map<const Eigen::Vector3d>(model.workspace_low.data()));
 }
 
 std::string told(const Edges& edges) {

@@ -2,8 +2,10 @@
 #include "runtime/doctor/library_checks.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <set>
 
+#include "runtime/devices/hd_library.hpp"
 #include "runtime/doctor/loader.hpp"
 
 namespace palpate {
@@ -11,7 +13,6 @@ namespace {
 
 using Standing = LibraryPlace::Standing;
 constexpr const char* group = "device library";
-constexpr const char* variable_name = "PALPATE_HD_LIBRARY";
 constexpr const char* maker =
     "https://support.3dsystems.com/s/article/OpenHaptics-for-Linux-Developer-Edition-v34";
 
@@ -74,13 +75,13 @@ std::string get_library() {
         "sudo ./install\nsudo ./install_haptic_driver && sudo ldconfig\n"
         "# a library elsewhere: export {}=/path/to/libHD.so.3.4\n"
         "# no device, only the simulated one: palpate doctor --simulated",
-        maker, variable_name);
+        maker, hd_library_variable);
 }
 
 // The library to be loaded, or the next best with what is wrong.
 std::optional<LibraryPlace> device_library(const Machine& machine) {
     std::optional<LibraryPlace> second_best;
-    for (const char* name : {"libHD.so.3.4", "libHD.so", "libHD.so.3.0"}) {
+    for (const char* name : hd_library_names()) {
         const auto place = find_library(machine, name);
         if (place && place->standing == Standing::loads) return place;
         if (place && !second_best) second_best = place;
@@ -91,12 +92,12 @@ std::optional<LibraryPlace> device_library(const Machine& machine) {
 Finding library_finding(const std::optional<LibraryPlace>& place, const std::string& asked) {
     Finding finding{"library", group, Level::problem, "", ""};
     if (!place && asked.empty()) {
-        finding.found = "none: looked for libHD.so.3.4, libHD.so and libHD.so.3.0";
+        finding.found = fmt::format("none: looked for {}", fmt::join(hd_library_names(), ", "));
         finding.fix = get_library();
     } else if (!place) {
-        finding.found = fmt::format("{}={}: no such library", variable_name, asked);
-        finding.fix =
-            fmt::format("# name the library's own file, or let it be looked for:\nunset {}", variable_name);
+        finding.found = fmt::format("{}={}: no such library", hd_library_variable, asked);
+        finding.fix = fmt::format("# name the library's own file, or let it be looked for:\nunset {}",
+                                  hd_library_variable);
     } else {
         finding.level = place->standing == Standing::loads ? Level::ok : Level::problem;
         finding.found = told(*place);
@@ -134,7 +135,7 @@ struct Needs {
 }  // namespace
 
 Findings library_findings(const Machine& machine) {
-    const std::string asked = variable(machine, variable_name);
+    const std::string asked = variable(machine, hd_library_variable);
     const auto library = asked.empty() ? device_library(machine)
                          : asked.find('/') == std::string::npos
                              ? find_library(machine, asked)

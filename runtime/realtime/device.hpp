@@ -26,6 +26,7 @@ struct DeviceLimits {
     double rate_hz = 0;                            ///< of its servo
     std::array<double, 3> workspace_low{0, 0, 0};  ///< mm, corners of the box that the tip reaches, frame D
     std::array<double, 3> workspace_high{0, 0, 0};
+    double max_damping = 0;  ///< that it renders, N s/mm
 };
 
 /// Whether a device knows where it is.

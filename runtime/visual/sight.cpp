@@ -34,6 +34,15 @@ Eigen::Vector3d Sight::eye(double view_angle_deg) const {
     return focus + toward_eye * (field / 2 / std::tan(view_angle_deg * std::numbers::pi / 360));
 }
 
+Eigen::Matrix3d Sight::axes() const {
+    const bool along_body = std::abs(toward_eye.z()) > 0.9;
+    const Eigen::Vector3d head = along_body ? Eigen::Vector3d(0, -1, 0) : Eigen::Vector3d(0, 0, 1);
+    const Eigen::Vector3d right = head.cross(toward_eye).normalized();
+    Eigen::Matrix3d axes;
+    axes << right, toward_eye.cross(right), toward_eye;
+    return axes;
+}
+
 Sight choose_sight(const Case& patient_case, const Eigen::Vector3d& point, const Eigen::Vector3d& normal) {
     constexpr double toward_body = 0.35;  // of the way from the target to the body's centre
     constexpr double tilt = 0.7;          // 35 degrees

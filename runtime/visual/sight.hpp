@@ -15,6 +15,9 @@ struct Sight {
     bool blocked = false;                                    ///< a body stands between target and eye
 
     Eigen::Vector3d eye(double view_angle_deg) const;
+    /// The picture's right, its up and the way to the eye: columns, unit, frame P. The patient's head is up,
+    /// or the front where the eye looks along the body.
+    Eigen::Matrix3d axes() const;
 };
 
 /// Chooses a sight of a place on a surface: down its normal, tilted towards the patient's head (or front, for

@@ -96,8 +96,8 @@ struct TrainWindow::Parts {
         camera->SetViewAngle(view_angle_deg);
         camera->SetFocalPoint(settings.sight.focus.data());
         camera->SetPosition(eye.data());
-        const bool from_above = std::abs(settings.sight.toward_eye.z()) > 0.9;
-        camera->SetViewUp(0, from_above ? -1 : 0, from_above ? 0 : 1);
+        const Vector3d up = settings.sight.axes().col(1);
+        camera->SetViewUp(up.data());
         camera->OrthogonalizeViewUp();
     }
 

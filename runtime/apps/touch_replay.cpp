@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/apps/touch_replay.hpp"
+
+#include <algorithm>
+#include <array>
+#include <spdlog/spdlog.h>
+
+#include "formats/asset/asset.hpp"
+#include "formats/model/errors.hpp"
+#include "runtime/apps/replay.hpp"
+#include "runtime/apps/touch_json.hpp"
+
+namespace palpate {
+namespace {
+
+std::string force_text(const std::array<double, 3>& f) {
+    return fmt::format("({}, {}, {}) N", f[0], f[1], f[2]);
+}
+
+}  // namespace
+
+nlohmann::ordered_json replay_recording(const std::filesystem::path& file, const std::filesystem::path& asset,
+                                        TouchOutputs& outputs, cli::Session& session) {
+    const Recording recording = read_recording(file);
+    const Case patient_case = read_asset(asset);
+    const auto model = model_of(recording, file, asset, patient_case);
+    std::vector<RunRecord> records = outputs.records_of(*model);
+    const ReplayOutcome outcome = replay(recording, *model, [&](const TickResult& result) {
+        records[static_cast<std::size_t>(result.tool)].add(result);
+    });
+    if (!outcome.started)
+        throw InvalidInput({file.string(), "no tick from which a replay could start",
+                            "the run's first tick, or three in a row without contact, force and fault",
+                            "record for longer: --record-seconds"});
+    outputs.commit(records.front(), patient_case.name + ": replay");
+    if (recording.rows_unreadable > 0)
+        spdlog::warn("{}: {} rows at the end never reached the disk", file.string(),
+                     recording.rows_unreadable);
+    if (*outcome.started > 0 || outcome.skipped_ticks > 0)
+        spdlog::warn("{}: starts at tick {}; {} ticks are missing, {} were skipped for want of a free one",
+                     file.string(), *outcome.started, outcome.missing_ticks, outcome.skipped_ticks);
+    if (const auto& first = outcome.first_difference)
+        session.shortfall = {
+            file.string(),
+            fmt::format("tick {} of tool {} gives {}; {} of {} ticks differ", first->tick, first->tool,
+                        force_text(first->replayed), outcome.different_ticks, outcome.ticks),
+            "the recorded " + force_text(first->recorded),
+            "the recording is of palpate " + recording.head.palpate_version + ", this is " + cli::version()};
+    nlohmann::ordered_json result{{"case", patient_case.name},
+                                  {"script", "replay"},
+                                  {"scheme", recording.head.scheme},
+                                  {"device", recording.head.devices.front().name},
+                                  {"coupling_stiffness_n_per_mm", model->coupling()},
+                                  {"clock", recording.head.clock},
+                                  {"replay", replay_json(outcome)}};
+    result.update(tool_json(records[0], patient_case, *model));
+    if (records.size() > 1) result["second"] = tool_json(records[1], patient_case, *model);
+    return result;
+}
+
+void refuse_beside_replay(const cli::Command& command, std::initializer_list<const CLI::Option*> allowed) {
+    for (const cli::Parameter& parameter : command.parameters())
+        if (parameter.option->count() > 0 && std::ranges::find(allowed, parameter.option) == allowed.end())
+            throw UsageError({parameter.option->get_name(), "with --replay", "--log and --curve at most",
+                              "a recording says itself what the run was like"});
+}
+
+}  // namespace palpate
