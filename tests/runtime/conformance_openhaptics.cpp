@@ -214,6 +214,19 @@ Case session_case() {
     return patient_case;
 }
 
+// A servo whose ticks are in time: on a virtual clock, what the machine does meanwhile is not late.
+class OnTimeServo final : public Servo {
+  public:
+    explicit OnTimeServo(Servo& servo) : servo_(servo) {}
+    void start(OnTick on_tick) override {
+        servo_.start([on_tick](const ServoTick& wake) { on_tick({wake.time, 0, 0}); });
+    }
+    void stop() override { servo_.stop(); }
+
+  private:
+    Servo& servo_;
+};
+
 // Every tick of the session through the driver's interface, on its virtual clock.
 struct Session {
     std::vector<TickResult> ticks;
@@ -230,7 +243,8 @@ Session run_through_the_library() {
                    {"A"});
     TimedDevice timed(*open.devices()[0]);
     HapticModel model(session_case());
-    ServoLoop loop(model, std::array<Device*, 1>{&timed}, &open.servo(), 8192);
+    OnTimeServo servo(open.servo());
+    ServoLoop loop(model, std::array<Device*, 1>{&timed}, &servo, 8192);
     loop.start();
     while (library().hardware(0).time < 1e-3 * session_ticks - 1e-6)
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
