@@ -11,7 +11,9 @@
 #include <unistd.h>
 
 #include "formats/asset/asset.hpp"
+#include "formats/recording/recording_writer.hpp"
 #include "runtime/apps/fault_log.hpp"
+#include "runtime/apps/run_recorder.hpp"
 #include "runtime/apps/statistics_json.hpp"
 #include "runtime/apps/touch_target.hpp"
 #include "runtime/devices/dynamic_device.hpp"
@@ -26,7 +28,8 @@ constexpr int hog_count = 4;
 constexpr std::string_view text =
     "The servo loop against the clock at 1 kHz, a simulated Touch in a hand that gives way (0.3 N/mm) which "
     "pushes, slides and leaves, while four other processes do nothing but count. A tick is reading, contact, "
-    "force and writing, by the wall's clock, so it contains what the system takes in the middle of it. "
+    "force and writing, by the wall's clock, so it contains what the system takes in the middle of it; every "
+    "one is recorded to a file beside it. "
     "`missed` "
     "are periods skipped, `lost` ticks that the record does not hold.\n\n"
     "| case | priority | min | tick p50 / p99 / p99.9 / max, µs | woken late p50 / p99 / p99.9 / max, µs | "
@@ -61,8 +64,10 @@ struct Run {
     bool fifo = false;
 };
 
-Run run_against_the_clock(const Case& patient_case, PeriodicServo::Priority priority, double seconds,
-                          std::uint64_t seed) {
+// `recording`: the file of every tick, as palpate touch --record writes it; removed at the end.
+Run run_against_the_clock(const std::filesystem::path& asset, const Case& patient_case,
+                          PeriodicServo::Priority priority, double seconds, std::uint64_t seed,
+                          const std::filesystem::path& recording) {
     HapticModel model(patient_case);
     const TouchTarget target = choose_touch_target(patient_case, model, "", {});
     HandPath path = random_path(
@@ -73,10 +78,14 @@ Run run_against_the_clock(const Case& patient_case, PeriodicServo::Priority prio
     PeriodicServo servo(priority);
     ServoLoop loop(model, devices, &servo);
     Run run;
+    std::filesystem::remove(recording);
+    make_recording(recording, recording_head(asset, patient_case, model, devices, "real", cli::version()),
+                   recording_rows(seconds + 1, 1));
+    RunRecorder recorder(recording);
     TickResult result{};
     const auto drain = [&] {
         while (loop.ring().pop(result)) {
-            ++run.recorded;
+            recorder.add(result);
             run.faults.add(result);
         }
     };
@@ -87,6 +96,8 @@ Run run_against_the_clock(const Case& patient_case, PeriodicServo::Priority prio
     }
     loop.stop();
     drain();
+    run.recorded = recorder.rows();
+    std::filesystem::remove(recording);
     run.statistics = loop.statistics();
     const auto& setup = run.statistics.setup;
     run.fifo = priority == PeriodicServo::Priority::fifo && !setup.empty() && setup.back().ok;
@@ -114,7 +125,8 @@ Findings realtime(const Options& options, cli::Session& session) {
         const Case patient_case = load_asset(file);
         for (const auto priority : {PeriodicServo::Priority::fifo, PeriodicServo::Priority::none}) {
             session.progress.step(patient_case.name, priority == PeriodicServo::Priority::fifo ? 0 : 0.5);
-            const Run run = run_against_the_clock(patient_case, priority, seconds, options.seed);
+            const Run run = run_against_the_clock(file, patient_case, priority, seconds, options.seed,
+                                                  options.output / "realtime.h5");
             const ServoStatistics& s = run.statistics;
             const std::string name = run.fifo                                    ? "SCHED_FIFO"
                                      : priority == PeriodicServo::Priority::none ? "none"
