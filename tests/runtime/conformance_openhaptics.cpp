@@ -5,7 +5,6 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <thread>
@@ -25,7 +24,7 @@ namespace {
 using nlohmann::json;
 
 std::string library_path() {
-    return std::string(std::getenv("PALPATE_BUILD")) + "/tests/libpalpate_hd_conformance.so";
+    return PALPATE_HD_CONFORMANCE;
 }
 
 const hd::Functions& library() {

@@ -24,7 +24,7 @@ namespace {
 using Vector = std::array<double, 3>;
 
 std::string library_path() {
-    return std::string(std::getenv("PALPATE_BUILD")) + "/tests/libpalpate_hd_conformance.so";
+    return PALPATE_HD_CONFORMANCE;
 }
 
 // The library, fresh for each test.
