@@ -41,7 +41,6 @@ class RecordingWriter {
     struct Close {
         void operator()(Open* open) const noexcept;
     };
-    std::byte* at(const std::byte* mapped, const std::byte* start) const noexcept;
 
     std::unique_ptr<Open, Close> open_;
     std::array<std::byte*, tick_column_count> tick_columns_{};

@@ -36,14 +36,11 @@ void append(Findings& findings, Findings more) {
 }
 
 // Opens devices and looks at their first half second; no force is rendered.
-Findings opened_device_findings(const std::string& text) {
+Findings opened_device_findings(const PhysicalDevice& asked) {
     constexpr std::size_t ticks = 500;
-    const std::optional<PhysicalDevice> asked = parse_physical_device(text);
-    if (!asked || asked->tracker)
-        throw UsageError({"--device", text, "openhaptics, openhaptics:NAME or openhaptics:NAME,NAME", ""});
     Findings findings;
     try {
-        HdSession session({{}, asked->driver_names});
+        HdSession session({{}, asked.driver_names});
         const std::span<Device* const> devices = session.devices();
         std::vector<std::vector<DeviceState>> states(devices.size(), std::vector<DeviceState>(ticks));
         std::atomic<std::size_t> seen{0};
@@ -56,9 +53,10 @@ Findings opened_device_findings(const std::string& text) {
             for (Device* device : devices) device->write({0, 0, 0});
             if (tick < ticks) seen.store(tick + 1);
         });
-        for (int i = 0; i < 200 && seen.load() < ticks; ++i)
+        for (int i = 0; i < 200 && seen.load() < ticks && !cli::interrupt_asked(); ++i)
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
         session.servo().stop();
+        if (cli::interrupt_asked()) throw cli::Interrupted();
         for (std::size_t i = 0; i < devices.size(); ++i)
             append(findings,
                    device_findings({devices[i]->name(), devices[i]->calibration(), devices[i]->limits(),
@@ -80,6 +78,14 @@ Json measured_json(const WakeUps& wake_ups) {
 Json examine(const Options& options, cli::Session& session) {
     if (!(options.seconds >= 0.1 && options.seconds <= 3600))
         throw UsageError({"--seconds", fmt::format("{}", options.seconds), "0.1 to 3600", ""});
+    const std::optional<PhysicalDevice> device = parse_physical_device(options.device);
+    if (!options.device.empty() && (!device || device->tracker))
+        throw UsageError(
+            {"--device", options.device, "openhaptics, openhaptics:NAME or openhaptics:NAME,NAME", ""});
+    if (device && options.simulated)
+        throw UsageError({"--simulated", "with --device " + options.device, "one of the two", ""});
+    std::optional<Case> patient_case;
+    if (!options.asset.empty()) patient_case = read_asset(options.asset);
     const Purpose purpose = options.simulated ? Purpose::simulation : Purpose::device;
     const Machine machine = this_machine();
     Findings findings = realtime_findings(machine, purpose);
@@ -89,8 +95,11 @@ Json examine(const Options& options, cli::Session& session) {
     if (purpose == Purpose::device) append(findings, library_findings(machine));
     append(findings, environment_findings(machine, purpose));
     if (purpose == Purpose::device) append(findings, usb_findings(machine, find_usb_devices(machine)));
-    if (!options.device.empty()) append(findings, opened_device_findings(options.device));
-    if (!options.asset.empty()) append(findings, case_findings(read_asset(options.asset)));
+    if (device) {
+        cli::end_softly_on_interrupt();
+        append(findings, opened_device_findings(*device));
+    }
+    if (patient_case) append(findings, case_findings(*patient_case));
 
     const std::size_t problems = count(findings, Level::problem), warnings = count(findings, Level::warning);
     const std::string ready_for = options.simulated ? "the simulated device" : "a device";

@@ -7,8 +7,9 @@ namespace palpate {
 
 RunWatch::RunWatch(const std::filesystem::path& asset, ServoLoop& loop,
                    std::function<void(const std::string&)> tell)
-    : log_([tell = std::move(tell)](const FaultEvent& event) { tell(fault_sentence(event)); }),
-      asset_(asset, [&loop](bool gone) { loop.set_fault(asset_removed, gone); }) {}
+    : log_([tell = std::move(tell)](const FaultEvent& event) { tell(fault_sentence(event)); }) {
+    if (!asset.empty()) asset_.emplace(asset, [&loop](bool gone) { loop.set_fault(asset_removed, gone); });
+}
 
 std::uint32_t RunWatch::recent(double time) const {
     constexpr double reading_time = 2;  // s

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "runtime/apps/fault_log.hpp"
@@ -15,7 +16,8 @@ namespace palpate {
 /// user of each fault once.
 class RunWatch {
   public:
-    /// `tell` gets a sentence for each fault when it begins. `loop` must outlive this.
+    /// `tell` gets a sentence for each fault when it begins. `loop` must outlive this. `asset` empty: not
+    /// watched, for a loop that runs against no clock.
     RunWatch(const std::filesystem::path& asset, ServoLoop& loop,
              std::function<void(const std::string&)> tell);
 
@@ -29,7 +31,7 @@ class RunWatch {
 
   private:
     FaultLog log_;
-    FileWatch asset_;
+    std::optional<FileWatch> asset_;
 };
 
 }  // namespace palpate

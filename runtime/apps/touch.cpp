@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <functional>
 #include <memory>
@@ -138,6 +140,14 @@ Held hold(const Options& options, const std::optional<PhysicalDevice>& physical,
     return held;
 }
 
+// Said before devices are closed, which may take a driver that hangs for ever.
+SystemFailure servo_stopped() {
+    SystemFailure failure({"the servo", "has not ticked for 5 s", "1000 ticks a second",
+                           "check the device's cable, then 'palpate doctor'"});
+    spdlog::error("{}", failure.what());
+    return failure;
+}
+
 // Ticks in the haptic thread while this one takes the results, until the time is over or the user asks.
 void run_in_real_time(ServoLoop& loop, double seconds, const std::function<void(const TickResult&)>& take) {
     constexpr std::chrono::seconds patience{5};
@@ -153,13 +163,26 @@ void run_in_real_time(ServoLoop& loop, double seconds, const std::function<void(
         if (pop())
             last_tick = now;
         else if (now - last_tick > patience)
-            throw SystemFailure({"the servo", "has not ticked for 5 s", "1000 ticks a second",
-                                 "check the device's cable, then 'palpate doctor'"});
+            throw servo_stopped();
         else
             std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     loop.stop();
     while (pop()) {
+    }
+}
+
+// What a script is told means nothing to a person's hand, nor a recording's length without a recording.
+void refuse_idle_options(const cli::Command& command, const Options& options) {
+    constexpr std::array of_scripts{"--script", "--column", "--depth", "--speed", "--shaft", "--seed"};
+    const bool physical = parse_physical_device(options.device).has_value();
+    for (const cli::Parameter& parameter : command.parameters()) {
+        if (parameter.option->count() == 0) continue;
+        const std::string name = parameter.option->get_name();
+        if (physical && std::ranges::find(of_scripts, name) != of_scripts.end())
+            throw UsageError({name, "with --device " + options.device, "a simulated device", ""});
+        if (name == "--record-seconds" && options.record.empty())
+            throw UsageError({name, "without --record", "--record FILE beside it", ""});
     }
 }
 
@@ -177,7 +200,9 @@ void refuse_contradictions(const Options& options, const std::optional<PhysicalD
         throw UsageError({"--virtual-clock", with, "the real clock", "a hand keeps its own time"});
     if (!options.second.empty())
         throw UsageError({"--second", with, "--device openhaptics:NAME,NAME", "a hand holds each device"});
-    if (options.column) throw UsageError({"--column", with, "a simulated device", ""});
+    if (physical->tool_count() > 1 && !continuous)
+        throw UsageError({"--scheme", options.scheme + " with several devices", "the scheme 'continuous'",
+                          "the published schemes know one tool"});
 }
 
 Json touch(const Options& options, cli::Session& session) {
@@ -195,16 +220,17 @@ Json touch(const Options& options, cli::Session& session) {
     ServoLoop loop(model, held.devices, held.servo);
 
     const std::string clock = options.virtual_clock ? "virtual" : "real";
+    std::optional<LiveStream> stream;
+    if (!options.stream.empty()) stream.emplace(options.stream, patient_case, model.tool_count());
     std::optional<RunRecorder> recorder;
     if (!options.record.empty())
         recorder.emplace(start_recording(
             options.record,
             recording_head(options.asset, patient_case, model, held.devices, clock, cli::version()),
             options.record_seconds, session));
-    std::optional<LiveStream> stream;
-    if (!options.stream.empty()) stream.emplace(options.stream, patient_case, model.tool_count());
     std::vector<RunRecord> records = outputs.records_of(model);
-    RunWatch watch(options.asset, loop, [](const std::string& sentence) { spdlog::warn("{}", sentence); });
+    RunWatch watch(options.virtual_clock ? std::filesystem::path() : options.asset, loop,
+                   [](const std::string& sentence) { spdlog::warn("{}", sentence); });
     const auto take = [&](const TickResult& result) {
         records[static_cast<std::size_t>(result.tool)].add(result);
         watch.add(result);
@@ -218,7 +244,12 @@ Json touch(const Options& options, cli::Session& session) {
         ready_s = process_age();
         loop.run_virtual(static_cast<std::int64_t>(1000 * plan.seconds), take);
     } else {
-        loop.start();
+        try {
+            loop.start();
+        } catch (...) {
+            if (recorder) std::filesystem::remove(options.record);  // it holds nothing
+            throw;
+        }
         ready_s = process_age();
         run_in_real_time(loop, plan.seconds, take);
     }
@@ -328,6 +359,7 @@ int main(int argc, char** argv) {
     return command.run(argc, argv, [&](cli::Session& session) {
         options.seconds_given = seconds->count() > 0;
         if (replay->count() > 0) refuse_beside_replay(command, {asset, log, curve, replay});
+        refuse_idle_options(command, options);
         return touch(options, session);
     });
 }

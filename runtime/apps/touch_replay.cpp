@@ -45,7 +45,9 @@ nlohmann::ordered_json replay_recording(const std::filesystem::path& file, const
             fmt::format("tick {} of tool {} gives {}; {} of {} ticks differ", first->tick, first->tool,
                         force_text(first->replayed), outcome.different_ticks, outcome.ticks),
             "the recorded " + force_text(first->recorded),
-            "the recording is of palpate " + recording.head.palpate_version + ", this is " + cli::version()};
+            "the recording is of palpate " + recording.head.palpate_version + ", this is " + cli::version() +
+                "; other versions, compilers and processors may round otherwise, and a file may have been "
+                "changed"};
     nlohmann::ordered_json result{{"case", patient_case.name},
                                   {"script", "replay"},
                                   {"scheme", recording.head.scheme},

@@ -59,7 +59,7 @@ std::array<double, 3> array_of(const Eigen::Vector3d& v) {
     return {v.x(), v.y(), v.z()};
 }
 
-// What the tools are held by; where mouse and keyboard move one, `guide` takes the places (p_P, mm) they
+// What the tool is held by; where mouse and keyboard move it, `guide` takes the places (p_P, mm) they
 // mean.
 struct Held {
     std::unique_ptr<Device> device = nullptr;
@@ -69,6 +69,7 @@ struct Held {
     std::vector<Device*> devices() const {
         return physical ? physical->devices() : std::vector{device.get()};
     }
+    Servo* servo() const { return physical ? physical->servo() : nullptr; }
 };
 
 Held device_of(const Options& options, const HapticModel& model, const TouchPoint& place,
@@ -98,17 +99,16 @@ Held device_of(const Options& options, const HapticModel& model, const TouchPoin
 
 // Everything felt since the start, from the ticks that the loop left in its ring.
 struct Felt {
-    double force_peak = 0;                         // N
-    double depth_peak = 0;                         // mm
-    double travel = 0;                             // mm, of the device
-    std::optional<Eigen::Vector3d> last_position;  // of the first tool
+    double force_peak = 0;  // N
+    double depth_peak = 0;  // mm
+    double travel = 0;      // mm, of the device
+    std::optional<Eigen::Vector3d> last_position;
     std::optional<RunRecorder> recorder;
 
     void take(SpscRing<TickResult>& ring, RunWatch& watch) {
         for (TickResult tick; ring.pop(tick);) {
             watch.add(tick);
             if (recorder) recorder->add(tick);
-            if (tick.tool != 0) continue;
             const Eigen::Vector3d position = Eigen::Map<const Eigen::Vector3d>(tick.device_position.data());
             force_peak = std::max(force_peak, Eigen::Map<const Eigen::Vector3d>(tick.force.data()).norm());
             depth_peak = std::max(depth_peak, tick.depth);
@@ -117,6 +117,25 @@ struct Felt {
         }
         if (recorder) recorder->set_lost(ring.dropped());
     }
+};
+
+// Throws where a driver's servo has not ticked for 5 s; says so first, for closing its device may hang.
+class ServoPulse {
+  public:
+    void see(std::int64_t tick) {
+        const auto now = Clock::now();
+        if (tick != tick_) since_ = now;
+        tick_ = tick;
+        if (now - since_ < std::chrono::seconds(5)) return;
+        const SystemFailure failure({"the servo", "has not ticked for 5 s", "1000 ticks a second",
+                                     "check the device's cable, then 'palpate doctor'"});
+        spdlog::error("{}", failure.what());
+        throw failure;
+    }
+
+  private:
+    Clock::time_point since_ = Clock::now();
+    std::int64_t tick_ = -1;
 };
 
 // The tick rate over the last half second or more.
@@ -158,10 +177,12 @@ Json train(const Options& options, cli::Session& session) {
     session.progress.step("reading the case", 0);
     const Case patient_case = load_asset(options.asset);
     const std::optional<PhysicalDevice> physical = parse_physical_device(options.device);
+    if (physical && physical->tool_count() > 1)
+        throw UsageError({"--device", options.device, "one device",
+                          "the window shows one tool; 'palpate touch' takes several"});
     if (physical && !options.script.empty())
         throw UsageError({"--script", "with --device " + options.device, "a simulated device", ""});
-    HapticModel model(patient_case, find_contact_scheme(options.scheme),
-                      physical ? physical->tool_count() : 1);
+    HapticModel model(patient_case, find_contact_scheme(options.scheme), 1);
     const TouchPoint place = choose_touch_target(patient_case, model, options.body, std::nullopt).place;
     const Eigen::Vector3d start = start_outside(place, model.settings().tool_radius);
     WindowSettings window_settings{.width = width, .height = height, .start = start};
@@ -183,10 +204,10 @@ Json train(const Options& options, cli::Session& session) {
     frame.device_position = frame.tool_position = start;
     window.show(frame);  // the first frame compiles shaders
 
-    ServoLoop loop(model, devices, held.physical ? held.physical->servo() : nullptr);
+    ServoLoop loop(model, devices, held.servo());
     RunWatch watch(options.asset, loop, [](const std::string& sentence) { spdlog::warn("{}", sentence); });
     std::optional<LiveStream> stream;
-    if (!options.stream.empty()) stream.emplace(options.stream, patient_case, model.tool_count());
+    if (!options.stream.empty()) stream.emplace(options.stream, patient_case, 1);
     Felt felt;
     if (!options.record.empty())
         felt.recorder.emplace(start_recording(
@@ -194,6 +215,7 @@ Json train(const Options& options, cli::Session& session) {
             recording_head(options.asset, patient_case, model, devices, "real", cli::version()),
             options.record_seconds, session));
     TickRate rate;
+    ServoPulse pulse;
     Histogram frame_ns;
     loop.start();
     const auto began = Clock::now();
@@ -202,6 +224,7 @@ Json train(const Options& options, cli::Session& session) {
     while (!window.closed() && !cli::interrupt_asked() &&
            (options.seconds <= 0 || elapsed() < options.seconds)) {
         const TickResult& tick = loop.latest().read();
+        pulse.see(tick.tick);
         fill_frame(frame, tick, model);
         frame.faults = watch.recent(tick.time);
         frame.tick_rate_hz = rate.update(tick.tick);
@@ -209,9 +232,7 @@ Json train(const Options& options, cli::Session& session) {
         loop.visual_beat();
         held.guide(window.hand());
         felt.take(loop.ring(), watch);
-        if (stream)
-            for (std::size_t tool = 0; tool < model.tool_count(); ++tool)
-                stream->show(tool == 0 ? tick : loop.latest(tool).read());
+        if (stream) stream->show(tick);
         std::this_thread::sleep_until(frame_began + shortest_frame);
         const auto now = Clock::now();
         frame_ns.record(static_cast<std::uint64_t>(std::chrono::nanoseconds(now - frame_began).count()));
@@ -266,7 +287,7 @@ int main(int argc, char** argv) {
              "the view; + and - zoom, C cuts the bodies open, B hides the rigid ones, R goes back to the "
              "start, H hides the hints, Q or Escape closes. The window needs an X display; on a machine "
              "without one use 'xvfb-run'.\n"
-             "With --device openhaptics[:NAME[,NAME]] or igtl:HOST:PORT[/NAME], as for 'touch', a person's "
+             "With --device openhaptics[:NAME] or igtl:HOST:PORT[/NAME], as for 'touch', a person's "
              "hand moves the tool. A device of OpenHaptics stands before the picture: its right, up and "
              "towards the user are those of the first view. With touch, desktop or premium mouse and "
              "keyboard, or a script, hold a simulated device that gives way."});
@@ -279,7 +300,7 @@ int main(int argc, char** argv) {
         "what the hand does instead of mouse and keyboard: press, slide, tremble, let-go, random or a "
         "file as for 'touch'");
     command.option("--device", options.device,
-                   "touch, desktop, premium, openhaptics[:NAME[,NAME]] or igtl:HOST:PORT[/NAME]");
+                   "touch, desktop, premium, openhaptics[:NAME] or igtl:HOST:PORT[/NAME]");
     command.option("--stream", options.stream,
                    "PORT or ADDRESS:PORT at which 3D Slicer and others see the session over OpenIGTLink");
     command.option("--scheme", options.scheme, "how contact is found: continuous, single or twice");

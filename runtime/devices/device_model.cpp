@@ -84,7 +84,8 @@ const DeviceModel& find_device_model(std::string_view name) {
     if (found != models.end()) return *found;
     std::string names;
     for (const DeviceModel& model : models) names += (names.empty() ? "" : ", ") + model.name;
-    throw UsageError({"--device", std::string(name), names, ""});
+    throw UsageError(
+        {"--device", std::string(name), names + ", openhaptics[:NAME] or igtl:HOST:PORT[/NAME]", ""});
 }
 
 }  // namespace palpate

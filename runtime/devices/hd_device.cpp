@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace palpate {
 namespace {
@@ -125,7 +126,6 @@ void HdDevice::calibrate() {
     if (style == 0) return;
     api_.make_current_device(handle_);
     api_.update_calibration(style);
-    updated_.store(true);
     look_now_.store(true);
 }
 
@@ -142,8 +142,9 @@ DeviceState HdDevice::read(double time) noexcept {
     in_frame_ = true;
     DeviceState state;
     state.time = time;
-    api_.get_doubles(current_position, position_.data());
-    state.position = position_;
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    state.position = {none, none, none};  // stays where the driver fails without a word
+    api_.get_doubles(current_position, state.position.data());
     // The stylus' own z axis goes from its tip along the shaft: OpenHaptics' examples draw their cursor, a
     // cone with the tip at the origin and its body along +z, with this transform as it is.
     std::array<double, 16> transform{};
@@ -154,7 +155,7 @@ DeviceState HdDevice::read(double time) noexcept {
     api_.get_integers(current_buttons, &buttons);
     state.buttons = static_cast<std::uint32_t>(buttons);
 
-    const bool is_frozen = frozen(position_);
+    const bool is_frozen = frozen(state.position);
     if (look_now_.exchange(false) || --ticks_to_look_ <= 0) look();
     errors_.drain();
     state.faults = errors_.take(handle_);
@@ -162,6 +163,12 @@ DeviceState HdDevice::read(double time) noexcept {
     if (warm_) state.faults |= motors_warm;
     if (is_frozen) state.faults |= pose_frozen;
     if (misplaced_) state.faults |= not_calibrated;
+    // Where a fault says already that there is no position, the last one stands for it.
+    const bool given = std::ranges::all_of(state.position, [](double x) { return std::isfinite(x); });
+    if (given)
+        position_ = state.position;
+    else if (state.faults & distrusted_position)
+        state.position = position_;
     return state;
 }
 
@@ -181,9 +188,7 @@ void HdDevice::look() noexcept {
     const double warmest = *std::ranges::max_element(temperatures);
     warm_ = warmest >= (warm_ ? motors_cool : 1);
     const Calibration calibration = ask_calibration();
-    if (calibration == Calibration::ok) updated_.store(false);
-    misplaced_ = calibration == Calibration::needs_manual_input ||
-                 (calibration == Calibration::needs_update && updated_.load());
+    misplaced_ = calibration != Calibration::ok;
     calibration_.store(calibration);
 }
 

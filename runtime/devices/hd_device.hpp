@@ -37,7 +37,7 @@ class HdDevice final : public Device {
 
     /// "Touch 1234 'Left'": model, serial number and name, as far as there are any.
     std::string name() const override { return label_; }
-    /// As the driver tells; damping is its nominal maximum.
+    /// As the driver tells; its own damping is not known.
     DeviceLimits limits() const override { return limits_; }
     /// As of the last look: in the first tick and then every look_ticks.
     Calibration calibration() override { return calibration_.load(); }
@@ -73,7 +73,7 @@ class HdDevice final : public Device {
     unsigned calibration_styles_ = 0;
     bool opened_instead_ = false;
     std::atomic<Calibration> calibration_{Calibration::ok};
-    std::atomic<bool> look_now_{true}, updated_{false};
+    std::atomic<bool> look_now_{true};
     bool in_frame_ = false;  // the scheduler's thread's, as are the next
     bool warm_ = false, misplaced_ = false;
     int ticks_to_look_ = 0;

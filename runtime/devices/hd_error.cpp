@@ -108,7 +108,7 @@ void HdErrorSorter::drain() noexcept {
         const HdErrorInfo error = api_.get_error();
         if (error.code == success) return;
         const HdErrorText* text = find_hd_error(error.code);
-        const std::uint32_t fault = text ? text->fault : no_fault;
+        const std::uint32_t fault = text ? text->fault : device_lost;  // what nobody knows is no good sign
         const auto devices = std::span(kept_).first(count_);
         const bool known = std::ranges::find(devices, error.device, &Kept::device) != devices.end();
         for (Kept& kept : devices)

@@ -54,6 +54,11 @@ void HdServo::start_scheduler() {
         throw SystemFailure(explain_hd_error("the device's scheduler", error));
     }
     for (HdDevice* device : devices_) device->ask_rate();
+    const double told = devices_.empty() ? 0 : devices_.front()->limits().rate_hz;
+    if (told == 0 || std::lround(told) == static_cast<long>(rate_hz)) return;
+    stop();
+    throw SystemFailure({"the device's scheduler", std::to_string(std::lround(told)) + " ticks a second",
+                         "1000", "set the rate to 1000 Hz in the driver's setup program"});
 }
 
 void HdServo::start(OnTick on_tick) {
@@ -89,6 +94,7 @@ void HdServo::end_ticks() {
     ending_.store(true);
     wait_for(released_, release_patience);
     api_.unschedule(operation_);
+    // A driver that never comes out of the callback cannot be left: what it calls must stay.
     while (inside_.load()) std::this_thread::sleep_for(milliseconds(1));
     scheduled_ = false;
     take_hd_errors(api_);
@@ -104,15 +110,8 @@ void HdServo::stop() {
 
 std::vector<SetupResult> HdServo::setup() const {
     std::vector<SetupResult> results;
-    if (!devices_.empty()) {
-        const double rate = devices_.front()->limits().rate_hz;
-        const std::string told =
-            "the device's scheduler ticks " + std::to_string(std::lround(rate)) + " times a second";
-        if (std::lround(rate) == static_cast<long>(rate_hz))
-            results.push_back({true, told});
-        else
-            results.push_back({false, told + " (expected 1000); set the rate in the driver's setup program"});
-    }
+    if (!devices_.empty() && devices_.front()->limits().rate_hz > 0)
+        results.push_back({true, "the device's scheduler ticks 1000 times a second"});
     std::ranges::copy(notes_, std::back_inserter(results));
     return results;
 }

@@ -2,11 +2,13 @@
 #include "runtime/doctor/elf_file.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <cstring>
 #include <elf.h>
 #include <fstream>
 #include <optional>
+#include <string_view>
 
 #include "formats/model/errors.hpp"
 
@@ -56,7 +58,14 @@ class Reader {
         read(offset, result.data(), result.size());
         const std::size_t end = result.find('\0');
         if (end == std::string::npos) refuse("has a text without end");
-        return result.substr(0, end);
+        result.resize(end);
+        // It will stand on a terminal, in JSON and in shell lines.
+        const bool plain = std::ranges::all_of(result, [](char c) {
+            return std::isalnum(static_cast<unsigned char>(c)) ||
+                   std::string_view("._+-/:${}~@").find(c) != std::string_view::npos;
+        });
+        if (!plain) refuse("names what is no file name");
+        return result;
     }
 
   private:

@@ -71,16 +71,19 @@ Finding fifo(const Machine& machine, Purpose purpose) {
     finding.found = fmt::format("SCHED_FIFO is refused: priority {} asked, limit {} (RLIMIT_RTPRIO)",
                                 Machine::asked_priority, machine.fifo_limit);
     // sched(7): with real-time group scheduling a control group without a share may have no such thread.
-    finding.fix = machine.fifo_limit >= Machine::asked_priority
-                      ? "# the limit allows it and the control group of this session does not:\n"
-                        "sudo sysctl -w kernel.sched_rt_runtime_us=-1"
-                      : permit_fix(machine);
+    finding.fix =
+        machine.fifo_limit >= Machine::asked_priority
+            ? "# the limit allows it and the control group of this session does not; this lifts a brake of\n"
+              "# the whole system: a real-time thread that never sleeps may then hold a core for ever\n"
+              "sudo sysctl -w kernel.sched_rt_runtime_us=-1"
+            : permit_fix(machine);
     return finding;
 }
 
 Finding memory(const Machine& machine) {
     Finding finding{"memory_lock", group, Level::ok, "memory can be locked", ""};
-    if (machine.locked_memory.ok && (machine.superuser || machine.locked_bytes_limit == Machine::unlimited))
+    constexpr std::uint64_t ample = std::uint64_t{4} << 30;  // bytes; the largest cases take some hundred MB
+    if (machine.locked_memory.ok && (machine.superuser || machine.locked_bytes_limit >= ample))
         return finding;
     finding.level = Level::warning;
     finding.found =

@@ -12,23 +12,26 @@ namespace palpate {
 /// wrong. Realtime-safe.
 class ForceLimiter {
   public:
-    static constexpr int ramp_ticks = 20;     ///< within which a fault takes any force to zero
+    static constexpr int ramp_ticks =
+        15;  ///< within which a fault takes any force to zero; 5 ms to notice it are left
     static constexpr int return_ticks = 500;  ///< over which the force comes back after the last fault
 
+    /// The largest force is max_force, or what max_force_rate takes to zero within ramp_ticks if that is
+    /// less.
     explicit ForceLimiter(const HapticSettings& settings) noexcept
-        : max_force_(settings.max_force), max_step_(settings.max_force_rate) {}
+        : max_force_(std::min(settings.max_force, ramp_ticks * settings.max_force_rate)),
+          max_step_(settings.max_force_rate) {}
 
     /// Lowers the largest force (N) to what a device bears.
     void lower_to(double max_force) noexcept { max_force_ = std::min(max_force_, max_force); }
 
     void reset() noexcept;
 
-    /// Shortens `wanted` (N) to max_force, then lets the force change by at most max_force_rate per tick;
-    /// adds force_limited and rate_limited to `status`. With any of `faults` (to which a force that is not
-    /// finite adds invalid_force), and for ramp_ticks after, the force goes to zero instead, by
-    /// max_force / ramp_ticks in each tick, then comes back in proportion to the time since (status
-    /// coming_back), growing by at most max_force / 100 a tick, so that a hand that pressed on meanwhile is
-    /// not kicked.
+    /// Shortens `wanted` (N) to the largest force, then lets the force change by at most max_force_rate per
+    /// tick; adds force_limited and rate_limited to `status`. With any of `faults` (to which a force that is
+    /// not finite adds invalid_force), and for ramp_ticks after, the force goes to zero instead, by max_force
+    /// / ramp_ticks in each tick, then comes back in proportion to the time since (status coming_back),
+    /// growing by at most max_force / 100 a tick, so that a hand that pressed on meanwhile is not kicked.
     Eigen::Vector3d limit(const Eigen::Vector3d& wanted, std::uint32_t& faults,
                           std::uint32_t& status) noexcept;
 

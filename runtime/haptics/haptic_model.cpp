@@ -111,16 +111,9 @@ void HapticModel::couple_to(std::span<const DeviceLimits> devices) {
 
 void HapticModel::reset() noexcept {
     for (Tool& tool : tools_) {
-        for (Part& part : tool.parts) {
-            part.on_rigid.reset();
-            part.on_all.reset();
-            for (SoftTouch& touch : part.on_soft) {
-                touch.god_object.reset();
-                touch.grip = 1;
-            }
-        }
+        forget(tool);
         tool.limiter.reset();
-        tool.last_count = 0;
+        tool.lost = false;
     }
     solver_.reset();
     if (published_) published_->reset();

@@ -54,8 +54,9 @@ class HapticModel {
     /// Computes the forces for one state of each tool: finds contacts, solves them, limits the forces. Fills
     /// the results except tick_ns, wake_latency_ns and overruns. As many states and results as tools
     /// (unchecked). Where a device has a fault, or with any of `faults` (Fault flags) all of them, the force
-    /// goes to zero, see ForceLimiter; contacts are followed as long as the position is trusted. One thread;
-    /// realtime-safe: no allocation, lock or I/O.
+    /// goes to zero, see ForceLimiter; contacts are followed as long as the position is trusted. A tool that
+    /// is found again more than 5 mm away starts anew: it does not feel a body that it is in until it has
+    /// been clear of it. One thread; realtime-safe: no allocation, lock or I/O.
     void tick(std::span<const DeviceState> devices, std::span<TickResult> results,
               std::uint32_t faults = no_fault) noexcept;
     /// The same with one tool.
@@ -107,9 +108,11 @@ class HapticModel {
         std::size_t last_count = 0;
         std::size_t parts_felt = 0;  // in this tick: none without a trusted position, the tip alone
                                      // without a shaft's direction
+        bool lost = false;           // the last position was not to be trusted
     };
 
     void begin(Tool& tool, const DeviceState& device, TickResult& result) noexcept;
+    static void forget(Tool& tool) noexcept;
     void follow(std::size_t tool, TickResult& result) noexcept;
     void follow_soft(std::size_t tool, std::size_t part, std::size_t soft, TickResult& result) noexcept;
     bool hold_off_rigid(std::span<TickResult> results) noexcept;

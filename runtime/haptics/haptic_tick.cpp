@@ -12,6 +12,7 @@ using Eigen::Vector3d;
 
 constexpr double unsolved = 1e-3;      // mm of residual that is reported
 constexpr int most_rounds = 4;         // of contacts that only the solution of the others meets
+constexpr double farthest_return = 5;  // mm: found again farther off than this, a tool starts anew
 constexpr double beside_surface = 10;  // mm: farther from a body than this, its motion does not matter
 
 std::array<double, 3> array_of(const Vector3d& v) noexcept {
@@ -106,13 +107,30 @@ void HapticModel::begin(Tool& tool, const DeviceState& device, TickResult& resul
     if (result.faults & distrusted_position) {
         result.force = array_of(tool.limiter.limit(Vector3d::Zero(), result.faults, result.status));
         tool.last_count = 0;
+        tool.lost = true;
         return;
     }
+    // The way there was not seen, so it says nothing about what lies between.
+    const bool unseen = tool.lost || (result.faults & tick_late);
+    if (unseen && (tip - tool.parts[0].device).norm() > farthest_return) forget(tool);
+    tool.lost = false;
     tool.parts_felt = shaft.squaredNorm() > 0 ? tool.parts.size() : 1;
     for (Part& part : tool.parts) {
         part.device = tip + part.behind_tip * shaft;
         part.moved = 0;
     }
+}
+
+void HapticModel::forget(Tool& tool) noexcept {
+    for (Part& part : tool.parts) {
+        part.on_rigid.reset();
+        part.on_all.reset();
+        for (SoftTouch& touch : part.on_soft) {
+            touch.god_object.reset();
+            touch.grip = 1;
+        }
+    }
+    tool.last_count = 0;
 }
 
 // Moves the god-objects of the tool's parts and gathers the contact points that must be solved together.

@@ -78,7 +78,8 @@ void ServoLoop::visual_beat() noexcept {
 
 std::uint32_t ServoLoop::faults_of(const ServoTick& wake, std::int64_t now_ns) noexcept {
     std::uint32_t faults = faults_.load(std::memory_order_relaxed);
-    if (wake.overruns - statistics_.overruns >= late_periods) faults |= tick_late;
+    const bool late = wake.wake_latency_ns >= late_periods * period_ns;
+    if (late || wake.overruns - statistics_.overruns >= late_periods) faults |= tick_late;
     const std::int64_t beat = visual_beat_ns_.load(std::memory_order_relaxed);
     if (beat != 0 && now_ns - beat > visual_patience_ns) faults |= visual_stopped;
     if (stopping_.load(std::memory_order_relaxed)) faults |= servo_stopping;

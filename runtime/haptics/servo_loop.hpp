@@ -37,7 +37,7 @@ struct ServoStatistics {
 class ServoLoop {
   public:
     static constexpr std::int64_t period_ns = Servo::period_ns;
-    /// So many periods skipped at once are the fault tick_late.
+    /// So many periods late, or skipped at once, are the fault tick_late.
     static constexpr std::int64_t late_periods = 10;
     /// So long after the last visual_beat() is the fault visual_stopped.
     static constexpr std::int64_t visual_patience_ns = 500'000'000;

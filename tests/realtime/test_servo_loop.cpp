@@ -114,7 +114,7 @@ class PressedLoop : public ::testing::Test {
     }
     void TearDown() override { loop_.stop(); }
     void run(int ticks) {
-        for (int i = 0; i < ticks; ++i) servo_.tick({1e-3 * ++ticks_, 0, overruns_});
+        for (int i = 0; i < ticks; ++i) servo_.tick({1e-3 * ++ticks_, latency_ns_, overruns_});
     }
     std::uint32_t faults() { return loop_.latest().read().faults; }
 
@@ -124,7 +124,7 @@ class PressedLoop : public ::testing::Test {
     HandServo servo_;
     ServoLoop loop_{model_, devices_, &servo_};
     int ticks_ = 0;
-    std::int64_t overruns_ = 0;
+    std::int64_t overruns_ = 0, latency_ns_ = 0;
 };
 
 TEST_F(PressedLoop, a_pause_of_ten_periods_takes_the_force_to_zero_and_brings_it_back) {
@@ -139,6 +139,17 @@ TEST_F(PressedLoop, a_pause_of_ten_periods_takes_the_force_to_zero_and_brings_it
     EXPECT_EQ(device_.force_[2], 0);
     run(ForceLimiter::return_ticks + 1);
     EXPECT_NEAR(device_.force_[2], pressed, 1e-9);
+}
+
+TEST_F(PressedLoop, the_tick_that_wakes_late_is_the_first_without_its_force) {
+    latency_ns_ = ServoLoop::late_periods * ServoLoop::period_ns - 1;
+    run(1);
+    EXPECT_EQ(faults(), no_fault);
+    const double pressed = device_.force_[2];
+    ++latency_ns_;
+    run(1);
+    EXPECT_EQ(faults(), tick_late);
+    EXPECT_LT(device_.force_[2], pressed);
 }
 
 TEST_F(PressedLoop, a_fault_told_from_outside_lasts_until_it_is_taken_back) {

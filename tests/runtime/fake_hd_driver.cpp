@@ -68,6 +68,7 @@ void get_integers(unsigned parameter, int* values) {
 
 void get_doubles(unsigned parameter, double* values) {
     const FakeHdDevice& device = current();
+    if (parameter == current_position && device.silent) return;
     if (parameter == current_position)
         std::ranges::copy(device.position, values);
     else if (parameter == current_joint_angles)

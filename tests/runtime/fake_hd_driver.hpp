@@ -17,6 +17,7 @@ struct FakeHdDevice {
     int buttons = 0, frames = 0;
     double temperature = 0;
     unsigned calibration = hdapi::calibration_ok;
+    bool silent = false;  ///< gives no position, and no error
     int styles = hdapi::automatic;
     int updates = 0;  ///< of its calibration
 };

@@ -42,27 +42,43 @@ TEST(ForceLimiter, reaches_max_force_in_steps_and_no_more) {
     EXPECT_NEAR((last - Vector3d(0, 0, 3)).norm(), 0, rounding);
 }
 
-TEST(ForceLimiter, ramps_to_zero_within_20_ticks_of_a_force_that_is_not_a_number) {
+TEST(ForceLimiter, no_force_is_larger_than_its_rate_takes_away_in_time) {
+    HapticSettings gentle = settings;
+    gentle.max_force_rate = 0.01;
+    ForceLimiter limiter(gentle);
+    Vector3d last = Vector3d::Zero();
+    for (int tick = 0; tick < 100; ++tick) last = next(limiter, {3, 0, 0});
+    EXPECT_NEAR(last.norm(), 0.01 * ForceLimiter::ramp_ticks, rounding);
+    for (int tick = 0; tick < ForceLimiter::ramp_ticks; ++tick) {
+        const Vector3d force = next(limiter, {3, 0, 0}, device_lost);
+        EXPECT_LE((force - last).norm(), 0.01 + rounding);
+        last = force;
+    }
+    EXPECT_NEAR(last.norm(), 0, rounding);
+}
+
+TEST(ForceLimiter, ramps_to_zero_in_time_after_a_force_that_is_not_a_number) {
     ForceLimiter limiter(settings);
     for (int tick = 0; tick < 10; ++tick) next(limiter, {3, 0, 0});
     double last = 3;
-    for (int tick = 0; tick < 20; ++tick) {
+    for (int tick = 0; tick < ForceLimiter::ramp_ticks; ++tick) {
         std::uint32_t status = tick_ok, faults = no_fault;
         const Vector3d force =
             limiter.limit({std::numeric_limits<double>::quiet_NaN(), 0, 0}, faults, status);
         EXPECT_EQ(faults, invalid_force);
         EXPECT_LE(force.norm(), last);
-        EXPECT_GE(force.norm(), last - settings.max_force / 20 - rounding);
+        EXPECT_GE(force.norm(), last - settings.max_force / ForceLimiter::ramp_ticks - rounding);
         last = force.norm();
     }
     EXPECT_NEAR(last, 0, rounding);
 }
 
-TEST(ForceLimiter, a_fault_of_one_tick_still_ends_in_zero_force_20_ticks_later) {
+TEST(ForceLimiter, a_fault_of_one_tick_still_ends_in_zero_force) {
     ForceLimiter limiter(settings);
     for (int tick = 0; tick < 10; ++tick) next(limiter, {3, 0, 0});
     next(limiter, {3, 0, 0}, tick_late);
-    for (int tick = 0; tick < 18; ++tick) EXPECT_GT(next(limiter, {3, 0, 0}).norm(), 0);
+    for (int tick = 0; tick < ForceLimiter::ramp_ticks - 2; ++tick)
+        EXPECT_GT(next(limiter, {3, 0, 0}).norm(), 0);
     EXPECT_NEAR(next(limiter, {3, 0, 0}).norm(), 0, rounding);
 }
 

@@ -137,6 +137,27 @@ TEST(HapticModel, a_device_that_was_lost_and_found_elsewhere_feels_no_old_contac
     }
 }
 
+// Free above the skull, then free below it, whatever lies between.
+double force_after_a_way_unseen(std::uint32_t fault) {
+    HapticModel model(patient());
+    TickResult result{};
+    model.tick(at({40, 10, 40}), result);
+    DeviceState gone = at({40, 10, 40});
+    gone.faults = fault;
+    for (int tick = 0; tick < 100; ++tick) model.tick(gone, result);
+    const DeviceState below = at({40, 10, -40});
+    const int back = ForceLimiter::ramp_ticks + ForceLimiter::return_ticks;
+    for (int tick = 0; tick < back; ++tick) model.tick(below, result);
+    EXPECT_EQ(result.faults, no_fault);
+    return force_of(result).norm();
+}
+
+TEST(HapticModel, a_device_found_again_beyond_a_body_is_not_pulled_back_through_it) {
+    EXPECT_EQ(force_after_a_way_unseen(device_lost), 0);
+    // The same way seen is one through the bone.
+    EXPECT_GT(force_after_a_way_unseen(no_fault), 1);
+}
+
 TEST(HapticModel, the_force_keeps_to_what_the_device_bears) {
     HapticModel model(patient());
     const DeviceLimits weak{.max_force = 0.3};

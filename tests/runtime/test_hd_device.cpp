@@ -167,16 +167,16 @@ TEST_F(HdDeviceTest, a_pose_without_encoder_data_is_a_fault_when_it_lasts) {
     EXPECT_EQ(tick(device), no_fault);
 }
 
-TEST_F(HdDeviceTest, only_a_calibration_that_needs_a_hand_is_a_fault) {
+TEST_F(HdDeviceTest, a_calibration_is_a_fault_until_it_is_up_to_date) {
     HdDevice& device = open();
     tick(device);
     behind().calibration = calibration_needs_update;
-    EXPECT_EQ(tick(device, HdDevice::look_ticks), no_fault);
+    EXPECT_EQ(tick(device, HdDevice::look_ticks), not_calibrated);
     EXPECT_EQ(device.calibration(), Calibration::needs_update);
     EXPECT_EQ(behind().updates, 0);  // never in the servo
     device.calibrate();
     EXPECT_EQ(behind().updates, 1);
-    tick(device);
+    EXPECT_EQ(tick(device), no_fault);
     EXPECT_EQ(device.calibration(), Calibration::ok);
     behind().calibration = calibration_needs_manual_input;
     EXPECT_EQ(tick(device, HdDevice::look_ticks), not_calibrated);
@@ -191,8 +191,13 @@ TEST_F(HdDeviceTest, a_calibration_that_its_update_does_not_help_is_a_fault) {
     EXPECT_EQ(tick(device), not_calibrated);
     behind().calibration = calibration_ok;
     EXPECT_EQ(tick(device, HdDevice::look_ticks), no_fault);
-    behind().calibration = calibration_needs_update;  // another time, before its update
-    EXPECT_EQ(tick(device, HdDevice::look_ticks), no_fault);
+}
+
+TEST_F(HdDeviceTest, a_driver_that_gives_no_position_and_says_nothing_is_noticed) {
+    HdDevice& device = open();
+    tick(device);
+    behind().silent = true;
+    EXPECT_TRUE(std::isnan(device.read(0).position[0]));
 }
 
 TEST_F(HdDeviceTest, a_transform_that_is_no_number_gives_no_shaft) {

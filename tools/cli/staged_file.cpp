@@ -36,7 +36,7 @@ extern "C" void remove_and_exit(int) {
     }
     for (Slot& slot : slots)
         if (slot.used.load()) unlink(slot.path.data());
-    constexpr char message[] = "\ninterrupted; nothing was left behind\n";
+    constexpr char message[] = "\ninterrupted; unfinished outputs were removed\n";
     [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, message, sizeof(message) - 1);
     _exit(130);
 }
@@ -115,6 +115,7 @@ void remove_staged_files_on_interrupt() {
     action.sa_handler = remove_and_exit;
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
+    sigaction(SIGHUP, &action, nullptr);  // the terminal was closed
 }
 
 void end_softly_on_interrupt() {

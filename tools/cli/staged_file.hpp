@@ -35,10 +35,10 @@ class StagedFile {
 /// Puts final names into a message in the place of temporary ones.
 std::string with_final_names(std::string message);
 
-/// Makes SIGINT and SIGTERM remove all staged files and exit with 130. Called once by Command::run().
+/// Makes SIGINT, SIGTERM and SIGHUP remove all staged files and exit with 130. Called once by Command::run().
 void remove_staged_files_on_interrupt();
 
-/// From now on the first SIGINT or SIGTERM only makes interrupt_asked() true, for a command that has a device
+/// From now on the first of these signals only makes interrupt_asked() true, for a command that has a device
 /// to release; its job ends by throwing Interrupted. A second one does as before.
 void end_softly_on_interrupt();
 bool interrupt_asked();

@@ -158,9 +158,15 @@ FaultRun run_with_faults(const Case& patient_case, ContactScheme scheme, const D
             const Injection* injection = at(injections, tick);
             const Fault fault = injection ? injection->fault : no_fault;
             for (const Fault told : {visual_stopped, asset_removed}) loop.set_fault(told, fault == told);
-            if (fault == tick_late) overruns += skipped(random);
-            return ServoTick{1e-9 * static_cast<double>((tick + overruns) * ServoLoop::period_ns), 0,
-                             overruns};
+            if (fault != tick_late)
+                return ServoTick{1e-9 * static_cast<double>((tick + overruns) * ServoLoop::period_ns), 0,
+                                 overruns};
+            // Woken late, as a process that was stopped; the periods are counted as skipped at the next one.
+            const std::int64_t late = skipped(random);
+            const ServoTick wake{1e-9 * static_cast<double>((tick + overruns) * ServoLoop::period_ns),
+                                 late * ServoLoop::period_ns, overruns};
+            overruns += late;
+            return wake;
         });
 
     run.reported = static_cast<std::int64_t>(log.events().size());
