@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-#include <array>
 #include <chrono>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <spdlog/spdlog.h>
-#include <sstream>
 #include <thread>
 #include <vector>
 
@@ -14,19 +11,15 @@
 #include "formats/model/errors.hpp"
 #include "runtime/apps/hand_script.hpp"
 #include "runtime/apps/live_stream.hpp"
-#include "runtime/apps/physical_devices.hpp"
 #include "runtime/apps/run_record.hpp"
 #include "runtime/apps/run_recorder.hpp"
 #include "runtime/apps/run_watch.hpp"
-#include "runtime/apps/simulation.hpp"
 #include "runtime/apps/start_recording.hpp"
 #include "runtime/apps/statistics_json.hpp"
 #include "runtime/apps/touch_json.hpp"
 #include "runtime/apps/touch_outputs.hpp"
+#include "runtime/apps/touch_plan.hpp"
 #include "runtime/apps/touch_replay.hpp"
-#include "runtime/apps/touch_target.hpp"
-#include "runtime/devices/mounted_device.hpp"
-#include "runtime/devices/simulated_device.hpp"
 #include "runtime/haptics/servo_loop.hpp"
 #include "runtime/realtime/process_age.hpp"
 #include "tools/cli/command.hpp"
@@ -35,110 +28,6 @@ namespace palpate {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-struct Options {
-    std::filesystem::path asset, log, curve, record, replay;
-    std::string script = "press", body, target, second, scheme = "continuous", device, shaft, stream;
-    double seconds = 10, depth = 3, speed = 20, record_seconds = 300;
-    std::uint64_t seed = 1;
-    std::optional<std::size_t> column;
-    bool seconds_given = false, virtual_clock = false;
-};
-
-// What the hand does, and where if that was chosen here.
-struct Plan {
-    std::optional<HandPath> path;  // none where a person's hand moves
-    std::optional<TouchTarget> target;
-    double seconds;
-};
-
-std::optional<Eigen::Vector3d> point_of(const char* option, std::string text) {
-    if (text.empty()) return std::nullopt;
-    std::istringstream stream(text);
-    Eigen::Vector3d p;
-    char comma = ',', other_comma = ',';
-    stream >> p[0] >> comma >> p[1] >> other_comma >> p[2];
-    if (!stream || comma != ',' || other_comma != ',' || stream.peek() != EOF)
-        throw UsageError({option, text, "x,y,z", ""});
-    return p;
-}
-
-// At least one tick, so that there is something to report.
-void require_positive(double seconds) {
-    if (!(seconds >= 1e-3)) throw UsageError({"--seconds", std::to_string(seconds), "0.001 or more", ""});
-}
-
-Plan plan_of(const Options& options, bool physical, const Case& patient_case, const HapticModel& model) {
-    if (!physical && !options.column && !is_made_to_measure(options.script)) {
-        HandPath path = recorded_path(options.script);
-        const double seconds = options.seconds_given ? options.seconds : path.duration();
-        require_positive(seconds);
-        return {std::move(path), std::nullopt, seconds};
-    }
-    if (!options.column) require_positive(options.seconds);
-    const TouchTarget target =
-        choose_touch_target(patient_case, model, options.body, point_of("--target", options.target));
-    if (physical) return {std::nullopt, target, options.seconds};
-    // The published schemes know the tip's centre alone.
-    const bool has_radius = model.scheme() == ContactScheme::continuous;
-    const ScriptSettings settings{.tool_radius = has_radius ? model.settings().tool_radius : 0,
-                                  .depth = options.depth,
-                                  .speed = options.speed,
-                                  .seconds = options.seconds};
-    if (!options.column)
-        return {made_to_measure_path(options.script, target.place, settings, options.seed), target,
-                options.seconds};
-    HandPath path = recorded_axis_path(options.script, *options.column, target.place, settings);
-    const double seconds = options.seconds_given ? options.seconds : path.duration();
-    require_positive(seconds);
-    return {std::move(path), target, seconds};
-}
-
-// From the tip along the shaft: as asked, or straight out of the place that is touched.
-std::array<double, 3> shaft_of(const Options& options, const Plan& plan) {
-    Eigen::Vector3d along = plan.target ? plan.target->place.normal : Eigen::Vector3d::Zero();
-    if (const auto asked = point_of("--shaft", options.shaft)) {
-        if (!(asked->norm() > 0)) throw UsageError({"--shaft", options.shaft, "a direction", ""});
-        along = asked->normalized();
-    }
-    return {along[0], along[1], along[2]};
-}
-
-// `up`: which way out of the patient a device of its own frame is turned.
-std::unique_ptr<Device> device_of(const Options& options, const HapticModel& model, HandPath path,
-                                  const Eigen::Vector3d& up, const std::array<double, 3>& shaft) {
-    if (!options.device.empty()) return simulate(find_device_model(options.device), path, up, shaft);
-    const DeviceLimits limits{.max_force = model.settings().max_force,
-                              .max_stiffness = model.settings().coupling_stiffness};
-    return std::make_unique<SimulatedDevice>(std::move(path), limits, shaft);
-}
-
-// The devices of a run, one for each tool.
-struct Held {
-    std::unique_ptr<PhysicalDevices> physical;
-    std::vector<std::unique_ptr<Device>> simulated;
-    std::vector<Device*> devices;
-    Servo* servo = nullptr;  // null: the loop's own
-};
-
-Held hold(const Options& options, const std::optional<PhysicalDevice>& physical, const Plan& plan,
-          const HapticModel& model) {
-    Held held;
-    const Eigen::Vector3d up = plan.target ? plan.target->place.normal : anterior;
-    if (physical) {
-        const Eigen::Vector3d start = start_outside(plan.target->place, model.settings().tool_radius);
-        held.physical = std::make_unique<PhysicalDevices>(*physical, start, upright(up));
-        held.devices = held.physical->devices();
-        held.servo = held.physical->servo();
-        return held;
-    }
-    const std::array<double, 3> shaft = shaft_of(options, plan);
-    held.simulated.push_back(device_of(options, model, *plan.path, up, shaft));
-    if (!options.second.empty())
-        held.simulated.push_back(device_of(options, model, recorded_path(options.second), anterior, shaft));
-    for (const auto& device : held.simulated) held.devices.push_back(device.get());
-    return held;
-}
 
 // Said before devices are closed, which may take a driver that hangs for ever.
 SystemFailure servo_stopped() {
@@ -172,40 +61,7 @@ void run_in_real_time(ServoLoop& loop, double seconds, const std::function<void(
     }
 }
 
-// What a script is told means nothing to a person's hand, nor a recording's length without a recording.
-void refuse_idle_options(const cli::Command& command, const Options& options) {
-    constexpr std::array of_scripts{"--script", "--column", "--depth", "--speed", "--shaft", "--seed"};
-    const bool physical = parse_physical_device(options.device).has_value();
-    for (const cli::Parameter& parameter : command.parameters()) {
-        if (parameter.option->count() == 0) continue;
-        const std::string name = parameter.option->get_name();
-        if (physical && std::ranges::find(of_scripts, name) != of_scripts.end())
-            throw UsageError({name, "with --device " + options.device, "a simulated device", ""});
-        if (name == "--record-seconds" && options.record.empty())
-            throw UsageError({name, "without --record", "--record FILE beside it", ""});
-    }
-}
-
-// A combination of options that makes no sense, with what to do.
-void refuse_contradictions(const Options& options, const std::optional<PhysicalDevice>& physical) {
-    const bool continuous = find_contact_scheme(options.scheme) == ContactScheme::continuous;
-    if (!options.second.empty() && !continuous)
-        throw UsageError({"--second", "with --scheme " + options.scheme, "the scheme 'continuous'",
-                          "the published schemes know one tool"});
-    if (options.virtual_clock && !options.stream.empty())
-        throw UsageError({"--stream", "with --virtual-clock", "the real clock", ""});
-    if (!physical) return;
-    const std::string with = "with --device " + options.device;
-    if (options.virtual_clock)
-        throw UsageError({"--virtual-clock", with, "the real clock", "a hand keeps its own time"});
-    if (!options.second.empty())
-        throw UsageError({"--second", with, "--device openhaptics:NAME,NAME", "a hand holds each device"});
-    if (physical->tool_count() > 1 && !continuous)
-        throw UsageError({"--scheme", options.scheme + " with several devices", "the scheme 'continuous'",
-                          "the published schemes know one tool"});
-}
-
-Json touch(const Options& options, cli::Session& session) {
+Json touch(const TouchOptions& options, cli::Session& session) {
     TouchOutputs outputs(options.log, options.curve, session);
     if (!options.replay.empty()) return replay_recording(options.replay, options.asset, outputs, session);
     const std::optional<PhysicalDevice> physical = parse_physical_device(options.device);
@@ -214,9 +70,9 @@ Json touch(const Options& options, cli::Session& session) {
     const std::size_t simulated_tools = options.second.empty() ? 1 : 2;
     HapticModel model(patient_case, find_contact_scheme(options.scheme),
                       physical ? physical->tool_count() : simulated_tools);
-    const Plan plan = plan_of(options, physical.has_value(), patient_case, model);
+    const TouchPlan plan = plan_of(options, physical.has_value(), patient_case, model);
     if (!options.virtual_clock) cli::end_softly_on_interrupt();
-    const Held held = hold(options, physical, plan, model);
+    const HeldDevices held = hold(options, physical, plan, model);
     ServoLoop loop(model, held.devices, held.servo);
 
     const std::string clock = options.virtual_clock ? "virtual" : "real";
@@ -318,7 +174,7 @@ int main(int argc, char** argv) {
              "--record-seconds (formats/recording/SPEC.md, for h5py); it has its name from the start and is "
              "kept however the run ends, where other outputs appear whole or not at all. A replay gives its "
              "forces again, bit for bit, or ends with exit code 4."});
-    Options options;
+    TouchOptions options;
     const CLI::Option* asset = command.input("asset", options.asset, "the case (.vtkhdf)")->required();
     command.option("--script", options.script,
                    "what the hand does: press, slide, tremble, let-go, random or a file");
