@@ -22,18 +22,20 @@ import numpy as np
 import openigtlink
 from sample_asset import TESTS, SampleAsset
 from test_record import kept
-from test_train import NEEDED, XServer
+from test_train import XServer
 
 BIN = pathlib.Path(os.environ["PALPATE_BIN"])
 LIBRARY = TESTS / "libpalpate_hd_conformance.so"
 # Flags of runtime/realtime/fault.hpp
 DEVICE_LOST, TICK_LATE, ASSET_REMOVED, SERVO_STOPPING = 1 << 1, 1 << 7, 1 << 10, 1 << 11
-SLEW = 0.25  # N a tick, the sample's max_force_rate
+SLEW = 0.25 + 1e-6  # N a tick, the sample's max_force_rate
 PATIENCE = 30  # s, for what comes within one on an idle machine
 
-# A hand that stays outside while the run starts, however slowly, then presses 3 mm deep and stays. The device's
+# A hand that stays outside while the run starts, however slowly, then presses 5 mm deep and stays. The device's
 # y axis points out of the surface, and its workspace's middle is 5 mm above it.
-PRESS = [[0, 0, 0, 0], [2, 0, 0, 0], [2.4, 0, -8, 0], [100, 0, -8, 0]]
+PRESS = [[0, 0, 0, 0], [2, 0, 0, 0], [2.5, 0, -10, 0], [100, 0, -10, 0]]
+RAS = np.array([-1, -1, 1])  # times LPS
+FELT = 0.2  # N, what the hand feels at least of a skull, which does not give way: more than a ramp's first tick takes
 
 
 def wait_until(condition, what):
@@ -66,18 +68,19 @@ class Devices(SampleAsset):
         return json.loads(run.stdout), run.stderr
 
     def logged(self, log):
-        """Time, size of the force and faults of each tick of the first tool."""
+        """Time, size of the force and faults of each tick."""
         with open(log, newline="") as file:
-            rows = [row for row in csv.DictReader(file) if row["tool"] == "0"]
+            rows = list(csv.DictReader(file))
         force = np.array([math.hypot(*(float(row[f"force_{axis}_n"]) for axis in "xyz")) for row in rows])
         return np.array([float(row["t_s"]) for row in rows]), force, [row["faults"].split("+") for row in rows]
 
     def begin(self, *options, environment=None, asset=None):
-        """A run that would take a minute, and its recording."""
+        """A run on the skull that would take a minute, and its recording."""
         recording = self.fresh(".h5")
         process = subprocess.Popen(
-            [BIN / "palpate-touch", asset or self.asset, "--seconds", "60", "--record", recording, "--record-seconds",
-             "30", *map(str, options)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
+            [BIN / "palpate-touch", asset or self.asset, "--body", "skull", "--seconds", "60", "--record", recording,
+             "--record-seconds", "30", *map(str, options)],
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
         self.addCleanup(process.communicate)
         self.addCleanup(process.kill)
         return process, recording
@@ -96,11 +99,15 @@ class Devices(SampleAsset):
         length = min(len(force), len(faults))  # the run goes on between the two
         return np.linalg.norm(force[:length], axis=1), faults[:length]
 
-    def wait_for_force(self, recording, least=0.01):
-        wait_until(lambda: self.recorded(recording)[0][-1:].sum() > least, "no force came")
+    def wait_for_force(self, recording):
+        wait_until(lambda: self.recorded(recording)[0][-1:].sum() > FELT, "no force came")
 
-    def wait_for_fault(self, recording, fault):
-        wait_until(lambda: (self.recorded(recording)[1][-1:] & fault).any(), "the fault was not told of")
+    def wait_for_fault(self, recording, fault, since=0):
+        def has_come():
+            force, faults = self.recorded(recording)
+            return (faults[since:] & fault).any() and force[-1] == 0
+
+        wait_until(has_come, "the fault was not told of, or left the force")
 
     def assert_no_force_while(self, there, force):
         """From 20 ticks after each beginning of a fault to its last tick and 20 more; there[i]: in tick i."""
@@ -114,7 +121,7 @@ class Devices(SampleAsset):
         force, faults = self.recorded(recording)
         stopping = np.flatnonzero(faults & SERVO_STOPPING)
         self.assertGreater(len(stopping), 20)
-        self.assertGreater(force[stopping[0] - 1], 0)
+        self.assertGreater(force[stopping[0] - 1], FELT)
         self.assertTrue((np.diff(force[stopping]) <= 0).all())
         self.assertEqual(force[-1], 0)
 
@@ -129,7 +136,7 @@ class Devices(SampleAsset):
         self.assertGreater(result["force_peak_n"], 0.01)
         self.assertLessEqual(result["force_step_max_n"], SLEW)
         # The hand gives way by friction and force over its 0.3 N/mm.
-        self.assertAlmostEqual(result["penetration"]["device_mm"], 3, delta=1)
+        self.assertAlmostEqual(result["penetration"]["device_mm"], 5, delta=1)
         self.assertEqual(result["statuses"], {})
         self.assertLessEqual({fault["fault"] for fault in result["faults"]}, {"tick_late"})  # a busy machine's
         time_s, force, _ = self.logged(log)
@@ -162,8 +169,8 @@ class Devices(SampleAsset):
         # again 0.52 s after the last tick of a fault.
         faults = [{"fault": fault, "from": 3 + i, "until": 3.3 + i} for i, (fault, _) in enumerate(named)]
         log = self.fresh(".csv")
-        result, talk = self.result("--device", "openhaptics", "--seconds", 9.2, "--log", log,
-                                   environment=self.driver({"path": PRESS, "faults": faults}))
+        result, talk = self.result("--device", "openhaptics", "--body", "skull", "--seconds", 9.2, "--log",
+                                   log, environment=self.driver({"path": PRESS, "faults": faults}))
         events = [fault for fault in result["faults"] if fault["fault"] != "tick_late"]
         self.assertEqual([event["fault"] for event in events], [fault for _, fault in named])
         for name in {fault for _, fault in named}:
@@ -177,35 +184,41 @@ class Devices(SampleAsset):
                 there &= (time_s > event["from_s"] - 1e-4) & (time_s < event["until_s"] + 1e-4)
                 self.assert_no_force_while(there, force)
                 after = (time_s > event["until_s"] + 0.1) & (time_s < event["until_s"] + 0.6)
-                self.assertGreater(force[after].max(), 0.01)
+                self.assertGreater(force[after].max(), FELT)
         self.assertLessEqual(result["force_step_max_n"], SLEW)
 
-    def test_a_device_that_cannot_be_had_is_refused_with_cause_and_fix_and_leaves_nothing(self):
+    def test_what_cannot_be_had_is_refused_with_cause_and_fix_and_leaves_nothing(self):
         without = {key: value for key, value in os.environ.items() if key != "PALPATE_HD_LIBRARY"}
         loaded = self.driver({"name": "A"}, {"name": "B"})
+        inkwell, reset = ({"calibration": "needs_manual_input", "styles": [style]} for style in ("inkwell", "reset"))
+        taken = socket.create_server(("127.0.0.1", 0))
+        self.addCleanup(taken.close)
+        default = ["--device", "openhaptics"]
         cases = [
-            (without, "openhaptics", 1, ["its library is not found", "PALPATE_HD_LIBRARY"]),
-            (without | {"PALPATE_HD_LIBRARY": "/nowhere/libHD.so"}, "openhaptics", 3,
+            (without, default, 1, ["its library is not found", "PALPATE_HD_LIBRARY"]),
+            (without | {"PALPATE_HD_LIBRARY": "/nowhere/libHD.so"}, default, 3,
              ["/nowhere/libHD.so: not found", "check the path"]),
-            (without | {"PALPATE_HD_LIBRARY": str(self.asset)}, "openhaptics", 3, ["sample.vtkhdf", "not a shared library"]),
-            (self.driver({"refuse": "licence"}), "openhaptics", 1, ["no licence", "install a licence"]),
-            (self.driver({"refuse": "comm"}), "openhaptics", 1, ["cannot talk to the device", "udev"]),
-            (self.driver({"refuse": "comm_config"}), "openhaptics", 1, ["configuration", "setup program"]),
-            (self.driver({"calibration": "needs_manual_input", "styles": ["inkwell"]}), "openhaptics", 1,
-             ["not calibrated", "put the stylus into its inkwell"]),
-            (self.driver({"calibration": "needs_manual_input", "styles": ["reset"]}), "openhaptics", 1,
-             ["not calibrated", "reset position"]),
-            (loaded, "openhaptics:A,C", 1, ["device 'C'"]),
-            (loaded, "openhaptics:A,A", 3, ["'A' is named twice"]),
-            (loaded, "openhaptics:", 2, ["openhaptics:NAME"]),
-            (loaded, "openhaptics:A,", 2, ["openhaptics:NAME"]),
-            (loaded, "igtl:127.0.0.1", 2, ["HOST:PORT"]),
+            (without | {"PALPATE_HD_LIBRARY": str(self.asset)}, default, 3, ["sample.vtkhdf", "not a shared library"]),
+            (self.driver({"refuse": "licence"}), default, 1, ["no licence", "install a licence"]),
+            (self.driver({"refuse": "comm"}), default, 1, ["cannot talk to the device", "udev"]),
+            (self.driver({"refuse": "comm_config"}), default, 1, ["configuration", "setup program"]),
+            (self.driver(inkwell), default, 1, ["not calibrated", "put the stylus into its inkwell"]),
+            (self.driver(reset), default, 1, ["not calibrated", "reset position"]),
+            (loaded, ["--device", "openhaptics:A,C"], 1, ["device 'C'"]),
+            (loaded, ["--device", "openhaptics:A,A"], 3, ["'A' is named twice"]),
+            (loaded, ["--device", "openhaptics:"], 2, ["openhaptics:NAME"]),
+            (loaded, ["--device", "openhaptics:A,"], 2, ["openhaptics:NAME"]),
+            (loaded, [*default, "--script", "slide"], 2, ["--script: with --device openhaptics", "a simulated device"]),
+            (loaded, [*default, "--depth", 2], 2, ["--depth: with --device openhaptics"]),
+            (without, ["--device", "igtl:127.0.0.1"], 2, ["HOST:PORT"]),
+            (without, ["--device", f"igtl:127.0.0.1:{openigtlink.free_port()}"], 3, ["refused", "start the server"]),
+            (without, ["--stream", taken.getsockname()[1]], 1, ["in use", "choose another port"]),
         ]
-        for environment, device, code, words in cases:
-            with self.subTest(device=device, words=words):
+        for environment, options, code, words in cases:
+            with self.subTest(options=options, words=words):
                 before = sorted(self.folder.iterdir())
-                run = self.touch("--device", device, "--log", self.folder / "no.csv", "--record", self.folder / "no.h5",
-                                 "--curve", self.folder / "no.svg", environment=environment)
+                run = self.touch(*options, "--seconds", 0.1, "--log", self.folder / "no.csv", "--record",
+                                 self.folder / "no.h5", "--curve", self.folder / "no.svg", environment=environment)
                 self.assertEqual(run.returncode, code, run.stderr)
                 for word in words:
                     self.assertIn(word, run.stderr)
@@ -276,7 +289,7 @@ class Devices(SampleAsset):
                 time.sleep(1)
                 before = len(self.recorded(recording)[0])
                 process.send_signal(signal.SIGCONT)
-                wait_until(lambda: (self.recorded(recording)[1][before:] & TICK_LATE).any(), "the sleep went unnoticed")
+                self.wait_for_fault(recording, TICK_LATE, since=before)
                 self.wait_for_force(recording)
                 self.assertIn("(tick_late)", self.end(process))
                 force, faults = self.recorded(recording)
@@ -294,7 +307,7 @@ class Devices(SampleAsset):
         wait_until(lambda: len(self.recorded(recording)[0]) > 0, "the run did not start")
         tool, force, status = None, 0, None
         with socket.create_connection(("127.0.0.1", port), timeout=PATIENCE) as connection:
-            while tool is None or force < 0.01 or status is None:
+            while tool is None or force < FELT or status is None:
                 kind, device, body = openigtlink.receive(connection)
                 if kind == "TRANSFORM":
                     *axes, translation = np.array(struct.unpack(">12f", body)).reshape(4, 3)
@@ -311,15 +324,15 @@ class Devices(SampleAsset):
         process.communicate(timeout=10)
         self.assertEqual(process.returncode, 130)
         self.assertIn(status, (1, 2))  # all is well, or a busy machine's tick_late
-        lps = tool * (-1, -1, 1)
+        lps = tool * RAS
         self.assertLess(np.abs(kept(recording, "ticks/tool_position") - lps).max(axis=1).min(), 1e-4)
         peak = np.linalg.norm(kept(recording, "ticks/force"), axis=1)
         self.assertLess(np.abs(peak - force).min(), 1e-4)
 
     def test_a_tracker_s_pose_in_ras_moves_the_tool_in_lps(self):
-        target, _ = self.result("--virtual-clock", "--seconds", 0.001)
-        x, y, z = target["target"]["point_mm"]
-        outside, inside = z + 6.5, z - 1.5  # of a tip of 1.5 mm: 5 mm clear, 3 mm deep
+        target = self.result("--virtual-clock", "--body", "skull", "--seconds", 0.001)[0]["target"]
+        point, normal = np.array(target["point_mm"]), np.array(target["normal"])
+        outside, inside = 6.5, -1.5  # above the point, mm, of a tip of 1.5 mm: 5 mm clear, 3 mm deep
         tip = {"height": outside}  # None: the tracker sees nothing
         stop = threading.Event()
 
@@ -331,7 +344,7 @@ class Devices(SampleAsset):
                 while not stop.wait(0.005):
                     if (height := tip["height"]) is not None:
                         connection.sendall(openigtlink.transform("Other", (0, 0, 500)) + damaged
-                                           + openigtlink.transform("Stylus", (-x, -y, height)))
+                                           + openigtlink.transform("Stylus", (point + height * normal) * RAS))
 
         with socket.create_server(("127.0.0.1", 0)) as server:
             server.settimeout(PATIENCE)
@@ -353,47 +366,49 @@ class Devices(SampleAsset):
         self.assertIn("(device_lost)", self.end(process))
         force, faults = self.recorded(recording)
         self.assert_no_force_while((faults & DEVICE_LOST) != 0, force)
-        place = kept(recording, "ticks/device_position")
-        self.assertLess(np.abs(place[:, :2] - (x, y)).max(), 1e-4)  # float32 on the wire
-        self.assertAlmostEqual(place[:, 2].min(), inside, delta=1e-4)
+        place = kept(recording, "ticks/device_position") - point
+        height = place @ normal
+        self.assertLess(np.abs(place - np.outer(height, normal)).max(), 1e-4)  # float32 on the wire
+        self.assertAlmostEqual(height.min(), inside, delta=1e-4)
         with h5py.File(recording) as file:
             self.assertIn("'Stylus'", file["devices/name"][0].decode())
 
     # The other commands.
 
     def test_the_doctor_looks_at_a_driver_s_device(self):
-        def findings(device, **kind):
+        def findings(**device):
             run = subprocess.run(
-                [BIN / "palpate-doctor", "--seconds", "0.1", "--simulated", "--device", device, "--json", "-"],
-                capture_output=True, text=True, timeout=60, env=self.driver(kind))
+                [BIN / "palpate-doctor", "--seconds", "0.1", "--simulated", "--device", "openhaptics", "--json", "-"],
+                capture_output=True, text=True, timeout=60, env=self.driver(device))
             found = {finding["id"]: finding for finding in json.loads(run.stdout)["findings"]}
             return run.returncode, found
 
-        code, found = findings("openhaptics")
+        code, found = findings()
         self.assertEqual(code, 0)
         self.assertEqual(found["name"]["found"], "touch Default Device")
         self.assertEqual(found["pose"]["level"], "ok")
         self.assertIn("1000 Hz", found["limits"]["found"])
 
-        code, found = findings("openhaptics", faults=[{"fault": "frozen_pose"}])
+        code, found = findings(faults=[{"fault": "frozen_pose"}])
         self.assertEqual(code, 4)
         self.assertEqual(found["pose"]["level"], "problem")
         self.assertIn("pose_frozen", found["faults"]["found"])
         self.assertIn("unplug", found["pose"]["fix"])
 
-        code, found = findings("openhaptics", refuse="licence")
+        code, found = findings(refuse="licence")
         self.assertEqual(code, 4)
         self.assertIn("licence", found["device"]["found"])
 
     @unittest.skipUnless((BIN / "palpate-train").exists(), "PALPATE_VISUAL is off")
-    @unittest.skipUnless(all(map(shutil.which, NEEDED)), "PALPATE: xvfb, xdotool, x11-apps or imagemagick is missing")
+    @unittest.skipUnless(shutil.which("Xvfb"), "PALPATE: xvfb is missing")
     def test_the_trainer_is_held_by_a_driver_s_device(self):
         # The device's axes are the screen's: z comes out of it, and the surface faces the eye within 45 degrees.
         into_screen = [[0, 0, 0, 0], [3, 0, 0, 0], [4, 0, 0, -20], [100, 0, 0, -20]]
         with XServer() as server:
             run = subprocess.run(
                 [BIN / "palpate-train", self.asset, "--device", "openhaptics", "--seconds", "6", "--json", "-"],
-                capture_output=True, text=True, timeout=60, env=self.driver({"path": into_screen}, DISPLAY=server.environment["DISPLAY"]))
+                capture_output=True, text=True, timeout=60,
+                env=self.driver({"path": into_screen}, DISPLAY=server.environment["DISPLAY"]))
         self.assertEqual(run.returncode, 0, run.stderr)
         result = json.loads(run.stdout)
         self.assertEqual(result["device"], "touch Default Device")
