@@ -41,6 +41,7 @@ struct Options {
     std::uint64_t seed = 1;
     std::optional<std::size_t> column;
     bool seconds_given = false, virtual_clock = false;
+    std::vector<std::string> of_the_hand;  // names of the options given that say what a simulated hand does
 };
 
 // What the hand does, and where if that was chosen here.
@@ -177,7 +178,8 @@ void refuse_contradictions(const Options& options, const std::optional<PhysicalD
         throw UsageError({"--virtual-clock", with, "the real clock", "a hand keeps its own time"});
     if (!options.second.empty())
         throw UsageError({"--second", with, "--device openhaptics:NAME,NAME", "a hand holds each device"});
-    if (options.column) throw UsageError({"--column", with, "a simulated device", ""});
+    if (!options.of_the_hand.empty())
+        throw UsageError({options.of_the_hand.front(), with, "a simulated device", "a hand moves this one"});
 }
 
 Json touch(const Options& options, cli::Session& session) {
@@ -195,14 +197,15 @@ Json touch(const Options& options, cli::Session& session) {
     ServoLoop loop(model, held.devices, held.servo);
 
     const std::string clock = options.virtual_clock ? "virtual" : "real";
+    // Before the recording, which stays whatever happens then.
+    std::optional<LiveStream> stream;
+    if (!options.stream.empty()) stream.emplace(options.stream, patient_case, model.tool_count());
     std::optional<RunRecorder> recorder;
     if (!options.record.empty())
         recorder.emplace(start_recording(
             options.record,
             recording_head(options.asset, patient_case, model, held.devices, clock, cli::version()),
             options.record_seconds, session));
-    std::optional<LiveStream> stream;
-    if (!options.stream.empty()) stream.emplace(options.stream, patient_case, model.tool_count());
     std::vector<RunRecord> records = outputs.records_of(model);
     RunWatch watch(options.asset, loop, [](const std::string& sentence) { spdlog::warn("{}", sentence); });
     const auto take = [&](const TickResult& result) {
@@ -289,15 +292,17 @@ int main(int argc, char** argv) {
              "forces again, bit for bit, or ends with exit code 4."});
     Options options;
     const CLI::Option* asset = command.input("asset", options.asset, "the case (.vtkhdf)")->required();
-    command.option("--script", options.script,
-                   "what the hand does: press, slide, tremble, let-go, random or a file");
-    command.option("--column", options.column,
-                   "which column of the file, from 1, is one axis' motion: its smallest value clear of the "
-                   "surface, its largest --depth deep");
+    const CLI::Option* script = command.option(
+        "--script", options.script, "what the hand does: press, slide, tremble, let-go, random or a file");
+    const CLI::Option* column = command.option(
+        "--column", options.column,
+        "which column of the file, from 1, is one axis' motion: its smallest value clear of the "
+        "surface, its largest --depth deep");
     const CLI::Option* seconds =
         command.option("--seconds", options.seconds, "how long; of a file, all unless this is given", "s");
-    command.option("--depth", options.depth, "how deep the tool's surface goes below the rest surface", "mm");
-    command.option("--speed", options.speed, "of press and slide", "mm/s");
+    const CLI::Option* depth = command.option(
+        "--depth", options.depth, "how deep the tool's surface goes below the rest surface", "mm");
+    const CLI::Option* speed = command.option("--speed", options.speed, "of press and slide", "mm/s");
     command.option("--body", options.body, "which body; the first deformable one if not given");
     command.option(
         "--target", options.target,
@@ -307,11 +312,11 @@ int main(int argc, char** argv) {
     command.option("--scheme", options.scheme, "how contact is found: continuous, single or twice");
     command.option("--device", options.device,
                    "touch, desktop, premium, openhaptics[:NAME[,NAME]] or igtl:HOST:PORT[/NAME]");
-    command.option(
+    const CLI::Option* shaft = command.option(
         "--shaft", options.shaft,
         "x,y,z: direction from the tip along the shaft of both tools, for a case with one; straight out "
         "of the target if not given, and with a file none, so that the tip alone is felt");
-    command.option("--seed", options.seed, "of the scripts 'random' and 'tremble'");
+    const CLI::Option* seed = command.option("--seed", options.seed, "of the scripts 'random' and 'tremble'");
     const CLI::Option* log = command.output("--log", options.log, "one row per tick (.csv)");
     const CLI::Option* curve =
         command.output("--curve", options.curve, "force and depth of the first tool over time (.svg)");
@@ -327,6 +332,8 @@ int main(int argc, char** argv) {
                  "tick as fast as possible; forces do not depend on the machine");
     return command.run(argc, argv, [&](cli::Session& session) {
         options.seconds_given = seconds->count() > 0;
+        for (const CLI::Option* option : {script, column, depth, speed, shaft, seed})
+            if (option->count() > 0) options.of_the_hand.push_back(option->get_name());
         if (replay->count() > 0) refuse_beside_replay(command, {asset, log, curve, replay});
         return touch(options, session);
     });
