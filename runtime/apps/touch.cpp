@@ -29,11 +29,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Said before devices are closed, which may take a driver that hangs for ever.
+// Said before devices are closed, which a driver that hangs may not let happen.
 SystemFailure servo_stopped() {
     SystemFailure failure({"the servo", "has not ticked for 5 s", "1000 ticks a second",
                            "check the device's cable, then 'palpate doctor'"});
     spdlog::error("{}", failure.what());
+    cli::end_within(3);
     return failure;
 }
 

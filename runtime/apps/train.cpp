@@ -130,6 +130,7 @@ class ServoPulse {
         const SystemFailure failure({"the servo", "has not ticked for 5 s", "1000 ticks a second",
                                      "check the device's cable, then 'palpate doctor'"});
         spdlog::error("{}", failure.what());
+        cli::end_within(3);
         throw failure;
     }
 

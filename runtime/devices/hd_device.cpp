@@ -163,12 +163,16 @@ DeviceState HdDevice::read(double time) noexcept {
     if (warm_) state.faults |= motors_warm;
     if (is_frozen) state.faults |= pose_frozen;
     if (misplaced_) state.faults |= not_calibrated;
-    // Where a fault says already that there is no position, the last one stands for it.
+    // The last position stands for one that is not there, and for one that may be of encoders without data:
+    // a tool must not be dragged there before the doubt has become a fault.
     const bool given = std::ranges::all_of(state.position, [](double x) { return std::isfinite(x); });
-    if (given)
+    const bool doubted = ticks_frozen_ > 0 && placed_;
+    if (given && !doubted) {
         position_ = state.position;
-    else if (state.faults & distrusted_position)
-        state.position = position_;
+        placed_ = ticks_frozen_ == 0;
+    }
+    if (!given && !(state.faults & distrusted_position)) return state;
+    state.position = position_;
     return state;
 }
 

@@ -78,7 +78,8 @@ class HdDevice final : public Device {
     bool warm_ = false, misplaced_ = false;
     int ticks_to_look_ = 0;
     int ticks_frozen_ = 0;
-    std::array<double, 3> position_{0, 0, 0};
+    std::array<double, 3> position_{0, 0, 0};  // the last good one
+    bool placed_ = false;                      // there has been one
 };
 
 }  // namespace palpate

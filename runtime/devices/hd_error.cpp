@@ -42,8 +42,10 @@ constexpr std::array<HdErrorText, 21> texts{{
      "/dev/ttyACM or /dev/hidraw), then plug it in again",
      device_lost},
     {comm_config_error, "HD_COMM_CONFIG_ERROR",
-     "the driver's configuration does not fit the device, or a program that used it was killed",
-     "unplug the device, plug it in again, and run the driver's setup program as this user (not with sudo); "
+     "the driver has no configuration of this name, or one that does not fit the device, or a program that "
+     "used it was killed",
+     "check the name; unplug the device, plug it in again, and run the driver's setup program as this user "
+     "(not with sudo); "
      "GTDD_HOME names the folder that has config/<device>.config",
      device_lost},
     {timer_error, "HD_TIMER_ERROR", "the driver's servo cannot keep its rate",

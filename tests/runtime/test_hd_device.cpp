@@ -193,6 +193,22 @@ TEST_F(HdDeviceTest, a_calibration_that_its_update_does_not_help_is_a_fault) {
     EXPECT_EQ(tick(device, HdDevice::look_ticks), no_fault);
 }
 
+TEST_F(HdDeviceTest, a_pose_that_may_be_of_no_encoders_does_not_drag_the_tool) {
+    HdDevice& device = open();
+    behind().position = {1, 2, 3};
+    tick(device);
+    behind().position = {0, -110, -35};
+    behind().joint_angles = {0, 0, 0};
+    for (int i = 0; i <= HdDevice::frozen_ticks + 5; ++i) {
+        const DeviceState state = device.read(0);
+        device.write({0, 0, 0});
+        EXPECT_THAT(state.position, ElementsAre(1, 2, 3));
+        EXPECT_EQ(state.faults, i < HdDevice::frozen_ticks ? no_fault : pose_frozen) << i;
+    }
+    behind().position = {1, 2, 4};
+    EXPECT_THAT(device.read(0).position, ElementsAre(1, 2, 4));
+}
+
 TEST_F(HdDeviceTest, a_driver_that_gives_no_position_and_says_nothing_is_noticed) {
     HdDevice& device = open();
     tick(device);

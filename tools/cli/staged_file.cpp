@@ -4,12 +4,14 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <climits>
 #include <csignal>
 #include <cstring>
 #include <fcntl.h>
 #include <fstream>
 #include <sys/wait.h>
+#include <thread>
 #include <unistd.h>
 
 #include "formats/model/errors.hpp"
@@ -28,14 +30,18 @@ std::atomic<pid_t> child_to_interrupt{0};
 
 std::atomic<bool> soft{false}, asked{false};
 
+void remove_staged() {
+    for (Slot& slot : slots)
+        if (slot.used.load()) unlink(slot.path.data());
+}
+
 extern "C" void remove_and_exit(int) {
     if (soft.load() && !asked.exchange(true)) return;
     if (const pid_t child = child_to_interrupt.load(); child > 0) {
         kill(child, SIGTERM);
         waitpid(child, nullptr, 0);
     }
-    for (Slot& slot : slots)
-        if (slot.used.load()) unlink(slot.path.data());
+    remove_staged();
     constexpr char message[] = "\ninterrupted; unfinished outputs were removed\n";
     [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, message, sizeof(message) - 1);
     _exit(130);
@@ -120,6 +126,14 @@ void remove_staged_files_on_interrupt() {
 
 void end_softly_on_interrupt() {
     soft.store(true);
+}
+
+void end_within(int seconds) {
+    std::thread([seconds] {
+        std::this_thread::sleep_for(std::chrono::seconds(seconds));
+        remove_staged();
+        _exit(1);
+    }).detach();
 }
 
 bool interrupt_asked() {

@@ -42,6 +42,9 @@ void remove_staged_files_on_interrupt();
 /// to release; its job ends by throwing Interrupted. A second one does as before.
 void end_softly_on_interrupt();
 bool interrupt_asked();
+/// Ends the process with exit code 1 after so many seconds, unless it has ended by then, without what is
+/// staged: for what a driver that hangs must not hold up.
+void end_within(int seconds);
 
 /// From now on an interrupt is passed on to this child, which is waited for before this process ends; 0 for
 /// none.
