@@ -64,12 +64,12 @@ void set_length(vtkPoints* points, double length) {
     points->Modified();
 }
 
-// Why there is no force, one line per fault.
+// Why the force went to zero, two lines per fault.
 std::string notice_of(std::uint32_t faults) {
     std::string notice;
     for (const FaultText& text : fault_texts())
         if ((faults & text.fault) && text.fault != servo_stopping)
-            notice += fmt::format("{}no force: {}\n{}", notice.empty() ? "" : "\n", text.cause, text.remedy);
+            notice += fmt::format("{}force taken away: {}\n{}", notice.empty() ? "" : "\n", text.cause, text.remedy);
     return notice;
 }
 
