@@ -121,7 +121,10 @@ void remove_staged_files_on_interrupt() {
     action.sa_handler = remove_and_exit;
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
-    sigaction(SIGHUP, &action, nullptr);  // the terminal was closed
+    // The terminal was closed; but nohup has the signal ignored, and that stays.
+    struct sigaction hang_up {};
+    sigaction(SIGHUP, nullptr, &hang_up);
+    if (hang_up.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
 }
 
 void end_softly_on_interrupt() {
