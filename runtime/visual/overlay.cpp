@@ -69,7 +69,8 @@ std::string notice_of(std::uint32_t faults) {
     std::string notice;
     for (const FaultText& text : fault_texts())
         if ((faults & text.fault) && text.fault != servo_stopping)
-            notice += fmt::format("{}force taken away: {}\n{}", notice.empty() ? "" : "\n", text.cause, text.remedy);
+            notice += fmt::format("{}force taken away: {}\n{}", notice.empty() ? "" : "\n", text.cause,
+                                  text.remedy);
     return notice;
 }
 
