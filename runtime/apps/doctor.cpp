@@ -82,8 +82,6 @@ Json examine(const Options& options, cli::Session& session) {
     if (!options.device.empty() && (!device || device->tracker))
         throw UsageError(
             {"--device", options.device, "openhaptics, openhaptics:NAME or openhaptics:NAME,NAME", ""});
-    if (device && options.simulated)
-        throw UsageError({"--simulated", "with --device " + options.device, "one of the two", ""});
     std::optional<Case> patient_case;
     if (!options.asset.empty()) patient_case = read_asset(options.asset);
     const Purpose purpose = options.simulated ? Purpose::simulation : Purpose::device;
@@ -141,6 +139,7 @@ int main(int argc, char** argv) {
     command.option("--seconds", options.seconds, "of each of the two measurements, 0.1 to 3600", "s");
     command.option("--device", options.device,
                    "also open this one for half a second: openhaptics or openhaptics:NAME[,NAME]");
-    command.flag("--simulated", options.simulated, "ask only for what the simulated device needs");
+    command.flag("--simulated", options.simulated,
+                 "ask only for what the simulated device needs, and for what --device names");
     return command.run(argc, argv, [&](cli::Session& session) { return examine(options, session); });
 }

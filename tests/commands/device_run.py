@@ -27,6 +27,7 @@ PATIENCE = 30  # s, for what comes within one on an idle machine
 # y axis points out of the surface, and its workspace's middle is 5 mm above it.
 PRESS = [[0, 0, 0, 0], [2, 0, 0, 0], [2.5, 0, -12, 0], [100, 0, -12, 0]]
 RAS = np.array([-1, -1, 1])  # times LPS
+RAMP = 15  # ticks, within which a fault takes any force to zero
 FELT = 0.5  # N, what the hand feels at least of a skull, which does not give way; a ramp needs some ticks for it
 
 
@@ -105,17 +106,17 @@ class DeviceRun(SampleAsset):
         wait_until(has_come, "the fault was not told of, or left the force")
 
     def assert_no_force_while(self, there, force):
-        """From 20 ticks after each beginning of a fault to its last tick and 20 more; there[i]: in tick i."""
+        """From RAMP ticks after each beginning of a fault to its last tick and RAMP more; there[i]: in tick i."""
         self.assertTrue(there.any())
         for first in np.flatnonzero(there & ~np.r_[False, there[:-1]]):
             length = np.argmin(np.r_[there[first:], False])
-            if length > 20:  # in a shorter one, the ramp is still on its way
-                self.assertEqual(force[first + 20 : first + length + 19].max(), 0)
+            if length > RAMP:  # in a shorter one, the ramp is still on its way
+                self.assertEqual(force[first + RAMP : first + length + RAMP - 1].max(), 0)
 
     def assert_ended_without_force(self, recording):
         force, faults = self.recorded(recording)
         stopping = np.flatnonzero(faults & SERVO_STOPPING)
-        self.assertGreater(len(stopping), 20)
+        self.assertGreater(len(stopping), RAMP)
         self.assertGreater(force[stopping[0] - 1], FELT)
         self.assertTrue((np.diff(force[stopping]) <= 0).all())
         self.assertEqual(force[-1], 0)

@@ -17,8 +17,8 @@ import h5py
 import numpy as np
 
 import openigtlink
-from device_run import (ASSET_REMOVED, BIN, DEVICE_LOST, FELT, PATIENCE, PRESS, RAS, SLEW, TICK_LATE, DeviceRun,
-                        wait_until)
+from device_run import (ASSET_REMOVED, BIN, DEVICE_LOST, FELT, PATIENCE, PRESS, RAMP, RAS, SLEW, TICK_LATE,
+                        DeviceRun, wait_until)
 from test_record import kept
 from test_train import XServer
 
@@ -194,7 +194,7 @@ class Devices(DeviceRun):
                 force, faults = self.recorded(recording)
                 late = before + np.flatnonzero(faults[before:] & TICK_LATE)[0]
                 self.assertLess(late - before, 20)  # the results that had not been taken when it fell asleep
-                self.assertEqual(force[late + 20], 0)
+                self.assertEqual(force[late + RAMP], 0)
                 self.assertLessEqual(np.abs(np.diff(force)).max(), SLEW)
                 self.assertEqual(force[-1], 0)
 

@@ -42,7 +42,7 @@ extern "C" void remove_and_exit(int) {
         waitpid(child, nullptr, 0);
     }
     remove_staged();
-    constexpr char message[] = "\ninterrupted; unfinished outputs were removed\n";
+    constexpr char message[] = "\ninterrupted; nothing was left behind\n";
     [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, message, sizeof(message) - 1);
     _exit(130);
 }
