@@ -14,6 +14,7 @@
 #include "runtime/apps/run_record.hpp"
 #include "runtime/apps/run_recorder.hpp"
 #include "runtime/apps/run_watch.hpp"
+#include "runtime/apps/servo_pulse.hpp"
 #include "runtime/apps/start_recording.hpp"
 #include "runtime/apps/statistics_json.hpp"
 #include "runtime/apps/touch_json.hpp"
@@ -29,33 +30,19 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Said before devices are closed, which a driver that hangs may not let happen.
-SystemFailure servo_stopped() {
-    SystemFailure failure({"the servo", "has not ticked for 5 s", "1000 ticks a second",
-                           "check the device's cable, then 'palpate doctor'"});
-    spdlog::error("{}", failure.what());
-    cli::end_within(3);
-    return failure;
-}
-
 // Ticks in the haptic thread while this one takes the results, until the time is over or the user asks.
 void run_in_real_time(ServoLoop& loop, double seconds, const std::function<void(const TickResult&)>& take) {
-    constexpr std::chrono::seconds patience{5};
     TickResult result{};
-    auto last_tick = std::chrono::steady_clock::now();
+    ServoPulse pulse;
     const auto pop = [&] {
         if (!loop.ring().pop(result)) return false;
         take(result);
         return true;
     };
     while (result.time < seconds && !cli::interrupt_asked()) {
-        const auto now = std::chrono::steady_clock::now();
-        if (pop())
-            last_tick = now;
-        else if (now - last_tick > patience)
-            throw servo_stopped();
-        else
-            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        if (pop()) continue;
+        pulse.see(result.tick);
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     loop.stop();
     while (pop()) {

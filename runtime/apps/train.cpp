@@ -14,6 +14,7 @@
 #include "runtime/apps/live_stream.hpp"
 #include "runtime/apps/physical_devices.hpp"
 #include "runtime/apps/run_watch.hpp"
+#include "runtime/apps/servo_pulse.hpp"
 #include "runtime/apps/simulation.hpp"
 #include "runtime/apps/start_recording.hpp"
 #include "runtime/apps/statistics_json.hpp"
@@ -117,26 +118,6 @@ struct Felt {
         }
         if (recorder) recorder->set_lost(ring.dropped());
     }
-};
-
-// Throws where a driver's servo has not ticked for 5 s; says so first, for closing its device may hang.
-class ServoPulse {
-  public:
-    void see(std::int64_t tick) {
-        const auto now = Clock::now();
-        if (tick != tick_) since_ = now;
-        tick_ = tick;
-        if (now - since_ < std::chrono::seconds(5)) return;
-        const SystemFailure failure({"the servo", "has not ticked for 5 s", "1000 ticks a second",
-                                     "check the device's cable, then 'palpate doctor'"});
-        spdlog::error("{}", failure.what());
-        cli::end_within(3);
-        throw failure;
-    }
-
-  private:
-    Clock::time_point since_ = Clock::now();
-    std::int64_t tick_ = -1;
 };
 
 // The tick rate over the last half second or more.
