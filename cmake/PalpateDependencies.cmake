@@ -43,6 +43,13 @@ if(PALPATE_TOOLS)
         find_library(PALPATE_DCM_${part}_LIBRARY ${part} REQUIRED)
         list(APPEND PALPATE_DCMTK_LIBRARIES ${PALPATE_DCM_${part}_LIBRARY})
     endforeach()
+    # GDCM: series and slices of DICOM. ITK reads them through it without passing it on, so it is found by itself.
+    find_path(PALPATE_GDCM_INCLUDE gdcmTrace.h PATH_SUFFIXES gdcm-3.0 REQUIRED)
+    set(PALPATE_GDCM_LIBRARIES)
+    foreach(part MSFF DSED DICT Common)
+        find_library(PALPATE_GDCM_${part}_LIBRARY gdcm${part} REQUIRED)
+        list(APPEND PALPATE_GDCM_LIBRARIES ${PALPATE_GDCM_${part}_LIBRARY})
+    endforeach()
     # CGAL Mesh_3: multi-domain Delaunay refinement with sliver removal, from any labelling function.
     find_package(CGAL 5.5 REQUIRED)
     # CHOLMOD (supernodal Cholesky), METIS (ordering), LAPACK (dpotri): condensation at the machine's limit.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
 
@@ -18,9 +19,9 @@ int main(int argc, char** argv) {
     std::filesystem::path volume, truth;
     PhantomOptions options;
     double spacing = options.spacing[0], angle_deg = 0;
-    command.option("kind", kind, "abdomen or head")->required()->check(CLI::IsMember({"abdomen", "head"}));
-    command.output("volume", volume, "CT (.nrrd)")->required();
-    command.output("truth", truth, "labels (.seg.nrrd)")->required();
+    command.option("kind", kind, "abdomen or head").required().one_of({"abdomen", "head"});
+    command.output("volume", volume, "CT (.nrrd)").required();
+    command.output("truth", truth, "labels (.seg.nrrd)").required();
     command.option("--spacing", spacing, "voxel size", "mm");
     command.option("--angle", angle_deg, "turn of the grid about (1, 2, 3)", "degrees");
     command.option("--samples", options.samples_per_axis,

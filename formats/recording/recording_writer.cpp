@@ -24,7 +24,7 @@ constexpr std::int64_t contacts_per_tick = 8;  // room for so many on average
 constexpr std::int64_t most_ticks = std::int64_t{1} << 32;
 
 template <typename Visited>
-Hdf5Shape shape_of(std::int64_t rows, Visited) {
+Hdf5Shape extents_of(std::int64_t rows, Visited) {
     Hdf5Shape shape{static_cast<std::uint64_t>(rows)};
     if (Visited::width > 1) shape.push_back(Visited::width);
     return shape;
@@ -55,7 +55,7 @@ void write_head(Hdf5Writer& writer, const RecordingHead& head) {
             values.insert(values.end(), first, first + Visited::width);
         }
         writer.dataset<double>(std::string("/devices/") + name, values,
-                               shape_of(static_cast<std::int64_t>(names.size()), Visited{}), unit);
+                               extents_of(static_cast<std::int64_t>(names.size()), Visited{}), unit);
     });
 }
 
@@ -97,13 +97,13 @@ void make_recording(const std::filesystem::path& path, const RecordingHead& head
         visit_tick_columns([&](const char* name, const char* unit, auto member) {
             using Visited = decltype(field_of(member));
             writer.reserve<typename Visited::Number>(std::string("/ticks/") + name,
-                                                     shape_of(ticks, Visited{}), unit);
+                                                     extents_of(ticks, Visited{}), unit);
         });
         visit_contact_columns([&](const char* name, const char* unit, auto member) {
             using Visited = decltype(field_of(member));
             const std::int64_t rows = contacts_per_tick * ticks + 2 * contacts_in_transit;
             writer.reserve<typename Visited::Number>(std::string("/contacts/") + name,
-                                                     shape_of(rows, Visited{}), unit);
+                                                     extents_of(rows, Visited{}), unit);
         });
         writer.close();
     }

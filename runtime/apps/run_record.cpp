@@ -8,14 +8,12 @@
 #include <limits>
 #include <ostream>
 
+#include "formats/model/arrays.hpp"
+
 namespace palpate {
 namespace {
 
 using Eigen::Vector3d;
-
-Vector3d vector_of(const std::array<double, 3>& a) {
-    return {a[0], a[1], a[2]};
-}
 
 // RFC 4180: a field with a comma, quote or line break stands in quotes.
 std::string csv_field(const std::string& text) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/apps/run_watch.hpp"
 
+#include <nlohmann/json.hpp>
 #include <utility>
 
 namespace palpate {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/apps/touch_json.hpp"
 
+#include <nlohmann/json.hpp>
 #include <span>
 
 namespace palpate {

@@ -101,8 +101,8 @@ void refuse_idle_options(const cli::Command& command, const TouchOptions& option
     constexpr std::array of_scripts{"--script", "--column", "--depth", "--speed", "--shaft", "--seed"};
     const bool physical = parse_physical_device(options.device).has_value();
     for (const cli::Parameter& parameter : command.parameters()) {
-        if (parameter.option->count() == 0) continue;
-        const std::string name = parameter.option->get_name();
+        if (!parameter.option.given()) continue;
+        const std::string name = parameter.option.name();
         if (physical && std::ranges::find(of_scripts, name) != of_scripts.end())
             throw UsageError({name, "with --device " + options.device, "a simulated device", ""});
         if (name == "--record-seconds" && options.record.empty())

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
 #include "formats/asset/asset.hpp"
@@ -60,10 +62,10 @@ nlohmann::ordered_json replay_recording(const std::filesystem::path& file, const
     return result;
 }
 
-void refuse_beside_replay(const cli::Command& command, std::initializer_list<const CLI::Option*> allowed) {
+void refuse_beside_replay(const cli::Command& command, std::initializer_list<cli::Option> allowed) {
     for (const cli::Parameter& parameter : command.parameters())
-        if (parameter.option->count() > 0 && std::ranges::find(allowed, parameter.option) == allowed.end())
-            throw UsageError({parameter.option->get_name(), "with --replay", "--log and --curve at most",
+        if (parameter.option.given() && std::ranges::find(allowed, parameter.option) == allowed.end())
+            throw UsageError({parameter.option.name(), "with --replay", "--log and --curve at most",
                               "a recording says itself what the run was like"});
 }
 

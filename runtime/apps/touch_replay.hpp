@@ -2,7 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <initializer_list>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "runtime/apps/touch_outputs.hpp"
 #include "tools/cli/command.hpp"
@@ -11,7 +11,7 @@ namespace palpate {
 
 /// Throws UsageError if the user gave any option but these, for a recording says itself what the run was
 /// like.
-void refuse_beside_replay(const cli::Command& command, std::initializer_list<const CLI::Option*> allowed);
+void refuse_beside_replay(const cli::Command& command, std::initializer_list<cli::Option> allowed);
 
 /// Replays a recording of a run on `asset` and holds its forces against the recorded ones; sets
 /// session.shortfall if they differ. Throws InvalidInput if it is of another asset, damaged or too short.

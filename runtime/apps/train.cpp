@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "formats/asset/asset.hpp"
+#include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
 #include "runtime/apps/hand_script.hpp"
 #include "runtime/apps/live_stream.hpp"
@@ -54,10 +55,6 @@ HandPath scripted_path(const Options& options, const TouchPoint& place, double t
                                   .seconds = options.seconds > 0 ? options.seconds : 3600};
     return is_made_to_measure(options.script) ? made_to_measure_path(options.script, place, settings, seed)
                                               : recorded_path(options.script);
-}
-
-std::array<double, 3> array_of(const Eigen::Vector3d& v) {
-    return {v.x(), v.y(), v.z()};
 }
 
 // What the tool is held by; where mouse and keyboard move it, `guide` takes the places (p_P, mm) they
@@ -274,7 +271,7 @@ int main(int argc, char** argv) {
              "towards the user are those of the first view. With touch, desktop or premium mouse and "
              "keyboard, or a script, hold a simulated device that gives way."});
     Options options;
-    command.input("asset", options.asset, "the case (.vtkhdf)")->required();
+    command.input("asset", options.asset, "the case (.vtkhdf)").required();
     command.option("--size", options.size, "WIDTHxHEIGHT of the window", "pixels");
     command.option("--seconds", options.seconds, "close after this time; 0: when told to", "s");
     command.option(

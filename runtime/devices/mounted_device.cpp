@@ -3,18 +3,12 @@
 
 #include <cmath>
 
+#include "formats/model/arrays.hpp"
+
 namespace palpate {
 namespace {
 
 using Eigen::Vector3d;
-
-std::array<double, 3> array_of(const Vector3d& v) noexcept {
-    return {v[0], v[1], v[2]};
-}
-
-Vector3d vector_of(const std::array<double, 3>& v) noexcept {
-    return Eigen::Map<const Vector3d>(v.data());
-}
 
 }  // namespace
 

@@ -13,7 +13,7 @@
 namespace palpate {
 namespace {
 
-constexpr const char* group = "case";
+constexpr const char* case_group = "case";
 using Edges = std::array<double, 3>;  // of a box, mm, longest first
 
 Edges sorted_edges(const Eigen::Vector3d& size) {
@@ -51,7 +51,7 @@ bool fits(const Edges& body, const Edges& workspace) {
 
 Finding workspace(const Case& patient_case, const DeviceModel& model) {
     const Edges room = workspace_of(model);
-    Finding finding{"workspace." + model.name, group, Level::ok, "reaches " + told(room), ""};
+    Finding finding{"workspace." + model.name, case_group, Level::ok, "reaches " + told(room), ""};
     const auto hold = [&](const std::string& body, const Edges& edges, bool soft) {
         const bool inside = fits(edges, room);
         finding.found += fmt::format("; {} {}{}", body, told(edges),
@@ -75,7 +75,7 @@ Finding rendering(const HapticSettings& asked, const DeviceModel& model) {
     const double stiffness = coupling_stiffness(asked, limits);
     const double force = std::min(asked.max_force, model.max_force);
     Finding finding{
-        "rendering." + model.name, group, Level::ok,
+        "rendering." + model.name, case_group, Level::ok,
         fmt::format("renders the {} N/mm and {} N asked for", asked.coupling_stiffness, asked.max_force), ""};
     if (stiffness < asked.coupling_stiffness || force < asked.max_force) {
         finding.level = Level::warning;

@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-constexpr const char* group = "device";
+constexpr const char* device_group = "device";
 
 // Where a Phantom's driver puts the tip while all joint angles are zero, as without encoder data: the
 // WorkspaceOffset of its configuration. Real encoders never give it to a hundredth of a millimetre.
@@ -26,35 +26,35 @@ Finding calibration(Calibration calibration) {
         case Calibration::ok:
             break;
         case Calibration::needs_update:
-            return {"calibration", group, Level::warning, "is to be brought up to date",
+            return {"calibration", device_group, Level::warning, "is to be brought up to date",
                     "# put the stylus into its inkwell for a second; Palpate does the rest when it starts"};
         case Calibration::needs_manual_input:
-            return {"calibration", group, Level::problem, "the device does not know where it is",
+            return {"calibration", device_group, Level::problem, "the device does not know where it is",
                     "# put the stylus into its inkwell (Touch) or the arm into its reset position (Desktop,\n"
                     "# Premium), then run 'palpate doctor' again"};
     }
-    return {"calibration", group, Level::ok, "up to date", ""};
+    return {"calibration", device_group, Level::ok, "up to date", ""};
 }
 
 Finding pose(std::span<const DeviceState> states) {
     if (states.empty())
-        return {"pose", group, Level::problem, "the device gave no position",
+        return {"pose", device_group, Level::problem, "the device gave no position",
                 "# unplug the device, plug it in again, and run 'palpate doctor' again"};
     const std::array<double, 3>& p = states.back().position;
     const std::string place = fmt::format("{:.1f}, {:.1f}, {:.1f} mm", p[0], p[1], p[2]);
     if (std::ranges::all_of(states, at_zero_angles))
         return {
-            "pose", group, Level::problem, place + ": the driver gets no data from the encoders",
+            "pose", device_group, Level::problem, place + ": the driver gets no data from the encoders",
             "# unplug the device from USB and power, plug it in again into a port of the computer itself,\n"
             "# set it up again as yourself, and run 'palpate doctor' again:\n"
             "bin/Touch_Setup"};
-    return {"pose", group, Level::ok, place, ""};
+    return {"pose", device_group, Level::ok, place, ""};
 }
 
 Finding faults(std::span<const DeviceState> states) {
     std::uint32_t seen = no_fault;
     for (const DeviceState& state : states) seen |= state.faults;
-    Finding finding{"faults", group, Level::ok, fault_names(seen), ""};
+    Finding finding{"faults", device_group, Level::ok, fault_names(seen), ""};
     for (const FaultText& text : fault_texts())
         if ((seen & text.fault) != 0) {
             finding.level = Level::problem;
@@ -66,9 +66,9 @@ Finding faults(std::span<const DeviceState> states) {
 
 Finding limits(const DeviceLimits& limits) {
     if (!(limits.max_force > 0))
-        return {"limits", group, Level::warning, "the device does not say how strong it is",
+        return {"limits", device_group, Level::warning, "the device does not say how strong it is",
                 "# keep 'max_force_n' in the case file's [haptics] to what its data sheet says"};
-    return {"limits", group, Level::ok,
+    return {"limits", device_group, Level::ok,
             fmt::format("{:.1f} N, for long {:.2f} N, stiffness {:.2f} N/mm, {:.0f} Hz", limits.max_force,
                         limits.max_continuous_force, limits.max_stiffness, limits.rate_hz),
             ""};
@@ -79,15 +79,15 @@ Finding workspace(const DeviceLimits& limits) {
     for (std::size_t axis = 0; axis < 3; ++axis)
         size[axis] = limits.workspace_high[axis] - limits.workspace_low[axis];
     if (std::ranges::any_of(size, [](double edge) { return !(edge > 0); }))
-        return {"workspace", group, Level::warning, "the device does not say how far it reaches", ""};
-    return {"workspace", group, Level::ok,
+        return {"workspace", device_group, Level::warning, "the device does not say how far it reaches", ""};
+    return {"workspace", device_group, Level::ok,
             fmt::format("{:.0f} x {:.0f} x {:.0f} mm", size[0], size[1], size[2]), ""};
 }
 
 }  // namespace
 
 Findings device_findings(const OpenedDevice& device) {
-    return {{"name", group, Level::ok, device.name, ""},
+    return {{"name", device_group, Level::ok, device.name, ""},
             calibration(device.calibration),
             pose(device.first_states),
             faults(device.first_states),

@@ -7,7 +7,7 @@
 namespace palpate {
 namespace {
 
-constexpr const char* group = "environment";
+constexpr const char* environment_group = "environment";
 
 bool holds_device(const Machine& machine, const std::filesystem::path& folder) {
     std::error_code error;
@@ -23,7 +23,7 @@ std::ptrdiff_t named_devices(const Machine& machine, const std::filesystem::path
 }
 
 Finding driver_folder(const Machine& machine) {
-    Finding finding{"device_config", group, Level::problem, "", ""};
+    Finding finding{"device_config", environment_group, Level::problem, "", ""};
     const std::string asked = variable(machine, "GTDD_HOME");
     const std::filesystem::path of_user = machine.home / ".3dsystems", of_root = "/root/.3dsystems";
     std::filesystem::path holder;
@@ -66,8 +66,9 @@ Finding locale(const Machine& machine) {
     for (const char* next : {"LC_NUMERIC", "LANG"})
         if (name.empty()) name = variable(machine, next);
     if (name.empty()) name = "C";
-    if (machine.decimal_point == '.') return {"locale", group, Level::ok, name + ", decimal point", ""};
-    return {"locale", group, Level::warning,
+    if (machine.decimal_point == '.')
+        return {"locale", environment_group, Level::ok, name + ", decimal point", ""};
+    return {"locale", environment_group, Level::warning,
             fmt::format("{} writes numbers with '{}'; device drivers then misread their settings", name,
                         machine.decimal_point),
             "unset LC_ALL; export LC_NUMERIC=C"};
@@ -76,8 +77,10 @@ Finding locale(const Machine& machine) {
 Finding display(const Machine& machine) {
     const std::string name = variable(machine, "DISPLAY");
     if (!name.empty())
-        return {"display", group, Level::ok, name.starts_with(':') ? name : "of another machine", ""};
-    return {"display", group, Level::warning, "no DISPLAY: 'train' has no window, 'touch' needs none",
+        return {"display", environment_group, Level::ok, name.starts_with(':') ? name : "of another machine",
+                ""};
+    return {"display", environment_group, Level::warning,
+            "no DISPLAY: 'train' has no window, 'touch' needs none",
             "# log in to a desktop, or give it a screen that nobody sees:\n"
             "sudo apt install xvfb && xvfb-run palpate train case.vtkhdf"};
 }
@@ -94,7 +97,7 @@ Findings usb_findings(const Machine& machine, const std::vector<UsbDevice>& devi
     Findings findings;
     for (const UsbDevice& device : devices) {
         const std::string id = findings.empty() ? "usb" : fmt::format("usb.{}", findings.size() + 1);
-        Finding finding{id, group, Level::ok, device.id + " at " + device.node, ""};
+        Finding finding{id, environment_group, Level::ok, device.id + " at " + device.node, ""};
         if (device.node.empty()) {
             finding.level = Level::problem;
             finding.found = device.id + " is plugged in, but the kernel made no /dev node of it";
@@ -112,7 +115,7 @@ Findings usb_findings(const Machine& machine, const std::vector<UsbDevice>& devi
         findings.push_back(std::move(finding));
     }
     if (findings.empty())
-        findings.push_back({"usb", group, Level::warning,
+        findings.push_back({"usb", environment_group, Level::warning,
                             "no Phantom on USB; one on Ethernet or FireWire is not seen from here",
                             "# plug the device in, switch it on, and look for it:\nlsusb | grep 2988"});
     return findings;

@@ -12,7 +12,7 @@ namespace palpate {
 namespace {
 
 using Standing = LibraryPlace::Standing;
-constexpr const char* group = "device library";
+constexpr const char* library_group = "device library";
 constexpr const char* maker =
     "https://support.3dsystems.com/s/article/OpenHaptics-for-Linux-Developer-Edition-v34";
 
@@ -90,7 +90,7 @@ std::optional<LibraryPlace> device_library(const Machine& machine) {
 }
 
 Finding library_finding(const std::optional<LibraryPlace>& place, const std::string& asked) {
-    Finding finding{"library", group, Level::problem, "", ""};
+    Finding finding{"library", library_group, Level::problem, "", ""};
     if (!place && asked.empty()) {
         finding.found = fmt::format("none: looked for {}", fmt::join(hd_library_names(), ", "));
         finding.fix = get_library();
@@ -124,7 +124,7 @@ struct Needs {
                 if (and_theirs) add(*place, false);
                 continue;
             }
-            missing.push_back({"needs." + name, group, Level::problem,
+            missing.push_back({"needs." + name, library_group, Level::problem,
                                fmt::format("{} needs {}: {}", library.file.filename().string(), name,
                                            place ? told(*place) : "not installed"),
                                place ? fix_of(*place, name) : source_of(name)});
@@ -145,8 +145,8 @@ Findings library_findings(const Machine& machine) {
     Needs needs{machine};
     needs.add(*library, true);
     if (needs.missing.empty())
-        findings.push_back(
-            {"needs", group, Level::ok, fmt::format("{} libraries, all there", needs.seen.size()), ""});
+        findings.push_back({"needs", library_group, Level::ok,
+                            fmt::format("{} libraries, all there", needs.seen.size()), ""});
     findings.insert(findings.end(), needs.missing.begin(), needs.missing.end());
     return findings;
 }

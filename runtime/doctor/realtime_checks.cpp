@@ -10,7 +10,7 @@
 namespace palpate {
 namespace {
 
-constexpr const char* group = "real time";
+constexpr const char* realtime_group = "real time";
 constexpr const char* limits_file = "/etc/security/limits.d/99-palpate.conf";
 
 bool in_container(const Machine& machine) {
@@ -57,7 +57,7 @@ Finding system(const Machine& machine) {
     const std::string name = value_in(text_of(machine, "/etc/os-release").value_or(""), "PRETTY_NAME");
     const std::string cpu = value_in(text_of(machine, "/proc/cpuinfo").value_or(""), "model name");
     const bool patched = text_of(machine, "/sys/kernel/realtime").value_or("") == "1";
-    return {"system", group, Level::ok,
+    return {"system", realtime_group, Level::ok,
             fmt::format("{}, Linux {}{}, {}", name.empty() ? "unnamed system" : name,
                         text_of(machine, "/proc/sys/kernel/osrelease").value_or("of unknown release"),
                         patched ? " (PREEMPT_RT)" : "", cpu.empty() ? "unnamed CPU" : cpu),
@@ -65,7 +65,7 @@ Finding system(const Machine& machine) {
 }
 
 Finding fifo(const Machine& machine, Purpose purpose) {
-    Finding finding{"fifo", group, Level::ok, "SCHED_FIFO is permitted", ""};
+    Finding finding{"fifo", realtime_group, Level::ok, "SCHED_FIFO is permitted", ""};
     if (machine.fifo.ok) return finding;
     finding.level = lack_of(purpose);
     finding.found = fmt::format("SCHED_FIFO is refused: priority {} asked, limit {} (RLIMIT_RTPRIO)",
@@ -81,7 +81,7 @@ Finding fifo(const Machine& machine, Purpose purpose) {
 }
 
 Finding memory(const Machine& machine) {
-    Finding finding{"memory_lock", group, Level::ok, "memory can be locked", ""};
+    Finding finding{"memory_lock", realtime_group, Level::ok, "memory can be locked", ""};
     constexpr std::uint64_t ample = std::uint64_t{4} << 30;  // bytes; the largest cases take some hundred MB
     if (machine.locked_memory.ok && (machine.superuser || machine.locked_bytes_limit >= ample))
         return finding;
@@ -96,7 +96,7 @@ Finding memory(const Machine& machine) {
 Finding timer(const Machine& machine) {
     constexpr double enough_ns = 1000;
     const bool fine = machine.clock_resolution_ns > 0 && machine.clock_resolution_ns <= enough_ns;
-    return {"timer", group, fine ? Level::ok : Level::warning,
+    return {"timer", realtime_group, fine ? Level::ok : Level::warning,
             fmt::format("timers resolve {} ns", machine.clock_resolution_ns),
             fine ? ""
                  : "# the kernel runs without high-resolution timers; remove 'highres=off' and 'nohz=off'\n"
@@ -107,10 +107,10 @@ Finding timer(const Machine& machine) {
 Finding clock_source(const Machine& machine) {
     const std::string folder = "/sys/devices/system/clocksource/clocksource0/";
     const auto current = text_of(machine, folder + "current_clocksource");
-    if (!current) return {"clock_source", group, Level::ok, "the kernel does not say", ""};
+    if (!current) return {"clock_source", realtime_group, Level::ok, "the kernel does not say", ""};
     // Read through a bus, some microseconds a time, or no clock at all.
     constexpr std::array<std::string_view, 4> slow{"hpet", "acpi_pm", "jiffies", "refined-jiffies"};
-    Finding finding{"clock_source", group, Level::ok, *current, ""};
+    Finding finding{"clock_source", realtime_group, Level::ok, *current, ""};
     if (std::ranges::find(slow, *current) == slow.end()) return finding;
     finding.level = Level::warning;
     finding.found += ", which is slow to read";
@@ -136,9 +136,9 @@ Finding governor(const Machine& machine) {
         ++slow;
         others.insert(*name);
     }
-    if (cores == 0) return {"governor", group, Level::ok, "no CPU frequency is set from here", ""};
-    if (slow == 0) return {"governor", group, Level::ok, "performance", ""};
-    return {"governor", group, Level::warning,
+    if (cores == 0) return {"governor", realtime_group, Level::ok, "no CPU frequency is set from here", ""};
+    if (slow == 0) return {"governor", realtime_group, Level::ok, "performance", ""};
+    return {"governor", realtime_group, Level::warning,
             fmt::format("{} on {} of {} cores; a core that slows down wakes late", fmt::join(others, ", "),
                         slow, cores),
             "echo performance | sudo tee /sys/devices/system/cpu/cpu*/cpufreq/scaling_governor\n"
@@ -149,7 +149,7 @@ Finding governor(const Machine& machine) {
 
 Finding isolation(const Machine& machine) {
     const std::string cores = text_of(machine, "/sys/devices/system/cpu/isolated").value_or("");
-    return {"isolated_cores", group, Level::ok, cores.empty() ? "none" : cores, ""};
+    return {"isolated_cores", realtime_group, Level::ok, cores.empty() ? "none" : cores, ""};
 }
 
 Finding real_time_share(const Machine& machine) {
@@ -159,7 +159,7 @@ Finding real_time_share(const Machine& machine) {
     };
     const auto runtime = number("sched_rt_runtime_us");
     const long period = number("sched_rt_period_us").value_or(1'000'000);
-    Finding finding{"rt_share", group, Level::ok, "", ""};
+    Finding finding{"rt_share", realtime_group, Level::ok, "", ""};
     if (!runtime) {
         finding.found = "the kernel does not say";
     } else if (*runtime < 0) {
@@ -178,7 +178,7 @@ Finding real_time_share(const Machine& machine) {
 
 Finding load(const Machine& machine) {
     const double busy = std::strtod(text_of(machine, "/proc/loadavg").value_or("0").c_str(), nullptr);
-    Finding finding{"load", group, Level::ok,
+    Finding finding{"load", realtime_group, Level::ok,
                     fmt::format("{} cores, {:.1f} of them busy in the last minute", machine.cores, busy), ""};
     if (machine.cores < 2) {
         finding.level = Level::warning;
@@ -193,7 +193,7 @@ Finding load(const Machine& machine) {
 
 Finding surroundings(const Machine& machine) {
     const bool container = in_container(machine), virtual_machine = hypervisor(machine);
-    return {"virtualisation", group, Level::ok,
+    return {"virtualisation", realtime_group, Level::ok,
             container && virtual_machine ? "a container in a virtual machine"
             : container                  ? "a container"
             : virtual_machine            ? "a virtual machine"

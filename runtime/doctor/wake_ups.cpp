@@ -12,7 +12,7 @@
 namespace palpate {
 namespace {
 
-constexpr const char* group = "measured";
+constexpr const char* measured_group = "measured";
 
 double us(std::uint64_t ns) {
     return 1e-3 * static_cast<double>(ns);
@@ -69,12 +69,12 @@ int rate_held(const WakeUps& wake_ups) {
 }
 
 Findings wake_up_findings(const WakeUps& servo, const WakeUps& without_priority, Purpose purpose) {
-    Findings findings{
-        {"servo", group, Level::ok,
-         (servo.real_time ? "with SCHED_FIFO: " : "SCHED_FIFO refused: ") + told(servo), ""},
-        {"without_priority", group, Level::ok, "for comparison, without: " + told(without_priority), ""}};
+    Findings findings{{"servo", measured_group, Level::ok,
+                       (servo.real_time ? "with SCHED_FIFO: " : "SCHED_FIFO refused: ") + told(servo), ""},
+                      {"without_priority", measured_group, Level::ok,
+                       "for comparison, without: " + told(without_priority), ""}};
     const int rate = rate_held(servo);
-    Finding held{"rate", group, Level::ok,
+    Finding held{"rate", measured_group, Level::ok,
                  fmt::format("holds {} Hz: 99.9 % of wake-ups and {} us for the tick fit its period", rate,
                              tick_budget_ns / 1000),
                  ""};

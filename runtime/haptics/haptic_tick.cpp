@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "formats/model/arrays.hpp"
 #include "runtime/haptics/haptic_model.hpp"
 
 namespace palpate {
@@ -14,14 +15,6 @@ constexpr double unsolved = 1e-3;      // mm of residual that is reported
 constexpr int most_rounds = 4;         // of contacts that only the solution of the others meets
 constexpr double farthest_return = 5;  // mm: found again farther off than this, a tool starts anew
 constexpr double beside_surface = 10;  // mm: farther from a body than this, its motion does not matter
-
-std::array<double, 3> array_of(const Vector3d& v) noexcept {
-    return {v[0], v[1], v[2]};
-}
-
-Vector3d vector_of(const std::array<double, 3>& v) noexcept {
-    return Eigen::Map<const Vector3d>(v.data());
-}
 
 // What contacts press the tool with, friction left out, N.
 Vector3d pressed(const TickResult& result) noexcept {

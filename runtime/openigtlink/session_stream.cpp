@@ -13,7 +13,7 @@ namespace {
 
 using std::chrono::steady_clock;
 
-constexpr std::chrono::seconds stall_patience{2};
+constexpr std::chrono::seconds client_patience{2};
 constexpr double shortest_arrow = 1e-3;  // N: keeps the matrix of a force of zero invertible
 
 Eigen::Vector3d ras(const std::array<double, 3>& lps) {
@@ -176,7 +176,7 @@ void SessionStream::serve(Client& client, std::uint32_t faults) {
     if (!client.socket.is_open()) return;
     if (!client.unsent.empty()) {
         skipped_ += frame_is_new_ ? 1 : 0;
-        if (steady_clock::now() - client.last_progress > stall_patience) {
+        if (steady_clock::now() - client.last_progress > client_patience) {
             client.socket = {};
             ++dropped_;
         }

@@ -13,10 +13,10 @@ using std::chrono::steady_clock;
 
 constexpr milliseconds connect_patience{900};
 constexpr milliseconds pause_before_reconnecting{500};
-constexpr milliseconds slice{50};             // after which a stop is noticed
-constexpr milliseconds stall_patience{2000};  // for the rest of a message that has begun
-constexpr std::size_t body_room = 64 * 1024;  // bytes; larger bodies carry no pose
-constexpr std::size_t most_heard = 16;        // kinds of messages remembered
+constexpr milliseconds slice{50};               // after which a stop is noticed
+constexpr milliseconds message_patience{2000};  // for the rest of a message that has begun
+constexpr std::size_t body_room = 64 * 1024;    // bytes; larger bodies carry no pose
+constexpr std::size_t most_heard = 16;          // kinds of messages remembered
 
 std::int64_t now_ns() noexcept {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(steady_clock::now().time_since_epoch())
@@ -133,7 +133,7 @@ TrackedDevice::Receipt TrackedDevice::receive(TcpSocket& socket, std::span<std::
             bytes = bytes.subspan(*count);
             message_has_begun = true;
             last_progress = steady_clock::now();
-        } else if (message_has_begun && steady_clock::now() - last_progress > stall_patience) {
+        } else if (message_has_begun && steady_clock::now() - last_progress > message_patience) {
             note("the server stopped within a message");
             return Receipt::ended;
         }

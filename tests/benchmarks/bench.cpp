@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cstdio>
+#include <fmt/format.h>
 
 #include "tests/benchmarks/experiments/experiments.hpp"
 #include "tests/benchmarks/experiments/faults.hpp"
@@ -74,9 +75,9 @@ int main(int argc, char** argv) {
          .notes = bench::notes()});
     std::string name;
     bench::Options options;
-    command.option("experiment", name, "which one")->required();
+    command.option("experiment", name, "which one").required();
     command.input("--surface", options.surface, "triangles of a bone (.vtp), LPS mm");
-    command.app().add_option("--case", options.cases, "assets (.vtkhdf)")->check(CLI::ExistingFile);
+    command.input("--case", options.cases, "assets (.vtkhdf)");
     command.input("--path", options.path, "hand path: rows 'x y z' (mm), one per millisecond");
     command.output("-o,--output", options.output, "folder for the table (.md) and the pictures (.svg)");
     command.option("--seed", options.seed, "of everything random");

@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector3d;
 
 // The tree stores boxes, the surface vertices in float32; queries compute in double on those vertices.
-constexpr double tolerance = 1e-9;
+constexpr double surface_tolerance = 1e-9;
 
 TEST(CollisionSurface, closest_point_is_that_of_all_triangles) {
     Scene scene;
@@ -34,8 +34,8 @@ TEST(CollisionSurface, closest_point_is_that_of_all_triangles) {
         const auto found = surface.closest_point(p, reach, hint);
         ASSERT_EQ(found.has_value(), expected) << i;
         if (!found) continue;
-        ASSERT_NEAR(found->distance, std::sqrt(best), tolerance) << i;
-        ASSERT_NEAR((p - found->point).norm(), found->distance, tolerance) << i;
+        ASSERT_NEAR(found->distance, std::sqrt(best), surface_tolerance) << i;
+        ASSERT_NEAR((p - found->point).norm(), found->distance, surface_tolerance) << i;
         ASSERT_EQ(found->triangle, surface.mesh_triangle(found->slot));
         hint = found->slot;
     }
@@ -62,7 +62,7 @@ TEST(CollisionSurface, sweep_stops_at_the_first_of_all_triangles) {
         ASSERT_EQ(found.has_value(), first <= 1) << i;
         if (!found) continue;
         ++touched;
-        ASSERT_NEAR(found->fraction, first, tolerance) << i;
+        ASSERT_NEAR(found->fraction, first, surface_tolerance) << i;
         hint = found->slot;
     }
     EXPECT_GT(touched, 500);

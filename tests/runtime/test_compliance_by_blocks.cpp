@@ -14,6 +14,7 @@
 #include "tests/formats/sample_case.hpp"
 #include "tests/runtime/allocation_trap.hpp"
 #include "tests/runtime/elastic_cube.hpp"
+#include "tests/runtime/held_tool.hpp"
 
 namespace palpate {
 namespace {
@@ -45,10 +46,6 @@ void go(HapticModel& model, TickResult& result, const Vector3d& p) {
     DeviceState state;
     state.position = {p[0], p[1], p[2]};
     model.tick(state, result);
-}
-
-Vector3d force_of(const TickResult& result) {
-    return Eigen::Map<const Vector3d>(result.force.data());
 }
 
 std::vector<Vector3f> displacements(const HapticModel& model, const TickResult& result,

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double skin = 2e-4;  // mm: the god-object's clearance, and as much again for float32 records
+constexpr double clearance = 2e-4;  // mm: the god-object's clearance, and as much again for float32 records
 
 HapticSettings coupled_by(double stiffness) {
     HapticSettings settings;
@@ -54,7 +54,7 @@ TEST(HapticModel, couples_all_tools_as_the_weakest_device_bears) {
     std::array<TickResult, 3> results{};
     model.tick(states, results);
     model.tick(pressed, results);
-    for (const TickResult& result : results) EXPECT_NEAR(force_of(result).z(), 0.3, 0.3 * skin);
+    for (const TickResult& result : results) EXPECT_NEAR(force_of(result).z(), 0.3, 0.3 * clearance);
     model.couple_to({});
     EXPECT_EQ(model.coupling(), c.haptics.coupling_stiffness);
     const std::array<DeviceLimits, 2> wrong{{{}, {.damping = -1}}};
@@ -70,13 +70,13 @@ TEST(HapticModel, a_rigid_plate_and_a_fixed_foot_are_as_stiff_as_the_coupling) {
             HapticModel on_plate(hard), on_fixed(held);
             on_plate.tick(held_at({0.3, 0.4, 5}), result);
             on_plate.tick(held_at({0.3, 0.4, 1 - depth}), result);
-            EXPECT_NEAR(force_of(result).z(), stiffness * depth, stiffness * skin);
-            EXPECT_NEAR(force_of(result).head<2>().norm(), 0, stiffness * skin);
+            EXPECT_NEAR(force_of(result).z(), stiffness * depth, stiffness * clearance);
+            EXPECT_NEAR(force_of(result).head<2>().norm(), 0, stiffness * clearance);
             // The cube is held at z = 0; the tool comes from below.
             on_fixed.tick(held_at({10.4, 9.3, -5}), result);
             on_fixed.tick(held_at({10.4, 9.3, depth - 1}), result);
-            EXPECT_NEAR(force_of(result).z(), -stiffness * depth, stiffness * skin);
-            EXPECT_NEAR(force_of(result).head<2>().norm(), 0, stiffness * skin);
+            EXPECT_NEAR(force_of(result).z(), -stiffness * depth, stiffness * clearance);
+            EXPECT_NEAR(force_of(result).head<2>().norm(), 0, stiffness * clearance);
         }
 }
 
@@ -95,7 +95,7 @@ TEST(HapticModel, no_body_is_felt_stiffer_than_the_coupling) {
         model.tick(held_at(device), result);
         undeformed.move(surfaces, device);
         const double reach = (undeformed.position() - device).norm();
-        ASSERT_LE(force_of(result).norm(), model.coupling() * (reach + skin)) << tick;
+        ASSERT_LE(force_of(result).norm(), model.coupling() * (reach + clearance)) << tick;
         solved += result.body == 1;
     }
     EXPECT_GT(solved, 1000);

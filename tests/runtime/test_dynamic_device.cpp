@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double rounding = 1e-11;  // relative, of some thousand exact steps
+constexpr double stepping_error = 1e-11;  // relative, of some thousand exact steps
 constexpr HandImpedance no_hand{.stiffness = 0, .damping = 0};
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
@@ -54,8 +54,8 @@ TEST(DynamicDevice, a_free_mass_slows_down_with_m_over_b) {
     ASSERT_GT(velocity.norm(), 100);
     const double tau = 1e-3 * 0.05 / 5e-4, left = std::exp(-0.15 / tau);
     device.read(0.17);
-    EXPECT_LT((device.velocity() - left * velocity).norm(), rounding * velocity.norm());
-    EXPECT_LT((device.position() - position - tau * (1 - left) * velocity).norm(), rounding * 100);
+    EXPECT_LT((device.velocity() - left * velocity).norm(), stepping_error * velocity.norm());
+    EXPECT_LT((device.position() - position - tau * (1 - left) * velocity).norm(), stepping_error * 100);
 }
 
 TEST(DynamicDevice, without_damping_a_constant_force_accelerates_uniformly) {
@@ -65,8 +65,8 @@ TEST(DynamicDevice, without_damping_a_constant_force_accelerates_uniformly) {
     device.write({0, 0, 2});
     device.read(0.1);
     const double acceleration = 2 / 5e-5;  // mm/s²
-    EXPECT_NEAR(device.velocity().z(), acceleration * 0.1, rounding * acceleration);
-    EXPECT_NEAR(device.position().z(), acceleration * 0.005, rounding * acceleration);
+    EXPECT_NEAR(device.velocity().z(), acceleration * 0.1, stepping_error * acceleration);
+    EXPECT_NEAR(device.position().z(), acceleration * 0.005, stepping_error * acceleration);
 }
 
 TEST(DynamicDevice, a_constant_force_settles_where_the_hands_spring_bears_it) {
@@ -188,7 +188,7 @@ TEST(DynamicDevice, motors_saturate_and_keep_the_direction) {
     at_limit.write({1.5, 0, -2});
     strong.read(0.05);
     at_limit.read(0.05);
-    EXPECT_LT((strong.position() - at_limit.position()).norm(), rounding * strong.position().norm());
+    EXPECT_LT((strong.position() - at_limit.position()).norm(), stepping_error * strong.position().norm());
 }
 
 TEST(DynamicDevice, where_it_goes_does_not_depend_on_how_often_it_is_asked) {
@@ -254,7 +254,7 @@ TEST(DynamicDevice, motors_warm_to_their_limit_after_tau_log_of_k_squared_over_k
         EXPECT_LT(device.motor_temperature(), 1);
         EXPECT_EQ(device.read(warm_after + tick).faults, motors_warm) << k;
         device.read(2);
-        EXPECT_NEAR(device.motor_temperature(), k * k * (1 - std::exp(-2 / 0.5)), rounding * k * k);
+        EXPECT_NEAR(device.motor_temperature(), k * k * (1 - std::exp(-2 / 0.5)), stepping_error * k * k);
     }
 }
 
@@ -298,8 +298,8 @@ TEST(DynamicDevice, without_a_hand_it_moves_as_one_that_never_had_one) {
         device->read(0.59);
     }
     ASSERT_GT(alone.position().y(), 10);
-    EXPECT_LT((let_go.position() - alone.position()).norm(), rounding * 100);
-    EXPECT_LT((let_go.velocity() - alone.velocity()).norm(), rounding * 100);
+    EXPECT_LT((let_go.position() - alone.position()).norm(), stepping_error * 100);
+    EXPECT_LT((let_go.velocity() - alone.velocity()).norm(), stepping_error * 100);
 }
 
 TEST(DynamicDevice, taking_hold_again_makes_no_jump_and_ends_at_the_wish) {

@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 constexpr Friction dry{.at_rest = 0.6, .sliding = 0.4};
 constexpr double exact = 1e-9;  // mm: rounding of the sweep
-constexpr double skin = 2 * GodObject::skin;
+constexpr double skins = 2 * GodObject::skin;
 // Ticks until the slack of a slide has let a tool go from rest to sliding, pressed 1 mm.
 constexpr int slipping = static_cast<int>((dry.at_rest - dry.sliding) / GodObject::slide_slack) + 2;
 
@@ -42,11 +42,11 @@ class OnPlate : public ::testing::Test {
 TEST_F(OnPlate, a_tool_sticks_while_the_drag_is_at_most_that_at_rest) {
     move(0, -3);
     const Vector3d start = move(0, 1);
-    EXPECT_NEAR(start.z(), 1, skin);
+    EXPECT_NEAR(start.z(), 1, skins);
     for (int tick = 0; tick <= 1000; ++tick) {
         const double x = dry.at_rest * std::sin(0.01 * tick);
         EXPECT_NEAR((move(x, 1) - start).norm(), 0, exact) << tick;
-        EXPECT_NEAR(tool_.held_back().x(), x, skin);
+        EXPECT_NEAR(tool_.held_back().x(), x, skins);
     }
     // The harder the press, the more it holds.
     EXPECT_NEAR((move(dry.at_rest * 1.9, 2) - start).norm(), 0, exact);
@@ -55,15 +55,15 @@ TEST_F(OnPlate, a_tool_sticks_while_the_drag_is_at_most_that_at_rest) {
 TEST_F(OnPlate, a_tool_slips_beyond_and_then_drags_with_the_sliding_coefficient) {
     move(0, -3);
     move(0, 1);
-    move(dry.at_rest - 10 * skin, 1);
+    move(dry.at_rest - 10 * skins, 1);
     EXPECT_NEAR(tool_.position().x(), 0, exact);
     for (int tick = 1; tick < 500; ++tick) {
-        const double x = dry.at_rest + 10 * skin + 0.01 * tick;
+        const double x = dry.at_rest + 10 * skins + 0.01 * tick;
         move(x, 1);
         if (tick < slipping) continue;
         // Wherever the hand goes on, the tool lags by the sliding coefficient of the press.
-        EXPECT_NEAR(tool_.position().x(), x - dry.sliding * 1, skin) << tick;
-        EXPECT_NEAR(tool_.held_back().x(), dry.sliding * 1, skin) << tick;
+        EXPECT_NEAR(tool_.position().x(), x - dry.sliding * 1, skins) << tick;
+        EXPECT_NEAR(tool_.held_back().x(), dry.sliding * 1, skins) << tick;
     }
 }
 
@@ -87,7 +87,7 @@ TEST_F(OnPlate, a_tool_let_go_is_held_no_more) {
     move(0.5, 1);
     EXPECT_NEAR(tool_.position().x(), 0, exact);
     move(0.5, 0.5);  // holds 0.6 * 0.5 only
-    EXPECT_NEAR(tool_.position().x(), 0.5 - dry.sliding * 0.5, skin);
+    EXPECT_NEAR(tool_.position().x(), 0.5 - dry.sliding * 0.5, skins);
     move(0.5, -1);
     EXPECT_EQ(tool_.position(), Vector3d(0.5, 0.1, 2));
     EXPECT_EQ(tool_.held_back().norm(), 0);
@@ -114,17 +114,17 @@ TEST(Friction, drags_a_tool_on_a_rigid_plate_by_coulombs_law) {
         model.tick(held_at(device), result);
         const Vector3d force = force_of(result);
         const double drag = force.head<2>().norm(), press = force.z();
-        EXPECT_NEAR(press, 0.5, skin);
+        EXPECT_NEAR(press, 0.5, skins);
         EXPECT_NEAR((drag_of(result) - Vector3d(force.x(), force.y(), 0)).norm(), 0, 1e-6);  // float32
-        EXPECT_LE(drag, dry.at_rest * press + skin);
-        EXPECT_NEAR(force.head<2>().dot(device.head<2>()), -drag * device.head<2>().norm(), skin * 10);
-        if (drag < last - skin) ++slid;
+        EXPECT_LE(drag, dry.at_rest * press + skins);
+        EXPECT_NEAR(force.head<2>().dot(device.head<2>()), -drag * device.head<2>().norm(), skins * 10);
+        if (drag < last - skins) ++slid;
         // Stuck, it pulls like the coupling.
         if (slid == 0) {
-            EXPECT_NEAR(drag, 0.5 * 0.01 * tick, skin) << tick;
+            EXPECT_NEAR(drag, 0.5 * 0.01 * tick, skins) << tick;
         }
         if (tick > 60 + slipping) {
-            EXPECT_NEAR(drag, dry.sliding * press, skin) << tick;
+            EXPECT_NEAR(drag, dry.sliding * press, skins) << tick;
         }
         last = drag;
     }
@@ -154,7 +154,7 @@ double work_over_loops(HapticModel& model, const Vector3d& middle, double radius
 }
 
 TEST(Friction, gives_no_energy_to_the_hand_over_closed_loops) {
-    constexpr double spring = 2e-4;  // N mm: what a loop without friction leaves, by the skin
+    constexpr double spring = 2e-4;  // N mm: what a loop without friction leaves, by the skins
     for (const double radius : {0.2, 1.0, 4.0})
         for (const double heave : {0.0, 0.5, 1.3}) {  // the last one lifts off
             HapticModel rough(with_friction(plate())), smooth(plate());

@@ -11,6 +11,7 @@
 #include "tests/formats/sample_case.hpp"
 #include "tests/runtime/allocation_trap.hpp"
 #include "tests/runtime/elastic_cube.hpp"
+#include "tests/runtime/held_tool.hpp"
 
 namespace palpate {
 namespace {
@@ -21,10 +22,6 @@ DeviceState at(const Vector3d& p) {
     DeviceState state;
     state.position = {p[0], p[1], p[2]};
     return state;
-}
-
-Vector3d force_of(const TickResult& result) {
-    return Eigen::Map<const Vector3d>(result.force.data());
 }
 
 // A skull and a true elastic wall beside it.

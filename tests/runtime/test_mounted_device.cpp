@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
+#include "formats/model/arrays.hpp"
 #include "runtime/devices/mounted_device.hpp"
 
 namespace palpate {
@@ -11,14 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double rounding = 1e-12;  // of a few products of numbers around 100
-
-Vector3d vector_of(const std::array<double, 3>& v) {
-    return Eigen::Map<const Vector3d>(v.data());
-}
-std::array<double, 3> array_of(const Vector3d& v) {
-    return {v[0], v[1], v[2]};
-}
+constexpr double mounting_error = 1e-12;  // of a few products of numbers around 100
 
 // Is where it was told to be and keeps what it was told to render, frame D.
 class Probe final : public Device {
@@ -57,19 +51,19 @@ TEST(MountUpright, is_a_rotation_that_puts_the_point_in_place_and_y_up) {
         const Vector3d up = Vector3d(normal(random), normal(random), normal(random)).normalized();
         const Eigen::Isometry3d X_PD = mount_upright(p_D, p_P, up);
         const Eigen::Matrix3d R = X_PD.linear();
-        EXPECT_LT((R.transpose() * R - Eigen::Matrix3d::Identity()).norm(), rounding);
-        EXPECT_NEAR(R.determinant(), 1, rounding);
-        EXPECT_LT((X_PD * p_D - p_P).norm(), rounding);
-        EXPECT_LT((R * Vector3d::UnitY() - up).norm(), rounding);
-        EXPECT_GE(R(0, 0), -rounding);  // the device's x goes with the patient's
+        EXPECT_LT((R.transpose() * R - Eigen::Matrix3d::Identity()).norm(), mounting_error);
+        EXPECT_NEAR(R.determinant(), 1, mounting_error);
+        EXPECT_LT((X_PD * p_D - p_P).norm(), mounting_error);
+        EXPECT_LT((R * Vector3d::UnitY() - up).norm(), mounting_error);
+        EXPECT_GE(R(0, 0), -mounting_error);  // the device's x goes with the patient's
     }
 }
 
 TEST(MountUpright, holds_where_up_is_along_the_patients_x) {
     for (const double sign : {-1.0, 1.0}) {
         const Eigen::Matrix3d R = mount_upright({0, 0, 0}, {0, 0, 0}, {sign, 0, 0}).linear();
-        EXPECT_LT((R.transpose() * R - Eigen::Matrix3d::Identity()).norm(), rounding);
-        EXPECT_NEAR(R.determinant(), 1, rounding);
+        EXPECT_LT((R.transpose() * R - Eigen::Matrix3d::Identity()).norm(), mounting_error);
+        EXPECT_NEAR(R.determinant(), 1, mounting_error);
     }
 }
 
@@ -83,7 +77,8 @@ TEST(MountedDevice, positions_and_shaft_come_from_d_to_p_and_everything_else_sta
     MountedDevice mounted(probe, X_PD);
     const DeviceState seen = mounted.read(0.25);
     EXPECT_LT((X_PD.inverse() * vector_of(seen.position) - Vector3d(10, -20, 30)).norm(), 1e-10);
-    EXPECT_LT((X_PD.linear().transpose() * vector_of(seen.shaft) - Vector3d(0, 0.6, 0.8)).norm(), rounding);
+    EXPECT_LT((X_PD.linear().transpose() * vector_of(seen.shaft) - Vector3d(0, 0.6, 0.8)).norm(),
+              mounting_error);
     EXPECT_EQ(seen.buttons, 2U);
     EXPECT_EQ(seen.faults, motors_warm);
     EXPECT_EQ(seen.time, 0.25);
@@ -99,7 +94,7 @@ TEST(MountedDevice, a_force_goes_back_from_p_to_d_and_its_power_is_the_same_in_b
     const Vector3d velocity_P = vector_of(mounted.read(1).position) - before;
     mounted.write(array_of(force_P));
     EXPECT_NEAR(vector_of(probe.force).dot(velocity_D), force_P.dot(velocity_P), 1e-10);
-    EXPECT_NEAR(vector_of(probe.force).norm(), force_P.norm(), rounding);
+    EXPECT_NEAR(vector_of(probe.force).norm(), force_P.norm(), mounting_error);
 }
 
 TEST(MountedDevice, states_the_devices_limits_with_a_workspace_that_holds_all_its_corners) {

@@ -15,8 +15,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double of_the_way = 1e-9;  // both compute in double; only the order of the pieces differs
-constexpr double rounding = 1e-6;    // mm, of the touched point where a sphere only grazes
+constexpr double of_the_way = 1e-9;     // both compute in double; only the order of the pieces differs
+constexpr double grazing_error = 1e-6;  // mm, of the touched point where a sphere only grazes
 constexpr int sweeps = 10000;
 constexpr std::array radii{0.0, 0.2, 1.0};
 
@@ -53,7 +53,7 @@ int wander(const CollisionSurface& surface, const Vector3d& middle, double reach
         EXPECT_NEAR(found->fraction, expected->fraction, of_the_way) << i << " radius " << radius;
         // Of several triangles that a sphere overlaps at its start, any may be the first.
         if (found->fraction > 0) {
-            EXPECT_NEAR((at + found->fraction * (to - at) - found->point).norm(), radius, rounding) << i;
+            EXPECT_NEAR((at + found->fraction * (to - at) - found->point).norm(), radius, grazing_error) << i;
         }
         EXPECT_EQ(found->triangle, surface.mesh_triangle(found->slot));
         EXPECT_NEAR(found->normal.norm(), 1, of_the_way);

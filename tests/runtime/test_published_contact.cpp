@@ -55,7 +55,7 @@ class Published {
 };
 
 // A rigid plate, 20 mm wide and 2 mm thick; its faces are at z = 0 and z = 2.
-Case plate() {
+Case published_plate() {
     Case c = sample::sample_case();
     RigidBody& body = c.rigid_bodies.front();
     body.surface = boundary_surface(sample::cube_mesh(2, 20)).surface;
@@ -66,7 +66,7 @@ Case plate() {
 }
 
 // An elastic cube of 20 mm, held at z = 0.
-Case soft_cube() {
+Case published_cube() {
     Case c = sample::sample_case();
     c.rigid_bodies.clear();
     c.deformable_bodies = {sample::true_elastic_cube(3)};
@@ -81,7 +81,7 @@ Vector3d height(double z) {
 
 TEST(PublishedContact, is_a_spring_from_the_anchor_to_the_device) {
     for (const ContactScheme scheme : {ContactScheme::single, ContactScheme::twice}) {
-        Published plate_contact(plate(), scheme);
+        Published plate_contact(published_plate(), scheme);
         plate_contact.detect_at(height(1.5));
         const Vector3d force = plate_contact.tick({7.25, 9, 1.25});
         const Vector3d expected = stiffness * Vector3d(-0.25, 0, 0.75);
@@ -95,7 +95,7 @@ TEST(PublishedContact, is_a_spring_from_the_anchor_to_the_device) {
 }
 
 TEST(PublishedContact, single_feels_nothing_until_a_detection_found_the_point_inside) {
-    Published plate_contact(plate(), ContactScheme::single);
+    Published plate_contact(published_plate(), ContactScheme::single);
     plate_contact.detect_at(above);
     for (const double z : {1.9, 1.5, 1.2}) EXPECT_EQ(plate_contact.tick(height(z)), Vector3d::Zero());
     plate_contact.detect_at(height(1.2));
@@ -103,7 +103,7 @@ TEST(PublishedContact, single_feels_nothing_until_a_detection_found_the_point_in
 }
 
 TEST(PublishedContact, twice_feels_a_puncture_one_tick_after_the_point_was_inside) {
-    Published plate_contact(plate(), ContactScheme::twice);
+    Published plate_contact(published_plate(), ContactScheme::twice);
     plate_contact.detect_at(above);
     EXPECT_EQ(plate_contact.tick(height(2.1)), Vector3d::Zero());
     EXPECT_EQ(plate_contact.tick(height(1.9)), Vector3d::Zero());
@@ -112,7 +112,7 @@ TEST(PublishedContact, twice_feels_a_puncture_one_tick_after_the_point_was_insid
 
 TEST(PublishedContact, a_plate_passed_between_two_detections_is_noticed_by_twice_alone) {
     const auto pass = [](ContactScheme scheme) {
-        Published plate_contact(plate(), scheme);
+        Published plate_contact(published_plate(), scheme);
         plate_contact.detect_at(height(3));
         std::vector<double> forces;
         for (double z = 3; z > -1; z -= 0.145) forces.push_back(plate_contact.tick(height(z)).z());
@@ -126,7 +126,7 @@ TEST(PublishedContact, a_plate_passed_between_two_detections_is_noticed_by_twice
 }
 
 TEST(PublishedContact, twice_lets_go_as_soon_as_the_tip_turns_back_or_rests) {
-    Published plate_contact(plate(), ContactScheme::twice);
+    Published plate_contact(published_plate(), ContactScheme::twice);
     plate_contact.detect_at(height(3));
     for (const double z : {1.9, 1.8}) plate_contact.tick(height(z));
     ASSERT_GT(plate_contact.tick(height(1.6)).z(), 0);
@@ -137,7 +137,7 @@ TEST(PublishedContact, twice_lets_go_as_soon_as_the_tip_turns_back_or_rests) {
 
 TEST(PublishedContact, a_tip_that_left_between_two_detections_is_pulled_back_by_single_alone) {
     for (const ContactScheme scheme : {ContactScheme::single, ContactScheme::twice}) {
-        Published plate_contact(plate(), scheme);
+        Published plate_contact(published_plate(), scheme);
         plate_contact.detect_at(height(1.5));
         ASSERT_GT(plate_contact.tick(height(1.9)).z(), 0);
         const Vector3d force = plate_contact.tick(height(3));
@@ -146,7 +146,7 @@ TEST(PublishedContact, a_tip_that_left_between_two_detections_is_pulled_back_by_
 }
 
 TEST(PublishedContact, reset_forgets_the_last_detection_and_position) {
-    Published plate_contact(plate(), ContactScheme::twice);
+    Published plate_contact(published_plate(), ContactScheme::twice);
     plate_contact.detect_at(height(1.5));
     ASSERT_GT(plate_contact.tick(height(1.5)).norm(), 0);
     plate_contact.contact().reset();
@@ -156,7 +156,7 @@ TEST(PublishedContact, reset_forgets_the_last_detection_and_position) {
 
 TEST(PublishedContact, a_point_found_in_the_far_half_of_a_wall_is_led_through) {
     for (const ContactScheme scheme : {ContactScheme::single, ContactScheme::twice}) {
-        Published plate_contact(plate(), scheme);
+        Published plate_contact(published_plate(), scheme);
         plate_contact.detect_at(height(0.5));
         EXPECT_NEAR(plate_contact.tick(height(0.5)).z(), -stiffness * 0.5, stiffness * surface_error);
     }
@@ -184,7 +184,7 @@ TEST(ImposeDisplacement, nodal_forces_displace_the_polygon_as_imposed) {
 }
 
 TEST(PublishedContact, an_elastic_body_answers_with_what_moves_its_polygon_to_the_tip) {
-    const Case c = soft_cube();
+    const Case c = published_cube();
     const DeformableBody& body = c.deformable_bodies.front();
     Published cube(c, ContactScheme::twice);
     const Vector3d tip(8, 5, 18.5);
@@ -216,7 +216,7 @@ TEST(PublishedContact, an_elastic_body_answers_with_what_moves_its_polygon_to_th
 }
 
 TEST(PublishedContact, force_of_an_elastic_body_grows_with_depth_between_detections) {
-    Published cube(soft_cube(), ContactScheme::single);
+    Published cube(published_cube(), ContactScheme::single);
     cube.detect_at({8, 5, 19.5});
     const double shallow = cube.tick({8, 5, 19.5}).norm();
     EXPECT_NEAR(cube.tick({8, 5, 18}).norm(), 4 * shallow, float_error);
@@ -224,13 +224,13 @@ TEST(PublishedContact, force_of_an_elastic_body_grows_with_depth_between_detecti
 }
 
 TEST(PublishedContact, a_polygon_of_fixed_vertices_is_rigid) {
-    Published cube(soft_cube(), ContactScheme::twice);
+    Published cube(published_cube(), ContactScheme::twice);
     cube.detect_at({8, 5, 0.5});
     EXPECT_NEAR((cube.tick({8, 5, 0.5}) - Vector3d(0, 0, -0.5 * stiffness)).norm(), 0, 1e-6);
 }
 
 TEST(PublishedContact, a_tick_never_allocates) {
-    Case c = soft_cube();
+    Case c = published_cube();
     c.rigid_bodies = sample::sample_case().rigid_bodies;
     Published both(c, ContactScheme::twice);
     int touching = 0;
@@ -252,7 +252,7 @@ TEST(PublishedContact, a_tick_never_allocates) {
 }
 
 TEST(PublishedContact, detections_of_a_second_thread_reach_the_servo) {
-    Published plate_contact(plate(), ContactScheme::single);
+    Published plate_contact(published_plate(), ContactScheme::single);
     plate_contact.tick(height(1.5));
     CollisionLoop loop([&]() noexcept { plate_contact.contact().detect(); });
     loop.start();

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double tolerance = 1e-9;  // mm: queries compute in double
+constexpr double segment_tolerance = 1e-9;  // mm: queries compute in double
 
 Vector3d nearest_on_segment(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
     const Vector3d edge = b - a;
@@ -38,12 +38,15 @@ TEST(SegmentQueries, points_of_two_segments_are_each_nearest_to_the_other) {
         if (i % 50 == 4 || i % 50 == 3) b1 = b0;
         const SegmentPair pair = closest_points_of_segments(a0, a1, b0, b1);
         ASSERT_TRUE(pair.s >= 0 && pair.s <= 1 && pair.t >= 0 && pair.t <= 1);
-        ASSERT_NEAR((a0 + pair.s * (a1 - a0) - pair.first).norm(), 0, tolerance);
-        ASSERT_NEAR((b0 + pair.t * (b1 - b0) - pair.second).norm(), 0, tolerance);
+        ASSERT_NEAR((a0 + pair.s * (a1 - a0) - pair.first).norm(), 0, segment_tolerance);
+        ASSERT_NEAR((b0 + pair.t * (b1 - b0) - pair.second).norm(), 0, segment_tolerance);
         const double distance = (pair.first - pair.second).norm();
-        ASSERT_NEAR(std::sqrt(pair.squared_distance), distance, tolerance);
-        ASSERT_NEAR((nearest_on_segment(pair.second, a0, a1) - pair.second).norm(), distance, tolerance) << i;
-        ASSERT_NEAR((nearest_on_segment(pair.first, b0, b1) - pair.first).norm(), distance, tolerance) << i;
+        ASSERT_NEAR(std::sqrt(pair.squared_distance), distance, segment_tolerance);
+        ASSERT_NEAR((nearest_on_segment(pair.second, a0, a1) - pair.second).norm(), distance,
+                    segment_tolerance)
+            << i;
+        ASSERT_NEAR((nearest_on_segment(pair.first, b0, b1) - pair.first).norm(), distance, segment_tolerance)
+            << i;
     }
 }
 
@@ -63,15 +66,16 @@ TEST(SegmentQueries, points_of_segment_and_triangle_are_each_nearest_to_the_othe
                                      pair.foot.barycentric[2] * t[2];
         const double distance = std::sqrt(pair.foot.squared_distance);
         ASSERT_GE(pair.foot.barycentric.minCoeff(), 0) << i;
-        ASSERT_NEAR((on_triangle - pair.foot.point).norm(), 0, tolerance) << i;
-        ASSERT_NEAR((a + pair.fraction * (b - a) - pair.segment_point).norm(), 0, tolerance) << i;
-        ASSERT_NEAR((pair.segment_point - pair.foot.point).norm(), distance, tolerance) << i;
-        ASSERT_NEAR((nearest_on_segment(pair.foot.point, a, b) - pair.foot.point).norm(), distance, tolerance)
+        ASSERT_NEAR((on_triangle - pair.foot.point).norm(), 0, segment_tolerance) << i;
+        ASSERT_NEAR((a + pair.fraction * (b - a) - pair.segment_point).norm(), 0, segment_tolerance) << i;
+        ASSERT_NEAR((pair.segment_point - pair.foot.point).norm(), distance, segment_tolerance) << i;
+        ASSERT_NEAR((nearest_on_segment(pair.foot.point, a, b) - pair.foot.point).norm(), distance,
+                    segment_tolerance)
             << i;
         ASSERT_NEAR(std::sqrt(closest_point_on_triangle(pair.segment_point, t).squared_distance), distance,
-                    tolerance)
+                    segment_tolerance)
             << i;
-        pierced += distance < tolerance;
+        pierced += distance < segment_tolerance;
     }
     EXPECT_GT(pierced, 5000);
 }
@@ -98,8 +102,10 @@ TEST(SegmentQueries, nearest_surface_point_is_that_of_all_triangles) {
         if (!found) continue;
         ++found_count;
         cut_count += best == 0;
-        ASSERT_NEAR(found->foot.distance, std::sqrt(best), tolerance) << i;
-        ASSERT_NEAR((found->segment_point - found->foot.point).norm(), found->foot.distance, tolerance) << i;
+        ASSERT_NEAR(found->foot.distance, std::sqrt(best), segment_tolerance) << i;
+        ASSERT_NEAR((found->segment_point - found->foot.point).norm(), found->foot.distance,
+                    segment_tolerance)
+            << i;
         ASSERT_EQ(found->foot.triangle, surface.mesh_triangle(found->foot.slot));
     }
     EXPECT_GT(found_count, 5000);
@@ -112,8 +118,8 @@ TEST(SegmentQueries, capsule_over_a_plate_touches_below_its_middle) {
     const auto found = closest_to_segment(surface, {0, 0, 5}, {0, 4, 3}, 3);
     ASSERT_TRUE(found);
     EXPECT_EQ(found->fraction, 1);
-    EXPECT_NEAR(found->foot.distance, 3, tolerance);
-    EXPECT_NEAR((found->foot.point - Vector3d(0, 4, 0)).norm(), 0, tolerance);
+    EXPECT_NEAR(found->foot.distance, 3, segment_tolerance);
+    EXPECT_NEAR((found->foot.point - Vector3d(0, 4, 0)).norm(), 0, segment_tolerance);
     EXPECT_FALSE(closest_to_segment(surface, {0, 0, 5}, {0, 4, 3}, 2.999));
 }
 

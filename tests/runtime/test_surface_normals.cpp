@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double tolerance = 1e-9;  // mm, and radians: queries compute in double
+constexpr double normal_tolerance = 1e-9;  // mm, and radians: queries compute in double
 
 CollisionSurface surface_of(const TriangleMesh& mesh) {
     return {mesh, sample::median_tree(mesh, 4), "surface"};
@@ -70,8 +70,8 @@ TEST(SurfaceNormals, beyond_a_leaning_spike_is_outside) {
     const TriangleMesh spike{{{0, 0, 0}, {0, 1, -1}, {0.1, 1, -1}, {1, 3.4, -1}},
                              {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}};
     const Vector3d p(0, 0, 0.5);
-    ASSERT_NEAR(winding_number(spike, p), 0, tolerance);
-    ASSERT_NEAR(winding_number(spike, Vector3d(0.3, 1.6, -0.95)), 1, tolerance);
+    ASSERT_NEAR(winding_number(spike, p), 0, normal_tolerance);
+    ASSERT_NEAR(winding_number(spike, Vector3d(0.3, 1.6, -0.95)), 1, normal_tolerance);
     EXPECT_TRUE(surface_of(spike).is_outside(p));
     EXPECT_FALSE(surface_of(spike).is_outside({0.3, 1.6, -0.95}));
 }
@@ -99,10 +99,11 @@ TEST(SurfaceNormals, corner_of_a_cube_looks_along_its_diagonal_however_the_faces
             for (const double z : {0.0, 20.0}) {
                 const Vector3d corner(x, y, z);
                 const Vector3d diagonal = (corner - Vector3d(10, 10, 10)).normalized();
-                EXPECT_NEAR((surface.pseudonormal(corner) - diagonal).norm(), 0, tolerance);
+                EXPECT_NEAR((surface.pseudonormal(corner) - diagonal).norm(), 0, normal_tolerance);
             }
-    EXPECT_NEAR((surface.pseudonormal({20, 20, 7}) - Vector3d(1, 1, 0).normalized()).norm(), 0, tolerance);
-    EXPECT_NEAR((surface.pseudonormal({20, 6, 7}) - Vector3d::UnitX()).norm(), 0, tolerance);
+    EXPECT_NEAR((surface.pseudonormal({20, 20, 7}) - Vector3d(1, 1, 0).normalized()).norm(), 0,
+                normal_tolerance);
+    EXPECT_NEAR((surface.pseudonormal({20, 6, 7}) - Vector3d::UnitX()).norm(), 0, normal_tolerance);
     EXPECT_EQ(surface.pseudonormal({10, 10, 10}), Vector3d::Zero());
 }
 
@@ -111,7 +112,8 @@ TEST(SurfaceNormals, triangles_without_area_change_no_sign) {
     TriangleMesh mesh{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}, {2, 0, 0}},
                       {{0, 2, 1}, {0, 4, 3}, {4, 1, 3}, {1, 2, 3}, {0, 3, 2}, {0, 1, 4}}};
     const CollisionSurface surface = surface_of(mesh);
-    EXPECT_NEAR((surface.pseudonormal({2, 0, 0}) - Vector3d(0, -1, -1).normalized()).norm(), 0, tolerance);
+    EXPECT_NEAR((surface.pseudonormal({2, 0, 0}) - Vector3d(0, -1, -1).normalized()).norm(), 0,
+                normal_tolerance);
     for (const Vector3d& way : {Vector3d(0, -1, -1), Vector3d(0, -1, -0.1), Vector3d(0, -0.1, -1)}) {
         EXPECT_TRUE(surface.is_outside(Vector3d(2, 0, 0) + 0.5 * way));
         EXPECT_FALSE(surface.is_outside(Vector3d(2, 0, 0) - 0.1 * way));
@@ -124,9 +126,10 @@ TEST(SurfaceNormals, triangles_without_area_change_no_sign) {
     ClosestPoint found;
     found.point = {2, 0, 0};
     found.slot = slot_of(5);
-    EXPECT_NEAR((surface.outward_normal(found) - Vector3d(0, -1, -1).normalized()).norm(), 0, tolerance);
+    EXPECT_NEAR((surface.outward_normal(found) - Vector3d(0, -1, -1).normalized()).norm(), 0,
+                normal_tolerance);
     found.slot = slot_of(0);
-    EXPECT_NEAR((surface.outward_normal(found) - Vector3d(0, 0, -1)).norm(), 0, tolerance);
+    EXPECT_NEAR((surface.outward_normal(found) - Vector3d(0, 0, -1)).norm(), 0, normal_tolerance);
 }
 
 TEST(SurfaceNormals, outward_normal_is_that_of_the_triangle_found) {
@@ -139,7 +142,7 @@ TEST(SurfaceNormals, outward_normal_is_that_of_the_triangle_found) {
         const auto found = surface.closest_point(p, 1e3);
         ASSERT_TRUE(found);
         const Vector3d normal = surface.outward_normal(*found);
-        ASSERT_NEAR(normal.norm(), 1, tolerance);
+        ASSERT_NEAR(normal.norm(), 1, normal_tolerance);
         const TriangleCorners t = surface.corners(found->slot);
         for (const Vector3d& corner : t) ASSERT_NEAR(normal.dot(corner - t[0]), 0, 1e-6);
         if (found->feature == Feature::face) {

@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double skin = 2 * GodObject::skin;
+constexpr double tool_skins = 2 * GodObject::skin;
 constexpr double single = 1e-5;  // relative: records and compliance are float32
 constexpr int settling = 30;     // ticks; what one tool moves, the other feels a tick later
 
@@ -176,7 +176,7 @@ TEST(Shaft, laid_on_a_plate_is_held_although_the_tip_is_beyond_it) {
         const Vector3d tip(28, 0.3, 1 - depth);
         const TickResult held = press(c, {held_at(tip, {-1, 0, 0})})[0];
         // All spheres rest on one plane: together as stiff as the coupling.
-        EXPECT_NEAR((force_of(held) - Vector3d(0, 0, 0.5 * depth)).norm(), 0, skin) << depth;
+        EXPECT_NEAR((force_of(held) - Vector3d(0, 0, 0.5 * depth)).norm(), 0, tool_skins) << depth;
         EXPECT_EQ(held.body, 0);
         for (const Contact& contact : held.active_contacts()) EXPECT_GE(contact.part, 8);  // beyond 8 mm
         EXPECT_EQ(force_of(press(c, {held_at(tip)})[0]).norm(), 0);
@@ -190,7 +190,7 @@ TEST(Shaft, laid_over_soft_tissue_is_held_although_the_tip_is_beyond_it) {
     const Vector3d tip(28, 9.3, 21);
     const TickResult held = press(c, {held_at(tip, {-1, 0, 0})})[0];
     EXPECT_GT(force_of(held).z(), 0.01);
-    EXPECT_LE(force_of(held).norm(), 0.5 * (1 + skin));  // 1 mm on 0.5 N/mm
+    EXPECT_LE(force_of(held).norm(), 0.5 * (1 + tool_skins));  // 1 mm on 0.5 N/mm
     EXPECT_FALSE(held.status & contact_unsolved);
     EXPECT_EQ(force_of(press(c, {held_at(tip)})[0]).norm(), 0);
     // It lies on more tissue than a tip does.
@@ -240,7 +240,7 @@ TEST(Shaft, is_held_wherever_the_plate_is) {
     Case c = with_shaft(plate(), 1);
     c.rigid_bodies[0] = rigid("plate", box({-20, -20, -10}, {20, 20, 1}));
     for (const double x : {0.0, 15.0})
-        EXPECT_NEAR(force_of(press(c, {held_at({x, 0, 0}, {1, 0, 0})})[0]).z(), 0.5 * 2, skin) << x;
+        EXPECT_NEAR(force_of(press(c, {held_at({x, 0, 0}, {1, 0, 0})})[0]).z(), 0.5 * 2, tool_skins) << x;
 }
 
 TEST(Shaft, away_from_the_body_changes_nothing) {
@@ -264,7 +264,7 @@ TEST(Shaft, away_from_the_body_changes_nothing) {
 }
 
 // Two tools that wander over, into and beside a soft cube and a plate beneath, their shafts turning.
-std::array<DeviceState, 2> wandering(int tick) {
+std::array<DeviceState, 2> two_wandering(int tick) {
     const double t = 1e-3 * tick;
     const Vector3d first(10 + 11 * std::sin(1.7 * t), 10 + 8 * std::sin(2.3 * t + 1),
                          22 + 5 * std::cos(5.1 * t));
@@ -294,7 +294,7 @@ TEST(TwoTools, with_shafts_and_friction_never_allocate_in_a_tick) {
     {
         const AllocationTrap trap;
         for (int tick = 0; tick < 20000; ++tick) {
-            model->tick(wandering(tick), results);
+            model->tick(two_wandering(tick), results);
             touching += results[0].contact_count > 0 && results[1].contact_count > 0;
         }
         allocated = trap.count();
@@ -309,7 +309,7 @@ TEST(TwoTools, are_never_pulled_by_what_they_touch) {
     model.tick(std::array{held_at({10, 10, 60}), held_at({20, 10, 60})}, results);
     int unsolved = 0;
     for (int tick = 0; tick < 20000; ++tick) {
-        model.tick(wandering(tick), results);
+        model.tick(two_wandering(tick), results);
         for (const TickResult& result : results) {
             ASSERT_TRUE(force_of(result).allFinite()) << tick;
             for (const Contact& contact : result.active_contacts()) ASSERT_GE(contact.force, 0) << tick;
@@ -329,7 +329,7 @@ Record wander_through(HapticModel& model, int count) {
     std::array<TickResult, 2> results{};
     model.tick(std::array{held_at({10, 10, 60}), held_at({20, 10, 60})}, results);
     for (int tick = 0; tick < count; ++tick) {
-        model.tick(wandering(tick), results);
+        model.tick(two_wandering(tick), results);
         record.push_back(results);
     }
     return record;

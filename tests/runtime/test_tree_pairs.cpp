@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double tolerance = 1e-9;  // mm: queries compute in double
+constexpr double pair_tolerance = 1e-9;  // mm: queries compute in double
 
 Vector3d at(const Vector3d& barycentric, const TriangleCorners& t) {
     return barycentric[0] * t[0] + barycentric[1] * t[1] + barycentric[2] * t[2];
@@ -38,15 +38,17 @@ TEST(TreePairs, points_of_two_triangles_are_each_nearest_to_the_other) {
         const double distance = std::sqrt(pair.on_a.squared_distance);
         ASSERT_EQ(pair.on_a.squared_distance, pair.on_b.squared_distance);
         ASSERT_TRUE(pair.on_a.barycentric.minCoeff() >= 0 && pair.on_b.barycentric.minCoeff() >= 0) << i;
-        ASSERT_NEAR((at(pair.on_a.barycentric, a) - on_a).norm(), 0, tolerance) << i;
-        ASSERT_NEAR((at(pair.on_b.barycentric, b) - on_b).norm(), 0, tolerance) << i;
-        ASSERT_NEAR((on_b - on_a).norm(), distance, tolerance) << i;
-        ASSERT_NEAR(std::sqrt(closest_point_on_triangle(on_b, a).squared_distance), distance, tolerance) << i;
-        ASSERT_NEAR(std::sqrt(closest_point_on_triangle(on_a, b).squared_distance), distance, tolerance) << i;
-        if (distance > tolerance) {
-            ASSERT_NEAR((on_a + distance * pair.normal - on_b).norm(), 0, tolerance) << i;
+        ASSERT_NEAR((at(pair.on_a.barycentric, a) - on_a).norm(), 0, pair_tolerance) << i;
+        ASSERT_NEAR((at(pair.on_b.barycentric, b) - on_b).norm(), 0, pair_tolerance) << i;
+        ASSERT_NEAR((on_b - on_a).norm(), distance, pair_tolerance) << i;
+        ASSERT_NEAR(std::sqrt(closest_point_on_triangle(on_b, a).squared_distance), distance, pair_tolerance)
+            << i;
+        ASSERT_NEAR(std::sqrt(closest_point_on_triangle(on_a, b).squared_distance), distance, pair_tolerance)
+            << i;
+        if (distance > pair_tolerance) {
+            ASSERT_NEAR((on_a + distance * pair.normal - on_b).norm(), 0, pair_tolerance) << i;
         }
-        cut += distance <= tolerance;
+        cut += distance <= pair_tolerance;
     }
     EXPECT_GT(cut, 5000);
 }
@@ -56,8 +58,9 @@ TEST(TreePairs, normal_of_a_cut_leads_out_of_a) {
     const TriangleCorners spike{Vector3d(0, 0, -1), Vector3d(-1, 0, 4), Vector3d(1, 0, 4)};
     const TrianglePair pierced = closest_points_of_triangles(plate, spike);
     EXPECT_EQ(pierced.on_a.squared_distance, 0);
-    EXPECT_NEAR((pierced.normal - Vector3d::UnitZ()).norm(), 0, tolerance);
-    EXPECT_NEAR((closest_points_of_triangles(spike, plate).normal + Vector3d::UnitZ()).norm(), 0, tolerance);
+    EXPECT_NEAR((pierced.normal - Vector3d::UnitZ()).norm(), 0, pair_tolerance);
+    EXPECT_NEAR((closest_points_of_triangles(spike, plate).normal + Vector3d::UnitZ()).norm(), 0,
+                pair_tolerance);
 }
 
 // Everything about pairs, by looking at all of them.
@@ -94,7 +97,7 @@ TEST(TreePairs, pairs_are_those_of_all_triangles) {
                 const double distance = std::sqrt(
                     closest_points_of_triangles(a.corners(slot_a), corners_b).on_a.squared_distance);
                 // At the limit itself rounding decides.
-                if (std::abs(distance - margin) > 2 * tolerance) {
+                if (std::abs(distance - margin) > 2 * pair_tolerance) {
                     ASSERT_EQ(found.contains({slot_a, slot_b}), distance < margin)
                         << i << ": " << distance << " mm, margin " << margin;
                 }
@@ -106,7 +109,7 @@ TEST(TreePairs, pairs_are_those_of_all_triangles) {
             ASSERT_EQ(pair.triangle_b, b.mesh_triangle(pair.slot_b));
             const Vector3d in_a = at(pair.contact.on_a.barycentric, a.corners(pair.slot_a));
             const Vector3d in_b = X_AB * at(pair.contact.on_b.barycentric, b.corners(pair.slot_b));
-            ASSERT_NEAR((in_a - in_b).norm(), std::sqrt(pair.contact.on_a.squared_distance), tolerance);
+            ASSERT_NEAR((in_a - in_b).norm(), std::sqrt(pair.contact.on_a.squared_distance), pair_tolerance);
         }
         ASSERT_EQ(surfaces_touch(a, b, X_AB, margin), count > 0);
         ++(count > 0 ? touching : apart);

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double tolerance = 1e-9;  // mm: coordinates of a few mm, squared, in double
+constexpr double triangle_tolerance = 1e-9;  // mm: coordinates of a few mm, squared, in double
 
 class RandomTriangles {
   public:
@@ -45,12 +45,13 @@ TEST(ClosestPointOnTriangle, satisfies_the_variational_inequality) {
         const TriangleCorners t = random.triangle(i);
         const Vector3d p = random.point(3);
         const TrianglePoint q = closest_point_on_triangle(p, t);
-        for (const Vector3d& corner : t) ASSERT_LE((p - q.point).dot(corner - q.point), tolerance) << i;
+        for (const Vector3d& corner : t)
+            ASSERT_LE((p - q.point).dot(corner - q.point), triangle_tolerance) << i;
         ASSERT_GE(q.barycentric.minCoeff(), 0);
         ASSERT_NEAR(q.barycentric.sum(), 1, 1e-12);
         const Vector3d sum = q.barycentric[0] * t[0] + q.barycentric[1] * t[1] + q.barycentric[2] * t[2];
-        ASSERT_LE((sum - q.point).norm(), tolerance);
-        ASSERT_NEAR(q.squared_distance, (p - q.point).squaredNorm(), tolerance);
+        ASSERT_LE((sum - q.point).norm(), triangle_tolerance);
+        ASSERT_NEAR(q.squared_distance, (p - q.point).squaredNorm(), triangle_tolerance);
     }
 }
 
@@ -80,18 +81,18 @@ TEST(SweepSphereTriangle, stops_at_the_first_time_the_distance_is_the_radius) {
                 ASSERT_EQ(contact->fraction, 0);
             else
                 for (int s = 1; s <= 20; ++s)
-                    ASSERT_GE(distance(from + way * s / 20, t), distance(from, t) - tolerance) << i;
+                    ASSERT_GE(distance(from + way * s / 20, t), distance(from, t) - triangle_tolerance) << i;
             continue;
         }
         for (int s = 0; s < 20; ++s)
-            ASSERT_GE(distance(from + end * s / 20 * way, t), radius - tolerance) << i;
+            ASSERT_GE(distance(from + end * s / 20 * way, t), radius - triangle_tolerance) << i;
         if (!contact) continue;
         ++touched;
         const Vector3d centre = from + end * way;
         ASSERT_NEAR(distance(centre, t), radius, 1e-7) << i;
         ASSERT_NEAR((centre - contact->point).norm(), radius, 1e-7) << i;
         ASSERT_NEAR(contact->normal.norm(), 1, 1e-9);
-        ASSERT_LE(contact->normal.dot(way), tolerance) << i;
+        ASSERT_LE(contact->normal.dot(way), triangle_tolerance) << i;
     }
     EXPECT_GT(touched, 300);
 }

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/cli/command.hpp"
 
+#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <fmt/format.h>
 #include <iostream>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
 #include <thread>
+#include <type_traits>
 
 #include "formats/model/errors.hpp"
 #include "formats/model/label_map.hpp"
@@ -78,6 +82,11 @@ void print_lines(const nlohmann::ordered_json& value, const std::string& prefix)
     }
 }
 
+// Refuses "nan" and "inf", which CLI11 reads as numbers; an empty text means accepted.
+std::string finite_number(const std::string& text) {
+    return std::isfinite(std::strtod(text.c_str(), nullptr)) ? "" : text + " is not a finite number";
+}
+
 std::string help_footer(const CommandText& text) {
     std::string footer = "Examples:\n";
     for (const std::string& example : text.examples) footer += "  " + example + "\n";
@@ -93,45 +102,77 @@ std::string version() {
     return PALPATE_VERSION;
 }
 
-Command::Command(CommandText text) : text_(std::move(text)), app_(text_.summary, "palpate " + text_.name) {
-    app_.option_defaults()->always_capture_default(false);
-    app_.footer(help_footer(text_));
-    app_.set_version_flag("--version", "palpate " + version());
+Command::Command(CommandText text)
+    : text_(std::move(text)), app_(std::make_unique<CLI::App>(text_.summary, "palpate " + text_.name)) {
+    app_->option_defaults()->always_capture_default(false);
+    app_->footer(help_footer(text_));
+    app_->set_version_flag("--version", "palpate " + version());
     const std::string group = "Every command";
-    app_.add_option("--json", json_path_, "write the result as JSON to this file, '-' for stdout")
+    app_->add_option("--json", json_path_, "write the result as JSON to this file, '-' for stdout")
         ->group(group);
-    app_.add_flag("--quiet", quiet_, "say nothing but errors")->group(group);
-    app_.add_flag("--verbose", verbose_, "say more")->group(group);
-    app_.add_flag("--force", force_, "replace existing outputs")->group(group);
-    app_.add_flag("--xml")
+    app_->add_flag("--quiet", quiet_, "say nothing but errors")->group(group);
+    app_->add_flag("--verbose", verbose_, "say more")->group(group);
+    app_->add_flag("--force", force_, "replace existing outputs")->group(group);
+    app_->add_flag("--xml")
         ->description("print the Slicer Execution Model description and exit")
         ->group(group);
-    app_.add_option("--threads", threads_, "threads for work that can use several [default: all cores]")
+    app_->add_option("--threads", threads_, "threads for work that can use several [default: all cores]")
         ->check(CLI::PositiveNumber)
         ->group(group);
 }
 
-std::string Command::finite_number(const std::string& text) {
-    return std::isfinite(std::strtod(text.c_str(), nullptr)) ? "" : text + " is not a finite number";
-}
+Command::~Command() = default;
 
-CLI::Option* Command::remember(Parameter::Kind kind, CLI::Option* option, const std::string& help) {
+Option Command::remember(Parameter::Kind kind, Option option, const std::string& help) {
     parameters_.push_back({kind, option, help});
     return option;
 }
 
-CLI::Option* Command::input(const std::string& names, std::filesystem::path& value, const std::string& help) {
-    return remember(Parameter::Kind::input_file, app_.add_option(names, value, help), help);
+Option Command::input(const std::string& names, std::filesystem::path& value, const std::string& help) {
+    return remember(Parameter::Kind::input_file, Option(app_->add_option(names, value, help)), help);
 }
 
-CLI::Option* Command::output(const std::string& names, std::filesystem::path& value,
-                             const std::string& help) {
-    return remember(Parameter::Kind::output_file, app_.add_option(names, value, help), help);
+Option Command::input(const std::string& names, std::vector<std::filesystem::path>& values,
+                      const std::string& help) {
+    return remember(Parameter::Kind::input_file, Option(app_->add_option(names, values, help)), help);
 }
 
-CLI::Option* Command::flag(const std::string& names, bool& value, const std::string& help) {
-    return remember(Parameter::Kind::flag, app_.add_flag(names, value, help), help);
+Option Command::output(const std::string& names, std::filesystem::path& value, const std::string& help) {
+    return remember(Parameter::Kind::output_file, Option(app_->add_option(names, value, help)), help);
 }
+
+Option Command::flag(const std::string& names, bool& value, const std::string& help) {
+    return remember(Parameter::Kind::flag, Option(app_->add_flag(names, value, help)), help);
+}
+
+template <typename T>
+Option Command::option(const std::string& names, T& value, const std::string& help, const std::string& unit) {
+    const std::string full_help = unit.empty() ? help : help + " [" + unit + "]";
+    CLI::Option* const option = app_->add_option(names, value, full_help);
+    auto kind = Parameter::Kind::text;
+    if constexpr (std::is_floating_point_v<T>) {
+        kind = Parameter::Kind::number;
+        option->default_str(fmt::format("{}", value))->check(finite_number);
+    } else if constexpr (std::is_integral_v<T>) {
+        kind = Parameter::Kind::integer;
+        option->default_str(fmt::format("{}", value));
+    } else if constexpr (std::is_same_v<T, std::string>) {
+        if (!value.empty()) option->default_str(value);
+    }
+    return remember(kind, Option(option), full_help);
+}
+
+template Option Command::option(const std::string&, double&, const std::string&, const std::string&);
+template Option Command::option(const std::string&, int&, const std::string&, const std::string&);
+template Option Command::option(const std::string&, std::int64_t&, const std::string&, const std::string&);
+template Option Command::option(const std::string&, std::uint64_t&, const std::string&, const std::string&);
+template Option Command::option(const std::string&, std::optional<std::uint64_t>&, const std::string&,
+                                const std::string&);
+template Option Command::option(const std::string&, std::string&, const std::string&, const std::string&);
+template Option Command::option(const std::string&, std::vector<double>&, const std::string&,
+                                const std::string&);
+template Option Command::option(const std::string&, std::vector<std::string>&, const std::string&,
+                                const std::string&);
 
 int Command::parse(int argc, char** argv) {
     // Not left to CLI11: --xml must work without the required arguments.
@@ -141,19 +182,19 @@ int Command::parse(int argc, char** argv) {
             return ExitCode::ok;
         }
     try {
-        app_.parse(argc, argv);
+        app_->parse(argc, argv);
         return -1;
     } catch (const CLI::CallForHelp&) {
-        std::cout << app_.help();
+        std::cout << app_->help();
         return ExitCode::ok;
     } catch (const CLI::CallForVersion&) {
         std::cout << "palpate " << version() << '\n';
         return ExitCode::ok;
     } catch (const CLI::ExtrasError& error) {
         std::vector<std::string> known;
-        for (const CLI::Option* option : app_.get_options()) known.push_back(option->get_name());
+        for (const CLI::Option* option : app_->get_options()) known.push_back(option->get_name());
         std::cerr << "palpate-" << text_.name << ": " << error.what();
-        for (const std::string& extra : app_.remaining()) {
+        for (const std::string& extra : app_->remaining()) {
             const auto near = nearest_names(extra, known);
             if (extra.starts_with("-") && !near.empty())
                 std::cerr << "; did you mean " << near.front() << "?";
@@ -196,7 +237,7 @@ int Command::run(int argc, char** argv, const std::function<nlohmann::ordered_js
     try {
         for (const Parameter& parameter : parameters_)
             if (parameter.kind == Parameter::Kind::input_file)
-                for (const std::string& path : parameter.option->results())
+                for (const std::string& path : parameter.option.words())
                     if (!std::filesystem::exists(path))
                         throw InvalidInput({path, "no such file or folder", "", "check the path"});
         Session session;
@@ -204,6 +245,7 @@ int Command::run(int argc, char** argv, const std::function<nlohmann::ordered_js
             threads_ > 0 ? threads_ : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
         session.force = force_;
         session.quiet = quiet_;
+        session.json = !json_path_.empty();
         session.progress = Progress(quiet_);
         std::optional<StagedFile> json_file;
         if (!json_path_.empty() && json_path_ != "-") json_file.emplace(json_path_, force_);

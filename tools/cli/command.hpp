@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <CLI/CLI.hpp>
 #include <filesystem>
-#include <fmt/format.h>
 #include <functional>
-#include <nlohmann/json.hpp>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "formats/model/errors.hpp"
+#include "tools/cli/option.hpp"
 #include "tools/cli/progress.hpp"
 #include "tools/cli/staged_file.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace palpate::cli {
 
@@ -43,7 +47,7 @@ struct CommandText {
 struct Parameter {
     enum class Kind { input_file, output_file, number, integer, text, flag };
     Kind kind;
-    CLI::Option* option;
+    Option option;
     std::string help;
 };
 
@@ -52,6 +56,7 @@ struct Session {
     int threads = 1;     ///< --threads
     bool force = false;  ///< --force: existing outputs may be replaced
     bool quiet = false;  ///< --quiet
+    bool json = false;   ///< --json: the result is for a program
     Progress progress;   ///< talks on stderr, silent with --quiet
     /// Set by a job whose result is worth printing though a contract is not met: exit code 4.
     std::optional<ErrorDetail> shortfall;
@@ -75,33 +80,20 @@ struct Session {
 class Command {
   public:
     explicit Command(CommandText text);
+    ~Command();
 
-    CLI::App& app() { return app_; }
+    /// Adds a positional ("surface") or named ("--labels") input file, or several; run() checks that they
+    /// exist.
+    Option input(const std::string& names, std::filesystem::path& value, const std::string& help);
+    Option input(const std::string& names, std::vector<std::filesystem::path>& values,
+                 const std::string& help);
+    Option output(const std::string& names, std::filesystem::path& value, const std::string& help);
+    Option flag(const std::string& names, bool& value, const std::string& help);
 
-    /// Adds a positional ("surface") or named ("--labels") input file; its existence is checked by run().
-    CLI::Option* input(const std::string& names, std::filesystem::path& value, const std::string& help);
-    CLI::Option* output(const std::string& names, std::filesystem::path& value, const std::string& help);
-    CLI::Option* flag(const std::string& names, bool& value, const std::string& help);
-
-    /// Adds a number, a text or a list of either. `unit` ("mm", "kPa", "" for none) and the default, which is
-    /// the present content of `value`, are part of the help.
+    /// Adds a number, a text or a list of either; command.cpp lists the types. `unit` ("mm", "kPa", "" for
+    /// none) and the default, which is the present content of `value`, are part of the help.
     template <typename T>
-    CLI::Option* option(const std::string& names, T& value, const std::string& help,
-                        const std::string& unit = "") {
-        const std::string full_help = unit.empty() ? help : help + " [" + unit + "]";
-        CLI::Option* option = app_.add_option(names, value, full_help);
-        if constexpr (std::is_floating_point_v<T>) {
-            option->default_str(fmt::format("{}", value))->check(finite_number);
-            return remember(Parameter::Kind::number, option, full_help);
-        } else if constexpr (std::is_integral_v<T>) {
-            option->default_str(fmt::format("{}", value));
-            return remember(Parameter::Kind::integer, option, full_help);
-        } else {
-            if constexpr (std::is_convertible_v<T, std::string>)
-                if (!value.empty()) option->default_str(value);
-            return remember(Parameter::Kind::text, option, full_help);
-        }
-    }
+    Option option(const std::string& names, T& value, const std::string& help, const std::string& unit = "");
 
     /// Parses, runs `job`, writes its JSON result to stdout (as lines "name value", or as JSON with --json),
     /// and returns the exit code. `job` returns an object; run() adds schema, version, seconds and peak
@@ -112,15 +104,13 @@ class Command {
     const std::vector<Parameter>& parameters() const { return parameters_; }
 
   private:
-    /// Refuses "nan" and "inf", which CLI11 reads as numbers; an empty text means accepted.
-    static std::string finite_number(const std::string& text);
-    CLI::Option* remember(Parameter::Kind kind, CLI::Option* option, const std::string& help);
+    Option remember(Parameter::Kind kind, Option option, const std::string& help);
     int parse(int argc, char** argv);
     void emit(nlohmann::ordered_json result, const std::string& text, double seconds,
               StagedFile* json_file) const;
 
     CommandText text_;
-    CLI::App app_;
+    std::unique_ptr<CLI::App> app_;
     std::vector<Parameter> parameters_;
     std::string json_path_;
     bool quiet_ = false;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/cli/slicer_xml.hpp"
 
+#include <CLI/CLI.hpp>
+
 #include "tools/cli/command.hpp"
 
 namespace palpate::cli {
@@ -53,7 +55,7 @@ std::string identifier(const CLI::Option& option) {
 }
 
 std::string parameter_xml(const Parameter& parameter, int& position) {
-    const CLI::Option& option = *parameter.option;
+    const CLI::Option& option = parameter.option.handle();
     const std::string tag = tag_of(parameter.kind);
     std::string xml = "    <" + tag + (option.get_expected_max() > 1 ? " multiple=\"true\"" : "") + ">\n";
     xml += element("name", identifier(option));

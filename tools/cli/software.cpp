@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/cli/software.hpp"
 
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 

@@ -37,10 +37,10 @@ int main(int argc, char** argv) {
                       "palpate build nasopharynx.toml --volume patient7.nrrd -o patient7.vtkhdf"},
          .notes = "Beside OUTPUT.vtkhdf it writes OUTPUT.html and the folder OUTPUT.parts with every "
                   "intermediate result."});
-    command.input("case", case_path, "case file (.toml)")->required();
+    command.input("case", case_path, "case file (.toml)").required();
     command.input("--volume", volume, "CT or MRI to use instead of the case file's input.volume");
     command.input("--labels", labels, "label map to use instead of the case file's input.labels");
-    command.output("-o,--output", output, "asset (.vtkhdf)")->required();
+    command.output("-o,--output", output, "asset (.vtkhdf)").required();
     command.output("--parts", parts, "folder for intermediate results; OUTPUT.parts by default");
     return command.run(argc, argv, [&](cli::Session& session) {
         if (output.extension() != ".vtkhdf")

@@ -2,6 +2,8 @@
 #include "tools/fem/condense.hpp"
 
 #include <cmath>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
 #include "formats/asset/parts.hpp"
@@ -64,11 +66,11 @@ int main(int argc, char** argv) {
              "Linear tetrahedra are too stiff where Poisson's ratio nears 0.5; quadratic ones are not, and "
              "have some eight times the unknowns.",
              node_rule_grammar)});
-    command.input("mesh", input, "tetrahedra with CellData 'region' (.vtu), LPS mm")->required();
+    command.input("mesh", input, "tetrahedra with CellData 'region' (.vtu), LPS mm").required();
     command
         .option("--material", materials, "material of a region: REGION:YOUNGS_MODULUS,POISSONS_RATIO",
                 "kPa, 1")
-        ->required();
+        .required();
     command.option("--fixed", fixed, "rule that fixes nodes; several add up", "mm");
     command.option("--contact", contact,
                    "rule that picks the surface nodes that can be touched; several add up; without it, all "
@@ -82,18 +84,18 @@ int main(int argc, char** argv) {
     command
         .option("--accuracy", accuracy,
                 "relative error that a hierarchical C may have: displacements under random contact loads")
-        ->check(CLI::Range(1e-4, 0.1));
+        .range(1e-4, 0.1);
     command
         .option("--memory", memory_gib, "memory that may be in use at once; 0: what the machine has left",
                 "GiB")
-        ->check(CLI::NonNegativeNumber);
-    command.option("--size", size_mib, "size that C may have in the file", "MiB")->check(CLI::PositiveNumber);
+        .non_negative();
+    command.option("--size", size_mib, "size that C may have in the file", "MiB").positive();
     command.flag(
         "--discretisation-error", discretisation_error,
         "estimate what the elements themselves miss, by solving on richer ones (some eight times the "
         "unknowns)");
     command.option("--name", name, "name of the body; the mesh file's name by default");
-    command.output("-o,--output", output, "condensed body (.body.h5)")->required();
+    command.output("-o,--output", output, "condensed body (.body.h5)").required();
     return command.run(argc, argv, [&](cli::Session& session) {
         const auto fixed_rules = condensation::parse_node_rules("--fixed", fixed);
         const auto contact_rules = condensation::parse_node_rules("--contact", contact);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
@@ -95,7 +96,7 @@ int main(int argc, char** argv) {
     ReadOptions options;
     command
         .input("input", input, "DICOM folder or file, .nrrd, .nhdr, .mha, .mhd, .nii, .nii.gz, .vti or .vtk")
-        ->required();
+        .required();
     command.output("-o,--output", output, "volume (.nrrd) or, with --labels, label map (.seg.nrrd)");
     command.flag("--list", list, "list the DICOM series of the input and make nothing");
     command.option("--series", options.series, "DICOM series to read: its number, UID or description");
@@ -106,8 +107,9 @@ int main(int argc, char** argv) {
     command.flag("--labels", labels, "the input is a label map");
     command.option("--label-names", label_names,
                    "names of the labels: value=name,..., a known table or a file");
-    command.option("--overlaps", overlaps,
-                   "where segments of a label map overlap: refuse, later (in the file) or smaller wins");
+    const cli::Option overlaps_option =
+        command.option("--overlaps", overlaps,
+                       "where segments of a label map overlap: refuse, later (in the file) or smaller wins");
     return command.run(argc, argv, [&](cli::Session& session) -> nlohmann::ordered_json {
         const auto require = [](bool fits, const char* option, const char* input_kind, const char* advice) {
             if (!fits) throw UsageError({option, std::string("is for ") + input_kind, "", advice});
@@ -115,7 +117,7 @@ int main(int argc, char** argv) {
         std::error_code none;
         const bool dicom_image = !labels && (std::filesystem::is_directory(input, none) || is_dicom(input));
         require(labels || label_names.empty(), "--label-names", "label maps", "add --labels");
-        require(labels || !command.app().count("--overlaps"), "--overlaps", "label maps", "add --labels");
+        require(labels || !overlaps_option.given(), "--overlaps", "label maps", "add --labels");
         require(dicom_image || options.series.empty(), "--series", "DICOM images", "leave it out");
         require(dicom_image || !options.accept_gaps, "--accept-gaps", "DICOM images", "leave it out");
         require(options.nifti_frame.empty() || is_nifti(input), "--nifti-frame", "NIfTI files",
@@ -131,8 +133,7 @@ int main(int argc, char** argv) {
             notes.emplace_back(text);
         };
         if (list) {
-            const bool as_json = !command.app().get_option("--json")->empty();
-            return describe(list_series(input, note), !as_json && isatty(STDOUT_FILENO) == 1);
+            return describe(list_series(input, note), !session.json && isatty(STDOUT_FILENO) == 1);
         }
         auto staged = session.stage(output);
         session.progress.step("reading", 0);

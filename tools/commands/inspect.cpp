@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "formats/asset/asset.hpp"
 #include "tools/cli/command.hpp"
@@ -75,7 +76,7 @@ int main(int argc, char** argv) {
          .examples = {"palpate inspect liver.vtkhdf", "palpate inspect liver.vtkhdf --json -"},
          .notes = "All digests are checked; 'palpate verify' checks the mechanics too."});
     std::filesystem::path asset;
-    command.input("asset", asset, "asset (.vtkhdf)")->required();
+    command.input("asset", asset, "asset (.vtkhdf)").required();
     return command.run(argc, argv, [&](cli::Session&) {
         const Case patient_case = read_asset(asset);
         Json bodies = Json::array(), regions = Json::array(), certificates = Json::array();

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <spdlog/spdlog.h>
 
@@ -104,38 +106,39 @@ int main(int argc, char** argv) {
     command.input(
         "--labels", labels_path,
         "label map (.seg.nrrd, NIfTI, NRRD); with --mesh-file the one that the mesh is checked against");
-    auto* const region =
+    const cli::Option region =
         command.option("--region", regions, "label of the body, by name or value; repeat for more");
-    auto* const mesh_file = command.input("--mesh-file", mesh_path,
-                                          "tetrahedra made elsewhere (.vtu, .vtk, Gmsh .msh, MEDIT .mesh)");
-    command.option("--unit", finished.unit, "of that file: um, mm, cm, m or in")->needs(mesh_file);
+    const cli::Option mesh_file = command.input(
+        "--mesh-file", mesh_path, "tetrahedra made elsewhere (.vtu, .vtk, Gmsh .msh, MEDIT .mesh)");
+    command.option("--unit", finished.unit, "of that file: um, mm, cm, m or in").needs(mesh_file);
     command.option("--frame", finished.frame, "of that file: lps or ras; empty: what it states, else lps")
-        ->needs(mesh_file);
+        .needs(mesh_file);
     command
         .option("--region-name", region_names, "VALUE=NAME: name of a region of that file; repeat for more")
-        ->needs(mesh_file);
-    auto* const cell_size = command.option("--cell-size", sizing.cell_size, "largest tetrahedron", "mm");
-    auto* const region_cell_size =
+        .needs(mesh_file);
+    const cli::Option cell_size =
+        command.option("--cell-size", sizing.cell_size, "largest tetrahedron", "mm");
+    const cli::Option region_cell_size =
         command.option("--region-cell-size", region_sizes,
                        "NAME=MM: another cell size for one label; otherwise no more than its radius");
-    auto* const near = command.option(
+    const cli::Option near = command.option(
         "--near", near_sizes,
         "NAME=SIZE,WITHIN or X,Y,Z=SIZE,WITHIN: cells of SIZE as far as WITHIN from a label or a point",
         "mm");
-    auto* const facet_size = command.option("--facet-size", sizing.facet_size,
-                                            "largest surface triangle; 0: as the cell size", "mm");
-    auto* const facet_distance = command.option(
+    const cli::Option facet_size = command.option("--facet-size", sizing.facet_size,
+                                                  "largest surface triangle; 0: as the cell size", "mm");
+    const cli::Option facet_distance = command.option(
         "--facet-distance", sizing.facet_distance,
         "largest distance of triangles to the surface; 0: a tenth of the cell size, or the contract's 95th "
         "percentile if that is less",
         "mm");
-    auto* const smoothing = command.option("--smoothing", sizing.smoothing,
-                                           "Gaussian on labels; below 0: the largest voxel edge", "mm");
-    auto* const min_component = command.option("--min-component-volume", sizing.min_component_volume,
-                                               "smaller specks and pinholes vanish", "mm³");
-    for (CLI::Option* const option :
+    const cli::Option smoothing = command.option("--smoothing", sizing.smoothing,
+                                                 "Gaussian on labels; below 0: the largest voxel edge", "mm");
+    const cli::Option min_component = command.option("--min-component-volume", sizing.min_component_volume,
+                                                     "smaller specks and pinholes vanish", "mm³");
+    for (const cli::Option option :
          {region, cell_size, region_cell_size, near, facet_size, facet_distance, smoothing, min_component})
-        mesh_file->excludes(option);
+        mesh_file.excludes(option);
     command.flag("--allow-components", allow_components, "accept a body of several separate pieces");
     command.option("--min-dihedral-deg", contract.min_dihedral_deg,
                    "quality contract: smallest dihedral angle", "degrees");
@@ -156,8 +159,8 @@ int main(int argc, char** argv) {
     command.option("--max-centroid-distance", contract.max_centroid_distance,
                    "quality contract: distance of the centroids of body and labels", "mm");
     command.option("--attempts", attempts, "meshes to make before the contract counts as missed, 1 or more")
-        ->check(CLI::Range(1, 100));
-    command.output("-o,--output", output, "tetrahedra (.vtu), LPS mm")->required();
+        .range(1, 100);
+    command.output("-o,--output", output, "tetrahedra (.vtu), LPS mm").required();
 
     return command.run(argc, argv, [&](cli::Session& session) {
         cli::StagedFile staged = session.stage(output);

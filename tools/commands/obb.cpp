@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <nlohmann/json.hpp>
+
 #include "formats/asset/parts.hpp"
 #include "formats/model/errors.hpp"
 #include "tools/cli/command.hpp"
@@ -16,10 +18,10 @@ int main(int argc, char** argv) {
          .notes = "Of tetrahedra the outer boundary is taken. Source: Gottschalk, Lin, Manocha 1996."});
     std::filesystem::path input, output;
     ObbTreeOptions options;
-    command.input("surface", input, "triangle surface (.vtp) or tetrahedra (.vtu), LPS mm")->required();
+    command.input("surface", input, "triangle surface (.vtp) or tetrahedra (.vtu), LPS mm").required();
     command.option("--leaf-triangles", options.max_leaf_triangles, "most triangles in a leaf")
-        ->check(CLI::Range(1, most_leaf_triangles));
-    command.output("-o,--output", output, "OBB tree (.obb.h5)")->required();
+        .range(1, most_leaf_triangles);
+    command.output("-o,--output", output, "OBB tree (.obb.h5)").required();
 
     return command.run(argc, argv, [&](cli::Session& session) {
         if (input.extension() != ".vtp" && input.extension() != ".vtu")

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "formats/asset/asset.hpp"
 #include "formats/asset/digest.hpp"
@@ -102,7 +103,7 @@ int main(int argc, char** argv) {
     std::vector<std::string> rigid, deformable, mesh_results;
     std::filesystem::path provenance, output;
     HapticSettings haptics;
-    command.option("--name", name, "name of the case; no patient's name")->required();
+    command.option("--name", name, "name of the case; no patient's name").required();
     command.option("--rigid", rigid, "rigid body: NAME=SURFACE.vtp,TREE.obb.h5; repeat for more");
     command.option("--deformable", deformable,
                    "elastic body: NAME=BODY.body.h5,TREE.obb.h5; repeat for more");
@@ -120,7 +121,7 @@ int main(int argc, char** argv) {
     command.option("--mesh-result", mesh_results,
                    "NAME=RESULT.json: what palpate mesh --json said of a body; repeat for more");
     command.input("--provenance", provenance, "what made the parts (.json)");
-    command.output("-o,--output", output, "asset (.vtkhdf)")->required();
+    command.output("-o,--output", output, "asset (.vtkhdf)").required();
     return command.run(argc, argv, [&](cli::Session& session) {
         cli::StagedFile staged = session.stage(output);
         Case patient_case{

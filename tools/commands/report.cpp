@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <fmt/format.h>
 #include <fstream>
 #include <iterator>
 
@@ -135,7 +136,7 @@ int main(int argc, char** argv) {
              "Pictures are drawn on the display that DISPLAY names, without one on an Xvfb of its own."});
     std::filesystem::path asset, volume_path, labels_path, touch, curve, stages, output;
     std::vector<std::string> rigid;
-    command.input("asset", asset, "case to report on (.vtkhdf)")->required();
+    command.input("asset", asset, "case to report on (.vtkhdf)").required();
     command.input("--volume", volume_path, "volume to show slices of, any format of 'palpate import'");
     command.input("--labels", labels_path, "label map to show contours of (.seg.nrrd)");
     command.option(
@@ -145,7 +146,7 @@ int main(int argc, char** argv) {
     command.input("--touch", touch, "statistics made by 'palpate touch --json'");
     command.input("--curve", curve, "force curve made by 'palpate touch --curve' (.svg)");
     command.input("--stages", stages, "stage times and peak memory made by 'palpate build' (.json)");
-    command.output("-o,--output", output, "page to write (.html)")->required();
+    command.output("-o,--output", output, "page to write (.html)").required();
 
     return command.run(argc, argv, [&](cli::Session& session) {
         cli::StagedFile page = session.stage(output);

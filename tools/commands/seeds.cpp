@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // palpate seeds: a window in which a person clicks into structures and sees them grow.
 #include <algorithm>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
 #include "tools/cli/command.hpp"
@@ -76,21 +78,20 @@ int main(int argc, char** argv) {
     std::filesystem::path volume_path, seeds_path, output = "seed.mrk.json";
     std::vector<std::string> labels;
     std::vector<double> window_level;
-    command.input("volume", volume_path, "volume, any format that 'palpate import' reads")->required();
+    command.input("volume", volume_path, "volume, any format that 'palpate import' reads").required();
     command.output("-o,--output", output, "seeds for 3D Slicer, 'segment' and case files (.mrk.json)")
-        ->default_str(output.string());
+        .shown_default(output.string());
     command
         .option("--label", labels,
                 "a structure to place seeds in, up to nine [default: the output's name up to its first dot]")
-        ->allow_extra_args(false);  // the next word may be the volume
+        .one_value_each();  // the next word may be the volume
     command.input("--seeds", seeds_path, "seeds to start from (.mrk.json, .fcsv)");
     command
         .option("--window-level", window_level,
                 "WIDTH,LEVEL of the grey window at first [default: 400,40 for a CT, else the 1st to 99th "
                 "percentile]",
                 "HU, or the volume's own values")
-        ->delimiter(',')
-        ->allow_extra_args(false);
+        .one_value_each(',');
     return command.run(argc, argv, [&](cli::Session& session) -> ordered_json {
         if (!output.filename().string().ends_with(".mrk.json"))
             throw UsageError({"--output", output.string(), "a name that ends in .mrk.json", ""});

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <filesystem>
+#include <fmt/format.h>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
 #include "formats/model/errors.hpp"
@@ -123,7 +125,7 @@ int main(int argc, char** argv) {
     command.input("--labels", labels_path, "label map that the recipe 'import' takes structures from");
     command.input("--recipes", recipes_path, "structures as JSON, before those of --structure");
     command.option("--structure", texts, "one structure, 'name: recipe=... parameter=value ...'");
-    command.output("-o,--output", output, "label map (.seg.nrrd)")->required();
+    command.output("-o,--output", output, "label map (.seg.nrrd)").required();
     return command.run(argc, argv, [&](cli::Session& session) -> json {
         std::vector<StructureRecipe> structures;
         if (!recipes_path.empty()) structures = read_recipes(recipes_path);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
 #include "formats/model/errors.hpp"
@@ -34,30 +36,32 @@ int main(int argc, char** argv) {
     std::int64_t max_triangles = 0, min_triangles = 100;
     int mask_reach = 2;
     bool keep_largest = false;
-    auto* volume_option =
+    const cli::Option volume_option =
         command.input("--volume", volume_path, "grey volume (NRRD, NIfTI, MetaImage, DICOM)");
-    auto* level = command.option("--isovalue", isovalue, "surface around values from here up", "HU for CT");
-    level->needs(volume_option);
-    volume_option->needs(level);
-    command.input("--labels", labels_path, "label map (.seg.nrrd, NIfTI, NRRD)");
+    const cli::Option level =
+        command.option("--isovalue", isovalue, "surface around values from here up", "HU for CT");
+    level.needs(volume_option);
+    volume_option.needs(level);
+    const cli::Option labels_option =
+        command.input("--labels", labels_path, "label map (.seg.nrrd, NIfTI, NRRD)");
     command.option("--label", names, "label by name or value; may be repeated");
-    auto* file_option = command.input("--surface-file", surface_path,
-                                      "finished surface instead (.vtp, .vtk, .stl, .obj, .ply)");
-    file_option->excludes(volume_option)->excludes("--labels");
-    command.option("--unit", finished.unit, "of that file: um, mm, cm, m or in")->needs(file_option);
-    command
-        .option("--frame", finished.frame, "of that file: lps or ras; by default what it states, else lps")
-        ->needs(file_option);
+    const cli::Option file_option = command.input("--surface-file", surface_path,
+                                                  "finished surface instead (.vtp, .vtk, .stl, .obj, .ply)");
+    file_option.excludes(volume_option).excludes(labels_option);
+    command.option("--unit", finished.unit, "of that file: um, mm, cm, m or in").needs(file_option);
+    command.option("--frame", finished.frame, "of that file: lps or ras; by default what it states, else lps")
+        .needs(file_option);
     command.option("--mask-reach", mask_reach, "how far beyond its labels the volume counts", "voxels");
     command.option("--smoothing", smoothing, "Gaussian on labels; below 0: the largest voxel edge", "mm");
     command.flag("--keep-largest", keep_largest, "keep the piece of largest area only");
     command.option("--min-triangles", min_triangles, "leave out pieces of fewer triangles");
-    auto* budget = command.option("--max-triangles", max_triangles, "decimate to this many; 0: do not");
+    const cli::Option budget =
+        command.option("--max-triangles", max_triangles, "decimate to this many; 0: do not");
     command
         .option("--max-distance", max_distance,
                 "largest distance between full and decimated surface; 0: any, it is measured", "mm")
-        ->needs(budget);
-    command.output("-o,--output", output, "triangle surface (.vtp), LPS mm")->required();
+        .needs(budget);
+    command.output("-o,--output", output, "triangle surface (.vtp), LPS mm").required();
 
     return command.run(argc, argv, [&](cli::Session& session) {
         if (volume_path.empty() && labels_path.empty() && surface_path.empty())

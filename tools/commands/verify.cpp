@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cstdint>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "formats/asset/asset.hpp"
 #include "formats/model/errors.hpp"
@@ -114,10 +116,9 @@ int main(int argc, char** argv) {
              "hierarchical one is tried on contacts."});
     std::filesystem::path asset;
     std::int32_t columns = certificate_columns, loads = certificate_loads;
-    command.input("asset", asset, "asset (.vtkhdf)")->required();
-    command.option("--columns", columns, "columns of each compliance to solve again")
-        ->check(CLI::Range(1, 100000));
-    command.option("--loads", loads, "random contact loads to solve again")->check(CLI::Range(1, 100000));
+    command.input("asset", asset, "asset (.vtkhdf)").required();
+    command.option("--columns", columns, "columns of each compliance to solve again").range(1, 100000);
+    command.option("--loads", loads, "random contact loads to solve again").range(1, 100000);
     return command.run(argc, argv, [&](cli::Session& session) {
         set_linear_algebra_threads(session.threads);
         session.progress.step("read and check digests", 0);

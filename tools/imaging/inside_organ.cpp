@@ -17,18 +17,18 @@ namespace {
 
 using Points = std::span<const Eigen::Vector3d>;
 
-constexpr double seed_reach = 3;        // mm: a seed may miss by a voxel or two
-constexpr double least_contrast = 1.5;  // standard deviations
-constexpr double least_difference = 5;  // HU
-constexpr double noise_mm = 1;          // deviation of the Gaussian that smooths it
-constexpr double neck_ratio = 0.5;      // of cut_at_necks()
+constexpr double lesion_seed_reach = 3;  // mm: a seed may miss by a voxel or two
+constexpr double least_contrast = 1.5;   // standard deviations
+constexpr double least_difference = 5;   // HU
+constexpr double noise_mm = 1;           // deviation of the Gaussian that smooths it
+constexpr double narrow_neck = 0.5;      // of cut_at_necks()
 
 // The offset of the voxel of the mask nearest to each seed.
 std::vector<std::size_t> voxels_at(const Mask& mask, Points seeds, const std::string& culprit,
                                    const std::string& expected, const std::string& next_step) {
     std::vector<std::size_t> found;
     for (const Eigen::Vector3d& seed : seeds) {
-        const auto voxel = nearest_voxel(mask, seed, seed_reach);
+        const auto voxel = nearest_voxel(mask, seed, lesion_seed_reach);
         if (!voxel)
             throw InvalidInput({culprit, "seed " + point_text(seed) + " is not there", expected, next_step});
         found.push_back(*voxel);
@@ -48,7 +48,7 @@ Mask lesion(const Volume& volume, const Mask& organ, Points seeds, double margin
     const Mask part = crop(organ, box);
     const Mask region = fill_holes(dilate(part, margin_mm));
     voxels_at(region, seeds, culprit,
-              fmt::format("a point within {} mm of the organ", margin_mm + seed_reach),
+              fmt::format("a point within {} mm of the organ", margin_mm + lesion_seed_reach),
               "move it, or name the organ that holds it with 'inside'");
     const Volume grey = curvature_flow(crop(volume, box), 4);
     std::vector<float> values;
@@ -69,7 +69,7 @@ Mask lesion(const Volume& volume, const Mask& organ, Points seeds, double margin
             region.voxels[i] && (grey.values[i] - around.mean - difference / 2) * difference > 0;
     const auto inside = voxels_at(candidates, seeds, culprit, "the grey values of the other seeds",
                                   "leave that seed out or make it a structure of its own");
-    return refine(cut_at_necks(candidates, depth_in(candidates), inside, neck_ratio), box.low, {1, 1, 1},
+    return refine(cut_at_necks(candidates, depth_in(candidates), inside, narrow_neck), box.low, {1, 1, 1},
                   organ.grid);
 }
 

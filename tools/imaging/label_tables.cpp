@@ -14,18 +14,12 @@
 #include "tools/imaging/label_names.hpp"
 #include "tools/imaging/read_image.hpp"
 #include "tools/imaging/totalsegmentator_labels.hpp"
+#include "tools/imaging/trimmed.hpp"
 
 namespace palpate {
 namespace {
 
 using Colour = std::optional<std::array<float, 3>>;
-
-std::string trimmed(std::string_view text) {
-    constexpr std::string_view blank = " \t\r\n";
-    const auto first = text.find_first_not_of(blank);
-    if (first == std::string_view::npos) return {};
-    return std::string(text.substr(first, text.find_last_not_of(blank) + 1 - first));
-}
 
 template <typename Number>
 std::optional<Number> number_of(std::string_view text) {

@@ -27,7 +27,7 @@ constexpr double first_edge_factor = 4;  // an edge is so much steeper than the 
 constexpr double edge_factor = 3;        // and, later, than what was found, vessels and all
 constexpr double least_edge = 1;         // HU per mm, for images without noise
 constexpr double local_mm = 12;     // the local mean is taken over Gaussian surroundings of this deviation
-constexpr double neck_ratio = 0.4;  // of cut_at_necks()
+constexpr double organ_neck = 0.4;  // of cut_at_necks()
 constexpr double edge_mm = 4;       // edges are about this wide
 constexpr double regained_mm = 3;   // thinner parts stay this far from thick ones
 constexpr double surroundings_mm = 60;  // kept around what the first round found
@@ -110,7 +110,7 @@ Mask thick_part(const Mask& candidates, Points seeds, double neck_mm) {
     for (const Eigen::Vector3d& seed : seeds)
         if (const auto voxel = nearest_voxel(candidates, seed, seed_reach_mm)) inside.push_back(*voxel);
     if (inside.empty()) return {candidates.grid, std::vector<std::uint8_t>(candidates.voxels.size(), 0)};
-    const Mask cut = cut_at_necks(candidates, depth, inside, neck_ratio);
+    const Mask cut = cut_at_necks(candidates, depth, inside, organ_neck);
     Mask core = cut;
     for (std::size_t i = 0; i < core.voxels.size(); ++i)
         core.voxels[i] = cut.voxels[i] && depth[i] >= neck_mm;

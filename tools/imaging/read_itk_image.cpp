@@ -18,6 +18,7 @@
 #include "formats/model/errors.hpp"
 #include "tools/imaging/itk_image.hpp"
 #include "tools/imaging/read_image.hpp"
+#include "tools/imaging/trimmed.hpp"
 
 namespace palpate {
 namespace {
@@ -59,12 +60,6 @@ ImageGrid grid_of(const itk::ImageIOBase& io, const std::filesystem::path& path)
     check_size(size, path);
     std::ranges::transform(size, grid.size.begin(), [](auto n) { return static_cast<std::int32_t>(n); });
     return grid;
-}
-
-std::string trimmed(std::string_view text) {
-    const auto first = text.find_first_not_of(" \t\r");
-    if (first == std::string_view::npos) return {};
-    return std::string(text.substr(first, text.find_last_not_of(" \t\r") + 1 - first));
 }
 
 // The fields "name: value" of an NRRD header; names do not depend on case.

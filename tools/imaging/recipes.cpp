@@ -15,7 +15,7 @@ namespace palpate {
 namespace {
 
 constexpr double tissue_above_hu = -300;
-constexpr double seed_reach = 2;  // mm: a seed may miss narrow air by a voxel or two
+constexpr double air_seed_reach = 2;  // mm: a seed may miss narrow air by a voxel or two
 
 // Pieces with a voxel on an edge of the grid's box, where two of its faces meet.
 std::set<std::uint32_t> pieces_at_edges(const Components& pieces, const ImageGrid& grid) {
@@ -127,10 +127,10 @@ Mask airway(const Volume& volume, std::span<const Eigen::Vector3d> seeds, double
     std::set<std::uint32_t> seeded;
     for (const Eigen::Vector3d& seed : seeds) {
         voxel_of_seed(volume.grid, seed, culprit);
-        const auto voxel = nearest_voxel(inner, seed, seed_reach);
+        const auto voxel = nearest_voxel(inner, seed, air_seed_reach);
         if (!voxel)
             throw InvalidInput({culprit, "seed " + point_text(seed) + " is not in the passage",
-                                fmt::format("inner air within {} mm", seed_reach),
+                                fmt::format("inner air within {} mm", air_seed_reach),
                                 "move the seed into the passage, or lower opening_mm if the passage counts "
                                 "as outside"});
         seeded.insert(pieces.labels[*voxel]);

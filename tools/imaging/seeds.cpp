@@ -10,6 +10,7 @@
 #include <set>
 
 #include "formats/model/errors.hpp"
+#include "tools/imaging/trimmed.hpp"
 
 namespace palpate {
 namespace {
@@ -92,12 +93,6 @@ std::vector<std::string> fields_of(const std::string& line) {
             fields.back() += line[i];
     }
     return fields;
-}
-
-std::string trimmed(const std::string& text) {
-    constexpr const char* blanks = " \t\r";
-    const auto first = text.find_first_not_of(blanks);
-    return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(blanks) + 1 - first);
 }
 
 std::vector<Seed> read_fcsv(const std::filesystem::path& path, std::istream& stream) {

@@ -5,12 +5,10 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "tools/meshing/text.hpp"
+
 namespace palpate {
 namespace {
-
-std::string place(const Eigen::Vector3d& p_P) {
-    return fmt::format("({:.1f}, {:.1f}, {:.1f})", p_P.x(), p_P.y(), p_P.z());
-}
 
 double longest_edge(const TetMesh& mesh, std::int32_t t) {
     const Tetrahedron& tet = mesh.tetrahedra[static_cast<std::size_t>(t)];
@@ -79,7 +77,7 @@ std::vector<ContractCheck> check_shape(const QualityContract& contract, const Te
             worst.max_dihedral_deg > contract.max_dihedral_deg) {
             angles.found +=
                 fmt::format("{} {:.1f}° ... {:.1f}° at {}", angles.places.empty() ? ":" : ",",
-                            worst.min_dihedral_deg, worst.max_dihedral_deg, place(worst.centroid));
+                            worst.min_dihedral_deg, worst.max_dihedral_deg, place_text(worst.centroid));
             angles.places.push_back(worst.centroid);
             angles.size = std::max(angles.size, longest_edge(mesh, worst.tetrahedron));
         }
@@ -132,7 +130,7 @@ std::vector<ContractCheck> check_fidelity(const QualityContract& contract, const
         at_most("the largest surface distance", distance.region, distance.maximum, limit, "mm");
         ContractCheck& largest = checks.back();
         if (largest.kept) continue;
-        largest.found += " at " + place(distance.farthest);
+        largest.found += " at " + place_text(distance.farthest);
         largest.places = places_beyond(distance, limit);
         largest.size = 2 * limit;
     }
@@ -142,7 +140,7 @@ std::vector<ContractCheck> check_fidelity(const QualityContract& contract, const
         if (component.covered < 0.5)
             add("the share in the mesh of a component", component.region,
                 fmt::format("{:.0f} % ({:.0f} mm³ around {})", 100 * component.covered, component.volume,
-                            place(component.centroid)),
+                            place_text(component.centroid)),
                 "at least 50 %", false);
     if (checks.size() == before)
         add("the number of missing components", 0, fmt::format("0 of {}", measures.components.size()), "0",

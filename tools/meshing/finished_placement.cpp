@@ -7,20 +7,15 @@
 #include <fmt/format.h>
 
 #include "formats/model/errors.hpp"
+#include "tools/meshing/text.hpp"
 
 namespace palpate {
 namespace {
 
-std::string lower(std::string text) {
-    std::ranges::transform(text, text.begin(),
-                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-}
-
 double mm_per_unit(const std::string& unit) {
     static const std::map<std::string, double> units{
         {"um", 0.001}, {"mm", 1}, {"cm", 10}, {"m", 1000}, {"in", 25.4}};
-    const auto found = units.find(lower(unit));
+    const auto found = units.find(lower_case(unit));
     if (found == units.end())
         throw UsageError({"unit '" + unit + "'", "is not known", "um, mm, cm, m or in", ""});
     return found->second;
@@ -30,7 +25,7 @@ double mm_per_unit(const std::string& unit) {
 
 void place(std::vector<Eigen::Vector3d>& positions, const FinishedMeshOptions& options,
            const std::string& stated, const std::string& culprit, const NoteSink& note) {
-    const std::string asked = lower(options.frame), written = lower(stated);
+    const std::string asked = lower_case(options.frame), written = lower_case(stated);
     for (const std::string& frame : {asked, written})
         if (!frame.empty() && frame != "lps" && frame != "ras")
             throw UsageError({"frame '" + frame + "'", "is not known", "lps or ras", ""});
@@ -48,7 +43,7 @@ void place(std::vector<Eigen::Vector3d>& positions, const FinishedMeshOptions& o
     if (!note || box.isEmpty()) return;
     const Eigen::Vector3d size = box.sizes();
     note(fmt::format("{}: {:.4g} x {:.4g} x {:.4g} mm, read as {} in {}", culprit, size.x(), size.y(),
-                     size.z(), lower(options.unit), ras ? "RAS" : "LPS"));
+                     size.z(), lower_case(options.unit), ras ? "RAS" : "LPS"));
 }
 
 std::string listed(const std::map<std::string, std::int64_t>& counts) {
@@ -59,7 +54,7 @@ std::string listed(const std::map<std::string, std::int64_t>& counts) {
 }
 
 std::string extension_of(const std::filesystem::path& path) {
-    return lower(path.extension().string());
+    return lower_case(path.extension().string());
 }
 
 }  // namespace palpate

@@ -27,7 +27,7 @@ vtkSmartPointer<vtkPolyData> read_as(const std::filesystem::path& path, const ch
     return reader->GetOutput();
 }
 
-vtkSmartPointer<vtkPolyData> read_any(const std::filesystem::path& path) {
+vtkSmartPointer<vtkPolyData> read_polygons(const std::filesystem::path& path) {
     const std::string extension = extension_of(path);
     if (extension == ".vtp") return read_as<vtkXMLPolyDataReader>(path, "VTK PolyData file (.vtp)");
     if (extension == ".vtk") return read_as<vtkPolyDataReader>(path, "legacy VTK file with polygons");
@@ -69,7 +69,7 @@ std::string stated_frame(vtkPolyData* data, const std::filesystem::path& path) {
 TriangleMesh read_finished_surface(const std::filesystem::path& path, const FinishedMeshOptions& options,
                                    const NoteSink& note) {
     const std::string culprit = path.string();
-    const vtkSmartPointer<vtkPolyData> data = read_any(path);
+    const vtkSmartPointer<vtkPolyData> data = read_polygons(path);
     for (vtkCellArray* cells : {data->GetPolys(), data->GetStrips()})
         require_indices(cells, data->GetNumberOfPoints(), culprit);
     const std::map<std::string, std::int64_t> flat{{"line", data->GetNumberOfLines()},

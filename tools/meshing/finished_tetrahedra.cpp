@@ -15,7 +15,7 @@
 namespace palpate {
 namespace {
 
-FoundTetrahedra read_any(const std::filesystem::path& path) {
+FoundTetrahedra read_solids(const std::filesystem::path& path) {
     const std::string extension = extension_of(path);
     if (extension == ".msh") return read_gmsh(path);
     if (extension == ".mesh") return read_medit(path);
@@ -208,7 +208,7 @@ TetMesh read_finished_tetrahedra(const std::filesystem::path& path, const Finish
     const auto say = [&](std::int64_t count, const char* what) {
         if (count > 0 && note) note(fmt::format("{}: {} {}", culprit, count, what));
     };
-    FoundTetrahedra found = read_any(path);
+    FoundTetrahedra found = read_solids(path);
     if (!found.solid.empty())
         throw InvalidInput(
             {culprit, "holds other solid cells: " + listed(found.solid),

@@ -7,7 +7,7 @@
 
 namespace palpate {
 
-std::vector<IndexBox> region_boxes(const RegionLabels& labels, const Index3& reach) {
+std::vector<RegionBox> region_boxes(const RegionLabels& labels, const Index3& reach) {
     std::vector<Index3> low(labels.values.size(), labels.grid.size);
     std::vector<Index3> high(labels.values.size(), Index3{-1, -1, -1});
     for_each_voxel({{}, labels.grid.size}, [&](const Index3& voxel, std::size_t offset) {
@@ -18,7 +18,7 @@ std::vector<IndexBox> region_boxes(const RegionLabels& labels, const Index3& rea
             high[region][axis] = std::max(high[region][axis], voxel[axis]);
         }
     });
-    std::vector<IndexBox> boxes(low.size());
+    std::vector<RegionBox> boxes(low.size());
     for (std::size_t region = 0; region < boxes.size(); ++region)
         for (std::size_t axis = 0; axis < 3; ++axis) {
             boxes[region].low[axis] = low[region][axis] - reach[axis];
@@ -27,7 +27,7 @@ std::vector<IndexBox> region_boxes(const RegionLabels& labels, const Index3& rea
     return boxes;
 }
 
-std::vector<float> smoothed_indicator(const RegionLabels& labels, std::uint8_t region, const IndexBox& box,
+std::vector<float> smoothed_indicator(const RegionLabels& labels, std::uint8_t region, const RegionBox& box,
                                       const std::array<double, 3>& sigma_voxels) {
     FloatImage image{box.size, sigma_voxels, {}};
     image.values.reserve(static_cast<std::size_t>(box.size[0]) * static_cast<std::size_t>(box.size[1]) *

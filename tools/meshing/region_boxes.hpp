@@ -11,13 +11,13 @@ namespace palpate {
 using Index3 = std::array<std::int32_t, 3>;
 
 /// A box of voxels.
-struct IndexBox {
+struct RegionBox {
     Index3 low{}, size{};
 };
 
 /// Calls visit(voxel, offset in the box), i fastest.
 template <typename Visit>
-void for_each_voxel(const IndexBox& box, Visit&& visit) {
+void for_each_voxel(const RegionBox& box, Visit&& visit) {
     std::size_t offset = 0;
     for (std::int32_t k = box.low[2]; k < box.low[2] + box.size[2]; ++k)
         for (std::int32_t j = box.low[1]; j < box.low[1] + box.size[1]; ++j)
@@ -27,10 +27,10 @@ void for_each_voxel(const IndexBox& box, Visit&& visit) {
 
 /// Returns the box of every region with `reach` voxels more on each side, in the regions' order.
 /// Precondition: every region has a voxel (unchecked).
-std::vector<IndexBox> region_boxes(const RegionLabels& labels, const Index3& reach);
+std::vector<RegionBox> region_boxes(const RegionLabels& labels, const Index3& reach);
 
 /// Returns 1 where the region is and 0 elsewhere, smoothed by a Gaussian, over a box inside the labels' grid.
-std::vector<float> smoothed_indicator(const RegionLabels& labels, std::uint8_t region, const IndexBox& box,
+std::vector<float> smoothed_indicator(const RegionLabels& labels, std::uint8_t region, const RegionBox& box,
                                       const std::array<double, 3>& sigma_voxels);
 
 /// Gaussian sigma, in voxels, that takes no sheet of one voxel: its smoothed indicator stays at 0.79.

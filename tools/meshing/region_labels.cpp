@@ -12,7 +12,7 @@
 namespace palpate {
 namespace {
 
-struct IndexBox {
+struct VoxelRange {
     std::array<std::int32_t, 3> low, high;  // inclusive
 };
 
@@ -24,9 +24,9 @@ std::vector<std::uint8_t> region_table(std::span<const std::int32_t> values) {
     return table;
 }
 
-IndexBox bounding_box(const LabelMap& map, const std::vector<std::uint8_t>& table,
-                      std::span<const std::int32_t> values) {
-    IndexBox box{map.grid.size, {-1, -1, -1}};
+VoxelRange bounding_box(const LabelMap& map, const std::vector<std::uint8_t>& table,
+                        std::span<const std::int32_t> values) {
+    VoxelRange box{map.grid.size, {-1, -1, -1}};
     std::vector<bool> seen(256, false);
     std::size_t offset = 0;
     for (std::int32_t k = 0; k < map.grid.size[2]; ++k)
@@ -104,7 +104,7 @@ RegionLabels cut_out_regions(const LabelMap& map, std::span<const std::int32_t> 
             {"regions", twice ? "one is named twice" : std::to_string(values.size()) + " named",
              "1 ... 255 different label values from 1 to 65535", "name every label of the body once"});
     const std::vector<std::uint8_t> table = region_table(result.values);
-    const IndexBox box = bounding_box(map, table, result.values);
+    const VoxelRange box = bounding_box(map, table, result.values);
 
     std::array<std::int32_t, 3> first{};
     for (std::size_t axis = 0; axis < 3; ++axis) {

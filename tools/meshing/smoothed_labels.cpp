@@ -13,7 +13,7 @@ constexpr float eligible = 0.2F;         // below, a region is too far away to w
 constexpr double min_agreement = 0.985;  // leaves the mesh some room below a Dice of 0.98
 
 // The share of a region's voxels that keep their label when as many voxels as it has do.
-double agreement(const RegionLabels& labels, std::size_t region, const IndexBox& box,
+double agreement(const RegionLabels& labels, std::size_t region, const RegionBox& box,
                  const std::vector<float>& smoothed) {
     std::vector<float> own, ranked = smoothed;
     for_each_voxel(box, [&](const Index3& v, std::size_t offset) {
@@ -30,7 +30,7 @@ double agreement(const RegionLabels& labels, std::size_t region, const IndexBox&
 // The indicator smoothed by `sigma` mm or, if the region would lose its shape, by as much as it bears;
 // `sigma` is then that.
 std::vector<float> gently_smoothed_indicator(const RegionLabels& labels, std::size_t region,
-                                             const IndexBox& box, double& sigma) {
+                                             const RegionBox& box, double& sigma) {
     for (;; sigma *= 0.8) {
         std::array<double, 3> sigma_voxels{};
         for (std::size_t axis = 0; axis < 3; ++axis)
@@ -57,7 +57,7 @@ SmoothedLabels::SmoothedLabels(const RegionLabels& labels, double sigma)
         reach[axis] =
             std::max(2, static_cast<std::int32_t>(std::ceil(gaussian_reach * sigma /
                                                             grid_.spacing[static_cast<Eigen::Index>(axis)])));
-    const std::vector<IndexBox> boxes = region_boxes(labels, reach);
+    const std::vector<RegionBox> boxes = region_boxes(labels, reach);
     for (std::size_t region = 0; region < boxes.size(); ++region) {
         double own_sigma = sigma;
         std::vector<float> values = gently_smoothed_indicator(labels, region, boxes[region], own_sigma);

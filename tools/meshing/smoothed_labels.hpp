@@ -36,7 +36,7 @@ class SmoothedLabels {
   private:
     // A region's smoothed indicator in the box that it reaches; zero elsewhere.
     struct Score {
-        IndexBox box;
+        RegionBox box;
         double sigma = 0;           // mm
         std::vector<float> values;  // i fastest
         float offset = 0;

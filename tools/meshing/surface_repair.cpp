@@ -10,6 +10,7 @@
 
 #include "formats/model/errors.hpp"
 #include "tools/meshing/disjoint_sets.hpp"
+#include "tools/meshing/text.hpp"
 
 namespace palpate {
 namespace {
@@ -33,10 +34,6 @@ Eigen::Vector3d area_vector(const TriangleMesh& surface, std::size_t t) {
     const Triangle& corners = surface.triangles[t];
     const Eigen::Vector3d& a = point(surface, corners[0]);
     return 0.5 * (point(surface, corners[1]) - a).cross(point(surface, corners[2]) - a);
-}
-
-std::string place(const Eigen::Vector3d& p) {
-    return fmt::format("({:.1f}, {:.1f}, {:.1f})", p.x(), p.y(), p.z());
 }
 
 // Throws for edges that belong to one triangle or to more than two.
@@ -66,7 +63,7 @@ Seams seams_of(const TriangleMesh& surface, const std::string& culprit) {
         const Eigen::Vector3d middle = (point(surface, edges[0].low) + point(surface, edges[0].high)) / 2;
         throw InvalidInput(
             {culprit,
-             fmt::format("the surface has {} {}, the first at {}", edges.size(), what, place(middle)),
+             fmt::format("the surface has {} {}, the first at {}", edges.size(), what, place_text(middle)),
              expected, next_step});
     };
     refuse(crowded, "edges of more than two triangles", "two at each edge",
@@ -102,7 +99,7 @@ std::int64_t orient(TriangleMesh& surface, const Seams& seams, const std::string
                     piece.push_back(link.triangle);
                 } else if (side[link.triangle] != wanted) {
                     const Eigen::Vector3d& p = point(surface, surface.triangles[link.triangle][0]);
-                    throw InvalidInput({culprit, "the surface has one side only, near " + place(p),
+                    throw InvalidInput({culprit, "the surface has one side only, near " + place_text(p),
                                         "an inside and an outside",
                                         "mend it where it was made, or take the surface from labels"});
                 }
@@ -215,7 +212,7 @@ TriangleMesh repaired_surface(TriangleMesh surface, const std::string& culprit,
         if (!(area_vector(surface, t).norm() > 0))
             throw InvalidInput({culprit,
                                 fmt::format("triangle {} has no area, at {}", t,
-                                            place(point(surface, surface.triangles[t][0]))),
+                                            place_text(point(surface, surface.triangles[t][0]))),
                                 "triangles with an area",
                                 "clean it where it was made, for example 'Remove degenerate faces'"});
     const Seams seams = seams_of(surface, culprit);

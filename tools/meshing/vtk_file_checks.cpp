@@ -12,16 +12,10 @@
 
 #include "formats/model/errors.hpp"
 #include "tools/meshing/scanner.hpp"
+#include "tools/meshing/text.hpp"
 
 namespace palpate {
 namespace {
-
-std::string lower(std::string_view word) {
-    std::string text(word);
-    std::ranges::transform(text, text.begin(),
-                           [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-    return text;
-}
 
 // Sizes in binary files.
 const std::map<std::string, std::size_t> type_sizes{
@@ -36,11 +30,11 @@ class LegacyCheck {
     void run() {
         file_.line();  // version
         file_.line();  // title
-        binary_ = lower(file_.word()) == "binary";
+        binary_ = lower_case(file_.word()) == "binary";
         std::int64_t points = 0, cells = 0, types = 0;
         std::set<std::string> seen;
         while (!file_.at_end()) {
-            const std::string keyword = lower(file_.word());
+            const std::string keyword = lower_case(file_.word());
             if (keyword == "cell_data" || keyword == "point_data") break;
             const bool of_cells = keyword == "cells" || keyword == "polygons" || keyword == "lines" ||
                                   keyword == "vertices" || keyword == "triangle_strips";
@@ -64,7 +58,7 @@ class LegacyCheck {
 
   private:
     std::size_t size_of(const std::string& type) const {
-        const auto found = type_sizes.find(lower(type));
+        const auto found = type_sizes.find(lower_case(type));
         if (found == type_sizes.end())
             file_.fail(fmt::format("values of type '{}'", type.substr(0, 40)), "such as float or int", again);
         return found->second;
@@ -97,7 +91,7 @@ class LegacyCheck {
     std::int64_t check_cells(std::int64_t count) {
         const std::int64_t size = file_.require_room(file_.integer(), 1);
         begin_values();
-        if (lower(file_.peek().substr(0, 8)) == "offsets") return check_offsets(count, size);
+        if (lower_case(file_.peek().substr(0, 8)) == "offsets") return check_offsets(count, size);
         std::int64_t left = size;
         for (std::int64_t cell = 0; cell < count; ++cell) {
             const std::int64_t corners = left > 0 ? integer(4) : 0;
@@ -124,7 +118,8 @@ class LegacyCheck {
         }
         if (last != size)
             file_.fail(fmt::format("offsets that end at {}", last), fmt::format("{}", size), again);
-        if (lower(file_.word()) != "connectivity") file_.fail("no CONNECTIVITY after OFFSETS", "", again);
+        if (lower_case(file_.word()) != "connectivity")
+            file_.fail("no CONNECTIVITY after OFFSETS", "", again);
         const std::size_t corner_bytes = size_of(std::string(file_.word()));
         begin_values();
         for (std::int64_t c = 0; c < size; ++c) take_corner(corner_bytes);

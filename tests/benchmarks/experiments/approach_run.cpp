@@ -4,22 +4,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "formats/model/arrays.hpp"
+
 namespace palpate::bench {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double tick_s = 1e-3;
+constexpr double approach_tick_s = 1e-3;
 constexpr double just_before = 2;  // mm: beyond what a bump beside the entry holds up
 constexpr HandImpedance hand;
 
-Vector3d vector_of(const std::array<double, 3>& v) {
-    return Eigen::Map<const Vector3d>(v.data());
-}
-
 bool detects_at(double time, double phase) {
     const auto detections = [&](double t) { return std::floor(Approach::detections_per_s * t + phase); };
-    return detections(time) > detections(time - tick_s);
+    return detections(time) > detections(time - approach_tick_s);
 }
 
 // Whether the tool overlaps the surface or has crossed it since the last tick.
@@ -46,8 +44,8 @@ Outcome run_approach(HapticModel& model, const DeviceModel& device_model, const 
     Vector3d tool = device.position();
     double contact = -1, held_sum = 0;
     int judged = 0;
-    for (int tick = 0; tick_s * tick <= end; ++tick) {
-        const double time = tick_s * tick;
+    for (int tick = 0; approach_tick_s * tick <= end; ++tick) {
+        const double time = approach_tick_s * tick;
         DeviceState state = device.read(time);
         model.tick(state, result);
         device.write(result.force);

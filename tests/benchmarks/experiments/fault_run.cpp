@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double rounding = 1e-12;  // relative
+constexpr double limit_rounding = 1e-12;  // relative
 constexpr std::array kinds{invalid_position, device_lost, not_calibrated, pose_frozen,  motors_warm,
                            device_refused,   tick_late,   visual_stopped, asset_removed};
 
@@ -71,8 +71,8 @@ class Watch {
         ++run_.ticks;
         run_.pressing += force.norm() > 0;
         run_.not_finite += !force.allFinite();
-        run_.above_limit += force.norm() > max_force_ * (1 + rounding);
-        run_.above_slew += step > max_step_ * (1 + rounding);
+        run_.above_limit += force.norm() > max_force_ * (1 + limit_rounding);
+        run_.above_slew += step > max_step_ * (1 + limit_rounding);
         run_.not_gone += injection && tick - injection->from >= ForceLimiter::ramp_ticks && !force.isZero(0);
         run_.strongest = std::max(run_.strongest, force.norm());
         run_.largest_step = std::max(run_.largest_step, step);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/benchmarks/experiments/faults.hpp"
 
+#include <fmt/format.h>
+
 #include "formats/asset/asset.hpp"
 #include "tests/benchmarks/experiments/fault_run.hpp"
 
@@ -10,7 +12,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t visit_ticks = 600'000;  // ten minutes at one place
-constexpr std::string_view text =
+constexpr std::string_view explanation =
     "Virtual time at 1 kHz: a simulated Touch, whose motors stay cool, in a hand that gives way (0.3 N/mm) "
     "pushes, slides and leaves "
     "at a "
@@ -82,7 +84,7 @@ Findings faults(const Options& options, cli::Session& session) {
     }
     session.progress.finish();
     findings.result = {{"device", device.name}, {"seed", options.seed}, {"runs", runs}};
-    findings.table = std::string(text) + rows;
+    findings.table = std::string(explanation) + rows;
     return findings;
 }
 

@@ -6,16 +6,14 @@
 #include <cmath>
 #include <limits>
 
+#include "formats/model/arrays.hpp"
+
 namespace palpate::bench {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double rounding = 1e-9;  // N mm, of sums over a run
-
-Vector3d vector_of(const std::array<double, 3>& a) {
-    return {a[0], a[1], a[2]};
-}
+constexpr double work_rounding = 1e-9;  // N mm, of sums over a run
 
 }  // namespace
 
@@ -144,8 +142,8 @@ void ForceQuality::count_energy(const Vector3d& force, const Vector3d& tip) {
     const double over = episode_given_ - episode_bound_;
     figures_.most_given = std::max(figures_.most_given, episode_given_);
     figures_.worst_over_bound = std::max(figures_.worst_over_bound, over);
-    figures_.over_bound += over > rounding && !over_;
-    over_ = over_ || over > rounding;
+    figures_.over_bound += over > work_rounding && !over_;
+    over_ = over_ || over > work_rounding;
 }
 
 }  // namespace palpate::bench

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <fmt/format.h>
 #include <limits>
 #include <memory>
 
@@ -22,7 +23,7 @@ constexpr std::array masses_kg{0.02, 0.045, 0.075};
 constexpr double charted_mass_kg = 0.045;
 constexpr HandImpedance no_hand{.stiffness = 0, .damping = 0};
 
-constexpr auto method = R"(## How it was measured
+constexpr auto passivity_method = R"(## How it was measured
 
 A tip is pressed 2 mm deep into a wall F = K max(0, depth) by a constant load, displaced 1 mm deeper and let go.
 The force is refreshed every 1 ms, or every 33 ms (30 Hz) and held between. The loop counts as unstable if, in the
@@ -230,7 +231,7 @@ std::string picture(const Json& limits) {
 
 Findings passivity(const Options&, cli::Session& session) {
     Findings findings;
-    findings.table = std::string("# The stiffest wall the loop bears\n\n") + method;
+    findings.table = std::string("# The stiffest wall the loop bears\n\n") + passivity_method;
     findings.result["limits"] = limits_table(findings.table, session);
     findings.result["effects"] = effects_table(findings.table, session);
     findings.result["encoder_residuals"] = residual_table(findings.table);

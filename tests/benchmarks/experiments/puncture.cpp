@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <fmt/format.h>
 #include <memory>
 
 #include "tests/benchmarks/experiments/approach_run.hpp"

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <fmt/format.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <thread>
@@ -25,7 +26,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int hog_count = 4;
-constexpr std::string_view text =
+constexpr std::string_view realtime_explanation =
     "The servo loop against the clock at 1 kHz, a simulated Touch in a hand that gives way (0.3 N/mm) which "
     "pushes, slides and leaves, while four other processes do nothing but count. A tick is reading, contact, "
     "force and writing, by the wall's clock, so it contains what the system takes in the middle of it; every "
@@ -57,7 +58,7 @@ class Hogs {
     std::array<pid_t, hog_count> hogs_{};
 };
 
-struct Run {
+struct RealtimeRun {
     ServoStatistics statistics;
     std::int64_t recorded = 0;
     FaultLog faults;
@@ -65,9 +66,9 @@ struct Run {
 };
 
 // `recording`: the file of every tick, as palpate touch --record writes it; removed at the end.
-Run run_against_the_clock(const std::filesystem::path& asset, const Case& patient_case,
-                          PeriodicServo::Priority priority, double seconds, std::uint64_t seed,
-                          const std::filesystem::path& recording) {
+RealtimeRun run_against_the_clock(const std::filesystem::path& asset, const Case& patient_case,
+                                  PeriodicServo::Priority priority, double seconds, std::uint64_t seed,
+                                  const std::filesystem::path& recording) {
     HapticModel model(patient_case);
     const TouchTarget target = choose_touch_target(patient_case, model, "", {});
     HandPath path = random_path(
@@ -77,7 +78,7 @@ Run run_against_the_clock(const std::filesystem::path& asset, const Case& patien
     const std::array<Device*, 1> devices{&device};
     PeriodicServo servo(priority);
     ServoLoop loop(model, devices, &servo);
-    Run run;
+    RealtimeRun run;
     std::filesystem::remove(recording);
     make_recording(recording, recording_head(asset, patient_case, model, devices, "real", cli::version()),
                    recording_rows(seconds + 1, 1));
@@ -118,15 +119,15 @@ Findings realtime(const Options& options, cli::Session& session) {
     if (options.cases.empty()) throw UsageError({"--case", "none is given", "one asset or more", ""});
     const double seconds = options.seconds > 0 ? options.seconds : 600;
     Findings findings;
-    findings.table = text;
+    findings.table = realtime_explanation;
     Json runs = Json::array();
     const Hogs hogs;
     for (const auto& file : options.cases) {
         const Case patient_case = load_asset(file);
         for (const auto priority : {PeriodicServo::Priority::fifo, PeriodicServo::Priority::none}) {
             session.progress.step(patient_case.name, priority == PeriodicServo::Priority::fifo ? 0 : 0.5);
-            const Run run = run_against_the_clock(file, patient_case, priority, seconds, options.seed,
-                                                  options.output / "realtime.h5");
+            const RealtimeRun run = run_against_the_clock(file, patient_case, priority, seconds, options.seed,
+                                                          options.output / "realtime.h5");
             const ServoStatistics& s = run.statistics;
             const std::string name = run.fifo                                    ? "SCHED_FIFO"
                                      : priority == PeriodicServo::Priority::none ? "none"

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <functional>
 #include <optional>
 #include <random>
@@ -27,7 +28,7 @@ constexpr double press_depth = 4;       // mm, of the tool's centre below the re
 constexpr double visit_s = 10;          // of the long run, at one place
 constexpr double allowed_depth = 0.05;  // mm, of the tool's surface below the surface it touches
 
-constexpr std::string_view method =
+constexpr std::string_view stability_method =
     "One hand (0.3 N/mm, 2e-3 N s/mm) holds a simulated PHANTOM Desktop and presses, slides and leaves, in "
     "the "
     "closed loop at 1 kHz, on virtual time. It wants to be 4 mm below the surface at rest with the tool's "
@@ -283,8 +284,8 @@ Findings stability(const Options& options, cli::Session& session) {
     session.progress.finish();
     findings.result = {
         {"device", device_name}, {"seed", options.seed}, {"curves", curves}, {"random", long_runs}};
-    findings.table = std::string(method) + std::string(curve_head) + curve_rows + std::string(long_text) +
-                     std::string(long_head) + long_rows;
+    findings.table = std::string(stability_method) + std::string(curve_head) + curve_rows +
+                     std::string(long_text) + std::string(long_head) + long_rows;
     return findings;
 }
 

@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr auto method = R"(# Ticks
+constexpr auto tick_method = R"(# Ticks
 
 What `HapticModel::tick()` takes, one core, wall clock, us. Reading the clock twice is in every figure: {} ns here
 (median). Percentiles are at most 3 % too high. Every path is run {} times, exactly alike, and of each tick the shortest
@@ -172,7 +172,7 @@ Findings tick(const Options& options, cli::Session& session) {
     const double paced_s = options.seconds > 0 ? options.seconds : 5;
     const Histogram clock = clock_cost();
     Findings findings{.result = {{"clock_ns", clock.percentile(0.5)}, {"rows", Json::array()}},
-                      .table = fmt::format(method, clock.percentile(0.5), Shortest::passes),
+                      .table = fmt::format(tick_method, clock.percentile(0.5), Shortest::passes),
                       .pictures = {}};
     std::vector<Chart> charts;
     LoadRows load;

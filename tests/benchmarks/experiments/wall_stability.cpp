@@ -10,7 +10,7 @@
 namespace palpate::bench {
 namespace {
 
-constexpr double tick_s = 1e-3;
+constexpr double wall_tick_s = 1e-3;
 
 // The least stiffness that is not stable.
 double limit_of(double start, const std::function<bool(double stiffness)>& stable) {
@@ -53,7 +53,7 @@ StabilityTrial try_wall(const WallLoop& loop, double stiffness, const Wall& wall
     constexpr double never = std::numeric_limits<double>::infinity();
     double force = 0, shallowest = never, deepest = -never;
     for (int tick = 0; tick < ticks; ++tick) {
-        const DeviceState state = device.read(tick_s * tick);
+        const DeviceState state = device.read(wall_tick_s * tick);
         if (tick % loop.refresh_ticks == 0) {
             force = wall(-state.position[2]) - load;
             const double depth = -device.position().z();
@@ -75,7 +75,8 @@ double measured_limit(const WallLoop& loop, const WallMaker& wall) {
 }
 
 double eigenvalue_limit(const WallLoop& loop) {
-    const double late = tick_s * loop.model.delay_ticks, prompt = tick_s * loop.refresh_ticks - late;
+    const double late = wall_tick_s * loop.model.delay_ticks,
+                 prompt = wall_tick_s * loop.refresh_ticks - late;
     const auto before = transition_of(loop, late), after = transition_of(loop, prompt);
     const Eigen::Vector2d last_force = after.leftCols<2>() * before.col(2), force = after.col(2);
     Eigen::Matrix3d open = Eigen::Matrix3d::Zero();
@@ -90,7 +91,7 @@ double eigenvalue_limit(const WallLoop& loop) {
 }
 
 double passivity_limit(const WallLoop& loop) {
-    return 2 * loop.model.damping / (tick_s * loop.refresh_ticks);
+    return 2 * loop.model.damping / (wall_tick_s * loop.refresh_ticks);
 }
 
 }  // namespace palpate::bench

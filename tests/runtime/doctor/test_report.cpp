@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "runtime/doctor/report.hpp"
 #include "tests/runtime/doctor/made_up_machine.hpp"

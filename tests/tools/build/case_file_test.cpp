@@ -29,7 +29,7 @@ poissons_ratio = 0.45
 )";
 
 std::filesystem::path written(const std::string& text) {
-    static const palpate::testing::TemporaryFolder folder;  // of each process, as tests run side by side
+    static const palpate::test::TemporaryFolder folder;  // of each process, as tests run side by side
     const auto path = folder / "case.toml";
     std::ofstream(path) << text;
     return path;

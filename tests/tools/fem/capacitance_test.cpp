@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 using test::dofs_of;
 
 // Two factorisations, and the inverse of a small matrix of condition 1e3.
-constexpr double tolerance = 1e-10;
+constexpr double capacitance_tolerance = 1e-10;
 
 // Displacements of the contact nodes by a new dense factorisation of the stiffness: `held` contact nodes at
 // imposed places, forces on the others.
@@ -95,7 +95,8 @@ TEST_P(CapacitanceUpdateBy, equals_refactorising_with_the_nodes_held) {
     const MatrixXd C = GetParam().compliance(s.body);
     const VectorXd expected = refactorised(s.body, held, s.imposed, s.forces);
     const VectorXd found = updated(C, capacitance_of(C, held), held, s.imposed, s.forces);
-    EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), tolerance * expected.cwiseAbs().maxCoeff());
+    EXPECT_LT((found - expected).cwiseAbs().maxCoeff(),
+              capacitance_tolerance * expected.cwiseAbs().maxCoeff());
 }
 
 // C' = C - C_:c C_cc^-1 C_c: is the compliance of the body whose fixed nodes include c.
@@ -120,7 +121,7 @@ TEST_P(CapacitanceUpdateBy, gives_the_compliance_of_the_body_held_at_more_nodes)
     const MatrixXd expected = GetParam().compliance(more);
     const auto r = dofs_of(remaining);
     EXPECT_LT((MatrixXd(lessened(r, r)) - expected).cwiseAbs().maxCoeff(),
-              tolerance * expected.cwiseAbs().maxCoeff());
+              capacitance_tolerance * expected.cwiseAbs().maxCoeff());
 }
 
 TEST(CapacitanceUpdate, follows_a_node_that_is_held_and_let_go_again) {
@@ -130,13 +131,13 @@ TEST(CapacitanceUpdate, follows_a_node_that_is_held_and_let_go_again) {
     const MatrixXd grown = with_node_added(C, capacitance_of(C, before), before, 40);
     const VectorXd all = refactorised(s.body, held, s.imposed, s.forces);
     EXPECT_LT((updated(C, grown, held, s.imposed, s.forces) - all).cwiseAbs().maxCoeff(),
-              tolerance * all.cwiseAbs().maxCoeff());
+              capacitance_tolerance * all.cwiseAbs().maxCoeff());
 
     const MatrixXd shrunk = with_node_removed(grown, 1);  // contact node 17
     const VectorXd imposed = s.imposed(dofs_of({0, 2, 3}));
     const VectorXd expected = refactorised(s.body, after, imposed, s.forces);
     EXPECT_LT((updated(C, shrunk, after, imposed, s.forces) - expected).cwiseAbs().maxCoeff(),
-              tolerance * expected.cwiseAbs().maxCoeff());
+              capacitance_tolerance * expected.cwiseAbs().maxCoeff());
 }
 
 }  // namespace

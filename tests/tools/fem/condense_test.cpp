@@ -93,13 +93,13 @@ double difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
     return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
 }
 
-constexpr double round_off = 1e-12;  // that two exact ways, or numbers of threads, may be apart
+constexpr double agreement = 1e-12;  // that two exact ways, or numbers of threads, may be apart
 
 TEST(Condensation, both_ways_agree_to_round_off) {
     for (const DeformableBody& body : {test::lumpy_block(), test::large_block()})
         EXPECT_LT(difference(test::full(condense_by_trailing_block(body, no_progress)),
                              test::full(condense_by_solves(body, 2, no_progress))),
-                  round_off);
+                  agreement);
 }
 
 TEST_P(CondensationBy, agrees_at_any_number_of_dense_kernels_threads_to_round_off) {
@@ -107,7 +107,7 @@ TEST_P(CondensationBy, agrees_at_any_number_of_dense_kernels_threads_to_round_of
     set_linear_algebra_threads(1);
     const Eigen::MatrixXd one = GetParam().compliance(body);
     set_linear_algebra_threads(2);
-    EXPECT_LT(difference(GetParam().compliance(body), one), round_off);
+    EXPECT_LT(difference(GetParam().compliance(body), one), agreement);
 }
 
 TEST(Condensation, by_solves_gives_the_same_bytes_at_any_number_of_threads_that_solve) {

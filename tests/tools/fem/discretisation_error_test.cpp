@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-constexpr ElementOrder both_orders[]{ElementOrder::linear, ElementOrder::quadratic};
+constexpr ElementOrder element_orders[]{ElementOrder::linear, ElementOrder::quadratic};
 
 double error_of_cube(int cells, ElementOrder order) {
     DeformableBody body = test::held_block({cells, cells, cells}, {10, 10, 10},
@@ -19,7 +19,7 @@ double error_of_cube(int cells, ElementOrder order) {
 }
 
 TEST(DiscretisationError, is_a_part_of_the_work) {
-    for (const ElementOrder order : both_orders) {
+    for (const ElementOrder order : element_orders) {
         const double error = error_of_cube(3, order);
         EXPECT_GT(error, 0);
         EXPECT_LT(error, 1);
@@ -28,7 +28,7 @@ TEST(DiscretisationError, is_a_part_of_the_work) {
 
 // Not as the square of the cells' size: contacts are on neighbouring nodes, so they shrink with the cells.
 TEST(DiscretisationError, falls_with_the_cells_size) {
-    for (const ElementOrder order : both_orders)
+    for (const ElementOrder order : element_orders)
         EXPECT_LT(error_of_cube(4, order), 0.75 * error_of_cube(2, order));
     EXPECT_LT(error_of_cube(6, ElementOrder::linear), 0.9 * error_of_cube(4, ElementOrder::linear));
 }
@@ -43,7 +43,7 @@ TEST(DiscretisationError, of_quadratic_elements_is_far_below_that_of_linear_ones
 // the layer follows within any elements. So the works on both elements agree if, and only if, they carry as
 // much load.
 TEST(DiscretisationError, compares_elements_under_the_same_load) {
-    for (const ElementOrder order : both_orders) {
+    for (const ElementOrder order : element_orders) {
         DeformableBody body =
             test::held_block({8, 8, 2}, {80, 80, 2}, {.youngs_modulus = 6e3, .poissons_ratio = 0});
         body.element_order = order;

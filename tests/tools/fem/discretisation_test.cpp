@@ -12,16 +12,16 @@
 namespace palpate {
 namespace {
 
-const Material tissue{.youngs_modulus = 6e-3, .poissons_ratio = 0.45};
+const Material liver_like{.youngs_modulus = 6e-3, .poissons_ratio = 0.45};
 
 DeformableBody quadratic_block(std::array<int, 3> cells) {
-    auto body = test::held_block(cells, {4, 5, 6}, tissue);
+    auto body = test::held_block(cells, {4, 5, 6}, liver_like);
     body.element_order = ElementOrder::quadratic;
     return body;
 }
 
 TEST(Discretisation, of_linear_elements_is_the_mesh) {
-    const auto body = test::held_block({2, 3, 2}, {4, 5, 6}, tissue);
+    const auto body = test::held_block({2, 3, 2}, {4, 5, 6}, liver_like);
     const Discretisation d = discretise(body);
     EXPECT_EQ(d.nodes_per_element, 4);
     EXPECT_EQ(d.node_count, body.mesh.rest_positions.size());
@@ -115,7 +115,7 @@ TEST(NodeGraph, joins_nodes_that_share_an_element_and_leaves_others_out) {
 
 TEST(SurfaceLastOrdering, numbers_every_free_node_once_and_contact_nodes_last) {
     for (const ElementOrder order : {ElementOrder::linear, ElementOrder::quadratic}) {
-        auto body = test::held_block({4, 4, 4}, {4, 5, 6}, tissue);
+        auto body = test::held_block({4, 4, 4}, {4, 5, 6}, liver_like);
         body.element_order = order;
         const Discretisation d = discretise(body);
         std::vector<std::int32_t> contact;

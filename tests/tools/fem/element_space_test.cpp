@@ -13,17 +13,17 @@
 namespace palpate {
 namespace {
 
-const Material tissue{.youngs_modulus = 6e-3, .poissons_ratio = 0.45};
+const Material soft_tissue{.youngs_modulus = 6e-3, .poissons_ratio = 0.45};
 
 // Dense solves of a few hundred unknowns whose stiffness has a condition of 1e3 or so.
-constexpr double solve_tolerance = 1e-12;
+constexpr double space_solve_tolerance = 1e-12;
 // Sums of a few dozen products keep 13 digits.
-constexpr double round_off = 1e-13;
+constexpr double space_round_off = 1e-13;
 
 using test::no_progress;
 
 DeformableBody two_material_block(ElementOrder order) {
-    auto body = test::held_block({3, 2, 2}, {6, 4, 4}, tissue);
+    auto body = test::held_block({3, 2, 2}, {6, 4, 4}, soft_tissue);
     test::jitter_interior(body.mesh, 0.3, 3);
     body.element_order = order;
     for (std::size_t t = 20; t < 30; ++t) body.mesh.regions[t] = 2;
@@ -54,9 +54,9 @@ void expect_patch_test_passed(ElementOrder order) {
     body.materials = {{1, {.youngs_modulus = 1e6, .poissons_ratio = 0.25}}};
     body.element_order = order;
     ASSERT_EQ(body.mesh.tetrahedra.size(), 7U * 6U);
-    EXPECT_LT(error_inside(body, macneal_harder_field), solve_tolerance);
+    EXPECT_LT(error_inside(body, macneal_harder_field), space_solve_tolerance);
     const Eigen::VectorXd u = test::sampled(body, macneal_harder_field);
-    EXPECT_NEAR(0.5 * u.dot(test::full_stiffness(body) * u), 3.6, 3.6 * solve_tolerance);
+    EXPECT_NEAR(0.5 * u.dot(test::full_stiffness(body) * u), 3.6, 3.6 * space_solve_tolerance);
 }
 
 TEST(LinearTetrahedra, pass_the_published_patch_test_to_round_off) {
@@ -69,34 +69,35 @@ TEST(QuadraticTetrahedra, pass_the_published_patch_test_to_round_off) {
 
 // Pure bending, sigma_xx = E y and nothing else, in equilibrium without body forces.
 TEST(QuadraticTetrahedra, reproduce_pure_bending_which_linear_ones_cannot) {
-    const double nu = tissue.poissons_ratio;
+    const double nu = soft_tissue.poissons_ratio;
     const auto bending = [&](const Eigen::Vector3d& p) {
         return Eigen::Vector3d(p.x() * p.y(), -(p.x() * p.x() + nu * (p.y() * p.y() - p.z() * p.z())) / 2,
                                -nu * p.y() * p.z());
     };
-    auto body = test::held_block({3, 3, 2}, {3, 3, 2}, tissue);
+    auto body = test::held_block({3, 3, 2}, {3, 3, 2}, soft_tissue);
     test::jitter_interior(body.mesh, 0.2, 4);
     EXPECT_GT(error_inside(body, bending), 1e-3);
     body.element_order = ElementOrder::quadratic;
-    EXPECT_LT(error_inside(body, bending), solve_tolerance);
+    EXPECT_LT(error_inside(body, bending), space_solve_tolerance);
 }
 
 // Over the unit cube, by hand: u = (x², 0, 0) stores 2/3 (lambda + 2 mu), and torsion (-yz, xz, 0) mu / 3.
 TEST(QuadraticTetrahedra, store_the_energy_of_quadratic_fields_that_a_hand_calculation_gives) {
-    auto body = test::held_block({2, 2, 2}, {1, 1, 1}, tissue);
+    auto body = test::held_block({2, 2, 2}, {1, 1, 1}, soft_tissue);
     test::jitter_interior(body.mesh, 0.1, 5);
     body.element_order = ElementOrder::quadratic;
-    const double lambda = tissue.youngs_modulus * 0.45 / (1.45 * 0.1), mu = tissue.youngs_modulus / 2.9;
+    const double lambda = soft_tissue.youngs_modulus * 0.45 / (1.45 * 0.1),
+                 mu = soft_tissue.youngs_modulus / 2.9;
     const Eigen::MatrixXd K = test::full_stiffness(body);
     const auto energy = [&](const auto& field) {
         const Eigen::VectorXd u = test::sampled(body, field);
         return 0.5 * u.dot(K * u);
     };
     EXPECT_NEAR(energy([](const Eigen::Vector3d& p) { return Eigen::Vector3d(p.x() * p.x(), 0, 0); }),
-                (lambda + 2 * mu) * 2 / 3, round_off);
+                (lambda + 2 * mu) * 2 / 3, space_round_off);
     EXPECT_NEAR(
         energy([](const Eigen::Vector3d& p) { return Eigen::Vector3d(-p.y() * p.z(), p.x() * p.z(), 0); }),
-        mu / 3, round_off);
+        mu / 3, space_round_off);
 }
 
 // Displacements of the mesh nodes, taken to the middles of edges as the mean of both ends.
@@ -117,8 +118,9 @@ TEST(LinearTetrahedra, are_contained_in_quadratic_ones_and_in_the_refined_mesh) 
     quadratic.element_order = ElementOrder::quadratic;
     refined.mesh = refine_uniformly(linear.mesh);
     const Eigen::MatrixXd K = test::full_stiffness(linear), P = interpolation_to_middles(linear);
-    EXPECT_LT((P.transpose() * test::full_stiffness(quadratic) * P - K).cwiseAbs().maxCoeff(), round_off);
-    EXPECT_LT((P.transpose() * test::full_stiffness(refined) * P - K).cwiseAbs().maxCoeff(), round_off);
+    EXPECT_LT((P.transpose() * test::full_stiffness(quadratic) * P - K).cwiseAbs().maxCoeff(),
+              space_round_off);
+    EXPECT_LT((P.transpose() * test::full_stiffness(refined) * P - K).cwiseAbs().maxCoeff(), space_round_off);
 }
 
 // A larger space is never stiffer: for every load f on the surface, f C f does not fall.
@@ -163,13 +165,13 @@ TEST_P(QuadraticTetrahedraBy, condense_to_the_compliance_of_dense_solves) {
                        u.segment<3>(3 * body.contact_nodes[i]))
                           .cwiseAbs()
                           .maxCoeff(),
-                      solve_tolerance * column.cwiseAbs().maxCoeff());
+                      space_solve_tolerance * column.cwiseAbs().maxCoeff());
     }
 }
 
 TEST(QuadraticTetrahedra, are_certified_by_their_own_stiffness) {
     DeformableBody body = condensed_body(two_material_block(ElementOrder::quadratic), no_progress);
-    EXPECT_LT(body.certificate.residual_double, solve_tolerance);
+    EXPECT_LT(body.certificate.residual_double, space_solve_tolerance);
     EXPECT_LT(recertify(body, 5, 20, 99).residual, 1e-6);  // float32 as stored
     body.element_order = ElementOrder::linear;
     EXPECT_GT(recertify(body, 5, 20, 99).residual, 1e-2);

@@ -11,8 +11,8 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr double round_off = 1e-12;  // of entries of order 1
-constexpr LowRankTolerance tight{.row = round_off, .column = round_off};
+constexpr double factor_round_off = 1e-12;  // of entries of order 1
+constexpr LowRankTolerance tight{.row = factor_round_off, .column = factor_round_off};
 
 MatrixXd noise(Index rows, Index columns, std::uint64_t seed) {
     std::mt19937_64 random(seed);
@@ -50,8 +50,8 @@ TEST(LowRank, truncation_keeps_every_row_and_column_within_its_tolerance) {
         const auto found = truncated(matrix, tolerance);
         ASSERT_TRUE(found);
         const MatrixXd error = matrix - product(*found);
-        EXPECT_LE(largest_row(error), tolerance.row * (1 + round_off));
-        EXPECT_LE(largest_column(error), tolerance.column * (1 + round_off));
+        EXPECT_LE(largest_row(error), tolerance.row * (1 + factor_round_off));
+        EXPECT_LE(largest_column(error), tolerance.column * (1 + factor_round_off));
         EXPECT_LT(found->rank(), 12);
     }
 }
@@ -62,7 +62,7 @@ TEST(LowRank, truncation_recovers_the_exact_rank) {
         const auto found = truncated(matrix, tight);
         ASSERT_TRUE(found);
         EXPECT_EQ(found->rank(), rank);
-        EXPECT_LT((matrix - product(*found)).cwiseAbs().maxCoeff(), round_off);
+        EXPECT_LT((matrix - product(*found)).cwiseAbs().maxCoeff(), factor_round_off);
     }
 }
 
@@ -102,7 +102,7 @@ TEST(LowRank, joining_gives_the_four_parts_side_by_side) {
     const Parts p({20, 25}, {15, 18}, {2, 3, 1, 4});
     const LowRank whole = p.join(tight);
     EXPECT_LT((p.whole - product(whole)).cwiseAbs().maxCoeff(),
-              round_off * p.whole.cwiseAbs().maxCoeff() * 10);
+              factor_round_off * p.whole.cwiseAbs().maxCoeff() * 10);
     EXPECT_LE(whole.rank(), 10);
 }
 
@@ -110,7 +110,7 @@ TEST(LowRank, joining_takes_parts_of_more_rank_than_they_have_rows) {
     const Parts p({4, 5}, {6, 3}, {6, 3, 6, 5});
     const LowRank whole = p.join(tight);
     EXPECT_LT((p.whole - product(whole)).cwiseAbs().maxCoeff(),
-              round_off * p.whole.cwiseAbs().maxCoeff() * 10);
+              factor_round_off * p.whole.cwiseAbs().maxCoeff() * 10);
     EXPECT_LE(whole.rank(), 9);
 }
 
@@ -154,7 +154,7 @@ TEST(LowRank, joining_takes_empty_parts) {
         EXPECT_EQ(whole.rank(), ranks[0] + ranks[1] + ranks[2] + ranks[3]);
         EXPECT_EQ(whole.u.rows(), 22);
         EXPECT_EQ(whole.v.rows(), 20);
-        EXPECT_LT((p.whole - product(whole)).cwiseAbs().maxCoeff(), 20 * round_off);
+        EXPECT_LT((p.whole - product(whole)).cwiseAbs().maxCoeff(), 20 * factor_round_off);
     }
 }
 

@@ -15,9 +15,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 // Two factorisations of a matrix of condition 1e4 or so.
-constexpr double tolerance = 1e-11;
+constexpr double panel_tolerance = 1e-11;
 
-struct Setting {
+struct PanelSetting {
     DeformableBody body = test::lumpy_block();
     FreeSystem system = assemble_free_system(body, NodeOrder::nested_dissection);
     SparseCholesky factor = factorise(body, system, Elimination::as_given);
@@ -27,31 +27,31 @@ struct Setting {
 };
 
 // Solutions at the wanted rows, loads x wanted, by a dense factorisation.
-MatrixXd expected(const Setting& s, const std::vector<std::int64_t>& wanted,
+MatrixXd expected(const PanelSetting& s, const std::vector<std::int64_t>& wanted,
                   const std::vector<PanelLoad>& entries, Index count) {
     MatrixXd loads = MatrixXd::Zero(s.size(), count);
     for (const PanelLoad& entry : entries) loads(entry.row, entry.load) += entry.value;
     return s.dense.solve(loads)(wanted, Eigen::all).transpose();
 }
 
-void expect_dense_solution(const Setting& s, const std::vector<std::int64_t>& wanted,
+void expect_dense_solution(const PanelSetting& s, const std::vector<std::int64_t>& wanted,
                            const std::vector<PanelLoad>& entries, Index count) {
     const MatrixXd found = PanelSolver(s.factor, wanted).solve(entries, count);
     const MatrixXd solution = expected(s, wanted, entries, count);
     ASSERT_EQ(found.rows(), solution.rows());
     ASSERT_EQ(found.cols(), solution.cols());
-    EXPECT_LT((found - solution).cwiseAbs().maxCoeff(), tolerance * solution.cwiseAbs().maxCoeff());
+    EXPECT_LT((found - solution).cwiseAbs().maxCoeff(), panel_tolerance * solution.cwiseAbs().maxCoeff());
 }
 
 TEST(PanelSolver, finds_one_row_of_one_load) {
-    const Setting s;
+    const PanelSetting s;
     for (const std::int64_t loaded : {std::int64_t{0}, s.size() / 2, s.size() - 1})
         for (const std::int64_t wanted : {std::int64_t{0}, s.size() / 3, s.size() - 1})
             expect_dense_solution(s, {wanted}, {{loaded, 0, 2.5}}, 1);
 }
 
 TEST(PanelSolver, finds_scattered_rows_of_scattered_loads) {
-    const Setting s;
+    const PanelSetting s;
     std::mt19937_64 random(7);
     const auto row = [&] {
         return static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(s.size()));
@@ -68,7 +68,7 @@ TEST(PanelSolver, finds_scattered_rows_of_scattered_loads) {
 }
 
 TEST(PanelSolver, finds_rows_and_loads_that_share_supernodes) {
-    const Setting s;
+    const PanelSetting s;
     const SupernodalView view = s.factor.supernodes();
     std::size_t widest = 0;
     const auto width = [&](std::size_t n) { return view.first_column[n + 1] - view.first_column[n]; };
@@ -85,7 +85,7 @@ TEST(PanelSolver, finds_rows_and_loads_that_share_supernodes) {
 }
 
 TEST(PanelSolver, finds_all_rows_of_a_load_on_every_row) {
-    const Setting s;
+    const PanelSetting s;
     std::vector<std::int64_t> wanted;
     std::vector<PanelLoad> entries;
     for (std::int64_t row = 0; row < s.size(); ++row) {
@@ -96,7 +96,7 @@ TEST(PanelSolver, finds_all_rows_of_a_load_on_every_row) {
 }
 
 TEST(PanelSolver, adds_up_the_entries_of_a_load_and_leaves_empty_ones_zero) {
-    const Setting s;
+    const PanelSetting s;
     const std::vector<std::int64_t> wanted{1, 40};
     const PanelSolver solver(s.factor, wanted);
     const std::vector<PanelLoad> twice{{7, 0, 1.0}, {7, 0, 2.0}}, once{{7, 0, 3.0}};

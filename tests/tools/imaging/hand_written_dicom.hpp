@@ -6,7 +6,7 @@
 
 #include "tests/tools/imaging/hand_written_images.hpp"
 
-namespace palpate::testing {
+namespace palpate::test {
 
 inline std::string little_endian(std::uint64_t value, std::size_t bytes) {
     std::string text;
@@ -111,4 +111,4 @@ inline DicomData ct_slice(const ImageGrid& grid, const Eigen::Vector3d& origin,
         .text(0x00281053, "DS", decimals({slope}));
 }
 
-}  // namespace palpate::testing
+}  // namespace palpate::test

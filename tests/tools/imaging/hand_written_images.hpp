@@ -13,7 +13,7 @@
 
 #include "formats/model/image_grid.hpp"
 
-namespace palpate::testing {
+namespace palpate::test {
 
 /// A folder that is removed with everything in it.
 class TemporaryFolder {
@@ -118,4 +118,4 @@ inline std::string nifti_file(const ImageGrid& grid, const std::string& voxels) 
     return header + voxels;
 }
 
-}  // namespace palpate::testing
+}  // namespace palpate::test

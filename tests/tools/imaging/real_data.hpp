@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <string>
 
-namespace palpate::testing {
+namespace palpate::test {
 
 /// The folder or file of a real data set; empty if it is absent.
 inline std::filesystem::path real_data(const std::string& name) {
@@ -15,9 +15,9 @@ inline std::filesystem::path real_data(const std::string& name) {
     return std::filesystem::exists(path) ? path : std::filesystem::path();
 }
 
-}  // namespace palpate::testing
+}  // namespace palpate::test
 
 /// Defines `variable` as the data set's path, or skips the test.
-#define REQUIRE_REAL_DATA(variable, name)                                     \
-    const std::filesystem::path variable = palpate::testing::real_data(name); \
+#define REQUIRE_REAL_DATA(variable, name)                                  \
+    const std::filesystem::path variable = palpate::test::real_data(name); \
     if (variable.empty()) GTEST_SKIP() << "PALPATE_DATA: " << name << " is absent"

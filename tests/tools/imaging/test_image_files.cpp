@@ -11,16 +11,17 @@
 
 #include "formats/model/errors.hpp"
 #include "tests/tools/imaging/hand_written_images.hpp"
+#include "tests/tools/imaging/refusals.hpp"
 #include "tools/imaging/image_files.hpp"
 
 namespace palpate {
 namespace {
 
-using testing::TemporaryFolder;
-using testing::write_bytes;
-
-// NIfTI stores the affine in float32: 100 mm at 2^-24 relative, over a few terms.
-constexpr double header_tolerance = 5e-5;
+using test::expect_same_place;
+using test::header_tolerance;
+using test::refusal_of;
+using test::TemporaryFolder;
+using test::write_bytes;
 
 Volume ramp_volume() {
     Volume volume;
@@ -53,25 +54,8 @@ std::vector<Eigen::Matrix3d> all_directions() {
     return directions;
 }
 
-void expect_same_place(const ImageGrid& found, const ImageGrid& expected) {
-    ASSERT_EQ(found.size, expected.size);
-    for (const Eigen::Vector3d& index : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(3, 0, 0),
-                                         Eigen::Vector3d(0, 4, 0), Eigen::Vector3d(0, 0, 5)})
-        EXPECT_LT((found.point_of(index) - expected.point_of(index)).norm(), header_tolerance);
-}
-
 std::string float_bytes(const Volume& volume) {
-    return testing::raw_bytes<float>(volume.values);
-}
-
-template <typename Call>
-std::string refusal_of(Call&& call) {
-    try {
-        call();
-    } catch (const InvalidInput& error) {
-        return error.what();
-    }
-    return "nothing was refused";
+    return test::raw_bytes<float>(volume.values);
 }
 
 TEST(ImageFiles, every_axis_order_and_obliquity_of_every_format_reads_as_the_same_place) {
@@ -81,11 +65,11 @@ TEST(ImageFiles, every_axis_order_and_obliquity_of_every_format_reads_as_the_sam
         volume.grid.direction = direction;
         const std::string voxels = float_bytes(volume);
         write_bytes(folder / "lps.nrrd",
-                    testing::nrrd_file(volume.grid, "float", voxels, "left-posterior-superior"));
+                    test::nrrd_file(volume.grid, "float", voxels, "left-posterior-superior"));
         write_bytes(folder / "ras.nrrd",
-                    testing::nrrd_file(volume.grid, "float", voxels, "right-anterior-superior"));
-        write_bytes(folder / "v.mha", testing::meta_file(volume.grid, "MET_FLOAT", voxels));
-        write_bytes(folder / "v.nii", testing::nifti_file(volume.grid, voxels));
+                    test::nrrd_file(volume.grid, "float", voxels, "right-anterior-superior"));
+        write_bytes(folder / "v.mha", test::meta_file(volume.grid, "MET_FLOAT", voxels));
+        write_bytes(folder / "v.nii", test::nifti_file(volume.grid, voxels));
         for (const char* name : {"lps.nrrd", "ras.nrrd", "v.mha", "v.nii"}) {
             SCOPED_TRACE(fmt::format("{} determinant {}", name, direction.determinant()));
             const Volume read = read_volume(folder / name);
@@ -105,7 +89,7 @@ TEST(ImageFiles, writing_and_reading_a_volume_changes_nothing) {
         const Volume read = read_volume(folder / "v.nrrd");
         EXPECT_TRUE(same_grid(read.grid, volume.grid));
         EXPECT_EQ(read.values, volume.values);
-        EXPECT_NE(testing::bytes_of(folder / "v.nrrd").find(offset > 0 ? "type: float" : "type: short"),
+        EXPECT_NE(test::bytes_of(folder / "v.nrrd").find(offset > 0 ? "type: float" : "type: short"),
                   std::string::npos);
     }
 }
@@ -114,17 +98,17 @@ TEST(ImageFiles, the_same_volume_gives_the_same_bytes) {
     const TemporaryFolder folder;
     write_volume(folder / "a.nrrd", ramp_volume());
     write_volume(folder / "b.nrrd", ramp_volume());
-    EXPECT_EQ(testing::bytes_of(folder / "a.nrrd"), testing::bytes_of(folder / "b.nrrd"));
+    EXPECT_EQ(test::bytes_of(folder / "a.nrrd"), test::bytes_of(folder / "b.nrrd"));
 }
 
 TEST(ImageFiles, header_fields_of_the_input_do_not_reach_the_output) {
     const TemporaryFolder folder;
     const Volume volume = ramp_volume();
     write_bytes(folder / "in.nrrd",
-                testing::nrrd_file(volume.grid, "float", float_bytes(volume), "left-posterior-superior",
-                                   "content: Jane Roe\nPatientName:=Jane Roe\nStudyDate:=20200102\n"));
+                test::nrrd_file(volume.grid, "float", float_bytes(volume), "left-posterior-superior",
+                                "content: Jane Roe\nPatientName:=Jane Roe\nStudyDate:=20200102\n"));
     write_volume(folder / "out.nrrd", read_volume(folder / "in.nrrd"));
-    const std::string header = testing::bytes_of(folder / "out.nrrd");
+    const std::string header = test::bytes_of(folder / "out.nrrd");
     for (const char* identity : {"Jane", "PatientName", "20200102", "in.nrrd"})
         EXPECT_EQ(header.find(identity), std::string::npos) << identity;
 }
@@ -160,7 +144,7 @@ TEST(LabelMapFiles, names_values_and_colours_survive_a_round_trip) {
 TEST(LabelMapFiles, carry_the_fields_that_slicer_reads_a_segmentation_from) {
     const TemporaryFolder folder;
     write_label_map(folder / "l.seg.nrrd", small_map());
-    const std::string header = testing::bytes_of(folder / "l.seg.nrrd");
+    const std::string header = test::bytes_of(folder / "l.seg.nrrd");
     for (const char* line :
          {"type: unsigned char", "Segmentation_MasterRepresentation:=Binary labelmap",
           "Segmentation_ContainedRepresentationNames:=Binary labelmap|", "Segment0_ID:=Segment_1",
@@ -173,10 +157,10 @@ TEST(LabelMapFiles, values_without_a_segment_field_are_named_by_value) {
     const TemporaryFolder folder;
     const LabelMap map = small_map();
     std::vector<std::int32_t> wide(map.labels.begin(), map.labels.end());
-    write_bytes(folder / "l.nrrd", testing::nrrd_file(map.grid, "int", testing::raw_bytes<std::int32_t>(wide),
-                                                      "left-posterior-superior"));
+    write_bytes(folder / "l.nrrd", test::nrrd_file(map.grid, "int", test::raw_bytes<std::int32_t>(wide),
+                                                   "left-posterior-superior"));
     std::vector<float> real(map.labels.begin(), map.labels.end());
-    write_bytes(folder / "l.nii", testing::nifti_file(map.grid, testing::raw_bytes<float>(real)));
+    write_bytes(folder / "l.nii", test::nifti_file(map.grid, test::raw_bytes<float>(real)));
     for (const char* name : {"l.nrrd", "l.nii"}) {
         const LabelMap read = read_label_map(folder / name);
         EXPECT_EQ(read.labels, map.labels);
@@ -188,9 +172,8 @@ TEST(LabelMapFiles, values_without_a_segment_field_are_named_by_value) {
 TEST(LabelMapFiles, grey_values_and_empty_maps_are_refused) {
     const TemporaryFolder folder;
     LabelMap map = small_map();
-    write_bytes(folder / "grey.nrrd",
-                testing::nrrd_file(ramp_volume().grid, "float", float_bytes(ramp_volume()),
-                                   "left-posterior-superior"));
+    write_bytes(folder / "grey.nrrd", test::nrrd_file(ramp_volume().grid, "float", float_bytes(ramp_volume()),
+                                                      "left-posterior-superior"));
     EXPECT_NE(refusal_of([&] { read_label_map(folder / "grey.nrrd"); }).find("value -7"), std::string::npos);
     std::ranges::fill(map.labels, std::uint16_t{0});
     write_label_map(folder / "none.seg.nrrd", map);
@@ -202,7 +185,7 @@ TEST(ImageFiles, bad_inputs_are_refused_with_their_fault) {
     const TemporaryFolder folder;
     Volume volume = ramp_volume();
     const auto nrrd = [&](const Volume& v) {
-        return testing::nrrd_file(v.grid, "float", float_bytes(v), "left-posterior-superior");
+        return test::nrrd_file(v.grid, "float", float_bytes(v), "left-posterior-superior");
     };
     const auto refusal = [&](const std::string& name, const std::string& bytes) {
         write_bytes(folder / name, bytes);
@@ -237,11 +220,10 @@ TEST(ImageFiles, truncated_files_of_every_format_are_refused) {
     const Volume volume = ramp_volume();
     write_volume(folder / "whole.nrrd", volume);
     const std::map<std::string, std::string> files{
-        {"raw.nrrd",
-         testing::nrrd_file(volume.grid, "float", float_bytes(volume), "left-posterior-superior")},
-        {"gzip.nrrd", testing::bytes_of(folder / "whole.nrrd")},
-        {"v.mha", testing::meta_file(volume.grid, "MET_FLOAT", float_bytes(volume))},
-        {"v.nii", testing::nifti_file(volume.grid, float_bytes(volume))}};
+        {"raw.nrrd", test::nrrd_file(volume.grid, "float", float_bytes(volume), "left-posterior-superior")},
+        {"gzip.nrrd", test::bytes_of(folder / "whole.nrrd")},
+        {"v.mha", test::meta_file(volume.grid, "MET_FLOAT", float_bytes(volume))},
+        {"v.nii", test::nifti_file(volume.grid, float_bytes(volume))}};
     for (const auto& [name, bytes] : files)
         for (const std::size_t missing : {std::size_t{20}, std::size_t{200}}) {
             write_bytes(folder / name, bytes.substr(0, bytes.size() - missing));
@@ -254,7 +236,7 @@ TEST(ImageFiles, directions_slightly_off_are_made_orthonormal_and_reported) {
     Volume volume = ramp_volume();
     volume.grid.direction(0, 1) = 4e-4;
     write_bytes(folder / "v.nrrd",
-                testing::nrrd_file(volume.grid, "float", float_bytes(volume), "left-posterior-superior"));
+                test::nrrd_file(volume.grid, "float", float_bytes(volume), "left-posterior-superior"));
     std::string notes;
     const Volume read = read_volume(folder / "v.nrrd", [&](std::string_view note) { notes += note; });
     const Eigen::Matrix3d product = read.grid.direction.transpose() * read.grid.direction;

@@ -3,14 +3,15 @@
 
 #include "formats/model/errors.hpp"
 #include "tests/tools/imaging/hand_written_images.hpp"
+#include "tests/tools/imaging/refusals.hpp"
 #include "tools/imaging/image_files.hpp"
 #include "tools/imaging/label_names.hpp"
 
 namespace palpate {
 namespace {
 
-using testing::TemporaryFolder;
-using testing::write_bytes;
+using test::TemporaryFolder;
+using test::write_bytes;
 
 LabelMap bare_map() {
     LabelMap map;
@@ -20,15 +21,6 @@ LabelMap bare_map() {
     map.labels[50] = 5;
     map.names = {{1, "label_1", {}}, {5, "label_5", {}}};
     return map;
-}
-
-std::string refusal_of(const std::function<void()>& call) {
-    try {
-        call();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "nothing was refused";
 }
 
 TEST(LabelNames, every_kind_of_table_names_the_same_labels) {
@@ -74,7 +66,7 @@ TEST(LabelNames, totalsegmentator_values_mean_what_their_version_and_task_say) {
     for (const auto& [task, count] : std::map<std::string, std::size_t>{
              {"v1/total", 104}, {"v2/total", 117}, {"v2/total_mr", 50}, {"v2/head_glands_cavities", 19}})
         EXPECT_EQ(totalsegmentator_table(task).size(), count) << task;
-    const std::string refusal = refusal_of([] { totalsegmentator_table("total"); });
+    const std::string refusal = test::refusal_of<Error>([] { totalsegmentator_table("total"); });
     EXPECT_NE(refusal.find("v2/total"), std::string::npos) << refusal;
     LabelMap map = bare_map();
     name_labels(map, "totalsegmentator:v2/total");
@@ -91,7 +83,7 @@ TEST(LabelNames, what_a_table_does_not_know_keeps_its_name_with_a_note) {
     EXPECT_EQ(map.names[1].name, "liver");
     EXPECT_NE(notes.find("no name for 1"), std::string::npos) << notes;
     write_bytes(folder / "t.txt", "8 lung\n");
-    EXPECT_NE(refusal_of([&] { name_labels(map, folder / "t.txt"); }).find("none of the values"),
+    EXPECT_NE(test::refusal_of<Error>([&] { name_labels(map, folder / "t.txt"); }).find("none of the values"),
               std::string::npos);
 }
 
@@ -99,7 +91,7 @@ TEST(LabelNames, malformed_tables_are_refused_with_their_line) {
     const TemporaryFolder folder;
     const auto refusal = [&](const std::string& text) {
         write_bytes(folder / "t.txt", text);
-        return refusal_of([&] { read_label_table(folder / "t.txt"); });
+        return test::refusal_of<Error>([&] { read_label_table(folder / "t.txt"); });
     };
     EXPECT_NE(refusal("1 liver\nspleen 2\n").find("t.txt:2"), std::string::npos);
     EXPECT_NE(refusal("70000 liver\n").find("t.txt:1"), std::string::npos);
@@ -109,8 +101,9 @@ TEST(LabelNames, malformed_tables_are_refused_with_their_line) {
     EXPECT_NE(refusal("{\"liver\": [5]}").find("no JSON label table"), std::string::npos);
     EXPECT_NE(refusal("{\"1\": ").find("no JSON label table"), std::string::npos);
     LabelMap map = bare_map();
-    EXPECT_NE(refusal_of([&] { name_labels(map, "absent.ctbl"); }).find("'absent.ctbl' is no file"),
-              std::string::npos);
+    EXPECT_NE(
+        test::refusal_of<Error>([&] { name_labels(map, "absent.ctbl"); }).find("'absent.ctbl' is no file"),
+        std::string::npos);
 }
 
 TEST(LabelNames, names_may_have_blanks_and_what_is_ambiguous_is_refused) {
@@ -158,7 +151,7 @@ TEST(LabelNames, the_label_table_of_a_nifti_header_extension_is_read) {
         "<Label Key=\"1\" Red=\"1\" Green=\"0.5\" Blue=\"0\" Alpha=\"1\"><![CDATA[spleen]]></Label>\n"
         "<Label Key=\"5\" Red=\"0\" Green=\"1\" Blue=\"0\" Alpha=\"1\">liver</Label></LabelTable>";
     std::vector<float> real(map.labels.begin(), map.labels.end());
-    std::string file = testing::nifti_file(map.grid, testing::raw_bytes<float>(real));
+    std::string file = test::nifti_file(map.grid, test::raw_bytes<float>(real));
     const std::string block = xml + std::string(16 - (xml.size() + 8) % 16, ' ');
     std::string extension(8, '\0');
     const auto size = static_cast<std::int32_t>(block.size() + 8);

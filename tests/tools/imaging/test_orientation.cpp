@@ -111,22 +111,21 @@ TEST_P(Orientation, all_48_axis_orders_in_every_format_read_as_the_same_organ_in
         Eigen::AngleAxisd(-0.8, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix(),
         Eigen::AngleAxisd(2.4, Eigen::Vector3d(-2, 1, 0.5).normalized()).toRotationMatrix()};
     const LabelMap expected = organ(rotations[static_cast<std::size_t>(GetParam())]);
-    const testing::TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     std::array<int, 3> order{0, 1, 2};
     int orders = 0;
     do {
         for (unsigned backwards = 0; backwards < 8; ++backwards, ++orders) {
             const LabelMap map = stored_along(expected, order, backwards);
-            const std::string shorts = testing::raw_bytes<std::uint16_t>(map.labels);
+            const std::string shorts = test::raw_bytes<std::uint16_t>(map.labels);
             const std::vector<float> real(map.labels.begin(), map.labels.end());
-            testing::write_bytes(folder / "lps.nrrd",
-                                 testing::nrrd_file(map.grid, "ushort", shorts, "left-posterior-superior"));
-            testing::write_bytes(folder / "ras.nrrd",
-                                 testing::nrrd_file(map.grid, "ushort", shorts, "right-anterior-superior"));
-            testing::write_bytes(folder / "o.mha", testing::meta_file(map.grid, "MET_USHORT", shorts));
-            testing::write_bytes(folder / "o.nii",
-                                 testing::nifti_file(map.grid, testing::raw_bytes<float>(real)));
-            testing::write_bytes(folder / "o.vti", vti_file(map));
+            test::write_bytes(folder / "lps.nrrd",
+                              test::nrrd_file(map.grid, "ushort", shorts, "left-posterior-superior"));
+            test::write_bytes(folder / "ras.nrrd",
+                              test::nrrd_file(map.grid, "ushort", shorts, "right-anterior-superior"));
+            test::write_bytes(folder / "o.mha", test::meta_file(map.grid, "MET_USHORT", shorts));
+            test::write_bytes(folder / "o.nii", test::nifti_file(map.grid, test::raw_bytes<float>(real)));
+            test::write_bytes(folder / "o.vti", vti_file(map));
             write_label_map(folder / "o.seg.nrrd", map);
             for (const char* name : {"lps.nrrd", "ras.nrrd", "o.mha", "o.nii", "o.vti", "o.seg.nrrd"}) {
                 SCOPED_TRACE(fmt::format("{} along {} {} {}, backwards {}", name, order[0], order[1],
@@ -137,10 +136,10 @@ TEST_P(Orientation, all_48_axis_orders_in_every_format_read_as_the_same_organ_in
             const std::vector<std::int16_t> stored(map.labels.begin(), map.labels.end());
             const auto plane = static_cast<std::size_t>(map.grid.size[0] * map.grid.size[1]);
             for (int k = 0; k < map.grid.size[2]; ++k)
-                testing::write_bytes(
+                test::write_bytes(
                     folder / fmt::format("dicom/{}", k),
-                    testing::ct_slice(map.grid, map.grid.point_of({0, 0, 1.0 * k}),
-                                      std::span(stored).subspan(static_cast<std::size_t>(k) * plane, plane))
+                    test::ct_slice(map.grid, map.grid.point_of({0, 0, 1.0 * k}),
+                                   std::span(stored).subspan(static_cast<std::size_t>(k) * plane, plane))
                         .file());
             SCOPED_TRACE(
                 fmt::format("DICOM along {} {} {}, backwards {}", order[0], order[1], order[2], backwards));

@@ -10,18 +10,19 @@
 
 #include "formats/model/errors.hpp"
 #include "tests/tools/imaging/hand_written_dicom.hpp"
+#include "tests/tools/imaging/refusals.hpp"
 #include "tools/imaging/image_files.hpp"
 
 namespace palpate {
 namespace {
 
-using testing::DicomData;
-using testing::TemporaryFolder;
+using test::DicomData;
+using test::TemporaryFolder;
 
 // Positions are written with nine digits; interpolation adds float32 round-off of a few hundred.
 constexpr double place_tolerance = 1e-5, value_tolerance = 2e-2;
 
-ImageGrid oblique_grid() {
+ImageGrid oblique_stack() {
     ImageGrid grid;
     grid.size = {12, 10, 8};
     grid.spacing = {0.75, 0.5, 2};
@@ -44,7 +45,7 @@ DicomData slice_at(const ImageGrid& grid, const Eigen::Vector3d& p_P) {
         for (int i = 0; i < grid.size[0]; ++i)
             stored.push_back(static_cast<std::int16_t>(
                 std::lround(100 * (field(plane.point_of({1.0 * i, 1.0 * j, 0})) - 300))));
-    return testing::ct_slice(grid, p_P, stored, 0.01, 300);
+    return test::ct_slice(grid, p_P, stored, 0.01, 300);
 }
 
 Eigen::Vector3d place_of(const ImageGrid& grid, double k) {
@@ -57,7 +58,7 @@ void write_stack(const TemporaryFolder& folder, const ImageGrid& grid, const std
     for (std::size_t n = 0; n < places.size(); ++n) {
         DicomData slice = slice_at(grid, place_of(grid, places[n]));
         if (change) change(slice, n);
-        testing::write_bytes(folder / fmt::format("{}.dcm", n * 5 % 11), slice.file());
+        test::write_bytes(folder / fmt::format("{}.dcm", n * 5 % 11), slice.file());
     }
 }
 
@@ -79,17 +80,6 @@ void expect_the_field(const Volume& volume, const ImageGrid& within) {
     EXPECT_GE(inside, within.voxel_count() / 2);
 }
 
-std::string refusal_of(const std::filesystem::path& path, const ReadOptions& options = {}) {
-    try {
-        read_volume(path, {}, options);
-    } catch (const InvalidInput& error) {
-        return error.what();
-    }
-    return "nothing was refused";
-}
-
-#define EXPECT_SAYS(text, phrase) EXPECT_NE((text).find(phrase), std::string::npos) << (text)
-
 ReadOptions accepting_gaps() {
     ReadOptions options;
     options.accept_gaps = true;
@@ -98,12 +88,12 @@ ReadOptions accepting_gaps() {
 
 TEST(Dicom, slices_in_any_order_with_their_own_slopes_make_the_volume_in_its_place) {
     const TemporaryFolder folder;
-    const ImageGrid grid = oblique_grid();
+    const ImageGrid grid = oblique_stack();
     // Thickness 3 mm at a distance of 2 mm: overlapping slices.
     write_stack(folder, grid, even, [&](DicomData& slice, std::size_t n) {
         if (n % 2 == 0) return;
         const std::vector<std::int16_t> stored(120, static_cast<std::int16_t>(n));
-        slice = testing::ct_slice(grid, place_of(grid, even[n]), stored, 0.5 * static_cast<double>(n), -1024);
+        slice = test::ct_slice(grid, place_of(grid, even[n]), stored, 0.5 * static_cast<double>(n), -1024);
     });
     const Volume volume = read_volume(folder.path());
     EXPECT_EQ(volume.grid.size, grid.size);
@@ -117,16 +107,15 @@ TEST(Dicom, slices_in_any_order_with_their_own_slopes_make_the_volume_in_its_pla
 
 TEST(Dicom, twelve_bits_with_sign_keep_their_sign_and_negative_first_photometry_its_values) {
     const TemporaryFolder folder;
-    const ImageGrid grid = oblique_grid();
+    const ImageGrid grid = oblique_stack();
     for (int k = 0; k < 8; ++k) {
         std::vector<std::int16_t> stored(120, 0x0FFB);  // -5 in twelve bits
         stored[7] = static_cast<std::int16_t>(k);
-        testing::write_bytes(folder / fmt::format("{}.dcm", k),
-                             testing::ct_slice(grid, place_of(grid, k), stored)
-                                 .us(0x00280101, 12)
-                                 .us(0x00280102, 11)
-                                 .text(0x00280004, "CS", "MONOCHROME1")
-                                 .file());
+        test::write_bytes(folder / fmt::format("{}.dcm", k), test::ct_slice(grid, place_of(grid, k), stored)
+                                                                 .us(0x00280101, 12)
+                                                                 .us(0x00280102, 11)
+                                                                 .text(0x00280004, "CS", "MONOCHROME1")
+                                                                 .file());
     }
     const Volume volume = read_volume(folder.path());
     EXPECT_EQ(volume.values[0], -5);
@@ -135,18 +124,17 @@ TEST(Dicom, twelve_bits_with_sign_keep_their_sign_and_negative_first_photometry_
 
 TEST(Dicom, a_header_that_claims_more_than_the_files_hold_is_refused_before_memory_is_taken) {
     const TemporaryFolder folder;
-    ImageGrid huge = oblique_grid();
+    ImageGrid huge = oblique_stack();
     huge.size = {65000, 65000, 8};
     for (int k = 0; k < 8; ++k)
-        testing::write_bytes(
-            folder / fmt::format("{}.dcm", k),
-            testing::ct_slice(huge, place_of(huge, k), std::vector<std::int16_t>(120, 1)).file());
-    EXPECT_SAYS(refusal_of(folder.path()), "fewer voxels than its header claims");
+        test::write_bytes(folder / fmt::format("{}.dcm", k),
+                          test::ct_slice(huge, place_of(huge, k), std::vector<std::int16_t>(120, 1)).file());
+    EXPECT_SAYS(test::volume_refusal(folder.path()), "fewer voxels than its header claims");
 }
 
 TEST(Dicom, every_lossless_compression_reads_as_the_same_values) {
     const TemporaryFolder plain;
-    const ImageGrid grid = oblique_grid();
+    const ImageGrid grid = oblique_stack();
     write_stack(plain, grid, even);
     const Volume expected = read_volume(plain.path());
     for (const auto syntax :
@@ -177,7 +165,7 @@ TEST(Dicom, every_lossless_compression_reads_as_the_same_values) {
 
 TEST(Dicom, empty_and_missing_identifiers_do_not_split_a_series) {
     const TemporaryFolder folder;
-    write_stack(folder, oblique_grid(), even, [](DicomData& slice, std::size_t n) {
+    write_stack(folder, oblique_stack(), even, [](DicomData& slice, std::size_t n) {
         for (const std::uint32_t tag : {0x00080018U, 0x0020000dU, 0x0020000eU})
             n % 2 ? slice.erase(tag) : static_cast<void>(slice.text(tag, "UI", ""));
     });
@@ -186,18 +174,18 @@ TEST(Dicom, empty_and_missing_identifiers_do_not_split_a_series) {
 
 TEST(Dicom, several_series_are_listed_and_one_is_chosen_by_number_uid_or_description) {
     const TemporaryFolder folder;
-    ImageGrid grid = oblique_grid();
+    ImageGrid grid = oblique_stack();
     std::filesystem::create_directories(folder / "a");
     std::filesystem::create_directories(folder / "b");
     const auto write = [&](const std::string& sub, const std::string& number, const std::string& uid,
                            const std::string& description, int count) {
         for (int k = 0; k < count; ++k)
-            testing::write_bytes(folder / fmt::format("{}/{}.dcm", sub, k),
-                                 slice_at(grid, place_of(grid, k))
-                                     .text(0x00200011, "IS", number)
-                                     .text(0x0020000e, "UI", uid)
-                                     .text(0x0008103e, "LO", description)
-                                     .file());
+            test::write_bytes(folder / fmt::format("{}/{}.dcm", sub, k),
+                              slice_at(grid, place_of(grid, k))
+                                  .text(0x00200011, "IS", number)
+                                  .text(0x0020000e, "UI", uid)
+                                  .text(0x0008103e, "LO", description)
+                                  .file());
     };
     write("a", "12", "1.2.7.1", "arterial", 8);
     write("b", "3", "1.2.7.2", "venous", 6);
@@ -208,14 +196,14 @@ TEST(Dicom, several_series_are_listed_and_one_is_chosen_by_number_uid_or_descrip
     EXPECT_EQ(list[1].size, grid.size);
     EXPECT_LT((list[1].spacing - grid.spacing).norm(), place_tolerance);
 
-    const std::string refusal = refusal_of(folder.path());
+    const std::string refusal = test::volume_refusal(folder.path());
     EXPECT_SAYS(refusal, "holds 2 series");
     EXPECT_SAYS(refusal, "12: CT 8 slices of 10 x 12, 0.75 x 0.5 x 2 mm");
     EXPECT_SAYS(refusal, "palpate import ... --series 3");
     EXPECT_EQ(refusal.find("arterial"), std::string::npos) << "may identify a patient";
     ReadOptions shown;
     shown.show_descriptions = true;
-    EXPECT_SAYS(refusal_of(folder.path(), shown), "0.75 x 0.5 x 2 mm, \"arterial\"");
+    EXPECT_SAYS(test::volume_refusal(folder.path(), shown), "0.75 x 0.5 x 2 mm, \"arterial\"");
     for (const char* wanted : {"3", "1.2.7.2", "venous"}) {
         ReadOptions options;
         options.series = wanted;
@@ -223,7 +211,7 @@ TEST(Dicom, several_series_are_listed_and_one_is_chosen_by_number_uid_or_descrip
     }
     ReadOptions options;
     options.series = "delayed";
-    EXPECT_SAYS(refusal_of(folder.path(), options), "no series are 'delayed'");
+    EXPECT_SAYS(test::volume_refusal(folder.path(), options), "no series are 'delayed'");
 
     // Numbers that are not distinct give way to places in the list.
     write("b", "12", "1.2.7.2", "venous", 6);
@@ -232,7 +220,7 @@ TEST(Dicom, several_series_are_listed_and_one_is_chosen_by_number_uid_or_descrip
 
 TEST(Dicom, texts_of_other_alphabets_are_listed_as_utf8_and_only_codes_pass_for_a_modality) {
     const TemporaryFolder folder;
-    write_stack(folder, oblique_grid(), even, [](DicomData& slice, std::size_t) {
+    write_stack(folder, oblique_stack(), even, [](DicomData& slice, std::size_t) {
         slice.text(0x0008103e, "LO", "Oberbauch ven\xf6s\n").text(0x00080060, "CS", "ROE JANE");
     });
     std::string notes;
@@ -245,15 +233,15 @@ TEST(Dicom, texts_of_other_alphabets_are_listed_as_utf8_and_only_codes_pass_for_
 
 TEST(Dicom, scouts_and_localizers_beside_a_volume_need_no_choice) {
     const TemporaryFolder folder;
-    const ImageGrid grid = oblique_grid();
+    const ImageGrid grid = oblique_stack();
     write_stack(folder, grid, even);
-    testing::write_bytes(folder / "scout.dcm",
-                         slice_at(grid, place_of(grid, 0)).text(0x0020000e, "UI", "1.2.9").file());
+    test::write_bytes(folder / "scout.dcm",
+                      slice_at(grid, place_of(grid, 0)).text(0x0020000e, "UI", "1.2.9").file());
     for (int k = 0; k < 5; ++k)  // in the same series by its UID
-        testing::write_bytes(folder / fmt::format("localizer{}.dcm", k),
-                             slice_at(grid, place_of(grid, 3 * k))
-                                 .text(0x00080008, "CS", "ORIGINAL\\PRIMARY\\LOCALIZER")
-                                 .file());
+        test::write_bytes(folder / fmt::format("localizer{}.dcm", k),
+                          slice_at(grid, place_of(grid, 3 * k))
+                              .text(0x00080008, "CS", "ORIGINAL\\PRIMARY\\LOCALIZER")
+                              .file());
     std::string notes;
     EXPECT_EQ(read_volume(folder.path(), [&](std::string_view note) { notes += note; }).grid.size[2], 8);
     EXPECT_SAYS(notes, "3 series; reading number");
@@ -265,13 +253,13 @@ TEST(Dicom, scouts_and_localizers_beside_a_volume_need_no_choice) {
 
 TEST(Dicom, files_that_are_no_images_are_skipped_with_a_note) {
     const TemporaryFolder folder;
-    const ImageGrid grid = oblique_grid();
+    const ImageGrid grid = oblique_stack();
     write_stack(folder, grid, even);
     for (const char* kind : {"SEG", "RTSTRUCT", "SR"})
-        testing::write_bytes(folder / kind,
-                             slice_at(grid, place_of(grid, 0)).text(0x00080060, "CS", kind).file());
-    testing::write_bytes(folder / "DICOMDIR", DicomData().text(0x00041130, "CS", "DISC").file());
-    testing::write_bytes(folder / "notes.txt", "not DICOM");
+        test::write_bytes(folder / kind,
+                          slice_at(grid, place_of(grid, 0)).text(0x00080060, "CS", kind).file());
+    test::write_bytes(folder / "DICOMDIR", DicomData().text(0x00041130, "CS", "DISC").file());
+    test::write_bytes(folder / "notes.txt", "not DICOM");
     std::string notes;
     EXPECT_EQ(read_volume(folder.path(), [&](std::string_view note) { notes += note; }).grid.size[2], 8);
     for (const char* kind : {"SEG", "RTSTRUCT", "SR", "DICOMDIR"}) EXPECT_SAYS(notes, kind);
@@ -279,9 +267,9 @@ TEST(Dicom, files_that_are_no_images_are_skipped_with_a_note) {
 
 TEST(Dicom, a_missing_slice_is_refused_with_its_place_and_interpolated_on_request) {
     const TemporaryFolder folder;
-    const ImageGrid grid = oblique_grid();
+    const ImageGrid grid = oblique_stack();
     write_stack(folder, grid, {0, 1, 2, 3, 5, 6, 7});
-    const std::string refusal = refusal_of(folder.path());
+    const std::string refusal = test::volume_refusal(folder.path());
     EXPECT_SAYS(refusal, "4.000 mm between the slices at");
     EXPECT_SAYS(refusal, "4.dcm and 9.dcm");  // 3 * 5 % 11 and 4 * 5 % 11
     EXPECT_SAYS(refusal, "expected 2.000 mm");
@@ -296,9 +284,9 @@ TEST(Dicom, a_missing_slice_is_refused_with_its_place_and_interpolated_on_reques
 
 TEST(Dicom, uneven_slices_are_refused_and_interpolated_on_request) {
     const TemporaryFolder folder;
-    const ImageGrid grid = oblique_grid();
+    const ImageGrid grid = oblique_stack();
     write_stack(folder, grid, {0, 1, 2, 3.3, 4, 5, 6, 7});
-    EXPECT_SAYS(refusal_of(folder.path()), "2.600 mm between");
+    EXPECT_SAYS(test::volume_refusal(folder.path()), "2.600 mm between");
     const Volume volume = read_volume(folder.path(), {}, accepting_gaps());
     EXPECT_EQ(volume.grid.size, grid.size);
     expect_the_field(volume, grid);
@@ -306,12 +294,12 @@ TEST(Dicom, uneven_slices_are_refused_and_interpolated_on_request) {
 
 TEST(Dicom, a_tilted_gantry_is_refused_with_its_angle_and_untilted_on_request) {
     const TemporaryFolder folder;
-    const ImageGrid grid = oblique_grid();
+    const ImageGrid grid = oblique_stack();
     const double shift = 2 * std::tan(15 * M_PI / 180);  // mm a slice
     for (int k = 0; k < 8; ++k)
-        testing::write_bytes(folder / fmt::format("{}.dcm", k),
-                             slice_at(grid, place_of(grid, k) + k * shift * grid.direction.col(1)).file());
-    const std::string refusal = refusal_of(folder.path());
+        test::write_bytes(folder / fmt::format("{}.dcm", k),
+                          slice_at(grid, place_of(grid, k) + k * shift * grid.direction.col(1)).file());
+    const std::string refusal = test::volume_refusal(folder.path());
     EXPECT_SAYS(refusal, "gantry tilt of 15.0 degrees");
     EXPECT_SAYS(refusal, "0.dcm and 1.dcm");
     const Volume volume = read_volume(folder.path(), {}, accepting_gaps());
@@ -335,7 +323,7 @@ TEST(Dicom, a_tilted_gantry_is_refused_with_its_angle_and_untilted_on_request) {
 }
 
 TEST(Dicom, tilt_and_spacing_that_creep_are_refused_and_resampled_on_request) {
-    const ImageGrid grid = oblique_grid();
+    const ImageGrid grid = oblique_stack();
     const double shift = 2 * std::tan(1.1 * M_PI / 180);  // 0.038 mm a slice, less than 2 %
     std::vector<double> creeping{0};
     for (int n = 0; n < 50; ++n) creeping.push_back(creeping.back() + (n < 25 ? 0.965 : n > 25 ? 1.035 : 1));
@@ -343,44 +331,44 @@ TEST(Dicom, tilt_and_spacing_that_creep_are_refused_and_resampled_on_request) {
     fine.spacing[2] = 0.275;  // so that distances may differ by 4 %
     const TemporaryFolder tilted, uneven;
     for (int k = 0; k < 8; ++k)
-        testing::write_bytes(tilted / fmt::format("{}.dcm", k),
-                             slice_at(grid, place_of(grid, k) + k * shift * grid.direction.col(1)).file());
+        test::write_bytes(tilted / fmt::format("{}.dcm", k),
+                          slice_at(grid, place_of(grid, k) + k * shift * grid.direction.col(1)).file());
     for (std::size_t k = 0; k < creeping.size(); ++k)
-        testing::write_bytes(uneven / fmt::format("{}.dcm", k),
-                             slice_at(fine, place_of(fine, creeping[k])).file());
-    EXPECT_SAYS(refusal_of(tilted.path()), "gantry tilt of 1.1 degrees");
-    EXPECT_SAYS(refusal_of(tilted.path()), "between 0.dcm and 7.dcm");
+        test::write_bytes(uneven / fmt::format("{}.dcm", k),
+                          slice_at(fine, place_of(fine, creeping[k])).file());
+    EXPECT_SAYS(test::volume_refusal(tilted.path()), "gantry tilt of 1.1 degrees");
+    EXPECT_SAYS(test::volume_refusal(tilted.path()), "between 0.dcm and 7.dcm");
     EXPECT_GT(read_volume(tilted.path(), {}, accepting_gaps()).grid.size[1], grid.size[1]);
-    const std::string refusal = refusal_of(uneven.path());
+    const std::string refusal = test::volume_refusal(uneven.path());
     EXPECT_SAYS(refusal, "off its place in an even stack");
     expect_the_field(read_volume(uneven.path(), {}, accepting_gaps()), fine);
 }
 
 TEST(Dicom, links_that_lead_nowhere_or_to_themselves_are_no_slices) {
     const TemporaryFolder folder;
-    write_stack(folder, oblique_grid(), even);
+    write_stack(folder, oblique_stack(), even);
     std::filesystem::create_symlink("loop", folder / "loop");
     std::filesystem::create_symlink("missing", folder / "broken");
     EXPECT_EQ(read_volume(folder.path()).grid.size[2], 8);
-    EXPECT_SAYS(refusal_of(folder / "loop"), "no such file");
+    EXPECT_SAYS(test::volume_refusal(folder / "loop"), "no such file");
 }
 
 TEST(Dicom, doubled_slices_are_refused_and_left_out_on_request_only_if_identical) {
     const TemporaryFolder folder;
-    const ImageGrid grid = oblique_grid();
+    const ImageGrid grid = oblique_stack();
     write_stack(folder, grid, {0, 1, 2, 3, 3, 4, 5, 6, 7});
-    EXPECT_SAYS(refusal_of(folder.path()), "two slices lie at one place");
+    EXPECT_SAYS(test::volume_refusal(folder.path()), "two slices lie at one place");
     const Volume volume = read_volume(folder.path(), {}, accepting_gaps());
     EXPECT_EQ(volume.grid.size, grid.size);
     expect_the_field(volume, grid);
     write_stack(folder, grid, {0, 1, 2, 3, 3, 4, 5, 6, 7}, [](DicomData& slice, std::size_t n) {
         if (n == 4) slice.text(0x00281052, "DS", "17");
     });
-    EXPECT_SAYS(refusal_of(folder.path(), accepting_gaps()), "lie at one place and differ");
+    EXPECT_SAYS(test::volume_refusal(folder.path(), accepting_gaps()), "lie at one place and differ");
 }
 
 TEST(Dicom, mixed_damaged_coloured_and_placeless_slices_are_refused_by_name) {
-    const ImageGrid grid = oblique_grid();
+    const ImageGrid grid = oblique_stack();
     ImageGrid turned = grid, small = grid;
     turned.direction.col(1) *= -1;
     small.size = {6, 10, 8};
@@ -389,7 +377,7 @@ TEST(Dicom, mixed_damaged_coloured_and_placeless_slices_are_refused_by_name) {
         write_stack(folder, grid, even, [&](DicomData& slice, std::size_t n) {
             if (n == 3) change(slice);  // 4.dcm
         });
-        return refusal_of(folder.path());
+        return test::volume_refusal(folder.path());
     };
     EXPECT_SAYS(refusal([&](DicomData& s) { s = slice_at(small, place_of(grid, 3)); }), "size of 4.dcm");
     EXPECT_SAYS(refusal([&](DicomData& s) { s = slice_at(turned, place_of(grid, 3)); }),
@@ -408,15 +396,15 @@ TEST(Dicom, mixed_damaged_coloured_and_placeless_slices_are_refused_by_name) {
     EXPECT_SAYS(refusal([&](DicomData& s) { s.text(0x7fe00010, "OW", std::string(100, '\1')); }), "4.dcm: ");
     const TemporaryFolder folder;
     write_stack(folder, grid, even);
-    const std::string whole = testing::bytes_of(folder / "4.dcm");
+    const std::string whole = test::bytes_of(folder / "4.dcm");
     for (const std::size_t missing : {10U, 200U}) {
-        testing::write_bytes(folder / "4.dcm", whole.substr(0, whole.size() - missing));
-        EXPECT_SAYS(refusal_of(folder.path()), "4.dcm") << missing;
+        test::write_bytes(folder / "4.dcm", whole.substr(0, whole.size() - missing));
+        EXPECT_SAYS(test::volume_refusal(folder.path()), "4.dcm") << missing;
     }
 }
 
 TEST(Dicom, an_enhanced_file_of_several_frames_reads_as_the_same_volume) {
-    const ImageGrid grid = oblique_grid();
+    const ImageGrid grid = oblique_stack();
     const TemporaryFolder folder, slices;
     write_stack(slices, grid, even);
     const Volume expected = read_volume(slices.path());
@@ -430,22 +418,21 @@ TEST(Dicom, an_enhanced_file_of_several_frames_reads_as_the_same_volume) {
                     std::lround(100 * (double{expected.values[grid.offset(i, j, k)]} - 300) / (k + 1))));
         frames.push_back(
             DicomData()
-                .sequence(0x00209113,
-                          {DicomData().text(0x00200032, "DS", testing::decimals(place_of(grid, k)))})
+                .sequence(0x00209113, {DicomData().text(0x00200032, "DS", test::decimals(place_of(grid, k)))})
                 .sequence(0x00289145, {DicomData()
                                            .text(0x00281052, "DS", "300")
-                                           .text(0x00281053, "DS", testing::decimals({0.01 * (k + 1)}))}));
+                                           .text(0x00281053, "DS", test::decimals({0.01 * (k + 1)}))}));
     }
     const DicomData shared =
         DicomData()
-            .sequence(0x00209116, {DicomData().text(0x00200037, "DS", testing::orientation(grid))})
-            .sequence(0x00289110, {DicomData().text(0x00280030, "DS", testing::decimals({0.5, 0.75}))});
-    testing::write_bytes(folder / "enhanced.dcm", testing::ct_pixels(grid, stored)
-                                                      .text(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.2.1")
-                                                      .text(0x00280008, "IS", "8")
-                                                      .sequence(0x52009229, {shared})
-                                                      .sequence(0x52009230, frames)
-                                                      .file());
+            .sequence(0x00209116, {DicomData().text(0x00200037, "DS", test::orientation(grid))})
+            .sequence(0x00289110, {DicomData().text(0x00280030, "DS", test::decimals({0.5, 0.75}))});
+    test::write_bytes(folder / "enhanced.dcm", test::ct_pixels(grid, stored)
+                                                   .text(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.2.1")
+                                                   .text(0x00280008, "IS", "8")
+                                                   .sequence(0x52009229, {shared})
+                                                   .sequence(0x52009230, frames)
+                                                   .file());
     for (const auto& path : {folder.path(), folder / "enhanced.dcm"}) {
         const Volume volume = read_volume(path);
         EXPECT_TRUE(same_grid(volume.grid, expected.grid));

@@ -5,15 +5,14 @@
 
 #include "formats/model/errors.hpp"
 #include "tests/tools/imaging/hand_written_dicom.hpp"
+#include "tests/tools/imaging/refusals.hpp"
 #include "tools/imaging/image_files.hpp"
 
 namespace palpate {
 namespace {
 
-using testing::DicomData;
-using testing::TemporaryFolder;
-
-#define EXPECT_SAYS(text, phrase) EXPECT_NE((text).find(phrase), std::string::npos) << (text)
+using test::DicomData;
+using test::TemporaryFolder;
 
 ImageGrid small_grid() {
     ImageGrid grid;
@@ -46,7 +45,7 @@ std::string segmentation(const ImageGrid& grid, const std::vector<std::string>& 
                                .us(0x00620004, static_cast<int>(n + 1))
                                .text(0x00620005, "LO", labels[n])
                                .text(0x00620008, "CS", "MANUAL")
-                               .text(0x0062000d, "US", testing::little_endian(0x80808c0088000000ULL >> 16, 6))
+                               .text(0x0062000d, "US", test::little_endian(0x80808c0088000000ULL >> 16, 6))
                                .sequence(0x00620003, {code("123037004", "Anatomical Structure")})
                                .sequence(0x0062000f, {code("10200004", "Liver")}));
     const std::size_t plane = static_cast<std::size_t>(grid.size[0] * grid.size[1]);
@@ -63,16 +62,16 @@ std::string segmentation(const ImageGrid& grid, const std::vector<std::string>& 
                                            .text(0x00209157, "UL", std::string("\1\0\0\0", 4))})
                 .sequence(0x00209113,
                           {DicomData().text(0x00200032, "DS",
-                                            testing::decimals(grid.point_of({0, 0, frames[f].slice})))})
+                                            test::decimals(grid.point_of({0, 0, frames[f].slice})))})
                 .sequence(0x0062000a, {DicomData().us(0x0062000b, frames[f].segment)}));
     }
     const DicomData shared =
         DicomData()
-            .sequence(0x00209116, {DicomData().text(0x00200037, "DS", testing::orientation(grid))})
+            .sequence(0x00209116, {DicomData().text(0x00200037, "DS", test::orientation(grid))})
             .sequence(0x00289110,
                       {DicomData()
-                           .text(0x00180050, "DS", testing::decimals({grid.spacing[2]}))
-                           .text(0x00280030, "DS", testing::decimals({grid.spacing[1], grid.spacing[0]}))});
+                           .text(0x00180050, "DS", test::decimals({grid.spacing[2]}))
+                           .text(0x00280030, "DS", test::decimals({grid.spacing[1], grid.spacing[0]}))});
     return DicomData()
         .text(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.66.4")
         .text(0x00080018, "UI", "1.2.3.4")
@@ -97,19 +96,14 @@ std::string segmentation(const ImageGrid& grid, const std::vector<std::string>& 
         .file();
 }
 
-std::string refusal_of(const std::filesystem::path& path) {
-    try {
-        read_label_map(path);
-    } catch (const InvalidInput& error) {
-        return error.what();
-    }
-    return "nothing was refused";
+std::string label_map_refusal(const std::filesystem::path& path) {
+    return test::refusal_of([&] { read_label_map(path); });
 }
 
 TEST(DicomSeg, frames_in_any_order_with_empty_slices_left_out_are_the_segments_in_their_place) {
     const TemporaryFolder folder;
     const ImageGrid grid = small_grid();
-    testing::write_bytes(
+    test::write_bytes(
         folder / "s.dcm",
         segmentation(grid, {"liver", "tumour"}, {{1, 6, {3, 4}}, {2, 2, {29}}, {1, 0, {0}}, {1, 1, {7}}}));
     const LabelMap map = read_label_map(folder / "s.dcm");
@@ -127,7 +121,7 @@ TEST(DicomSeg, frames_in_any_order_with_empty_slices_left_out_are_the_segments_i
 TEST(DicomSeg, a_single_slice_gets_an_empty_neighbour_at_its_thickness) {
     const TemporaryFolder folder;
     const ImageGrid grid = small_grid();
-    testing::write_bytes(folder / "s.dcm", segmentation(grid, {"liver"}, {{1, 3, {8}}}));
+    test::write_bytes(folder / "s.dcm", segmentation(grid, {"liver"}, {{1, 3, {8}}}));
     const LabelMap map = read_label_map(folder / "s.dcm");
     EXPECT_EQ(map.grid.size, (std::array<std::int32_t, 3>{6, 5, 2}));
     EXPECT_DOUBLE_EQ(map.grid.spacing[2], 2);
@@ -139,25 +133,24 @@ TEST(DicomSeg, overlaps_fractions_frames_off_the_grid_and_images_are_refused) {
     const TemporaryFolder folder;
     const ImageGrid grid = small_grid();
     const auto refusal = [&](const std::vector<Frame>& frames, const std::string& type = "BINARY") {
-        testing::write_bytes(folder / "s.dcm", segmentation(grid, {"liver", "tumour"}, frames, type));
-        return refusal_of(folder / "s.dcm");
+        test::write_bytes(folder / "s.dcm", segmentation(grid, {"liver", "tumour"}, frames, type));
+        return label_map_refusal(folder / "s.dcm");
     };
     EXPECT_SAYS(refusal({{1, 0, {1, 2}}, {1, 1, {1}}, {2, 0, {2}}}),
                 "'liver' and 'tumour' both claim 1 voxels");
     EXPECT_SAYS(refusal({{1, 0, {1}}, {1, 1, {1}}, {2, 2.4, {2}}}), "lies at slice");
     EXPECT_SAYS(refusal({{1, 0, {1}}, {3, 1, {1}}}), "segment 3, which is missing");
     EXPECT_SAYS(refusal({{1, 0, {1}}, {1, 1, {1}}}, "FRACTIONAL"), "s.dcm");
-    testing::write_bytes(folder / "ct.dcm",
-                         testing::ct_slice(grid, grid.origin, std::vector<std::int16_t>(30, 1)).file());
-    EXPECT_SAYS(refusal_of(folder / "ct.dcm"), "modality 'CT'");
-    testing::write_bytes(folder / "ct.dcm",
-                         testing::ct_slice(grid, grid.origin, std::vector<std::int16_t>(30, 1))
-                             .text(0x00080060, "CS", "ROE JANE")
-                             .file());
-    EXPECT_SAYS(refusal_of(folder / "ct.dcm"), "modality 'other'");
+    test::write_bytes(folder / "ct.dcm",
+                      test::ct_slice(grid, grid.origin, std::vector<std::int16_t>(30, 1)).file());
+    EXPECT_SAYS(label_map_refusal(folder / "ct.dcm"), "modality 'CT'");
+    test::write_bytes(folder / "ct.dcm", test::ct_slice(grid, grid.origin, std::vector<std::int16_t>(30, 1))
+                                             .text(0x00080060, "CS", "ROE JANE")
+                                             .file());
+    EXPECT_SAYS(label_map_refusal(folder / "ct.dcm"), "modality 'other'");
     const std::string whole = segmentation(grid, {"liver"}, {{1, 0, {1}}, {1, 1, {1}}});
-    testing::write_bytes(folder / "cut.dcm", whole.substr(0, whole.size() - 6));
-    EXPECT_SAYS(refusal_of(folder / "cut.dcm"), "cannot be read");
+    test::write_bytes(folder / "cut.dcm", whole.substr(0, whole.size() - 6));
+    EXPECT_SAYS(label_map_refusal(folder / "cut.dcm"), "cannot be read");
 }
 
 }  // namespace

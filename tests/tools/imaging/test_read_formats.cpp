@@ -9,18 +9,18 @@
 
 #include "formats/model/errors.hpp"
 #include "tests/tools/imaging/hand_written_images.hpp"
+#include "tests/tools/imaging/refusals.hpp"
 #include "tools/imaging/image_files.hpp"
 
 namespace palpate {
 namespace {
 
-using testing::TemporaryFolder;
-using testing::write_bytes;
+using test::expect_same_place;
+using test::header_tolerance;
+using test::TemporaryFolder;
+using test::write_bytes;
 
-// NIfTI-1 stores the affine in float32: 100 mm at 2^-24 relative, over a few terms.
-constexpr double header_tolerance = 5e-5;
-
-Volume ramp_volume() {
+Volume oblique_ramp() {
     Volume volume;
     volume.grid.size = {4, 5, 6};
     volume.grid.spacing = {0.5, 0.75, 1.25};
@@ -38,36 +38,18 @@ void put(std::string& bytes, std::size_t offset, T value) {
 
 // The quaternion and offset of a grid, code 1, beside the sform.
 void put_qform(std::string& nifti, const ImageGrid& grid) {
-    Eigen::Matrix3d rotation = testing::scaled_axes(grid, true) * grid.spacing.cwiseInverse().asDiagonal();
+    Eigen::Matrix3d rotation = test::scaled_axes(grid, true) * grid.spacing.cwiseInverse().asDiagonal();
     const double qfac = rotation.determinant() < 0 ? -1 : 1;
     rotation.col(2) *= qfac;
     Eigen::Quaterniond q(rotation);
     if (q.w() < 0) q.coeffs() *= -1;
-    const Eigen::Vector3d origin = testing::origin_in(grid, true);
+    const Eigen::Vector3d origin = test::origin_in(grid, true);
     put(nifti, 76, static_cast<float>(qfac));
     put(nifti, 252, std::int16_t{1});
     for (int i = 0; i < 3; ++i) {
         put(nifti, static_cast<std::size_t>(256 + 4 * i), static_cast<float>(q.vec()[i]));
         put(nifti, static_cast<std::size_t>(268 + 4 * i), static_cast<float>(origin[i]));
     }
-}
-
-std::string refusal_of(const std::filesystem::path& path, const ReadOptions& options = {}) {
-    try {
-        read_volume(path, {}, options);
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "nothing was refused";
-}
-
-#define EXPECT_SAYS(text, phrase) EXPECT_NE((text).find(phrase), std::string::npos) << (text)
-
-void expect_same_place(const ImageGrid& found, const ImageGrid& expected) {
-    ASSERT_EQ(found.size, expected.size);
-    for (const Eigen::Vector3d& index : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(3, 0, 0),
-                                         Eigen::Vector3d(0, 4, 0), Eigen::Vector3d(0, 0, 5)})
-        EXPECT_LT((found.point_of(index) - expected.point_of(index)).norm(), header_tolerance);
 }
 
 ReadOptions framed(const std::string& frame) {
@@ -79,9 +61,9 @@ ReadOptions framed(const std::string& frame) {
 TEST(Nifti, transforms_that_agree_are_read_and_ones_that_do_not_are_refused_with_both) {
     const TemporaryFolder folder;
     for (const bool mirrored : {false, true}) {
-        Volume volume = ramp_volume();
+        Volume volume = oblique_ramp();
         if (mirrored) volume.grid.direction.col(2) *= -1;
-        std::string file = testing::nifti_file(volume.grid, testing::raw_bytes<float>(volume.values));
+        std::string file = test::nifti_file(volume.grid, test::raw_bytes<float>(volume.values));
         put_qform(file, volume.grid);
         write_bytes(folder / "v.nii", file);
         for (const char* frame : {"", "qform", "sform"})
@@ -91,7 +73,7 @@ TEST(Nifti, transforms_that_agree_are_read_and_ones_that_do_not_are_refused_with
         moved.origin[0] += 0.06;  // 0.12 of the smallest voxel edge
         put_qform(file, moved);
         write_bytes(folder / "v.nii", file);
-        const std::string refusal = refusal_of(folder / "v.nii");
+        const std::string refusal = test::volume_refusal<Error>(folder / "v.nii");
         EXPECT_SAYS(refusal, "qform [");
         EXPECT_SAYS(refusal, "sform [");
         EXPECT_SAYS(refusal, "disagree by 0.12 voxels");
@@ -103,21 +85,20 @@ TEST(Nifti, transforms_that_agree_are_read_and_ones_that_do_not_are_refused_with
 
 TEST(Nifti, a_transform_that_is_not_set_cannot_be_chosen) {
     const TemporaryFolder folder;
-    const Volume volume = ramp_volume();
-    write_bytes(folder / "v.nii", testing::nifti_file(volume.grid, testing::raw_bytes<float>(volume.values)));
-    EXPECT_SAYS(refusal_of(folder / "v.nii", framed("qform")), "has no qform");
-    EXPECT_SAYS(refusal_of(folder / "v.nii", framed("affine")), "'affine'");
+    const Volume volume = oblique_ramp();
+    write_bytes(folder / "v.nii", test::nifti_file(volume.grid, test::raw_bytes<float>(volume.values)));
+    EXPECT_SAYS(test::volume_refusal<Error>(folder / "v.nii", framed("qform")), "has no qform");
+    EXPECT_SAYS(test::volume_refusal<Error>(folder / "v.nii", framed("affine")), "'affine'");
 }
 
 TEST(Nifti, shear_up_to_a_thousandth_is_repaired_and_reported_and_beyond_refused) {
     const TemporaryFolder folder;
     for (const double shear : {9e-4, 1.2e-3}) {
-        Volume volume = ramp_volume();
+        Volume volume = oblique_ramp();
         volume.grid.direction.col(1) += shear * volume.grid.direction.col(0);
-        write_bytes(folder / "v.nii",
-                    testing::nifti_file(volume.grid, testing::raw_bytes<float>(volume.values)));
+        write_bytes(folder / "v.nii", test::nifti_file(volume.grid, test::raw_bytes<float>(volume.values)));
         if (shear > 1e-3) {
-            EXPECT_SAYS(refusal_of(folder / "v.nii"), "off orthonormality");
+            EXPECT_SAYS(test::volume_refusal<Error>(folder / "v.nii"), "off orthonormality");
             continue;
         }
         std::string notes;
@@ -132,9 +113,9 @@ TEST(Nifti, shear_up_to_a_thousandth_is_repaired_and_reported_and_beyond_refused
 
 TEST(Nifti, a_file_without_transforms_is_read_as_ras_with_a_note) {
     const TemporaryFolder folder;
-    Volume volume = ramp_volume();
+    Volume volume = oblique_ramp();
     volume.grid.direction.setIdentity();
-    std::string file = testing::nifti_file(volume.grid, testing::raw_bytes<float>(volume.values));
+    std::string file = test::nifti_file(volume.grid, test::raw_bytes<float>(volume.values));
     put(file, 254, std::int16_t{0});
     write_bytes(folder / "v.nii", file);
     std::string notes;
@@ -145,8 +126,8 @@ TEST(Nifti, a_file_without_transforms_is_read_as_ras_with_a_note) {
 
 TEST(Nifti, big_endian_scaled_and_second_version_files_hold_the_same_volume) {
     const TemporaryFolder folder;
-    const Volume volume = ramp_volume();
-    const std::string little = testing::nifti_file(volume.grid, testing::raw_bytes<float>(volume.values));
+    const Volume volume = oblique_ramp();
+    const std::string little = test::nifti_file(volume.grid, test::raw_bytes<float>(volume.values));
 
     std::string big = little;
     const auto swap = [&](std::size_t from, std::size_t count, std::size_t width) {
@@ -170,7 +151,7 @@ TEST(Nifti, big_endian_scaled_and_second_version_files_hold_the_same_volume) {
     put(scaled, 116, -7.0F);
     for (std::size_t i = 0; i < volume.values.size(); ++i) {
         const auto stored = static_cast<std::int16_t>(2 * i);
-        scaled += testing::raw_bytes<std::int16_t>(std::span(&stored, 1));
+        scaled += test::raw_bytes<std::int16_t>(std::span(&stored, 1));
     }
     write_bytes(folder / "scaled.nii", scaled);
 
@@ -184,14 +165,14 @@ TEST(Nifti, big_endian_scaled_and_second_version_files_hold_the_same_volume) {
     }
     put(second, 168, std::int64_t{544});
     put(second, 348, std::int32_t{1});
-    const Eigen::Matrix3d axes = testing::scaled_axes(volume.grid, true);
-    const Eigen::Vector3d origin = testing::origin_in(volume.grid, true);
+    const Eigen::Matrix3d axes = test::scaled_axes(volume.grid, true);
+    const Eigen::Vector3d origin = test::origin_in(volume.grid, true);
     for (int row = 0; row < 3; ++row) {
         for (int axis = 0; axis < 3; ++axis)
             put(second, static_cast<std::size_t>(400 + 32 * row + 8 * axis), axes(row, axis));
         put(second, static_cast<std::size_t>(400 + 32 * row + 24), origin[row]);
     }
-    write_bytes(folder / "second.nii", second + testing::raw_bytes<float>(volume.values));
+    write_bytes(folder / "second.nii", second + test::raw_bytes<float>(volume.values));
 
     for (const char* name : {"big.nii", "scaled.nii", "second.nii"}) {
         SCOPED_TRACE(name);
@@ -203,13 +184,13 @@ TEST(Nifti, big_endian_scaled_and_second_version_files_hold_the_same_volume) {
 
 TEST(Nifti, colours_time_series_pairs_and_false_claims_are_refused) {
     const TemporaryFolder folder;
-    const Volume volume = ramp_volume();
-    const std::string good = testing::nifti_file(volume.grid, testing::raw_bytes<float>(volume.values));
+    const Volume volume = oblique_ramp();
+    const std::string good = test::nifti_file(volume.grid, test::raw_bytes<float>(volume.values));
     const auto refusal = [&](std::size_t offset, auto value) {
         std::string file = good;
         put(file, offset, value);
         write_bytes(folder / "v.nii", file);
-        return refusal_of(folder / "v.nii");
+        return test::volume_refusal<Error>(folder / "v.nii");
     };
     EXPECT_SAYS(refusal(70, std::int16_t{128}), "datatype 128");
     EXPECT_SAYS(refusal(344, 'x'), "not a NIfTI file of one piece");
@@ -221,7 +202,7 @@ TEST(Nifti, colours_time_series_pairs_and_false_claims_are_refused) {
     put(series, 40, std::int16_t{4});
     put(series, 48, std::int16_t{2});
     write_bytes(folder / "v.nii", series);
-    EXPECT_SAYS(refusal_of(folder / "v.nii"), "has sizes 4 5 6 2");
+    EXPECT_SAYS(test::volume_refusal<Error>(folder / "v.nii"), "has sizes 4 5 6 2");
 }
 
 // Voxels of three segments: 'organ' and 'lesion' overlap in layer 0 and 1, 'vessel' shares a layer and does
@@ -238,7 +219,7 @@ std::string layered_segmentation(bool overlap) {
            "=1 0 0\n"
            "Segment1_ID:=b\nSegment1_Name:=organ\nSegment1_LabelValue:=1\nSegment1_Layer:=0\n"
            "Segment2_ID:=c\nSegment2_Name:=vessel\nSegment2_LabelValue:=2\nSegment2_Layer:=0\n\n" +
-           testing::raw_bytes<std::uint8_t>(voxels);
+           test::raw_bytes<std::uint8_t>(voxels);
 }
 
 std::size_t voxels_of(const LabelMap& map, const std::string& name) {
@@ -316,7 +297,7 @@ TEST(Nrrd, every_patient_space_becomes_lps_and_others_are_noted) {
                     "NRRD0004\ntype: short\ndimension: 3\nspace: " + space +
                         "\nsizes: 2 2 2\nspace directions: (0,2,0) (3,0,0) (0,0,-4)\nendian: little\n"
                         "encoding: raw\nspace origin: (10,20,30)\n\n" +
-                        testing::raw_bytes<std::int16_t>(voxels));
+                        test::raw_bytes<std::int16_t>(voxels));
         std::string notes;
         const Volume volume = read_volume(folder / "v.nrrd", [&](std::string_view note) { notes += note; });
         EXPECT_LT((volume.grid.point_of({1, 0, 0}) - sign.cwiseProduct(Eigen::Vector3d(10, 22, 30))).norm(),
@@ -331,27 +312,27 @@ TEST(Nrrd, every_patient_space_becomes_lps_and_others_are_noted) {
 
 TEST(Nrrd, units_other_than_millimetres_are_refused_by_name) {
     const TemporaryFolder folder;
-    const Volume volume = ramp_volume();
+    const Volume volume = oblique_ramp();
     const auto file = [&](const std::string& units) {
-        return testing::nrrd_file(volume.grid, "float", testing::raw_bytes<float>(volume.values),
-                                  "left-posterior-superior", "space units: " + units + "\n");
+        return test::nrrd_file(volume.grid, "float", test::raw_bytes<float>(volume.values),
+                               "left-posterior-superior", "space units: " + units + "\n");
     };
     write_bytes(folder / "v.nrrd", file("\"mm\" \"mm\" \"mm\""));
     EXPECT_EQ(read_volume(folder / "v.nrrd").values, volume.values);
     write_bytes(folder / "v.nrrd", file("\"mm\" \"mm\" \"m\""));
-    EXPECT_SAYS(refusal_of(folder / "v.nrrd"), "space units \"mm\" \"mm\" \"m\"");
+    EXPECT_SAYS(test::volume_refusal<Error>(folder / "v.nrrd"), "space units \"mm\" \"mm\" \"m\"");
 }
 
 TEST(Claims, of_more_voxels_than_a_file_can_hold_are_refused_before_memory_is_taken) {
     const TemporaryFolder folder;
-    ImageGrid grid = ramp_volume().grid;
+    ImageGrid grid = oblique_ramp().grid;
     grid.size = {60000, 60000, 60000};  // 432 TB of int16
     const std::string data(1000, '\1');
-    std::string packed = testing::nrrd_file(grid, "short", data, "left-posterior-superior");
+    std::string packed = test::nrrd_file(grid, "short", data, "left-posterior-superior");
     packed.replace(packed.find("raw"), 3, "gzip");
-    std::string meta = testing::meta_file(grid, "MET_SHORT", data);
+    std::string meta = test::meta_file(grid, "MET_SHORT", data);
     std::map<std::string, std::string> files{
-        {"v.nrrd", testing::nrrd_file(grid, "short", data, "left-posterior-superior")},
+        {"v.nrrd", test::nrrd_file(grid, "short", data, "left-posterior-superior")},
         {"packed.nrrd", packed},
         {"v.mha", meta},
         {"packed.mha", meta.insert(meta.find("ElementData"), "CompressedData = True\n")},
@@ -365,19 +346,20 @@ TEST(Claims, of_more_voxels_than_a_file_can_hold_are_refused_before_memory_is_ta
          "LOOKUP_TABLE default\n1 2 3\n"}};
     for (const auto& [name, file] : files) {
         write_bytes(folder / name, file);
-        EXPECT_SAYS(refusal_of(folder / name), name + ": holds fewer voxels than its header claims");
+        EXPECT_SAYS(test::volume_refusal<Error>(folder / name),
+                    name + ": holds fewer voxels than its header claims");
     }
 }
 
 TEST(ReadVolume, endings_do_not_depend_on_case) {
     const TemporaryFolder folder;
-    const Volume volume = ramp_volume();
-    write_bytes(folder / "V.NII", testing::nifti_file(volume.grid, testing::raw_bytes<float>(volume.values)));
+    const Volume volume = oblique_ramp();
+    write_bytes(folder / "V.NII", test::nifti_file(volume.grid, test::raw_bytes<float>(volume.values)));
     write_bytes(folder / "V.MHA",
-                testing::meta_file(volume.grid, "MET_FLOAT", testing::raw_bytes<float>(volume.values)));
+                test::meta_file(volume.grid, "MET_FLOAT", test::raw_bytes<float>(volume.values)));
     write_bytes(folder / "V.NRRD",
-                testing::nrrd_file(volume.grid, "float", testing::raw_bytes<float>(volume.values),
-                                   "left-posterior-superior"));
+                test::nrrd_file(volume.grid, "float", test::raw_bytes<float>(volume.values),
+                                "left-posterior-superior"));
     for (const char* name : {"V.NII", "V.MHA", "V.NRRD"})
         EXPECT_EQ(read_volume(folder / name).values, volume.values);
 }
@@ -416,13 +398,13 @@ TEST(SegNrrd, a_segment_without_name_is_called_by_its_value) {
 
 TEST(LabelValues, up_to_65535_are_exact_and_beyond_are_refused) {
     const TemporaryFolder folder;
-    const ImageGrid grid = ramp_volume().grid;
+    const ImageGrid grid = oblique_ramp().grid;
     std::vector<std::uint32_t> values(grid.voxel_count(), 0);
     values[3] = 65535;
     values[4] = 65534;
     const auto file = [&] {
-        return testing::nrrd_file(grid, "uint", testing::raw_bytes<std::uint32_t>(values),
-                                  "left-posterior-superior");
+        return test::nrrd_file(grid, "uint", test::raw_bytes<std::uint32_t>(values),
+                               "left-posterior-superior");
     };
     write_bytes(folder / "l.nrrd", file());
     const LabelMap map = read_label_map(folder / "l.nrrd");
@@ -443,9 +425,9 @@ std::string deflated(const std::string& bytes) {
 
 TEST(MetaImage, compressed_data_is_read_with_and_without_its_size_and_not_if_cut) {
     const TemporaryFolder folder;
-    const Volume volume = ramp_volume();
-    const std::string packed = deflated(testing::raw_bytes<float>(volume.values));
-    std::string header = testing::meta_file(volume.grid, "MET_FLOAT", "");
+    const Volume volume = oblique_ramp();
+    const std::string packed = deflated(test::raw_bytes<float>(volume.values));
+    std::string header = test::meta_file(volume.grid, "MET_FLOAT", "");
     const auto end = header.find("ElementDataFile");
     for (const bool sized : {true, false})
         for (const bool local : {true, false}) {
@@ -469,10 +451,10 @@ TEST(MetaImage, compressed_data_is_read_with_and_without_its_size_and_not_if_cut
 
 TEST(MetaImage, slope_blanks_and_header_sizes_are_honoured_and_lists_of_files_refused) {
     const TemporaryFolder folder;
-    const Volume volume = ramp_volume();
-    const std::string raw = testing::raw_bytes<float>(volume.values), skipped(100, 'H');
+    const Volume volume = oblique_ramp();
+    const std::string raw = test::raw_bytes<float>(volume.values), skipped(100, 'H');
     const auto read = [&](const std::string& fields, const std::string& file) {
-        std::string header = testing::meta_file(volume.grid, "MET_FLOAT", "");
+        std::string header = test::meta_file(volume.grid, "MET_FLOAT", "");
         header.replace(header.find("ElementDataFile"), std::string::npos,
                        fields + "ElementDataFile = " + file + "\n");
         write_bytes(folder / "v.mhd", header);
@@ -490,7 +472,7 @@ TEST(MetaImage, slope_blanks_and_header_sizes_are_honoured_and_lists_of_files_re
     EXPECT_EQ(read("HeaderSize = 100\nCompressedData=True\n", "h.zraw"), volume.values);
     for (const char* several : {"LIST\na.raw\nb.raw", "s%02d.raw 0 5 1"}) {
         EXPECT_THROW(read("", several), InvalidInput);
-        EXPECT_SAYS(refusal_of(folder / "v.mhd"), "voxels in several files");
+        EXPECT_SAYS(test::volume_refusal<Error>(folder / "v.mhd"), "voxels in several files");
     }
 }
 

@@ -124,7 +124,7 @@ TEST(RealImages, overlapping_segments_of_a_dicom_segmentation_are_those_of_its_n
 
 TEST(RealImages, a_missing_dicom_slice_is_refused_with_its_place) {
     REQUIRE_REAL_DATA(folder, "abdomen_dicom_ts20");
-    const testing::TemporaryFolder copy;
+    const test::TemporaryFolder copy;
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::directory_iterator(folder / "dicom"))
         files.push_back(entry.path());

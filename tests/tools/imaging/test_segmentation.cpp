@@ -7,6 +7,7 @@
 #include "sample_data/phantoms.hpp"
 #include "tests/formats/scratch.hpp"
 #include "tests/tools/imaging/hand_written_images.hpp"
+#include "tests/tools/imaging/refusals.hpp"
 #include "tools/imaging/grow_from_seeds.hpp"
 #include "tools/imaging/image_files.hpp"
 #include "tools/imaging/label_names.hpp"
@@ -33,16 +34,6 @@ LabelMap run(const Volume* volume, const LabelMap* prior, const std::vector<std:
     std::vector<StructureRecipe> structures;
     for (const std::string& text : texts) structures.push_back(parse_structure(text));
     return segment(volume, prior, structures);
-}
-
-template <typename Call>
-std::string refusal_of(Call&& call) {
-    try {
-        call();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "nothing was refused";
 }
 
 const std::vector<std::string> head_recipes{
@@ -314,7 +305,7 @@ TEST(Segment, values_stored_1000_above_hounsfield_are_told_from_1024_by_their_ai
 
 TEST(Segment, a_structure_swallowed_by_a_later_one_is_refused_with_both_names) {
     const Phantom abdomen = abdomen_phantom();
-    const std::string refusal = refusal_of([&] {
+    const std::string refusal = test::refusal_of<Error>([&] {
         run(nullptr, &abdomen.truth,
             {"liver: recipe=import", "ball: recipe=sphere inside=liver center_mm=0,0,0 radius_mm=1e4"});
     });
@@ -335,7 +326,7 @@ TEST(Segment, bad_seeds_and_leaks_are_named) {
     const auto refusal = [&](const std::string& text, const std::string& second = "") {
         std::vector<std::string> texts{text};
         if (!second.empty()) texts.push_back(second);
-        return refusal_of([&] { run(&abdomen.volume, nullptr, texts); });
+        return test::refusal_of<Error>([&] { run(&abdomen.volume, nullptr, texts); });
     };
     const auto expect = [](const std::string& text, const std::string& phrase) {
         EXPECT_NE(text.find(phrase), std::string::npos) << text;
@@ -383,7 +374,7 @@ TEST(Segment, reports_each_structure_before_it_is_made) {
 TEST(Segment, refusals_name_the_structure_and_what_to_change) {
     const Phantom head = head_phantom();
     const auto refusal = [&](const std::vector<std::string>& texts) {
-        return refusal_of([&] { run(&head.volume, &head.truth, texts); });
+        return test::refusal_of<Error>([&] { run(&head.volume, &head.truth, texts); });
     };
     EXPECT_EQ(refusal({"skull: recipe=bone threshold_hu=3000"}),
               "structure 'skull': is empty; lower threshold_hu or min_component_ml; are the values in HU?");
@@ -396,22 +387,26 @@ TEST(Segment, refusals_name_the_structure_and_what_to_change) {
     EXPECT_NE(refusal({"a: recipe=airway seeds_mm=0,4,14"}).find("seed (0, 4, 14) mm"), std::string::npos);
     EXPECT_NE(refusal({"a: recipe=bone", "a: recipe=airway"}).find("occurs twice"), std::string::npos);
     EXPECT_NE(refusal({"a: recipe=bone radius_mm=3"}).find("has no 'center_mm'"), std::string::npos);
-    EXPECT_NE(refusal_of([&] { run(nullptr, &head.truth, {"skull: recipe=bone"}); }).find("no volume"),
-              std::string::npos);
-    EXPECT_NE(refusal_of([&] { run(&head.volume, nullptr, {"skull: recipe=import"}); }).find("no label map"),
+    EXPECT_NE(
+        test::refusal_of<Error>([&] { run(nullptr, &head.truth, {"skull: recipe=bone"}); }).find("no volume"),
+        std::string::npos);
+    EXPECT_NE(test::refusal_of<Error>([&] {
+                  run(&head.volume, nullptr, {"skull: recipe=import"});
+              }).find("no label map"),
               std::string::npos);
     EXPECT_THROW(run(nullptr, nullptr, {"skull: recipe=bone"}), InvalidInput);
     EXPECT_THROW(run(&head.volume, nullptr, {}), InvalidInput);
 }
 
 TEST(RecipeParameters, unknown_names_and_wrong_kinds_are_refused_with_the_nearest_name) {
-    EXPECT_NE(refusal_of([] {
+    EXPECT_NE(test::refusal_of<Error>([] {
                   parse_structure("s: recipe=bone treshold_hu=3");
               }).find("recipe 'bone' has no parameter 'treshold_hu'; nearest names: 'threshold_hu'"),
               std::string::npos);
-    EXPECT_NE(refusal_of([] { parse_structure("s: recipe=bones"); }).find("nearest names: 'bone'"),
-              std::string::npos);
-    EXPECT_NE(refusal_of([] { recipe_parameters("boen"); }).find("'bone'"), std::string::npos);
+    EXPECT_NE(
+        test::refusal_of<Error>([] { parse_structure("s: recipe=bones"); }).find("nearest names: 'bone'"),
+        std::string::npos);
+    EXPECT_NE(test::refusal_of<Error>([] { recipe_parameters("boen"); }).find("'bone'"), std::string::npos);
     EXPECT_THROW(parse_structure("s: recipe=bone threshold_hu=high"), InvalidInput);
     EXPECT_THROW(parse_structure("s: recipe=bone open_mm=-1"), InvalidInput);
     EXPECT_THROW(parse_structure("s: recipe=bone keep_largest=perhaps"), InvalidInput);

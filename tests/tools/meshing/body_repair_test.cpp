@@ -13,8 +13,6 @@
 namespace palpate {
 namespace {
 
-constexpr std::array<std::int32_t, 2> organ_and_lesion{3, 7};
-
 // Two tetrahedra that share node 0 only, or the edge 0-1.
 TetMesh hinged(bool at_edge) {
     TetMesh mesh;
@@ -96,7 +94,7 @@ TEST(PartPinchedEdges, no_edge_is_left_in_more_than_two_boundary_faces) {
 
 TEST(LiftFlatTetrahedra, sliver_in_the_middle_of_a_ball_becomes_sound) {
     const LabelMap map = test::organ_with_lesion();
-    TetMesh mesh = tetrahedralise(map, organ_and_lesion, {.cell_size = 5});
+    TetMesh mesh = tetrahedralise(map, test::organ_and_lesion, {.cell_size = 5});
     // Push one interior node nearly through the opposite face of one of its tetrahedra.
     const std::size_t node =
         static_cast<std::size_t>(std::ranges::find(mesh.outside_labels, -1) - mesh.outside_labels.begin());

@@ -10,15 +10,13 @@
 namespace palpate {
 namespace {
 
-constexpr std::array<std::int32_t, 2> organ_and_lesion{3, 7};
-
 TEST(QualityContract, coarse_request_is_made_finer_until_it_is_kept) {
     const LabelMap map = test::organ_with_lesion();
     const MeshSizing coarse{.cell_size = 12, .facet_distance = 4};
     const QualityContract contract{.max_mean_distance = 0.06};
-    const ContractedMesh once = mesh_to_contract(map, organ_and_lesion, coarse, contract, 1);
+    const ContractedMesh once = mesh_to_contract(map, test::organ_and_lesion, coarse, contract, 1);
     ASSERT_FALSE(once.attempts.back().misses.empty());
-    const ContractedMesh result = mesh_to_contract(map, organ_and_lesion, coarse, contract, 8);
+    const ContractedMesh result = mesh_to_contract(map, test::organ_and_lesion, coarse, contract, 8);
     EXPECT_GT(result.attempts.size(), 1U);
     EXPECT_EQ(result.attempts.front().misses.size(), once.attempts.back().misses.size());
     EXPECT_TRUE(result.attempts.back().misses.empty()) << result.attempts.back().misses.front().what;
@@ -32,7 +30,7 @@ TEST(QualityContract, any_direction_matrix_keeps_it) {
         Eigen::AngleAxisd(0.6, Eigen::Vector3d(3, -1, 2).normalized()).toRotationMatrix();
     for (const Eigen::Matrix3d& direction : {flipped, permuted, oblique}) {
         const LabelMap map = test::organ_with_lesion(direction);
-        const ContractedMesh result = mesh_to_contract(map, organ_and_lesion, {.cell_size = 4}, {}, 4);
+        const ContractedMesh result = mesh_to_contract(map, test::organ_and_lesion, {.cell_size = 4}, {}, 4);
         EXPECT_TRUE(result.attempts.back().misses.empty()) << result.attempts.back().misses.front().what;
     }
 }
@@ -41,7 +39,8 @@ TEST(QualityContract, impossible_limit_is_named_after_the_last_attempt) {
     const LabelMap map = test::organ_with_lesion();
     QualityContract contract;
     contract.min_region_dice = 0.99999;
-    const ContractedMesh result = mesh_to_contract(map, organ_and_lesion, {.cell_size = 6}, contract, 2);
+    const ContractedMesh result =
+        mesh_to_contract(map, test::organ_and_lesion, {.cell_size = 6}, contract, 2);
     ASSERT_EQ(result.attempts.size(), 2U);
     const auto& missed = result.attempts.back().misses;
     ASSERT_EQ(missed.size(), 2U);

@@ -16,12 +16,10 @@
 namespace palpate {
 namespace {
 
-constexpr std::array<std::int32_t, 2> organ_and_lesion{3, 7};
-
 TEST(RegionLabels, cutting_out_keeps_every_voxel_in_its_place) {
     const LabelMap map =
         test::organ_with_lesion(Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitY()).toRotationMatrix());
-    const RegionLabels labels = cut_out_regions(map, organ_and_lesion, 5);
+    const RegionLabels labels = cut_out_regions(map, test::organ_and_lesion, 5);
     EXPECT_EQ(labels.values, (std::vector<std::int32_t>{3, 7}));
     EXPECT_EQ(std::ranges::count(labels.regions, 2), std::ranges::count(map.labels, 7));
     for (std::int32_t k = 0; k < labels.grid.size[2]; ++k)
@@ -76,7 +74,7 @@ TEST(RegionLabels, specks_go_to_the_region_that_surrounds_them) {
     set(test::lesion_center, 0);                             // a pinhole in the lesion
     set(test::organ_center - Eigen::Vector3d(14, 0, 0), 7);  // a speck of lesion in the organ
     set(test::organ_center - Eigen::Vector3d(0, 25, 0), 3);  // a speck of organ outside
-    RegionLabels labels = cut_out_regions(map, organ_and_lesion, 5);
+    RegionLabels labels = cut_out_regions(map, test::organ_and_lesion, 5);
     EXPECT_EQ(absorb_specks(labels, 40), 3);
     EXPECT_EQ(find_components(labels).components.size(), 3U);
     EXPECT_EQ(std::ranges::count(labels.regions, 2), lesion);
@@ -103,7 +101,8 @@ TEST(Gaussian, point_spreads_to_a_normalised_product_of_gaussians) {
 TEST(SmoothedLabels, every_region_keeps_its_voxel_count) {
     const LabelMap map = test::organ_with_lesion();
     const double sigma = 1.4;
-    const RegionLabels labels = cut_out_regions(map, organ_and_lesion, smoothing_margin(map.grid, sigma));
+    const RegionLabels labels =
+        cut_out_regions(map, test::organ_and_lesion, smoothing_margin(map.grid, sigma));
     const SmoothedLabels smoothed(labels, sigma);
     std::array<std::int64_t, 3> before{}, after{};
     for (std::int32_t k = 0; k < labels.grid.size[2] - 1; ++k)
@@ -119,7 +118,7 @@ TEST(SmoothedLabels, every_region_keeps_its_voxel_count) {
 
 TEST(SmoothedLabels, beyond_the_grid_lies_the_outside) {
     const LabelMap map = test::organ_with_lesion();
-    const RegionLabels labels = cut_out_regions(map, organ_and_lesion, smoothing_margin(map.grid, 1));
+    const RegionLabels labels = cut_out_regions(map, test::organ_and_lesion, smoothing_margin(map.grid, 1));
     const SmoothedLabels smoothed(labels, 1);
     EXPECT_EQ(smoothed.region_at(test::organ_center + Eigen::Vector3d(500, 0, 0)), 0);
     EXPECT_EQ(smoothed.region_at(test::organ_center - Eigen::Vector3d(0, 0, 500)), 0);
@@ -184,7 +183,7 @@ TEST(SmoothedLabels, small_sheet_of_one_voxel_beside_a_large_body_survives) {
 
 TEST(SurfaceGap, is_the_distance_to_a_ball_along_the_normal) {
     const LabelMap map = test::organ_with_lesion();
-    const RegionLabels labels = cut_out_regions(map, organ_and_lesion, smoothing_margin(map.grid, 1));
+    const RegionLabels labels = cut_out_regions(map, test::organ_and_lesion, smoothing_margin(map.grid, 1));
     const SmoothedLabels smoothed(labels, 1);
     const Eigen::Vector3d outwards = Eigen::Vector3d(-1, 0.5, 0.3).normalized();
     const InterfaceSide side{.inner = 1, .outer = 0, .normal = outwards};
@@ -214,7 +213,7 @@ TEST(SizeField, finest_of_regions_and_balls_holds) {
 
 TEST(SurfaceSeeds, lie_on_every_surface_at_their_distance) {
     const LabelMap map = test::organ_with_lesion();
-    const RegionLabels labels = cut_out_regions(map, organ_and_lesion, smoothing_margin(map.grid, 1));
+    const RegionLabels labels = cut_out_regions(map, test::organ_and_lesion, smoothing_margin(map.grid, 1));
     const SmoothedLabels smoothed(labels, 1);
     const std::array<LocalSizes, 2> sizes{LocalSizes{.facet = 4},
                                           LocalSizes{.facet = 4}};  // seeds 6 mm apart

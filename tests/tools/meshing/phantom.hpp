@@ -36,6 +36,9 @@ inline LabelMap paint(const ImageGrid& grid, const std::function<int(const Eigen
 inline const Eigen::Vector3d organ_center{-31.0, 47.0, -120.0};
 inline const Eigen::Vector3d lesion_center = organ_center + Eigen::Vector3d(4, -5, 3);
 
+/// The labels of organ_with_lesion(): the organ, and the lesion in it.
+inline constexpr std::array<std::int32_t, 2> organ_and_lesion{3, 7};
+
 /// An organ (3), a ball of 20 mm radius, with an enclosed lesion (7) of 6.5 mm (1.15 ml), and bone (12) where
 /// x is more than 15 mm beyond the organ's centre.
 inline LabelMap organ_with_lesion(const Eigen::Matrix3d& direction = Eigen::Matrix3d::Identity()) {

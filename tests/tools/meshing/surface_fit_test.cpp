@@ -12,8 +12,6 @@
 namespace palpate {
 namespace {
 
-constexpr std::array<std::int32_t, 2> organ_and_lesion{3, 7};
-
 // An organ's mesh with its regions numbered 1 and 2, and the labels it was made from.
 struct NumberedBody {
     MeshDomain domain;
@@ -22,7 +20,7 @@ struct NumberedBody {
 
 NumberedBody organ() {
     const LabelMap map = test::organ_with_lesion();
-    NumberedBody body{prepare_domain(map, organ_and_lesion, 1.4, 40), {}};
+    NumberedBody body{prepare_domain(map, test::organ_and_lesion, 1.4, 40), {}};
     body.mesh = tetrahedralise(body.domain, map, {.cell_size = 5});
     for (std::int32_t& region : body.mesh.regions) region = region == 3 ? 1 : 2;
     return body;

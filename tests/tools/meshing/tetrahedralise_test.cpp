@@ -15,7 +15,6 @@ namespace {
 using test::organ_center;
 using test::organ_with_lesion;
 
-constexpr std::array<std::int32_t, 2> organ_and_lesion{3, 7};
 const MeshSizing coarse{.cell_size = 3.5};
 
 // The labels are the reference: a mesh must keep volume (matched to 1e-4), place and shape.
@@ -30,7 +29,7 @@ void expect_faithful(const TetMesh& mesh, const LabelMap& map) {
     EXPECT_TRUE(quality.boundary.closed_and_oriented());
     EXPECT_GE(quality.min_dihedral_deg, 12);
     EXPECT_LE(quality.max_dihedral_deg, 165);
-    const auto fidelity = compare(mesh, cut_out_regions(map, organ_and_lesion, 1)).regions;
+    const auto fidelity = compare(mesh, cut_out_regions(map, test::organ_and_lesion, 1)).regions;
     ASSERT_EQ(fidelity.size(), 2U);
     for (const RegionFidelity& region : fidelity) {
         EXPECT_LT(std::abs(region.volume_error_percent), max_volume_error_percent) << region.region;
@@ -41,7 +40,7 @@ void expect_faithful(const TetMesh& mesh, const LabelMap& map) {
 
 TEST(Tetrahedralise, enclosed_lesion_keeps_volume_place_and_shape) {
     const LabelMap map = organ_with_lesion();
-    expect_faithful(tetrahedralise(map, organ_and_lesion, coarse), map);
+    expect_faithful(tetrahedralise(map, test::organ_and_lesion, coarse), map);
 }
 
 TEST(Tetrahedralise, any_direction_matrix_gives_the_same_body) {
@@ -53,14 +52,14 @@ TEST(Tetrahedralise, any_direction_matrix_gives_the_same_body) {
     permuted << 0, 0, 1, 1, 0, 0, 0, 1, 0;
     for (const Eigen::Matrix3d& direction : {oblique, flipped, left_handed, permuted}) {
         const LabelMap map = organ_with_lesion(direction);
-        expect_faithful(tetrahedralise(map, organ_and_lesion, coarse), map);
+        expect_faithful(tetrahedralise(map, test::organ_and_lesion, coarse), map);
     }
 }
 
 TEST(Tetrahedralise, two_runs_give_the_same_bytes) {
     const LabelMap map = organ_with_lesion();
-    const TetMesh a = tetrahedralise(map, organ_and_lesion, coarse);
-    const TetMesh b = tetrahedralise(map, organ_and_lesion, coarse);
+    const TetMesh a = tetrahedralise(map, test::organ_and_lesion, coarse);
+    const TetMesh b = tetrahedralise(map, test::organ_and_lesion, coarse);
     EXPECT_EQ(a.rest_positions, b.rest_positions);
     EXPECT_EQ(a.tetrahedra, b.tetrahedra);
     EXPECT_EQ(a.regions, b.regions);
@@ -69,7 +68,7 @@ TEST(Tetrahedralise, two_runs_give_the_same_bytes) {
 
 TEST(Tetrahedralise, surface_nodes_know_what_lies_beyond) {
     const LabelMap map = organ_with_lesion();
-    const TetMesh mesh = tetrahedralise(map, organ_and_lesion, coarse);
+    const TetMesh mesh = tetrahedralise(map, test::organ_and_lesion, coarse);
     ASSERT_EQ(mesh.outside_labels.size(), mesh.rest_positions.size());
     const BoundarySurface boundary = boundary_surface(mesh);
     std::int64_t bone = 0;
@@ -102,8 +101,8 @@ TEST(Tetrahedralise, region_size_refines_its_region_alone) {
     MeshSizing fine = coarse;
     fine.regions = {{7, 1.5}};
     const auto lesion_cells = [](const TetMesh& mesh) { return std::ranges::count(mesh.regions, 7); };
-    const TetMesh a = tetrahedralise(map, organ_and_lesion, coarse);
-    const TetMesh b = tetrahedralise(map, organ_and_lesion, fine);
+    const TetMesh a = tetrahedralise(map, test::organ_and_lesion, coarse);
+    const TetMesh b = tetrahedralise(map, test::organ_and_lesion, fine);
     EXPECT_GT(lesion_cells(b), 4 * lesion_cells(a));
     expect_faithful(b, map);
 }
@@ -167,13 +166,13 @@ TEST(Tetrahedralise, cells_near_a_place_or_a_label_are_finer) {
     MeshSizing at_point = coarse, at_label = coarse;
     at_point.near = {{.points = {place}, .label = 0, .within = 6, .cell_size = 1.5}};
     at_label.near = {{.points = {}, .label = 12, .within = 3, .cell_size = 1.5}};  // bone, a neighbour
-    const TetMesh plain = tetrahedralise(map, organ_and_lesion, coarse);
-    const TetMesh fine = tetrahedralise(map, organ_and_lesion, at_point);
+    const TetMesh plain = tetrahedralise(map, test::organ_and_lesion, coarse);
+    const TetMesh fine = tetrahedralise(map, test::organ_and_lesion, at_point);
     EXPECT_GT(cells_within(fine, place, 6), 4 * cells_within(plain, place, 6));
     const Eigen::Vector3d far = organ_center + Eigen::Vector3d(0, 14, 8);
     EXPECT_LT(cells_within(fine, far, 6), 1.5 * static_cast<double>(cells_within(plain, far, 6)));
     const Eigen::Vector3d by_bone = organ_center + Eigen::Vector3d(14, 0, 0);
-    const TetMesh by_label = tetrahedralise(map, organ_and_lesion, at_label);
+    const TetMesh by_label = tetrahedralise(map, test::organ_and_lesion, at_label);
     EXPECT_GT(cells_within(by_label, by_bone, 4), 4 * cells_within(plain, by_bone, 4));
     expect_faithful(fine, map);
 }
@@ -191,7 +190,7 @@ TEST(Tetrahedralise, component_just_above_the_speck_limit_is_there) {
 TEST(Tetrahedralise, cell_larger_than_the_body_is_as_good_as_one_of_its_size) {
     const LabelMap map = organ_with_lesion();
     const auto count = [&](double cell_size) {
-        return tetrahedralise(map, organ_and_lesion, {.cell_size = cell_size}).tetrahedra.size();
+        return tetrahedralise(map, test::organ_and_lesion, {.cell_size = cell_size}).tetrahedra.size();
     };
     const std::size_t largest = count(1000);
     for (const double cell_size : {1000.0, 100.0, 1000.0, 50.0}) EXPECT_EQ(count(cell_size), largest);
@@ -199,10 +198,11 @@ TEST(Tetrahedralise, cell_larger_than_the_body_is_as_good_as_one_of_its_size) {
 
 TEST(Tetrahedralise, unsmoothed_labels_are_meshed) {
     const LabelMap map = organ_with_lesion();
-    const TetMesh mesh = tetrahedralise(map, organ_and_lesion, {.cell_size = 4, .smoothing = 0});
+    const TetMesh mesh = tetrahedralise(map, test::organ_and_lesion, {.cell_size = 4, .smoothing = 0});
     EXPECT_TRUE(measure(mesh).boundary.closed_and_oriented());
-    EXPECT_LT(std::abs(compare(mesh, cut_out_regions(map, organ_and_lesion, 1)).body.volume_error_percent),
-              max_volume_error_percent);
+    EXPECT_LT(
+        std::abs(compare(mesh, cut_out_regions(map, test::organ_and_lesion, 1)).body.volume_error_percent),
+        max_volume_error_percent);
 }
 
 TEST(Tetrahedralise, impossible_requests_are_refused) {

@@ -2,6 +2,7 @@
 #include "tools/commands/condense/results.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace palpate::condensation {
 

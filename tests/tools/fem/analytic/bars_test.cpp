@@ -9,7 +9,7 @@
 namespace palpate::test {
 namespace {
 
-const Material material{.youngs_modulus = 6e-3, .poissons_ratio = 0.3};
+const Material bar_material{.youngs_modulus = 6e-3, .poissons_ratio = 0.3};
 
 // The field is quadratic in the coordinates, so quadratic elements hold it at every node, and its end at
 // u(L) = w L² / (2 E); 1e-11 allows a condition number of 1e4.
@@ -17,13 +17,13 @@ TEST(QuadraticTetrahedra, hang_a_bar_by_its_own_weight_to_round_off) {
     const double length = 4, weight = 1e-5;  // mm, N/mm³ (water)
     TetMesh mesh = block_mesh({2, 2, 8}, {1, 1, length});
     jitter_interior(mesh, 0.08, 5);
-    const ElasticSystem system = elastic_system(mesh, material, ElementOrder::quadratic);
-    const auto field = [&](const Eigen::Vector3d& x) { return hung_bar(material, weight, length, x); };
+    const ElasticSystem system = elastic_system(mesh, bar_material, ElementOrder::quadratic);
+    const auto field = [&](const Eigen::Vector3d& x) { return hung_bar(bar_material, weight, length, x); };
     Supports supports(system);
     supports.impose(
         system, [&](const Eigen::Vector3d& p) { return p.z() > length - 1e-9; }, field);
     const Eigen::VectorXd u = solve(system, supports, body_forces(system, {0, 0, -weight}));
-    const double elongation = weight * length * length / (2 * material.youngs_modulus);
+    const double elongation = weight * length * length / (2 * bar_material.youngs_modulus);
     for (std::size_t node = 0; node < system.positions.size(); ++node)
         EXPECT_LT((u.segment<3>(static_cast<Eigen::Index>(3 * node)) - field(system.positions[node])).norm(),
                   1e-11 * elongation);
@@ -33,9 +33,9 @@ TEST(QuadraticTetrahedra, hang_a_bar_by_its_own_weight_to_round_off) {
 // (kappa G A) (Timoshenko), kappa = 10 (1 + nu) / (12 + 11 nu) (Cowper, J. Appl. Mech. 33 (1966) 335,
 // rectangle).
 double cantilever_ratio(ElementOrder order, int cells) {
-    const double L = 10, h = 1, F = 1e-5, E = material.youngs_modulus, nu = material.poissons_ratio;
+    const double L = 10, h = 1, F = 1e-5, E = bar_material.youngs_modulus, nu = bar_material.poissons_ratio;
     const ElasticSystem system =
-        elastic_system(block_mesh({cells, cells, 5 * cells}, {h, h, L}), material, order);
+        elastic_system(block_mesh({cells, cells, 5 * cells}, {h, h, L}), bar_material, order);
     Supports supports(system);
     supports.impose(
         system, [](const Eigen::Vector3d& p) { return p.z() < 1e-9; },

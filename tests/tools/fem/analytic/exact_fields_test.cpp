@@ -8,7 +8,7 @@
 namespace palpate::test {
 namespace {
 
-const Material material{.youngs_modulus = 2, .poissons_ratio = 0.3};
+const Material field_material{.youngs_modulus = 2, .poissons_ratio = 0.3};
 
 // Central differences over 1e-3 of fields of order one and their derivatives: 1e-6 truncation, 1e-7 round-off
 // of second differences.
@@ -25,7 +25,7 @@ Eigen::Matrix3d difference(const std::function<Eigen::Vector3d(const Eigen::Vect
 }
 
 Eigen::Matrix3d stress(const Eigen::Matrix3d& gradient) {
-    const double nu = material.poissons_ratio, E = material.youngs_modulus;
+    const double nu = field_material.poissons_ratio, E = field_material.youngs_modulus;
     const Eigen::Matrix3d strain = (gradient + gradient.transpose()) / 2;
     return E / (1 + nu) * (strain + nu / (1 - 2 * nu) * strain.trace() * Eigen::Matrix3d::Identity());
 }
@@ -43,7 +43,7 @@ Eigen::Vector3d needed_force(const std::function<Eigen::Vector3d(const Eigen::Ve
 
 TEST(ExactFields, hollow_sphere_is_in_equilibrium_and_carries_its_pressure) {
     const double a = 1, b = 2, pressure = 0.7;
-    const ExactField field = lame_sphere(material, a, b, pressure);
+    const ExactField field = lame_sphere(field_material, a, b, pressure);
     const Eigen::Vector3d direction = Eigen::Vector3d(1, 2, -2) / 3;
     EXPECT_LT(needed_force(field.displacement, 1.5 * direction).norm(), difference_tolerance);
     EXPECT_LT((difference(field.displacement, 1.5 * direction) - field.gradient(1.5 * direction)).norm(),
@@ -56,7 +56,7 @@ TEST(ExactFields, thick_tube_is_in_equilibrium_and_carries_its_pressure) {
     const double a = 3, b = 9, pressure = 1;
     const auto field = [&](const Eigen::Vector3d& x) {
         const double r = std::hypot(x.x(), x.y());
-        return Eigen::Vector3d(lame_tube_radial(material, a, b, pressure, r) / r *
+        return Eigen::Vector3d(lame_tube_radial(field_material, a, b, pressure, r) / r *
                                Eigen::Vector3d(x.x(), x.y(), 0));
     };
     const Eigen::Vector3d direction(0.6, 0.8, 0);
@@ -77,7 +77,7 @@ TEST(ExactFields, thick_tube_gives_the_published_displacements) {
 }
 
 TEST(ExactFields, half_space_is_in_equilibrium_and_carries_one_newton) {
-    const auto field = [](const Eigen::Vector3d& x) { return boussinesq(material, x); };
+    const auto field = [](const Eigen::Vector3d& x) { return boussinesq(field_material, x); };
     EXPECT_LT(needed_force(field, {0.5, 0.7, -0.8}).norm(), difference_tolerance);
     // No traction on the surface, and every horizontal plane below passes the force on; the traction falls as
     // r^-5.
@@ -91,13 +91,13 @@ TEST(ExactFields, half_space_is_in_equilibrium_and_carries_one_newton) {
 
 TEST(ExactFields, hung_bar_carries_its_weight_and_is_free_at_its_sides) {
     const double weight = 0.4, length = 3;
-    const auto field = [&](const Eigen::Vector3d& x) { return hung_bar(material, weight, length, x); };
+    const auto field = [&](const Eigen::Vector3d& x) { return hung_bar(field_material, weight, length, x); };
     const Eigen::Vector3d at(0.2, -0.4, 1.7);
     EXPECT_LT((needed_force(field, at) - Eigen::Vector3d(0, 0, -weight)).norm(), difference_tolerance);
     Eigen::Matrix3d pulled = Eigen::Matrix3d::Zero();
     pulled(2, 2) = weight * at.z();
     EXPECT_LT((stress(difference(field, at)) - pulled).norm(), difference_tolerance);
-    EXPECT_NEAR(-field({0, 0, 0}).z(), weight * length * length / (2 * material.youngs_modulus), 1e-14);
+    EXPECT_NEAR(-field({0, 0, 0}).z(), weight * length * length / (2 * field_material.youngs_modulus), 1e-14);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 namespace palpate::test {
 namespace {
 
-const Material material{.youngs_modulus = 6e-3, .poissons_ratio = 0.3};
+const Material punch_material{.youngs_modulus = 6e-3, .poissons_ratio = 0.3};
 
 // Force on a punch of radius a = 1 mm pressed 1 mm deep, over Boussinesq's F = 2 a E d / (1 - nu²) (Sneddon,
 // Int. J. Eng. Sci. 3 (1965) 47-57). On a quarter of the half-space out to 8 a. Held at rest there, even a
@@ -19,7 +19,7 @@ const Material material{.youngs_modulus = 6e-3, .poissons_ratio = 0.3};
 // very force F that the punch feels: F = F(d) + F F(lift), where F(lift) is what the far field of 1 N does to
 // a resting punch. What is left is the difference between a disc and a point, of order 1/8³.
 double resistance(ElementOrder order, int steps) {
-    const ElasticSystem system = elastic_system(half_space_mesh(steps, 8, true), material, order);
+    const ElasticSystem system = elastic_system(half_space_mesh(steps, 8, true), punch_material, order);
     const auto far = on_far_boundary(system.body.mesh);
     const auto force = [&](double depth, double far_force) {
         Supports supports(system);
@@ -27,7 +27,7 @@ double resistance(ElementOrder order, int steps) {
             supports.hold(system, axis, [&](const Eigen::Vector3d& p) { return std::abs(p[axis]) < 1e-9; });
         supports.hold(system, 2, on_pressed_disc, -depth);
         supports.impose(system, far, [&](const Eigen::Vector3d& p) {
-            return Eigen::Vector3d(far_force * boussinesq(material, p));
+            return Eigen::Vector3d(far_force * boussinesq(punch_material, p));
         });
         const Eigen::VectorXd f = nodal_forces(system, solve(system, supports));
         double quarter = 0;
@@ -41,8 +41,8 @@ double resistance(ElementOrder order, int steps) {
     const double corners = 8 * steps;
     const double radius =
         std::sqrt(corners / 2 * std::sin(2 * std::numbers::pi / corners) / std::numbers::pi);
-    const double exact =
-        2 * radius * material.youngs_modulus / (1 - material.poissons_ratio * material.poissons_ratio);
+    const double exact = 2 * radius * punch_material.youngs_modulus /
+                         (1 - punch_material.poissons_ratio * punch_material.poissons_ratio);
     return force(1, 0) / (1 - force(0, 1)) / exact;
 }
 

@@ -10,7 +10,7 @@
 namespace palpate::test {
 namespace {
 
-const Material material{.youngs_modulus = 6e-3, .poissons_ratio = 0.3};
+const Material shell_material{.youngs_modulus = 6e-3, .poissons_ratio = 0.3};
 constexpr double inner = 1, outer = 2, pressure = 1e-3;  // mm, mm, N/mm²
 
 // The sphere's field in a block cut out of the shell, imposed on the block's flat faces: no error but the
@@ -19,12 +19,12 @@ constexpr double inner = 1, outer = 2, pressure = 1e-3;  // mm, mm, N/mm²
 // finer ones within 0.15.
 void expect_full_order_in_a_block(ElementOrder order) {
     const int degree = static_cast<int>(order);
-    const ExactField field = lame_sphere(material, inner, outer, pressure);
+    const ExactField field = lame_sphere(shell_material, inner, outer, pressure);
     const auto errors_at = [&](int cells) {
         TetMesh mesh = block_mesh({cells, cells, cells}, {1, 1, 1});
         jitter_interior(mesh, 0.15 / cells, 3);  // a regular mesh would converge faster than theory promises
         for (Eigen::Vector3d& p : mesh.rest_positions) p += Eigen::Vector3d(0.6, 0.5, 0.4);
-        const ElasticSystem system = elastic_system(mesh, material, order);
+        const ElasticSystem system = elastic_system(mesh, shell_material, order);
         Supports supports(system);
         const auto on_face = [](const Eigen::Vector3d& p) {
             const Eigen::Array3d q = p.array() - Eigen::Array3d(0.6, 0.5, 0.4);
@@ -48,10 +48,10 @@ void expect_full_order_in_a_block(ElementOrder order) {
 // and so do the displacements of either element: straight-sided quadratic elements gain accuracy on a curved
 // body, not order.
 void expect_the_order_of_flat_facets_under_pressure(ElementOrder order) {
-    const ExactField field = lame_sphere(material, inner, outer, pressure);
+    const ExactField field = lame_sphere(shell_material, inner, outer, pressure);
     const auto error_at = [&](int around) {
         const ElasticSystem system =
-            elastic_system(hollow_sphere_octant(inner, outer, around, around), material, order);
+            elastic_system(hollow_sphere_octant(inner, outer, around, around), shell_material, order);
         Supports supports(system);
         for (int axis = 0; axis < 3; ++axis)
             supports.hold(system, axis, [&](const Eigen::Vector3d& p) { return std::abs(p[axis]) < 1e-9; });

@@ -1,0 +1,12 @@
+# SPDX-License-Identifier: Apache-2.0
+# Headers that many files include and that are dear to read, compiled once a set.
+set(palpate_standard_headers <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <limits> <map> <memory>
+    <numeric> <optional> <random> <set> <span> <sstream> <string> <string_view> <utility> <vector>)
+
+palpate_precompiled(values LINKS Eigen3::Eigen HEADERS ${palpate_standard_headers} <Eigen/Dense>)
+palpate_precompiled(commands LINKS Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json
+    HEADERS ${palpate_standard_headers} <Eigen/Dense> <fmt/format.h> <nlohmann/json.hpp>)
+if(PALPATE_TESTS)
+    palpate_precompiled(tests LINKS Eigen3::Eigen GTest::gtest
+        HEADERS ${palpate_standard_headers} <Eigen/Dense> <gmock/gmock.h> <gtest/gtest.h>)
+endif()
