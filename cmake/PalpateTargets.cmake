@@ -27,6 +27,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # GCC 12 is wrong about std::string (-Wrestrict, GCC bug 105651) and about Eigen views by std::vector
     # (-Wfree-nonheap-object).
     target_compile_options(palpate_house INTERFACE -Wno-restrict -Wno-free-nonheap-object)
+    # Lets ccache see which precompiled header a file was compiled with.
+    target_compile_options(palpate_house INTERFACE -fpch-preprocess)
     if(CMAKE_UNITY_BUILD)
         # Where files are compiled together it also inlines std::string and std::vector until it sees overflows that
         # are none, and takes a .cpp's own types for a header's. Preset dev keeps these warnings.
@@ -36,6 +38,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
 else()
     # Clang counts the sign of an index to -Wconversion, GCC does not.
     target_compile_options(palpate_house INTERFACE -Wno-sign-conversion)
+    # A precompiled header's own time would make every build a new one for ccache.
+    target_compile_options(palpate_house INTERFACE "SHELL:-Xclang -fno-pch-timestamp")
 endif()
 if(PALPATE_ASSERTIONS)
     target_compile_options(palpate_house INTERFACE -UNDEBUG)
@@ -43,6 +47,8 @@ endif()
 if(PALPATE_SANITIZERS)
     add_compile_options(-fsanitize=${PALPATE_SANITIZERS} -fno-omit-frame-pointer -fno-sanitize-recover=all)
     add_link_options(-fsanitize=${PALPATE_SANITIZERS})
+    # Tests that count allocations ask the sanitizer instead of malloc.
+    add_compile_definitions(PALPATE_SANITIZED)
 endif()
 
 # palpate_precompiled(<set> LINKS ... HEADERS ...): headers that are compiled once; a target takes a set with
@@ -125,8 +131,13 @@ function(palpate_test room)
     target_link_libraries(${target} PRIVATE ${arg_LINKS} GTest::gtest_main palpate_house)
     palpate_reuse_precompiled(${target} ${arg_PRECOMPILED})
     set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
+    # What watches the clock runs alone; everything else may run side by side.
+    if(arg_LABEL STREQUAL "realtime")
+        set(alone RUN_SERIAL TRUE)
+    endif()
     gtest_discover_tests(${target} TEST_PREFIX "${room}." DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
-        PROPERTIES LABELS ${arg_LABEL} TIMEOUT ${arg_TIMEOUT} ENVIRONMENT "${PALPATE_TEST_ENVIRONMENT}")
+        PROPERTIES LABELS ${arg_LABEL} TIMEOUT ${arg_TIMEOUT} ${alone}
+        ENVIRONMENT "${PALPATE_TEST_ENVIRONMENT}")
 endfunction()
 
 # palpate_command_test(<file.py> [LABEL ...]): a Python unittest that drives the executables in PALPATE_BIN.
