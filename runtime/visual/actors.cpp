@@ -17,7 +17,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-void set_colour(vtkProperty* property, const Rgb& colour) {
+void paint(vtkProperty* property, const Rgb& colour) {
     property->SetColor(colour[0] / 255, colour[1] / 255, colour[2] / 255);
 }
 
@@ -75,7 +75,7 @@ vtkSmartPointer<vtkActor> actor(vtkPolyData* data, const Rgb& colour) {
     mapper->SetInputData(data);
     auto result = vtkSmartPointer<vtkActor>::New();
     result->SetMapper(mapper);
-    set_colour(result, colour);
+    paint(result, colour);
     result->GetProperty()->SetAmbient(0.13);
     return result;
 }
@@ -83,7 +83,7 @@ vtkSmartPointer<vtkActor> actor(vtkPolyData* data, const Rgb& colour) {
 vtkSmartPointer<vtkActor> solid_actor(vtkPolyData* data, const Rgb& colour, const Rgb& inside) {
     auto result = actor(data, colour);
     vtkNew<vtkProperty> back;
-    set_colour(back, inside);
+    paint(back, inside);
     back->SetAmbient(1);
     back->SetDiffuse(0);
     result->SetBackfaceProperty(back);
@@ -91,7 +91,7 @@ vtkSmartPointer<vtkActor> solid_actor(vtkPolyData* data, const Rgb& colour, cons
 }
 
 void set_colour(vtkActor* actor, const Rgb& colour) {
-    set_colour(actor->GetProperty(), colour);
+    paint(actor->GetProperty(), colour);
 }
 
 void place_along(vtkActor* actor, const Eigen::Vector3d& origin, const Eigen::Vector3d& way, double scale) {

@@ -7,7 +7,7 @@
 namespace {
 using namespace palpate;
 
-nlohmann::ordered_json to_json(const std::vector<build::StageRecord>& records) {
+nlohmann::ordered_json stages_json(const std::vector<build::StageRecord>& records) {
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
     for (const build::StageRecord& record : records)
         rows.push_back({{"stage", record.name},
@@ -67,7 +67,8 @@ int main(int argc, char** argv) {
         records.push_back(runner.run(build::touch_stage(paths)));
         records.push_back(
             runner.run(build::report_stage(case_file, paths, records, runner.result_path("touch"))));
-        return nlohmann::ordered_json{
-            {"asset", paths.asset.string()}, {"report", paths.report.string()}, {"stages", to_json(records)}};
+        return nlohmann::ordered_json{{"asset", paths.asset.string()},
+                                      {"report", paths.report.string()},
+                                      {"stages", stages_json(records)}};
     });
 }

@@ -10,7 +10,7 @@ namespace palpate {
 
 using html::escaped;
 
-std::string histogram_svg(const Histogram& histogram, const std::string& axis, const std::string& unit,
+std::string histogram_svg(const BinCounts& histogram, const std::string& axis, const std::string& unit,
                           int steps) {
     constexpr double width = 420, height = 190, left = 8, right = 8, top = 18, bottom = 38;
     constexpr double plot_width = width - left - right, plot_height = height - top - bottom;

@@ -17,7 +17,7 @@ struct StageRecord {
 };
 
 /// Draws a histogram as inline SVG; `unit` follows the numbers on the axis, which has `steps` of them and 0.
-std::string histogram_svg(const Histogram& histogram, const std::string& axis, const std::string& unit,
+std::string histogram_svg(const BinCounts& histogram, const std::string& axis, const std::string& unit,
                           int steps);
 
 /// Draws one bar per stage as inline SVG: length is time, the text beside it time and peak memory.

@@ -2,6 +2,7 @@
 #include "tools/report/colour_scale.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <fmt/format.h>
 #include <vector>
@@ -33,6 +34,7 @@ std::array<std::uint8_t, 3> ColourScale::colour_of(double value) const {
 }
 
 ColourScale scale_for(std::span<const double> values) {
+    assert(!values.empty());
     std::vector<double> ranked(values.begin(), values.end());
     const auto most =
         ranked.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(ranked.size() - 1));

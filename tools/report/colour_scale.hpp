@@ -16,7 +16,7 @@ struct ColourScale {
 };
 
 /// A scale that ends at a round number (1, 2 or 5 times a power of ten), the least that 95 % of the values
-/// stay below. Precondition: there are values (unchecked).
+/// stay below. Precondition: there are values (asserted).
 ColourScale scale_for(std::span<const double> values);
 
 /// Draws the scale as a bar with its numbers, inline SVG.

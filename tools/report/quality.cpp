@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -10,7 +11,7 @@
 namespace palpate {
 namespace {
 
-void count(Histogram& histogram, double value) {
+void count(BinCounts& histogram, double value) {
     const double bins = static_cast<double>(histogram.counts.size());
     const double bin = std::floor((value - histogram.low) / (histogram.high - histogram.low) * bins);
     ++histogram.counts[static_cast<std::size_t>(std::clamp(bin, 0.0, bins - 1))];
@@ -34,6 +35,7 @@ TetShape tet_shape(const TetMesh& mesh, std::size_t t) {
             shape.dihedral_deg[edge++] = 180 - outer * 180 / std::numbers::pi;
         }
     const double six_v = a.dot(b.cross(c));
+    assert(six_v > 0);
     double double_area = 0;
     for (const Eigen::Vector3d& n : normal) double_area += n.norm();
     const double inradius = six_v / double_area;

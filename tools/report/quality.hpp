@@ -14,12 +14,12 @@ struct TetShape {
     double radius_ratio = 0;               ///< 3 inradius / circumradius: 1 regular, 0 flat
 };
 
-/// Measures tetrahedron `t`; its volume must be positive (unchecked). Source of both formulas: Shewchuk,
+/// Measures tetrahedron `t`; its volume must be positive (asserted). Source of both formulas: Shewchuk,
 /// "What is a good linear element?", 2002.
 TetShape tet_shape(const TetMesh& mesh, std::size_t t);
 
 /// Counts of equal bins over [low, high]; values beyond an end are counted in the end's bin.
-struct Histogram {
+struct BinCounts {
     double low = 0;
     double high = 1;
     std::vector<std::int64_t> counts;
@@ -27,8 +27,8 @@ struct Histogram {
 
 /// A whole mesh at a glance.
 struct MeshSummary {
-    Histogram dihedral_deg;  ///< all six angles of every tetrahedron, 5 degrees a bin
-    Histogram radius_ratio;  ///< one per tetrahedron, 0.05 a bin
+    BinCounts dihedral_deg;  ///< all six angles of every tetrahedron, 5 degrees a bin
+    BinCounts radius_ratio;  ///< one per tetrahedron, 0.05 a bin
     double min_dihedral_deg = 180;
     double max_dihedral_deg = 0;
     double min_radius_ratio = 1;

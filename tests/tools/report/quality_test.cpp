@@ -115,7 +115,7 @@ TEST(TetShape, radius_ratio_is_the_inverse_of_verdicts) {
 TEST(MeshSummary, counts_every_angle_and_every_millilitre) {
     const TetMesh mesh = sample::cube_mesh(4, 20);
     const MeshSummary summary = summarise(mesh);
-    const auto sum = [](const Histogram& h) {
+    const auto sum = [](const BinCounts& h) {
         return std::accumulate(h.counts.begin(), h.counts.end(), std::int64_t{0});
     };
     const auto tetrahedra = static_cast<std::int64_t>(mesh.tetrahedra.size());
