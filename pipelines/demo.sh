@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # From two real volumes to two organs that can be felt: build/demo/{nasopharynx,liver}.{vtkhdf,html}.
-# Needs Debian 12 with root or sudo; installs what is missing, builds, and does nothing twice.
+# Needs Debian 12 with root or sudo; installs what is missing, builds palpate's commands, and does nothing twice.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/set_up.sh"
-set_up release
+set_up release:commands
 
 bin=$root/build/release/bin
 mkdir -p "$root/build/demo"

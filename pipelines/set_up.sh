@@ -21,17 +21,18 @@ install_packages() {
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${missing[@]}"
 }
 
-build_preset() { # preset
+build() { # preset [target]
     cmake --preset "$1" -S "$root" >"$root/build/$1.configure.log" 2>&1 || { cat "$root/build/$1.configure.log" >&2; return 1; }
-    cmake --build "$root/build/$1"
+    cmake --build "$root/build/$1" ${2:+--target "$2"}
 }
 
-set_up() { # preset ...
-    local preset
+set_up() { # preset[:target] ...
+    local wanted
     install_packages
     mkdir -p "$root/build"
-    for preset in "$@"; do
-        echo "Building preset $preset" >&2
-        (cd "$root" && build_preset "$preset")
+    for wanted in "$@"; do
+        echo "Building ${wanted/:/, target }" >&2
+        # shellcheck disable=SC2086 # a preset and its target are two words
+        (cd "$root" && build ${wanted/:/ })
     done
 }

@@ -12,7 +12,7 @@ sample_data/unpack.py build/sample_data || echo "run.sh: the sample volumes coul
 status=0
 run_preset() { # preset
     echo; echo "== Tests of preset $1"
-    ctest --preset "$1" --output-junit "$root/build/$1/tests.xml" 2>&1 | tee "$root/build/$1/tests.log" || status=1
+    ctest --preset "$1" -j "$(nproc)" --output-junit "$root/build/$1/tests.xml" 2>&1 | tee "$root/build/$1/tests.log" || status=1
     python3 tests/skip_reasons.py "build/$1/tests.xml"
 }
 run_preset asan
