@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 
 namespace palpate {
 namespace {
@@ -219,12 +220,16 @@ double allowed_error(const SurfaceCompliance& compliance) {
 
 Eigen::Matrix3f compliance_block(const SurfaceCompliance& compliance, std::int32_t a,
                                  std::int32_t b) noexcept {
+    assert(a >= 0 && a < node_count(compliance) && b >= 0 && b < node_count(compliance));
     if (const auto* dense = std::get_if<DenseCompliance>(&compliance)) return block_of(*dense, a, b);
     return block_of(*std::get_if<HierarchicalCompliance>(&compliance), a, b);
 }
 
 void add_displacements(const SurfaceCompliance& compliance, std::span<const NodeForce> forces,
                        std::span<Eigen::Vector3f> displacements) noexcept {
+    assert(std::ssize(displacements) == node_count(compliance));
+    assert(std::ranges::all_of(
+        forces, [&](const NodeForce& load) { return load.node >= 0 && load.node < node_count(compliance); }));
     if (const auto* dense = std::get_if<DenseCompliance>(&compliance))
         add_products(*dense, forces, displacements);
     else

@@ -96,13 +96,13 @@ std::size_t value_bytes(const SurfaceCompliance& compliance);
 double allowed_error(const SurfaceCompliance& compliance);
 
 /// Returns the displacement of contact node `a` per force on contact node `b`, 3 x 3, mm/N. `a` and `b` must
-/// be in 0 ... m-1 (unchecked). Realtime-safe, thread-safe; a few dozen ns, plus 9 r multiply-adds where the
+/// be in 0 ... m-1 (asserted). Realtime-safe, thread-safe; a few dozen ns, plus 9 r multiply-adds where the
 /// block is of rank r.
 Eigen::Matrix3f compliance_block(const SurfaceCompliance& compliance, std::int32_t a,
                                  std::int32_t b) noexcept;
 
 /// Adds u_s = C_sc f_c to the displacements of all contact nodes, mm. Nodes may occur more than once; they
-/// must be in 0 ... m-1, `displacements` has m entries (both unchecked). Realtime-safe, thread-safe; reads
+/// must be in 0 ... m-1, `displacements` has m entries (both asserted). Realtime-safe, thread-safe; reads
 /// the touched rows of C, or the blocks that have a touched row or column.
 void add_displacements(const SurfaceCompliance& compliance, std::span<const NodeForce> forces,
                        std::span<Eigen::Vector3f> displacements) noexcept;

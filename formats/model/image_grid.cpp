@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/model/image_grid.hpp"
 
+#include <cassert>
+
 namespace palpate {
 
 std::size_t ImageGrid::voxel_count() const {
@@ -17,6 +19,7 @@ Eigen::Vector3d ImageGrid::point_of(const Eigen::Vector3d& index) const {
 }
 
 Eigen::Vector3d ImageGrid::index_of(const Eigen::Vector3d& p_P) const {
+    assert(direction.isUnitary(1e-4));  // what a header's decimals leave
     return (direction.transpose() * (p_P - origin)).cwiseQuotient(spacing);
 }
 

@@ -29,7 +29,7 @@ struct ImageGrid {
     }
     /// Maps a continuous voxel index to p_P (mm).
     Eigen::Vector3d point_of(const Eigen::Vector3d& index) const;
-    /// Maps p_P (mm) to a continuous voxel index; the direction matrix must be orthonormal (unchecked).
+    /// Maps p_P (mm) to a continuous voxel index; the direction matrix must be orthonormal (asserted).
     Eigen::Vector3d index_of(const Eigen::Vector3d& p_P) const;
 };
 

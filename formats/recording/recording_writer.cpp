@@ -2,6 +2,7 @@
 #include "formats/recording/recording_writer.hpp"
 
 #include <atomic>
+#include <cassert>
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
@@ -159,6 +160,7 @@ RecordingWriter::RecordingWriter(const std::filesystem::path& path) : open_(new 
 }
 
 void RecordingWriter::add(RecordedTick tick, std::span<const RecordedContact> contacts) noexcept {
+    assert(std::ssize(contacts) == tick.contact_count);
     const auto store = [](std::byte* column, std::int64_t row, const auto& value) {
         std::memcpy(column + static_cast<std::size_t>(row) * sizeof(value), &value, sizeof(value));
     };

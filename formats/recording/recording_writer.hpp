@@ -26,7 +26,7 @@ class RecordingWriter {
     /// cannot be mapped. Nobody may shorten the file meanwhile.
     explicit RecordingWriter(const std::filesystem::path& path);
 
-    /// Adds a row and its contacts, tick.contact_count of them (unchecked), over the oldest ones where the
+    /// Adds a row and its contacts, tick.contact_count of them (asserted), over the oldest ones where the
     /// rings are full. Sets first_contact itself. Ticks must come in ascending order of tick, then tool.
     void add(RecordedTick tick, std::span<const RecordedContact> contacts) noexcept;
     /// Says how many rows could not be handed over so far.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/devices/dynamic_device.hpp"
 
+#include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <unsupported/Eigen/MatrixFunctions>
 #include <utility>
@@ -50,6 +52,7 @@ DynamicDevice::DynamicDevice(DeviceModel model, HandImpedance impedance, std::sh
                              const std::array<double, 3>& shaft)
     : model_(std::move(model)), impedance_(impedance), hand_(std::move(hand)), shaft_(shaft) {
     check(model_, impedance_);
+    assert(hand_ != nullptr);
     const HandWish wish = hand_->at(0);
     held_ = wish.holds;
     hand_position_ = position_ = wish.position;
@@ -136,6 +139,7 @@ void DynamicDevice::warm_up() noexcept {
 }
 
 void DynamicDevice::write(const std::array<double, 3>& force) noexcept {
+    assert(std::ranges::all_of(force, [](double f) { return std::isfinite(f); }));
     const Eigen::Map<const Vector3d> wanted(force.data());
     const double length = wanted.norm();
     commands_[next_command_] =

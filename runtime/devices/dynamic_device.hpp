@@ -39,7 +39,7 @@ class DynamicDevice final : public Device {
 
     /// At rest and cool at time 0 where the hand is. Throws InvalidInput if a figure of model or impedance is
     /// not finite or negative, or the mass or the thermal time is zero; max_force may be infinite. `hand`, in
-    /// frame D, must not be null (unchecked). `shaft`: see DeviceState; it does not turn.
+    /// frame D, must not be null (asserted). `shaft`: see DeviceState; it does not turn.
     DynamicDevice(DeviceModel model, HandImpedance impedance, std::shared_ptr<Hand> hand,
                   const std::array<double, 3>& shaft = {0, 0, 0});
     /// The same in a hand that follows a path.
@@ -52,7 +52,7 @@ class DynamicDevice final : public Device {
     /// rounded down to their resolution. Cost: 16 steps of 20 to 50 ns, by the length of the path, per ms of
     /// time gone.
     DeviceState read(double time) noexcept override;
-    /// `force` must be finite (unchecked); its direction stays where the motors saturate.
+    /// `force` must be finite (asserted); its direction stays where the motors saturate.
     void write(const std::array<double, 3>& force) noexcept override;
 
     /// Where the tip is and how it moves, beyond what encoders tell: mm, mm/s.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/devices/mounted_device.hpp"
 
+#include <cassert>
 #include <cmath>
 
 #include "formats/model/arrays.hpp"
@@ -10,7 +11,23 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr double rigid_tolerance = 1e-9;  // of products of rotations in double
+
+Device& there(const std::unique_ptr<Device>& device) {
+    assert(device != nullptr);
+    return *device;
+}
+
 }  // namespace
+
+MountedDevice::MountedDevice(Device& device, const Eigen::Isometry3d& X_PD) : device_(device), X_PD_(X_PD) {
+    assert(X_PD.linear().isUnitary(rigid_tolerance) && X_PD.linear().determinant() > 0);
+}
+
+MountedDevice::MountedDevice(std::unique_ptr<Device> device, const Eigen::Isometry3d& X_PD)
+    : MountedDevice(there(device), X_PD) {
+    owned_ = std::move(device);
+}
 
 DeviceLimits MountedDevice::limits() const {
     DeviceLimits limits = device_.limits();

@@ -12,11 +12,10 @@ namespace palpate {
 /// back. Lengths and forces keep their size.
 class MountedDevice final : public Device {
   public:
-    /// `device` must outlive this. `X_PD`: a rigid motion (unchecked), mm.
-    MountedDevice(Device& device, const Eigen::Isometry3d& X_PD) : device_(device), X_PD_(X_PD) {}
-    /// The same, owning the device, which must not be null (unchecked).
-    MountedDevice(std::unique_ptr<Device> device, const Eigen::Isometry3d& X_PD)
-        : owned_(std::move(device)), device_(*owned_), X_PD_(X_PD) {}
+    /// `device` must outlive this. `X_PD`: a rigid motion (asserted), mm.
+    MountedDevice(Device& device, const Eigen::Isometry3d& X_PD);
+    /// The same, owning the device, which must not be null (asserted).
+    MountedDevice(std::unique_ptr<Device> device, const Eigen::Isometry3d& X_PD);
 
     std::string name() const override { return device_.name(); }
     /// The device's own, its workspace as the box in P around its corners.

@@ -2,6 +2,7 @@
 #include "runtime/haptics/contact_solver.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 namespace palpate {
 
@@ -10,6 +11,7 @@ using Eigen::Vector3d;
 
 void ContactSolver::add(std::span<Contact> contacts, const DeformableContact* body,
                         std::int32_t tool) noexcept {
+    assert(contacts.size() <= rows_.size() - count_);
     std::int64_t feet = 0;
     for (Contact& contact : contacts) {
         const bool vertex = contact.triangle < 0;

@@ -22,7 +22,7 @@ class ContactSolver {
     std::size_t size() const noexcept { return count_; }
 
     /// Adds the points of one part of a tool on one body, which is null if it is rigid. The contacts must
-    /// outlive solve(). At most max_contacts in all (unchecked).
+    /// outlive solve(). At most max_contacts in all (asserted).
     void add(std::span<Contact> contacts, const DeformableContact* body, std::int32_t tool) noexcept;
 
     /// Solves with a virtual coupling of compliance `coupling` (mm/N) for each tool and writes the forces

@@ -53,7 +53,7 @@ class HapticModel {
 
     /// Computes the forces for one state of each tool: finds contacts, solves them, limits the forces. Fills
     /// the results except tick_ns, wake_latency_ns and overruns. As many states and results as tools
-    /// (unchecked). Where a device has a fault, or with any of `faults` (Fault flags) all of them, the force
+    /// (asserted). Where a device has a fault, or with any of `faults` (Fault flags) all of them, the force
     /// goes to zero, see ForceLimiter; contacts are followed as long as the position is trusted. A tool that
     /// is found again more than 5 mm away starts anew: it does not feel a body that it is in until it has
     /// been clear of it. One thread; realtime-safe: no allocation, lock or I/O.

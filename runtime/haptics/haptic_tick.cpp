@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One tick of a haptic model: nothing here allocates, locks, waits or throws.
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "formats/model/arrays.hpp"
@@ -36,6 +37,7 @@ void HapticModel::detect_at(const std::array<double, 3>& device, std::int64_t ti
 
 void HapticModel::tick(std::span<const DeviceState> devices, std::span<TickResult> results,
                        std::uint32_t faults) noexcept {
+    assert(devices.size() == tools_.size() && results.size() == tools_.size());
     solver_.clear();
     for (std::size_t t = 0; t < tools_.size(); ++t) {
         results[t].tool = static_cast<std::int32_t>(t);

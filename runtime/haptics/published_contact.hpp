@@ -54,7 +54,7 @@ std::array<Eigen::Vector3d, 3> impose_displacement(const SurfaceCompliance& comp
 class PublishedContact {
   public:
     /// `surfaces`: one per body, rigid bodies first; must outlive this. Compliances are shared. `scheme`:
-    /// `single` or `twice` (unchecked: any other counts as `single`).
+    /// `single` or `twice` (asserted).
     PublishedContact(const Case& patient_case, std::span<const std::unique_ptr<CollisionSurface>> surfaces,
                      ContactScheme scheme);
 

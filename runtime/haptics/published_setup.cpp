@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the published contact allocates before the first tick.
 #include <algorithm>
+#include <cassert>
 
 #include "runtime/haptics/compliance_blocks.hpp"
 #include "runtime/haptics/published_contact.hpp"
@@ -14,6 +15,7 @@ PublishedContact::PublishedContact(const Case& patient_case,
       twice_(scheme == ContactScheme::twice),
       detections_(Answered{std::vector<Detection>(surfaces.size()), 0}),
       contacted_(surfaces.size()) {
+    assert(scheme == ContactScheme::single || scheme == ContactScheme::twice);
     for (const RigidBody& body : patient_case.rigid_bodies) triangles_.push_back(body.surface.triangles);
     for (const DeformableBody& body : patient_case.deformable_bodies) {
         triangles_.push_back(body.boundary.surface.triangles);

@@ -2,6 +2,7 @@
 #include "tools/meshing/region_boxes.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 #include "tools/meshing/gaussian.hpp"
 
@@ -21,6 +22,7 @@ std::vector<RegionBox> region_boxes(const RegionLabels& labels, const Index3& re
     std::vector<RegionBox> boxes(low.size());
     for (std::size_t region = 0; region < boxes.size(); ++region)
         for (std::size_t axis = 0; axis < 3; ++axis) {
+            assert(low[region][axis] <= high[region][axis]);
             boxes[region].low[axis] = low[region][axis] - reach[axis];
             boxes[region].size[axis] = high[region][axis] - low[region][axis] + 1 + 2 * reach[axis];
         }

@@ -26,7 +26,7 @@ void for_each_voxel(const RegionBox& box, Visit&& visit) {
 }
 
 /// Returns the box of every region with `reach` voxels more on each side, in the regions' order.
-/// Precondition: every region has a voxel (unchecked).
+/// Precondition: every region has a voxel (asserted).
 std::vector<RegionBox> region_boxes(const RegionLabels& labels, const Index3& reach);
 
 /// Returns 1 where the region is and 0 elsewhere, smoothed by a Gaussian, over a box inside the labels' grid.

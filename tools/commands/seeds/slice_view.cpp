@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace palpate {
@@ -74,6 +75,7 @@ double index_along(const ImageGrid& grid, int axis, bool flipped, double distanc
 }  // namespace
 
 std::array<SliceView, 3> slice_views(const ImageGrid& grid) {
+    assert(grid.direction.isUnitary(1e-4));
     const Vector3d left = Vector3d::UnitX(), back = Vector3d::UnitY(), feet = -Vector3d::UnitZ();
     return {view_of("axial", grid, left, back), view_of("coronal", grid, left, feet),
             view_of("sagittal", grid, back, feet)};

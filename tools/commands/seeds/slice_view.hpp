@@ -25,7 +25,7 @@ struct SliceView {
     std::array<char, 4> edges{};  ///< what lies towards left, right, top, bottom: of R L A P S I
 };
 
-/// The axial, the coronal and the sagittal view of a grid, whose directions must be orthonormal (unchecked).
+/// The axial, the coronal and the sagittal view of a grid, whose directions must be orthonormal (asserted).
 std::array<SliceView, 3> slice_views(const ImageGrid& grid);
 
 /// Width and height of a view's pictures in mm.
