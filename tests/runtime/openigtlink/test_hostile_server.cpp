@@ -86,6 +86,13 @@ TEST(HostileServer, that_sends_large_images_costs_no_memory) {
     EXPECT_LT(resident_bytes(), before + (16 << 20));  // of the 128 MiB that came
 }
 
+// What a sanitizer holds back of the memory that was given back, to see it used again.
+#ifdef PALPATE_SANITIZED
+constexpr std::size_t quarantine = 8 << 20;
+#else
+constexpr std::size_t quarantine = 0;
+#endif
+
 TEST(HostileServer, that_changes_names_without_end_costs_no_memory) {
     TrackerPeer peer;
     const auto device = peer.device("Stylus", transform_message("Stylus", at(1)));
@@ -98,7 +105,7 @@ TEST(HostileServer, that_changes_names_without_end_costs_no_memory) {
     peer.send(many);
     peer.send(transform_message("Stylus", at(2)));
     EXPECT_TRUE(eventually([&] { return device->read(0).position[0] == -2; }));
-    EXPECT_LT(resident_bytes(), before + (8 << 20));
+    EXPECT_LT(resident_bytes(), before + (8 << 20) + quarantine);
 }
 
 }  // namespace
