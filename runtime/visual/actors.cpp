@@ -75,7 +75,7 @@ vtkSmartPointer<vtkActor> actor(vtkPolyData* data, const Rgb& colour) {
     mapper->SetInputData(data);
     auto result = vtkSmartPointer<vtkActor>::New();
     result->SetMapper(mapper);
-    paint(result, colour);
+    set_colour(result, colour);
     result->GetProperty()->SetAmbient(0.13);
     return result;
 }

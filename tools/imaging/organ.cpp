@@ -78,11 +78,11 @@ Blocks prepare(Volume grey, const OrganSeeds& seeds) {
 }
 
 Blocks crop_blocks(const Blocks& blocks, const Box& box) {
-    Volume local = crop_blocks(Volume{blocks.grey.grid, blocks.local}, box);
-    return {crop_blocks(blocks.grey, box),
-            crop_blocks(blocks.smooth, box),
-            crop_blocks(blocks.wall, box),
-            crop_blocks(blocks.steepness, box),
+    Volume local = crop(Volume{blocks.grey.grid, blocks.local}, box);
+    return {crop(blocks.grey, box),
+            crop(blocks.smooth, box),
+            crop(blocks.wall, box),
+            crop(blocks.steepness, box),
             blocks.edge,
             std::move(local.values)};
 }
@@ -185,7 +185,7 @@ Mask organ_of_blocks(Volume grey, const OrganSeeds& seeds, const OrganParameters
     follow(blocks, found, seeds, p.drift_hu);
     const Box part = bounding_box(found, surroundings_mm);
     blocks = crop_blocks(blocks, part);
-    found = crop_blocks(found, part);
+    found = crop(found, part);
     box.size = part.size;
     for (std::size_t axis = 0; axis < 3; ++axis) box.low[axis] += part.low[axis];
     Mask candidates;
@@ -237,7 +237,7 @@ Mask organ(const Volume& volume, Points seeds, const OrganParameters& parameters
     Volume whole = coarsen(volume, block);
     const OrganSeeds looked_at = look_at_seeds(whole, seeds, parameters, culprit, note);
     Box box = box_around(whole, seeds);
-    whole = crop_blocks(whole, box);
+    whole = crop(whole, box);
     const Mask found = organ_of_blocks(std::move(whole), looked_at, parameters, box);
     if (found.count() == 0)
         throw InvalidInput(
