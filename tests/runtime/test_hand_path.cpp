@@ -6,6 +6,7 @@
 #include "formats/model/errors.hpp"
 #include "runtime/devices/hand_path.hpp"
 #include "runtime/devices/simulated_device.hpp"
+#include "tests/formats/scratch.hpp"
 
 namespace palpate {
 namespace {
@@ -13,7 +14,8 @@ namespace {
 using Eigen::Vector3d;
 
 std::filesystem::path text_file(const std::string& text) {
-    const auto path = std::filesystem::path(::testing::TempDir()) / "palpate_hand_path.txt";
+    static const sample::Scratch folder;  // of this process: tests run side by side
+    const auto path = folder / "palpate_hand_path.txt";
     std::ofstream(path) << text;
     return path;
 }
