@@ -7,11 +7,11 @@ import xml.etree.ElementTree as ElementTree
 
 
 def reason_of(output):
-    """The line that says why: GTEST_SKIP()'s message or unittest's "skipped '...'"."""
+    """The line that says why: GTEST_SKIP()'s message, unittest's "skipped '...'" or a script's "skipped: ..."."""
     lines = [line.strip() for line in output.splitlines()]
     for index, line in enumerate(lines):
-        if match := re.search(r"skipped ['\"](.+)['\"]", line):
-            return match.group(1)
+        if match := re.search(r"skipped ['\"](.+)['\"]|^skipped: (.+)", line):
+            return match.group(1) or match.group(2)
         if line.endswith(": Skipped") and index + 1 < len(lines):
             return lines[index + 1]
     return "no reason given"
