@@ -7,7 +7,7 @@ names.py <source folder>
 Two types of one name in one program break C++'s one-definition rule without a word from the linker. And where a preset
 compiles several files of a folder together, a helper in one file's unnamed namespace comes before a function of the same
 name and number of parameters that a header declares: the next file would silently call the helper.
-Reads formats, tools and runtime with Universal Ctags.
+Reads formats, tools, runtime and, for what hides, tests with Universal Ctags.
 """
 import collections
 import json
@@ -17,11 +17,12 @@ import sys
 from pathlib import Path
 
 ROOMS = ("formats", "tools", "runtime")
+PROGRAMS = ("tests", "sample_data")  # each test is a program of its own, so only hiding counts there
 TYPES = {"class", "struct", "union", "enum"}
 
 
 def tags(root):
-    files = [str(p.relative_to(root)) for room in ROOMS for p in sorted((root / room).rglob("*.[ch]pp"))]
+    files = [str(p.relative_to(root)) for room in ROOMS + PROGRAMS for p in sorted((root / room).rglob("*.[ch]pp")) if "clashing_names" not in p.relative_to(root).parts]
     lines = subprocess.run(["ctags", "--languages=C++", "--kinds-C++=fpcsgu", "--fields=+nsSKzZ",
                             "--output-format=json", "-L", "-", "-f", "-"], input="\n".join(files), cwd=root, text=True,
                            capture_output=True, check=True).stdout.splitlines()
@@ -47,7 +48,7 @@ def defined_twice(found):
     places = collections.defaultdict(set)
     for tag in found:
         scope = tag.get("scope", "")
-        if "__anon" in scope or tag["name"].startswith("__anon") or tag["name"] == "main":
+        if tag["path"].startswith(PROGRAMS) or "__anon" in scope or tag["name"].startswith("__anon") or tag["name"] == "main":
             continue
         if tag["kind"] in TYPES:
             places[f"{scope}::{tag['name']}"].add(tag["path"])

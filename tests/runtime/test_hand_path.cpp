@@ -20,7 +20,7 @@ std::filesystem::path text_file(const std::string& text) {
     return path;
 }
 
-std::string refusal(const std::string& text) {
+std::string path_refusal(const std::string& text) {
     try {
         read_hand_path(text_file(text));
     } catch (const InvalidInput& error) {
@@ -75,12 +75,12 @@ TEST(ReadHandPath, takes_a_position_per_millisecond_or_times) {
 }
 
 TEST(ReadHandPath, names_file_and_line_of_what_is_wrong) {
-    EXPECT_NE(refusal("1 2 3\n1 x 3\n").find("palpate_hand_path.txt, line 2"), std::string::npos);
-    EXPECT_NE(refusal("1 2 3\n1 2 3 4\n").find("line 2: 4 numbers"), std::string::npos);
-    EXPECT_NE(refusal("1 2\n").find("line 1: 2 numbers"), std::string::npos);
-    EXPECT_NE(refusal("0 1 2 3\n0 1 2 3\n").find("line 2: time"), std::string::npos);
-    EXPECT_NE(refusal("1 2 nan\n").find("line 1"), std::string::npos);
-    EXPECT_NE(refusal("# nothing\n").find("no positions"), std::string::npos);
+    EXPECT_NE(path_refusal("1 2 3\n1 x 3\n").find("palpate_hand_path.txt, line 2"), std::string::npos);
+    EXPECT_NE(path_refusal("1 2 3\n1 2 3 4\n").find("line 2: 4 numbers"), std::string::npos);
+    EXPECT_NE(path_refusal("1 2\n").find("line 1: 2 numbers"), std::string::npos);
+    EXPECT_NE(path_refusal("0 1 2 3\n0 1 2 3\n").find("line 2: time"), std::string::npos);
+    EXPECT_NE(path_refusal("1 2 nan\n").find("line 1"), std::string::npos);
+    EXPECT_NE(path_refusal("# nothing\n").find("no positions"), std::string::npos);
     EXPECT_THROW(read_hand_path("/nowhere/path.txt"), InvalidInput);
 }
 
