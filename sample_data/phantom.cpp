@@ -6,7 +6,7 @@
 
 #include "sample_data/phantoms.hpp"
 #include "tools/cli/command.hpp"
-#include "tools/imaging/image_files.hpp"
+#include "tools/imaging/files/image_files.hpp"
 
 int main(int argc, char** argv) {
     using namespace palpate;

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "formats/asset/body_io.hpp"
-#include "formats/asset/digest.hpp"
+#include "formats/asset/hdf5/digest.hpp"
 #include "formats/asset/validate.hpp"
 #include "formats/asset/vtk_grid.hpp"
 #include "formats/model/errors.hpp"

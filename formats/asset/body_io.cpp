@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <cstring>
 
-#include "formats/asset/columns.hpp"
-#include "formats/asset/digest.hpp"
+#include "formats/asset/hdf5/columns.hpp"
+#include "formats/asset/hdf5/digest.hpp"
 #include "formats/asset/validate.hpp"
 #include "formats/model/errors.hpp"
 
@@ -66,7 +66,7 @@ BoundarySurface read_boundary(const Hdf5File& file, const std::string& path, con
         if (node < 0 || static_cast<std::size_t>(node) >= mesh.rest_positions.size())
             file.refuse(path + "/surface_nodes", "has index " + std::to_string(node),
                         "0 to " + std::to_string(mesh.rest_positions.size()) + " exclusive");
-        boundary.surface.vertices.push_back(mesh.rest_positions[static_cast<std::size_t>(node)]);
+        boundary.surface.vertices.push_back(mesh.rest_positions[node]);
     }
     boundary.surface.triangles = read_rows<std::int32_t, Triangle>(file, path + "/surface_triangles");
     return boundary;
@@ -123,7 +123,7 @@ HierarchicalCompliance map_hierarchical(const Hdf5File& file, const std::string&
     check_hierarchical(compliance, file.name() + ": " + path);  // before positions are made of the order
     compliance.positions.resize(node_count);
     for (std::size_t p = 0; p < node_count; ++p)
-        compliance.positions[static_cast<std::size_t>(compliance.order[p])] = static_cast<std::int32_t>(p);
+        compliance.positions[compliance.order[p]] = static_cast<std::int32_t>(p);
     return compliance;
 }
 

@@ -2,8 +2,8 @@
 #pragma once
 #include <string>
 
-#include "formats/asset/hdf5_file.hpp"
-#include "formats/asset/hdf5_writer.hpp"
+#include "formats/asset/hdf5/hdf5_file.hpp"
+#include "formats/asset/hdf5/hdf5_writer.hpp"
 #include "formats/model/body.hpp"
 
 namespace palpate {

@@ -2,7 +2,7 @@
 #include "formats/asset/parts.hpp"
 
 #include "formats/asset/body_io.hpp"
-#include "formats/asset/digest.hpp"
+#include "formats/asset/hdf5/digest.hpp"
 #include "formats/asset/validate.hpp"
 
 namespace palpate {

@@ -235,8 +235,7 @@ void check_hierarchical(const HierarchicalCompliance& compliance, const std::str
     std::vector<char> seen(nodes, 0);
     if (compliance.order.size() != nodes) refuse(where + "/order", "has another length than contact_nodes");
     for (const std::int32_t node : compliance.order)
-        if (node < 0 || static_cast<std::size_t>(node) >= nodes ||
-            std::exchange(seen[static_cast<std::size_t>(node)], 1) != 0)
+        if (node < 0 || static_cast<std::size_t>(node) >= nodes || std::exchange(seen[node], 1) != 0)
             refuse(where + "/order", "is not a permutation of the contact nodes");
     if (!all_finite({compliance.values.get(), compliance.value_count}))
         refuse(where + "/values", "has an entry that is not finite");
@@ -277,7 +276,7 @@ void check_obb_tree(const ObbTree& tree, std::size_t triangle_count, const std::
     std::vector<char> seen(triangle_count);
     for (const std::int32_t triangle : tree.triangle_order) {
         if (triangle < 0 || static_cast<std::size_t>(triangle) >= triangle_count ||
-            std::exchange(seen[static_cast<std::size_t>(triangle)], 1) != 0)
+            std::exchange(seen[triangle], 1) != 0)
             refuse(where + "/triangle_order", "is not a permutation of the triangles");
     }
 

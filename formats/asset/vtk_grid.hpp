@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include "formats/asset/hdf5_writer.hpp"
+#include "formats/asset/hdf5/hdf5_writer.hpp"
 #include "formats/model/body.hpp"
 
 namespace palpate {

@@ -60,8 +60,7 @@ Place part(const HierarchicalCompliance& c, const Place& whole, std::int32_t i, 
 }
 
 Eigen::Matrix3f block_of(const HierarchicalCompliance& c, std::int32_t a, std::int32_t b) noexcept {
-    const std::int32_t p = c.positions[static_cast<std::size_t>(a)],
-                       q = c.positions[static_cast<std::size_t>(b)];
+    const std::int32_t p = c.positions[a], q = c.positions[b];
     const std::int32_t row = std::max(p, q), column = std::min(p, q);
     Place place{0, 0, 0, 0};
     while (c.blocks[place.block].first_child > 0)
@@ -86,7 +85,7 @@ Eigen::Matrix3f block_of(const HierarchicalCompliance& c, std::int32_t a, std::i
         std::array<float, HierarchicalCompliance::max_rank> weights;
         for (Index axis = 0; axis < 3; ++axis) {
             for (std::int64_t k = 0; k < rank; ++k)
-                weights[static_cast<std::size_t>(k)] = values[k] * static_cast<float>(v[axis * rank + k]);
+                weights[k] = values[k] * static_cast<float>(v[axis * rank + k]);
             for (Index i = 0; i < 3; ++i) result(i, axis) = dot(u + i * rank, weights.data(), block.rank);
         }
     }
@@ -120,8 +119,7 @@ class Product {
                                      within(on_columns, column_middle, c_.node_count)};
             for (std::int32_t i = 0; i < 2; ++i)
                 for (std::int32_t j = 0; j < (diagonal ? i + 1 : 2); ++j)
-                    add(part(c_, place, i, j), rows[static_cast<std::size_t>(i)],
-                        columns[static_cast<std::size_t>(j)]);
+                    add(part(c_, place, i, j), rows[i], columns[j]);
             return;
         }
         const std::int32_t row_begin = c_.begin(place.level, place.row),
@@ -152,9 +150,7 @@ class Product {
     }
 
   private:
-    Eigen::Vector3f& displaced(std::int32_t position) noexcept {
-        return u_[static_cast<std::size_t>(c_.order[static_cast<std::size_t>(position)])];
-    }
+    Eigen::Vector3f& displaced(std::int32_t position) noexcept { return u_[c_.order[position]]; }
 
     // Displacements += U diag(s) Vᵀ f for forces on the rows of V.
     void add_low_rank(const float* s, Factors u, std::int32_t u_begin, std::int32_t u_end, Factors v,
@@ -189,8 +185,7 @@ void add_products(const HierarchicalCompliance& c, std::span<const NodeForce> fo
     Product product(c, displacements);
     while (!forces.empty()) {
         const std::size_t count = std::min(forces.size(), loads.size());
-        for (std::size_t i = 0; i < count; ++i)
-            loads[i] = {c.positions[static_cast<std::size_t>(forces[i].node)], forces[i].force};
+        for (std::size_t i = 0; i < count; ++i) loads[i] = {c.positions[forces[i].node], forces[i].force};
         const Loads chunk = std::span(loads).first(count);
         std::ranges::sort(loads.begin(), loads.begin() + static_cast<std::ptrdiff_t>(count), {},
                           &NodeForce::node);

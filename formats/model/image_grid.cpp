@@ -28,8 +28,7 @@ bool same_grid(const ImageGrid& a, const ImageGrid& b) {
     const double tolerance = 1e-4;  // mm: far below any voxel, far above float32 header round-off
     for (int corner = 0; corner < 8; ++corner) {
         Eigen::Vector3d index;
-        for (int axis = 0; axis < 3; ++axis)
-            index[axis] = (corner >> axis & 1) ? a.size[static_cast<std::size_t>(axis)] : 0;
+        for (int axis = 0; axis < 3; ++axis) index[axis] = (corner >> axis & 1) ? a.size[axis] : 0;
         if ((a.point_of(index) - b.point_of(index)).norm() > tolerance) return false;
     }
     return true;

@@ -37,7 +37,7 @@ BoundarySurface boundary_surface(const TetMesh& mesh) {
     BoundarySurface result;
     std::vector<std::int32_t> vertex_of(mesh.rest_positions.size(), -1);
     for (const std::size_t order : boundary)
-        for (const std::int32_t node : corners(order)) vertex_of[static_cast<std::size_t>(node)] = 0;
+        for (const std::int32_t node : corners(order)) vertex_of[node] = 0;
     for (std::size_t node = 0; node < vertex_of.size(); ++node) {
         if (vertex_of[node] < 0) continue;
         vertex_of[node] = static_cast<std::int32_t>(result.nodes.size());
@@ -46,16 +46,14 @@ BoundarySurface boundary_surface(const TetMesh& mesh) {
     }
     for (const std::size_t order : boundary) {
         const Triangle t = corners(order);
-        result.surface.triangles.push_back({vertex_of[static_cast<std::size_t>(t[0])],
-                                            vertex_of[static_cast<std::size_t>(t[1])],
-                                            vertex_of[static_cast<std::size_t>(t[2])]});
+        result.surface.triangles.push_back({vertex_of[t[0]], vertex_of[t[1]], vertex_of[t[2]]});
     }
     return result;
 }
 
 double six_volume(const TetMesh& mesh, std::size_t t) {
     const auto point = [&](std::size_t corner) -> const Eigen::Vector3d& {
-        return mesh.rest_positions[static_cast<std::size_t>(mesh.tetrahedra[t][corner])];
+        return mesh.rest_positions[mesh.tetrahedra[t][corner]];
     };
     return (point(1) - point(0)).cross(point(2) - point(0)).dot(point(3) - point(0));
 }

@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "formats/asset/body_io.hpp"
-#include "formats/asset/hdf5_file.hpp"
+#include "formats/asset/hdf5/hdf5_file.hpp"
 #include "formats/asset/validate.hpp"
 #include "formats/model/errors.hpp"
 #include "formats/recording/columns.hpp"
@@ -40,7 +40,7 @@ RecordingHead read_head(const Hdf5File& file) {
     check_haptics(head.haptics, file.name() + ": /haptics");
     const auto tools = file.attribute<std::int32_t>("/", "tools");
     if (tools < 1 || tools > most_recorded_tools) file.refuse("/", std::to_string(tools) + " tools");
-    head.devices.resize(static_cast<std::size_t>(tools));
+    head.devices.resize(tools);
     const std::vector<std::string> names = file.texts("/devices/name", {tools});
     for (std::size_t i = 0; i < names.size(); ++i) head.devices[i].name = names[i];
     visit_device_columns([&](const char* name, const char*, auto member) {
@@ -85,7 +85,7 @@ std::int64_t read_ticks(const Hdf5File& file, Recording& recording) {
     if (recording.rows_written == 0)
         throw InvalidInput({file.name(), "holds no tick", "", "record a run that ticks"});
     const std::int64_t kept = std::min(recording.rows_written, capacity - 1);
-    recording.ticks.resize(static_cast<std::size_t>(kept));
+    recording.ticks.resize(kept);
     visit_tick_columns([&](const char* name, const char*, auto member) {
         read_column(file, std::string("/ticks/") + name, capacity, recording.rows_written - kept,
                     recording.ticks, member);
@@ -101,7 +101,7 @@ void read_contacts(const Hdf5File& file, Recording& recording) {
     const std::int64_t written = read_counter(file, contacts_written_path);
     const std::int64_t kept = std::min(written, capacity - contacts_in_transit);
     recording.contacts_before = written - kept;
-    recording.contacts.resize(static_cast<std::size_t>(kept));
+    recording.contacts.resize(kept);
     visit_contact_columns([&](const char* name, const char*, auto member) {
         read_column(file, std::string("/contacts/") + name, capacity, recording.contacts_before,
                     recording.contacts, member);

@@ -11,8 +11,8 @@
 #include <unistd.h>
 
 #include "formats/asset/body_io.hpp"
-#include "formats/asset/hdf5_file.hpp"
-#include "formats/asset/hdf5_writer.hpp"
+#include "formats/asset/hdf5/hdf5_file.hpp"
+#include "formats/asset/hdf5/hdf5_writer.hpp"
 #include "formats/asset/validate.hpp"
 #include "formats/model/errors.hpp"
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "runtime/devices/hd_session.hpp"
+#include "runtime/devices/openhaptics/hd_session.hpp"
 #include "runtime/openigtlink/address.hpp"
 #include "runtime/realtime/device.hpp"
 #include "runtime/realtime/servo.hpp"

@@ -76,7 +76,7 @@ Json touch(const TouchOptions& options, cli::Session& session) {
     RunWatch watch(options.virtual_clock ? std::filesystem::path() : options.asset, loop,
                    [](const std::string& sentence) { spdlog::warn("{}", sentence); });
     const auto take = [&](const TickResult& result) {
-        records[static_cast<std::size_t>(result.tool)].add(result);
+        records[result.tool].add(result);
         watch.add(result);
         if (stream) stream->show(result);
         if (!recorder) return;

@@ -27,9 +27,8 @@ nlohmann::ordered_json replay_recording(const std::filesystem::path& file, const
     const Case patient_case = read_asset(asset);
     const auto model = model_of(recording, file, asset, patient_case);
     std::vector<RunRecord> records = outputs.records_of(*model);
-    const ReplayOutcome outcome = replay(recording, *model, [&](const TickResult& result) {
-        records[static_cast<std::size_t>(result.tool)].add(result);
-    });
+    const ReplayOutcome outcome =
+        replay(recording, *model, [&](const TickResult& result) { records[result.tool].add(result); });
     if (!outcome.started)
         throw InvalidInput({file.string(), "no tick from which a replay could start",
                             "the run's first tick, or three in a row without contact, force and fault",

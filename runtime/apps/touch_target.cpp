@@ -51,8 +51,7 @@ std::vector<Vector3d> held_points(const Case& patient_case, const HapticModel& m
     std::vector<Vector3d> points;
     if (body >= model.rigid_count()) {
         const DeformableBody& soft = patient_case.deformable_bodies[body - model.rigid_count()];
-        for (const std::int32_t node : soft.fixed_nodes)
-            points.push_back(soft.mesh.rest_positions[static_cast<std::size_t>(node)]);
+        for (const std::int32_t node : soft.fixed_nodes) points.push_back(soft.mesh.rest_positions[node]);
     } else {
         const TriangleMesh& surface = patient_case.rigid_bodies[body].surface;
         Vector3d sum = Vector3d::Zero();
@@ -80,16 +79,14 @@ std::vector<std::int32_t> free_triangles(const Case& patient_case, const HapticM
     }
     std::vector<std::int32_t> triangles;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-        if (std::ranges::none_of(mesh.triangles[t],
-                                 [&](std::int32_t v) { return fixed[static_cast<std::size_t>(v)]; }))
+        if (std::ranges::none_of(mesh.triangles[t], [&](std::int32_t v) { return fixed[v]; }))
             triangles.push_back(static_cast<std::int32_t>(t));
     return triangles;
 }
 
 TriangleCorners corners_of(const TriangleMesh& mesh, std::int32_t triangle) {
-    const Triangle& t = mesh.triangles[static_cast<std::size_t>(triangle)];
-    return {mesh.vertices[static_cast<std::size_t>(t[0])], mesh.vertices[static_cast<std::size_t>(t[1])],
-            mesh.vertices[static_cast<std::size_t>(t[2])]};
+    const Triangle& t = mesh.triangles[triangle];
+    return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
 }
 
 TouchTarget target_on(std::size_t body, std::int32_t triangle, const TriangleCorners& t,

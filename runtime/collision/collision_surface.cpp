@@ -30,18 +30,18 @@ CollisionSurface::CollisionSurface(const TriangleMesh& mesh, const ObbTree& tree
     double scale = 0;  // mm, largest coordinate
     for (std::size_t slot = 0; slot < count; ++slot) {
         const std::int32_t t = tree.triangle_order[slot];
-        if (t < 0 || static_cast<std::size_t>(t) >= count || taken[static_cast<std::size_t>(t)])
+        if (t < 0 || static_cast<std::size_t>(t) >= count || taken[t])
             refuse(name, "entry " + std::to_string(slot) + " of the OBB tree's order is " + std::to_string(t),
                    "each triangle once");
-        taken[static_cast<std::size_t>(t)] = true;
+        taken[t] = true;
         triangles_[slot].mesh_triangle = t;
-        const Triangle& corners = mesh.triangles[static_cast<std::size_t>(t)];
+        const Triangle& corners = mesh.triangles[t];
         for (std::size_t corner = 0; corner < 3; ++corner) {
             if (corners[corner] < 0 || corners[corner] >= vertex_count)
                 refuse(name,
                        "triangle " + std::to_string(t) + " names vertex " + std::to_string(corners[corner]),
                        "0 to " + std::to_string(vertex_count - 1));
-            const Eigen::Vector3d& vertex = mesh.vertices[static_cast<std::size_t>(corners[corner])];
+            const Eigen::Vector3d& vertex = mesh.vertices[corners[corner]];
             for (std::size_t axis = 0; axis < 3; ++axis)
                 triangles_[slot].corners[3 * corner + axis] =
                     static_cast<float>(vertex[static_cast<Eigen::Index>(axis)]);

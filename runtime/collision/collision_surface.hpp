@@ -83,9 +83,7 @@ class CollisionSurface {
     Eigen::Vector3d pseudonormal(const Eigen::Vector3d& q) const noexcept;
 
     std::int32_t triangle_count() const noexcept { return static_cast<std::int32_t>(triangles_.size()); }
-    std::int32_t mesh_triangle(std::int32_t slot) const noexcept {
-        return triangles_[static_cast<std::size_t>(slot)].mesh_triangle;
-    }
+    std::int32_t mesh_triangle(std::int32_t slot) const noexcept { return triangles_[slot].mesh_triangle; }
     /// The corners of a slot's triangle, mm.
     TriangleCorners corners(std::int32_t slot) const noexcept;
     /// A node of the tree, 0 being the root, for queries that walk it themselves. As ObbTree says, but

@@ -98,9 +98,9 @@ std::optional<ClosestPoint> CollisionSurface::closest_point(const Vector3d& p, d
     while (size > 0) {
         const Pending top = stack[--size];
         if (!(static_cast<double>(top.squared_bound) <= best.squared_distance)) continue;
-        const std::int32_t link = nodes_[static_cast<std::size_t>(top.node)].link;
+        const std::int32_t link = nodes_[top.node].link;
         if (link < 0) {
-            const Leaf leaf = leaves_[static_cast<std::size_t>(-1 - link)];
+            const Leaf leaf = leaves_[-1 - link];
             for (std::int32_t slot = leaf.first; slot < leaf.first + leaf.count; ++slot)
                 if (slot != hint) test(slot);
             continue;
@@ -143,9 +143,9 @@ std::optional<SweepContact> CollisionSurface::sweep_sphere(const Vector3d& from,
         const Pending top = stack[--size];
         const double reach = radius + best.fraction * length;
         if (static_cast<double>(top.squared_bound) > reach * reach) continue;
-        const std::int32_t link = nodes_[static_cast<std::size_t>(top.node)].link;
+        const std::int32_t link = nodes_[top.node].link;
         if (link < 0) {
-            const Leaf leaf = leaves_[static_cast<std::size_t>(-1 - link)];
+            const Leaf leaf = leaves_[-1 - link];
             for (std::int32_t slot = leaf.first; slot < leaf.first + leaf.count; ++slot)
                 if (slot != hint) test(slot);
             continue;
@@ -172,14 +172,14 @@ std::size_t CollisionSurface::slots_near(const Vector3d& a, const Vector3d& b, d
     std::size_t size = 0;
     stack[size++] = 0;
     while (size > 0) {
-        const Node& node = nodes_[static_cast<std::size_t>(stack[--size])];
+        const Node& node = nodes_[stack[--size]];
         if (!std::isfinite(squared_distance_bound(node, reach))) continue;
         if (node.link >= 0) {
             stack[size++] = node.link + 1;
             stack[size++] = node.link;
             continue;
         }
-        const Leaf leaf = leaves_[static_cast<std::size_t>(-1 - node.link)];
+        const Leaf leaf = leaves_[-1 - node.link];
         for (std::int32_t slot = leaf.first; slot < leaf.first + leaf.count; ++slot, ++found)
             if (found < slots.size()) slots[found] = slot;
     }

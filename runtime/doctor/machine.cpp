@@ -18,7 +18,7 @@ std::optional<std::string> text_of(const Machine& machine, const std::filesystem
     if (!file) return std::nullopt;
     std::string text(static_cast<std::size_t>(most), '\0');
     file.read(text.data(), most);
-    text.resize(static_cast<std::size_t>(file.gcount()));
+    text.resize(file.gcount());
     while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
     return text;
 }

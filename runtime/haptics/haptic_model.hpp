@@ -10,12 +10,12 @@
 
 #include "formats/model/body.hpp"
 #include "runtime/collision/collision_surface.hpp"
-#include "runtime/haptics/contact_scheme.hpp"
-#include "runtime/haptics/contact_solver.hpp"
-#include "runtime/haptics/deformable_contact.hpp"
+#include "runtime/haptics/contact/contact_scheme.hpp"
+#include "runtime/haptics/contact/contact_solver.hpp"
+#include "runtime/haptics/contact/deformable_contact.hpp"
+#include "runtime/haptics/contact/god_object.hpp"
+#include "runtime/haptics/contact/published_contact.hpp"
 #include "runtime/haptics/force_limiter.hpp"
-#include "runtime/haptics/god_object.hpp"
-#include "runtime/haptics/published_contact.hpp"
 #include "runtime/haptics/tick_result.hpp"
 #include "runtime/realtime/device.hpp"
 

@@ -214,7 +214,7 @@ Contact HapticModel::rigid_contact(const GodObject::Touch& touch, const Vector3d
     contact.body = static_cast<std::int32_t>(touch.surface);
     contact.triangle = touch.foot.triangle;
     if (touch.surface < rigid_count()) {  // a soft body that does not give way gets no vertices to move
-        contact.vertices = rigid_triangles_[touch.surface][static_cast<std::size_t>(touch.foot.triangle)];
+        contact.vertices = rigid_triangles_[touch.surface][touch.foot.triangle];
         Eigen::Map<Eigen::Vector3f>(contact.weights.data()) = touch.foot.barycentric.cast<float>();
     }
     Eigen::Map<Eigen::Vector3f>(contact.normal.data()) = normal.cast<float>();
@@ -229,7 +229,7 @@ Vector3d HapticModel::rigid_force(const GodObject& tip, const Vector3d& device,
     if (tip.touches().empty()) return Vector3d::Zero();
     const Vector3d force = coupling_ * (tip.position() - device);
     const Vector3d drag = -coupling_ * tip.held_back(), press = force - drag;
-    Contact& contact = result.contacts[static_cast<std::size_t>(result.contact_count++)];
+    Contact& contact = result.contacts[result.contact_count++];
     contact = rigid_contact(tip.touches().front(), press.normalized(), press.norm() / coupling_);
     contact.force = static_cast<float>(press.norm());
     Eigen::Map<Eigen::Vector3f>(contact.friction.data()) = drag.cast<float>();

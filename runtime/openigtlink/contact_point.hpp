@@ -17,8 +17,7 @@ inline Eigen::Vector3d contact_point(const Contact& contact,
     for (std::size_t i = 0; i < contact.vertices.size(); ++i)
         if (contact.vertices[i] >= 0) {
             assert(contact.vertices[i] < std::ssize(vertices));
-            point += static_cast<double>(contact.weights[i]) *
-                     vertices[static_cast<std::size_t>(contact.vertices[i])];
+            point += static_cast<double>(contact.weights[i]) * vertices[contact.vertices[i]];
         }
     return point;
 }

@@ -26,10 +26,10 @@ void paint(vtkProperty* property, const Rgb& colour) {
 void vertex_normals(std::span<const Eigen::Vector3f> positions, std::span<const Triangle> triangles,
                     std::span<Eigen::Vector3f> normals) {
     std::ranges::fill(normals, Eigen::Vector3f::Zero());
-    const auto p = [&](std::int32_t vertex) { return positions[static_cast<std::size_t>(vertex)]; };
+    const auto p = [&](std::int32_t vertex) { return positions[vertex]; };
     for (const Triangle& t : triangles) {
         const Eigen::Vector3f area = (p(t[1]) - p(t[0])).cross(p(t[2]) - p(t[0]));
-        for (const std::int32_t vertex : t) normals[static_cast<std::size_t>(vertex)] += area;
+        for (const std::int32_t vertex : t) normals[vertex] += area;
     }
     for (Eigen::Vector3f& normal : normals) normal.normalize();
 }
@@ -47,15 +47,14 @@ vtkSmartPointer<vtkPolyData> poly_data(const TriangleMesh& surface, const Vector
     point_normals->SetNumberOfComponents(3);
     point_normals->SetNumberOfTuples(point_count);
     for (vtkIdType i = 0; i < point_count; ++i) {
-        points->SetPoint(i, positions[static_cast<std::size_t>(i)].data());
-        point_normals->SetTypedTuple(i, normals[static_cast<std::size_t>(i)].data());
+        points->SetPoint(i, positions[i].data());
+        point_normals->SetTypedTuple(i, normals[i].data());
     }
 
     std::vector<Triangle> triangles = surface.triangles;
     std::ranges::stable_sort(triangles, std::ranges::greater{}, [&](const Triangle& t) {
         double height = 0;
-        for (const std::int32_t v : t)
-            height += toward_eye.dot(surface.vertices[static_cast<std::size_t>(v)]);
+        for (const std::int32_t v : t) height += toward_eye.dot(surface.vertices[v]);
         return height;
     });
     vtkNew<vtkCellArray> cells;

@@ -41,12 +41,12 @@ TriangleMesh clustered(const TriangleMesh& surface, const Eigen::Vector3d& focus
             members.push_back(0);
             result.vertices.emplace_back(Eigen::Vector3d::Zero());
         }
-        ++members[static_cast<std::size_t>(cluster[i])];
-        result.vertices[static_cast<std::size_t>(cluster[i])] += p;
+        ++members[cluster[i]];
+        result.vertices[cluster[i]] += p;
     }
     for (std::size_t c = 0; c < members.size(); ++c) result.vertices[c] /= members[c];
     for (const Triangle& t : surface.triangles) {
-        const auto corner = [&](std::size_t i) { return cluster[static_cast<std::size_t>(t[i])]; };
+        const auto corner = [&](std::size_t i) { return cluster[t[i]]; };
         if (corner(0) != corner(1) && corner(1) != corner(2) && corner(2) != corner(0))
             result.triangles.push_back({corner(0), corner(1), corner(2)});
     }

@@ -12,9 +12,7 @@ namespace {
 // Moller, Trumbore 1997: does the segment from a along `way` cross the triangle?
 bool crosses(const TriangleMesh& mesh, const Triangle& t, const Eigen::Vector3d& a,
              const Eigen::Vector3d& way) {
-    const auto corner = [&](std::size_t i) -> const Eigen::Vector3d& {
-        return mesh.vertices[static_cast<std::size_t>(t[i])];
-    };
+    const auto corner = [&](std::size_t i) -> const Eigen::Vector3d& { return mesh.vertices[t[i]]; };
     const Eigen::Vector3d e1 = corner(1) - corner(0), e2 = corner(2) - corner(0);
     const Eigen::Vector3d p = way.cross(e2);
     const double det = e1.dot(p);

@@ -47,8 +47,7 @@ std::vector<Vector3f> hinted_colours(const DeformableBody& body) {
         float nearest = 1e30F;
         std::int32_t region = organ;
         for (const auto& [node, node_region] : enclosed) {
-            const auto squared = static_cast<float>(
-                (mesh.rest_positions[static_cast<std::size_t>(node)] - vertex).squaredNorm());
+            const auto squared = static_cast<float>((mesh.rest_positions[node] - vertex).squaredNorm());
             if (squared < nearest) {
                 nearest = squared;
                 region = node_region;

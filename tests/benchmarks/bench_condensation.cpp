@@ -9,12 +9,12 @@
 #include <fstream>
 
 #include "formats/model/errors.hpp"
-#include "tests/benchmarks/condensation/ellipsoid.hpp"
 #include "tests/benchmarks/condensation/figures.hpp"
 #include "tests/benchmarks/condensation/methods.hpp"
-#include "tools/fem/condensation_plan.hpp"
-#include "tools/fem/dense_kernels.hpp"
-#include "tools/meshing/mesh_files.hpp"
+#include "tools/experiments/ellipsoid.hpp"
+#include "tools/fem/condensation/condensation_plan.hpp"
+#include "tools/fem/solvers/dense_kernels.hpp"
+#include "tools/meshing/files/mesh_files.hpp"
 
 namespace palpate {
 namespace {

@@ -13,11 +13,11 @@
 #include <sstream>
 
 #include "formats/model/errors.hpp"
-#include "tools/imaging/grow_from_seeds.hpp"
-#include "tools/imaging/image_files.hpp"
-#include "tools/imaging/label_statistics.hpp"
-#include "tools/imaging/mask.hpp"
-#include "tools/report/slices.hpp"
+#include "tools/imaging/files/image_files.hpp"
+#include "tools/imaging/voxels/grow_from_seeds.hpp"
+#include "tools/imaging/voxels/label_statistics.hpp"
+#include "tools/imaging/voxels/mask.hpp"
+#include "tools/report/pictures/slices.hpp"
 
 namespace {
 

@@ -17,12 +17,12 @@
 #include <vector>
 
 #include "formats/model/errors.hpp"
-#include "tools/imaging/image_files.hpp"
-#include "tools/meshing/fidelity.hpp"
-#include "tools/meshing/finished_mesh.hpp"
-#include "tools/meshing/mesh_files.hpp"
-#include "tools/meshing/quality.hpp"
-#include "tools/meshing/tetrahedralise.hpp"
+#include "tools/imaging/files/image_files.hpp"
+#include "tools/meshing/contract/fidelity.hpp"
+#include "tools/meshing/files/imported_mesh.hpp"
+#include "tools/meshing/files/mesh_files.hpp"
+#include "tools/meshing/measures/quality.hpp"
+#include "tools/meshing/tetrahedra/tetrahedralise.hpp"
 
 namespace palpate {
 namespace {
@@ -106,7 +106,7 @@ void write_stl(const std::string& surface_path, const std::string& output) {
 
 // All that the table needs of a mesh, as one line of JSON.
 void judge(const std::string& mesh_path, const std::string& labels_path) {
-    TetMesh mesh = read_finished_tetrahedra(mesh_path, {});
+    TetMesh mesh = read_imported_tetrahedra(mesh_path, {});
     std::ranges::fill(mesh.regions, 1);
     mesh.region_names = {{1, "body", {}}};
     const LabelMap map = read_label_map(labels_path);

@@ -215,7 +215,7 @@ class Surface(MeshingCommand):
         self.expect_refusal(QUALITY, ["300 triangles stay", "mm off at ("], "surface", *arguments, "--max-distance",
                             0.001, "-o", self.folder / "x.vtp")
 
-    def test_finished_surface_is_taken_in_its_unit_or_refused_by_place(self):
+    def test_imported_surface_is_taken_in_its_unit_or_refused_by_place(self):
         faces = ("2 3 4", "1 4 3", "1 2 4", "1 2 3")  # the last one faces inwards
         with tempfile.TemporaryDirectory() as elsewhere:
             sound, open_ = pathlib.Path(elsewhere) / "a.obj", pathlib.Path(elsewhere) / "b.obj"

@@ -17,7 +17,7 @@ DATA = pathlib.Path(os.environ.get("PALPATE_DATA", ""))
 NEEDED = ("Xvfb", "xdotool", "xwd", "convert")
 
 OK, FAILED, USAGE, INVALID = 0, 1, 2, 3
-STATUS_HEIGHT, MARGIN = 30, 26  # pixels, as in tools/commands/seeds/layout.cpp
+STATUS_HEIGHT, MARGIN = 30, 26  # pixels, as in tools/seeds/layout.cpp
 PATIENCE = 60  # s: only a window that never answers takes this long
 
 

@@ -15,7 +15,7 @@
 
 #include "formats/asset/asset.hpp"
 #include "formats/asset/body_io.hpp"
-#include "formats/asset/digest.hpp"
+#include "formats/asset/hdf5/digest.hpp"
 #include "formats/asset/parts.hpp"
 #include "tests/formats/sample_case.hpp"
 #include "tests/formats/scratch.hpp"

@@ -8,9 +8,9 @@
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
-#include "formats/asset/byte_cursor.hpp"
-#include "formats/asset/hdf5_file.hpp"
-#include "formats/asset/hdf5_writer.hpp"
+#include "formats/asset/hdf5/byte_cursor.hpp"
+#include "formats/asset/hdf5/hdf5_file.hpp"
+#include "formats/asset/hdf5/hdf5_writer.hpp"
 #include "tests/formats/scratch.hpp"
 
 namespace palpate {

@@ -7,7 +7,7 @@
 #include <random>
 #include <sys/wait.h>
 
-#include "formats/asset/hdf5_file.hpp"
+#include "formats/asset/hdf5/hdf5_file.hpp"
 #include "formats/recording/columns.hpp"
 #include "formats/recording/recording_writer.hpp"
 #include "tests/formats/scratch.hpp"

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "formats/asset/asset.hpp"
-#include "formats/asset/byte_cursor.hpp"
-#include "formats/asset/hdf5_file.hpp"
+#include "formats/asset/hdf5/byte_cursor.hpp"
+#include "formats/asset/hdf5/hdf5_file.hpp"
 #include "tests/formats/sample_case.hpp"
 #include "tests/formats/scratch.hpp"
 #include "tests/fuzz/allocation_gauge.hpp"

@@ -5,7 +5,7 @@
 names.py <source folder>
 
 Two types of one name in one program break C++'s one-definition rule without a word from the linker. And where a preset
-compiles several files of a folder together, a helper in one file's unnamed namespace comes before a function of the same
+compiles several files of a room together, a helper in one file's unnamed namespace comes before a function of the same
 name and number of parameters that a header declares: the next file would silently call the helper.
 Reads formats, tools, runtime and, for what hides, tests with Universal Ctags.
 """
@@ -19,6 +19,11 @@ from pathlib import Path
 ROOMS = ("formats", "tools", "runtime")
 PROGRAMS = ("tests", "sample_data")  # each test is a program of its own, so only hiding counts there
 TYPES = {"class", "struct", "union", "enum"}
+
+
+def target_folder(path):
+    """Whose CMakeLists.txt builds it: files of its subfolders are compiled together too."""
+    return next((p for p in path.parents if (p / "CMakeLists.txt").exists()), path.parent)
 
 
 def tags(root):
@@ -68,8 +73,9 @@ def hidden(root, files, found):
         if tag["kind"] != "function" or not re.search(r"__anon\w+$", tag.get("scope", "")):
             continue
         headers = declared.get((tag["name"], len(parameters(tag.get("signature", "()")))), ())
+        room = target_folder(root / tag["path"])
         for path in files:
-            if path == tag["path"] or Path(path).parent != Path(tag["path"]).parent or not path.endswith(".cpp"):
+            if path == tag["path"] or target_folder(root / path) != room or not path.endswith(".cpp"):
                 continue
             text = (root / path).read_text()
             if any(f'"{header}"' in text for header in headers) and re.search(rf"(?<![\w.:>]){tag['name']}\(", text):

@@ -7,11 +7,11 @@
 #include "formats/model/image_grid.hpp"
 #include "runtime/devices/dynamic_device.hpp"
 #include "runtime/devices/mounted_device.hpp"
-#include "runtime/haptics/contact_solver.hpp"
+#include "runtime/haptics/contact/contact_solver.hpp"
+#include "runtime/haptics/contact/published_contact.hpp"
 #include "runtime/haptics/haptic_model.hpp"
-#include "runtime/haptics/published_contact.hpp"
 #include "runtime/openigtlink/contact_point.hpp"
-#include "tests/runtime/held_tool.hpp"
+#include "tests/runtime/haptics/held_tool.hpp"
 
 namespace palpate {
 namespace {

@@ -91,7 +91,7 @@ StagedFile::StagedFile(std::filesystem::path target, bool replace) : target_(std
 StagedFile::~StagedFile() {
     std::error_code ignored;
     std::filesystem::remove(temporary_, ignored);
-    if (slot_ >= 0) slots[static_cast<std::size_t>(slot_)].used.store(false);
+    if (slot_ >= 0) slots[slot_].used.store(false);
 }
 
 void StagedFile::write_text(const std::string& text) const {

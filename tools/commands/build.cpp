@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "formats/model/errors.hpp"
+#include "tools/case_builder/case_file.hpp"
+#include "tools/case_builder/stages.hpp"
 #include "tools/cli/command.hpp"
-#include "tools/commands/build/case_file.hpp"
-#include "tools/commands/build/stages.hpp"
 
 namespace {
 using namespace palpate;

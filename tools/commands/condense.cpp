@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fem/condense.hpp"
+#include "tools/fem/condensation/condense.hpp"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -10,9 +10,9 @@
 #include "tools/cli/command.hpp"
 #include "tools/commands/condense/arguments.hpp"
 #include "tools/commands/condense/results.hpp"
-#include "tools/fem/dense_kernels.hpp"
-#include "tools/fem/discretisation_error.hpp"
-#include "tools/meshing/mesh_files.hpp"
+#include "tools/fem/certificate/discretisation_error.hpp"
+#include "tools/fem/solvers/dense_kernels.hpp"
+#include "tools/meshing/files/mesh_files.hpp"
 
 namespace {
 using namespace palpate;

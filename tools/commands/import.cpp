@@ -7,8 +7,8 @@
 
 #include "formats/model/errors.hpp"
 #include "tools/cli/command.hpp"
-#include "tools/imaging/image_files.hpp"
-#include "tools/imaging/label_names.hpp"
+#include "tools/imaging/files/image_files.hpp"
+#include "tools/imaging/files/label_names.hpp"
 
 namespace {
 
@@ -28,7 +28,7 @@ nlohmann::ordered_json describe(const LabelMap& map) {
     std::vector<std::size_t> voxels(65536, 0);
     for (const std::uint16_t value : map.labels) ++voxels[value];
     for (const Label& label : map.names) {
-        const std::size_t count = voxels[static_cast<std::size_t>(label.value)];
+        const std::size_t count = voxels[label.value];
         result["labels"].push_back(
             {{"name", label.name},
              {"value", label.value},

@@ -8,10 +8,10 @@
 #include "tools/cli/command.hpp"
 #include "tools/commands/mesh/arguments.hpp"
 #include "tools/commands/mesh/results.hpp"
-#include "tools/imaging/image_files.hpp"
-#include "tools/meshing/finished_mesh.hpp"
-#include "tools/meshing/mesh_files.hpp"
-#include "tools/meshing/mesh_to_contract.hpp"
+#include "tools/imaging/files/image_files.hpp"
+#include "tools/meshing/contract/mesh_to_contract.hpp"
+#include "tools/meshing/files/imported_mesh.hpp"
+#include "tools/meshing/files/mesh_files.hpp"
 
 using namespace palpate;
 
@@ -43,11 +43,11 @@ Body make_body(ContractedMesh made) {
 }
 
 // Measures against the labels if there is one for every region.
-Body take_finished(const std::filesystem::path& path, const FinishedMeshOptions& options,
+Body take_imported(const std::filesystem::path& path, const ImportedMeshOptions& options,
                    const std::filesystem::path& labels_path, const QualityContract& contract,
                    const NoteSink& note) {
     Body body;
-    body.mesh = read_finished_tetrahedra(path, options, note);
+    body.mesh = read_imported_tetrahedra(path, options, note);
     body.next_step = "mend the mesh where it was made, or state a contract that it can keep";
     const MeshQuality quality = measure(body.mesh);
     body.pieces = quality.components;
@@ -98,7 +98,7 @@ int main(int argc, char** argv) {
                   "Source: CGAL Mesh_3 (Jamin, Alliez, Yvinec, Boissonnat 2015)."});
     std::filesystem::path labels_path, mesh_path, output;
     std::vector<std::string> regions, region_sizes, near_sizes, region_names;
-    FinishedMeshOptions finished;
+    ImportedMeshOptions imported;
     MeshSizing sizing;
     QualityContract contract;
     int attempts = 4;
@@ -110,8 +110,8 @@ int main(int argc, char** argv) {
         command.option("--region", regions, "label of the body, by name or value; repeat for more");
     const cli::Option mesh_file = command.input(
         "--mesh-file", mesh_path, "tetrahedra made elsewhere (.vtu, .vtk, Gmsh .msh, MEDIT .mesh)");
-    command.option("--unit", finished.unit, "of that file: um, mm, cm, m or in").needs(mesh_file);
-    command.option("--frame", finished.frame, "of that file: lps or ras; empty: what it states, else lps")
+    command.option("--unit", imported.unit, "of that file: um, mm, cm, m or in").needs(mesh_file);
+    command.option("--frame", imported.frame, "of that file: lps or ras; empty: what it states, else lps")
         .needs(mesh_file);
     command
         .option("--region-name", region_names, "VALUE=NAME: name of a region of that file; repeat for more")
@@ -172,8 +172,8 @@ int main(int argc, char** argv) {
         progress("read", 0);
         Body body;
         if (!mesh_path.empty()) {
-            finished.region_names = mesh::parse_region_names(region_names);
-            body = take_finished(mesh_path, finished, labels_path, contract, note);
+            imported.region_names = mesh::parse_region_names(region_names);
+            body = take_imported(mesh_path, imported, labels_path, contract, note);
         } else {
             if (labels_path.empty() || regions.empty())
                 throw UsageError({"mesh", "nothing to mesh", "--labels with --region, or --mesh-file", ""});

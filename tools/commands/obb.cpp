@@ -4,7 +4,7 @@
 #include "formats/asset/parts.hpp"
 #include "formats/model/errors.hpp"
 #include "tools/cli/command.hpp"
-#include "tools/meshing/mesh_files.hpp"
+#include "tools/meshing/files/mesh_files.hpp"
 #include "tools/obb/build_obb_tree.hpp"
 
 using namespace palpate;

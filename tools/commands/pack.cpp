@@ -3,12 +3,12 @@
 #include <nlohmann/json.hpp>
 
 #include "formats/asset/asset.hpp"
-#include "formats/asset/digest.hpp"
+#include "formats/asset/hdf5/digest.hpp"
 #include "formats/asset/parts.hpp"
 #include "formats/model/errors.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/software.hpp"
-#include "tools/meshing/mesh_files.hpp"
+#include "tools/meshing/files/mesh_files.hpp"
 
 namespace {
 using namespace palpate;

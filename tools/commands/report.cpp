@@ -11,9 +11,9 @@
 #include "formats/asset/asset.hpp"
 #include "formats/model/errors.hpp"
 #include "tools/cli/command.hpp"
-#include "tools/imaging/image_files.hpp"
-#include "tools/meshing/surface_distance.hpp"
-#include "tools/meshing/surfaces.hpp"
+#include "tools/imaging/files/image_files.hpp"
+#include "tools/meshing/measures/surface_distance.hpp"
+#include "tools/meshing/surfaces/surfaces.hpp"
 #include "tools/report/html.hpp"
 
 namespace {

@@ -6,8 +6,8 @@
 #include <spdlog/spdlog.h>
 
 #include "tools/cli/command.hpp"
-#include "tools/commands/seeds/seed_window.hpp"
-#include "tools/imaging/image_files.hpp"
+#include "tools/imaging/files/image_files.hpp"
+#include "tools/seeds/seed_window.hpp"
 
 namespace {
 

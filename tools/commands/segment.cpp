@@ -7,9 +7,9 @@
 
 #include "formats/model/errors.hpp"
 #include "tools/cli/command.hpp"
-#include "tools/imaging/image_files.hpp"
-#include "tools/imaging/label_statistics.hpp"
-#include "tools/imaging/segmentation.hpp"
+#include "tools/imaging/files/image_files.hpp"
+#include "tools/imaging/recipes/segmentation.hpp"
+#include "tools/imaging/voxels/label_statistics.hpp"
 
 namespace {
 

@@ -6,12 +6,12 @@
 
 #include "formats/model/errors.hpp"
 #include "tools/cli/command.hpp"
-#include "tools/imaging/image_files.hpp"
-#include "tools/meshing/finished_mesh.hpp"
-#include "tools/meshing/mesh_files.hpp"
-#include "tools/meshing/quality.hpp"
-#include "tools/meshing/surface_repair.hpp"
-#include "tools/meshing/surfaces.hpp"
+#include "tools/imaging/files/image_files.hpp"
+#include "tools/meshing/files/imported_mesh.hpp"
+#include "tools/meshing/files/mesh_files.hpp"
+#include "tools/meshing/files/surface_repair.hpp"
+#include "tools/meshing/measures/quality.hpp"
+#include "tools/meshing/surfaces/surfaces.hpp"
 
 using namespace palpate;
 
@@ -27,10 +27,10 @@ int main(int argc, char** argv) {
              "With a volume the surface follows the grey isovalue, below the voxel's size; --labels then "
              "masks\n"
              "it to the named labels. With labels alone their outline is smoothed and keeps its volume. A "
-             "finished\n"
+             "imported\n"
              "surface (.vtp, .vtk, .stl, .obj, .ply) is made sound where that can be done, else refused."});
     std::filesystem::path volume_path, labels_path, surface_path, output;
-    FinishedMeshOptions finished;
+    ImportedMeshOptions imported;
     std::vector<std::string> names;
     double isovalue = 0, smoothing = -1, max_distance = 0;
     std::int64_t max_triangles = 0, min_triangles = 100;
@@ -46,10 +46,10 @@ int main(int argc, char** argv) {
         command.input("--labels", labels_path, "label map (.seg.nrrd, NIfTI, NRRD)");
     command.option("--label", names, "label by name or value; may be repeated");
     const cli::Option file_option = command.input("--surface-file", surface_path,
-                                                  "finished surface instead (.vtp, .vtk, .stl, .obj, .ply)");
+                                                  "imported surface instead (.vtp, .vtk, .stl, .obj, .ply)");
     file_option.excludes(volume_option).excludes(labels_option);
-    command.option("--unit", finished.unit, "of that file: um, mm, cm, m or in").needs(file_option);
-    command.option("--frame", finished.frame, "of that file: lps or ras; by default what it states, else lps")
+    command.option("--unit", imported.unit, "of that file: um, mm, cm, m or in").needs(file_option);
+    command.option("--frame", imported.frame, "of that file: lps or ras; by default what it states, else lps")
         .needs(file_option);
     command.option("--mask-reach", mask_reach, "how far beyond its labels the volume counts", "voxels");
     command.option("--smoothing", smoothing, "Gaussian on labels; below 0: the largest voxel edge", "mm");
@@ -81,7 +81,7 @@ int main(int argc, char** argv) {
 
         TriangleMesh surface;
         if (!surface_path.empty()) {
-            surface = read_finished_surface(surface_path, finished, note);
+            surface = read_imported_surface(surface_path, imported, note);
         } else if (volume_path.empty()) {
             session.progress.step("extract label surface", 0.3);
             surface = label_surface(labels, values, smoothing);
@@ -93,7 +93,7 @@ int main(int argc, char** argv) {
         }
         if (keep_largest)
             surface = keep_largest_piece(surface);
-        else if (surface_path.empty())  // whoever made a finished surface meant its small pieces
+        else if (surface_path.empty())  // whoever made an imported surface meant its small pieces
             surface = keep_large_pieces(surface, min_triangles);
         nlohmann::json result;
         surface = repaired_surface(std::move(surface), output.filename().string(), note);

@@ -7,8 +7,8 @@
 #include "formats/asset/asset.hpp"
 #include "formats/model/errors.hpp"
 #include "tools/cli/command.hpp"
-#include "tools/fem/certificate.hpp"
-#include "tools/fem/dense_kernels.hpp"
+#include "tools/fem/certificate/certificate.hpp"
+#include "tools/fem/solvers/dense_kernels.hpp"
 
 namespace {
 using namespace palpate;
@@ -51,8 +51,7 @@ double worst_escape(const ObbTree& tree, const TriangleMesh& surface) {
     double worst = 0;
     const auto check_box = [&](const ObbNode& box, const Triangle& triangle) {
         for (const std::int32_t v : triangle) {
-            const Eigen::Vector3d offset =
-                surface.vertices[static_cast<std::size_t>(v)] - box.center.cast<double>();
+            const Eigen::Vector3d offset = surface.vertices[v] - box.center.cast<double>();
             const Eigen::Vector3d local = box.axes.cast<double>() * offset;
             worst = std::max(worst, (local.cwiseAbs() - box.half_extents.cast<double>()).maxCoeff());
         }
@@ -60,10 +59,9 @@ double worst_escape(const ObbTree& tree, const TriangleMesh& surface) {
     for (std::size_t leaf = 0; leaf < tree.nodes.size(); ++leaf)
         for (std::int32_t k = 0; k < tree.nodes[leaf].count; ++k) {
             const auto entry = static_cast<std::size_t>(tree.nodes[leaf].first + k);
-            const Triangle& triangle =
-                surface.triangles[static_cast<std::size_t>(tree.triangle_order[entry])];
-            for (auto i = static_cast<std::int32_t>(leaf); i >= 0; i = parent[static_cast<std::size_t>(i)])
-                check_box(tree.nodes[static_cast<std::size_t>(i)], triangle);
+            const Triangle& triangle = surface.triangles[tree.triangle_order[entry]];
+            for (auto i = static_cast<std::int32_t>(leaf); i >= 0; i = parent[i])
+                check_box(tree.nodes[i], triangle);
         }
     return worst;
 }

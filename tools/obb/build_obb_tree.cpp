@@ -78,13 +78,12 @@ class Builder {
 
   private:
     const Eigen::Vector3d& corner(std::int32_t triangle, std::size_t c) const {
-        return surface_
-            .vertices[static_cast<std::size_t>(surface_.triangles[static_cast<std::size_t>(triangle)][c])];
+        return surface_.vertices[surface_.triangles[triangle][c]];
     }
 
     Plate plate_of(const Triangle& triangle) const {
         const auto point = [&](std::size_t c) -> const Eigen::Vector3d& {
-            return surface_.vertices[static_cast<std::size_t>(triangle[c])];
+            return surface_.vertices[triangle[c]];
         };
         Plate plate;
         plate.area = 0.5 * (point(1) - point(0)).cross(point(2) - point(0)).norm();
@@ -101,7 +100,7 @@ class Builder {
         Eigen::Vector3d first = Eigen::Vector3d::Zero();
         Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
         for (const std::int32_t t : part) {
-            const Plate& plate = plates_[static_cast<std::size_t>(t)];
+            const Plate& plate = plates_[t];
             area += plate.area;
             first += plate.area * plate.centroid;
             second += plate.second_moment;
@@ -137,8 +136,7 @@ class Builder {
     Eigen::Vector3d splitting_direction(std::span<const std::int32_t> part, const ObbNode& box) const {
         Eigen::AlignedBox3d centroids;
         const Eigen::Matrix3d axes = box.axes.cast<double>();
-        for (const std::int32_t t : part)
-            centroids.extend(axes * plates_[static_cast<std::size_t>(t)].centroid);
+        for (const std::int32_t t : part) centroids.extend(axes * plates_[t].centroid);
         Eigen::Index longest = 0;
         (centroids.sizes().array() > 0).select(box.half_extents.cast<double>(), -1.0).maxCoeff(&longest);
         return axes.row(longest);
@@ -147,9 +145,7 @@ class Builder {
     // Partitions `part` in two and returns the size of the first half, which is neither 0 nor all.
     std::size_t split(std::span<std::int32_t> part, const ObbNode& box) const {
         const Eigen::Vector3d direction = splitting_direction(part, box);
-        const auto position = [&](std::int32_t t) {
-            return direction.dot(plates_[static_cast<std::size_t>(t)].centroid);
-        };
+        const auto position = [&](std::int32_t t) { return direction.dot(plates_[t].centroid); };
         double mean = 0;
         for (const std::int32_t t : part) mean += position(t);
         mean /= static_cast<double>(part.size());

@@ -7,9 +7,9 @@
 #include <map>
 
 #include "tools/report/html.hpp"
-#include "tools/report/scene.hpp"
+#include "tools/report/pictures/scene.hpp"
+#include "tools/report/pictures/slices.hpp"
 #include "tools/report/sections.hpp"
-#include "tools/report/slices.hpp"
 #include "tools/report/view_svg.hpp"
 
 namespace palpate {
@@ -39,8 +39,7 @@ std::pair<std::string, Vector3d> smallest_region(const TetMesh& mesh) {
     std::map<std::int32_t, std::pair<double, Vector3d>> regions;
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
         Vector3d sum = Vector3d::Zero();
-        for (const std::int32_t node : mesh.tetrahedra[t])
-            sum += mesh.rest_positions[static_cast<std::size_t>(node)];
+        for (const std::int32_t node : mesh.tetrahedra[t]) sum += mesh.rest_positions[node];
         auto& [volume, moment] = regions.try_emplace(mesh.regions[t], 0.0, Vector3d::Zero()).first->second;
         volume += six_volume(mesh, t);
         moment += six_volume(mesh, t) * sum / 4;

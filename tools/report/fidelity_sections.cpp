@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <numeric>
 
-#include "tools/report/colour_scale.hpp"
 #include "tools/report/html.hpp"
+#include "tools/report/pictures/colour_scale.hpp"
 #include "tools/report/sections.hpp"
 #include "tools/report/view_svg.hpp"
 
@@ -35,8 +35,7 @@ std::vector<WorstElement> worst_of(const TetMesh& mesh) {
     std::vector<WorstElement> worst;
     for (const std::size_t t : order) {
         Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-        for (const std::int32_t node : mesh.tetrahedra[t])
-            sum += mesh.rest_positions[static_cast<std::size_t>(node)];
+        for (const std::int32_t node : mesh.tetrahedra[t]) sum += mesh.rest_positions[node];
         const auto name = std::ranges::find(mesh.region_names, mesh.regions[t], &Label::value);
         worst.push_back(
             {t, angles[t].first, angles[t].second, sum / 4,

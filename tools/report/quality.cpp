@@ -14,7 +14,7 @@ namespace {
 void count(BinCounts& histogram, double value) {
     const double bins = static_cast<double>(histogram.counts.size());
     const double bin = std::floor((value - histogram.low) / (histogram.high - histogram.low) * bins);
-    ++histogram.counts[static_cast<std::size_t>(std::clamp(bin, 0.0, bins - 1))];
+    ++histogram.counts[std::clamp(bin, 0.0, bins - 1)];
 }
 
 }  // namespace
@@ -22,7 +22,7 @@ void count(BinCounts& histogram, double value) {
 TetShape tet_shape(const TetMesh& mesh, std::size_t t) {
     std::array<Eigen::Vector3d, 4> p;
     for (std::size_t corner = 0; corner < 4; ++corner)
-        p[corner] = mesh.rest_positions[static_cast<std::size_t>(mesh.tetrahedra[t][corner])];
+        p[corner] = mesh.rest_positions[mesh.tetrahedra[t][corner]];
     const Eigen::Vector3d a = p[1] - p[0], b = p[2] - p[0], c = p[3] - p[0];
     // Outward normals, twice the area long, of the faces opposite to corners 0 ... 3.
     const std::array<Eigen::Vector3d, 4> normal{(p[2] - p[1]).cross(p[3] - p[1]), c.cross(b), a.cross(c),
@@ -66,7 +66,7 @@ MeshSummary summarise(const TetMesh& mesh) {
         summary.min_volume = std::min(summary.min_volume, volume);
         const auto name = std::ranges::find(mesh.region_names, mesh.regions[t], &Label::value);
         if (name != mesh.region_names.end())
-            summary.region_volumes[static_cast<std::size_t>(name - mesh.region_names.begin())] += volume;
+            summary.region_volumes[name - mesh.region_names.begin()] += volume;
     }
     return summary;
 }

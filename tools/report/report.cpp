@@ -6,8 +6,8 @@
 
 #include "tools/report/html.hpp"
 #include "tools/report/page_style.hpp"
+#include "tools/report/pictures/virtual_display.hpp"
 #include "tools/report/sections.hpp"
-#include "tools/report/virtual_display.hpp"
 
 namespace palpate {
 namespace {

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "tools/report/pictures/scene.hpp"
 #include "tools/report/quality.hpp"
 #include "tools/report/report.hpp"
-#include "tools/report/scene.hpp"
 #include "tools/report/verdict.hpp"
 
 namespace palpate {

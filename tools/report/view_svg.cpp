@@ -30,8 +30,7 @@ std::string orientation_svg(const ViewDirection& direction, const Vector2d& at) 
         svg += fmt::format(
             "<path d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\"/><text x=\"{:.1f}\" y=\"{:.1f}\" "
             "text-anchor=\"middle\">{}</text>",
-            at.x(), at.y(), line.x(), line.y(), letter.x(), letter.y() + 7,
-            letters[static_cast<std::size_t>(axis)][turned]);
+            at.x(), at.y(), line.x(), line.y(), letter.x(), letter.y() + 7, letters[axis][turned]);
     }
     return svg;
 }
@@ -80,8 +79,7 @@ std::string tetrahedron_svg(const TetMesh& mesh, std::size_t t, const Label& reg
     constexpr double size = 300, drawn = 190;
     Eigen::Matrix<double, 3, 4> p;
     for (std::size_t c = 0; c < 4; ++c)
-        p.col(static_cast<Eigen::Index>(c)) =
-            mesh.rest_positions[static_cast<std::size_t>(mesh.tetrahedra[t][c])];
+        p.col(static_cast<Eigen::Index>(c)) = mesh.rest_positions[mesh.tetrahedra[t][c]];
     p.colwise() -= p.rowwise().mean().eval();
     // Widest across the two longest principal axes; a little tilted, so that flat ones show their depth.
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(p * p.transpose());

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "formats/model/tet_mesh.hpp"
+#include "tools/report/pictures/scene.hpp"
 #include "tools/report/quality.hpp"
-#include "tools/report/scene.hpp"
 
 namespace palpate {
 

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "formats/model/errors.hpp"
-#include "tests/benchmarks/condensation/ellipsoid.hpp"
-#include "tools/meshing/mesh_files.hpp"
-#include "tools/meshing/tetrahedralise.hpp"
+#include "tools/experiments/ellipsoid.hpp"
+#include "tools/meshing/files/mesh_files.hpp"
+#include "tools/meshing/tetrahedra/tetrahedralise.hpp"
 
 namespace palpate {
 namespace {

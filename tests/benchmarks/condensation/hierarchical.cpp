@@ -6,9 +6,9 @@
 #include <numeric>
 #include <random>
 
-#include "tools/fem/condense.hpp"
-#include "tools/fem/dense_kernels.hpp"
-#include "tools/fem/free_system.hpp"
+#include "tools/fem/condensation/condense.hpp"
+#include "tools/fem/solvers/dense_kernels.hpp"
+#include "tools/fem/solvers/free_system.hpp"
 
 namespace palpate {
 namespace {

@@ -9,11 +9,11 @@
 
 #include "formats/model/errors.hpp"
 #include "tests/benchmarks/condensation/hierarchical.hpp"
-#include "tools/fem/certificate.hpp"
-#include "tools/fem/condense.hpp"
-#include "tools/fem/dense_kernels.hpp"
-#include "tools/fem/free_system.hpp"
-#include "tools/fem/sparse_cholesky.hpp"
+#include "tools/fem/certificate/certificate.hpp"
+#include "tools/fem/condensation/condense.hpp"
+#include "tools/fem/solvers/dense_kernels.hpp"
+#include "tools/fem/solvers/free_system.hpp"
+#include "tools/fem/solvers/sparse_cholesky.hpp"
 
 namespace palpate {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "formats/model/errors.hpp"
-#include "runtime/doctor/case_checks.hpp"
+#include "runtime/doctor/checks/case_checks.hpp"
 #include "tests/formats/sample_case.hpp"
 #include "tests/runtime/doctor/made_up_machine.hpp"
 

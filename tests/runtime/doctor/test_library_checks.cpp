@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "runtime/doctor/library_checks.hpp"
+#include "runtime/doctor/checks/library_checks.hpp"
 #include "runtime/doctor/loader.hpp"
 #include "tests/runtime/doctor/made_up_machine.hpp"
 

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "runtime/doctor/realtime_checks.hpp"
+#include "runtime/doctor/checks/realtime_checks.hpp"
 #include "tests/runtime/doctor/made_up_machine.hpp"
 
 namespace palpate {

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <random>
 
-#include "tools/fem/stiffness.hpp"
+#include "tools/fem/assembly/stiffness.hpp"
 
 namespace palpate::test {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/fem/condense.hpp"
+#include "tools/fem/condensation/condense.hpp"
 
 namespace palpate::test {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "formats/model/errors.hpp"
-#include "tools/imaging/image_files.hpp"
+#include "tools/imaging/files/image_files.hpp"
 
 namespace palpate::test {
 

@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 #include <random>
 
-#include "tools/imaging/coarse_grid.hpp"
-#include "tools/imaging/filters.hpp"
-#include "tools/imaging/image_files.hpp"
-#include "tools/imaging/necks.hpp"
+#include "tools/imaging/files/image_files.hpp"
+#include "tools/imaging/voxels/coarse_grid.hpp"
+#include "tools/imaging/voxels/filters.hpp"
+#include "tools/imaging/voxels/necks.hpp"
 
 namespace palpate {
 namespace {

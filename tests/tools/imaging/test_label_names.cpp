@@ -4,8 +4,8 @@
 #include "formats/model/errors.hpp"
 #include "tests/tools/imaging/hand_written_images.hpp"
 #include "tests/tools/imaging/refusals.hpp"
-#include "tools/imaging/image_files.hpp"
-#include "tools/imaging/label_names.hpp"
+#include "tools/imaging/files/image_files.hpp"
+#include "tools/imaging/files/label_names.hpp"
 
 namespace palpate {
 namespace {

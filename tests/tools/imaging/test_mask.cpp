@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
-#include "tools/imaging/image_files.hpp"
-#include "tools/imaging/mask.hpp"
+#include "tools/imaging/files/image_files.hpp"
+#include "tools/imaging/voxels/mask.hpp"
 
 namespace palpate {
 namespace {

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/tools/imaging/hand_written_dicom.hpp"
-#include "tools/imaging/image_files.hpp"
-#include "tools/imaging/label_statistics.hpp"
+#include "tools/imaging/files/image_files.hpp"
+#include "tools/imaging/voxels/label_statistics.hpp"
 
 namespace palpate {
 namespace {

@@ -11,7 +11,7 @@
 #include "formats/model/errors.hpp"
 #include "tests/tools/imaging/hand_written_dicom.hpp"
 #include "tests/tools/imaging/refusals.hpp"
-#include "tools/imaging/image_files.hpp"
+#include "tools/imaging/files/image_files.hpp"
 
 namespace palpate {
 namespace {

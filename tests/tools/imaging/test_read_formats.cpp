@@ -10,7 +10,7 @@
 #include "formats/model/errors.hpp"
 #include "tests/tools/imaging/hand_written_images.hpp"
 #include "tests/tools/imaging/refusals.hpp"
-#include "tools/imaging/image_files.hpp"
+#include "tools/imaging/files/image_files.hpp"
 
 namespace palpate {
 namespace {

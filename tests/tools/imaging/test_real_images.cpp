@@ -5,10 +5,10 @@
 #include "formats/model/errors.hpp"
 #include "tests/tools/imaging/hand_written_images.hpp"
 #include "tests/tools/imaging/real_data.hpp"
-#include "tools/imaging/image_files.hpp"
-#include "tools/imaging/label_names.hpp"
-#include "tools/imaging/label_statistics.hpp"
-#include "tools/imaging/segmentation.hpp"
+#include "tools/imaging/files/image_files.hpp"
+#include "tools/imaging/files/label_names.hpp"
+#include "tools/imaging/recipes/segmentation.hpp"
+#include "tools/imaging/voxels/label_statistics.hpp"
 
 namespace palpate {
 namespace {

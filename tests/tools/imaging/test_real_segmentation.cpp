@@ -6,10 +6,10 @@
 #include <random>
 
 #include "tests/tools/imaging/real_data.hpp"
-#include "tools/imaging/image_files.hpp"
-#include "tools/imaging/label_statistics.hpp"
-#include "tools/imaging/mask.hpp"
-#include "tools/imaging/segmentation.hpp"
+#include "tools/imaging/files/image_files.hpp"
+#include "tools/imaging/recipes/segmentation.hpp"
+#include "tools/imaging/voxels/label_statistics.hpp"
+#include "tools/imaging/voxels/mask.hpp"
 
 namespace palpate {
 namespace {

@@ -6,8 +6,8 @@
 #include "formats/model/errors.hpp"
 #include "sample_data/phantoms.hpp"
 #include "tests/formats/scratch.hpp"
-#include "tools/imaging/grow_from_seeds.hpp"
-#include "tools/imaging/seeds.hpp"
+#include "tools/imaging/voxels/grow_from_seeds.hpp"
+#include "tools/imaging/voxels/seeds.hpp"
 
 namespace palpate {
 namespace {

@@ -8,13 +8,13 @@
 #include "tests/formats/scratch.hpp"
 #include "tests/tools/imaging/hand_written_images.hpp"
 #include "tests/tools/imaging/refusals.hpp"
-#include "tools/imaging/grow_from_seeds.hpp"
-#include "tools/imaging/image_files.hpp"
-#include "tools/imaging/label_names.hpp"
-#include "tools/imaging/label_statistics.hpp"
-#include "tools/imaging/recipes.hpp"
-#include "tools/imaging/seeds.hpp"
-#include "tools/imaging/segmentation.hpp"
+#include "tools/imaging/files/image_files.hpp"
+#include "tools/imaging/files/label_names.hpp"
+#include "tools/imaging/recipes/recipes.hpp"
+#include "tools/imaging/recipes/segmentation.hpp"
+#include "tools/imaging/voxels/grow_from_seeds.hpp"
+#include "tools/imaging/voxels/label_statistics.hpp"
+#include "tools/imaging/voxels/seeds.hpp"
 
 namespace palpate {
 namespace {

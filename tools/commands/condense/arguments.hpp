@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "formats/model/body.hpp"
-#include "tools/fem/condensation_plan.hpp"
-#include "tools/fem/node_rules.hpp"
+#include "tools/fem/assembly/node_rules.hpp"
+#include "tools/fem/condensation/condensation_plan.hpp"
 
 namespace palpate::condensation {
 

@@ -3,7 +3,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "formats/model/body.hpp"
-#include "tools/fem/condensation_plan.hpp"
+#include "tools/fem/condensation/condensation_plan.hpp"
 
 namespace palpate::condensation {
 

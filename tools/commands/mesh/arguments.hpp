@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "formats/model/label_map.hpp"
-#include "tools/meshing/tetrahedralise.hpp"
+#include "tools/meshing/tetrahedra/tetrahedralise.hpp"
 
 namespace palpate::mesh {
 
@@ -19,7 +19,7 @@ RegionSize parse_region_size(const std::string& text, const LabelMap& map,
 /// "tumour=3,10" or "12,-40,88=3,10": cells of 3 mm as far as 10 mm from a label or from a point.
 NearSize parse_near(const std::string& text, const LabelMap& map, const std::string& culprit);
 
-/// "4=tumour", once for each of a finished mesh's regions that is to have another name.
+/// "4=tumour", once for each of an imported mesh's regions that is to have another name.
 std::map<std::int32_t, std::string> parse_region_names(const std::vector<std::string>& texts);
 
 }  // namespace palpate::mesh

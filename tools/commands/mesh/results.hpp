@@ -3,7 +3,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <span>
 
-#include "tools/meshing/mesh_to_contract.hpp"
+#include "tools/meshing/contract/mesh_to_contract.hpp"
 
 namespace palpate::mesh {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "formats/model/body.hpp"
-#include "tools/fem/discretisation.hpp"
-#include "tools/fem/stiffness.hpp"
+#include "tools/fem/assembly/discretisation.hpp"
+#include "tools/fem/assembly/stiffness.hpp"
 
 namespace palpate::test {
 

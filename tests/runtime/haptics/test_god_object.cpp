@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <random>
+
+#include "runtime/haptics/contact/god_object.hpp"
+#include "tests/formats/sample_case.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+CollisionSurface collision_surface(const TriangleMesh& mesh) {
+    return CollisionSurface(mesh, sample::median_tree(mesh, 4), "surface");
+}
+
+bool move(GodObject& tool, const CollisionSurface& surface, const Vector3d& device,
+          const Friction& friction = {}) {
+    const std::array<const CollisionSurface*, 1> surfaces{&surface};
+    return tool.move(surfaces, device, friction);
+}
+
+// A closed box seen from inside: its corners and edges are concave for the tool.
+TriangleMesh room(double edge) {
+    TriangleMesh mesh = boundary_surface(sample::cube_mesh(4, edge)).surface;
+    for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+    return mesh;
+}
+
+// A sphere with bumps of a few mm: convex and concave places of all sizes.
+TriangleMesh bumpy() {
+    TriangleMesh mesh = sample::sphere_surface({0, 0, 0}, 20, 3);
+    for (Vector3d& v : mesh.vertices)
+        v *= 1 + 0.1 * std::sin(0.5 * v.x()) * std::sin(0.4 * v.y()) * std::cos(0.3 * v.z());
+    return mesh;
+}
+
+TEST(GodObject, never_enters_a_surface_at_1000_mm_per_s) {
+    const CollisionSurface surface = collision_surface(bumpy());
+    for (const double radius : {0.01, 0.5, 2.0}) {
+        GodObject tool(radius, 1);
+        Vector3d device(0, 0, 40);
+        std::mt19937 generator(9);
+        std::uniform_real_distribution<double> axis(-25, 25);
+        Vector3d target(axis(generator), axis(generator), axis(generator));
+        ASSERT_TRUE(move(tool, surface, device));
+        for (int tick = 0; tick < 5000; ++tick) {
+            // 1 mm per tick from one random place to the next, through the body or along it.
+            Vector3d way = target - device;
+            if (way.norm() < 1) {
+                target = Vector3d(axis(generator), axis(generator), axis(generator));
+                way = target - device;
+            }
+            device += way.normalized();
+            ASSERT_TRUE(move(tool, surface, device));
+            ASSERT_TRUE(surface.is_outside(tool.position())) << tick;
+            const auto nearest = surface.closest_point(tool.position(), 100);
+            ASSERT_GE(nearest->distance, radius - 1e-9) << tick;  // rounding of the sweep
+        }
+    }
+}
+
+TEST(GodObject, rests_at_the_nearest_place_on_a_sphere) {
+    // On a fine sphere the resting place lies straight above the device.
+    const CollisionSurface surface = collision_surface(sample::sphere_surface({0, 0, 0}, 20, 5));
+    GodObject tool(1, 1);
+    ASSERT_TRUE(move(tool, surface, {0, 0, 25}));
+    for (int tick = 0; tick < 2000; ++tick) {
+        const double angle = 1e-3 * tick;
+        const Vector3d up(std::sin(angle), 0.3 * std::sin(angle), std::cos(angle));
+        move(tool, surface, 19 * up.normalized());
+        ASSERT_FALSE(tool.touches().empty());
+        // Facets are 2 degrees wide: the foot may lie off by their size times the sag.
+        EXPECT_NEAR((tool.position() - 21 * up.normalized()).norm(), 0, 0.2) << tick;
+    }
+}
+
+TEST(GodObject, slides_into_the_corner_of_a_room_and_rests_on_three_walls) {
+    const CollisionSurface surface = collision_surface(room(20));
+    GodObject tool(1, 1);
+    ASSERT_TRUE(move(tool, surface, {10, 10, 10}));
+    move(tool, surface, {-3, -4, -5});
+    EXPECT_NEAR((tool.position() - Vector3d(1, 1, 1)).norm(), 0, 5 * GodObject::skin);
+    EXPECT_EQ(tool.touches().size(), 3U);
+    move(tool, surface, {10, 10, 10});
+    EXPECT_EQ((tool.position() - Vector3d(10, 10, 10)).norm(), 0);
+    EXPECT_TRUE(tool.touches().empty());
+}
+
+TEST(GodObject, slides_without_friction) {
+    // Over a flat floor the tool stays exactly above the device.
+    const CollisionSurface surface = collision_surface(room(20));
+    GodObject tool(1, 1);
+    ASSERT_TRUE(move(tool, surface, {5, 5, 5}));
+    for (int tick = 0; tick < 1000; ++tick) {
+        const Vector3d device(5 + 0.01 * tick, 5 + 0.004 * tick, -2);
+        move(tool, surface, device);
+        EXPECT_NEAR((tool.position() - Vector3d(device.x(), device.y(), 1)).norm(), 0, 2 * GodObject::skin);
+        EXPECT_EQ(tool.touches().size(), 1U);
+    }
+}
+
+TEST(GodObject, turns_over_edges_within_some_ticks_and_settles) {
+    // Below the edges of a coarse ball the nearest place jumps by depth * sin(dihedral), here 1 to 2 mm.
+    const CollisionSurface surface = collision_surface(sample::sphere_surface({0, 0, 0}, 20, 1));
+    GodObject tool(1, 1);
+    ASSERT_TRUE(move(tool, surface, {0, 0, 25}));
+    const auto hand = [](int tick) -> Vector3d {
+        return 15 * Vector3d(std::sin(4e-3 * tick), 0.2, std::cos(4e-3 * tick));
+    };
+    for (int tick = 0; tick < 30; ++tick) move(tool, surface, hand(0));
+    Vector3d last = tool.position();
+    double longest = 0;
+    for (int tick = 1; tick < 1500; ++tick) {
+        move(tool, surface, hand(tick));
+        longest = std::max(longest, (tool.position() - last).norm());
+        last = tool.position();
+    }
+    // The hand moves 0.06 mm a tick; letting the tool down behind an edge adds to the slide.
+    EXPECT_LE(longest, 2 * 0.06 + GodObject::slide_slack + 0.15);
+    for (int tick = 0; tick < 100; ++tick) move(tool, surface, hand(1500));
+    last = tool.position();
+    move(tool, surface, hand(1500));
+    EXPECT_LE((tool.position() - last).norm(), 1e-5);
+}
+
+TEST(GodObject, is_not_felt_until_it_was_clear_of_the_surface) {
+    const CollisionSurface surface = collision_surface(sample::sphere_surface({0, 0, 0}, 20, 3));
+    GodObject tool(1, 1);
+    EXPECT_FALSE(move(tool, surface, {0, 0, 0}));
+    EXPECT_FALSE(move(tool, surface, {0, 0, 20.5}));
+    EXPECT_TRUE(move(tool, surface, {0, 0, 22}));
+    EXPECT_TRUE(move(tool, surface, {0, 0, 18}));
+    EXPECT_NEAR(tool.position().z(), 21, 0.1);
+    tool.reset();
+    EXPECT_FALSE(move(tool, surface, {0, 0, 18}));
+}
+
+}  // namespace
+}  // namespace palpate

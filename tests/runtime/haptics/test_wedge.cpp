@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <random>
+#include <vector>
+
+#include "tests/runtime/haptics/held_tool.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+// mm: the residual that counts as solved, and the god-object's skin
+constexpr double solved = 1e-3 + 2 * GodObject::skin;
+
+// Pushes a tool of 1 mm from outside, at x = -8 mm, into a gap, about and through what bounds it; the force
+// is finite and at most that of the coupling over the way to where the tool would be if nothing gave way.
+// Where a rigid body bounds the gap, the tool stays out of it. Returns how many ticks touched.
+int push_into(const Case& c, const Vector3d& entrance, double spread) {
+    HapticModel model(c);
+    std::vector<const CollisionSurface*> surfaces;
+    for (std::size_t body = 0; body < model.body_count(); ++body) surfaces.push_back(&model.surface(body));
+    GodObject undeformed(c.haptics.tool_radius, surfaces.size());
+    std::mt19937 generator(5);
+    std::uniform_real_distribution<double> axis(-1, 1);
+    TickResult result{};
+    Vector3d device = entrance, goal = entrance;
+    int touched = 0;
+    for (int tick = 0; tick < 20000; ++tick) {
+        if ((goal - device).norm() < 0.1) {
+            const double x = axis(generator), y = axis(generator), z = axis(generator);
+            goal = entrance + Vector3d(8 + 10 * x, 5 * y, spread * z);
+        }
+        const Vector3d way = goal - device;
+        device += std::min(0.05, way.norm()) * way.normalized();
+        model.tick(held_at(device), result);
+        undeformed.move(surfaces, device);
+        const double reach = (undeformed.position() - device).norm();
+        EXPECT_TRUE(force_of(result).allFinite()) << tick;
+        EXPECT_LE(force_of(result).norm(), model.coupling() * (reach + solved)) << tick;
+        for (std::size_t body = 0; body < model.rigid_count(); ++body) {
+            const auto nearest = model.surface(body).closest_point(tool_of(result), 50);
+            EXPECT_TRUE(nearest && nearest->distance >= c.haptics.tool_radius - 0.01) << tick;
+            EXPECT_TRUE(model.surface(body).is_outside(tool_of(result))) << tick;
+        }
+        if (::testing::Test::HasFailure()) return touched;
+        touched += result.contact_count > 0;
+    }
+    return touched;
+}
+
+TEST(Wedge, between_two_rigid_plates_a_tool_that_does_not_fit_stays_outside) {
+    for (const double room : {0.5, 1.9, 2.0}) {
+        Case c = plate();
+        c.rigid_bodies.push_back(rigid("lid", box({-20, -20, room}, {20, 20, room + 10})));
+        EXPECT_GT(push_into(c, {-28, 0.3, room / 2}, 3), 5000) << room;
+    }
+}
+
+TEST(Wedge, that_narrows_stops_the_tool_where_it_fits_no_more) {
+    Case c = plate();
+    TriangleMesh lid = box({-20, -20, 0}, {20, 20, 10});
+    for (Vector3d& v : lid.vertices) v.z() += 0.1 + 0.1 * (20 - v.x());  // from 4.1 to 0.1 mm of room
+    c.rigid_bodies.push_back(rigid("lid", lid));
+    EXPECT_GT(push_into(c, {-4, 0.3, 1.2}, 3), 5000);
+}
+
+TEST(Wedge, between_a_rigid_plate_and_the_fixed_side_of_tissue_keeps_forces_finite) {
+    for (const double room : {0.5, 1.5, 1.99}) {
+        Case c = soft_cube(3);
+        c.rigid_bodies.push_back(rigid("floor", box({-10, -10, -room - 10}, {30, 30, -room})));
+        EXPECT_GT(push_into(c, {-8, 9.3, 1.1 - room}, 3), 5000) << room;
+    }
+}
+
+TEST(Wedge, between_a_rigid_plate_and_soft_tissue_lets_the_tissue_give_way) {
+    for (const double room : {0.5, 1.5, 1.99}) {
+        Case c = soft_cube(3);
+        c.rigid_bodies.push_back(rigid("lid", box({-2, -10, 20 + room}, {30, 30, 30 + room})));
+        EXPECT_GT(push_into(c, {-8, 9.3, 20 + room / 2}, 3), 5000) << room;
+    }
+}
+
+}  // namespace
+}  // namespace palpate

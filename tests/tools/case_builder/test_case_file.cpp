@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fstream>
+#include <gtest/gtest.h>
+
+#include "formats/model/errors.hpp"
+#include "tests/tools/imaging/hand_written_images.hpp"
+#include "tools/case_builder/case_file.hpp"
+
+namespace palpate::build {
+namespace {
+
+const std::string minimal = R"(schema = 1
+name = "liver"
+[input]
+labels = "liver.seg.nrrd"
+[[structure]]
+name = "tumour"
+recipe = "sphere"
+center_mm = [1, 2.5, 3]
+[[deformable]]
+name = "liver"
+mesh = { cell_size_mm = 8 }
+fixed = [{ touching = "skull" }, { sphere_mm = [1, 2, 3.5, 4] }]
+[[deformable.region]]
+label = "liver"
+youngs_modulus_kpa = 6
+poissons_ratio = 0.45
+)";
+
+std::filesystem::path written(const std::string& text) {
+    static const palpate::test::TemporaryFolder folder;  // of each process, as tests run side by side
+    const auto path = folder / "case.toml";
+    std::ofstream(path) << text;
+    return path;
+}
+
+std::string message(const std::string& text) {
+    try {
+        read_case_file(written(text));
+        return "";
+    } catch (const InvalidInput& error) {
+        return error.what();
+    }
+}
+
+TEST(CaseFile, reads_what_people_write) {
+    const CaseFile file = read_case_file(written(minimal));
+    EXPECT_EQ(file.name, "liver");
+    EXPECT_EQ(file.labels->filename(), "liver.seg.nrrd");
+    EXPECT_FALSE(file.volume);
+    EXPECT_EQ(file.structures.at(0).parameters.at("center_mm"), nlohmann::ordered_json::parse("[1, 2.5, 3]"));
+    const DeformableSpec& body = file.deformable.at(0);
+    EXPECT_EQ(body.sizing.at("--cell-size"), 8);
+    EXPECT_EQ(body.fixed, (std::vector<std::string>{"touching:skull", "sphere:1,2,3.5,4"}));
+    EXPECT_EQ(body.regions.at(0).youngs_modulus_kpa, 6);
+}
+
+TEST(CaseFile, how_the_inputs_are_read_becomes_options_of_import) {
+    using Texts = std::vector<std::string>;
+    const auto with = [](const std::string& lines) {
+        std::string text = minimal;
+        text.insert(text.find("[[structure]]"), lines);
+        return read_case_file(written(text));
+    };
+    const CaseFile file =
+        with("series = 3\naccept_gaps = true\nlabel_names = \"totalsegmentator:v2/total\"\n");
+    EXPECT_EQ(file.volume_options, (Texts{"--series", "3", "--accept-gaps"}));
+    EXPECT_EQ(file.labels_options, (Texts{"--label-names", "totalsegmentator:v2/total"}));
+    EXPECT_FALSE(file.label_table);
+    EXPECT_EQ(with("series = \"portal venous\"\n").volume_options, (Texts{"--series", "portal venous"}));
+
+    const auto table = written(minimal).parent_path() / "names.ctbl";
+    std::ofstream(table) << "1 liver\n";
+    const CaseFile named =
+        with("label_names = \"names.ctbl\"\noverlaps = \"smaller\"\nnifti_frame = \"qform\"\n");
+    EXPECT_EQ(named.label_table, table);
+    EXPECT_EQ(named.labels_options,
+              (Texts{"--nifti-frame", "qform", "--label-names", table.string(), "--overlaps", "smaller"}));
+    EXPECT_THROW(with("accept_gaps = \"yes\"\n"), InvalidInput);
+}
+
+TEST(CaseFile, files_that_recipes_read_lie_beside_it_and_parameters_keep_their_order) {
+    const CaseFile file = read_case_file(written(minimal + R"([[structure]]
+name = "liver"
+recipe = "liver"
+seeds_file = "seeds/liver.mrk.json"
+open_mm = 2
+keep_largest = true
+close_mm = 1
+scribbles = "strokes.seg.nrrd"
+)"));
+    const StructureSpec& liver = file.structures.at(1);
+    const auto folder = written(minimal).parent_path();
+    EXPECT_EQ(liver.files.at("seeds_file"), folder / "seeds/liver.mrk.json");
+    EXPECT_EQ(liver.files.at("scribbles"), folder / "strokes.seg.nrrd");
+    EXPECT_EQ(liver.parameters.dump(), R"({"open_mm":2,"keep_largest":true,"close_mm":1})");
+}
+
+TEST(CaseFile, an_unknown_key_is_refused_with_line_and_nearest_name) {
+    const std::string text = message(minimal + "poisons_ratio = 0.4\n");
+    EXPECT_NE(text.find("case.toml:17"), std::string::npos) << text;
+    EXPECT_NE(text.find("did you mean poissons_ratio"), std::string::npos) << text;
+}
+
+TEST(CaseFile, a_missing_key_is_named) {
+    EXPECT_NE(message("schema = 1\n").find("'name'"), std::string::npos);
+    EXPECT_NE(message("name = \"x\"\n").find("'schema'"), std::string::npos);
+}
+
+TEST(CaseFile, a_newer_schema_asks_for_a_newer_palpate) {
+    EXPECT_NE(message("schema = 2\nname = \"x\"\n").find("newer palpate"), std::string::npos);
+}
+
+TEST(CaseFile, wrong_types_and_syntax_errors_name_the_line) {
+    EXPECT_NE(message("schema = 1\nname = 3\n").find("case.toml:2"), std::string::npos);
+    EXPECT_NE(message("schema = 1\nname = \n").find("case.toml:2"), std::string::npos);
+}
+
+TEST(CaseFile, a_case_without_bodies_or_regions_is_refused) {
+    EXPECT_NE(message("schema = 1\nname = \"x\"\n").find("body"), std::string::npos);
+    EXPECT_NE(message("schema = 1\nname = \"x\"\n[[deformable]]\nname = \"y\"\n").find("region"),
+              std::string::npos);
+}
+
+// The minimal case with more lines in its deformable body.
+std::string with_lines(const std::string& lines) {
+    std::string text = minimal;
+    return text.insert(text.find("[[deformable.region]]"), lines);
+}
+
+TEST(CaseFile, nodes_are_held_and_touched_by_the_same_rules) {
+    std::string text = minimal;
+    const std::string rules =
+        "[{ touching = \"background\" }, { region = \"tumour\" }, { box_mm = [0, 0, 0, 1, 2.5, 3] }, "
+        "{ sphere_mm = [1, 2, 3, 4] }, { plane_mm = [0, 0, 0, 0, 0, 1] }, "
+        "{ nodes_file = \"sets/rim.txt\" }]";
+    text.replace(text.find("fixed = "), text.find('\n', text.find("fixed = ")) - text.find("fixed = "),
+                 "fixed = " + rules + "\ncontact = " + rules);
+    const DeformableSpec body = read_case_file(written(text)).deformable.at(0);
+    const auto file = written(text).parent_path() / "sets/rim.txt";
+    const std::vector<std::string> expected{"touching:background", "region:tumour",
+                                            "box:0,0,0,1,2.5,3",   "sphere:1,2,3,4",
+                                            "plane:0,0,0,0,0,1",   "nodes:" + file.string()};
+    EXPECT_EQ(body.fixed, expected);
+    EXPECT_EQ(body.contact, expected);
+    EXPECT_EQ(body.node_files, (std::vector<std::filesystem::path>{file, file}));
+}
+
+TEST(CaseFile, a_rule_that_is_not_understood_is_refused) {
+    const auto of_rule = [](const std::string& rule) {
+        return message(with_lines("contact = [" + rule + "]\n"));
+    };
+    EXPECT_NE(of_rule("{ sphere_mm = [1, 2] }").find("4 numbers"), std::string::npos);
+    EXPECT_NE(of_rule("{ spere_mm = [1, 2, 3, 4] }").find("did you mean sphere_mm"), std::string::npos);
+    EXPECT_NE(of_rule("{ spere_mm = [1, 2, 3, 4] }").find("deformable.contact"), std::string::npos);
+    EXPECT_NE(of_rule("{ touching = 3 }").find("wrong type"), std::string::npos);
+    EXPECT_NE(of_rule("{ touching = \"a\", region = \"b\" }").find("one of { touching"), std::string::npos);
+    EXPECT_NE(of_rule("{ }").find("one of { touching"), std::string::npos);
+    EXPECT_NE(message(with_lines("contact = \"skull\"\n")).find("'contact'"), std::string::npos);
+}
+
+TEST(CaseFile, element_and_compliance_become_options_of_condense) {
+    EXPECT_TRUE(read_case_file(written(minimal)).deformable.at(0).condense_options.empty());
+    const DeformableSpec body =
+        read_case_file(
+            written(with_lines("element = \"quadratic\"\ncompliance = { accuracy = 1e-3, size_mib = 50, "
+                               "memory_gib = 2.5, representation = \"hierarchical\" }\n")))
+            .deformable.at(0);
+    EXPECT_EQ(body.condense_options,
+              (std::vector<std::string>{"--element", "quadratic", "--accuracy", "0.001", "--memory", "2.5",
+                                        "--size", "50", "--representation", "hierarchical"}));
+}
+
+TEST(CaseFile, wrong_values_of_element_and_compliance_are_refused_with_line_and_what_is_meant) {
+    for (const auto& [line, phrase] : std::initializer_list<std::pair<std::string, std::string>>{
+             {"element = \"quadratc\"", "did you mean quadratic"},
+             {"element = 2", "wrong type"},
+             {"elements = \"linear\"", "did you mean element"},
+             {"compliance = { accuracy = 0 }", "is 0 (expected a number above 0)"},
+             {"compliance = { size_mib = -1 }", "is -1"},
+             {"compliance = { memory_gib = nan }", "is nan"},
+             {"compliance = { memory_gib = \"2\" }", "wrong type"},
+             {"compliance = { memory_gb = 2 }", "did you mean memory_gib"},
+             {"compliance = { representation = \"sparse\" }", "(expected auto, dense, hierarchical)"},
+             {"compliance = 3", "a table"}}) {
+        const std::string text = message(with_lines(line + "\n"));
+        EXPECT_NE(text.find(phrase), std::string::npos) << text;
+        EXPECT_NE(text.find("case.toml:13"), std::string::npos) << text;
+    }
+}
+
+TEST(CaseFile, imported_meshes_and_surfaces_need_no_image) {
+    const CaseFile file = read_case_file(written(R"(schema = 1
+name = "sofa"
+[[deformable]]
+name = "liver"
+mesh_file = "liver.msh"
+mesh_unit = "cm"
+[[deformable.region]]
+label = "liver"
+mesh_region = 1
+youngs_modulus_kpa = 6
+poissons_ratio = 0.45
+[[rigid]]
+name = "skull"
+surface_file = "skull.stl"
+surface_frame = "ras"
+)"));
+    EXPECT_FALSE(needs_labels(file));
+    EXPECT_EQ(file.deformable.at(0).file->path.filename(), "liver.msh");
+    EXPECT_EQ(file.deformable.at(0).file->unit, "cm");
+    EXPECT_EQ(file.deformable.at(0).regions.at(0).mesh_region, 1);
+    EXPECT_EQ(file.rigid.at(0).file->unit, "mm");
+    EXPECT_EQ(file.rigid.at(0).file->frame, "ras");
+    EXPECT_TRUE(needs_labels(read_case_file(written(minimal))));
+}
+
+TEST(CaseFile, an_imported_file_beside_what_would_make_it_is_refused) {
+    const std::string head = "schema = 1\nname = \"x\"\n[[rigid]]\nname = \"y\"\n";
+    EXPECT_NE(message(head + "surface_file = \"y.stl\"\nisovalue_hu = 226\n").find("isovalue_hu"),
+              std::string::npos);
+    EXPECT_NE(message(head + "surface_unit = \"cm\"\n").find("'surface_file'"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace palpate::build

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fstream>
+#include <gtest/gtest.h>
+
+#include "formats/model/errors.hpp"
+#include "tools/case_builder/stage_runner.hpp"
+
+namespace palpate::build {
+namespace {
+
+// A folder with a made-up command palpate-copy INPUT -o OUTPUT that counts its runs.
+class StageRunnerTest : public testing::Test {
+  protected:
+    void SetUp() override {
+        folder_ = std::filesystem::path(testing::TempDir()) /
+                  testing::UnitTest::GetInstance()->current_test_info()->name();
+        std::filesystem::remove_all(folder_);
+        std::filesystem::create_directories(folder_);
+        write(
+            "palpate-copy",
+            "#!/bin/sh\necho run >> \"$(dirname \"$0\")/runs\"\ncp \"$1\" \"$3\"\n"
+            "while [ $# -gt 0 ]; do [ \"$1\" = --json ] && echo '{\"answer\": 42}' > \"$2\"; shift; done\n");
+        write("palpate-refuse", "#!/bin/sh\nexit 3\n");
+        for (const char* program : {"palpate-copy", "palpate-refuse"})
+            std::filesystem::permissions(folder_ / program, std::filesystem::perms::owner_all);
+        write("input", "one");
+    }
+
+    void write(const std::string& name, const std::string& text) const {
+        std::ofstream(folder_ / name) << text;
+    }
+
+    int runs() const {
+        std::ifstream stream(folder_ / "runs");
+        int count = 0;
+        for (std::string line; std::getline(stream, line);) ++count;
+        return count;
+    }
+
+    StageRecord run(const std::vector<std::string>& more = {}) const {
+        const auto input = folder_ / "input", output = folder_ / "output";
+        Stage stage{"copy it", "copy", {input.string(), "-o", output.string()}, {input}, {output}};
+        stage.arguments.insert(stage.arguments.end(), more.begin(), more.end());
+        return StageRunner(folder_, folder_ / "parts", 1, true).run(stage);
+    }
+
+    std::filesystem::path folder_;
+};
+
+TEST_F(StageRunnerTest, runs_once_and_remembers_the_result) {
+    EXPECT_TRUE(run().ran);
+    const StageRecord again = run();
+    EXPECT_FALSE(again.ran);
+    EXPECT_EQ(again.result["answer"], 42);
+    EXPECT_EQ(runs(), 1);
+}
+
+TEST_F(StageRunnerTest, runs_again_when_content_argument_output_or_program_changes) {
+    run();
+    write("input", "two");
+    EXPECT_TRUE(run().ran);
+    EXPECT_TRUE(run({"--depth", "3"}).ran);
+    write("output", "altered");
+    EXPECT_TRUE(run({"--depth", "3"}).ran);
+    std::ofstream(folder_ / "palpate-copy", std::ios::app) << "# newer\n";
+    EXPECT_TRUE(run({"--depth", "3"}).ran);
+    EXPECT_FALSE(run({"--depth", "3"}).ran);
+}
+
+TEST_F(StageRunnerTest, touching_a_file_without_changing_it_runs_nothing) {
+    run();
+    write("input", "one");
+    EXPECT_FALSE(run().ran);
+}
+
+TEST_F(StageRunnerTest, a_childs_exit_code_becomes_the_error_of_its_kind) {
+    const StageRunner runner(folder_, folder_ / "parts", 1, true);
+    EXPECT_THROW(runner.run({"refuse", "refuse", {}, {folder_ / "input"}, {}}), InvalidInput);
+}
+
+TEST_F(StageRunnerTest, knows_its_own_outputs) {
+    run();
+    const StageRunner runner(folder_, folder_ / "parts", 1, true);
+    EXPECT_TRUE(runner.made_by_us("copy it", folder_ / "output"));
+    write("output", "somebody else's");
+    EXPECT_FALSE(runner.made_by_us("copy it", folder_ / "output"));
+}
+
+}  // namespace
+}  // namespace palpate::build

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include "formats/model/errors.hpp"
+#include "tests/tools/meshing/phantom.hpp"
+#include "tools/meshing/contract/contract.hpp"
+#include "tools/meshing/contract/mesh_to_contract.hpp"
+
+namespace palpate {
+namespace {
+
+TEST(QualityContract, coarse_request_is_made_finer_until_it_is_kept) {
+    const LabelMap map = test::organ_with_lesion();
+    const MeshSizing coarse{.cell_size = 12, .facet_distance = 4};
+    const QualityContract contract{.max_mean_distance = 0.06};
+    const ContractedMesh once = mesh_to_contract(map, test::organ_and_lesion, coarse, contract, 1);
+    ASSERT_FALSE(once.attempts.back().misses.empty());
+    const ContractedMesh result = mesh_to_contract(map, test::organ_and_lesion, coarse, contract, 8);
+    EXPECT_GT(result.attempts.size(), 1U);
+    EXPECT_EQ(result.attempts.front().misses.size(), once.attempts.back().misses.size());
+    EXPECT_TRUE(result.attempts.back().misses.empty()) << result.attempts.back().misses.front().what;
+    EXPECT_GT(result.attempts.back().tetrahedra, once.attempts.back().tetrahedra);
+}
+
+TEST(QualityContract, any_direction_matrix_keeps_it) {
+    Eigen::Matrix3d flipped = Eigen::Vector3d(-1, 1, -1).asDiagonal(), permuted;
+    permuted << 0, 0, -1, 1, 0, 0, 0, 1, 0;
+    const Eigen::Matrix3d oblique =
+        Eigen::AngleAxisd(0.6, Eigen::Vector3d(3, -1, 2).normalized()).toRotationMatrix();
+    for (const Eigen::Matrix3d& direction : {flipped, permuted, oblique}) {
+        const LabelMap map = test::organ_with_lesion(direction);
+        const ContractedMesh result = mesh_to_contract(map, test::organ_and_lesion, {.cell_size = 4}, {}, 4);
+        EXPECT_TRUE(result.attempts.back().misses.empty()) << result.attempts.back().misses.front().what;
+    }
+}
+
+TEST(QualityContract, impossible_limit_is_named_after_the_last_attempt) {
+    const LabelMap map = test::organ_with_lesion();
+    QualityContract contract;
+    contract.min_region_dice = 0.99999;
+    const ContractedMesh result =
+        mesh_to_contract(map, test::organ_and_lesion, {.cell_size = 6}, contract, 2);
+    ASSERT_EQ(result.attempts.size(), 2U);
+    const auto& missed = result.attempts.back().misses;
+    ASSERT_EQ(missed.size(), 2U);
+    EXPECT_NE(missed[1].what.find("Dice coefficient of 'lesion'"), std::string::npos) << missed[1].what;
+    EXPECT_NE(missed[1].limit.find("0.99999"), std::string::npos);
+}
+
+// A mesh of one region whose measures are set by hand.
+struct HandMade {
+    TetMesh mesh;
+    MeshMeasures measures;
+    ImageGrid grid;
+};
+
+HandMade sound() {
+    HandMade made;
+    made.mesh.rest_positions = {{0, 0, 0}, {4, 0, 0}, {0, 3, 0}, {0, 0, 2}};
+    made.mesh.tetrahedra = {{0, 1, 2, 3}};
+    made.mesh.regions = {4};
+    made.mesh.region_names = {{4, "organ"}};
+    made.measures.quality.min_dihedral_deg = 40;
+    made.measures.quality.max_dihedral_deg = 100;
+    made.measures.quality.worst = {{0, 40, 100, {1, 2, 3}}};
+    made.measures.fidelity.body = {0, 4, 0.1, 0.99, 0.01};
+    made.measures.fidelity.regions = {{4, 4, 0.1, 0.99, 0.01}};
+    made.measures.distances.resize(1);
+    made.measures.distances[0].region = 4;
+    made.measures.components = {{4, 4, {1, 1, 1}, 0.9}};
+    return made;
+}
+
+TEST(ContractMisses, sound_mesh_has_none) {
+    const HandMade made = sound();
+    EXPECT_TRUE(misses(check_shape({}, made.mesh, made.measures.quality)).empty());
+    EXPECT_TRUE(misses(check_fidelity({}, made.mesh, made.measures, made.grid)).empty());
+}
+
+TEST(ContractMisses, flat_tetrahedron_is_named_with_its_place_and_size) {
+    HandMade made = sound();
+    made.measures.quality.max_dihedral_deg = made.measures.quality.worst[0].max_dihedral_deg = 165.5;
+    const auto missed = misses(check_shape({}, made.mesh, made.measures.quality));
+    ASSERT_EQ(missed.size(), 1U);
+    EXPECT_EQ(missed[0].found, "40.0° ... 165.5°: 40.0° ... 165.5° at (1.0, 2.0, 3.0)");
+    EXPECT_EQ(missed[0].places.at(0), Eigen::Vector3d(1, 2, 3));
+    EXPECT_DOUBLE_EQ(missed[0].size, 5);
+}
+
+TEST(ContractMisses, broken_boundary_and_inverted_tetrahedra_are_always_misses) {
+    HandMade made = sound();
+    made.measures.quality.inverted = 1;
+    made.measures.quality.boundary.non_manifold_edges = 2;
+    made.measures.quality.boundary.open_edges = 3;
+    EXPECT_EQ(misses(check_shape({}, made.mesh, made.measures.quality)).size(), 3U);
+}
+
+TEST(ContractMisses, every_limit_of_fidelity_is_checked) {
+    const auto missed_by = [](const std::function<void(MeshMeasures&)>& spoil) {
+        HandMade made = sound();
+        spoil(made.measures);
+        const auto missed = misses(check_fidelity({}, made.mesh, made.measures, made.grid));
+        return missed.size() == 1 ? missed[0].what + " is " + missed[0].found
+                                  : std::string("misses: ") + std::to_string(missed.size());
+    };
+    EXPECT_EQ(missed_by([](MeshMeasures& m) { m.fidelity.body.dice = 0.97; }),
+              "the Dice coefficient of the body is 0.9700");
+    EXPECT_EQ(missed_by([](MeshMeasures& m) { m.fidelity.body.centroid_distance = 0.06; }),
+              "the centroid's distance of the body is 0.060 mm");
+    EXPECT_EQ(missed_by([](MeshMeasures& m) { m.fidelity.regions[0].volume_error_percent = -1.1; }),
+              "the volume error of 'organ' is -1.100 %");
+    EXPECT_EQ(missed_by([](MeshMeasures& m) { m.fidelity.regions[0].dice = 0.94; }),
+              "the Dice coefficient of 'organ' is 0.9400");
+    EXPECT_EQ(missed_by([](MeshMeasures& m) { m.distances[0].mean = 0.26; }),
+              "the mean surface distance of 'organ' is 0.260 mm");
+    EXPECT_EQ(missed_by([](MeshMeasures& m) { m.distances[0].percentile_95 = 0.51; }),
+              "the 95th percentile of the surface distance of 'organ' is 0.510 mm");
+    EXPECT_EQ(missed_by([](MeshMeasures& m) { m.distances[0].maximum = 1.8; }),
+              "the largest surface distance of 'organ' is 1.800 mm at (0.0, 0.0, 0.0)");
+    EXPECT_EQ(missed_by([](MeshMeasures& m) { m.components[0].covered = 0.4; }),
+              "the share in the mesh of a component of 'organ' is 40 % (4 mm³ around (1.0, 1.0, 1.0))");
+}
+
+TEST(ContractMisses, limits_grow_with_coarse_voxels_alone) {
+    HandMade made = sound();
+    made.measures.distances[0].mean = 0.6;
+    made.grid.spacing = {3, 3, 3};
+    EXPECT_TRUE(misses(check_fidelity({}, made.mesh, made.measures, made.grid)).empty());
+    made.grid.spacing = {0.5, 0.5, 0.5};
+    EXPECT_EQ(misses(check_fidelity({}, made.mesh, made.measures, made.grid)).size(), 1U);
+}
+
+}  // namespace
+}  // namespace palpate

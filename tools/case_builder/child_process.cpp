@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/case_builder/child_process.hpp"
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#include "formats/model/errors.hpp"
+#include "tools/cli/staged_file.hpp"
+
+extern char** environ;
+
+namespace palpate::build {
+namespace {
+
+pid_t spawn(const std::filesystem::path& program, const std::vector<std::string>& arguments) {
+    std::vector<char*> argv{const_cast<char*>(program.c_str())};
+    for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+    argv.push_back(nullptr);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
+    pid_t child = 0;
+    const int error = posix_spawn(&child, program.c_str(), &actions, nullptr, argv.data(), environ);
+    posix_spawn_file_actions_destroy(&actions);
+    if (error != 0)
+        throw SystemFailure({program.string(), std::string("cannot be started: ") + std::strerror(error), "",
+                             "build or install all of Palpate"});
+    return child;
+}
+
+}  // namespace
+
+ChildResult run_child(const std::filesystem::path& program, const std::vector<std::string>& arguments) {
+    const auto start = std::chrono::steady_clock::now();
+    const pid_t child = spawn(program, arguments);
+    cli::pass_interrupts_to(child);
+    int status = 0;
+    rusage usage{};
+    while (wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {
+    }
+    cli::pass_interrupts_to(0);
+    ChildResult result;
+    result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    result.peak_memory_bytes = std::int64_t{usage.ru_maxrss} * 1024;  // Linux reports KiB
+    return result;
+}
+
+}  // namespace palpate::build

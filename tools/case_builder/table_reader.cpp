@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/case_builder/table_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "formats/model/errors.hpp"
+#include "formats/model/label_map.hpp"
+
+namespace palpate::build {
+
+TableReader::TableReader(const toml::table& table, std::string file, std::string where)
+    : table_(table), file_(std::move(file)), where_(std::move(where)) {}
+
+std::optional<std::string> TableReader::text_or_number(const std::string& key) {
+    const toml::node* node = table_.get(key);
+    if (node == nullptr || !node->is_integer()) return optional<std::string>(key);
+    return std::to_string(*optional<std::int64_t>(key));
+}
+
+std::optional<std::string> TableReader::choice(const std::string& key,
+                                               const std::vector<std::string>& choices) {
+    const auto text = optional<std::string>(key);
+    if (text && std::ranges::find(choices, *text) == choices.end())
+        fail(*table_.get(key), key, "is '" + *text + "'", fmt::format("{}", fmt::join(choices, ", ")),
+             "did you mean " + nearest_names(*text, choices).front() + "?");
+    return text;
+}
+
+std::optional<double> TableReader::positive(const std::string& key) {
+    const auto value = optional<double>(key);
+    if (value && !(*value > 0 && std::isfinite(*value)))
+        fail(*table_.get(key), key, fmt::format("is {}", *value), "a number above 0");
+    return value;
+}
+
+std::vector<double> TableReader::numbers(const std::string& key, std::size_t count) {
+    known_.insert(key);
+    const toml::array* array = table_.get_as<toml::array>(key);
+    std::vector<double> values;
+    if (array != nullptr)
+        for (const toml::node& item : *array)
+            if (const auto value = item.value<double>()) values.push_back(*value);
+    if (values.size() != count) fail(table_, key, "cannot be read", std::to_string(count) + " numbers in mm");
+    return values;
+}
+
+std::optional<std::vector<double>> TableReader::optional_numbers(const std::string& key, std::size_t count) {
+    known_.insert(key);
+    if (!has(key)) return std::nullopt;
+    return numbers(key, count);
+}
+
+TableReader TableReader::table(const std::string& key) {
+    known_.insert(key);
+    static const toml::table empty;
+    const toml::node* node = table_.get(key);
+    if (node == nullptr) return {empty, file_, place_of(key)};
+    if (!node->is_table()) fail(*node, key, "has the wrong type", "a table");
+    return {*node->as_table(), file_, place_of(key)};
+}
+
+std::vector<TableReader> TableReader::tables(const std::string& key) {
+    known_.insert(key);
+    std::vector<TableReader> readers;
+    const toml::node* node = table_.get(key);
+    if (node == nullptr) return readers;
+    if (!node->is_array()) fail(*node, key, "has the wrong type", "an array of tables, [[" + key + "]]");
+    for (const toml::node& item : *node->as_array()) {
+        if (!item.is_table()) fail(item, key, "has the wrong type", "an array of tables, [[" + key + "]]");
+        readers.emplace_back(*item.as_table(), file_, place_of(key));
+    }
+    return readers;
+}
+
+void TableReader::refuse_unknown() const {
+    for (const auto& [key, node] : table_) {
+        const std::string name(key.str());
+        if (known_.contains(name)) continue;
+        const auto near = nearest_names(name, {known_.begin(), known_.end()});
+        std::string hint;
+        for (const std::string& candidate : near) hint += (hint.empty() ? "did you mean " : ", ") + candidate;
+        fail(node, name, "is not known here", "", hint);
+    }
+}
+
+void TableReader::fail(const toml::node& node, const std::string& key, const std::string& found,
+                       const std::string& expected, const std::string& next_step) const {
+    const auto line = node.source().begin.line;
+    const std::string place = line > 0 ? fmt::format("{}:{}", file_, line) : file_;
+    throw InvalidInput({place,
+                        fmt::format("key '{}'{} {}", key, where_.empty() ? "" : " of " + where_, found),
+                        expected, next_step});
+}
+
+std::string TableReader::place_of(const std::string& key) const {
+    return where_.empty() ? key : where_ + "." + key;
+}
+
+}  // namespace palpate::build

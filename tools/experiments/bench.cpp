@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cstdio>
+#include <fmt/format.h>
+
+#include "tools/experiments/experiments.hpp"
+#include "tools/experiments/faults.hpp"
+#include "tools/experiments/puncture/puncture.hpp"
+#include "tools/experiments/realtime.hpp"
+#include "tools/experiments/stability/passivity.hpp"
+#include "tools/experiments/stability/split.hpp"
+#include "tools/experiments/stability/stability.hpp"
+#include "tools/experiments/tick/tick.hpp"
+
+namespace palpate::bench {
+namespace {
+
+const std::vector<Experiment> experiments{
+    // name, what it finds out, function
+    {"faults", "a virtual day of pushing while devices, servo, window and asset fail at random", faults},
+    {"passivity", "the stiffest wall that the closed loop bears, against 2b/T", passivity},
+    {"puncture", "how often a tool is pushed through a bone, by scheme; the published tables 1 and 2",
+     puncture},
+    {"realtime", "ten minutes against the clock beside four busy processes, with and without priority",
+     realtime},
+    {"split", "two deformable bodies: the published split by force ratio against exact contact", split},
+    {"stability", "jumps, pulls, roughness and energy of force by scheme, and 10 minutes at random",
+     stability},
+    {"tick", "what a tick takes, by scheme, body and contacts, alone and with every core busy", tick},
+};
+
+const Experiment& find_experiment(const std::string& name) {
+    const auto found = std::ranges::find(experiments, name, &Experiment::name);
+    if (found != experiments.end()) return *found;
+    std::string names;
+    for (const Experiment& experiment : experiments)
+        names += (names.empty() ? "" : ", ") + std::string(experiment.name);
+    throw UsageError({"experiment", name, names, ""});
+}
+
+nlohmann::ordered_json run(const std::string& name, const Options& options, cli::Session& session) {
+    const Experiment& experiment = find_experiment(name);
+    if (!(options.seconds >= 0))
+        throw UsageError({"--seconds", std::to_string(options.seconds), "0 or more", ""});
+    std::filesystem::create_directories(options.output);
+    cli::StagedFile table = session.stage(options.output / (name + ".md"));
+    Findings findings = experiment.run(options, session);
+    for (const auto& [picture, svg] : findings.pictures)
+        cli::write_text_file(options.output / (picture + ".svg"), svg, session.force);
+    table.write_text(findings.table);
+    table.commit();
+    findings.result["experiment"] = name;
+    if (!session.quiet) std::fputs(findings.table.c_str(), stderr);
+    return findings.result;
+}
+
+std::string notes() {
+    std::string text = "Experiments:";
+    for (const Experiment& experiment : experiments)
+        text += fmt::format("\n  {:<10} {}", experiment.name, experiment.summary);
+    return text;
+}
+
+}  // namespace
+}  // namespace palpate::bench
+
+int main(int argc, char** argv) {
+    using namespace palpate;
+    cli::Command command(
+        {.name = "bench",
+         .summary = "Runs an experiment on contact and force: a table, pictures and JSON",
+         .examples = {"palpate bench puncture --surface skull.vtp -o results",
+                      "palpate bench stability --case nasopharynx.vtkhdf --case liver.vtkhdf "
+                      "--json stability.json"},
+         .notes = bench::notes()});
+    std::string name;
+    bench::Options options;
+    command.option("experiment", name, "which one").required();
+    command.input("--surface", options.surface, "triangles of a bone (.vtp), LPS mm");
+    command.input("--case", options.cases, "assets (.vtkhdf)");
+    command.input("--path", options.path, "hand path: rows 'x y z' (mm), one per millisecond");
+    command.output("-o,--output", options.output, "folder for the table (.md) and the pictures (.svg)");
+    command.option("--seed", options.seed, "of everything random");
+    command.option("--seconds", options.seconds, "how long; 0 is the experiment's own", "s");
+    return command.run(argc, argv, [&](cli::Session& session) { return bench::run(name, options, session); });
+}

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/experiments/puncture/approach_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "formats/model/arrays.hpp"
+
+namespace palpate::bench {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double approach_tick_s = 1e-3;
+constexpr double just_before = 2;  // mm: beyond what a bump beside the entry holds up
+constexpr HandImpedance hand;
+
+bool detects_at(double time, double phase) {
+    const auto detections = [&](double t) { return std::floor(Approach::detections_per_s * t + phase); };
+    return detections(time) > detections(time - approach_tick_s);
+}
+
+// Whether the tool overlaps the surface or has crossed it since the last tick.
+bool passes_surface(const CollisionSurface& surface, const Vector3d& before, const Vector3d& now,
+                    double radius) {
+    constexpr double rounding = 1e-6;  // mm
+    return surface.closest_point(now, radius - rounding).has_value() ||
+           surface.sweep_sphere(before, now, 0).has_value();
+}
+
+}  // namespace
+
+Outcome run_approach(HapticModel& model, const DeviceModel& device_model, const Approach& approach,
+                     bool watch_tool, const std::function<void(const ApproachTick&)>& sink) {
+    const auto& [entry, direction, thickness] = approach.place;
+    const double arrival = (Approach::run_up + Approach::stroke) / approach.speed;
+    const double end = arrival + Approach::press_s;
+    DynamicDevice device(device_model, hand,
+                         HandPath({{0, entry - Approach::run_up * direction},
+                                   {arrival, entry + Approach::stroke * direction}}));
+    model.reset();
+    Outcome outcome;
+    TickResult result{};
+    Vector3d tool = device.position();
+    double contact = -1, held_sum = 0;
+    int judged = 0;
+    for (int tick = 0; approach_tick_s * tick <= end; ++tick) {
+        const double time = approach_tick_s * tick;
+        DeviceState state = device.read(time);
+        model.tick(state, result);
+        device.write(result.force);
+        if (detects_at(time, approach.phase)) model.detect();
+
+        const Vector3d way = device.position() - entry;
+        const double depth = way.dot(direction);
+        const double along = vector_of(result.force).dot(direction);
+        if (depth <= -just_before) outcome.speed = device.velocity().dot(direction);
+        if (contact < 0 && depth >= 0) contact = time;
+        if (outcome.latency < 0 && along != 0) {
+            outcome.latency = contact < 0 ? 0 : time - contact;
+            outcome.depth_at_force = depth;
+        }
+        outcome.deepest = std::max(outcome.deepest, depth);
+        outcome.aside = std::max(outcome.aside, (way - depth * direction).norm());
+        outcome.pull = std::max(outcome.pull, along);
+        if (time > end - Approach::judged_s) {
+            held_sum -= along;
+            ++judged;
+        }
+        if (watch_tool) {
+            const Vector3d now = vector_of(result.tool_position);
+            outcome.tool_passed_surface |=
+                passes_surface(model.surface(0), tool, now, model.settings().tool_radius);
+            tool = now;
+        }
+        if (sink) sink({time, depth, -along});
+    }
+    outcome.held = held_sum / judged;
+    return outcome;
+}
+
+double unbroken_force(double coupling_stiffness) {
+    return Approach::stroke * coupling_stiffness * hand.stiffness / (coupling_stiffness + hand.stiffness);
+}
+
+bool is_puncture(const Outcome& outcome, double coupling_stiffness) {
+    return outcome.held < unbroken_force(coupling_stiffness) / 2;
+}
+
+bool is_pulled(const Outcome& outcome) {
+    constexpr double felt = 0.1;  // N
+    return outcome.pull > felt;
+}
+
+}  // namespace palpate::bench

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include "tools/experiments/experiments.hpp"
+
+namespace palpate::bench {
+
+/// Counts how often a tool is pushed through a bone (`--surface`) by each contact scheme, as the published
+/// tables 1 and 2 do, says why, and looks for a puncture in 10 000 approaches with `continuous`. Throws
+/// UsageError without a surface.
+Findings puncture(const Options& options, cli::Session& session);
+
+}  // namespace palpate::bench

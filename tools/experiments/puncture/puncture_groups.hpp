@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <array>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "runtime/haptics/contact/contact_scheme.hpp"
+#include "tools/experiments/puncture/approach_run.hpp"
+
+namespace palpate::bench {
+
+inline constexpr std::size_t puncture_groups = 10, approaches_per_group = 10;
+
+/// The same approaches by every scheme, group after group.
+struct GroupRun {
+    std::vector<Approach> approaches;
+    std::array<std::vector<Outcome>, contact_scheme_names.size()> outcomes;  // by ContactScheme
+    double coupling = 0;                                                     // N/mm
+};
+
+/// Appends the published tables 1 and 2 for every scheme, beside the published figures, and what is known of
+/// the chances. Returns the figures.
+nlohmann::ordered_json add_group_tables(std::string& table, const GroupRun& run);
+
+/// Appends why approaches end in punctures, from what the run measured: thickness, delay, depth. Returns the
+/// figures.
+nlohmann::ordered_json add_reasons(std::string& table, const GroupRun& run);
+
+/// "1.1 … 9.9 %", for tables.
+std::string chance_text(int count, int trials);
+
+}  // namespace palpate::bench

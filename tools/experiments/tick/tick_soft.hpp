@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <vector>
+
+#include "formats/model/body.hpp"
+#include "tools/cli/command.hpp"
+#include "tools/experiments/tick/tick_runs.hpp"
+
+namespace palpate::bench {
+
+/// A soft body and a tool of the size that presses on about `contacts` of its nodes.
+struct SoftTouchCase {
+    Case patient_case;
+    int contacts = 0;
+    HandPath path;
+};
+
+/// Ticks that touch soft ellipsoids of about 500, 1000 and 2000 contact nodes with tools of several sizes.
+struct SoftTicks {
+    std::vector<TickRow> rows;
+    struct Point {
+        std::size_t nodes;
+        double pressed, p50, p999;  ///< us
+    };
+    std::vector<Point> without_friction;
+    SoftTouchCase loaded;  ///< that of the rows under load: 2000 nodes, 16 contacts
+};
+SoftTicks soft_ticks(cli::Session& session);
+
+/// Ticks that touch the first deformable body of an asset as `palpate touch` does.
+TickRow case_ticks(const Case& patient_case);
+
+}  // namespace palpate::bench

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/fem/assembly/sound_tetrahedra.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+
+#include "formats/model/errors.hpp"
+
+namespace palpate {
+namespace {
+
+const Eigen::Vector3d& corner(const TetMesh& mesh, std::size_t t, std::size_t c) {
+    return mesh.rest_positions[mesh.tetrahedra[t][c]];
+}
+
+double longest_edge(const TetMesh& mesh, std::size_t t) {
+    double squared = 0;
+    for (std::size_t a = 0; a < 4; ++a)
+        for (std::size_t b = a + 1; b < 4; ++b)
+            squared = std::max(squared, (corner(mesh, t, a) - corner(mesh, t, b)).squaredNorm());
+    return std::sqrt(squared);
+}
+
+InvalidInput refusal(const TetMesh& mesh, std::size_t t) {
+    const Tetrahedron& nodes = mesh.tetrahedra[t];
+    const double quality = element_quality(mesh, t);
+    const bool inside_out = quality <= -smallest_element_quality;
+    const Eigen::Vector3d centre =
+        (corner(mesh, t, 0) + corner(mesh, t, 1) + corner(mesh, t, 2) + corner(mesh, t, 3)) / 4;
+    return InvalidInput(
+        {fmt::format("tetrahedron {}", t),
+         fmt::format("it is {}: nodes {}, {}, {} and {} around ({:.4g}, {:.4g}, {:.4g}) mm span {:.3g} mm³ "
+                     "over a longest edge of {:.3g} mm, quality {:.2g}",
+                     inside_out ? "inside out" : "flat", nodes[0], nodes[1], nodes[2], nodes[3], centre.x(),
+                     centre.y(), centre.z(), six_volume(mesh, t) / 6, longest_edge(mesh, t), quality),
+         fmt::format("quality above {:.0e}; a regular tetrahedron has 1", smallest_element_quality),
+         inside_out ? "exchange two of its nodes, or mesh again with 'palpate mesh'"
+                    : "merge its nearest nodes, or mesh again with 'palpate mesh'"});
+}
+
+}  // namespace
+
+double element_quality(const TetMesh& mesh, std::size_t t) {
+    const double longest = longest_edge(mesh, t);
+    return std::numbers::sqrt2 * six_volume(mesh, t) / (longest * longest * longest);
+}
+
+void require_sound_tetrahedra(const TetMesh& mesh) {
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+        if (!(element_quality(mesh, t) > smallest_element_quality)) throw refusal(mesh, t);
+}
+
+}  // namespace palpate

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tools/fem/assembly/discretisation.hpp"
+
+namespace palpate {
+
+/// Orders free nodes for condensation: interior nodes by METIS nested dissection of the interior's own graph
+/// and a postorder of its elimination tree, contact nodes last in the given order. Middle nodes of edges
+/// count as interior wherever they lie. Returns each node's position, -1 for fixed nodes; contact node k is
+/// at position (number of interior nodes) + k. Deterministic. Source: Karypis & Kumar 1998 (METIS_NodeND);
+/// Liu 1986.
+std::vector<std::int32_t> surface_last_ordering(const Discretisation& discretisation,
+                                                std::span<const std::int32_t> contact_nodes);
+
+}  // namespace palpate

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <fmt/format.h>
+#include <gdcmImageReader.h>
+#include <set>
+
+#include "formats/model/errors.hpp"
+#include "tools/imaging/dicom/dicom_series.hpp"
+#include "tools/imaging/dicom/dicom_stack.hpp"
+#include "tools/imaging/files/read_image.hpp"
+
+namespace palpate {
+namespace {
+
+std::string name_of(const DicomSlice& slice) {
+    const std::string name = std::filesystem::path(slice.file).filename().string();
+    return slice.frame == 0 ? name : fmt::format("{} frame {}", name, slice.frame + 1);
+}
+
+template <typename Stored>
+void rescale(const char* stored, const DicomSlice& slice, std::span<float> values) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        Stored value;
+        std::memcpy(&value, stored + i * sizeof(Stored), sizeof(Stored));
+        values[i] = static_cast<float>(slice.slope * static_cast<double>(value) + slice.intercept);
+    }
+}
+
+bool rescale(gdcm::PixelFormat::ScalarType type, const char* stored, const DicomSlice& slice,
+             std::span<float> values) {
+    switch (type) {
+        case gdcm::PixelFormat::UINT8:
+            rescale<std::uint8_t>(stored, slice, values);
+            return true;
+        case gdcm::PixelFormat::INT8:
+            rescale<std::int8_t>(stored, slice, values);
+            return true;
+        case gdcm::PixelFormat::UINT16:
+            rescale<std::uint16_t>(stored, slice, values);
+            return true;
+        case gdcm::PixelFormat::INT16:
+            rescale<std::int16_t>(stored, slice, values);
+            return true;
+        case gdcm::PixelFormat::UINT32:
+            rescale<std::uint32_t>(stored, slice, values);
+            return true;
+        case gdcm::PixelFormat::INT32:
+            rescale<std::int32_t>(stored, slice, values);
+            return true;
+        case gdcm::PixelFormat::FLOAT32:
+            rescale<float>(stored, slice, values);
+            return true;
+        case gdcm::PixelFormat::FLOAT64:
+            rescale<double>(stored, slice, values);
+            return true;
+        default:
+            return false;
+    }
+}
+
+// The pixels of one file's slices, each to its place in the stack.
+void read_pixels(const std::string& file, std::span<const DicomSlice> slices, const ImageGrid& grid,
+                 std::span<float> values) {
+    const auto fail = [&](const std::string& found) {
+        return InvalidInput({file, found, "whole grey pixels that GDCM can decode",
+                             "copy the file again, or decompress it with 'gdcmconv --raw'"});
+    };
+    gdcm::ImageReader reader;
+    reader.SetFileName(file.c_str());
+    if (!reader.Read()) throw fail("its pixels cannot be read");
+    const gdcm::Image& image = reader.GetImage();
+    const gdcm::PixelFormat& format = image.GetPixelFormat();
+    const std::size_t count = static_cast<std::size_t>(grid.size[0]) * static_cast<std::size_t>(grid.size[1]);
+    const std::size_t frames = image.GetNumberOfDimensions() > 2 ? image.GetDimension(2) : 1;
+    if (format.GetSamplesPerPixel() != 1 ||
+        image.GetBufferLength() < frames * count * std::size_t{format.GetPixelSize()})
+        throw fail("holds fewer pixels than its header claims");
+    const gdcm::ByteValue* raw =
+        reader.GetFile().GetDataSet().GetDataElement(gdcm::Tag(0x7fe0, 0x0010)).GetByteValue();
+    if (raw != nullptr && raw->GetLength() < frames * count * std::size_t{format.GetPixelSize()})
+        throw fail("holds fewer pixels than its header claims");
+    std::vector<char> buffer(image.GetBufferLength());
+    if (!image.GetBuffer(buffer.data())) throw fail("its pixels cannot be decoded");
+    for (std::size_t k = 0; k < slices.size(); ++k)
+        if (slices[k].file == file &&
+            (slices[k].frame >= frames ||
+             !rescale(format.GetScalarType(), buffer.data() + slices[k].frame * count * format.GetPixelSize(),
+                      slices[k], values.subspan(k * count, count))))
+            throw fail(fmt::format("holds pixels of type {}", format.GetScalarTypeAsString()));
+}
+
+void require_one_plane(const DicomSeries& series, const std::filesystem::path& path) {
+    const DicomSlice& first = series.slices.front();
+    if (!series.colours.empty())
+        throw InvalidInput({path.string(), "holds colours (" + series.colours + ")", "grey values",
+                            "choose the original series, not a rendering of it"});
+    for (const DicomSlice& slice : series.slices) {
+        if (!slice.origin || !slice.directions || !slice.spacing)
+            throw InvalidInput({path.string(), name_of(slice) + " says not where its pixels lie",
+                                "ImagePositionPatient, ImageOrientationPatient and PixelSpacing",
+                                "choose a series of CT or MR slices"});
+        const auto differs = [&](const std::string& what) {
+            return InvalidInput({path.string(),
+                                 what + " of " + name_of(slice) + " differs from " + name_of(first),
+                                 "slices of one size, spacing and direction",
+                                 "keep the files of one acquisition in a folder of their own"});
+        };
+        if (slice.size != first.size) throw differs("size");
+        if ((*slice.spacing - *first.spacing).cwiseAbs().maxCoeff() > 1e-4) throw differs("spacing");
+        if ((*slice.directions - *first.directions).colwise().norm().maxCoeff() > 1e-3)
+            throw differs("direction");
+    }
+}
+
+}  // namespace
+
+Volume read_dicom(const std::filesystem::path& path, const NoteSink& note, const ReadOptions& options) {
+    const std::vector<DicomSeries> all = scan_dicom(path, note);
+    DicomSeries series = choose_series(all, options, path, note);
+    if (series.slices.size() < 2)
+        throw InvalidInput({path.string(), "holds a single DICOM slice", "a series of 2 slices or more",
+                            "name the folder that holds the whole series"});
+    require_one_plane(series, path);
+    if (note && series.summary.modality != "CT")
+        note(fmt::format("modality {}: values are not HU",
+                         series.summary.modality.empty() ? "unknown" : series.summary.modality));
+
+    const DicomSlice& first = series.slices.front();
+    Volume volume;
+    ImageGrid& grid = volume.grid;
+    grid.size = {first.size[0], first.size[1], static_cast<std::int32_t>(series.slices.size())};
+    grid.spacing.head<2>() = *first.spacing;
+    grid.direction.leftCols<2>() = *first.directions;
+    grid.direction.col(2) = grid.direction.col(0).cross(grid.direction.col(1));
+    check_geometry(grid, path, note);
+
+    const Eigen::Vector3d normal = grid.direction.col(2);
+    std::ranges::stable_sort(series.slices, {}, [&](const DicomSlice& s) { return normal.dot(*s.origin); });
+    std::vector<SlicePlace> places;
+    for (const DicomSlice& slice : series.slices) places.push_back({*slice.origin, name_of(slice)});
+    grid.origin = places.front().origin;
+    const StackFault fault = find_stack_fault(places, normal, grid.spacing.head<2>().minCoeff());
+    if (!fault.found.empty() && !options.accept_gaps)
+        throw InvalidInput({path.string(), fault.found, fault.expected,
+                            fault.next_step + ", or interpolate with 'palpate import ... --accept-gaps'"});
+    grid.spacing[2] = fault.mean_gap > 0 ? fault.mean_gap : 1;
+
+    std::set<std::string> files;
+    for (const DicomSlice& slice : series.slices) files.insert(slice.file);
+    std::uintmax_t bytes = 0;
+    for (const std::string& file : files) bytes += std::filesystem::file_size(file);
+    check_claim(grid.voxel_count(), bytes, Packing::deflated, path);
+    volume.values.resize(grid.voxel_count());
+    for (const std::string& file : files) read_pixels(file, series.slices, grid, volume.values);
+    return fault.found.empty() ? volume : resample_stack(volume, places, path, note);
+}
+
+}  // namespace palpate

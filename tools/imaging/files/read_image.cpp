@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/imaging/files/read_image.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <fstream>
+#include <itkMultiThreaderBase.h>
+#include <itkObject.h>
+
+#include "formats/model/errors.hpp"
+
+namespace palpate {
+namespace {
+
+// Directions nearer to orthonormal than this differ by header round-off only.
+constexpr double round_off_tolerance = 1e-6;
+constexpr double repair_tolerance = 1e-3;
+
+std::string first_bytes(const std::filesystem::path& path, std::size_t count) {
+    std::string bytes(count, '\0');
+    std::ifstream stream(path, std::ios::binary);
+    stream.read(bytes.data(), static_cast<std::streamsize>(count));
+    bytes.resize(stream.gcount());
+    return bytes;
+}
+
+std::vector<float> float_values(StoredImage& image) {
+    if (auto* values = std::get_if<std::vector<float>>(&image.voxels);
+        values != nullptr && image.slope == 1 && image.intercept == 0)
+        return std::move(*values);
+    return std::visit(
+        [&](const auto& stored) {
+            std::vector<float> values(stored.size());
+            std::ranges::transform(stored, values.begin(), [&](auto value) {
+                return static_cast<float>(image.slope * static_cast<double>(value) + image.intercept);
+            });
+            return values;
+        },
+        image.voxels);
+}
+
+Volume volume_of(StoredImage image, const std::filesystem::path& path) {
+    if (image.layers != 1)
+        throw InvalidInput({path.string(), fmt::format("has {} values per voxel", image.layers), "1",
+                            "export one scalar volume, or read a label map with layers as labels"});
+    return {image.grid, float_values(image)};
+}
+
+// Well-formed UTF-8 (Unicode 15, table 3-7): no overlong forms, no surrogates, U+10FFFF at most.
+bool is_utf8(std::string_view text) {
+    int expected = 0;
+    unsigned lowest = 0x80, highest = 0xBF;  // of the next continuation
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (expected > 0) {
+            if (byte < lowest || byte > highest) return false;
+            --expected;
+            lowest = 0x80;
+            highest = 0xBF;
+        } else if (byte >= 0xC2 && byte <= 0xF4) {
+            expected = byte >= 0xF0 ? 3 : byte >= 0xE0 ? 2 : 1;
+            lowest = byte == 0xE0 ? 0xA0 : byte == 0xF0 ? 0x90 : 0x80;
+            highest = byte == 0xED ? 0x9F : byte == 0xF4 ? 0x8F : 0xBF;
+        } else if (byte >= 0x80) {
+            return false;
+        }
+    }
+    return expected == 0;
+}
+
+}  // namespace
+
+std::string in_lower_case(std::string text) {
+    for (char& c : text)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return text;
+}
+
+std::string as_utf8(std::string_view text) {
+    const bool good = is_utf8(text);
+    std::string result;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte < 32 || byte == 127)
+            result += ' ';
+        else if (byte < 128 || good)
+            result += c;
+        else
+            result.append({static_cast<char>(0xC0U | byte >> 6), static_cast<char>(0x80U | (byte & 0x3FU))});
+    }
+    return result;
+}
+
+bool is_dicom(const std::filesystem::path& path) {
+    return first_bytes(path, 132).ends_with("DICM");
+}
+
+bool is_nifti(const std::filesystem::path& path) {
+    const std::string name = in_lower_case(path.filename().string());
+    return name.ends_with(".nii") || name.ends_with(".nii.gz");
+}
+
+void check_size(const std::array<std::int64_t, 3>& size, const std::filesystem::path& path) {
+    for (const std::int64_t count : size) {
+        if (count > 65535)
+            throw InvalidInput({path.string(), fmt::format("claims {} voxels along one axis", count),
+                                "65535 at most", "check that the file is whole"});
+        if (count < 2)
+            throw InvalidInput({path.string(),
+                                fmt::format("is flat: {} x {} x {} voxels", size[0], size[1], size[2]),
+                                "2 voxels or more along each axis", "choose a three-dimensional volume"});
+    }
+}
+
+void check_claim(std::uintmax_t claimed, std::uintmax_t held, Packing packing,
+                 const std::filesystem::path& path) {
+    if (claimed / static_cast<std::uintmax_t>(packing) > held)
+        throw InvalidInput(
+            {path.string(), "holds fewer voxels than its header claims", "", "check that the file is whole"});
+}
+
+InvalidInput beyond_memory(const std::filesystem::path& path) {
+    return InvalidInput({path.string(), "needs more memory than there is", "",
+                         "crop the volume, or read it on a machine with more memory"});
+}
+
+void set_axes(ImageGrid& grid, const Eigen::Matrix3d& axes) {
+    grid.spacing = axes.colwise().norm();
+    grid.direction = axes * grid.spacing.cwiseInverse().asDiagonal();
+    grid.direction.array() += 0.0;  // no negative zeros
+}
+
+void check_geometry(ImageGrid& grid, const std::filesystem::path& path, const NoteSink& note) {
+    check_size({grid.size[0], grid.size[1], grid.size[2]}, path);
+    if (!(grid.spacing.minCoeff() > 0) || !grid.spacing.allFinite() || !grid.origin.allFinite())
+        throw InvalidInput(
+            {path.string(),
+             fmt::format("has spacing {} x {} x {} mm", grid.spacing[0], grid.spacing[1], grid.spacing[2]),
+             "finite positive numbers", "correct the header"});
+    const Eigen::Matrix3d product = grid.direction.transpose() * grid.direction;
+    const double deviation = (product - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+    if (!(deviation <= repair_tolerance))
+        throw InvalidInput({path.string(), fmt::format("has directions {:.2g} off orthonormality", deviation),
+                            fmt::format("{} at most", repair_tolerance),
+                            "resample the volume onto a rectangular grid"});
+    if (deviation <= round_off_tolerance) return;
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(grid.direction, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    grid.direction = svd.matrixU() * svd.matrixV().transpose();
+    if (note)
+        note(fmt::format("directions were {:.2g} off orthonormality and were made orthonormal", deviation));
+}
+
+void check_finite(const Volume& volume, const std::filesystem::path& path) {
+    const auto bad = std::ranges::find_if(volume.values, [](float value) { return !std::isfinite(value); });
+    if (bad == volume.values.end()) return;
+    const auto& size = volume.grid.size;
+    const auto offset = bad - volume.values.begin();
+    throw InvalidInput({path.string(),
+                        fmt::format("voxel ({}, {}, {}) is {}", offset % size[0], offset / size[0] % size[1],
+                                    offset / size[0] / size[1], *bad),
+                        "finite values", "replace such voxels, by -1024 HU in CT"});
+}
+
+StoredImage read_image_file(const std::filesystem::path& path, const NoteSink& note,
+                            const ReadOptions& options) {
+    const std::string name = in_lower_case(path.filename().string());
+    if (is_nifti(path)) return read_nifti(path, note, options);
+    if (const std::string head = first_bytes(path, 16);
+        name.ends_with(".vti") || (name.ends_with(".vtk") && head.starts_with("# vtk")))
+        return read_vtk_image(path, note);
+    return read_itk_image(path, note);
+}
+
+Volume read_volume(const std::filesystem::path& path, const NoteSink& note, const ReadOptions& options) {
+    itk::Object::GlobalWarningDisplayOff();
+    std::error_code none;
+    if (!std::filesystem::exists(path, none))
+        throw InvalidInput({path.string(), "no such file or folder", "", "check the path"});
+    Volume volume;
+    try {
+        volume = std::filesystem::is_directory(path, none) || is_dicom(path)
+                     ? read_dicom(path, note, options)
+                     : volume_of(read_image_file(path, note, options), path);
+    } catch (const std::bad_alloc&) {
+        throw beyond_memory(path);
+    }
+    check_finite(volume, path);
+    const auto [low, high] = std::ranges::minmax(volume.values);
+    if (low == high)
+        throw InvalidInput({path.string(), fmt::format("is empty: every voxel is {}", low), "",
+                            "choose another file or export it again"});
+    return volume;
+}
+
+void set_imaging_threads(int count) {
+    itk::MultiThreaderBase::SetGlobalDefaultNumberOfThreads(static_cast<itk::ThreadIdType>(count));
+}
+
+}  // namespace palpate

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// For this folder only: the steps that reading volumes, label maps and DICOM share.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "formats/model/errors.hpp"
+#include "tools/imaging/files/image_files.hpp"
+
+namespace palpate {
+
+/// Voxels in the type that a file stores.
+using StoredVoxels =
+    std::variant<std::vector<std::uint8_t>, std::vector<std::int8_t>, std::vector<std::uint16_t>,
+                 std::vector<std::int16_t>, std::vector<std::uint32_t>, std::vector<std::int32_t>,
+                 std::vector<std::uint64_t>, std::vector<std::int64_t>, std::vector<float>,
+                 std::vector<double>>;
+
+/// One image as stored: a value is slope * voxel + intercept.
+struct StoredImage {
+    ImageGrid grid;
+    std::size_t layers = 1;  ///< values per voxel, those of a voxel side by side
+    StoredVoxels voxels;     ///< layers * voxel_count() of them, i fastest
+    double slope = 1;
+    double intercept = 0;
+    std::map<std::string, std::string> header;  ///< the text fields of an NRRD header
+    std::map<std::int32_t, Label> labels;       ///< of a label table in the header, by value
+};
+
+/// Read one file's geometry (checked) and voxels; throw as read_volume() does, except for what the values
+/// are.
+StoredImage read_itk_image(const std::filesystem::path& path, const NoteSink& note);
+StoredImage read_nifti(const std::filesystem::path& path, const NoteSink& note, const ReadOptions& options);
+StoredImage read_vtk_image(const std::filesystem::path& path, const NoteSink& note);
+/// The one of the three that knows the format.
+StoredImage read_image_file(const std::filesystem::path& path, const NoteSink& note,
+                            const ReadOptions& options);
+
+/// Reads a DICOM series of a folder or file; throws as read_volume() does, except for constant values.
+Volume read_dicom(const std::filesystem::path& path, const NoteSink& note, const ReadOptions& options);
+
+/// Reads a DICOM segmentation object; throws as read_label_map() does.
+LabelMap read_dicom_segmentation(const std::filesystem::path& path, const NoteSink& note, Overlaps overlaps);
+
+/// ASCII letters in lower case; header fields and file endings are compared so.
+std::string in_lower_case(std::string text);
+
+/// Text of a header as UTF-8: what is none is taken as Latin-1, and control characters become spaces.
+std::string as_utf8(std::string_view text);
+
+/// Tells whether DCMTK can parse a file as DICOM to its end; GDCM pads pixels that are cut off, and aborts on
+/// some damaged headers.
+bool is_whole_dicom(const std::filesystem::path& path);
+
+/// Checks sizes and spacings, and makes the directions orthonormal; throws InvalidInput naming `path`.
+void check_geometry(ImageGrid& grid, const std::filesystem::path& path, const NoteSink& note);
+
+/// Throws InvalidInput unless 2 ... 65535 voxels lie along each axis.
+void check_size(const std::array<std::int64_t, 3>& size, const std::filesystem::path& path);
+
+/// By how much a file may be smaller than its voxels: zlib shrinks by 1032 at most, and "0 " may be a double.
+enum class Packing : std::uintmax_t { none = 1, text = 4, deflated = 1100 };
+
+/// Throws InvalidInput if a header claims more bytes than a file of `held` bytes could hold, so that none can
+/// make us allocate without end.
+void check_claim(std::uintmax_t claimed, std::uintmax_t held, Packing packing,
+                 const std::filesystem::path& path);
+
+/// What to throw where memory does not suffice for a file.
+InvalidInput beyond_memory(const std::filesystem::path& path);
+
+/// A grid's spacing and direction from its voxel axes: columns are the steps of i, j, k in P, mm.
+void set_axes(ImageGrid& grid, const Eigen::Matrix3d& axes);
+
+/// Throws InvalidInput naming the first voxel that is NaN or infinite.
+void check_finite(const Volume& volume, const std::filesystem::path& path);
+
+}  // namespace palpate

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/imaging/recipes/segmentation.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <optional>
+
+#include "formats/model/errors.hpp"
+#include "tools/imaging/files/image_files.hpp"
+#include "tools/imaging/recipes/recipe_makers.hpp"
+#include "tools/imaging/recipes/recipes.hpp"
+
+namespace palpate {
+namespace {
+
+// An imported label keeps its colour.
+std::array<float, 3> colour_of(const StructureRecipe& structure, const Parameters& p, const LabelMap* prior,
+                               std::int32_t value) {
+    if ((structure.recipe == "import" || structure.recipe == "brain") && prior != nullptr && !p.has("file"))
+        if (const auto label = find_label(*prior, p.has("label") ? p.text("label") : structure.name))
+            return label->colour;
+    return default_label_colour(value);
+}
+
+void check_names(std::span<const StructureRecipe> structures) {
+    std::map<std::string, int> seen;
+    if (structures.empty())
+        throw InvalidInput({"structures", "there are none", "1 or more", "add a structure"});
+    if (structures.size() > 65535)
+        throw InvalidInput({"structures", std::to_string(structures.size()), "65535 at most", ""});
+    for (const StructureRecipe& structure : structures) {
+        if (structure.name.empty())
+            throw InvalidInput({"structure", "has no name", "", "name every structure"});
+        if (++seen[structure.name] > 1)
+            throw InvalidInput({"structure '" + structure.name + "'", "occurs twice", "",
+                                "give each structure its own name"});
+    }
+}
+
+// The label whose voxels a structure may take, besides background: that of the structure it lies inside.
+std::int32_t replaced_label(const LabelMap& map, const StructureRecipe& structure,
+                            const Parameters& parameters) {
+    return parameters.has("inside")
+               ? require_label(map, parameters.text("inside"), "structure '" + structure.name + "'").value
+               : 0;
+}
+
+// A structure may take voxels of the one it lies inside, but not all of them.
+void check_left_over(const LabelMap& map, std::int32_t replaced, const StructureRecipe& structure) {
+    if (replaced == 0 || std::ranges::count(map.labels, replaced) > 0) return;
+    const auto swallowed = std::ranges::find(map.names, replaced, &Label::value);
+    throw InvalidInput({"structure '" + structure.name + "'",
+                        "takes every voxel of '" + swallowed->name + "', which it lies inside",
+                        "a part of them", "make it smaller, or leave '" + swallowed->name + "' larger"});
+}
+
+// The volume in HU: itself, or `shifted` if its values lie above.
+const Volume* in_hounsfield(const Volume* volume, std::optional<Volume>& shifted, const NoteSink& note) {
+    const double offset = volume ? hounsfield_offset(*volume) : 0;
+    if (offset == 0) return volume;
+    shifted = *volume;
+    for (float& value : shifted->values) value -= static_cast<float>(offset);
+    if (note)
+        note(fmt::format(
+            "no value of the volume is negative and soft tissue lies about {0}, so it is probably "
+            "stored as HU + {0}: {0} was subtracted, and thresholds are in HU; give a volume in "
+            "HU if that is wrong",
+            offset));
+    return &*shifted;
+}
+
+}  // namespace
+
+LabelMap segment(const Volume* volume, const LabelMap* prior, std::span<const StructureRecipe> structures,
+                 const ProgressCallback& progress, const NoteSink& note) {
+    check_names(structures);
+    for (const StructureRecipe& structure : structures) check_recipe(structure);
+    if (volume == nullptr && prior == nullptr)
+        throw InvalidInput({"segment", "neither a volume nor a label map", "one of them", ""});
+    std::optional<Volume> shifted;
+    const Volume* hounsfield = in_hounsfield(volume, shifted, note);
+    LabelMap map;
+    map.grid = volume ? volume->grid : prior->grid;
+    map.labels.assign(map.grid.voxel_count(), 0);
+    std::optional<LabelMap> grown;
+    for (std::size_t n = 0; n < structures.size(); ++n) {
+        const StructureRecipe& structure = structures[n];
+        if (progress)
+            progress(structure.name, static_cast<double>(n) / static_cast<double>(structures.size()));
+        const Parameters parameters(structure);
+        const Mask mask =
+            make_structure({structure, parameters, structures, hounsfield, prior, map, note, grown});
+        const std::int32_t replaced = replaced_label(map, structure, parameters);
+        const auto value = static_cast<std::uint16_t>(n + 1);
+        std::size_t taken = 0;
+        for (std::size_t i = 0; i < map.labels.size(); ++i) {
+            if (!mask.voxels[i] || (map.labels[i] != 0 && map.labels[i] != replaced)) continue;
+            map.labels[i] = value;
+            ++taken;
+        }
+        if (taken == 0)
+            throw InvalidInput(
+                {"structure '" + structure.name + "'", "is empty", "", advice_if_empty(structure.recipe)});
+        check_left_over(map, replaced, structure);
+        map.names.push_back({value, structure.name, colour_of(structure, parameters, prior, value)});
+    }
+    return map;
+}
+
+}  // namespace palpate

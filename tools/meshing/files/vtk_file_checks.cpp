@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/meshing/files/vtk_file_checks.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <fmt/format.h>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <set>
+#include <string>
+
+#include "formats/model/errors.hpp"
+#include "tools/meshing/files/scanner.hpp"
+#include "tools/meshing/files/text.hpp"
+
+namespace palpate {
+namespace {
+
+// Sizes in binary files.
+const std::map<std::string, std::size_t> type_sizes{
+    {"char", 1},          {"unsigned_char", 1}, {"short", 2}, {"unsigned_short", 2}, {"int", 4},
+    {"unsigned_int", 4},  {"vtkidtype", 4},     {"long", 8},  {"unsigned_long", 8},  {"vtktypeint64", 8},
+    {"vtktypeuint64", 8}, {"float", 4},         {"double", 8}};
+
+class LegacyCheck {
+  public:
+    explicit LegacyCheck(const std::filesystem::path& path) : file_(path) {}
+
+    void run() {
+        file_.line();  // version
+        file_.line();  // title
+        binary_ = lower_case(file_.word()) == "binary";
+        std::int64_t points = 0, cells = 0, types = 0;
+        std::set<std::string> seen;
+        while (!file_.at_end()) {
+            const std::string keyword = lower_case(file_.word());
+            if (keyword == "cell_data" || keyword == "point_data") break;
+            const bool of_cells = keyword == "cells" || keyword == "polygons" || keyword == "lines" ||
+                                  keyword == "vertices" || keyword == "triangle_strips";
+            if (!of_cells && keyword != "points" && keyword != "cell_types") continue;
+            if (!seen.insert(keyword).second) file_.fail("a second section " + keyword, "one", again);
+            const std::int64_t count = file_.require_room(file_.integer(), 1);
+            if (keyword == "points")
+                skip_values(3 * (points = count), std::string(file_.word()));
+            else if (keyword == "cell_types")
+                skip_values(types = count, "int");
+            else if (const std::int64_t found = check_cells(count); keyword == "cells")
+                cells = found;
+        }
+        if (cells != types)
+            file_.fail(fmt::format("{} cells, but {} cell types", cells, types), "as many", again);
+        if (lowest_corner_ < 0 || highest_corner_ >= points)
+            file_.fail(
+                fmt::format("a cell names point {}", lowest_corner_ < 0 ? lowest_corner_ : highest_corner_),
+                fmt::format("0 ... {} - 1", points), again);
+    }
+
+  private:
+    std::size_t size_of(const std::string& type) const {
+        const auto found = type_sizes.find(lower_case(type));
+        if (found == type_sizes.end())
+            file_.fail(fmt::format("values of type '{}'", type.substr(0, 40)), "such as float or int", again);
+        return found->second;
+    }
+
+    void begin_values() {
+        if (binary_) file_.line();
+    }
+
+    void skip_values(std::int64_t count, const std::string& type) {
+        const std::size_t size = size_of(type);
+        begin_values();
+        if (binary_) return file_.skip(count, size);
+        for (std::int64_t left = file_.require_room(count, 1); left > 0; --left) file_.number();
+    }
+
+    std::int64_t integer(std::size_t size) {
+        if (!binary_) return file_.integer();
+        return size == 8 ? file_.raw<std::int64_t>(std::endian::big)
+                         : file_.raw<std::int32_t>(std::endian::big);
+    }
+
+    void take_corner(std::size_t bytes) {
+        const std::int64_t corner = integer(bytes);
+        lowest_corner_ = std::min(lowest_corner_, corner);
+        highest_corner_ = std::max(highest_corner_, corner);
+    }
+
+    // Returns the number of cells.
+    std::int64_t check_cells(std::int64_t count) {
+        const std::int64_t size = file_.require_room(file_.integer(), 1);
+        begin_values();
+        if (lower_case(file_.peek().substr(0, 8)) == "offsets") return check_offsets(count, size);
+        std::int64_t left = size;
+        for (std::int64_t cell = 0; cell < count; ++cell) {
+            const std::int64_t corners = left > 0 ? integer(4) : 0;
+            if (left <= 0 || corners < 0 || corners >= left)
+                file_.fail(fmt::format("{} cells that do not fit into {} numbers", count, size), "", again);
+            for (std::int64_t c = 0; c < corners; ++c) take_corner(4);
+            left -= corners + 1;
+        }
+        if (left != 0)
+            file_.fail(fmt::format("{} numbers, of which the cells use {}", size, size - left), "all", again);
+        return count;
+    }
+
+    // Version 5.1: where each cell begins, and the end of the last one.
+    std::int64_t check_offsets(std::int64_t count, std::int64_t size) {
+        file_.word();
+        const std::size_t bytes = size_of(std::string(file_.word()));
+        begin_values();
+        std::int64_t last = 0;
+        for (std::int64_t n = 0; n < count; ++n) {
+            const std::int64_t offset = integer(bytes);
+            if (offset < last || (n == 0 && offset != 0)) file_.fail("offsets that do not rise", "", again);
+            last = offset;
+        }
+        if (last != size)
+            file_.fail(fmt::format("offsets that end at {}", last), fmt::format("{}", size), again);
+        if (lower_case(file_.word()) != "connectivity")
+            file_.fail("no CONNECTIVITY after OFFSETS", "", again);
+        const std::size_t corner_bytes = size_of(std::string(file_.word()));
+        begin_values();
+        for (std::int64_t c = 0; c < size; ++c) take_corner(corner_bytes);
+        return std::max<std::int64_t>(count - 1, 0);
+    }
+
+    static constexpr const char* again = "write the file again";
+    Scanner file_;
+    bool binary_ = false;
+    std::int64_t lowest_corner_ = 0, highest_corner_ = -1;
+};
+
+}  // namespace
+
+void require_plausible_xml(const std::filesystem::path& path) {
+    std::ifstream stream(path, std::ios::binary);
+    const std::string text(std::istreambuf_iterator<char>(stream), {});
+    const std::string_view header = std::string_view(text).substr(0, text.find("<AppendedData"));
+    // Compression shrinks by 7000 at most (LZMA of equal bytes).
+    const std::size_t room = text.size() * (header.find("compressor") == std::string::npos ? 1 : 7000);
+    for (std::size_t at = header.find("NumberOf"); at != std::string::npos;
+         at = header.find("NumberOf", at + 1)) {
+        const std::size_t equals = header.find('=', at), open = header.find_first_of("\"'", equals);
+        if (open == std::string::npos) return;
+        const std::string_view name = header.substr(at, equals - at);
+        if (name.find_first_of("\"'<>") != std::string::npos) continue;  // an array's name
+        const std::string_view value =
+            header.substr(open + 1, header.find_first_of("\"'", open + 1) - open - 1);
+        std::int64_t number = -1;
+        const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
+        const std::int64_t least = name.starts_with("NumberOfComponents") ? 1 : 0;
+        if (error != std::errc{} || end != value.data() + value.size() || number < least ||
+            static_cast<std::size_t>(number) > room)
+            throw InvalidInput(
+                {path.string(), fmt::format("{} is '{}'", name.substr(0, 40), value.substr(0, 40)),
+                 fmt::format("{} or more, and no more than the file has room for", least), "write it again"});
+    }
+}
+
+void require_sound_legacy(const std::filesystem::path& path) {
+    LegacyCheck(path).run();
+}
+
+}  // namespace palpate

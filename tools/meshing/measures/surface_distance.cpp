@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/meshing/measures/surface_distance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <future>
+#include <vtkCellArray.h>
+#include <vtkGenericCell.h>
+#include <vtkNew.h>
+#include <vtkPolyData.h>
+#include <vtkStaticCellLocator.h>
+
+namespace palpate {
+namespace {
+
+vtkNew<vtkPolyData> to_vtk(const TriangleMesh& surface) {
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    points->SetNumberOfPoints(static_cast<vtkIdType>(surface.vertices.size()));
+    for (std::size_t v = 0; v < surface.vertices.size(); ++v)
+        points->SetPoint(static_cast<vtkIdType>(v), surface.vertices[v].data());
+    vtkNew<vtkCellArray> triangles;
+    triangles->AllocateExact(static_cast<vtkIdType>(surface.triangles.size()),
+                             static_cast<vtkIdType>(3 * surface.triangles.size()));
+    for (const Triangle& t : surface.triangles) triangles->InsertNextCell({t[0], t[1], t[2]});
+    vtkNew<vtkPolyData> data;
+    data->SetPoints(points);
+    data->SetPolys(triangles);
+    return data;
+}
+
+}  // namespace
+
+std::vector<SurfaceSample> samples_of(const TriangleMesh& surface) {
+    std::vector<SurfaceSample> samples;
+    std::vector<bool> seen(surface.vertices.size(), false);
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+        const auto triangle = static_cast<std::int32_t>(t);
+        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+        for (std::size_t c = 0; c < 3; ++c) {
+            const std::int32_t vertex = surface.triangles[t][c], next = surface.triangles[t][(c + 1) % 3];
+            const Eigen::Vector3d& p = surface.vertices[vertex];
+            sum += p;
+            if (!seen[vertex]) samples.push_back({p, triangle});
+            seen[vertex] = true;
+            // The triangle on the other side runs along the edge the other way.
+            if (vertex < next) samples.push_back({(p + surface.vertices[next]) / 2, triangle});
+        }
+        samples.push_back({sum / 3, triangle});
+    }
+    return samples;
+}
+
+std::vector<NearestPlace> nearest_places(std::span<const SurfaceSample> samples,
+                                         const TriangleMesh& surface) {
+    const vtkNew<vtkPolyData> target = to_vtk(surface);
+    vtkNew<vtkStaticCellLocator> locator;
+    locator->SetDataSet(target);
+    locator->BuildLocator();
+    std::vector<NearestPlace> places(samples.size());
+    const auto search = [&](std::size_t begin, std::size_t end) {
+        vtkNew<vtkGenericCell> cell;
+        for (std::size_t i = begin; i < end; ++i) {
+            Eigen::Vector3d closest;
+            vtkIdType triangle = 0;
+            int sub_id = 0;
+            double squared_distance = 0;
+            locator->FindClosestPoint(samples[i].point.data(), closest.data(), cell, triangle, sub_id,
+                                      squared_distance);
+            places[i] = {std::sqrt(squared_distance), static_cast<std::int32_t>(triangle)};
+        }
+    };
+    // Each place is found on its own: two threads find the same.
+    auto second_half = std::async(std::launch::async, search, samples.size() / 2, samples.size());
+    search(0, samples.size() / 2);
+    second_half.get();
+    return places;
+}
+
+std::vector<double> triangle_distances(const TriangleMesh& surface, const TriangleMesh& reference) {
+    std::vector<SurfaceSample> samples;
+    for (const Eigen::Vector3d& p : surface.vertices) samples.push_back({p, 0});
+    for (const Triangle& t : surface.triangles) {
+        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+        for (const std::int32_t v : t) sum += surface.vertices[v];
+        samples.push_back({sum / 3, 0});
+    }
+    const std::vector<NearestPlace> places = nearest_places(samples, reference);
+    std::vector<double> distances;
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+        double most = places[surface.vertices.size() + t].distance;
+        for (const std::int32_t v : surface.triangles[t]) most = std::max(most, places[v].distance);
+        distances.push_back(most);
+    }
+    return distances;
+}
+
+SurfaceDistance summary(std::span<const SurfaceSample> samples_a, std::span<const NearestPlace> of_a,
+                        std::span<const SurfaceSample> samples_b, std::span<const NearestPlace> of_b) {
+    std::vector<double> distances;
+    SurfaceDistance result;
+    for (const auto& [samples, places] : {std::pair(samples_a, of_a), std::pair(samples_b, of_b)})
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            distances.push_back(places[i].distance);
+            if (!(places[i].distance > result.maximum)) continue;
+            result.maximum = places[i].distance;
+            result.farthest = samples[i].point;
+        }
+    std::ranges::sort(distances);
+    for (const double distance : distances) result.mean += distance / static_cast<double>(distances.size());
+    result.percentile_95 = distances[0.95 * static_cast<double>(distances.size() - 1)];
+    return result;
+}
+
+SurfaceDistance surface_distance(const TriangleMesh& a, const TriangleMesh& b) {
+    const std::vector<SurfaceSample> samples_a = samples_of(a), samples_b = samples_of(b);
+    return summary(samples_a, nearest_places(samples_a, b), samples_b, nearest_places(samples_b, a));
+}
+
+}  // namespace palpate

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+#include "formats/model/body.hpp"
+#include "tools/report/pictures/colour_scale.hpp"
+#include "tools/report/pictures/picture.hpp"
+
+namespace palpate {
+
+/// A direction from the scene to the eye, in P; the patient's head is up.
+using ViewDirection = Eigen::Vector3d;
+
+/// A picture of the scene, and where some points of it are seen.
+struct SceneView {
+    Picture picture;
+    std::vector<Eigen::Vector2d> marks;  ///< pixels from the picture's upper left corner
+};
+
+/// Draws all bodies once from each direction: rigid ones bone-coloured and translucent, deformable ones with
+/// their regions. Needs an X display (VirtualDisplay).
+std::vector<SceneView> scene_pictures(const Case& patient_case, const std::vector<ViewDirection>& directions);
+
+/// Draws one deformable body close up, once from each direction: the contact surface in the colour of its
+/// region and translucent, so that enclosed regions show, the surface that cannot be touched in grey, fixed
+/// nodes as dark dots.
+std::vector<SceneView> body_pictures(const DeformableBody& body,
+                                     const std::vector<ViewDirection>& directions);
+
+/// Draws a body as glass with some of its tetrahedra solid and red; marks are their centroids.
+std::vector<SceneView> tetrahedra_pictures(const DeformableBody& body,
+                                           const std::vector<std::size_t>& tetrahedra,
+                                           const std::vector<ViewDirection>& directions);
+
+/// Draws a surface with a value per triangle in the scale's colours; the mark is `marked` (p_P).
+std::vector<SceneView> coloured_pictures(const TriangleMesh& surface,
+                                         const std::vector<double>& triangle_values, const ColourScale& scale,
+                                         const Eigen::Vector3d& marked,
+                                         const std::vector<ViewDirection>& directions);
+
+}  // namespace palpate
