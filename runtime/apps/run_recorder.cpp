@@ -55,7 +55,7 @@ RecordingHead recording_head(const std::filesystem::path& asset, const Case& pat
     RecordingHead head{.palpate_version = version,
                        .case_name = patient_case.name,
                        .asset_digest = asset_digest(asset),
-                       .scheme = std::string(contact_scheme_names[model.scheme()]),
+                       .scheme = std::string(contact_scheme_names[static_cast<std::size_t>(model.scheme())]),
                        .clock = clock,
                        .coupling_stiffness = model.coupling(),
                        .haptics = model.settings(),

@@ -16,7 +16,7 @@ ReplayedDevice::ReplayedDevice(std::vector<DeviceState> states, DeviceLimits lim
 DeviceState ReplayedDevice::read(double time) noexcept {
     const double last = static_cast<double>(states_.size() - 1);
     const double tick = std::clamp(std::round(1000 * time), 0.0, last);
-    DeviceState state = states_[tick];
+    DeviceState state = states_[static_cast<std::size_t>(tick)];
     state.time = time;
     return state;
 }

@@ -14,7 +14,7 @@ namespace {
 void count(BinCounts& histogram, double value) {
     const double bins = static_cast<double>(histogram.counts.size());
     const double bin = std::floor((value - histogram.low) / (histogram.high - histogram.low) * bins);
-    ++histogram.counts[std::clamp(bin, 0.0, bins - 1)];
+    ++histogram.counts[static_cast<std::size_t>(std::clamp(bin, 0.0, bins - 1))];
 }
 
 }  // namespace

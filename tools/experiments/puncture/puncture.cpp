@@ -48,7 +48,7 @@ struct Bench {
     const DeviceModel& device = find_device_model("desktop");
     std::mt19937_64 random;
 
-    HapticModel& model(ContactScheme scheme) { return *models[scheme]; }
+    HapticModel& model(ContactScheme scheme) { return *models[static_cast<std::size_t>(scheme)]; }
     double coupling() const { return models[0]->coupling(); }
     bool punctured(const Outcome& outcome) const { return is_puncture(outcome, coupling()); }
 

@@ -68,7 +68,7 @@ struct Expected {
 
 Expected expect(const GroupRun& run) {
     Expected expected;
-    const auto& held = run.outcomes[ContactScheme::continuous];
+    const auto& held = run.outcomes[static_cast<std::size_t>(ContactScheme::continuous)];
     for (std::size_t i = 0; i < run.approaches.size(); ++i) {
         const double step = held[i].speed / Approach::detections_per_s;
         const double wall = run.approaches[i].place.thickness;

@@ -112,7 +112,7 @@ Run run_scheme(const Case& patient_case, const RestNormals& normals, ContactSche
     HapticModel model(patient_case, scheme);
     ForceQuality quality(normals, model, passivity_of(model));
     Run run;
-    run.curve.name = scheme_titles[scheme];
+    run.curve.name = scheme_titles[static_cast<std::size_t>(scheme)];
     const HandPath path = press_slide_leave(target.place, model.settings().tool_radius);
     const Eigen::Vector3d outwards = target.place.normal;
     touch(model, path, path.duration() + 0.5, quality, [&](const TickResult& result) {
@@ -171,7 +171,7 @@ Comparison compare_schemes(const Case& patient_case, const RestNormals& normals)
         chart.y_label = "force outwards, N";
         for (const ContactScheme scheme : schemes) {
             Run run = run_scheme(patient_case, normals, scheme, target);
-            const std::string_view name = contact_scheme_names[scheme];
+            const std::string_view name = contact_scheme_names[static_cast<std::size_t>(scheme)];
             comparison.rows +=
                 fmt::format("| {} | {} | {} | ", patient_case.name, body, name) + figures_row(run.figures);
             Json entry{{"case", patient_case.name}, {"body", body}, {"scheme", name}};

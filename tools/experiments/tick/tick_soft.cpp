@@ -107,7 +107,7 @@ SoftTicks soft_ticks(cli::Session& session) {
                 HapticModel model(loaded->patient_case, scheme);
                 const HandPath path = slide_at(0, 0, relative_depth * radius, seconds);
                 const TickRun run = time_ticks(model, {&path, 1}, Counted::touching);
-                const std::string name(contact_scheme_names[scheme]);
+                const std::string name(contact_scheme_names[static_cast<std::size_t>(scheme)]);
                 others.push_back(row_of(fmt::format("{}, {} nodes, point", name, nodes), run, 0, 0));
                 others.push_back(
                     {.group = "soft", .name = name + ", collision loop", .times = run.detect, .run = {}});

@@ -68,7 +68,7 @@ std::size_t commonest_low_value(const Volume& volume) {
     for (const float value : volume.values)
         if (const auto rounded = std::round(value);
             rounded >= 1 && rounded < static_cast<float>(counts.size()))
-            ++counts[rounded];
+            ++counts[static_cast<std::size_t>(rounded)];
     std::size_t commonest = 0, most = 0;
     for (std::size_t value = 1; value <= last; ++value) {
         std::size_t near = 0;

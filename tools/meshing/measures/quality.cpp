@@ -167,7 +167,8 @@ MeshQuality measure(const TetMesh& mesh) {
     quality.max_dihedral_deg = angles.back();
     constexpr std::array<double, 5> fractions{0.01, 0.05, 0.5, 0.95, 0.99};
     for (std::size_t i = 0; i < fractions.size(); ++i)
-        quality.dihedral_percentiles_deg[i] = angles[fractions[i] * static_cast<double>(angles.size() - 1)];
+        quality.dihedral_percentiles_deg[i] =
+            angles[static_cast<std::size_t>(fractions[i] * static_cast<double>(angles.size() - 1))];
     for (const double angle : angles)
         ++quality.dihedral_histogram[std::min<std::size_t>(17, static_cast<std::size_t>(angle / 10))];
 

@@ -108,7 +108,8 @@ SurfaceDistance summary(std::span<const SurfaceSample> samples_a, std::span<cons
         }
     std::ranges::sort(distances);
     for (const double distance : distances) result.mean += distance / static_cast<double>(distances.size());
-    result.percentile_95 = distances[0.95 * static_cast<double>(distances.size() - 1)];
+    result.percentile_95 =
+        distances[static_cast<std::size_t>(0.95 * static_cast<double>(distances.size() - 1))];
     return result;
 }
 
