@@ -46,13 +46,7 @@ Case read_case(const Hdf5File& file) {
         body.obb_tree = read_obb_tree(file, deformable_path(i) + "/obb_tree", body.boundary.surface);
         patient_case.deformable_bodies.push_back(std::move(body));
     }
-    visit_haptics(patient_case.haptics, [&](const char* name, double& value) {
-        value = file.attribute<double>("/palpate/haptics", name);
-    });
-    visit_later_haptics(patient_case.haptics, [&](const char* name, double& value) {
-        if (file.has_attribute("/palpate/haptics", name))
-            value = file.attribute<double>("/palpate/haptics", name);
-    });
+    read_fields(file, "/palpate/haptics", haptic_fields, patient_case.haptics);
     patient_case.provenance = file.texts("/palpate/provenance", {}).front();
     check_case(patient_case, file.name());
     return patient_case;
@@ -91,11 +85,7 @@ void write_asset(const std::filesystem::path& path, const Case& patient_case) {
         write_obb_tree(writer, deformable_path(i) + "/obb_tree", body.obb_tree, body.boundary.surface);
     }
     writer.group("/palpate/haptics");
-    const auto write = [&](const char* name, double value) {
-        writer.attribute("/palpate/haptics", name, value);
-    };
-    visit_haptics(patient_case.haptics, write);
-    visit_later_haptics(patient_case.haptics, write);
+    write_fields(writer, "/palpate/haptics", haptic_fields, patient_case.haptics);
     writer.texts("/palpate/provenance", {patient_case.provenance}, {});
     write_vtk_grid(writer, patient_case);
     writer.finish("/palpate");

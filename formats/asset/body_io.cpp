@@ -252,9 +252,7 @@ void write_condensed_body(Hdf5Writer& writer, const std::string& path, const Def
                body.compliance);
     writer.attribute(path + "/compliance", "mechanics_sha256", mechanics);
     writer.group(path + "/certificate");
-    visit_certificate(body.certificate, [&](const char* name, const auto& value) {
-        writer.attribute(path + "/certificate", name, value);
-    });
+    write_fields(writer, path + "/certificate", certificate_fields, body.certificate);
 }
 
 DeformableBody read_condensed_body(const Hdf5File& file, const std::string& path) {
@@ -280,9 +278,7 @@ DeformableBody read_condensed_body(const Hdf5File& file, const std::string& path
                     "1 (linear) or 2 (quadratic)");
     body.element_order = static_cast<ElementOrder>(element_order);
     body.compliance = map_compliance(file, path + "/compliance", body.contact_nodes.size());
-    visit_certificate(body.certificate, [&](const char* name, auto& value) {
-        value = file.attribute<std::remove_reference_t<decltype(value)>>(path + "/certificate", name);
-    });
+    read_fields(file, path + "/certificate", certificate_fields, body.certificate);
     if (file.text_attribute(path + "/compliance", "mechanics_sha256") != mechanics_digest(body))
         throw InvalidInput({file.name() + ": " + path + "/compliance",
                             "was condensed from another mesh, material or boundary", "",

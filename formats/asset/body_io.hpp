@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
+#include <type_traits>
 
 #include "formats/asset/hdf5/hdf5_file.hpp"
 #include "formats/asset/hdf5/hdf5_writer.hpp"
 #include "formats/model/body.hpp"
+#include "formats/records/field.hpp"
 
 namespace palpate {
 
@@ -27,39 +29,22 @@ void write_condensed_body(Hdf5Writer& writer, const std::string& path, const Def
                           const std::string& mechanics);
 DeformableBody read_condensed_body(const Hdf5File& file, const std::string& path);
 
-/// The certificate's figures by their names in the file; the same list serves writing and reading.
-template <typename Certificate, typename Visit>
-void visit_certificate(Certificate& certificate, Visit&& visit) {
-    visit("residual", certificate.residual);
-    visit("residual_double", certificate.residual_double);
-    visit("asymmetry", certificate.asymmetry);
-    visit("smallest_eigenvalue", certificate.smallest_eigenvalue);
-    visit("largest_eigenvalue", certificate.largest_eigenvalue);
-    visit("condition_number", certificate.condition_number);
-    visit("reciprocity", certificate.reciprocity);
-    visit("load_error", certificate.load_error);
-    visit("contact_error", certificate.contact_error);
-    visit("sampled_loads", certificate.sampled_loads);
-    visit("smallest_patch_eigenvalue", certificate.smallest_patch_eigenvalue);
-    visit("discretisation_error", certificate.discretisation_error);
-    visit("sampled_columns", certificate.sampled_columns);
-    visit("free_dofs", certificate.free_dofs);
+/// Writes every field of a record as an attribute of `path`.
+template <typename Table, typename Record>
+void write_fields(Hdf5Writer& writer, const std::string& path, const Table& table, const Record& record) {
+    for_each_field(table,
+                   [&](const auto& field) { writer.attribute(path, field.name, record.*field.member); });
 }
 
-template <typename Haptics, typename Visit>
-void visit_haptics(Haptics& haptics, Visit&& visit) {
-    visit("tool_radius", haptics.tool_radius);
-    visit("coupling_stiffness", haptics.coupling_stiffness);
-    visit("max_force", haptics.max_force);
-    visit("max_force_rate", haptics.max_force_rate);
-}
-
-/// Settings that older files lack; they mean what HapticSettings{} says then.
-template <typename Haptics, typename Visit>
-void visit_later_haptics(Haptics& haptics, Visit&& visit) {
-    visit("friction_at_rest", haptics.friction_at_rest);
-    visit("friction_sliding", haptics.friction_sliding);
-    visit("shaft_length", haptics.shaft_length);
+/// Reads what write_fields() wrote; a field that the file lacks has the value that its absence means.
+template <typename Table, typename Record>
+void read_fields(const Hdf5File& file, const std::string& path, const Table& table, Record& record) {
+    for_each_field(table, [&](const auto& field) {
+        using Value = typename std::remove_cvref_t<decltype(field)>::Value;
+        record.*field.member = field.absent && !file.has_attribute(path, field.name)
+                                   ? *field.absent
+                                   : file.attribute<Value>(path, field.name);
+    });
 }
 
 }  // namespace palpate

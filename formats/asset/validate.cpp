@@ -5,7 +5,6 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <initializer_list>
 #include <iterator>
 #include <span>
 #include <utility>
@@ -91,16 +90,10 @@ void check_materials(const DeformableBody& body, const std::string& where) {
     if (!std::ranges::equal(body.materials, body.mesh.region_names, {}, &RegionMaterial::region,
                             &Label::value))
         refuse(where, "does not have one material for each region, ascending");
-    for (const auto& [region, material] : body.materials) {
-        const auto [youngs_modulus, poissons_ratio] = material;
-        if (!(youngs_modulus > 0 && std::isfinite(youngs_modulus) && poissons_ratio > -1 &&
-              poissons_ratio < 0.5))
-            refuse(where,
-                   "region " + std::to_string(region) + " has Young's modulus " +
-                       std::to_string(youngs_modulus) + " N/mm² and Poisson's ratio " +
-                       std::to_string(poissons_ratio),
-                   "a positive modulus and a ratio between -1 and 0.5");
-    }
+    for (const auto& [region, material] : body.materials)
+        if (const auto error = first_error(material_fields, material))
+            refuse(where, error->name + " of region " + std::to_string(region) + " " + error->found,
+                   error->expected);
 }
 
 void check_boundary(const DeformableBody& body, const std::string& where) {
@@ -198,12 +191,8 @@ void check_compliance(const DeformableBody& body, const std::string& where) {
 }
 
 void check_certificate(const Certificate& certificate, const std::string& where) {
-    for (const double value :
-         {certificate.residual, certificate.residual_double, certificate.asymmetry,
-          certificate.smallest_eigenvalue, certificate.largest_eigenvalue, certificate.condition_number,
-          certificate.reciprocity, certificate.load_error, certificate.contact_error,
-          certificate.smallest_patch_eigenvalue, certificate.discretisation_error})
-        if (!std::isfinite(value)) refuse(where, "has a figure that is not finite");
+    if (const auto error = first_error(certificate_fields, certificate))
+        refuse(where, error->name + " " + error->found, error->expected);
 }
 
 void check_box(const ObbNode& node, std::size_t index, const std::string& where) {
@@ -245,21 +234,8 @@ void check_hierarchical(const HierarchicalCompliance& compliance, const std::str
 }
 
 void check_haptics(const HapticSettings& haptics, const std::string& where) {
-    for (const auto& [name, value] : std::initializer_list<std::pair<const char*, double>>{
-             {"tool_radius", haptics.tool_radius},
-             {"coupling_stiffness", haptics.coupling_stiffness},
-             {"max_force", haptics.max_force},
-             {"max_force_rate", haptics.max_force_rate}})
-        if (!(value > 0 && std::isfinite(value)))
-            refuse(where, std::string(name) + " is " + std::to_string(value), "a positive number");
-    const auto refuse_unless = [&](bool holds, const char* name, double value, const char* expected) {
-        if (!(holds && std::isfinite(value)))
-            refuse(where, std::string(name) + " is " + std::to_string(value), expected);
-    };
-    refuse_unless(haptics.friction_at_rest >= 0, "friction_at_rest", haptics.friction_at_rest, "0 or more");
-    refuse_unless(haptics.friction_sliding >= 0 && haptics.friction_sliding <= haptics.friction_at_rest,
-                  "friction_sliding", haptics.friction_sliding, "0 to friction_at_rest");
-    refuse_unless(haptics.shaft_length >= 0, "shaft_length", haptics.shaft_length, "0 mm or more");
+    if (const auto error = haptics_error(haptics))
+        refuse(where, error->name + " " + error->found, error->expected);
 }
 
 void check_surface(const TriangleMesh& surface, const std::string& where) {

@@ -8,14 +8,11 @@
 #include "formats/model/obb_tree.hpp"
 #include "formats/model/tet_mesh.hpp"
 #include "formats/model/triangle_mesh.hpp"
+#include "formats/records/certificate.hpp"
+#include "formats/records/haptic_settings.hpp"
+#include "formats/records/material.hpp"
 
 namespace palpate {
-
-/// Isotropic linear elasticity.
-struct Material {
-    double youngs_modulus = 0;  ///< N/mm² (MPa); 1 kPa is 1e-3 N/mm²
-    double poissons_ratio = 0;  ///< in (-1, 0.5)
-};
 
 /// The material of one region of a tetrahedral mesh.
 struct RegionMaterial {
@@ -51,21 +48,6 @@ struct DeformableBody {
     SurfaceCompliance compliance;             ///< over contact_nodes
     Certificate certificate;
     ObbTree obb_tree;  ///< over boundary.surface at rest
-};
-
-/// How the tool feels and what it may do.
-struct HapticSettings {
-    double tool_radius = 1.0;  ///< mm
-    double coupling_stiffness =
-        0.5;                 ///< N/mm, of the virtual coupling of tool and device; 0.5 is a Touch's limit
-    double max_force = 3.3;  ///< N, a Touch's limit
-    double max_force_rate = 0.5;  ///< N per tick (1 ms)
-    /// Coulomb's law between tool and bodies: what holds a tool at rest, and what drags a sliding one, as
-    /// parts of the normal force; 0 <= sliding <= at rest. Moist tissue under a polished tool has next to
-    /// none.
-    double friction_at_rest = 0, friction_sliding = 0;
-    double shaft_length =
-        0;  ///< mm, of the tool's shaft behind its tip, as thick as the tip; 0: none is felt
 };
 
 /// Everything a trainer needs to touch one patient.

@@ -61,26 +61,6 @@ struct HierarchicalCompliance {
 
 using SurfaceCompliance = std::variant<DenseCompliance, HierarchicalCompliance>;
 
-/// What was measured about a compliance when it was made.
-struct Certificate {
-    double residual = 0;             ///< worst max-norm of (stored C column - re-solved column) / max|column|
-    double residual_double = 0;      ///< the same before rounding; -1 where C was never there in double
-    double asymmetry = 0;            ///< max |C - Cᵀ| / max |C| of the stored matrix; 0 by construction
-    double smallest_eigenvalue = 0;  ///< of C, estimated, mm/N
-    double largest_eigenvalue = 0;   ///< of C, estimated, mm/N
-    double condition_number = 0;     ///< largest / smallest
-    double reciprocity = 0;  ///< worst |aᵀCb - bᵀCa| / sqrt(aᵀCa bᵀCb) over random loads of the stored matrix
-    std::int32_t sampled_columns = 0;  ///< columns that were re-solved
-    double load_error = 0;             ///< worst |u - u_exact| / |u_exact| of the stored matrix over random
-                                       ///< contact loads and the whole contact surface
-    double contact_error = 0;          ///< the same at the loaded nodes, largest entries instead of norms
-    std::int32_t sampled_loads = 0;    ///< random contact loads
-    double smallest_patch_eigenvalue = 0;  ///< of the stored matrix over the nodes of such a load, mm/N
-    double discretisation_error = -1;  ///< part of the work of a contact load that the elements miss, against
-                                       ///< richer ones: the median over loads; -1 where it was not estimated
-    std::int64_t free_dofs = 0;        ///< size of K after removing fixed nodes
-};
-
 /// A force on a contact node, N.
 struct NodeForce {
     std::int32_t node = 0;

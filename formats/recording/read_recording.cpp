@@ -32,24 +32,24 @@ RecordingHead read_head(const Hdf5File& file) {
     head.clock = file.text_attribute("/", "clock");
     head.coupling_stiffness = file.attribute<double>("/", "coupling_stiffness");
     check_name(head.case_name, file.name());
-    const auto read = [&](const char* name, double& value) {
-        value = file.attribute<double>("/haptics", name);
-    };
-    visit_haptics(head.haptics, read);
-    visit_later_haptics(head.haptics, read);
+    read_fields(file, "/haptics", haptic_fields, head.haptics);
     check_haptics(head.haptics, file.name() + ": /haptics");
     const auto tools = file.attribute<std::int32_t>("/", "tools");
     if (tools < 1 || tools > most_recorded_tools) file.refuse("/", std::to_string(tools) + " tools");
     head.devices.resize(tools);
     const std::vector<std::string> names = file.texts("/devices/name", {tools});
     for (std::size_t i = 0; i < names.size(); ++i) head.devices[i].name = names[i];
-    visit_device_columns([&](const char* name, const char*, auto member) {
-        const std::string path = std::string("/devices/") + name;
-        const auto values = file.dataset<double>(path, shape_of(tools, field_of(member)));
+    for_each_field(device_limit_fields, [&](const auto& field) {
+        const std::string path = std::string("/devices/") + field.name;
+        if (field.absent && !file.contains(path)) {
+            for (RecordedDevice& device : head.devices) device.limits.*field.member = *field.absent;
+            return;
+        }
+        const auto values = file.dataset<double>(path, shape_of(tools, numbers_of(field)));
         if (!std::ranges::all_of(values, [](double v) { return std::isfinite(v); }))
             file.refuse(path, "is not finite");
         for (std::size_t i = 0; i < head.devices.size(); ++i) {
-            auto& value = head.devices[i].*member;
+            auto& value = head.devices[i].limits.*field.member;
             std::memcpy(&value, values.data() + i * (sizeof(value) / sizeof(double)), sizeof(value));
         }
     });
@@ -63,16 +63,18 @@ std::int64_t read_counter(const Hdf5File& file, const char* path) {
 }
 
 // Rows first ... first + rows.size() - 1 of all ever written, out of the ring of `capacity` rows.
-template <typename Row, typename Visited>
-void read_column(const Hdf5File& file, const std::string& path, std::int64_t capacity, std::int64_t first,
-                 std::vector<Row>& rows, Visited member) {
-    using Number = typename decltype(field_of(member))::Number;
-    const auto numbers = file.dataset<Number>(path, shape_of(capacity, field_of(member)));
+template <typename Row, typename ColumnField>
+void read_column(const Hdf5File& file, const std::string& group, std::int64_t capacity, std::int64_t first,
+                 std::vector<Row>& rows, const ColumnField& field) {
+    using Stored = typename ColumnField::Storage;
+    using Number = typename decltype(numbers_of(field))::Number;
+    const auto numbers = file.dataset<Number>(group + field.name, shape_of(capacity, numbers_of(field)));
     const std::span<const std::byte> bytes = std::as_bytes(numbers);
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        auto& value = rows[i].*member;
+        Stored value;
         const std::int64_t row = (first + static_cast<std::int64_t>(i)) % capacity;
         std::memcpy(&value, bytes.data() + static_cast<std::size_t>(row) * sizeof(value), sizeof(value));
+        rows[i].*field.member = static_cast<typename ColumnField::Value>(value);
     }
 }
 
@@ -86,9 +88,8 @@ std::int64_t read_ticks(const Hdf5File& file, Recording& recording) {
         throw InvalidInput({file.name(), "holds no tick", "", "record a run that ticks"});
     const std::int64_t kept = std::min(recording.rows_written, capacity - 1);
     recording.ticks.resize(kept);
-    visit_tick_columns([&](const char* name, const char*, auto member) {
-        read_column(file, std::string("/ticks/") + name, capacity, recording.rows_written - kept,
-                    recording.ticks, member);
+    for_each_field(tick_fields, [&](const auto& field) {
+        read_column(file, "/ticks/", capacity, recording.rows_written - kept, recording.ticks, field);
     });
     return kept;
 }
@@ -102,16 +103,15 @@ void read_contacts(const Hdf5File& file, Recording& recording) {
     const std::int64_t kept = std::min(written, capacity - contacts_in_transit);
     recording.contacts_before = written - kept;
     recording.contacts.resize(kept);
-    visit_contact_columns([&](const char* name, const char*, auto member) {
-        read_column(file, std::string("/contacts/") + name, capacity, recording.contacts_before,
-                    recording.contacts, member);
+    for_each_field(contact_fields, [&](const auto& field) {
+        read_column(file, "/contacts/", capacity, recording.contacts_before, recording.contacts, field);
     });
 }
 
 // Leaves out what never reached the disk: where the order ends, so does the recording.
 void keep_what_is_in_order(const Hdf5File& file, Recording& recording) {
-    std::vector<RecordedTick>& ticks = recording.ticks;
-    const auto disorder = std::ranges::adjacent_find(ticks, [](const RecordedTick& a, const RecordedTick& b) {
+    std::vector<Tick>& ticks = recording.ticks;
+    const auto disorder = std::ranges::adjacent_find(ticks, [](const Tick& a, const Tick& b) {
         return std::tie(a.tick, a.tool) >= std::tie(b.tick, b.tool);
     });
     if (disorder != ticks.end()) {
@@ -120,12 +120,12 @@ void keep_what_is_in_order(const Hdf5File& file, Recording& recording) {
     }
     const auto tools = std::ssize(recording.head.devices);
     const std::int64_t contacts = recording.contacts_before + std::ssize(recording.contacts);
-    for (const RecordedTick& row : ticks) {
+    for (const Tick& row : ticks) {
         const bool sound = row.tick >= 0 && row.tool >= 0 && row.tool < tools && std::isfinite(row.time) &&
                            row.body >= -1 && row.contact_count >= 0 &&
-                           row.contact_count <= most_recorded_contacts && row.first_contact >= 0 &&
-                           row.first_contact <= contacts - row.contact_count && row.detected_tick >= -1 &&
-                           row.detected_tick <= row.tick;
+                           row.contact_count <= static_cast<std::int32_t>(max_contacts) &&
+                           row.first_contact >= 0 && row.first_contact <= contacts - row.contact_count &&
+                           row.detected_tick >= -1 && row.detected_tick <= row.tick;
         if (!sound)
             file.refuse("/ticks", "the row of tick " + std::to_string(row.tick) + " contradicts itself");
     }
@@ -133,7 +133,7 @@ void keep_what_is_in_order(const Hdf5File& file, Recording& recording) {
 
 }  // namespace
 
-std::span<const RecordedContact> Recording::contacts_of(const RecordedTick& tick) const {
+std::span<const Contact> Recording::contacts_of(const Tick& tick) const {
     if (tick.first_contact < contacts_before) return {};
     return std::span(contacts).subspan(static_cast<std::size_t>(tick.first_contact - contacts_before),
                                        static_cast<std::size_t>(tick.contact_count));

@@ -8,6 +8,7 @@
 #include <fcntl.h>
 #include <string>
 #include <sys/mman.h>
+#include <type_traits>
 #include <unistd.h>
 
 #include "formats/asset/body_io.hpp"
@@ -41,22 +42,20 @@ void write_head(Hdf5Writer& writer, const RecordingHead& head) {
     writer.attribute("/", "tools", static_cast<std::int32_t>(head.devices.size()));
     writer.attribute("/", "coupling_stiffness", head.coupling_stiffness);
     writer.group("/haptics");
-    const auto write = [&](const char* name, double value) { writer.attribute("/haptics", name, value); };
-    visit_haptics(head.haptics, write);
-    visit_later_haptics(head.haptics, write);
+    write_fields(writer, "/haptics", haptic_fields, head.haptics);
     std::vector<std::string> names;
     for (const RecordedDevice& device : head.devices) names.push_back(device.name);
     writer.texts("/devices/name", names, {names.size()});
-    visit_device_columns([&](const char* name, const char* unit, auto member) {
-        using Visited = decltype(field_of(member));
+    for_each_field(device_limit_fields, [&](const auto& field) {
+        using Stored = decltype(numbers_of(field));
         std::vector<double> values;
         for (const RecordedDevice& device : head.devices) {
-            const auto& value = device.*member;
+            const auto& value = device.limits.*field.member;
             const auto* first = reinterpret_cast<const double*>(&value);
-            values.insert(values.end(), first, first + Visited::width);
+            values.insert(values.end(), first, first + Stored::width);
         }
-        writer.dataset<double>(std::string("/devices/") + name, values,
-                               extents_of(static_cast<std::int64_t>(names.size()), Visited{}), unit);
+        writer.dataset<double>(std::string("/devices/") + field.name, values,
+                               extents_of(static_cast<std::int64_t>(names.size()), Stored{}), field.unit);
     });
 }
 
@@ -95,17 +94,14 @@ void make_recording(const std::filesystem::path& path, const RecordingHead& head
         const std::vector<std::int64_t> zero{0};
         for (const char* counter : {ticks_written_path, contacts_written_path, ticks_lost_path})
             writer.dataset<std::int64_t>(counter, zero, {1});
-        visit_tick_columns([&](const char* name, const char* unit, auto member) {
-            using Visited = decltype(field_of(member));
-            writer.reserve<typename Visited::Number>(std::string("/ticks/") + name,
-                                                     extents_of(ticks, Visited{}), unit);
-        });
-        visit_contact_columns([&](const char* name, const char* unit, auto member) {
-            using Visited = decltype(field_of(member));
-            const std::int64_t rows = contacts_per_tick * ticks + 2 * contacts_in_transit;
-            writer.reserve<typename Visited::Number>(std::string("/contacts/") + name,
-                                                     extents_of(rows, Visited{}), unit);
-        });
+        const auto reserve = [&](const std::string& group, std::int64_t rows, const auto& field) {
+            using Stored = decltype(numbers_of(field));
+            writer.reserve<typename Stored::Number>(group + field.name, extents_of(rows, Stored{}),
+                                                    field.unit);
+        };
+        for_each_field(tick_fields, [&](const auto& field) { reserve("/ticks/", ticks, field); });
+        const std::int64_t rows = contacts_per_tick * ticks + 2 * contacts_in_transit;
+        for_each_field(contact_fields, [&](const auto& field) { reserve("/contacts/", rows, field); });
         writer.close();
     }
     reserve_space(path);
@@ -148,21 +144,23 @@ RecordingWriter::RecordingWriter(const std::filesystem::path& path) : open_(new 
     if (tick_capacity_ < 2 || contact_capacity_ < 2 * contacts_in_transit || *ticks_written_ != 0)
         file.refuse("/", "is no empty recording");
     std::size_t at = 0;
-    visit_tick_columns([&](const char* name, const char*, auto member) {
-        tick_columns_[at++] = column(std::string("/ticks/") + name, tick_capacity_, field_of(member));
+    for_each_field(tick_fields, [&](const auto& field) {
+        tick_columns_[at++] = column(std::string("/ticks/") + field.name, tick_capacity_, numbers_of(field));
     });
     at = 0;
-    visit_contact_columns([&](const char* name, const char*, auto member) {
+    for_each_field(contact_fields, [&](const auto& field) {
         contact_columns_[at++] =
-            column(std::string("/contacts/") + name, contact_capacity_, field_of(member));
+            column(std::string("/contacts/") + field.name, contact_capacity_, numbers_of(field));
     });
     rows_per_second_ = 1000 * file.attribute<std::int32_t>("/", "tools");
 }
 
-void RecordingWriter::add(RecordedTick tick, std::span<const RecordedContact> contacts) noexcept {
+void RecordingWriter::add(Tick tick, std::span<const Contact> contacts) noexcept {
     assert(std::ssize(contacts) == tick.contact_count);
-    const auto store = [](std::byte* column, std::int64_t row, const auto& value) {
-        std::memcpy(column + static_cast<std::size_t>(row) * sizeof(value), &value, sizeof(value));
+    const auto store = [](std::byte* column, std::int64_t row, const auto& record, const auto& field) {
+        using Stored = typename std::remove_cvref_t<decltype(field)>::Storage;
+        const auto value = static_cast<Stored>(record.*field.member);
+        std::memcpy(column + row * static_cast<std::int64_t>(sizeof(value)), &value, sizeof(value));
     };
     // Rows first, their counter last: who reads meanwhile, or after a crash, sees whole rows.
     const auto publish = [](std::int64_t& counter, std::int64_t value) {
@@ -172,15 +170,13 @@ void RecordingWriter::add(RecordedTick tick, std::span<const RecordedContact> co
     for (std::size_t i = 0; i < contacts.size(); ++i) {
         const std::int64_t row = (tick.first_contact + static_cast<std::int64_t>(i)) % contact_capacity_;
         std::size_t at = 0;
-        visit_contact_columns([&](const char*, const char*, auto member) {
-            store(contact_columns_[at++], row, contacts[i].*member);
-        });
+        for_each_field(contact_fields,
+                       [&](const auto& field) { store(contact_columns_[at++], row, contacts[i], field); });
     }
     publish(*contacts_written_, tick.first_contact + std::ssize(contacts));
     const std::int64_t row = *ticks_written_ % tick_capacity_;
     std::size_t at = 0;
-    visit_tick_columns(
-        [&](const char*, const char*, auto member) { store(tick_columns_[at++], row, tick.*member); });
+    for_each_field(tick_fields, [&](const auto& field) { store(tick_columns_[at++], row, tick, field); });
     publish(*ticks_written_, *ticks_written_ + 1);
     // Starts to write what has changed, and waits for nothing; msync(MS_ASYNC) would do nothing on Linux.
     if (*ticks_written_ % rows_per_second_ == 0) sync_file_range(open_->file, 0, 0, SYNC_FILE_RANGE_WRITE);

@@ -28,7 +28,7 @@ class RecordingWriter {
 
     /// Adds a row and its contacts, tick.contact_count of them (asserted), over the oldest ones where the
     /// rings are full. Sets first_contact itself. Ticks must come in ascending order of tick, then tool.
-    void add(RecordedTick tick, std::span<const RecordedContact> contacts) noexcept;
+    void add(Tick tick, std::span<const Contact> contacts) noexcept;
     /// Says how many rows could not be handed over so far.
     void set_lost(std::int64_t rows) noexcept;
 

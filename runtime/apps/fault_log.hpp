@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/haptics/tick_result.hpp"
+#include "formats/records/tick_result.hpp"
 
 namespace palpate {
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "formats/model/body.hpp"
-#include "runtime/haptics/tick_result.hpp"
+#include "formats/records/tick_result.hpp"
 #include "runtime/openigtlink/session_stream.hpp"
 
 namespace palpate {

@@ -18,9 +18,9 @@ namespace {
 
 constexpr int free_ticks_to_start = 3;
 
-using Rows = std::span<const RecordedTick>;  // of one tick, one for each tool
+using Rows = std::span<const Tick>;  // of one tick, one for each tool
 
-bool is_free(const RecordedTick& row) {
+bool is_free(const Tick& row) {
     const bool forceless = std::ranges::all_of(row.force, [](double f) { return f == 0; });
     return row.status == tick_ok && row.faults == no_fault && row.contact_count == 0 && row.depth == 0 &&
            forceless;
@@ -108,11 +108,11 @@ class Player {
         bool different = false;
         for (std::size_t t = 0; t < rows.size(); ++t) {
             TickResult& result = results_[t];
-            const RecordedTick& row = rows[t];
+            const Tick& row = rows[t];
             result.tick = row.tick;
             result.tick_ns = row.tick_ns;
             result.wake_latency_ns = row.wake_latency_ns;
-            result.overruns = static_cast<std::uint32_t>(row.overruns);
+            result.overruns = row.overruns;
             sink_(result);
             if (std::memcmp(result.force.data(), row.force.data(), sizeof(row.force)) == 0) continue;
             different = true;
@@ -152,7 +152,7 @@ std::unique_ptr<HapticModel> model_of(const Recording& recording, const std::fil
     auto model =
         std::make_unique<HapticModel>(patient_case, find_contact_scheme(head.scheme), head.devices.size());
     std::vector<DeviceLimits> limits;
-    std::ranges::transform(head.devices, std::back_inserter(limits), limits_of);
+    std::ranges::transform(head.devices, std::back_inserter(limits), &RecordedDevice::limits);
     model->couple_to(limits);
     if (model->coupling() != head.coupling_stiffness)
         throw InvalidInput({file.string(),

@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "formats/recording/recording.hpp"
+#include "formats/records/tick_result.hpp"
 #include "runtime/haptics/haptic_model.hpp"
-#include "runtime/haptics/tick_result.hpp"
 
 namespace palpate {
 

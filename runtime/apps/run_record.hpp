@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "formats/records/tick_result.hpp"
 #include "runtime/apps/force_curve.hpp"
 #include "runtime/haptics/haptic_model.hpp"
-#include "runtime/haptics/tick_result.hpp"
 
 namespace palpate {
 

@@ -7,8 +7,8 @@
 
 #include "formats/recording/recording.hpp"
 #include "formats/recording/recording_writer.hpp"
+#include "formats/records/tick_result.hpp"
 #include "runtime/haptics/haptic_model.hpp"
-#include "runtime/haptics/tick_result.hpp"
 #include "runtime/realtime/device.hpp"
 
 namespace palpate {
@@ -20,11 +20,8 @@ RecordingHead recording_head(const std::filesystem::path& asset, const Case& pat
                              const HapticModel& model, std::span<Device* const> devices,
                              const std::string& clock, const std::string& version);
 
-/// A device's limits as recorded.
-DeviceLimits limits_of(const RecordedDevice& device);
-
 /// What a device said in a recorded tick, with every fault of that tick, whoever told of it.
-DeviceState state_of(const RecordedTick& tick);
+DeviceState state_of(const Tick& tick);
 
 /// How many rows a recording of `seconds` of a run with `tools` tools has. Throws UsageError if that is
 /// less than 0.01 s or more than 12 days.

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "runtime/haptics/tick_result.hpp"
+#include "formats/records/tick_result.hpp"
 
 namespace palpate {
 namespace {

@@ -13,29 +13,17 @@ namespace {
 constexpr double period = 1e-3;  // s
 
 HapticSettings checked(const Case& patient_case) {
-    const HapticSettings& s = patient_case.haptics;
-    const auto require = [&](bool holds, double value, const char* name, const char* unit,
-                             const char* expected) {
-        if (std::isfinite(value) && holds) return;
+    if (const auto error = haptics_error(patient_case.haptics))
         throw InvalidInput({.culprit = patient_case.name,
-                            .found = std::string(name) + " is " + std::to_string(value) + unit,
-                            .expected = expected,
+                            .found = error->name + " " + error->found,
+                            .expected = error->expected,
                             .next_step = "correct [haptics] in the case file and build again"});
-    };
-    require(s.tool_radius > 0, s.tool_radius, "tool_radius", " mm", "more than 0");
-    require(s.coupling_stiffness > 0, s.coupling_stiffness, "coupling_stiffness", " N/mm", "more than 0");
-    require(s.max_force > 0, s.max_force, "max_force", " N", "more than 0");
-    require(s.max_force_rate > 0, s.max_force_rate, "max_force_rate", " N per tick", "more than 0");
-    require(s.friction_at_rest >= 0, s.friction_at_rest, "friction_at_rest", "", "0 or more");
-    require(s.friction_sliding >= 0 && s.friction_sliding <= s.friction_at_rest, s.friction_sliding,
-            "friction_sliding", "", "0 to friction_at_rest");
-    require(s.shaft_length >= 0, s.shaft_length, "shaft_length", " mm", "0 or more");
     if (patient_case.rigid_bodies.empty() && patient_case.deformable_bodies.empty())
         throw InvalidInput({.culprit = patient_case.name,
                             .found = "the case has no body",
                             .expected = "at least one",
                             .next_step = "add a [[rigid]] or [[deformable]] body to the case file"});
-    return s;
+    return patient_case.haptics;
 }
 
 // Where the spheres of a tool are behind its tip, mm: a radius apart, the surface of the row dips by an

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "formats/model/body.hpp"
+#include "formats/records/tick_result.hpp"
 #include "runtime/collision/collision_surface.hpp"
 #include "runtime/haptics/contact/contact_scheme.hpp"
 #include "runtime/haptics/contact/contact_solver.hpp"
@@ -16,7 +17,6 @@
 #include "runtime/haptics/contact/god_object.hpp"
 #include "runtime/haptics/contact/published_contact.hpp"
 #include "runtime/haptics/force_limiter.hpp"
-#include "runtime/haptics/tick_result.hpp"
 #include "runtime/realtime/device.hpp"
 
 namespace palpate {

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "formats/records/tick_result.hpp"
 #include "runtime/haptics/collision_loop.hpp"
 #include "runtime/haptics/haptic_model.hpp"
-#include "runtime/haptics/tick_result.hpp"
 #include "runtime/realtime/device.hpp"
 #include "runtime/realtime/histogram.hpp"
 #include "runtime/realtime/servo.hpp"

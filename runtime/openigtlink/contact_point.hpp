@@ -4,7 +4,7 @@
 #include <cassert>
 #include <span>
 
-#include "runtime/haptics/tick_result.hpp"
+#include "formats/records/tick_result.hpp"
 
 namespace palpate {
 

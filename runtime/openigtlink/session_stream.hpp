@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "runtime/haptics/tick_result.hpp"
+#include "formats/records/tick_result.hpp"
 #include "runtime/openigtlink/address.hpp"
 #include "runtime/openigtlink/tcp_socket.hpp"
 #include "runtime/openigtlink/write_message.hpp"

@@ -4,7 +4,8 @@
 #include <cstdint>
 #include <string>
 
-#include "runtime/realtime/fault.hpp"
+#include "formats/records/device_limits.hpp"
+#include "formats/records/fault.hpp"
 
 namespace palpate {
 
@@ -15,18 +16,6 @@ struct DeviceState {
     std::array<double, 3> shaft{0, 0, 0};     ///< unit, from the tip along the tool's shaft; zero: not known
     std::uint32_t buttons = 0;                ///< one bit each, the lowest for the first
     std::uint32_t faults = no_fault;          ///< Fault flags
-};
-
-/// What a device can render. Zero: not known.
-struct DeviceLimits {
-    double max_force = 0;                          ///< N
-    double max_stiffness = 0;                      ///< N/mm
-    double damping = 0;                            ///< of the device itself, N s/mm
-    double max_continuous_force = 0;               ///< N, that the motors bear for as long as one likes
-    double rate_hz = 0;                            ///< of its servo
-    std::array<double, 3> workspace_low{0, 0, 0};  ///< mm, corners of the box that the tip reaches, frame D
-    std::array<double, 3> workspace_high{0, 0, 0};
-    double max_damping = 0;  ///< that it renders, N s/mm
 };
 
 /// Whether a device knows where it is.

@@ -13,7 +13,7 @@
 #include <vtkTextActor.h>
 #include <vtkTextProperty.h>
 
-#include "runtime/realtime/fault.hpp"
+#include "formats/records/fault.hpp"
 
 namespace palpate {
 namespace {

@@ -27,32 +27,32 @@ RecordingHead two_tools() {
             .clock = "real",
             .coupling_stiffness = 0.4,
             .haptics = {.tool_radius = 1.5, .friction_at_rest = 0.25, .shaft_length = 7},
-            .devices = {{.name = "left", .max_force = 3.3, .workspace_high = {1, 2, 3}},
-                        {.name = "right", .max_stiffness = 0.5, .damping = 2e-4}}};
+            .devices = {{"left", {.max_force = 3.3, .workspace_high = {1, 2, 3}}},
+                        {"right", {.max_stiffness = 0.5, .damping = 2e-4, .max_damping = 3e-3}}}};
 }
 
 // Values of which no two rows share any, told by the row's number alone.
-template <typename Row, typename Visit>
-Row numbered(std::int64_t number, Visit&& visit_columns) {
+template <typename Row, typename Table>
+Row numbered(std::int64_t number, const Table& table) {
     Row row;
     int column = 0;
-    visit_columns([&](const char*, const char*, auto member) {
-        using Visited = decltype(field_of(member));
-        auto* values = reinterpret_cast<typename Visited::Number*>(&(row.*member));
-        for (std::size_t i = 0; i < Visited::width; ++i)
-            values[i] = static_cast<typename Visited::Number>(100 * number + 4 * column +
-                                                              static_cast<std::int64_t>(i));
+    for_each_field(table, [&](const auto& field) {
+        using Held = Numbers<typename std::remove_cvref_t<decltype(field)>::Value>;
+        auto* values = reinterpret_cast<typename Held::Number*>(&(row.*field.member));
+        for (std::size_t i = 0; i < Held::width; ++i)
+            values[i] =
+                static_cast<typename Held::Number>(100 * number + 4 * column + static_cast<std::int64_t>(i));
         ++column;
     });
     return row;
 }
 
-RecordedContact contact_of(std::int64_t number) {
-    return numbered<RecordedContact>(number, [](auto&& visit) { visit_contact_columns(visit); });
+Contact contact_of(std::int64_t number) {
+    return numbered<Contact>(number, contact_fields);
 }
 
-RecordedTick tick_of(std::int64_t row, std::int32_t contacts) {
-    auto tick = numbered<RecordedTick>(row, [](auto&& visit) { visit_tick_columns(visit); });
+Tick tick_of(std::int64_t row, std::int32_t contacts) {
+    auto tick = numbered<Tick>(row, tick_fields);
     tick.tick = row / 2;
     tick.tool = static_cast<std::int32_t>(row % 2);
     tick.contact_count = contacts;
@@ -67,16 +67,16 @@ std::int32_t contacts_in(std::int64_t row, std::int32_t most) {
 void add_rows(RecordingWriter& writer, std::int64_t end, std::int32_t most_contacts, std::int64_t row = 0) {
     std::int64_t contacts = 0;
     for (; row < end; ++row) {
-        std::vector<RecordedContact> points(static_cast<std::size_t>(contacts_in(row, most_contacts)));
-        for (RecordedContact& point : points) point = contact_of(contacts++);
+        std::vector<Contact> points(static_cast<std::size_t>(contacts_in(row, most_contacts)));
+        for (Contact& point : points) point = contact_of(contacts++);
         writer.add(tick_of(row, static_cast<std::int32_t>(points.size())), points);
     }
 }
 
-template <typename Row, typename Visit>
-void expect_same(const Row& found, const Row& expected, Visit&& visit_columns) {
-    visit_columns([&](const char* name, const char*, auto member) {
-        EXPECT_EQ(found.*member, expected.*member) << name;
+template <typename Row, typename Table>
+void expect_same(const Row& found, const Row& expected, const Table& table) {
+    for_each_field(table, [&](const auto& field) {
+        EXPECT_EQ(found.*field.member, expected.*field.member) << field.name;
     });
 }
 
@@ -88,9 +88,9 @@ void expect_rows(const Recording& recording, std::int64_t written, std::int32_t 
     const std::int64_t first = written - std::ssize(recording.ticks);
     for (std::size_t i = 0; i < recording.ticks.size(); ++i) {
         const std::int64_t row = first + static_cast<std::int64_t>(i);
-        RecordedTick expected = tick_of(row, contacts_in(row, most_contacts));
+        Tick expected = tick_of(row, contacts_in(row, most_contacts));
         expected.first_contact = first_contact[static_cast<std::size_t>(row)];
-        expect_same(recording.ticks[i], expected, [](auto&& visit) { visit_tick_columns(visit); });
+        expect_same(recording.ticks[i], expected, tick_fields);
         const auto contacts = recording.contacts_of(recording.ticks[i]);
         if (expected.first_contact < recording.contacts_before) {
             EXPECT_TRUE(contacts.empty());
@@ -99,7 +99,7 @@ void expect_rows(const Recording& recording, std::int64_t written, std::int32_t 
         ASSERT_EQ(std::ssize(contacts), expected.contact_count);
         for (std::size_t k = 0; k < contacts.size(); ++k)
             expect_same(contacts[k], contact_of(expected.first_contact + static_cast<std::int64_t>(k)),
-                        [](auto&& visit) { visit_contact_columns(visit); });
+                        contact_fields);
     }
 }
 
@@ -125,9 +125,9 @@ TEST(Recording, comes_back_as_it_was_written) {
     EXPECT_EQ(recording.head.haptics.shaft_length, head.haptics.shaft_length);
     ASSERT_EQ(recording.head.devices.size(), 2U);
     EXPECT_EQ(recording.head.devices[0].name, "left");
-    EXPECT_EQ(recording.head.devices[0].workspace_high, head.devices[0].workspace_high);
-    EXPECT_EQ(recording.head.devices[1].max_stiffness, 0.5);
-    EXPECT_EQ(recording.head.devices[1].damping, 2e-4);
+    EXPECT_EQ(recording.head.devices[0].limits.workspace_high, head.devices[0].limits.workspace_high);
+    EXPECT_EQ(recording.head.devices[1].limits.max_stiffness, 0.5);
+    EXPECT_EQ(recording.head.devices[1].limits.damping, 2e-4);
     EXPECT_EQ(recording.rows_written, 60);
     EXPECT_EQ(recording.rows_lost, 3);
     EXPECT_EQ(recording.rows_unreadable, 0);
@@ -191,10 +191,10 @@ TEST(Recording, of_a_killed_process_has_whole_rows) {
         ASSERT_GE(recording.rows_written, 300 + attempt);
         EXPECT_EQ(recording.ticks.size(), 199U);
         EXPECT_EQ(recording.rows_unreadable, 0);
-        for (const RecordedTick& row : recording.ticks) {
-            RecordedTick expected = tick_of(2 * row.tick + row.tool, contacts_in(2 * row.tick + row.tool, 5));
+        for (const Tick& row : recording.ticks) {
+            Tick expected = tick_of(2 * row.tick + row.tool, contacts_in(2 * row.tick + row.tool, 5));
             expected.first_contact = row.first_contact;
-            expect_same(row, expected, [](auto&& visit) { visit_tick_columns(visit); });
+            expect_same(row, expected, tick_fields);
         }
     }
 }
@@ -323,8 +323,8 @@ TEST(MutatedRecording, reads_or_is_refused) {
         sample::write_bytes(path, bytes);
         try {
             const Recording recording = read_recording(path);
-            for (const RecordedTick& tick : recording.ticks)
-                for (const RecordedContact& contact : recording.contacts_of(tick)) read += contact.body == -1;
+            for (const Tick& tick : recording.ticks)
+                for (const Contact& contact : recording.contacts_of(tick)) read += contact.body == -1;
             ++read;
         } catch (const InvalidInput& error) {
             ++refused;

@@ -16,7 +16,8 @@ EVERYWHERE = {"dl", "eigen", "fmt", "threads"}
 TEST_SUPPORT = {"palpate_cgal_peer", "palpate_house", "palpate_phantoms", "palpate_sample_case"}
 # What each room may link directly: rooms of ours, and families of other libraries.
 ROOMS = {
-    "model": set(),
+    "records": set(),
+    "model": {"records"},
     "asset": {"model", "hdf5", "openssl", "threads"},
     "recording": {"model", "asset"},
     "imaging": {"model", "itk", "hdf5", "dcmtk", "vtk", "json"},  # HDF5 is one of ITK's own
@@ -31,9 +32,9 @@ ROOMS = {
     "case_builder": {"model", "asset", "cli", "json", "toml"},
     "seeds": {"model", "imaging", "vtk"},
     "hd_conformance": {"model", "devices", "json"},
-    "realtime": set(),
+    "realtime": {"records"},
     "collision": {"model"},
-    "haptics": {"model", "collision", "realtime"},
+    "haptics": {"model", "records", "collision", "realtime"},
     "devices": {"model", "realtime"},
     "doctor": {"model", "realtime", "haptics", "devices", "json"},
     "openigtlink": {"model", "realtime", "haptics", "igtl"},
@@ -51,7 +52,7 @@ EXECUTABLES = {
     "palpate-bench": {"experiments"},
 }
 HEAVY = {"itk", "cgal", "cholmod", "metis", "vtk"}
-LEAN = {"palpate_model", "palpate_asset", "palpate_recording", "palpate_cli", "palpate_realtime", "palpate_collision",
+LEAN = {"palpate_records", "palpate_model", "palpate_asset", "palpate_recording", "palpate_cli", "palpate_realtime", "palpate_collision",
         "palpate_haptics", "palpate_devices", "palpate_openigtlink", "palpate_apps", "palpate_doctor", "palpate-touch",
         "palpate-doctor"}
 # These two draw, so VTK is theirs; nothing else that is heavy.

@@ -7,6 +7,8 @@
 #include <set>
 
 #include "formats/model/errors.hpp"
+#include "formats/records/haptic_settings.hpp"
+#include "formats/records/quality_contract.hpp"
 #include "tools/case_builder/table_reader.hpp"
 
 namespace palpate::build {
@@ -147,6 +149,14 @@ std::map<std::string, double> options(TableReader reader,
     return values;
 }
 
+// The options of palpate pack and mesh that set a record's fields, by their keys in a case file.
+template <typename Table>
+std::map<std::string, std::string> option_of_key(const Table& table) {
+    std::map<std::string, std::string> options;
+    for_each_field(table, [&](const auto& field) { options[key_of(field)] = option_name(field.name); });
+    return options;
+}
+
 // near = "label" or [x, y, z], within_mm, cell_size_mm: as palpate mesh --near takes it.
 std::string near_rule(TableReader& rule) {
     const bool point = rule.raw().get_as<toml::array>("near") != nullptr;
@@ -239,24 +249,10 @@ CaseFile read_case_file(const std::filesystem::path& path) {
         result.rigid.push_back(rigid(table, path.parent_path()));
     for (const TableReader& table : root.tables("deformable"))
         result.deformable.push_back(deformable(table, path.parent_path()));
-    result.haptics = options(root.table("haptics"), {{"tool_radius_mm", "--tool-radius"},
-                                                     {"coupling_stiffness_n_per_mm", "--coupling-stiffness"},
-                                                     {"max_force_n", "--max-force"},
-                                                     {"max_force_rate_n_per_ms", "--max-force-rate"},
-                                                     {"friction_at_rest", "--friction-at-rest"},
-                                                     {"friction_sliding", "--friction-sliding"},
-                                                     {"shaft_length_mm", "--shaft-length"}});
-    result.quality =
-        options(root.table("quality"), {{"min_dihedral_deg", "--min-dihedral-deg"},
-                                        {"max_dihedral_deg", "--max-dihedral-deg"},
-                                        {"max_volume_error_percent", "--max-volume-error-percent"},
-                                        {"max_mean_distance_mm", "--max-mean-distance"},
-                                        {"max_p95_distance_mm", "--max-p95-distance"},
-                                        {"max_distance_voxel_diagonals", "--max-distance"},
-                                        {"min_dice", "--min-dice"},
-                                        {"min_region_dice", "--min-region-dice"},
-                                        {"max_centroid_distance_mm", "--max-centroid-distance"},
-                                        {"attempts", "--attempts"}});
+    result.haptics = options(root.table("haptics"), option_of_key(haptic_fields));
+    auto of_quality = option_of_key(quality_fields);
+    of_quality["attempts"] = "--attempts";
+    result.quality = options(root.table("quality"), of_quality);
     root.refuse_unknown();
     std::set<std::string> names;
     const auto require_new = [&](const std::string& name) {

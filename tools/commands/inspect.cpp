@@ -4,6 +4,7 @@
 
 #include "formats/asset/asset.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/cli/record_json.hpp"
 #include "tools/commands/condense/arguments.hpp"
 #include "tools/commands/condense/results.hpp"
 
@@ -86,20 +87,12 @@ int main(int argc, char** argv) {
             add_regions(regions, body);
             certificates.push_back(row_of(body.name, body));
         }
-        const HapticSettings& haptics = patient_case.haptics;
         return Json{{"name", patient_case.name},
                     {"bytes", std::filesystem::file_size(asset)},
                     {"bodies", bodies},
                     {"regions", regions},
                     {"certificates", certificates},
-                    {"haptics",
-                     {{"tool_radius_mm", haptics.tool_radius},
-                      {"coupling_stiffness_n_per_mm", haptics.coupling_stiffness},
-                      {"max_force_n", haptics.max_force},
-                      {"max_force_rate_n_per_ms", haptics.max_force_rate},
-                      {"friction_at_rest", haptics.friction_at_rest},
-                      {"friction_sliding", haptics.friction_sliding},
-                      {"shaft_length_mm", haptics.shaft_length}}},
+                    {"haptics", cli::record_json(haptic_fields, patient_case.haptics)},
                     {"provenance", provenance_of(patient_case.provenance)}};
     });
 }

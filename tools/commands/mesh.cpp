@@ -6,6 +6,7 @@
 
 #include "formats/model/errors.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/cli/record_options.hpp"
 #include "tools/commands/mesh/arguments.hpp"
 #include "tools/commands/mesh/results.hpp"
 #include "tools/imaging/files/image_files.hpp"
@@ -140,24 +141,7 @@ int main(int argc, char** argv) {
          {region, cell_size, region_cell_size, near, facet_size, facet_distance, smoothing, min_component})
         mesh_file.excludes(option);
     command.flag("--allow-components", allow_components, "accept a body of several separate pieces");
-    command.option("--min-dihedral-deg", contract.min_dihedral_deg,
-                   "quality contract: smallest dihedral angle", "degrees");
-    command.option("--max-dihedral-deg", contract.max_dihedral_deg,
-                   "quality contract: largest dihedral angle", "degrees");
-    command.option("--max-volume-error-percent", contract.max_volume_error_percent,
-                   "quality contract: volume of a region against its voxels", "%");
-    command.option("--max-mean-distance", contract.max_mean_distance,
-                   "quality contract: mean distance of a region's triangles and its labels' surface", "mm");
-    command.option("--max-p95-distance", contract.max_p95_distance,
-                   "quality contract: 95th percentile of that distance", "mm");
-    command.option("--max-distance", contract.max_distance_voxels, "quality contract: largest such distance",
-                   "voxel diagonals");
-    command.option("--min-dice", contract.min_dice,
-                   "quality contract: overlap of the re-voxelised body and its labels, 0 to 1");
-    command.option("--min-region-dice", contract.min_region_dice,
-                   "quality contract: overlap of each re-voxelised region and its label, 0 to 1");
-    command.option("--max-centroid-distance", contract.max_centroid_distance,
-                   "quality contract: distance of the centroids of body and labels", "mm");
+    cli::record_options(command, quality_fields, contract, "quality contract: ");
     command.option("--attempts", attempts, "meshes to make before the contract counts as missed, 1 or more")
         .range(1, 100);
     command.output("-o,--output", output, "tetrahedra (.vtu), LPS mm").required();

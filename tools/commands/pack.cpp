@@ -7,6 +7,7 @@
 #include "formats/asset/parts.hpp"
 #include "formats/model/errors.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/cli/record_options.hpp"
 #include "tools/cli/software.hpp"
 #include "tools/meshing/files/mesh_files.hpp"
 
@@ -107,17 +108,7 @@ int main(int argc, char** argv) {
     command.option("--rigid", rigid, "rigid body: NAME=SURFACE.vtp,TREE.obb.h5; repeat for more");
     command.option("--deformable", deformable,
                    "elastic body: NAME=BODY.body.h5,TREE.obb.h5; repeat for more");
-    command.option("--tool-radius", haptics.tool_radius, "radius of the tool's tip", "mm");
-    command.option("--coupling-stiffness", haptics.coupling_stiffness, "spring from device to tool", "N/mm");
-    command.option("--max-force", haptics.max_force, "largest force on the hand", "N");
-    command.option("--max-force-rate", haptics.max_force_rate, "largest change of force per tick of 1 ms",
-                   "N");
-    command.option("--friction-at-rest", haptics.friction_at_rest,
-                   "force along the surface that a resting tool bears, as part of the one across it");
-    command.option("--friction-sliding", haptics.friction_sliding,
-                   "the same of a sliding tool; at most --friction-at-rest");
-    command.option("--shaft-length", haptics.shaft_length,
-                   "of the tool's shaft behind its tip, as thick as the tip; 0: only the tip is felt", "mm");
+    cli::record_options(command, haptic_fields, haptics);
     command.option("--mesh-result", mesh_results,
                    "NAME=RESULT.json: what palpate mesh --json said of a body; repeat for more");
     command.input("--provenance", provenance, "what made the parts (.json)");

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "formats/model/body.hpp"
+#include "formats/records/tick_result.hpp"
 #include "runtime/haptics/haptic_model.hpp"
-#include "runtime/haptics/tick_result.hpp"
 
 namespace palpate::bench {
 

@@ -112,15 +112,11 @@ std::string mechanics_section(const Case& patient_case) {
             1e-6 * static_cast<double>(value_bytes(body.compliance)), grouped(body.certificate.free_dofs),
             body.element_order == ElementOrder::linear ? "linear" : "quadratic");
     }
-    const HapticSettings& haptics = patient_case.haptics;
-    content += html::cards(
-        {{"Tool radius", significant(haptics.tool_radius), "mm"},
-         {"Coupling stiffness", significant(haptics.coupling_stiffness), "N/mm"},
-         {"Largest force", significant(haptics.max_force), "N"},
-         {"Largest change", significant(haptics.max_force_rate), "N per ms"},
-         {"Friction", significant(haptics.friction_at_rest) + " / " + significant(haptics.friction_sliding),
-          "at rest / sliding"},
-         {"Shaft", significant(haptics.shaft_length), "mm"}});
+    std::vector<html::Card> cards;
+    for_each_field(haptic_fields, [&](const auto& field) {
+        cards.push_back({title_of(field.name), significant(patient_case.haptics.*field.member), field.unit});
+    });
+    content += html::cards(cards);
     return html::section("mechanics", "Materials and boundary", "Isotropic linear elasticity.", content);
 }
 

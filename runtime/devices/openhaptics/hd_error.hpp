@@ -7,8 +7,8 @@
 #include <string>
 
 #include "formats/model/errors.hpp"
+#include "formats/records/fault.hpp"
 #include "runtime/devices/openhaptics/hd_api.hpp"
-#include "runtime/realtime/fault.hpp"
 
 namespace palpate {
 

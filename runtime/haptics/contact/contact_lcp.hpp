@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <span>
 
-#include "runtime/haptics/tick_result.hpp"
+#include "formats/records/tick_result.hpp"
 
 namespace palpate {
 

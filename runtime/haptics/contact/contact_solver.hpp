@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <span>
 
+#include "formats/records/tick_result.hpp"
 #include "runtime/haptics/contact/contact_lcp.hpp"
 #include "runtime/haptics/contact/deformable_contact.hpp"
-#include "runtime/haptics/tick_result.hpp"
 
 namespace palpate {
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "formats/model/body.hpp"
+#include "formats/records/tick_result.hpp"
 #include "runtime/collision/collision_surface.hpp"
 #include "runtime/haptics/contact/god_object.hpp"
-#include "runtime/haptics/tick_result.hpp"
 
 namespace palpate {
 

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "formats/model/body.hpp"
+#include "formats/records/tick_result.hpp"
 #include "runtime/collision/collision_surface.hpp"
 #include "runtime/haptics/contact/contact_scheme.hpp"
-#include "runtime/haptics/tick_result.hpp"
 #include "runtime/realtime/triple_buffer.hpp"
 
 namespace palpate {

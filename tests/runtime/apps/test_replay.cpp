@@ -94,7 +94,7 @@ Recording record(const Trial& trial, const sample::Scratch& scratch) {
                        .coupling_stiffness = model.coupling(),
                        .haptics = trial.patient_case.haptics,
                        .devices = {}};
-    for (const Device* device : held) head.devices.push_back({.name = device->name(), .max_force = 2});
+    for (const Device* device : held) head.devices.push_back({device->name(), {.max_force = 2}});
     const auto path = scratch / "run.h5";
     make_recording(path, head, (trial.ticks + 1) * static_cast<std::int64_t>(trial.tools));
     RunRecorder recorder(path);
@@ -109,7 +109,7 @@ Recording record(const Trial& trial, const sample::Scratch& scratch) {
 ReplayOutcome replayed(const Trial& trial, const Recording& recording) {
     HapticModel model(trial.patient_case, trial.scheme, trial.tools);
     std::vector<DeviceLimits> limits;
-    for (const RecordedDevice& device : recording.head.devices) limits.push_back(limits_of(device));
+    for (const RecordedDevice& device : recording.head.devices) limits.push_back(device.limits);
     model.couple_to(limits);
     return replay(recording, model, [](const TickResult&) {});
 }
@@ -139,7 +139,7 @@ TEST_P(Replay, from_a_free_tick_in_the_middle_gives_the_same_forces) {
     const sample::Scratch scratch;
     const Recording recording = record(GetParam(), scratch);
     std::int64_t compared = 0, in_contact = 0;
-    for (const RecordedTick& row : recording.ticks) in_contact += row.contact_count > 0;
+    for (const Tick& row : recording.ticks) in_contact += row.contact_count > 0;
     ASSERT_GT(in_contact, GetParam().ticks / 20);
     for (std::size_t first = 101; first < recording.ticks.size(); first += 29) {
         const ReplayOutcome outcome = replayed(GetParam(), part_of(recording, first, 1000));
@@ -168,7 +168,7 @@ TEST_P(Replay, of_a_changed_input_differs_from_that_tick_on) {
     const sample::Scratch scratch;
     Recording recording = record(GetParam(), scratch);
     // Pressed against something, deep enough that a micrometre is felt.
-    const auto pressed = std::ranges::find_if(recording.ticks, [](const RecordedTick& row) {
+    const auto pressed = std::ranges::find_if(recording.ticks, [](const Tick& row) {
         return row.force[2] > 0.02 && row.status == tick_ok && row.detected_tick < 0;
     });
     ASSERT_NE(pressed, recording.ticks.end());
@@ -200,7 +200,7 @@ TEST(ReplayStart, that_is_not_there_is_told) {
     const sample::Scratch scratch;
     const Trial trial{ball_and_cube(), ContactScheme::continuous, 1, 2000};
     Recording recording = record(trial, scratch);
-    std::erase_if(recording.ticks, [](const RecordedTick& row) { return row.contact_count == 0; });
+    std::erase_if(recording.ticks, [](const Tick& row) { return row.contact_count == 0; });
     EXPECT_FALSE(replayed(trial, recording).started.has_value());
 }
 

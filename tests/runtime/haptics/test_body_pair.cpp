@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "formats/model/errors.hpp"
+#include "formats/records/tick_result.hpp"
 #include "runtime/haptics/contact/body_pair.hpp"
-#include "runtime/haptics/tick_result.hpp"
 #include "tests/formats/sample_case.hpp"
 #include "tests/runtime/elastic_cube.hpp"
 

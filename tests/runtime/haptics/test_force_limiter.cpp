@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 #include <limits>
 
+#include "formats/records/tick_result.hpp"
 #include "runtime/haptics/force_limiter.hpp"
-#include "runtime/haptics/tick_result.hpp"
 
 namespace palpate {
 namespace {

@@ -4,27 +4,14 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "tools/cli/record_json.hpp"
+
 namespace palpate::condensation {
 
 using Json = nlohmann::ordered_json;
 
 Json to_json(const Certificate& certificate) {
-    return {{"residual", certificate.residual},
-            {"residual_double",
-             certificate.residual_double < 0 ? Json(nullptr) : Json(certificate.residual_double)},
-            {"asymmetry", certificate.asymmetry},
-            {"reciprocity", certificate.reciprocity},
-            {"smallest_eigenvalue_mm_per_n", certificate.smallest_eigenvalue},
-            {"largest_eigenvalue_mm_per_n", certificate.largest_eigenvalue},
-            {"condition_number", certificate.condition_number},
-            {"sampled_columns", certificate.sampled_columns},
-            {"load_error", certificate.load_error},
-            {"contact_error", certificate.contact_error},
-            {"sampled_loads", certificate.sampled_loads},
-            {"smallest_patch_eigenvalue_mm_per_n", certificate.smallest_patch_eigenvalue},
-            {"discretisation_error",
-             certificate.discretisation_error < 0 ? Json(nullptr) : Json(certificate.discretisation_error)},
-            {"free_dofs", certificate.free_dofs}};
+    return cli::record_json(certificate_fields, certificate);
 }
 
 Json to_json(const CondensationPlan& plan) {

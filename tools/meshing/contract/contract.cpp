@@ -124,7 +124,7 @@ std::vector<ContractCheck> check_fidelity(const QualityContract& contract, const
                 contract.max_mean_distance * coarseness, "mm");
         at_most("the 95th percentile of the surface distance", distance.region, distance.percentile_95,
                 contract.max_p95_distance * coarseness, "mm");
-        const double limit = contract.max_distance_voxels * grid.spacing.norm();
+        const double limit = contract.max_distance * grid.spacing.norm();
         at_most("the largest surface distance", distance.region, distance.maximum, limit, "mm");
         ContractCheck& largest = checks.back();
         if (largest.kept) continue;

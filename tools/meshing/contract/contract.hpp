@@ -4,23 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "formats/records/quality_contract.hpp"
 #include "tools/meshing/contract/fidelity.hpp"
 #include "tools/meshing/measures/quality.hpp"
 
 namespace palpate {
-
-/// What a mesh must keep to be trusted. Distances hold for voxels of up to 1 mm³ and grow with the cube root
-/// of larger ones.
-struct QualityContract {
-    double min_dihedral_deg = 12, max_dihedral_deg = 165;
-    double max_volume_error_percent = 1;  ///< of every region
-    double max_mean_distance = 0.25;      ///< mm, between a region's triangles and its labels' surface
-    double max_p95_distance = 0.5;        ///< mm
-    double max_distance_voxels = 1;       ///< voxel diagonals, at the worst place
-    double min_dice = 0.98;               ///< of the re-voxelised body and its labels
-    double min_region_dice = 0.95;        ///< of each re-voxelised region and its label
-    double max_centroid_distance = 0.05;  ///< mm, between those of the body's voxels and of its labels
-};
 
 /// One limit of the contract against what was measured; if it is not kept, what should be finer: the
 /// surroundings of places, else the surface of a region.

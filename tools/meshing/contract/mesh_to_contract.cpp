@@ -50,7 +50,7 @@ ContractedMesh mesh_to_contract(const LabelMap& map, std::span<const std::int32_
             std::min(sizing.cell_size / 10,
                      contract.max_p95_distance * std::max(1.0, std::cbrt(map.grid.voxel_volume())));
     // Fitting and optimising move triangles too: they get what refinement leaves.
-    if (sizing.max_gap == 0) sizing.max_gap = 0.6 * contract.max_distance_voxels * map.grid.spacing.norm();
+    if (sizing.max_gap == 0) sizing.max_gap = 0.6 * contract.max_distance * map.grid.spacing.norm();
     progress("smooth labels", 0);
     const MeshDomain domain =
         prepare_domain(map, region_values, sizing.smoothing, sizing.min_component_volume);

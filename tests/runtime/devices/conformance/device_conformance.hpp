@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "formats/records/fault.hpp"
 #include "runtime/devices/hand_path.hpp"
 #include "runtime/realtime/device.hpp"
-#include "runtime/realtime/fault.hpp"
 #include "runtime/realtime/servo.hpp"
 
 /// What every device must do, whatever stands behind it. A backend registers itself in a file of its own by

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/realtime/fault.hpp"
+#include "formats/records/fault.hpp"
 
 #include <array>
 

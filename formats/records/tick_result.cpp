@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/haptics/tick_result.hpp"
+#include "formats/records/tick_result.hpp"
 
 #include <utility>
 

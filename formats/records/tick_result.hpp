@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <type_traits>
+
+#include "formats/records/fault.hpp"
+#include "formats/records/field.hpp"
+
+namespace palpate {
+
+/// Most contact points of one tick; more set TickStatus::contacts_cut.
+inline constexpr std::size_t max_contacts = 64;
+
+/// What was unusual about a tick's contacts and force; flags add up. Faults, which take the force away, are
+/// told apart.
+enum TickStatus : std::uint32_t {
+    tick_ok = 0,
+    force_limited = 1U << 0,     ///< cut to HapticSettings::max_force
+    rate_limited = 1U << 1,      ///< cut to HapticSettings::max_force_rate
+    contacts_cut = 1U << 2,      ///< more contact points than max_contacts: the shallowest were left out
+    contact_unsolved = 1U << 3,  ///< contacts contradict each other, as in a wedge: no body gave way
+    starts_inside = 1U << 4,     ///< a body is not felt until the tool has been clear of it once
+    coming_back = 1U << 5,       ///< after a fault, the force returns by and by
+};
+
+/// Names the flags of a status, separated by '+', "ok" for none.
+std::string status_text(std::uint32_t status);
+
+/// One contact point, with all that is needed to compute its force again offline.
+struct Contact {
+    std::int32_t body = 0;
+    std::int32_t part = 0;
+    std::int32_t triangle = 0;
+    std::array<std::int32_t, 3> vertices{-1, -1, -1};
+    std::array<float, 3> weights{0, 0, 0};
+    std::array<float, 3> normal{0, 0, 0};
+    float gap = 0;                           // mm
+    float force = 0;                         // N
+    float series_compliance = 0;             // mm/N
+    std::array<float, 3> friction{0, 0, 0};  // N
+};
+
+inline constexpr std::tuple contact_fields{
+    Field("body", &Contact::body, "", "0 to the number of bodies - 1, rigid bodies first"),
+    Field("part", &Contact::part, "", "of the tool: 0 the tip, then along its shaft"),
+    Field("triangle", &Contact::triangle, "", "of the body's surface; -1 if the point is a vertex"),
+    Field("vertices", &Contact::vertices, "", "of the body's surface; -1: unused"),
+    Field("weights", &Contact::weights, "", "the point is the weighted sum of the vertices"),
+    Field("normal", &Contact::normal, "", "n: unit, from tissue to tool"),
+    Field("gap", &Contact::gap, "mm", "delta: how far the point must give way along -n"),
+    Field("force", &Contact::force, "N",
+          "f >= 0: the tool pushes the tissue by -n f, the tissue the tool by n f"),
+    Field("series_compliance", &Contact::series_compliance, "mm/N",
+          "c, in series with the body's own at this point"),
+    Field("friction", &Contact::friction, "N", "on the tool; the opposite on the tissue")};
+
+/// The contact's unit normal, from tissue to tool.
+inline Eigen::Vector3d normal_of(const Contact& contact) noexcept {
+    return Eigen::Map<const Eigen::Vector3f>(contact.normal.data()).cast<double>();
+}
+
+/// What the contact does to the tool, N.
+inline Eigen::Vector3d force_on_tool(const Contact& contact) noexcept {
+    return static_cast<double>(contact.force) * normal_of(contact) +
+           Eigen::Map<const Eigen::Vector3f>(contact.friction.data()).cast<double>();
+}
+
+/// What one tick saw and did with one tool, and when. Positions and forces in frame P.
+struct Tick {
+    std::int64_t tick = 0;
+    std::int32_t tool = 0;
+    double time = 0;                                 // s
+    std::array<double, 3> device_position{0, 0, 0};  // mm
+    std::array<double, 3> shaft{0, 0, 0};
+    std::array<double, 3> tool_position{0, 0, 0};  // mm
+    std::array<double, 3> force{0, 0, 0};          // N
+    double depth = 0;                              // mm
+    double residual = 0;                           // mm
+    std::int64_t detected_tick = -1;
+    std::int32_t body = -1;
+    std::int32_t contact_count = 0;
+    std::uint32_t status = tick_ok;
+    std::uint32_t faults = no_fault;
+    std::uint32_t buttons = 0;
+    std::uint32_t overruns = 0;
+    std::int64_t tick_ns = 0;
+    std::int64_t wake_latency_ns = 0;
+    std::int64_t first_contact = 0;  // of a recording, set by its writer
+};
+
+inline constexpr std::tuple tick_fields{
+    Field("tick", &Tick::tick, "", "0 for the run's first"),
+    Field("tool", &Tick::tool, "", "which one, from 0 on"),
+    Field("time", &Tick::time, "s", "since the loop started"),
+    Field("device_position", &Tick::device_position, "mm", "of the tool's centre as the device has it"),
+    Field("shaft", &Tick::shaft, "", "unit vector from the tip along the tool's shaft; zero: not known"),
+    Field("buttons", &Tick::buttons, "", "one bit each, the lowest for the first").stored_as<std::int64_t>(),
+    Field("faults", &Tick::faults, "",
+          "flags of formats/records/fault.hpp: the force is on its way to zero, or there")
+        .stored_as<std::int32_t>(),
+    Field("status", &Tick::status, "", "flags of TickStatus: what was unusual about contacts and force")
+        .stored_as<std::int32_t>(),
+    Field("tool_position", &Tick::tool_position, "mm", "at the other end of the virtual coupling"),
+    Field("force", &Tick::force, "N", "on the device"),
+    Field("depth", &Tick::depth, "mm", "of the device below the deepest touched rest surface"),
+    Field("residual", &Tick::residual, "mm", "worst violation of the contact conditions"),
+    Field("body", &Tick::body, "", "the deepest touched, -1 for none; rigid bodies first"),
+    Field("contact_count", &Tick::contact_count, "", "contact points of this tick and tool"),
+    Field("first_contact", &Tick::first_contact, "",
+          "how many contacts were recorded before this tick's; 0 in a running loop"),
+    Field("detected_tick", &Tick::detected_tick, "",
+          "published schemes: of whose position a detection came in this tick; -1 for none"),
+    Field("tick_ns", &Tick::tick_ns, "ns", "read, contact, force, write"),
+    Field("wake_latency_ns", &Tick::wake_latency_ns, "ns", "woken this long after the deadline"),
+    Field("overruns", &Tick::overruns, "", "periods skipped so far").stored_as<std::int64_t>()};
+
+/// A tick and its contacts. Plain bytes: crosses threads as it is.
+struct TickResult : Tick {
+    std::array<Contact, max_contacts> contacts;  ///< the first contact_count are valid
+
+    std::span<const Contact> active_contacts() const noexcept {
+        return {contacts.data(), static_cast<std::size_t>(contact_count)};
+    }
+};
+static_assert(std::is_trivially_copyable_v<TickResult>);
+
+}  // namespace palpate

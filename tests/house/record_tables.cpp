@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// record_tables: the tables of formats/records as JSON, for docs/ and the specifications.
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "formats/records/certificate.hpp"
+#include "formats/records/device_limits.hpp"
+#include "formats/records/haptic_settings.hpp"
+#include "formats/records/material.hpp"
+#include "formats/records/quality_contract.hpp"
+#include "formats/records/tick_result.hpp"
+
+namespace {
+using namespace palpate;
+using Json = nlohmann::ordered_json;
+
+template <typename T>
+struct Stored {
+    static std::string name() {
+        return (std::is_floating_point_v<T> ? "f" : "i") + std::to_string(8 * sizeof(T));
+    }
+};
+template <typename T, std::size_t size>
+struct Stored<std::array<T, size>> {
+    static std::string name() { return Stored<T>::name() + " (N, " + std::to_string(size) + ")"; }
+};
+
+template <typename Record, typename Table>
+Json rows_of(const Table& table) {
+    Json rows = Json::array();
+    for_each_field(
+        table, [&]<typename Row, typename T, typename Storage>(const Field<Row, T, Storage>& field) {
+            const Record defaults{};
+            const T value = defaults.*field.member;
+            Json row{{"name", field.name},
+                     {"key", key_of(field)},
+                     {"option", option_name(field.name)},
+                     {"type", Stored<Storage>::name()},
+                     {"unit", field.unit},
+                     {"written_unit", field.written_unit != nullptr ? field.written_unit : field.unit},
+                     {"default", value},
+                     {"range", to_string(field.range)},
+                     {"schema", field.schema},
+                     {"meaning", field.meaning}};
+            if (field.absent) row["absent"] = *field.absent;
+            rows.push_back(std::move(row));
+        });
+    return rows;
+}
+
+Json fault_rows() {
+    Json rows = Json::array();
+    for (const FaultText& text : fault_texts())
+        rows.push_back({{"flag", static_cast<std::uint32_t>(text.fault)},
+                        {"name", text.name},
+                        {"cause", text.cause},
+                        {"remedy", text.remedy}});
+    return rows;
+}
+
+}  // namespace
+
+int main() {
+    std::cout << Json{{"haptics", rows_of<HapticSettings>(haptic_fields)},
+                      {"quality", rows_of<QualityContract>(quality_fields)},
+                      {"material", rows_of<Material>(material_fields)},
+                      {"certificate", rows_of<Certificate>(certificate_fields)},
+                      {"device_limits", rows_of<DeviceLimits>(device_limit_fields)},
+                      {"tick", rows_of<Tick>(tick_fields)},
+                      {"contact", rows_of<Contact>(contact_fields)},
+                      {"faults", fault_rows()}}
+                     .dump(1)
+              << '\n';
+}
