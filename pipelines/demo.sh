@@ -4,6 +4,7 @@
 # Needs Debian 12 with root or sudo; installs what is missing, builds palpate's commands, and does nothing twice.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/set_up.sh"
+PALPATE_TESTS=OFF
 set_up release:commands
 
 bin=$root/build/release/bin

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Sourced by pipelines/demo.sh and tests/run.sh: installs what packages.txt lists and builds presets.
+# Sourced by pipelines/demo.sh and tests/run.sh: installs what packages.txt lists and builds presets. Who sets
+# PALPATE_TESTS=OFF before needs no package of the tests and builds none.
 # Every step does nothing when there is nothing to do.
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -7,7 +8,9 @@ export CCACHE_BASEDIR="$root"
 
 install_packages() {
     local wanted missing=() package as_root=()
-    wanted=$(sed 's/#.*//' "$root/packages.txt")
+    wanted=$(cat "$root/packages.txt")
+    [ "${PALPATE_TESTS:-ON}" = ON ] || wanted=${wanted%%# tests*}
+    wanted=$(sed 's/#.*//' <<<"$wanted")
     for package in $wanted; do
         [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing+=("$package")
     done
@@ -22,7 +25,7 @@ install_packages() {
 }
 
 build() { # preset [target]
-    cmake --preset "$1" -S "$root" >"$root/build/$1.configure.log" 2>&1 || { cat "$root/build/$1.configure.log" >&2; return 1; }
+    cmake --preset "$1" -S "$root" -D PALPATE_TESTS="${PALPATE_TESTS:-ON}" >"$root/build/$1.configure.log" 2>&1 || { cat "$root/build/$1.configure.log" >&2; return 1; }
     cmake --build "$root/build/$1" ${2:+--target "$2"}
 }
 
