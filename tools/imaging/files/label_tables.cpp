@@ -13,8 +13,8 @@
 #include "formats/model/errors.hpp"
 #include "tools/imaging/files/label_names.hpp"
 #include "tools/imaging/files/read_image.hpp"
+#include "tools/imaging/files/totalsegmentator_labels.hpp"
 #include "tools/imaging/files/trimmed.hpp"
-#include "tools/imaging/totalsegmentator_labels.hpp"
 
 namespace palpate {
 namespace {
