@@ -56,8 +56,8 @@ class DicomData {
                                      .text(0x00020003, "UI", "1.2.3")
                                      .text(0x00020010, "UI", "1.2.840.10008.1.2.1")
                                      .bytes();
-        return std::string(128, '\0') + "DICM" + std::string("\x02\x00\x00\x00UL\x04\x00", 8) +
-               little_endian(meta.size(), 4) + meta + bytes();
+        const std::string preamble(128, '\0'), length("\x02\x00\x00\x00UL\x04\x00", 8);
+        return preamble + "DICM" + length + little_endian(meta.size(), 4) + meta + bytes();
     }
 
   private:
