@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <tuple>
 
 #include "formats/recording/recording.hpp"
@@ -27,6 +28,13 @@ struct Numbers<std::array<T, size>> {
 template <typename Record, typename T, typename Stored>
 Numbers<Stored> numbers_of(const Field<Record, T, Stored>&) {
     return {};
+}
+
+/// "/ticks/" and "force" make "/ticks/force".
+inline std::string column_path(const char* group, const char* name) {
+    std::string path(group);
+    path += name;
+    return path;
 }
 
 inline constexpr std::size_t tick_column_count = std::tuple_size_v<decltype(tick_fields)>;

@@ -40,7 +40,7 @@ RecordingHead read_head(const Hdf5File& file) {
     const std::vector<std::string> names = file.texts("/devices/name", {tools});
     for (std::size_t i = 0; i < names.size(); ++i) head.devices[i].name = names[i];
     for_each_field(device_limit_fields, [&](const auto& field) {
-        const std::string path = std::string("/devices/") + field.name;
+        const std::string path = column_path("/devices/", field.name);
         if (field.absent && !file.contains(path)) {
             for (RecordedDevice& device : head.devices) device.limits.*field.member = *field.absent;
             return;
@@ -64,11 +64,12 @@ std::int64_t read_counter(const Hdf5File& file, const char* path) {
 
 // Rows first ... first + rows.size() - 1 of all ever written, out of the ring of `capacity` rows.
 template <typename Row, typename ColumnField>
-void read_column(const Hdf5File& file, const std::string& group, std::int64_t capacity, std::int64_t first,
+void read_column(const Hdf5File& file, const char* group, std::int64_t capacity, std::int64_t first,
                  std::vector<Row>& rows, const ColumnField& field) {
     using Stored = typename ColumnField::Storage;
     using Number = typename decltype(numbers_of(field))::Number;
-    const auto numbers = file.dataset<Number>(group + field.name, shape_of(capacity, numbers_of(field)));
+    const auto numbers =
+        file.dataset<Number>(column_path(group, field.name), shape_of(capacity, numbers_of(field)));
     const std::span<const std::byte> bytes = std::as_bytes(numbers);
     for (std::size_t i = 0; i < rows.size(); ++i) {
         Stored value;

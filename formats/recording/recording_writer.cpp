@@ -54,7 +54,7 @@ void write_head(Hdf5Writer& writer, const RecordingHead& head) {
             const auto* first = reinterpret_cast<const double*>(&value);
             values.insert(values.end(), first, first + Stored::width);
         }
-        writer.dataset<double>(std::string("/devices/") + field.name, values,
+        writer.dataset<double>(column_path("/devices/", field.name), values,
                                extents_of(static_cast<std::int64_t>(names.size()), Stored{}), field.unit);
     });
 }
@@ -94,10 +94,10 @@ void make_recording(const std::filesystem::path& path, const RecordingHead& head
         const std::vector<std::int64_t> zero{0};
         for (const char* counter : {ticks_written_path, contacts_written_path, ticks_lost_path})
             writer.dataset<std::int64_t>(counter, zero, {1});
-        const auto reserve = [&](const std::string& group, std::int64_t rows, const auto& field) {
+        const auto reserve = [&](const char* group, std::int64_t rows, const auto& field) {
             using Stored = decltype(numbers_of(field));
-            writer.reserve<typename Stored::Number>(group + field.name, extents_of(rows, Stored{}),
-                                                    field.unit);
+            writer.reserve<typename Stored::Number>(column_path(group, field.name),
+                                                    extents_of(rows, Stored{}), field.unit);
         };
         for_each_field(tick_fields, [&](const auto& field) { reserve("/ticks/", ticks, field); });
         const std::int64_t rows = contacts_per_tick * ticks + 2 * contacts_in_transit;
@@ -145,12 +145,12 @@ RecordingWriter::RecordingWriter(const std::filesystem::path& path) : open_(new 
         file.refuse("/", "is no empty recording");
     std::size_t at = 0;
     for_each_field(tick_fields, [&](const auto& field) {
-        tick_columns_[at++] = column(std::string("/ticks/") + field.name, tick_capacity_, numbers_of(field));
+        tick_columns_[at++] = column(column_path("/ticks/", field.name), tick_capacity_, numbers_of(field));
     });
     at = 0;
     for_each_field(contact_fields, [&](const auto& field) {
         contact_columns_[at++] =
-            column(std::string("/contacts/") + field.name, contact_capacity_, numbers_of(field));
+            column(column_path("/contacts/", field.name), contact_capacity_, numbers_of(field));
     });
     rows_per_second_ = 1000 * file.attribute<std::int32_t>("/", "tools");
 }

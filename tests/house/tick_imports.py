@@ -25,13 +25,13 @@ TICK = {
         "triangle_queries": "point and sphere against one triangle",
     },
     "runtime/haptics/CMakeFiles/palpate_haptics.dir": {
-        "contact_lcp": "complementarity",
-        "contact_solver": "contacts of one tick, solved together",
-        "deformable_contact": "contact points and displacements of an elastic body",
+        "contact/contact_lcp": "complementarity",
+        "contact/contact_solver": "contacts of one tick, solved together",
+        "contact/deformable_contact": "contact points and displacements of an elastic body",
         "force_limiter": "force and slew limits",
-        "god_object": "the tool that stays outside",
+        "contact/god_object": "the tool that stays outside",
         "haptic_tick": "one tick, from positions to forces",
-        "published_contact": "one tick of the published schemes, and their detection",
+        "contact/published_contact": "one tick of the published schemes, and their detection",
     },
     "runtime/realtime/CMakeFiles/palpate_realtime.dir": {
         "histogram": "what a tick spent",
@@ -50,6 +50,7 @@ HARMLESS = {
     "_GLOBAL_OFFSET_TABLE_": "the linker's",
     "__stack_chk_fail": "reached only by a program that is broken already",
     "__assert_fail": "the same, in builds with assertions",
+    "_ZSt21__glibcxx_assert_failPKciS0_S0_": "the standard library's assertions, the same",
 }
 
 
