@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <limits>
+#include <set>
+
+#include "formats/asset/body_io.hpp"
+#include "formats/model/errors.hpp"
+#include "formats/records/certificate.hpp"
+#include "formats/records/device_limits.hpp"
+#include "formats/records/haptic_settings.hpp"
+#include "formats/records/material.hpp"
+#include "formats/records/quality_contract.hpp"
+#include "formats/records/tick_result.hpp"
+#include "tests/formats/scratch.hpp"
+
+namespace palpate {
+namespace {
+
+using sample::Scratch;
+
+// A record whose default has moved since a file without the field was written.
+struct Spring {
+    double stiffness = 3;
+    double rest_length = 7;
+};
+constexpr std::tuple spring_fields{Field("stiffness", &Spring::stiffness, "N/mm", "", positive),
+                                   Field("rest_length", &Spring::rest_length, "mm", "").since(2, 5.0)};
+
+TEST(Records, an_absent_field_means_what_its_table_says_and_not_the_present_default) {
+    const Scratch scratch;
+    {
+        Hdf5Writer writer(scratch / "old.h5");
+        writer.group("/spring");
+        writer.attribute("/spring", "stiffness", 2.0);
+        writer.finish("/spring");
+    }
+    Spring read;
+    read_fields(Hdf5File(scratch / "old.h5"), "/spring", spring_fields, read);
+    EXPECT_EQ(read.stiffness, 2);
+    EXPECT_EQ(read.rest_length, 5);
+}
+
+TEST(Records, a_field_that_files_always_had_may_not_be_absent) {
+    const Scratch scratch;
+    {
+        Hdf5Writer writer(scratch / "damaged.h5");
+        writer.group("/spring");
+        writer.attribute("/spring", "rest_length", 2.0);
+        writer.finish("/spring");
+    }
+    Spring read;
+    EXPECT_THROW(read_fields(Hdf5File(scratch / "damaged.h5"), "/spring", spring_fields, read), InvalidInput);
+}
+
+TEST(Records, the_first_field_out_of_its_range_is_named_with_value_unit_and_range) {
+    EXPECT_FALSE(first_error(spring_fields, Spring{}));
+    for (const double wrong : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+        const auto error = first_error(spring_fields, Spring{.stiffness = wrong});
+        ASSERT_TRUE(error) << wrong;
+        EXPECT_EQ(error->name, "stiffness");
+        EXPECT_THAT(error->found, testing::EndsWith(" N/mm"));
+        EXPECT_EQ(error->expected, "a positive number");
+    }
+    EXPECT_EQ(first_error(material_fields, Material{.youngs_modulus = 1, .poissons_ratio = 0.5})->expected,
+              "between -1 and 0.5");
+    EXPECT_EQ(haptics_error({.friction_at_rest = 0.1, .friction_sliding = 0.2})->name, "friction_sliding");
+}
+
+TEST(Records, keys_options_and_titles_follow_from_name_and_unit) {
+    EXPECT_EQ(key_of("coupling_stiffness", "N/mm"), "coupling_stiffness_n_per_mm");
+    EXPECT_EQ(key_of(std::get<0>(material_fields)), "youngs_modulus_kpa");
+    EXPECT_EQ(key_of("min_dihedral_deg", "degrees"), "min_dihedral_deg");
+    EXPECT_EQ(option_name("max_p95_distance"), "--max-p95-distance");
+    EXPECT_EQ(title_of("tool_radius"), "Tool radius");
+}
+
+template <typename Record, typename Table>
+void expect_whole(const Table& table) {
+    std::set<std::string> names;
+    const Record record{};
+    std::set<const void*> members;
+    for_each_field(table, [&](const auto& field) {
+        EXPECT_TRUE(names.insert(field.name).second) << field.name;
+        EXPECT_TRUE(members.insert(&(record.*field.member)).second) << field.name;
+        EXPECT_STRNE(field.meaning, "") << field.name;
+    });
+}
+
+TEST(Records, no_table_names_a_field_twice) {
+    expect_whole<HapticSettings>(haptic_fields);
+    expect_whole<QualityContract>(quality_fields);
+    expect_whole<Material>(material_fields);
+    expect_whole<Certificate>(certificate_fields);
+    expect_whole<DeviceLimits>(device_limit_fields);
+    expect_whole<Tick>(tick_fields);
+    expect_whole<Contact>(contact_fields);
+    EXPECT_FALSE(haptics_error(HapticSettings{}));
+    EXPECT_FALSE(first_error(quality_fields, QualityContract{}));
+}
+
+// A member that no table names would be lost on the way through a file.
+TEST(Records, tables_of_plain_doubles_name_every_member) {
+    EXPECT_EQ(std::tuple_size_v<decltype(haptic_fields)> * sizeof(double), sizeof(HapticSettings));
+    EXPECT_EQ(std::tuple_size_v<decltype(quality_fields)> * sizeof(double), sizeof(QualityContract));
+    EXPECT_EQ(std::tuple_size_v<decltype(material_fields)> * sizeof(double), sizeof(Material));
+}
+
+}  // namespace
+}  // namespace palpate
