@@ -8,6 +8,7 @@
 #include "formats/model/errors.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/imaging/files/image_files.hpp"
+#include "tools/imaging/recipes/recipe.hpp"
 #include "tools/imaging/recipes/segmentation.hpp"
 #include "tools/imaging/voxels/label_statistics.hpp"
 
@@ -63,25 +64,25 @@ std::vector<StructureRecipe> read_recipes(const std::filesystem::path& path) {
 }
 
 std::string recipe_help() {
-    std::string text =
-        "A structure takes background only, in the order given; a sphere, a tumour or vessels take voxels "
-        "of\n"
-        "the structure they lie inside. Points are LPS in mm: x,y,z and several as x,y,z;x,y,z (3D Slicer\n"
-        "shows RAS: negate x and y). Cleaning steps (close_mm, open_mm, fill_holes, min_component_ml,\n"
-        "keep_largest, smooth_mm) apply in the order written, those left at a default before them. "
-        "Structures\n"
-        "of grow-from-seeds compete with each other; points and strokes of other names in their files "
-        "compete\n"
-        "as background. Strokes are thinned evenly, to 25 points a label (grow-from-seeds: 20000). A recipe\n"
-        "file is a JSON array of {\"name\", \"recipe\", \"parameters\"}; a path with a blank can be given "
-        "there\n"
-        "only.\n\nRecipes and their parameters:\n";
-    for (const std::string& recipe : recipe_names()) {
-        text += "  " + recipe + "\n";
-        for (const RecipeParameterInfo& info : recipe_parameters(recipe)) {
-            text += fmt::format("    {:<17} {}", info.name, info.meaning);
-            if (!info.unit.empty()) text += " [" + info.unit + "]";
-            if (!info.default_value.empty()) text += " (default " + info.default_value + ")";
+    std::vector<std::string> inside, cleaning;
+    for (const Recipe& recipe : recipes())
+        if (find_parameter(recipe, "inside")) inside.push_back(recipe.name);
+    for (const RecipeParameter& step : cleaning_parameters()) cleaning.push_back(step.name);
+    std::string text = fmt::format(
+        "A structure takes background only, in the order given; one with 'inside' ({}) takes voxels\n"
+        "of the structure that it names. Points are LPS in mm: x,y,z and several as x,y,z;x,y,z (3D Slicer\n"
+        "shows RAS: negate x and y). Cleaning steps apply in the order written, those left at a default\n"
+        "before them: {}.\n"
+        "A recipe file is a JSON array of {{\"name\", \"recipe\", \"parameters\"}}; a path with a blank can "
+        "be given\n"
+        "there only.\n\nRecipes and their parameters:\n",
+        fmt::join(inside, ", "), fmt::join(cleaning, ", "));
+    for (const Recipe& recipe : recipes()) {
+        text += fmt::format("  {}: {}\n", recipe.name, recipe.meaning);
+        for (const RecipeParameter& parameter : recipe.parameters) {
+            text += fmt::format("    {:<17} {}", parameter.name, parameter.meaning);
+            if (!parameter.unit.empty()) text += " [" + parameter.unit + "]";
+            if (!parameter.default_value.empty()) text += " (default " + parameter.default_value + ")";
             text += "\n";
         }
     }

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "tools/imaging/recipes/recipes.hpp"
+#include "tools/imaging/voxels/hounsfield.hpp"
 
 namespace palpate {
 

@@ -10,9 +10,10 @@
 #include "tests/tools/imaging/refusals.hpp"
 #include "tools/imaging/files/image_files.hpp"
 #include "tools/imaging/files/label_names.hpp"
-#include "tools/imaging/recipes/recipes.hpp"
+#include "tools/imaging/recipes/recipe.hpp"
 #include "tools/imaging/recipes/segmentation.hpp"
 #include "tools/imaging/voxels/grow_from_seeds.hpp"
+#include "tools/imaging/voxels/hounsfield.hpp"
 #include "tools/imaging/voxels/label_statistics.hpp"
 #include "tools/imaging/voxels/seeds.hpp"
 
@@ -406,7 +407,6 @@ TEST(RecipeParameters, unknown_names_and_wrong_kinds_are_refused_with_the_neares
     EXPECT_NE(
         test::refusal_of<Error>([] { parse_structure("s: recipe=bones"); }).find("nearest names: 'bone'"),
         std::string::npos);
-    EXPECT_NE(test::refusal_of<Error>([] { recipe_parameters("boen"); }).find("'bone'"), std::string::npos);
     EXPECT_THROW(parse_structure("s: recipe=bone threshold_hu=high"), InvalidInput);
     EXPECT_THROW(parse_structure("s: recipe=bone open_mm=-1"), InvalidInput);
     EXPECT_THROW(parse_structure("s: recipe=bone keep_largest=perhaps"), InvalidInput);
@@ -429,6 +429,52 @@ TEST(RecipeParameters, numbers_that_cannot_be_meant_are_refused) {
     EXPECT_NO_THROW(parse_structure("s: recipe=threshold lower_hu=-inf upper_hu=inf"));
     EXPECT_THROW(parse_structure("a\xff: recipe=bone"), UsageError);
     EXPECT_NO_THROW(parse_structure("m\xc3\xa9ninge: recipe=bone"));
+}
+
+TEST(RecipeParameters, keep_to_the_range_that_their_recipe_states) {
+    using Range = RecipeParameter::Range;
+    for (const Recipe& recipe : recipes())
+        for (const RecipeParameter& parameter : recipe.parameters) {
+            if (parameter.kind != RecipeParameter::Kind::number) continue;
+            const std::string text = "s: recipe=" + recipe.name + " " + parameter.name + "=";
+            const auto refusal = [&](const std::string& value) {
+                return test::refusal_of<Error>([&] { parse_structure(text + value); });
+            };
+            EXPECT_SAYS(refusal("nan"), "expected a number");
+            EXPECT_EQ(refusal("inf") == "nothing was refused", parameter.range == Range::any) << text;
+            const bool negative = parameter.range == Range::any || parameter.range == Range::finite;
+            EXPECT_EQ(refusal("-1") == "nothing was refused", negative) << text;
+            if (!negative) {
+                EXPECT_SAYS(refusal("-1"), "expected " + range_text(parameter.range));
+            }
+            EXPECT_EQ(refusal("0") == "nothing was refused", parameter.range != Range::positive) << text;
+        }
+}
+
+TEST(RecipeParameters, defaults_are_values_that_a_person_could_write) {
+    for (const Recipe& recipe : recipes())
+        for (const RecipeParameter& parameter : recipe.parameters) {
+            EXPECT_FALSE(parameter.meaning.empty()) << recipe.name << " " << parameter.name;
+            EXPECT_EQ(find_parameter(recipe, parameter.name), &parameter) << "one of two of that name";
+            if (parameter.default_value.empty()) continue;
+            const std::string text =
+                "s: recipe=" + recipe.name + " " + parameter.name + "=" + parameter.default_value;
+            EXPECT_NO_THROW(parse_structure(text)) << text;
+        }
+}
+
+TEST(RecipeTable, lists_each_recipe_once_by_name_with_what_it_makes_and_what_to_change) {
+    ASSERT_FALSE(recipes().empty());
+    for (std::size_t n = 0; n < recipes().size(); ++n) {
+        const Recipe& recipe = recipes()[n];
+        if (n > 0) {
+            EXPECT_LT(recipes()[n - 1].name, recipe.name);
+        }
+        EXPECT_EQ(find_recipe(recipe.name), &recipe);
+        EXPECT_FALSE(recipe.meaning.empty() || recipe.if_empty.empty()) << recipe.name;
+        EXPECT_NE(recipe.make, nullptr) << recipe.name;
+    }
+    EXPECT_EQ(find_recipe("boen"), nullptr);
 }
 
 TEST(RecipeParameters, are_read_by_kind) {

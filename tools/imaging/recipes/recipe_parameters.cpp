@@ -13,7 +13,9 @@
 namespace palpate {
 namespace {
 
-using Kind = RecipeParameterInfo::Kind;
+using Kind = RecipeParameter::Kind;
+using Range = RecipeParameter::Range;
+
 // "seeds" is short for "seeds_mm".
 std::string full_name(const std::string& parameter) {
     return parameter == "seeds" ? "seeds_mm" : parameter;
@@ -43,17 +45,19 @@ double parse_number(const std::string& structure, const std::string& parameter, 
     return value;
 }
 
-RecipeValue parse_value(const std::string& structure, const RecipeParameterInfo& info, std::string text) {
+RecipeValue parse_value(const std::string& structure, const RecipeParameter& info, std::string text) {
     switch (info.kind) {
         case Kind::number:
             return parse_number(structure, info.name, text);
         case Kind::text:
+        case Kind::file:
             return text;
         case Kind::flag:
             if (text == "yes" || text == "true") return true;
             if (text == "no" || text == "false") return false;
             refuse_value(structure, info.name, "'" + text + "'", "yes or no");
-        case Kind::numbers:
+        case Kind::point:
+        case Kind::points:
             break;
     }
     std::ranges::replace(text, ';', ',');
@@ -64,42 +68,52 @@ RecipeValue parse_value(const std::string& structure, const RecipeParameterInfo&
     return numbers;
 }
 
-bool is_of(Kind kind, const RecipeValue& value) {
-    return (kind == Kind::number && std::holds_alternative<double>(value)) ||
-           (kind == Kind::numbers && std::holds_alternative<std::vector<double>>(value)) ||
-           (kind == Kind::text && std::holds_alternative<std::string>(value)) ||
-           (kind == Kind::flag && std::holds_alternative<bool>(value));
-}
-
-void check_number(const std::string& structure, const RecipeParameterInfo& info, double number) {
-    const auto expect = [&](bool good, const char* expected) {
-        if (!good) refuse_value(structure, info.name, fmt::format("{}", number), expected);
-    };
-    const bool may_be_infinite = info.name == "lower_hu" || info.name == "upper_hu";
-    expect(!std::isnan(number), "a number");
-    expect(may_be_infinite || std::isfinite(number), "a finite number");
-    if (info.unit == "mm" || info.unit == "ml" || info.name == "drift_hu" || info.name == "contrast_hu")
-        expect(number >= 0, "0 or more");
-    if (info.name == "tolerance" || info.name == "tolerance_hu") expect(number > 0, "above 0");
-}
-
-void require_recipe(const StructureRecipe& structure) {
-    const std::vector<std::string> names = recipe_names();
-    if (std::ranges::count(names, structure.recipe) == 0)
-        throw InvalidInput({culprit_of(structure.name), "no recipe '" + structure.recipe + "'", "",
-                            "nearest names: " + joined(nearest_names(structure.recipe, names))});
-}
-
-RecipeParameterInfo require_parameter(const StructureRecipe& structure, const std::string& name) {
-    require_recipe(structure);
-    std::vector<std::string> names;
-    for (const RecipeParameterInfo& info : recipe_parameters(structure.recipe)) {
-        if (info.name == full_name(name)) return info;
-        names.push_back(info.name);
+// What a value of that kind is called, and whether this is one.
+std::pair<std::string, bool> expected_value(Kind kind, const RecipeValue& value) {
+    switch (kind) {
+        case Kind::number:
+            return {"a number", std::holds_alternative<double>(value)};
+        case Kind::point:
+        case Kind::points:
+            return {"numbers", std::holds_alternative<std::vector<double>>(value)};
+        case Kind::flag:
+            return {"yes or no", std::holds_alternative<bool>(value)};
+        case Kind::text:
+        case Kind::file:
+            break;
     }
+    return {"a text", std::holds_alternative<std::string>(value)};
+}
+
+void check_number(const std::string& structure, const RecipeParameter& info, double number) {
+    const auto expect = [&](bool good, Range range) {
+        if (!good) refuse_value(structure, info.name, fmt::format("{}", number), range_text(range));
+    };
+    expect(!std::isnan(number), Range::any);
+    expect(info.range == Range::any || std::isfinite(number), Range::finite);
+    expect(info.range != Range::not_negative || number >= 0, info.range);
+    expect(info.range != Range::positive || number > 0, info.range);
+}
+
+template <typename Named>
+std::string nearest(const std::string& name, const std::vector<Named>& candidates) {
+    std::vector<std::string> names;
+    for (const Named& candidate : candidates) names.push_back(candidate.name);
+    return "nearest names: " + joined(nearest_names(name, names));
+}
+
+const Recipe& require_recipe(const StructureRecipe& structure) {
+    if (const Recipe* recipe = find_recipe(structure.recipe)) return *recipe;
+    throw InvalidInput({culprit_of(structure.name), "no recipe '" + structure.recipe + "'", "",
+                        nearest(structure.recipe, recipes())});
+}
+
+const RecipeParameter& require_parameter(const StructureRecipe& structure, const std::string& name) {
+    const Recipe& recipe = require_recipe(structure);
+    if (const RecipeParameter* parameter = find_parameter(recipe, full_name(name))) return *parameter;
     throw InvalidInput({culprit_of(structure.name),
                         "recipe '" + structure.recipe + "' has no parameter '" + name + "'", "",
-                        "nearest names: " + joined(nearest_names(name, names))});
+                        nearest(name, recipe.parameters)});
 }
 
 }  // namespace
@@ -107,15 +121,12 @@ RecipeParameterInfo require_parameter(const StructureRecipe& structure, const st
 void check_recipe(const StructureRecipe& structure) {
     require_recipe(structure);
     for (const auto& [name, value] : structure.parameters) {
-        const RecipeParameterInfo info = require_parameter(structure, name);
-        const std::string kind = info.kind == Kind::number    ? "a number"
-                                 : info.kind == Kind::numbers ? "numbers"
-                                 : info.kind == Kind::text    ? "a text"
-                                                              : "yes or no";
-        if (!is_of(info.kind, value)) refuse_value(structure.name, name, "of another kind", kind);
+        const RecipeParameter& info = require_parameter(structure, name);
+        if (const auto [kind, is_one] = expected_value(info.kind, value); !is_one)
+            refuse_value(structure.name, name, "of another kind", kind);
         if (const auto* numbers = std::get_if<std::vector<double>>(&value)) {
             if (numbers->empty() || numbers->size() % 3 != 0 ||
-                (info.name != "seeds_mm" && numbers->size() != 3))
+                (info.kind == Kind::point && numbers->size() != 3))
                 refuse_value(structure.name, name, fmt::format("{} numbers", numbers->size()), "x, y, z");
             for (const double number : *numbers)
                 if (!std::isfinite(number))
@@ -162,7 +173,7 @@ Parameters::Parameters(const StructureRecipe& structure)
         seeds.key() = full_name("seeds");
         values_.insert(std::move(seeds));
     }
-    for (const RecipeParameterInfo& info : recipe_parameters(structure.recipe))
+    for (const RecipeParameter& info : require_recipe(structure).parameters)
         if (!info.default_value.empty() && !values_.contains(info.name))
             values_[info.name] = parse_value(structure.name, info, info.default_value);
 }

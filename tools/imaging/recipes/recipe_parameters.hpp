@@ -2,9 +2,11 @@
 // For this folder only: typed access to a recipe's parameters with their defaults.
 #pragma once
 #include <Eigen/Core>
+#include <map>
 #include <string>
 #include <vector>
 
+#include "tools/imaging/recipes/recipe.hpp"
 #include "tools/imaging/recipes/segmentation.hpp"
 
 namespace palpate {
@@ -29,11 +31,5 @@ class Parameters {
     std::string structure_;
     std::map<std::string, RecipeValue> values_;
 };
-
-/// Tells whether a recipe has the parameters seeds_mm, seeds_file and scribbles.
-bool takes_seeds(const std::string& recipe);
-
-/// The cleaning parameters in the order in which they apply: those not written first, then as written.
-std::vector<std::string> cleaning_steps(const StructureRecipe& structure);
 
 }  // namespace palpate

@@ -7,20 +7,11 @@
 
 #include "formats/model/errors.hpp"
 #include "tools/imaging/files/image_files.hpp"
-#include "tools/imaging/recipes/recipe_makers.hpp"
-#include "tools/imaging/recipes/recipes.hpp"
+#include "tools/imaging/recipes/job.hpp"
+#include "tools/imaging/voxels/hounsfield.hpp"
 
 namespace palpate {
 namespace {
-
-// An imported label keeps its colour.
-std::array<float, 3> colour_of(const StructureRecipe& structure, const Parameters& p, const LabelMap* prior,
-                               std::int32_t value) {
-    if ((structure.recipe == "import" || structure.recipe == "brain") && prior != nullptr && !p.has("file"))
-        if (const auto label = find_label(*prior, p.has("label") ? p.text("label") : structure.name))
-            return label->colour;
-    return default_label_colour(value);
-}
 
 void check_names(std::span<const StructureRecipe> structures) {
     std::map<std::string, int> seen;
@@ -88,8 +79,9 @@ LabelMap segment(const Volume* volume, const LabelMap* prior, std::span<const St
         if (progress)
             progress(structure.name, static_cast<double>(n) / static_cast<double>(structures.size()));
         const Parameters parameters(structure);
-        const Mask mask =
-            make_structure({structure, parameters, structures, hounsfield, prior, map, note, grown});
+        const Recipe& recipe = *find_recipe(structure.recipe);
+        const Job job{structure, parameters, structures, hounsfield, prior, map, note, grown};
+        const Mask mask = cleaned(recipe.make(job), job);
         const std::int32_t replaced = replaced_label(map, structure, parameters);
         const auto value = static_cast<std::uint16_t>(n + 1);
         std::size_t taken = 0;
@@ -98,11 +90,10 @@ LabelMap segment(const Volume* volume, const LabelMap* prior, std::span<const St
             map.labels[i] = value;
             ++taken;
         }
-        if (taken == 0)
-            throw InvalidInput(
-                {"structure '" + structure.name + "'", "is empty", "", advice_if_empty(structure.recipe)});
+        if (taken == 0) throw InvalidInput({job.culprit(), "is empty", "", recipe.if_empty});
         check_left_over(map, replaced, structure);
-        map.names.push_back({value, structure.name, colour_of(structure, parameters, prior, value)});
+        const auto colour = recipe.colour ? recipe.colour(job) : std::nullopt;
+        map.names.push_back({value, structure.name, colour.value_or(default_label_colour(value))});
     }
     return map;
 }

@@ -21,27 +21,10 @@ using RecipeValue = std::variant<double, std::vector<double>, std::string, bool>
 /// How one structure is made; the command line, JSON recipes and case files all become this.
 struct StructureRecipe {
     std::string name;                               ///< of the label it makes
-    std::string recipe;                             ///< one of recipe_names()
+    std::string recipe;                             ///< the name of one of recipes()
     std::map<std::string, RecipeValue> parameters;  ///< by name; what is absent takes its default
     std::vector<std::string> order = {};  ///< parameters as written, for cleaning steps; may be empty
 };
-
-/// What a recipe's parameter is.
-struct RecipeParameterInfo {
-    enum class Kind { number, numbers, text, flag };
-    std::string name;
-    Kind kind;
-    std::string unit;           ///< "HU", "mm", "ml" or empty
-    std::string default_value;  ///< as written; empty if there is none
-    std::string meaning;
-};
-
-/// "airway", "bone", "brain", "grow-from-seeds", "import", "liver", "nasopharynx", "sphere", "threshold",
-/// "tumour", "vessels".
-std::vector<std::string> recipe_names();
-
-/// Lists the parameters of a recipe; throws InvalidInput with the nearest names if there is no such recipe.
-std::vector<RecipeParameterInfo> recipe_parameters(const std::string& recipe);
 
 /// Reads "skull: recipe=bone threshold_hu=226"; numbers of a point are separated by commas, points by
 /// semicolons; "seeds" is short for "seeds_mm". Throws UsageError if the text is malformed or the name not
@@ -49,16 +32,14 @@ std::vector<RecipeParameterInfo> recipe_parameters(const std::string& recipe);
 StructureRecipe parse_structure(std::string_view text);
 
 /// Throws InvalidInput if the recipe or a parameter is unknown (with the nearest names), or of another kind,
-/// or if a number is not finite (but lower_hu and upper_hu may be infinite), a length or volume is negative,
-/// a tolerance not above 0.
+/// or if a number is out of the parameter's range, a coordinate not finite.
 void check_recipe(const StructureRecipe& structure);
 
 /// Makes the structures in order, with label values 1, 2, 3 ... A structure takes background voxels only,
-/// except a sphere, a tumour or vessels inside another structure, which take voxels of that one. Cleaning
-/// steps follow the recipe in the order written. Structures of the recipe "grow-from-seeds" compete with each
-/// other. The result lies on the grid of `volume` or, without one, of `prior`. `prior` is what the recipes
-/// "import" and "brain" read from, resampled to the nearest voxel if its grid differs; either may be null.
-/// A CT stored above HU is shifted where hounsfield_offset() can tell by how much. `note`
+/// except one with a parameter "inside", which takes voxels of the structure that it names. Cleaning steps
+/// follow the recipe in the order written. The result lies on the grid of `volume` or, without one, of
+/// `prior`. `prior` is what recipes import from, resampled to the nearest voxel if its grid differs; either
+/// may be null. A CT stored above HU is shifted where hounsfield_offset() can tell by how much. `note`
 /// receives that, and what else a person should look at, one sentence at a time.
 /// Throws InvalidInput naming the structure if it would be empty or implausibly large or would leave nothing
 /// of the structure it lies inside, if a recipe misses the volume, the prior or the seeds it needs, if a seed

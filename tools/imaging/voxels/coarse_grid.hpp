@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For this folder only: working on blocks of voxels where full resolution would only cost time.
+// For tools/imaging only: working on blocks of voxels where full resolution would only cost time.
 #pragma once
 #include <array>
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For this folder only: grey filters.
+// For tools/imaging only: grey filters.
 #pragma once
 #include <vector>
 

@@ -103,6 +103,13 @@ Mask mask_of(const LabelMap& map, std::int32_t value) {
     return mask;
 }
 
+Mask labelled(const LabelMap& map) {
+    Mask mask{map.grid, std::vector<std::uint8_t>(map.labels.size())};
+    std::ranges::transform(map.labels, mask.voxels.begin(),
+                           [](std::uint16_t label) -> std::uint8_t { return label != 0; });
+    return mask;
+}
+
 IndexBox voxels_around(const ImageGrid& grid, const Eigen::Vector3d& p_P, double reach) {
     const Eigen::Array3d center = grid.index_of(p_P), step = reach * grid.spacing.cwiseInverse(),
                          size = Eigen::Array3i::Map(grid.size.data()).cast<double>();

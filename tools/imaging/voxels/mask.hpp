@@ -58,6 +58,8 @@ std::vector<float> depth_in(const Mask& mask);
 
 /// The voxels labelled `value`.
 Mask mask_of(const LabelMap& map, std::int32_t value);
+/// The voxels with any label.
+Mask labelled(const LabelMap& map);
 
 /// Indices of voxels, both ends included; empty if `high` is below `low` along an axis.
 struct IndexBox {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For this folder only: where a mask that ran from one organ into the next is to be cut.
+// For tools/imaging only: where a mask that ran from one organ into the next is to be cut.
 #pragma once
 #include <span>
 

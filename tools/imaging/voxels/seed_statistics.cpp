@@ -66,6 +66,19 @@ std::array<std::int32_t, 3> voxel_of_seed(const ImageGrid& grid, const Eigen::Ve
             static_cast<std::int32_t>(index[2])};
 }
 
+std::vector<std::size_t> voxels_at(const Mask& mask, std::span<const Eigen::Vector3d> seeds,
+                                   const std::string& culprit, const std::string& expected,
+                                   const std::string& next_step) {
+    std::vector<std::size_t> found;
+    for (const Eigen::Vector3d& seed : seeds) {
+        const auto voxel = nearest_voxel(mask, seed, seed_miss_mm);
+        if (!voxel)
+            throw InvalidInput({culprit, "seed " + point_text(seed) + " is not there", expected, next_step});
+        found.push_back(*voxel);
+    }
+    return found;
+}
+
 std::string point_text(const Eigen::Vector3d& p_P) {
     const auto rounded = [](double value) { return std::round(value * 100) / 100; };
     return fmt::format("({}, {}, {}) mm", rounded(p_P[0]), rounded(p_P[1]), rounded(p_P[2]));

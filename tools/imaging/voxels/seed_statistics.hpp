@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For this folder only: what the grey values around seeds say about a structure.
+// For tools/imaging only: what the grey values around seeds say about a structure.
 #pragma once
 #include <array>
 #include <span>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "formats/model/image_grid.hpp"
+#include "tools/imaging/voxels/mask.hpp"
 
 namespace palpate {
 
@@ -26,6 +27,14 @@ std::vector<float> values_near(const Volume& volume, std::span<const Eigen::Vect
 /// the point and the volume's extent if it lies outside.
 std::array<std::int32_t, 3> voxel_of_seed(const ImageGrid& grid, const Eigen::Vector3d& p_P,
                                           const std::string& culprit);
+
+constexpr double seed_miss_mm = 3;  ///< a seed may miss what it means by a voxel or two
+
+/// The offset of the voxel of the mask nearest to each seed (p_P). Throws InvalidInput with `culprit`, the
+/// seed, `expected` and `next_step` if none is within seed_miss_mm.
+std::vector<std::size_t> voxels_at(const Mask& mask, std::span<const Eigen::Vector3d> seeds,
+                                   const std::string& culprit, const std::string& expected,
+                                   const std::string& next_step);
 
 /// "(12, -3.5, 40) mm".
 std::string point_text(const Eigen::Vector3d& p_P);

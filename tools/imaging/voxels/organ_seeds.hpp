@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For this folder only: what the seeds of an organ say about its grey values.
+// For tools/imaging only: what the seeds of an organ say about its grey values.
 #pragma once
 #include <functional>
 #include <span>
@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/imaging/recipes/organ.hpp"
+#include "tools/imaging/voxels/organ.hpp"
 
 namespace palpate {
 

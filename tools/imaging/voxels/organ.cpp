@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/imaging/recipes/organ.hpp"
+#include "tools/imaging/voxels/organ.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
 #include "formats/model/errors.hpp"
-#include "tools/imaging/recipes/organ_seeds.hpp"
 #include "tools/imaging/voxels/coarse_grid.hpp"
 #include "tools/imaging/voxels/filters.hpp"
 #include "tools/imaging/voxels/necks.hpp"
+#include "tools/imaging/voxels/organ_seeds.hpp"
 #include "tools/imaging/voxels/seed_statistics.hpp"
 
 namespace palpate {

@@ -10,10 +10,10 @@
 namespace palpate {
 
 struct OrganParameters {
-    double tolerance_hu = 25;   ///< grey values may be so far off the organ's local mean
-    double drift_hu = 20;       ///< the local mean may be so far off that of the seeds nearby
-    double neck_mm = 6;         ///< where no ball of this radius passes, the organ ends
-    double gap_mm = 4;          ///< vessels, lesions and clefts below this radius are filled
+    double tolerance_hu;        ///< grey values may be so far off the organ's local mean
+    double drift_hu;            ///< the local mean may be so far off that of the seeds nearby
+    double neck_mm;             ///< where no ball of this radius passes, the organ ends
+    double gap_mm;              ///< vessels, lesions and clefts below this radius are filled
     double darkest_hu = -50;    ///< a seed darker than this is a mistake
     double brightest_hu = 300;  ///< so is one brighter than this
 };

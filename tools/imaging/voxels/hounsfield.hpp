@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include "tools/imaging/voxels/mask.hpp"
+
+namespace palpate {
+
+/// Voxels of lower ... upper HU, both included.
+Mask threshold(const Volume& volume, double lower_hu, double upper_hu);
+
+/// How far the values of a CT probably lie above HU: 0 if one is negative, or unless soft tissue lies about
+/// the offset and little between it and air; else 1000 if the commonest value of the air (-1000 HU) lies
+/// below 14, and otherwise 1024, the usual one. The air decides no finer: old scanners have it
+/// tens of HU off.
+double hounsfield_offset(const Volume& volume);
+
+}  // namespace palpate
