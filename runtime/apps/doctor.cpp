@@ -6,9 +6,6 @@
 #include <thread>
 
 #include "formats/asset/asset.hpp"
-#include "runtime/apps/physical_devices.hpp"
-#include "runtime/apps/statistics_json.hpp"
-#include "runtime/devices/openhaptics/hd_session.hpp"
 #include "runtime/doctor/checks/case_checks.hpp"
 #include "runtime/doctor/checks/device_checks.hpp"
 #include "runtime/doctor/checks/environment_checks.hpp"
@@ -16,6 +13,9 @@
 #include "runtime/doctor/checks/realtime_checks.hpp"
 #include "runtime/doctor/report.hpp"
 #include "runtime/doctor/wake_ups.hpp"
+#include "runtime/realtime/servo.hpp"
+#include "runtime/session/device_list.hpp"
+#include "runtime/session/statistics_json.hpp"
 #include "tools/cli/command.hpp"
 
 namespace palpate {
@@ -35,27 +35,34 @@ void append(Findings& findings, Findings more) {
                     std::make_move_iterator(more.end()));
 }
 
+// Whether there is anything in a device to look at.
+bool can_be_examined(const DeviceKind& kind) {
+    return !kind.simulated && kind.renders_force;
+}
+
 // Opens devices and looks at their first half second; no force is rendered.
-Findings opened_device_findings(const PhysicalDevice& asked) {
+Findings opened_device_findings(const DeviceChoice& asked) {
     constexpr std::size_t ticks = 500;
     Findings findings;
     try {
-        HdSession session({{}, asked.driver_names});
-        const std::span<Device* const> devices = session.devices();
+        const OpenDevices open = asked.open({.tools = std::vector<HeldTool>(asked.tool_count), .limits = {}});
+        const auto& devices = open.devices;
+        PeriodicServo own_servo;
+        Servo& servo = open.servo ? *open.servo : own_servo;
         std::vector<std::vector<DeviceState>> states(devices.size(), std::vector<DeviceState>(ticks));
         std::atomic<std::size_t> seen{0};
-        session.servo().start([&](const ServoTick& wake) {
+        servo.start([&](const ServoTick& wake) {
             const std::size_t tick = seen.load();
             for (std::size_t i = 0; i < devices.size(); ++i) {
                 const DeviceState state = devices[i]->read(wake.time);
                 if (tick < ticks) states[i][tick] = state;
             }
-            for (Device* device : devices) device->write({0, 0, 0});
+            for (const auto& device : devices) device->write({0, 0, 0});
             if (tick < ticks) seen.store(tick + 1);
         });
         for (int i = 0; i < 200 && seen.load() < ticks && !cli::interrupt_asked(); ++i)
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
-        session.servo().stop();
+        servo.stop();
         if (cli::interrupt_asked()) throw cli::Interrupted();
         for (std::size_t i = 0; i < devices.size(); ++i)
             append(findings,
@@ -78,10 +85,10 @@ Json measured_json(const WakeUps& wake_ups) {
 Json examine(const Options& options, cli::Session& session) {
     if (!(options.seconds >= 0.1 && options.seconds <= 3600))
         throw UsageError({"--seconds", fmt::format("{}", options.seconds), "0.1 to 3600", ""});
-    const std::optional<PhysicalDevice> device = parse_physical_device(options.device);
-    if (!options.device.empty() && (!device || device->tracker))
-        throw UsageError(
-            {"--device", options.device, "openhaptics, openhaptics:NAME or openhaptics:NAME,NAME", ""});
+    const DeviceChoice device = choose_device(options.device, "--device");
+    const bool asked = !options.device.empty();
+    if (asked && !can_be_examined(device.kind))
+        throw UsageError({"--device", options.device, device_usages(can_be_examined, true), ""});
     std::optional<Case> patient_case;
     if (!options.asset.empty()) patient_case = read_asset(options.asset);
     const Purpose purpose = options.simulated ? Purpose::simulation : Purpose::device;
@@ -93,9 +100,9 @@ Json examine(const Options& options, cli::Session& session) {
     if (purpose == Purpose::device) append(findings, library_findings(machine));
     append(findings, environment_findings(machine, purpose));
     if (purpose == Purpose::device) append(findings, usb_findings(machine, find_usb_devices(machine)));
-    if (device) {
+    if (asked) {
         cli::end_softly_on_interrupt();
-        append(findings, opened_device_findings(*device));
+        append(findings, opened_device_findings(device));
     }
     if (patient_case) append(findings, case_findings(*patient_case));
 
@@ -138,7 +145,7 @@ int main(int argc, char** argv) {
     command.input("case", options.asset, "hold this case (.vtkhdf) against each device");
     command.option("--seconds", options.seconds, "of each of the two measurements, 0.1 to 3600", "s");
     command.option("--device", options.device,
-                   "also open this one for half a second: openhaptics or openhaptics:NAME[,NAME]");
+                   "also open this one for half a second: " + device_usages(can_be_examined, true));
     command.flag("--simulated", options.simulated,
                  "ask only for what the simulated device needs, and for what --device names");
     return command.run(argc, argv, [&](cli::Session& session) { return examine(options, session); });

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include "runtime/apps/run_recorder.hpp"
+#include "formats/recording/recording_writer.hpp"
+#include "runtime/session/session.hpp"
 #include "tools/cli/command.hpp"
 
 namespace palpate {
 
-/// Makes a command's recording and opens it. It has its final name from here on, so that it is kept however
-/// the run ends. Throws InvalidInput if there is such a file without --force.
-inline RunRecorder start_recording(const std::filesystem::path& path, const RecordingHead& head,
-                                   double seconds, const cli::Session& session) {
+/// Makes a command's recording of `run`, of its last `seconds`, and opens it. It has its final name from here
+/// on, so that it is kept however the run ends. Throws InvalidInput if there is such a file without --force.
+inline void start_recording(Session& run, const std::filesystem::path& path, double seconds,
+                            const cli::Session& session) {
+    const std::int64_t rows = recording_rows(seconds, run.model().tool_count());
     cli::StagedFile empty = session.stage(path);
-    make_recording(empty.path(), head, recording_rows(seconds, head.devices.size()));
+    make_recording(empty.path(), run.recording_head(cli::version()), rows);
     empty.commit();
-    return RunRecorder(path);
+    run.record_to(path);
 }
 
 }  // namespace palpate

@@ -1,28 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
-#include <functional>
-#include <memory>
-#include <optional>
 #include <spdlog/spdlog.h>
 #include <thread>
 #include <vector>
 
-#include "formats/asset/asset.hpp"
 #include "formats/model/errors.hpp"
-#include "runtime/apps/hand_script.hpp"
-#include "runtime/apps/live_stream.hpp"
-#include "runtime/apps/run_record.hpp"
-#include "runtime/apps/run_recorder.hpp"
-#include "runtime/apps/run_watch.hpp"
 #include "runtime/apps/servo_pulse.hpp"
 #include "runtime/apps/start_recording.hpp"
-#include "runtime/apps/statistics_json.hpp"
 #include "runtime/apps/touch_json.hpp"
 #include "runtime/apps/touch_outputs.hpp"
 #include "runtime/apps/touch_plan.hpp"
 #include "runtime/apps/touch_replay.hpp"
-#include "runtime/haptics/servo_loop.hpp"
 #include "runtime/realtime/process_age.hpp"
+#include "runtime/session/hand_script.hpp"
+#include "runtime/session/run_record.hpp"
+#include "runtime/session/session.hpp"
+#include "runtime/session/statistics_json.hpp"
 #include "tools/cli/command.hpp"
 
 namespace palpate {
@@ -31,101 +24,79 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // Ticks in the haptic thread while this one takes the results, until the time is over or the user asks.
-void run_in_real_time(ServoLoop& loop, double seconds, const std::function<void(const TickResult&)>& take) {
-    TickResult result{};
+void run_in_real_time(Session& run, double seconds, const Session::Sink& take) {
     ServoPulse pulse;
-    const auto pop = [&] {
-        if (!loop.ring().pop(result)) return false;
+    double time = 0;
+    std::int64_t tick = 0;
+    const Session::Sink see = [&](const TickResult& result) {
+        time = result.time;
+        tick = result.tick;
         take(result);
-        return true;
     };
-    while (result.time < seconds && !cli::interrupt_asked()) {
-        if (pop()) continue;
-        pulse.see(result.tick);
+    while (time < seconds && !cli::interrupt_asked()) {
+        run.pump(see);
+        pulse.see(tick);
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
-    loop.stop();
-    while (pop()) {
-    }
+    run.stop();
+    run.pump(see);
 }
 
 Json touch(const TouchOptions& options, cli::Session& session) {
     TouchOutputs outputs(options.log, options.curve, session);
     if (!options.replay.empty()) return replay_recording(options.replay, options.asset, outputs, session);
-    const std::optional<PhysicalDevice> physical = parse_physical_device(options.device);
-    refuse_contradictions(options, physical);
-    const Case patient_case = load_asset(options.asset);
-    const std::size_t simulated_tools = options.second.empty() ? 1 : 2;
-    HapticModel model(patient_case, find_contact_scheme(options.scheme),
-                      physical ? physical->tool_count() : simulated_tools);
-    const TouchPlan plan = plan_of(options, physical.has_value(), patient_case, model);
+    const DeviceChoice device = choose_device(options.device, "--device");
+    refuse_contradictions(options, device);
+    Session run({.asset = options.asset,
+                 .method = options.scheme,
+                 .tool_count = tools_of(options, device),
+                 .virtual_clock = options.virtual_clock,
+                 .stream = options.stream},
+                [](const std::string& sentence) { spdlog::warn("{}", sentence); });
+    const Case& patient_case = run.patient_case();
+    const HapticModel& model = run.model();
+    const TouchPlan plan = plan_of(options, device.kind, patient_case, model);
     if (!options.virtual_clock) cli::end_softly_on_interrupt();
-    const HeldDevices held = hold(options, physical, plan, model);
-    ServoLoop loop(model, held.devices, held.servo);
-
-    const std::string clock = options.virtual_clock ? "virtual" : "real";
-    std::optional<LiveStream> stream;
-    if (!options.stream.empty()) stream.emplace(options.stream, patient_case, model.tool_count());
-    std::optional<RunRecorder> recorder;
-    if (!options.record.empty())
-        recorder.emplace(start_recording(
-            options.record,
-            recording_head(options.asset, patient_case, model, held.devices, clock, cli::version()),
-            options.record_seconds, session));
+    run.hold(device.open(request_of(options, device.kind, plan, model)));
+    if (!options.record.empty()) start_recording(run, options.record, options.record_seconds, session);
     std::vector<RunRecord> records = outputs.records_of(model);
-    RunWatch watch(options.virtual_clock ? std::filesystem::path() : options.asset, loop,
-                   [](const std::string& sentence) { spdlog::warn("{}", sentence); });
-    const auto take = [&](const TickResult& result) {
-        records[result.tool].add(result);
-        watch.add(result);
-        if (stream) stream->show(result);
-        if (!recorder) return;
-        recorder->add(result);
-        if (!options.virtual_clock) recorder->set_lost(loop.ring().dropped());
-    };
-    double ready_s = 0;
-    if (options.virtual_clock) {
-        ready_s = process_age();
-        loop.run_virtual(static_cast<std::int64_t>(1000 * plan.seconds), take);
-    } else {
-        try {
-            loop.start();
-        } catch (...) {
-            if (recorder) std::filesystem::remove(options.record);  // it holds nothing
-            throw;
-        }
-        ready_s = process_age();
-        run_in_real_time(loop, plan.seconds, take);
-    }
+    const auto take = [&](const TickResult& result) { records[result.tool].add(result); };
+    if (!options.virtual_clock) run.start();
+    const double ready_s = process_age();
+    if (options.virtual_clock)
+        run.run_virtual(plan.seconds, take);
+    else
+        run_in_real_time(run, plan.seconds, take);
     if (cli::interrupt_asked()) {
         spdlog::warn("interrupted: the force has gone to zero, only a recording is kept");
         throw cli::Interrupted();
     }
 
     // A script's file name may name a patient.
-    const std::string script = physical                             ? "none"
+    const std::string script = !device.kind.simulated               ? "none"
                                : is_made_to_measure(options.script) ? options.script
                                                                     : "file";
-    outputs.commit(records.front(), patient_case.name + ": " + (physical ? options.device : script));
+    outputs.commit(records.front(),
+                   patient_case.name + ": " + (device.kind.simulated ? script : options.device));
 
-    const ServoStatistics statistics = loop.statistics();
+    const ServoStatistics statistics = run.statistics();
     for (const SetupResult& setup : statistics.setup)
         if (!setup.ok) spdlog::warn("{}", setup.message);
-    const std::uint64_t lost = options.virtual_clock ? 0 : statistics.lost_records;
     Json result{{"case", patient_case.name},
                 {"script", script},
                 {"scheme", options.scheme},
-                {"device", held.devices.front()->name()},
+                {"device", run.device_name()},
                 {"coupling_stiffness_n_per_mm", model.coupling()},
-                {"clock", clock},
+                {"clock", options.virtual_clock ? "virtual" : "real"},
                 {"ready_s", ready_s},
                 {"ticks", statistics.ticks},
                 {"overruns", statistics.overruns},
-                {"lost_log_records", lost},
+                {"lost_log_records", statistics.lost_records},
                 {"tick_us", percentiles_json(statistics.tick_ns, 1e3)},
                 {"wake_latency_us", percentiles_json(statistics.wake_latency_ns, 1e3)},
-                {"faults", watch.faults_json()}};
-    if (recorder) result["recording"] = {{"rows", recorder->rows()}, {"lost_rows", lost}};
+                {"faults", run.faults_json()}};
+    if (const auto rows = run.recorded_rows())
+        result["recording"] = {{"rows", *rows}, {"lost_rows", statistics.lost_records}};
     if (plan.target) result["target"] = target_json(*plan.target, model);
     result.update(tool_json(records[0], patient_case, model));
     if (records.size() > 1) result["second"] = tool_json(records[1], patient_case, model);
@@ -150,14 +121,15 @@ int main(int argc, char** argv) {
              "millisecond, or 't x y z' (s, mm); with --column N it is a recording of one axis at 1 kHz, "
              "which moves along the surface's normal. Without --device the hand is infinitely stiff: it is "
              "where the script says, whatever the force.\n"
-             "Devices: touch, desktop and premium are simulated, in a hand that gives way; openhaptics, "
-             "openhaptics:NAME and openhaptics:NAME,NAME (one tool each) are Phantoms and Touches on the "
-             "driver's library, which PALPATE_HD_LIBRARY may name; igtl:HOST:PORT or igtl:HOST:PORT/NAME is "
-             "a tracker's tool over OpenIGTLink, without force. A device stands with the middle of its "
-             "workspace where the hand starts, upright on the touched surface; for a path from a file its "
-             "up is the patient's front. 'palpate doctor' says what a device lacks.\n"
-             "Schemes: 'continuous' sweeps the tool every tick; 'single' and 'twice' are the published "
-             "ones, with a collision loop at 30 Hz.\n"
+             "Devices: " +
+             device_sentences() +
+             ". A device stands with the middle of its workspace where the hand starts, upright on the "
+             "touched "
+             "surface; for a path from a file its up is the patient's front. 'palpate doctor' says what a "
+             "device lacks.\n"
+             "Schemes: " +
+             contact_method_sentences() +
+             ".\n"
              "A recording has every tick of every tool, with its contacts, in a ring of the last "
              "--record-seconds (formats/recording/SPEC.md, for h5py); it has its name from the start and is "
              "kept however the run ends, where other outputs appear whole or not at all. A replay gives its "
@@ -179,9 +151,8 @@ int main(int argc, char** argv) {
         "x,y,z: touch the surface point nearest to it; the most compliant place in reach if not given", "mm");
     command.option("--second", options.second,
                    "what a second tool on the same bodies does: a file as for --script");
-    command.option("--scheme", options.scheme, "how contact is found: continuous, single or twice");
-    command.option("--device", options.device,
-                   "touch, desktop, premium, openhaptics[:NAME[,NAME]] or igtl:HOST:PORT[/NAME]");
+    command.option("--scheme", options.scheme, "how contact is found: " + contact_method_names());
+    command.option("--device", options.device, device_usages([](const DeviceKind&) { return true; }, true));
     command.option(
         "--shaft", options.shaft,
         "x,y,z: direction from the tip along the shaft of both tools, for a case with one; straight out "

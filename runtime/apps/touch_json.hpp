@@ -3,9 +3,9 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "formats/model/body.hpp"
-#include "runtime/apps/replay.hpp"
-#include "runtime/apps/run_record.hpp"
-#include "runtime/apps/touch_target.hpp"
+#include "runtime/session/replay.hpp"
+#include "runtime/session/run_record.hpp"
+#include "runtime/session/touch_target.hpp"
 
 namespace palpate {
 

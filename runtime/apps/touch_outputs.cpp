@@ -2,7 +2,7 @@
 #include "runtime/apps/touch_outputs.hpp"
 
 #include "formats/model/errors.hpp"
-#include "runtime/apps/force_curve.hpp"
+#include "runtime/session/force_curve.hpp"
 
 namespace palpate {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/apps/run_record.hpp"
+#include "runtime/session/run_record.hpp"
 #include "tools/cli/command.hpp"
 
 namespace palpate {

@@ -6,10 +6,9 @@
 #include <sstream>
 
 #include "formats/model/errors.hpp"
-#include "runtime/apps/hand_script.hpp"
-#include "runtime/apps/simulation.hpp"
 #include "runtime/devices/mounted_device.hpp"
-#include "runtime/devices/simulated_device.hpp"
+#include "runtime/devices/simulation.hpp"
+#include "runtime/session/hand_script.hpp"
 
 namespace palpate {
 namespace {
@@ -40,20 +39,11 @@ std::array<double, 3> shaft_of(const TouchOptions& options, const TouchPlan& pla
     return {along[0], along[1], along[2]};
 }
 
-// `up`: which way out of the patient a device of its own frame is turned.
-std::unique_ptr<Device> device_of(const TouchOptions& options, const HapticModel& model, HandPath path,
-                                  const Eigen::Vector3d& up, const std::array<double, 3>& shaft) {
-    if (!options.device.empty()) return simulate(find_device_model(options.device), path, up, shaft);
-    const DeviceLimits limits{.max_force = model.settings().max_force,
-                              .max_stiffness = model.settings().coupling_stiffness};
-    return std::make_unique<SimulatedDevice>(std::move(path), limits, shaft);
-}
-
 }  // namespace
 
-TouchPlan plan_of(const TouchOptions& options, bool physical, const Case& patient_case,
+TouchPlan plan_of(const TouchOptions& options, const DeviceKind& device, const Case& patient_case,
                   const HapticModel& model) {
-    if (!physical && !options.column && !is_made_to_measure(options.script)) {
+    if (device.simulated && !options.column && !is_made_to_measure(options.script)) {
         HandPath path = recorded_path(options.script);
         const double seconds = options.seconds_given ? options.seconds : path.duration();
         require_positive(seconds);
@@ -62,10 +52,8 @@ TouchPlan plan_of(const TouchOptions& options, bool physical, const Case& patien
     if (!options.column) require_positive(options.seconds);
     const TouchTarget target =
         choose_touch_target(patient_case, model, options.body, point_of("--target", options.target));
-    if (physical) return {std::nullopt, target, options.seconds};
-    // The published schemes know the tip's centre alone.
-    const bool has_radius = model.scheme() == ContactScheme::continuous;
-    const ScriptSettings settings{.tool_radius = has_radius ? model.settings().tool_radius : 0,
+    if (!device.simulated) return {std::nullopt, target, options.seconds};
+    const ScriptSettings settings{.tool_radius = model.contact_radius(),
                                   .depth = options.depth,
                                   .speed = options.speed,
                                   .seconds = options.seconds};
@@ -78,28 +66,29 @@ TouchPlan plan_of(const TouchOptions& options, bool physical, const Case& patien
     return {std::move(path), target, seconds};
 }
 
-HeldDevices hold(const TouchOptions& options, const std::optional<PhysicalDevice>& physical,
-                 const TouchPlan& plan, const HapticModel& model) {
-    HeldDevices held;
+DeviceRequest request_of(const TouchOptions& options, const DeviceKind& device, const TouchPlan& plan,
+                         const HapticModel& model) {
+    DeviceRequest request{.tools = {}, .limits = limits_asked_by(model.settings())};
     const Eigen::Vector3d up = plan.target ? plan.target->place.normal : anterior;
-    if (physical) {
-        const Eigen::Vector3d start = start_outside(plan.target->place, model.settings().tool_radius);
-        held.physical = std::make_unique<PhysicalDevices>(*physical, start, upright(up));
-        held.devices = held.physical->devices();
-        held.servo = held.physical->servo();
-        return held;
+    if (!device.simulated) {  // several at one place, so that all reach what one does
+        const DevicePlace place{start_outside(plan.target->place, model.settings().tool_radius), upright(up)};
+        request.tools.assign(model.tool_count(), HeldTool{.place = place});
+        return request;
     }
     const std::array<double, 3> shaft = shaft_of(options, plan);
-    held.simulated.push_back(device_of(options, model, *plan.path, up, shaft));
+    request.tools.push_back(scripted_tool(*plan.path, up, shaft));
     if (!options.second.empty())
-        held.simulated.push_back(device_of(options, model, recorded_path(options.second), anterior, shaft));
-    for (const auto& device : held.simulated) held.devices.push_back(device.get());
-    return held;
+        request.tools.push_back(scripted_tool(recorded_path(options.second), anterior, shaft));
+    return request;
+}
+
+std::size_t tools_of(const TouchOptions& options, const DeviceChoice& device) {
+    return options.second.empty() ? device.tool_count : 2;
 }
 
 void refuse_idle_options(const cli::Command& command, const TouchOptions& options) {
     constexpr std::array of_scripts{"--script", "--column", "--depth", "--speed", "--shaft", "--seed"};
-    const bool physical = parse_physical_device(options.device).has_value();
+    const bool physical = !choose_device(options.device, "--device").kind.simulated;
     for (const cli::Parameter& parameter : command.parameters()) {
         if (!parameter.option.given()) continue;
         const std::string name = parameter.option.name();
@@ -110,22 +99,22 @@ void refuse_idle_options(const cli::Command& command, const TouchOptions& option
     }
 }
 
-void refuse_contradictions(const TouchOptions& options, const std::optional<PhysicalDevice>& physical) {
-    const bool continuous = find_contact_scheme(options.scheme) == ContactScheme::continuous;
-    if (!options.second.empty() && !continuous)
-        throw UsageError({"--second", "with --scheme " + options.scheme, "the scheme 'continuous'",
-                          "the published schemes know one tool"});
+void refuse_contradictions(const TouchOptions& options, const DeviceChoice& device) {
+    const ContactMethodEntry& method = find_contact_method(options.scheme, "--scheme");
+    const std::size_t tools = tools_of(options, device);
+    const std::string with = "with --device " + options.device;
     if (options.virtual_clock && !options.stream.empty())
         throw UsageError({"--stream", "with --virtual-clock", "the real clock", ""});
-    if (!physical) return;
-    const std::string with = "with --device " + options.device;
-    if (options.virtual_clock)
+    if (!device.kind.simulated && options.virtual_clock)
         throw UsageError({"--virtual-clock", with, "the real clock", "a hand keeps its own time"});
-    if (!options.second.empty())
-        throw UsageError({"--second", with, "--device openhaptics:NAME,NAME", "a hand holds each device"});
-    if (physical->tool_count() > 1 && !continuous)
-        throw UsageError({"--scheme", options.scheme + " with several devices", "the scheme 'continuous'",
-                          "the published schemes know one tool"});
+    if (!device.kind.simulated && !options.second.empty())
+        throw UsageError({"--second", with, "a simulated device", "a hand holds each device"});
+    const std::size_t most = method.can.most_tools;
+    if (tools > most)
+        throw UsageError(
+            {options.second.empty() ? "--device" : "--second", "with --scheme " + options.scheme,
+             "the scheme " + contact_method_names(tools),
+             "'" + options.scheme + "' knows " + (most == 1 ? "one tool" : std::to_string(most) + " tools")});
 }
 
 }  // namespace palpate

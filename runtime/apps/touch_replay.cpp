@@ -9,8 +9,8 @@
 
 #include "formats/asset/asset.hpp"
 #include "formats/model/errors.hpp"
-#include "runtime/apps/replay.hpp"
 #include "runtime/apps/touch_json.hpp"
+#include "runtime/session/replay.hpp"
 
 namespace palpate {
 namespace {

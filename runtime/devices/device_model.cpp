@@ -25,7 +25,8 @@ constexpr double thermal_time_s = 100;
 // SensAble Technologies and 3D Systems; the sheets themselves were not at hand to check them by. That the
 // workspace's middle is D's origin is a choice; of the Touch, phantom_kinematics.hpp reaches all of it so.
 const std::array<DeviceModel, 3> models{{
-    {.name = "touch",  // PHANTOM Omni
+    {.name = "touch",
+     .product = "PHANTOM Omni",
      .mass_kg = 0.045,
      .damping = damping_for(0.5),
      .coulomb_friction = 0.26,
@@ -37,7 +38,8 @@ const std::array<DeviceModel, 3> models{{
      .thermal_time_s = thermal_time_s,
      .workspace_low = {-80, -60, -35},
      .workspace_high = {80, 60, 35}},
-    {.name = "desktop",  // PHANTOM Desktop, Touch X
+    {.name = "desktop",
+     .product = "PHANTOM Desktop",  // Touch X
      .mass_kg = 0.045,
      .damping = damping_for(1.0),
      .coulomb_friction = 0.06,
@@ -49,7 +51,8 @@ const std::array<DeviceModel, 3> models{{
      .thermal_time_s = thermal_time_s,
      .workspace_low = {-80, -60, -60},
      .workspace_high = {80, 60, 60}},
-    {.name = "premium",  // PHANTOM Premium 1.5
+    {.name = "premium",
+     .product = "PHANTOM Premium 1.5",
      .mass_kg = 0.075,
      .damping = damping_for(0.8),
      .coulomb_friction = 0.04,
@@ -84,8 +87,7 @@ const DeviceModel& find_device_model(std::string_view name) {
     if (found != models.end()) return *found;
     std::string names;
     for (const DeviceModel& model : models) names += (names.empty() ? "" : ", ") + model.name;
-    throw UsageError(
-        {"--device", std::string(name), names + ", openhaptics[:NAME] or igtl:HOST:PORT[/NAME]", ""});
+    throw UsageError({"device model", std::string(name), names, ""});
 }
 
 }  // namespace palpate

@@ -12,6 +12,7 @@ namespace palpate {
 /// What a force-feedback device is, as the hand feels it: along each axis a mass on ideal motors.
 struct DeviceModel {
     std::string name;                 ///< "touch", "desktop", "premium"
+    std::string product;              ///< "PHANTOM Omni"
     double mass_kg = 0;               ///< apparent at the tip
     double damping = 0;               ///< viscous, N s/mm
     double coulomb_friction = 0;      ///< backdrive friction, N

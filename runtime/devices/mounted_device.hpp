@@ -34,6 +34,10 @@ class MountedDevice final : public Device {
 /// Where a device is mounted that is turned by R_PD, and whose point `p_D` is at `p_P` (both mm).
 Eigen::Isometry3d mount(const Eigen::Matrix3d& R_PD, const Eigen::Vector3d& p_D, const Eigen::Vector3d& p_P);
 
+/// Which way is up for a device whose tool is to touch no surface known beforehand: towards the patient's
+/// front, -y of LPS.
+inline const Eigen::Vector3d anterior{0, -1, 0};
+
 /// How a device is turned, R_PD, so that its y axis (up, on a Phantom) is along `up` (unit); its x axis is as
 /// near to the patient's x, from right to left, as that allows.
 Eigen::Matrix3d upright(const Eigen::Vector3d& up);

@@ -26,14 +26,15 @@ HapticSettings checked(const Case& patient_case) {
     return patient_case.haptics;
 }
 
-// Where the spheres of a tool are behind its tip, mm: a radius apart, the surface of the row dips by an
-// eighth of it; a long thin shaft gets fewer.
-std::vector<double> spheres_of(const HapticSettings& settings) {
-    constexpr double most = 48;
-    const double spheres = std::min(most, std::ceil(settings.shaft_length / settings.tool_radius));
-    std::vector<double> places{0};
-    for (double k = 1; k <= spheres; ++k) places.push_back(settings.shaft_length * k / spheres);
-    return places;
+// Refuses what the method cannot have.
+const ContactMethodEntry& checked(const ContactMethodEntry& method, std::size_t tool_count,
+                                  const std::string& case_name) {
+    if (tool_count > method.can.most_tools)
+        throw InvalidInput({case_name, std::to_string(tool_count) + " tools",
+                            std::to_string(method.can.most_tools) + " at most with contact method '" +
+                                std::string(method.name) + "'",
+                            "use " + contact_method_names(tool_count)});
+    return method;
 }
 
 }  // namespace
@@ -51,42 +52,15 @@ double coupling_stiffness(const HapticSettings& settings, const DeviceLimits& de
     return stiffness;
 }
 
-HapticModel::HapticModel(const Case& patient_case, ContactScheme scheme, std::size_t tool_count)
+HapticModel::HapticModel(const Case& patient_case, std::string_view method, std::size_t tool_count)
     : settings_(checked(patient_case)),
-      scheme_(scheme),
+      method_(checked(find_contact_method(method), tool_count, patient_case.name)),
       coupling_(settings_.coupling_stiffness),
-      friction_{settings_.friction_at_rest, settings_.friction_sliding} {
-    for (const RigidBody& body : patient_case.rigid_bodies) {
-        names_.push_back(body.name);
-        surfaces_.push_back(std::make_unique<CollisionSurface>(body.surface, body.obb_tree, body.name));
-        rigid_surfaces_.push_back(surfaces_.back().get());
-        rigid_triangles_.push_back(body.surface.triangles);
-    }
-    for (const DeformableBody& body : patient_case.deformable_bodies) {
-        const auto index = static_cast<std::int32_t>(names_.size());
-        names_.push_back(body.name);
-        surfaces_.push_back(
-            std::make_unique<CollisionSurface>(body.boundary.surface, body.obb_tree, body.name));
-        deformable_.emplace_back(body, index);
-    }
-    for (const auto& surface : surfaces_) all_surfaces_.push_back(surface.get());
-    const double radius = settings_.tool_radius;
-    for (std::size_t t = 0; t < tool_count; ++t) {
-        Tool& tool = tools_.emplace_back(std::vector<Part>{}, ForceLimiter(settings_),
-                                         std::vector<Contact>(max_contacts));
-        for (const double behind_tip : spheres_of(settings_)) {
-            Part& part = tool.parts.emplace_back(behind_tip, GodObject(radius, rigid_surfaces_.size()),
-                                                 GodObject(radius, all_surfaces_.size()));
-            for (std::size_t soft = 0; soft < deformable_.size(); ++soft)
-                part.on_soft.push_back({GodObject(radius, 1)});
-        }
-    }
-    if (scheme == ContactScheme::continuous) return;
-    if (tool_count != 1)
-        throw InvalidInput({patient_case.name, std::to_string(tool_count) + " tools",
-                            "one tool in the published schemes", "use the scheme 'continuous'"});
-    published_.emplace(patient_case, surfaces_, scheme);
-}
+      bodies_(patient_case),
+      tools_(tool_count, Tool{ForceLimiter(settings_)}),
+      poses_(tool_count),
+      forces_(tool_count),
+      contact_(method_.make(patient_case, bodies_, tool_count)) {}
 
 void HapticModel::couple_to(std::span<const DeviceLimits> devices) {
     coupling_ = settings_.coupling_stiffness;
@@ -99,12 +73,10 @@ void HapticModel::couple_to(std::span<const DeviceLimits> devices) {
 
 void HapticModel::reset() noexcept {
     for (Tool& tool : tools_) {
-        forget(tool);
         tool.limiter.reset();
         tool.lost = false;
     }
-    solver_.reset();
-    if (published_) published_->reset();
+    contact_->reset();
     tick_ = 0;
 }
 

@@ -40,7 +40,7 @@ void ServoLoop::start() {
     servo_.start([this](const ServoTick& wake) { step(wake); });
     running_ = true;
     std::ranges::copy(servo_.setup(), std::back_inserter(statistics_.setup));
-    if (model_.scheme() != ContactScheme::continuous) collision_.start();
+    if (model_.method().can.needs_detection) collision_.start();
 }
 
 void ServoLoop::stop() {

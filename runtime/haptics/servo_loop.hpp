@@ -32,8 +32,9 @@ struct ServoStatistics {
 };
 
 /// The haptic loop: at 1 kHz reads the devices, ticks the model, writes the forces, and publishes the results
-/// to the visual side (latest value) and to a logger (every value); for the published schemes also the
-/// collision loop at 30 Hz. Model, devices and servo must outlive the loop and are its own while it runs.
+/// to the visual side (latest value) and to a logger (every value); for a contact method that needs
+/// detection also the collision loop at 30 Hz. Model, devices and servo must outlive the loop and are its own
+/// while it runs.
 class ServoLoop {
   public:
     static constexpr std::int64_t period_ns = Servo::period_ns;
@@ -60,9 +61,9 @@ class ServoLoop {
     void stop();
 
     /// Runs `ticks` ticks in the calling thread as fast as possible, the k-th, from 1 on, at `wake(k)`; by
-    /// default one period after the other. Published schemes detect 30 times in a thousand ticks. `sink` gets
-    /// each tool's result of each tick. Instead of start(): for tests and for runs that must not depend on
-    /// the machine.
+    /// default one period after the other. A method that needs detection detects 30 times in a thousand
+    /// ticks. `sink` gets each tool's result of each tick. Instead of start(): for tests and for runs that
+    /// must not depend on the machine.
     void run_virtual(std::int64_t ticks, const std::function<void(const TickResult&)>& sink,
                      const std::function<ServoTick(std::int64_t)>& wake = in_time);
     /// A wake-up that is never late.

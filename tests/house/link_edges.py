@@ -37,13 +37,13 @@ ROOMS = {
     "haptics": {"model", "records", "collision", "realtime"},
     "devices": {"model", "realtime"},
     "doctor": {"model", "realtime", "haptics", "devices", "json"},
-    "openigtlink": {"model", "realtime", "haptics", "igtl"},
+    "openigtlink": {"model", "realtime", "haptics", "devices", "igtl"},
     "visual": {"model", "realtime", "vtk"},
-    "apps": {"model", "asset", "recording", "json", "realtime", "collision", "haptics", "devices", "openigtlink"},
+    "session": {"model", "asset", "recording", "json", "realtime", "collision", "haptics", "devices", "openigtlink"},
 }
-ROOMS["experiments"] = {"asset", "cli", "apps", "fem", "meshing", "obb", "cgal_peer"}  # measures both sides
+ROOMS["experiments"] = {"asset", "cli", "session", "fem", "meshing", "obb", "cgal_peer"}  # measures both sides
 COMMANDS = {"model", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "case_builder", "mesh", "condense", "seeds", "json"}
-APPS = {"model", "asset", "recording", "cli", "realtime", "collision", "haptics", "devices", "openigtlink", "apps", "json"}
+APPS = {"model", "asset", "recording", "cli", "realtime", "collision", "haptics", "devices", "openigtlink", "session", "json"}
 EXECUTABLES = {
     "palpate": {"cli", "model"},
     "palpate-touch": APPS,
@@ -53,7 +53,7 @@ EXECUTABLES = {
 }
 HEAVY = {"itk", "cgal", "cholmod", "metis", "vtk"}
 LEAN = {"palpate_records", "palpate_model", "palpate_asset", "palpate_recording", "palpate_cli", "palpate_realtime", "palpate_collision",
-        "palpate_haptics", "palpate_devices", "palpate_openigtlink", "palpate_apps", "palpate_doctor", "palpate-touch",
+        "palpate_haptics", "palpate_devices", "palpate_openigtlink", "palpate_session", "palpate_doctor", "palpate-touch",
         "palpate-doctor"}
 # These two draw, so VTK is theirs; nothing else that is heavy.
 DRAWING = {"palpate_visual", "palpate-train"}

@@ -8,8 +8,8 @@
 #include "runtime/devices/dynamic_device.hpp"
 #include "runtime/devices/mounted_device.hpp"
 #include "runtime/haptics/contact/contact_solver.hpp"
-#include "runtime/haptics/contact/published_contact.hpp"
 #include "runtime/haptics/haptic_model.hpp"
+#include "runtime/haptics/methods/published_contact.hpp"
 #include "runtime/openigtlink/contact_point.hpp"
 #include "tests/runtime/haptics/held_tool.hpp"
 
@@ -81,10 +81,6 @@ TEST(Preconditions, a_solver_takes_no_more_contacts_than_it_has_rows) {
     const auto solver = std::make_unique<ContactSolver>();
     std::vector<Contact> contacts(max_contacts + 1);
     EXPECT_ASSERTED(solver->add(contacts, nullptr, 0));
-}
-
-TEST(Preconditions, published_contact_is_of_a_published_scheme) {
-    EXPECT_ASSERTED(PublishedContact(plate(), {}, ContactScheme::continuous));
 }
 
 TEST(Preconditions, a_contacts_vertices_are_the_bodys) {

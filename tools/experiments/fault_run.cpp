@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "runtime/apps/touch_target.hpp"
 #include "runtime/devices/dynamic_device.hpp"
 #include "runtime/haptics/servo_loop.hpp"
+#include "runtime/session/touch_target.hpp"
 
 namespace palpate::bench {
 namespace {
@@ -92,12 +92,8 @@ HandPath path_at_random(const Case& patient_case, const HapticModel& model, doub
     std::vector<std::size_t> bodies(model.body_count());
     const std::size_t body = std::uniform_int_distribution<std::size_t>(0, bodies.size() - 1)(random);
     const TouchTarget target = choose_touch_target(patient_case, model, model.body_name(body), {});
-    const bool has_radius = model.scheme() == ContactScheme::continuous;
     return random_path(target.place,
-                       {.tool_radius = has_radius ? model.settings().tool_radius : 0,
-                        .depth = 6,
-                        .speed = 60,
-                        .seconds = seconds},
+                       {.tool_radius = model.contact_radius(), .depth = 6, .speed = 60, .seconds = seconds},
                        random());
 }
 
@@ -132,10 +128,10 @@ void FaultRun::add(const FaultRun& other) {
     largest_growth = std::max(largest_growth, other.largest_growth);
 }
 
-FaultRun run_with_faults(const Case& patient_case, ContactScheme scheme, const DeviceModel& device_model,
+FaultRun run_with_faults(const Case& patient_case, std::string_view method, const DeviceModel& device_model,
                          const std::vector<Injection>& injections, std::int64_t ticks,
                          std::mt19937_64& random) {
-    HapticModel model(patient_case, scheme);
+    HapticModel model(patient_case, method);
     DynamicDevice device(device_model, HandImpedance{},
                          path_at_random(patient_case, model, 1e-3 * static_cast<double>(ticks), random));
     FaultyDevice faulty(device, injections);

@@ -4,12 +4,12 @@
 #include <map>
 #include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "formats/model/body.hpp"
-#include "runtime/apps/fault_log.hpp"
 #include "runtime/devices/device_model.hpp"
-#include "runtime/haptics/contact/contact_scheme.hpp"
+#include "runtime/session/fault_log.hpp"
 
 namespace palpate::bench {
 
@@ -42,7 +42,7 @@ struct FaultRun {
 /// place and by a path drawn from `random`, while `injections` happen. A device that is lost stays where it
 /// was, one without calibration is off by 50 mm, a position that is not a number has one NaN; all as a device
 /// tells them. The window's and the asset's faults are told as their watchers do.
-FaultRun run_with_faults(const Case& patient_case, ContactScheme scheme, const DeviceModel& device,
+FaultRun run_with_faults(const Case& patient_case, std::string_view method, const DeviceModel& device,
                          const std::vector<Injection>& injections, std::int64_t ticks,
                          std::mt19937_64& random);
 

@@ -75,9 +75,9 @@ Findings faults(const Options& options, cli::Session& session) {
             session.progress.step(patient_case.name,
                                   static_cast<double>(whole.ticks) / static_cast<double>(share));
             const std::int64_t ticks = std::min(visit_ticks, share - whole.ticks);
-            const ContactScheme scheme = visit % 2 == 0 ? ContactScheme::continuous : ContactScheme::twice;
+            const std::string_view method = visit % 2 == 0 ? "continuous" : "twice";
             whole.add(
-                run_with_faults(patient_case, scheme, device, draw_injections(ticks, random), ticks, random));
+                run_with_faults(patient_case, method, device, draw_injections(ticks, random), ticks, random));
         }
         runs.push_back(json_of(patient_case.name, whole));
         rows += row_of(patient_case.name, whole);

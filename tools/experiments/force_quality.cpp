@@ -73,7 +73,7 @@ double ForceQuality::pull_of(const Contact& contact, const TickResult& result) c
     constexpr double touching = 1e-3;  // mm, above the god-object's skin
     const bool gives_way =
         static_cast<std::size_t>(contact.body) >= model_.rigid_count() && contact.vertices[0] >= 0;
-    if (model_.scheme() != ContactScheme::continuous || gives_way || result.contact_count > 1)
+    if (!model_.method().can.sums_rigid_walls || gives_way || result.contact_count > 1)
         return normals_.pull(contact);
     const Vector3d tool = vector_of(result.tool_position);
     const double reach = model_.settings().tool_radius + touching;

@@ -13,12 +13,11 @@
 
 #include "formats/asset/asset.hpp"
 #include "formats/recording/recording_writer.hpp"
-#include "runtime/apps/fault_log.hpp"
-#include "runtime/apps/run_recorder.hpp"
-#include "runtime/apps/statistics_json.hpp"
-#include "runtime/apps/touch_target.hpp"
 #include "runtime/devices/dynamic_device.hpp"
-#include "runtime/haptics/servo_loop.hpp"
+#include "runtime/session/fault_log.hpp"
+#include "runtime/session/session.hpp"
+#include "runtime/session/statistics_json.hpp"
+#include "runtime/session/touch_target.hpp"
 
 namespace palpate::bench {
 namespace {
@@ -66,40 +65,38 @@ struct RealtimeRun {
 };
 
 // `recording`: the file of every tick, as palpate touch --record writes it; removed at the end.
-RealtimeRun run_against_the_clock(const std::filesystem::path& asset, const Case& patient_case,
-                                  PeriodicServo::Priority priority, double seconds, std::uint64_t seed,
+RealtimeRun run_against_the_clock(const std::filesystem::path& asset, PeriodicServo::Priority priority,
+                                  double seconds, std::uint64_t seed,
                                   const std::filesystem::path& recording) {
-    HapticModel model(patient_case);
-    const TouchTarget target = choose_touch_target(patient_case, model, "", {});
+    PeriodicServo servo(priority);  // outlives the session
+    Session session({.asset = asset});
+    const TouchTarget target = choose_touch_target(session.patient_case(), session.model(), "", {});
     HandPath path = random_path(
         target.place,
-        {.tool_radius = model.settings().tool_radius, .depth = 6, .speed = 60, .seconds = seconds}, seed);
-    DynamicDevice device(find_device_model("touch"), HandImpedance{}, std::move(path));
-    const std::array<Device*, 1> devices{&device};
-    PeriodicServo servo(priority);
-    ServoLoop loop(model, devices, &servo);
-    RealtimeRun run;
+        {.tool_radius = session.model().settings().tool_radius, .depth = 6, .speed = 60, .seconds = seconds},
+        seed);
+    session.hold({.devices = {std::make_shared<DynamicDevice>(find_device_model("touch"), HandImpedance{},
+                                                              std::move(path))},
+                  .servo = &servo});
     std::filesystem::remove(recording);
-    make_recording(recording, recording_head(asset, patient_case, model, devices, "real", cli::version()),
-                   recording_rows(seconds + 1, 1));
-    RunRecorder recorder(recording);
-    TickResult result{};
-    const auto drain = [&] {
-        while (loop.ring().pop(result)) {
-            recorder.add(result);
-            run.faults.add(result);
-        }
+    make_recording(recording, session.recording_head(cli::version()), recording_rows(seconds + 1, 1));
+    session.record_to(recording);
+    RealtimeRun run;
+    double time = 0;
+    const Session::Sink take = [&](const TickResult& result) {
+        time = result.time;
+        run.faults.add(result);
     };
-    loop.start();
-    while (result.time < seconds) {
-        drain();
+    session.start();
+    while (time < seconds) {
+        session.pump(take);
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
-    loop.stop();
-    drain();
-    run.recorded = recorder.rows();
+    session.stop();
+    session.pump(take);
+    run.recorded = *session.recorded_rows();
     std::filesystem::remove(recording);
-    run.statistics = loop.statistics();
+    run.statistics = session.statistics();
     const auto& setup = run.statistics.setup;
     run.fifo = priority == PeriodicServo::Priority::fifo && !setup.empty() && setup.back().ok;
     return run;
@@ -126,8 +123,8 @@ Findings realtime(const Options& options, cli::Session& session) {
         const Case patient_case = load_asset(file);
         for (const auto priority : {PeriodicServo::Priority::fifo, PeriodicServo::Priority::none}) {
             session.progress.step(patient_case.name, priority == PeriodicServo::Priority::fifo ? 0 : 0.5);
-            const RealtimeRun run = run_against_the_clock(file, patient_case, priority, seconds, options.seed,
-                                                          options.output / "realtime.h5");
+            const RealtimeRun run =
+                run_against_the_clock(file, priority, seconds, options.seed, options.output / "realtime.h5");
             const ServoStatistics& s = run.statistics;
             const std::string name = run.fifo                                    ? "SCHED_FIFO"
                                      : priority == PeriodicServo::Priority::none ? "none"

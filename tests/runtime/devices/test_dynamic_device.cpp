@@ -385,9 +385,7 @@ TEST(DeviceModel, an_unknown_name_is_answered_with_the_known_ones) {
         find_device_model("falcon");
         FAIL() << "found";
     } catch (const UsageError& error) {
-        EXPECT_STREQ(error.what(),
-                     "--device: falcon (expected touch, desktop, premium, openhaptics[:NAME] or "
-                     "igtl:HOST:PORT[/NAME])");
+        EXPECT_STREQ(error.what(), "device model: falcon (expected touch, desktop, premium)");
     }
 }
 

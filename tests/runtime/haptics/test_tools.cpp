@@ -28,7 +28,7 @@ Case cube_for_tools(int cells, double radius) {
 
 // Some tools that come down from `above` mm higher and stay.
 std::vector<TickResult> press(const Case& c, const std::vector<DeviceState>& devices, double above = 8) {
-    HapticModel model(c, ContactScheme::continuous, devices.size());
+    HapticModel model(c, "continuous", devices.size());
     std::vector<TickResult> results(devices.size());
     std::vector<DeviceState> higher = devices;
     for (DeviceState& device : higher) device.position[2] += above;
@@ -286,7 +286,7 @@ Case all_at_once(double friction) {
 }
 
 TEST(TwoTools, with_shafts_and_friction_never_allocate_in_a_tick) {
-    const auto model = std::make_unique<HapticModel>(all_at_once(0.3), ContactScheme::continuous, 2);
+    const auto model = std::make_unique<HapticModel>(all_at_once(0.3), "continuous", 2);
     std::array<TickResult, 2> results{};
     model->tick(std::array{held_at({10, 10, 60}), held_at({20, 10, 60})}, results);
     int touching = 0;
@@ -304,7 +304,7 @@ TEST(TwoTools, with_shafts_and_friction_never_allocate_in_a_tick) {
 }
 
 TEST(TwoTools, are_never_pulled_by_what_they_touch) {
-    HapticModel model(all_at_once(0), ContactScheme::continuous, 2);
+    HapticModel model(all_at_once(0), "continuous", 2);
     std::array<TickResult, 2> results{};
     model.tick(std::array{held_at({10, 10, 60}), held_at({20, 10, 60})}, results);
     int unsolved = 0;
@@ -350,14 +350,13 @@ void expect_same_bits(const Record& a, const Record& b) {
 }
 
 TEST(TwoTools, repeat_the_same_bits_on_the_same_way) {
-    HapticModel first(all_at_once(0.3), ContactScheme::continuous, 2),
-        second(all_at_once(0.3), ContactScheme::continuous, 2);
+    HapticModel first(all_at_once(0.3), "continuous", 2), second(all_at_once(0.3), "continuous", 2);
     const Record expected = wander_through(first, ticks);
     expect_same_bits(wander_through(second, ticks), expected);
 }
 
 TEST(TwoTools, repeat_the_same_bits_after_a_reset) {
-    HapticModel model(all_at_once(0.3), ContactScheme::continuous, 2);
+    HapticModel model(all_at_once(0.3), "continuous", 2);
     const Record expected = wander_through(model, ticks);
     for (const int before : {ticks, 150, 700, 1234, 2100, 3333}) {  // in contact or not
         model.reset();

@@ -56,7 +56,7 @@ TEST(ServoLoop, every_tick_reaches_the_logger_and_the_latest_the_screen) {
 }
 
 TEST(ServoLoop, published_schemes_detect_beside_the_ticks) {
-    HapticModel model(sample::sample_case(), ContactScheme::twice);
+    HapticModel model(sample::sample_case(), "twice");
     RecordingDevice device;
     ServoLoop loop(model, device, 1024);
     loop.start();
@@ -71,7 +71,7 @@ TEST(ServoLoop, published_schemes_detect_beside_the_ticks) {
 }
 
 TEST(ServoLoop, each_tool_has_its_device_and_its_results) {
-    HapticModel model(sample::sample_case(), ContactScheme::continuous, 2);
+    HapticModel model(sample::sample_case(), "continuous", 2);
     RecordingDevice pressing;
     GuidedDevice away({0, 0, 60}, {}, 200);
     const std::array<Device*, 2> devices{&pressing, &away};
@@ -179,7 +179,7 @@ TEST_F(PressedLoop, a_window_that_stops_drawing_is_missed_once_it_has_drawn) {
 }
 
 TEST(ServoLoop, a_collision_loop_that_stops_takes_the_force_away) {
-    HapticModel model(sample::sample_case(), ContactScheme::single);
+    HapticModel model(sample::sample_case(), "single");
     DeviceState pressing;
     pressing.position = {40, 10, 24.5};
     TickResult result{};

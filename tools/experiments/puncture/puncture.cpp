@@ -44,11 +44,11 @@ outside and the bone around is not an edge (within 6 mm no steeper than 34 degre
 // What the experiment works on.
 struct Bench {
     TriangleMesh mesh;
-    std::vector<std::unique_ptr<HapticModel>> models;  // by ContactScheme
+    std::vector<std::unique_ptr<HapticModel>> models;  // by scheme
     const DeviceModel& device = find_device_model("desktop");
     std::mt19937_64 random;
 
-    HapticModel& model(ContactScheme scheme) { return *models[static_cast<std::size_t>(scheme)]; }
+    HapticModel& model(std::size_t scheme) { return *models[scheme]; }
     double coupling() const { return models[0]->coupling(); }
     bool punctured(const Outcome& outcome) const { return is_puncture(outcome, coupling()); }
 
@@ -59,9 +59,9 @@ struct Bench {
             approaches.push_back({std::move(place), speed_of(approaches.size()), unit(random)});
         return approaches;
     }
-    std::vector<Outcome> run(ContactScheme scheme, const std::vector<Approach>& approaches) {
+    std::vector<Outcome> run(std::size_t scheme, const std::vector<Approach>& approaches) {
         std::vector<Outcome> outcomes;
-        const bool watch = scheme == ContactScheme::continuous;
+        const bool watch = scheme == continuous_scheme;
         for (const Approach& approach : approaches)
             outcomes.push_back(run_approach(model(scheme), device, approach, watch));
         return outcomes;
@@ -73,8 +73,7 @@ Bench bench_of(const Options& options) {
         throw UsageError({"--surface", "not given", "triangles of a bone (.vtp)", ""});
     Bench bench{.mesh = read_surface(options.surface), .models = {}, .random = std::mt19937_64(options.seed)};
     const Case bone = rigid_case(options.surface.stem().string(), bench.mesh, settings);
-    for (const ContactScheme scheme :
-         {ContactScheme::single, ContactScheme::twice, ContactScheme::continuous}) {
+    for (const std::string_view scheme : schemes) {
         bench.models.push_back(std::make_unique<HapticModel>(bone, scheme));
         const DynamicDevice device(bench.device, {}, HandPath({{0, Eigen::Vector3d::Zero()}}));
         const DeviceLimits limits = device.limits();
@@ -93,7 +92,7 @@ GroupRun run_groups(Bench& bench) {
         .outcomes = {},
         .coupling = bench.coupling()};
     for (std::size_t scheme = 0; scheme < run.outcomes.size(); ++scheme)
-        run.outcomes[scheme] = bench.run(static_cast<ContactScheme>(scheme), run.approaches);
+        run.outcomes[scheme] = bench.run(scheme, run.approaches);
     return run;
 }
 
@@ -115,20 +114,20 @@ Chart speed_chart(std::string& table, Json& result, Bench& bench) {
         "\n## By speed\n\nPunctures in the same {} approaches at each speed.\n\n"
         "| mm/s | single | twice | continuous |\n|--:|--:|--:|--:|\n",
         per_speed);
-    for (const std::string_view name : contact_scheme_names)
+    for (const std::string_view name : schemes)
         chart.series.push_back({.name = std::string(name), .x = {}, .y = {}});
     auto approaches = bench.draw(per_speed, [](std::size_t) { return speeds.front(); });
     for (const double speed : speeds) {
         for (Approach& approach : approaches) approach.speed = speed;
         table += fmt::format("| {:g} |", speed);
         for (std::size_t scheme = 0; scheme < chart.series.size(); ++scheme) {
-            const auto outcomes = bench.run(static_cast<ContactScheme>(scheme), approaches);
+            const auto outcomes = bench.run(scheme, approaches);
             const auto count = std::ranges::count_if(
                 outcomes, [&](const Outcome& outcome) { return bench.punctured(outcome); });
             table += fmt::format(" {} |", count);
             chart.series[scheme].x.push_back(speed);
             chart.series[scheme].y.push_back(100.0 * static_cast<double>(count) / per_speed);
-            result["by_speed"][std::string(contact_scheme_names[scheme])].push_back({speed, count});
+            result["by_speed"][std::string(schemes[scheme])].push_back({speed, count});
         }
         table += "\n";
     }
@@ -147,9 +146,9 @@ std::array<Chart, 2> curves(Bench& bench, const Approach& approach) {
                                       .x_label = "time since the hand passed the surface [s]",
                                       .y_label = "mm",
                                       .series = {}}};
-    for (const std::string_view name : contact_scheme_names) {
+    for (const std::string_view name : schemes) {
         Series force{.name = std::string(name), .x = {}, .y = {}}, depth = force;
-        const auto scheme = static_cast<ContactScheme>(charts[0].series.size());
+        const std::size_t scheme = charts[0].series.size();
         run_approach(bench.model(scheme), bench.device, approach, false, [&](const ApproachTick& tick) {
             if (tick.depth < -5) return;
             force.x.push_back(tick.time - Approach::run_up / approach.speed);
@@ -169,7 +168,7 @@ Json fast_table(std::string& table, Bench& bench) {
     int lost = 0, through = 0, passed = 0, pulled = 0;
     double least_aside = Approach::stroke;
     std::vector<double> tip_speeds;
-    for (const Outcome& outcome : bench.run(ContactScheme::continuous, approaches)) {
+    for (const Outcome& outcome : bench.run(continuous_scheme, approaches)) {
         const bool punctured = bench.punctured(outcome);
         lost += punctured;
         through += punctured && outcome.tool_passed_surface;

@@ -68,7 +68,7 @@ struct Expected {
 
 Expected expect(const GroupRun& run) {
     Expected expected;
-    const auto& held = run.outcomes[static_cast<std::size_t>(ContactScheme::continuous)];
+    const auto& held = run.outcomes[continuous_scheme];
     for (std::size_t i = 0; i < run.approaches.size(); ++i) {
         const double step = held[i].speed / Approach::detections_per_s;
         const double wall = run.approaches[i].place.thickness;
@@ -88,7 +88,7 @@ Json add_thickness_table(std::string& table, const GroupRun& run) {
     for (std::size_t c = 0; c + 1 < thickness_classes.size(); ++c) {
         const double from = thickness_classes[c], to = thickness_classes[c + 1];
         int approaches = 0;
-        std::array<int, contact_scheme_names.size()> punctures{};
+        std::array<int, schemes.size()> punctures{};
         for (std::size_t i = 0; i < run.approaches.size(); ++i) {
             const double wall = run.approaches[i].place.thickness;
             if (wall < from || wall >= to) continue;
@@ -124,7 +124,7 @@ Json add_group_tables(std::string& table, const GroupRun& run) {
         "\n| | punctures in 100 | expected per group | 95 % interval of the chance |\n|:--|--:|--:|--:|\n";
     Json result;
     for (std::size_t scheme = 0; scheme < run.outcomes.size(); ++scheme) {
-        const std::string name(contact_scheme_names[scheme]);
+        const std::string name(schemes[scheme]);
         PerGroup<int> punctures{}, pulled{};
         PerGroup<double> speeds{};
         for (std::size_t i = 0; i < run.approaches.size(); ++i) {
@@ -197,7 +197,7 @@ Json add_reasons(std::string& table, const GroupRun& run) {
             latency.push_back(1e3 * outcome.latency);
             depth.push_back(outcome.depth_at_force);
         }
-        const std::string name(contact_scheme_names[scheme]);
+        const std::string name(schemes[scheme]);
         table += fmt::format("| {} | {} | {} | {} | {} |\n", name, quartiles(latency), quartiles(depth),
                              quartiles(punctured), quartiles(held));
         result[name] = {{"latency_ms", quantile(latency, 0.5)},

@@ -3,20 +3,24 @@
 #include <array>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "runtime/haptics/contact/contact_scheme.hpp"
 #include "tools/experiments/puncture/approach_run.hpp"
 
 namespace palpate::bench {
 
 inline constexpr std::size_t puncture_groups = 10, approaches_per_group = 10;
 
+/// The contact methods that are compared, and which of them holds the tool outside.
+inline constexpr std::array<std::string_view, 3> schemes{"single", "twice", "continuous"};
+inline constexpr std::size_t continuous_scheme = 2;
+
 /// The same approaches by every scheme, group after group.
 struct GroupRun {
     std::vector<Approach> approaches;
-    std::array<std::vector<Outcome>, contact_scheme_names.size()> outcomes;  // by ContactScheme
-    double coupling = 0;                                                     // N/mm
+    std::array<std::vector<Outcome>, schemes.size()> outcomes;
+    double coupling = 0;  // N/mm
 };
 
 /// Appends the published tables 1 and 2 for every scheme, beside the published figures, and what is known of

@@ -9,10 +9,10 @@
 #include <random>
 
 #include "formats/asset/asset.hpp"
-#include "runtime/apps/run_record.hpp"
-#include "runtime/apps/touch_target.hpp"
 #include "runtime/devices/dynamic_device.hpp"
 #include "runtime/haptics/servo_loop.hpp"
+#include "runtime/session/run_record.hpp"
+#include "runtime/session/touch_target.hpp"
 #include "tools/experiments/chart.hpp"
 #include "tools/experiments/force_quality.hpp"
 
@@ -22,7 +22,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view device_name = "desktop";  // the reference system's
-constexpr std::array schemes{ContactScheme::single, ContactScheme::twice, ContactScheme::continuous};
+constexpr std::array<std::string_view, 3> compared_schemes{"single", "twice", "continuous"};
 constexpr std::array scheme_titles{"1 before (single)", "2 after (twice)", "3 continuous"};
 constexpr double press_depth = 4;       // mm, of the tool's centre below the rest surface
 constexpr double visit_s = 10;          // of the long run, at one place
@@ -107,12 +107,12 @@ HandPath press_slide_leave(const TouchPoint& place, double tool_radius) {
     return HandPath(std::move(keys));
 }
 
-Run run_scheme(const Case& patient_case, const RestNormals& normals, ContactScheme scheme,
+Run run_scheme(const Case& patient_case, const RestNormals& normals, std::size_t scheme,
                const TouchTarget& target) {
-    HapticModel model(patient_case, scheme);
+    HapticModel model(patient_case, compared_schemes[scheme]);
     ForceQuality quality(normals, model, passivity_of(model));
     Run run;
-    run.curve.name = scheme_titles[static_cast<std::size_t>(scheme)];
+    run.curve.name = scheme_titles[scheme];
     const HandPath path = press_slide_leave(target.place, model.settings().tool_radius);
     const Eigen::Vector3d outwards = target.place.normal;
     touch(model, path, path.duration() + 0.5, quality, [&](const TickResult& result) {
@@ -169,9 +169,9 @@ Comparison compare_schemes(const Case& patient_case, const RestNormals& normals)
         chart.title = patient_case.name + ": " + body;
         chart.x_label = "time, s";
         chart.y_label = "force outwards, N";
-        for (const ContactScheme scheme : schemes) {
+        for (std::size_t scheme = 0; scheme < compared_schemes.size(); ++scheme) {
             Run run = run_scheme(patient_case, normals, scheme, target);
-            const std::string_view name = contact_scheme_names[static_cast<std::size_t>(scheme)];
+            const std::string_view name = compared_schemes[scheme];
             comparison.rows +=
                 fmt::format("| {} | {} | {} | ", patient_case.name, body, name) + figures_row(run.figures);
             Json entry{{"case", patient_case.name}, {"body", body}, {"scheme", name}};
@@ -208,7 +208,7 @@ struct LongRun {
 
 LongRun push_at_random(const Case& patient_case, const RestNormals& normals, double seconds,
                        std::uint64_t seed, cli::Session& session) {
-    HapticModel model(patient_case, ContactScheme::continuous);
+    HapticModel model(patient_case);
     ForceQuality quality(normals, model, passivity_of(model));
     LongRun run;
     std::mt19937_64 random(seed);

@@ -79,9 +79,8 @@ RigidTicks rigid_ticks(const TriangleMesh& bone, const HandPath& path) {
     RigidTicks found;
     add_queries(found, bone, path);
     const std::span one(&path, 1);
-    for (const ContactScheme scheme : {ContactScheme::single, ContactScheme::twice}) {
-        const std::string name(contact_scheme_names[static_cast<std::size_t>(scheme)]);
-        HapticModel model(bone_case(bone, tools[0].radius, false), scheme);
+    for (const std::string name : {"single", "twice"}) {
+        HapticModel model(bone_case(bone, tools[0].radius, false), name);
         const TickRun run = time_ticks(model, one, Counted::all);
         found.rows.push_back({.group = "rigid", .name = name + ", point", .times = run.tick, .run = run});
         found.rows.push_back(

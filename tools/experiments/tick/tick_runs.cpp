@@ -53,7 +53,7 @@ TickRun pass_of(HapticModel& model, std::span<const HandPath> paths, Counted cou
         const auto step = static_cast<std::size_t>(run.ticks);
         if (counted == Counted::all || rows > 0) tick.record(step, spent);
         const std::int64_t next = (run.ticks + 1) * period_ns;
-        if (model.scheme() != ContactScheme::continuous &&
+        if (model.method().can.needs_detection &&
             next / CollisionLoop::period_ns > (next - period_ns) / CollisionLoop::period_ns)
             detect.record(step, nanoseconds_of([&] { model.detect(); }));
     }

@@ -42,7 +42,7 @@ class Shortest {
 /// What the ticks along a path took.
 struct TickRun {
     Histogram tick;    ///< HapticModel::tick(), ns
-    Histogram detect;  ///< HapticModel::detect(), ns: of the published schemes, 30 in a virtual second
+    Histogram detect;  ///< HapticModel::detect(), ns: of what needs detection, 30 in a virtual second
     std::int64_t ticks = 0, touching = 0;
     std::int64_t cut = 0, unsolved = 0;  ///< with TickStatus contacts_cut, contact_unsolved
     double rows = 0, pressed = 0;        ///< mean contact points of touching ticks, and those with force

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <optional>
 
-#include "runtime/apps/touch_target.hpp"
+#include "runtime/session/touch_target.hpp"
 #include "tools/experiments/soft_ellipsoid.hpp"
 #include "tools/experiments/tick/tick_rigid.hpp"
 
@@ -103,16 +103,15 @@ SoftTicks soft_ticks(cli::Session& session) {
             if (spacing != spacings.back() || contacts != fixed_limit_contacts) continue;
             loaded = SoftTouchCase{soft_case(body, radius, false), contacts,
                                    slide_at(0, radius, relative_depth * radius, 5)};
-            for (const ContactScheme scheme : {ContactScheme::single, ContactScheme::twice}) {
-                HapticModel model(loaded->patient_case, scheme);
+            for (const std::string name : {"single", "twice"}) {
+                HapticModel model(loaded->patient_case, name);
                 const HandPath path = slide_at(0, 0, relative_depth * radius, seconds);
                 const TickRun run = time_ticks(model, {&path, 1}, Counted::touching);
-                const std::string name(contact_scheme_names[static_cast<std::size_t>(scheme)]);
                 others.push_back(row_of(fmt::format("{}, {} nodes, point", name, nodes), run, 0, 0));
                 others.push_back(
                     {.group = "soft", .name = name + ", collision loop", .times = run.detect, .run = {}});
             }
-            HapticModel model(loaded->patient_case, ContactScheme::continuous, 2);
+            HapticModel model(loaded->patient_case, usual_contact_method, 2);
             const std::array paths{slide_at(-10, radius, relative_depth * radius, seconds),
                                    slide_at(10, radius, relative_depth * radius, seconds)};
             others.push_back(

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/devices/simulation.hpp"
+
+#include <cassert>
+#include <utility>
+
+#include "formats/model/arrays.hpp"
+#include "runtime/devices/dynamic_device.hpp"
+#include "runtime/devices/guided_device.hpp"
+#include "runtime/devices/mounted_device.hpp"
+#include "runtime/devices/simulated_device.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+// A guided tool is the only one.
+OpenDevices open_stiff_hands(const DeviceRequest& request) {
+    OpenDevices open;
+    for (const HeldTool& tool : request.tools) {
+        if (tool.path) {
+            open.devices.push_back(std::make_shared<SimulatedDevice>(*tool.path, request.limits, tool.shaft));
+            continue;
+        }
+        assert(tool.place);
+        const auto guided = std::make_shared<GuidedDevice>(array_of(tool.place->start), request.limits,
+                                                           GuidedHand::usual_speed, tool.shaft);
+        open.devices.push_back(guided);
+        open.guide = [guided](const Vector3d& p) { guided->set_target(array_of(p)); };
+    }
+    return open;
+}
+
+OpenDevices open_simulated(const DeviceModel& model, const DeviceRequest& request) {
+    OpenDevices open;
+    for (const HeldTool& tool : request.tools) {
+        assert(tool.place);
+        const Eigen::Isometry3d X_PD =
+            mount(tool.place->R_PD, workspace_middle(limits_of(model)), tool.place->start);
+        const Eigen::Isometry3d X_DP = X_PD.inverse();
+        std::shared_ptr<Hand> hand;
+        if (tool.path) {
+            hand = std::make_shared<ScriptedHand>(mapped_path(*tool.path, X_DP));
+        } else {
+            const auto guided = std::make_shared<GuidedHand>(array_of(X_DP * tool.place->start));
+            hand = guided;
+            open.guide = [guided, X_DP](const Vector3d& p) { guided->set_target(array_of(X_DP * p)); };
+        }
+        const Vector3d shaft = X_PD.linear().transpose() * vector_of(tool.shaft);
+        auto device =
+            std::make_unique<DynamicDevice>(model, HandImpedance{}, std::move(hand), array_of(shaft));
+        open.devices.push_back(std::make_shared<MountedDevice>(std::move(device), X_PD));
+    }
+    return open;
+}
+
+}  // namespace
+
+HeldTool scripted_tool(HandPath path, const Vector3d& up, const std::array<double, 3>& shaft) {
+    const DevicePlace place{path.at(0), upright(up)};
+    return {.place = place, .shaft = shaft, .path = std::move(path)};
+}
+
+DeviceLimits limits_asked_by(const HapticSettings& settings) {
+    return {.max_force = settings.max_force, .max_stiffness = settings.coupling_stiffness};
+}
+
+DeviceKind stiff_hand_kind() {
+    return {.name = "",
+            .usage = "",
+            .usage_of_several = "",
+            .sentence = "a hand of infinite stiffness: it is where it was told to be, whatever the force",
+            .simulated = true,
+            .tool_count = one_tool_without_address,
+            .open = [](std::string_view, const DeviceRequest& request) { return open_stiff_hands(request); }};
+}
+
+std::vector<DeviceKind> simulated_kinds() {
+    std::vector<DeviceKind> kinds;
+    for (const DeviceModel& model : device_models())
+        kinds.push_back({.name = model.name,
+                         .usage = model.name,
+                         .usage_of_several = "",
+                         .sentence = "a simulated " + model.product + " in a hand that gives way",
+                         .simulated = true,
+                         .tool_count = one_tool_without_address,
+                         .open = [model](std::string_view, const DeviceRequest& request) {
+                             return open_simulated(model, request);
+                         }});
+    return kinds;
+}
+
+}  // namespace palpate

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "formats/records/tick_result.hpp"
+
+namespace palpate {
+
+/// Where a tool is in one tick.
+struct ContactPose {
+    Eigen::Vector3d tip{0, 0, 0};    ///< p_P, mm
+    Eigen::Vector3d shaft{0, 0, 0};  ///< unit, from the tip along the shaft, frame P; zero: not known
+    bool trusted = false;            ///< false: nobody knows where it is; the rest says nothing
+    bool jumped = false;             ///< it came from afar by a way that nobody saw: contact starts anew
+};
+
+/// How contact with a patient's surfaces is found, kept and answered: what differs between the lines of the
+/// table in contact_methods.hpp. A HapticModel owns one and adds what is common: faults, limits, what a
+/// result says of the device. Everything is allocated on construction. A class that derives from this one
+/// defines its destructor, first of its virtual functions, beside its constructor: then nothing that releases
+/// memory is in the object files of its tick, which tests/house/tick_imports.py reads.
+class ContactMethod {
+  public:
+    virtual ~ContactMethod() = default;
+
+    /// Forgets all contact. Not beside a running tick or detection.
+    virtual void reset() noexcept = 0;
+
+    /// Servo's side, 1 kHz: writes the force on each device before any limit (N, frame P) to `forces`, zero
+    /// on entry, for tools at `poses` behind virtual couplings of stiffness `coupling` (N/mm). Appends
+    /// contacts to the tools' results and raises their depth, body, residual and status; moves tool_position
+    /// from the device to where the tool is, where the method tells the two apart; may add faults. A tool
+    /// that is not trusted feels nothing and its result stays as it is. As many poses, results and forces as
+    /// tools (unchecked). One thread; realtime-safe: no allocation, lock or I/O.
+    virtual void tick(std::span<const ContactPose> poses, double coupling, std::span<TickResult> results,
+                      std::span<Eigen::Vector3d> forces) noexcept = 0;
+
+    /// Collision loop's side, of a method that needs detection: to be called 30 times a second from one
+    /// thread, which may be another than tick()'s. No allocation or lock.
+    virtual void detect() noexcept {}
+    /// The same for a given position (p_P, mm) of a given tick, as a replay has it. Instead of detect().
+    virtual void detect_at(const std::array<double, 3>& /*device*/, std::int64_t /*tick*/) noexcept {}
+};
+
+}  // namespace palpate

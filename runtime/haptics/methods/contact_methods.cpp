@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/haptics/methods/contact_methods.hpp"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "formats/model/errors.hpp"
+#include "runtime/haptics/methods/continuous_contact.hpp"
+#include "runtime/haptics/methods/published_contact.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr ContactCapabilities of_published{.needs_detection = true, .most_tools = 1};
+
+constexpr std::array table{
+    ContactMethodEntry{"single", "is published: inside or outside at 30 Hz decides", of_published,
+                       make_single},
+    ContactMethodEntry{
+        "twice", "is published: the same, with a second test of the last position between two detections",
+        of_published, make_twice},
+    ContactMethodEntry{"continuous",
+                       "is ours: every tick sweeps the tool from the last to the present position",
+                       {.has_radius = true, .sums_rigid_walls = true},
+                       make_continuous},
+};
+
+}  // namespace
+
+std::span<const ContactMethodEntry> contact_methods() {
+    return table;
+}
+
+const ContactMethodEntry& find_contact_method(std::string_view name, const std::string& culprit) {
+    const auto* found = std::ranges::find(table, name, &ContactMethodEntry::name);
+    if (found == table.end()) throw UsageError({culprit, std::string(name), contact_method_names(), ""});
+    return *found;
+}
+
+std::string contact_method_names(std::size_t tool_count) {
+    std::vector<std::string> names;
+    for (const ContactMethodEntry& method : table)
+        if (method.can.most_tools >= tool_count) names.emplace_back(method.name);
+    std::string text;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        text += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
+    return text;
+}
+
+std::string contact_method_sentences() {
+    std::string text;
+    for (const ContactMethodEntry& method : table)
+        text += (text.empty() ? "'" : "; '") + std::string(method.name) + "' " + std::string(method.sentence);
+    return text;
+}
+
+}  // namespace palpate

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "runtime/devices/device_kind.hpp"
+
+namespace palpate {
+
+/// A tracker's tool, by the address of parse_tracker_address(); it tells of the patient's frame itself.
+/// Opening throws as TrackedDevice.
+DeviceKind tracker_kind();
+
+}  // namespace palpate

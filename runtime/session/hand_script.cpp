@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/session/hand_script.hpp"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string_view>
+
+#include "formats/model/errors.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr std::array<std::string_view, 5> scripts{"press", "slide", "tremble", "let-go", "random"};
+
+// A script may have been mistyped.
+void require_file(const std::string& script) {
+    if (!std::filesystem::exists(script))
+        throw InvalidInput({script, "no such script or file",
+                            "press, slide, tremble, let-go, random or a file of positions",
+                            "check the path"});
+}
+
+}  // namespace
+
+bool is_made_to_measure(const std::string& script) {
+    return std::ranges::find(scripts, script) != scripts.end();
+}
+
+HandPath made_to_measure_path(const std::string& script, const TouchPoint& place,
+                              const ScriptSettings& settings, std::uint64_t seed) {
+    if (script == "press") return press_path(place, settings);
+    if (script == "slide") return slide_path(place, settings);
+    if (script == "tremble") return tremble_path(place, settings, seed);
+    if (script == "let-go") return let_go_path(place, settings);
+    return random_path(place, settings, seed);
+}
+
+HandPath recorded_path(const std::string& script) {
+    require_file(script);
+    return read_hand_path(script);
+}
+
+HandPath recorded_axis_path(const std::string& script, std::size_t column, const TouchPoint& place,
+                            const ScriptSettings& settings) {
+    if (is_made_to_measure(script))
+        throw UsageError({"--column", "with --script " + script, "a file of a recorded axis", ""});
+    require_file(script);
+    return recorded_axis_path(place, settings, read_column(script, column));
+}
+
+}  // namespace palpate

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/session/replay.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "formats/asset/asset.hpp"
+#include "formats/model/errors.hpp"
+#include "runtime/session/run_recorder.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr int free_ticks_to_start = 3;
+
+using Rows = std::span<const Tick>;  // of one tick, one for each tool
+
+bool is_free(const Tick& row) {
+    const bool forceless = std::ranges::all_of(row.force, [](double f) { return f == 0; });
+    return row.status == tick_ok && row.faults == no_fault && row.contact_count == 0 && row.depth == 0 &&
+           forceless;
+}
+
+// The ticks that are there for every tool.
+std::vector<Rows> whole_ticks(const Recording& recording) {
+    const std::size_t tools = recording.head.devices.size();
+    const std::span all(recording.ticks);
+    std::vector<Rows> ticks;
+    for (std::size_t at = 0; at + tools <= all.size();) {
+        // In ascending order, so many rows of one tick are one for each tool.
+        if (all[at].tick == all[at + tools - 1].tick) {
+            ticks.push_back(all.subspan(at, tools));
+            at += tools;
+        } else {
+            ++at;
+        }
+    }
+    return ticks;
+}
+
+// One run through a recording.
+class Player {
+  public:
+    Player(const Recording& recording, HapticModel& model, const std::function<void(const TickResult&)>& sink)
+        : ticks_(whole_ticks(recording)),
+          detects_(model.method().can.needs_detection),
+          model_(model),
+          sink_(sink),
+          states_(model.tool_count()),
+          results_(model.tool_count()) {}
+
+    ReplayOutcome play() {
+        for (std::size_t k = 0; k < ticks_.size(); ++k) {
+            const Rows rows = ticks_[k];
+            const bool follows = k > 0 && rows[0].tick == ticks_[k - 1][0].tick + 1;
+            if (!follows) {
+                running_ = false;
+                free_ticks_ = 0;
+            }
+            free_ticks_ = std::ranges::all_of(rows, is_free) ? free_ticks_ + 1 : 0;
+            if (running_ ? tick(rows) : start(rows)) {
+                compare(rows);
+            } else {
+                running_ = false;
+                ++outcome_.skipped_ticks;
+            }
+        }
+        if (!ticks_.empty())
+            outcome_.missing_ticks = ticks_.back()[0].tick + 1 - static_cast<std::int64_t>(ticks_.size());
+        return outcome_;
+    }
+
+  private:
+    bool start(Rows rows) {
+        const bool first = rows[0].tick == 0;
+        if (!first && (free_ticks_ < free_ticks_to_start || (detects_ && rows[0].detected_tick < 0)))
+            return false;
+        model_.reset();
+        if (!tick(rows)) return false;
+        // A tool within a hair of a surface counts as inside for a fresh model.
+        const bool clear = std::ranges::none_of(
+            results_, [](const TickResult& result) { return result.status & starts_inside; });
+        running_ = first || clear;
+        if (running_ && !outcome_.started) outcome_.started = rows[0].tick;
+        return running_;
+    }
+
+    // False if it depends on a position that is missing.
+    bool tick(Rows rows) {
+        if (rows[0].detected_tick >= 0) {
+            const std::int64_t wanted = rows[0].detected_tick;
+            const auto detected =
+                std::ranges::lower_bound(ticks_, wanted, {}, [](Rows r) { return r[0].tick; });
+            if (detected == ticks_.end() || (*detected)[0].tick != wanted) return false;
+            model_.detect_at((*detected)[0].device_position, wanted);
+        }
+        std::ranges::transform(rows, states_.begin(), state_of);
+        model_.tick(states_, results_);
+        return true;
+    }
+
+    void compare(Rows rows) {
+        bool different = false;
+        for (std::size_t t = 0; t < rows.size(); ++t) {
+            TickResult& result = results_[t];
+            const Tick& row = rows[t];
+            result.tick = row.tick;
+            result.tick_ns = row.tick_ns;
+            result.wake_latency_ns = row.wake_latency_ns;
+            result.overruns = row.overruns;
+            sink_(result);
+            if (std::memcmp(result.force.data(), row.force.data(), sizeof(row.force)) == 0) continue;
+            different = true;
+            if (!outcome_.first_difference)
+                outcome_.first_difference = {row.tick, row.tool, row.force, result.force};
+            const double size = (Eigen::Map<const Eigen::Vector3d>(result.force.data()) -
+                                 Eigen::Map<const Eigen::Vector3d>(row.force.data()))
+                                    .norm();
+            if (!(size <= outcome_.largest_difference)) outcome_.largest_difference = size;
+        }
+        ++outcome_.ticks;
+        if (different) ++outcome_.different_ticks;
+    }
+
+    std::vector<Rows> ticks_;
+    bool detects_;
+    HapticModel& model_;
+    const std::function<void(const TickResult&)>& sink_;
+    std::vector<DeviceState> states_;
+    std::vector<TickResult> results_;
+    bool running_ = false;
+    int free_ticks_ = 0;
+    ReplayOutcome outcome_;
+};
+
+}  // namespace
+
+std::unique_ptr<HapticModel> model_of(const Recording& recording, const std::filesystem::path& file,
+                                      const std::filesystem::path& asset, const Case& patient_case) {
+    const RecordingHead& head = recording.head;
+    const std::string digest = asset_digest(asset);
+    if (digest != head.asset_digest)
+        throw InvalidInput(
+            {file.string(),
+             "is of an asset of case '" + head.case_name + "' with SHA-256 " + head.asset_digest,
+             digest + ", that of " + asset.string(), "replay it on the asset that was touched"});
+    const ContactMethodEntry& method = find_contact_method(head.scheme, file.string() + ": scheme");
+    auto model = std::make_unique<HapticModel>(patient_case, method.name, head.devices.size());
+    std::vector<DeviceLimits> limits;
+    std::ranges::transform(head.devices, std::back_inserter(limits), &RecordedDevice::limits);
+    model->couple_to(limits);
+    if (model->coupling() != head.coupling_stiffness)
+        throw InvalidInput({file.string(),
+                            "its coupling is " + std::to_string(head.coupling_stiffness) + " N/mm",
+                            std::to_string(model->coupling()) + " N/mm for its devices",
+                            "replay it with palpate " + head.palpate_version});
+    return model;
+}
+
+ReplayOutcome replay(const Recording& recording, HapticModel& model,
+                     const std::function<void(const TickResult&)>& sink) {
+    return Player(recording, model, sink).play();
+}
+
+}  // namespace palpate

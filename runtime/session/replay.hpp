@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "formats/recording/recording.hpp"
+#include "formats/records/tick_result.hpp"
+#include "runtime/haptics/haptic_model.hpp"
+
+namespace palpate {
+
+/// A force that a replay did not give again.
+struct ForceDifference {
+    std::int64_t tick = 0;
+    std::int32_t tool = 0;
+    std::array<double, 3> recorded{0, 0, 0};  ///< N
+    std::array<double, 3> replayed{0, 0, 0};  ///< N
+};
+
+/// How a replay went.
+struct ReplayOutcome {
+    std::int64_t ticks = 0;               ///< replayed and compared
+    std::int64_t different_ticks = 0;     ///< where a tool's force was not the same, bit for bit
+    std::int64_t missing_ticks = 0;       ///< of the run, up to its last: overwritten or lost
+    std::int64_t skipped_ticks = 0;       ///< recorded, but before a tick from which a replay can start
+    std::optional<std::int64_t> started;  ///< the first tick that was replayed
+    std::optional<ForceDifference> first_difference;
+    double largest_difference = 0;  ///< N
+};
+
+/// A model as the recorded run had it, fresh. `asset`: the file that `patient_case` is from. Throws
+/// InvalidInput naming both if the recording is of another asset, or if it couples differently.
+std::unique_ptr<HapticModel> model_of(const Recording& recording, const std::filesystem::path& file,
+                                      const std::filesystem::path& asset, const Case& patient_case);
+
+/// Feeds what the recorded devices said, and every fault of the run, to a fresh model and compares the
+/// forces; a method that needs detection detects what it detected in the run. `sink` gets each tool's result
+/// of each tick, with the run's own timing. Where ticks are missing, the model is reset and taken up again at
+/// the third tick in a row that is free: no contact, no force, no fault and none of its after-effects; a
+/// method that needs detection needs one in it besides. What went before such a tick has no influence on the
+/// forces after it.
+ReplayOutcome replay(const Recording& recording, HapticModel& model,
+                     const std::function<void(const TickResult&)>& sink);
+
+}  // namespace palpate

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/session/run_record.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <iterator>
+#include <limits>
+#include <ostream>
+
+#include "formats/model/arrays.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+// RFC 4180: a field with a comma, quote or line break stands in quotes.
+std::string csv_field(const std::string& text) {
+    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+    return quoted + '"';
+}
+
+}  // namespace
+
+void write_log_head(std::ostream& log) {
+    log << "t_s,device_x_mm,device_y_mm,device_z_mm,tool_x_mm,tool_y_mm,tool_z_mm,force_x_n,force_y_n,"
+           "force_z_n,depth_mm,contacts,body,triangle,tick_us,wake_us,status,tool,"
+           "faults\n";
+}
+
+void RunRecord::add(const TickResult& result) {
+    const double force = vector_of(result.force).norm();
+    if (curve_.empty() || force > peak_force()) peak_ = result;
+    curve_.push_back({result.time, force, result.depth});
+    if (result.tick == last_tick_ + 1)
+        largest_force_step_ =
+            std::max(largest_force_step_, (vector_of(result.force) - vector_of(last_force_)).norm());
+    last_force_ = result.force;
+    last_tick_ = result.tick;
+    device_depth_ = std::max(device_depth_, result.depth);
+    tool_depth_ = std::max(tool_depth_, tool_depth_of(result));
+    if (result.status != tick_ok) ++statuses_[status_text(result.status)];
+    if (log_) write_row(result);
+}
+
+double RunRecord::peak_force() const {
+    return vector_of(peak_.force).norm();
+}
+
+double RunRecord::tool_depth_of(const TickResult& result) const {
+    if ((result.status & starts_inside) || (result.faults & distrusted_position)) return 0;
+    const double radius = model_.contact_radius();
+    const Vector3d tool = vector_of(result.tool_position);
+    double depth = result.residual;
+    for (std::size_t body = 0; body < model_.rigid_count(); ++body) {
+        const CollisionSurface& surface = model_.surface(body);
+        const bool outside = surface.is_outside(tool);
+        const double far = std::numeric_limits<double>::max();
+        if (const auto nearest = surface.closest_point(tool, outside ? radius : far))
+            depth = std::max(depth, radius + (outside ? -nearest->distance : nearest->distance));
+    }
+    return depth;
+}
+
+void RunRecord::write_row(const TickResult& r) {
+    const auto& d = r.device_position;
+    const auto& t = r.tool_position;
+    const auto& f = r.force;
+    fmt::memory_buffer row;
+    fmt::format_to(
+        std::back_inserter(row),
+        "{:.3f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.5f},{:.5f},{:.5f},{:.4f},{},{},{},{:.2f},"
+        "{:.2f},{},{},{}\n",
+        r.time, d[0], d[1], d[2], t[0], t[1], t[2], f[0], f[1], f[2], r.depth, r.contact_count,
+        r.body < 0 ? "" : csv_field(model_.body_name(static_cast<std::size_t>(r.body))),
+        r.contact_count > 0 ? r.contacts[0].triangle : -1, 1e-3 * static_cast<double>(r.tick_ns),
+        1e-3 * static_cast<double>(r.wake_latency_ns), status_text(r.status), r.tool, fault_names(r.faults));
+    log_->write(row.data(), static_cast<std::streamsize>(row.size()));
+}
+
+}  // namespace palpate

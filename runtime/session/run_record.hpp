@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <iosfwd>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "formats/records/tick_result.hpp"
+#include "runtime/haptics/haptic_model.hpp"
+#include "runtime/session/force_curve.hpp"
+
+namespace palpate {
+
+/// Writes the first row of a log: the names of the columns that RunRecord writes.
+void write_log_head(std::ostream& log);
+
+/// What a run leaves behind of one tool, gathered from its ticks outside the haptic thread.
+class RunRecord {
+  public:
+    /// Writes one CSV row per tick to `log` if it is not null. Model and stream must outlive the record.
+    RunRecord(const HapticModel& model, std::ostream* log) : model_(model), log_(log) {}
+
+    void add(const TickResult& result);
+
+    const std::vector<CurvePoint>& curve() const { return curve_; }
+    const TickResult& peak() const { return peak_; }       ///< the tick with the largest force
+    double peak_force() const;                             ///< N
+    double device_depth() const { return device_depth_; }  ///< deepest below any rest surface, mm
+    /// Deepest that the surface of the tool's tip went below the surface it touched: below a rigid one, or
+    /// what the contact solver left of a deformable one, mm.
+    double tool_depth() const { return tool_depth_; }
+    double largest_force_step() const { return largest_force_step_; }  ///< N between successive ticks
+    /// How many ticks had each unusual status.
+    const std::map<std::string, std::int64_t>& statuses() const { return statuses_; }
+
+  private:
+    void write_row(const TickResult& result);
+    double tool_depth_of(const TickResult& result) const;
+
+    const HapticModel& model_;
+    std::ostream* log_;
+    std::vector<CurvePoint> curve_;
+    TickResult peak_{};
+    std::array<double, 3> last_force_{0, 0, 0};
+    std::int64_t last_tick_ = -2;
+    double device_depth_ = 0;
+    double tool_depth_ = 0;
+    double largest_force_step_ = 0;
+    std::map<std::string, std::int64_t> statuses_;
+};
+
+}  // namespace palpate

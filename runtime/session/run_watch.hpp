@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+#include "runtime/haptics/servo_loop.hpp"
+#include "runtime/realtime/file_watch.hpp"
+#include "runtime/session/fault_log.hpp"
+
+namespace palpate {
+
+/// What stands beside a loop that runs against the clock: tells it when the asset's file is gone, and the
+/// user of each fault once.
+class RunWatch {
+  public:
+    /// `tell` gets a sentence for each fault when it begins. `loop` must outlive this. `asset` empty: not
+    /// watched, for a loop that runs against no clock.
+    RunWatch(const std::filesystem::path& asset, ServoLoop& loop,
+             std::function<void(const std::string&)> tell);
+
+    /// Takes every result that the loop's ring gives.
+    void add(const TickResult& result) { log_.add(result); }
+
+    /// Flags of the faults that were there within the last two seconds of `time` (s), for an eye to read.
+    std::uint32_t recent(double time) const;
+    /// [{fault, tool, from_s, until_s}, ...]; tool is null for a fault of the whole run.
+    nlohmann::ordered_json faults_json() const;
+
+  private:
+    FaultLog log_;
+    std::optional<FileWatch> asset_;
+};
+
+}  // namespace palpate

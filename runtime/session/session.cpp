@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/session/session.hpp"
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "formats/asset/asset.hpp"
+
+namespace palpate {
+
+Session::Session(SessionRequest request, std::function<void(const std::string&)> tell)
+    : request_(std::move(request)),
+      tell_(std::move(tell)),
+      case_(load_asset(request_.asset)),
+      model_(case_, request_.method, request_.tool_count) {}
+
+Session::~Session() {
+    stop();
+}
+
+void Session::hold(OpenDevices devices) {
+    devices_.driver = std::move(devices.driver);
+    devices_.devices = std::move(devices.devices);
+    devices_.servo = devices.servo;
+    devices_.guide = std::move(devices.guide);
+    loop_.emplace(model_, held(), devices_.servo);
+    // Without a clock there is no time in which the asset could go.
+    watch_.emplace(request_.virtual_clock ? std::filesystem::path() : request_.asset, *loop_,
+                   [this](const std::string& sentence) {
+                       if (tell_) tell_(sentence);
+                   });
+    if (!request_.stream.empty()) stream_.emplace(request_.stream, case_, model_.tool_count());
+}
+
+void Session::guide(const Eigen::Vector3d& place) {
+    if (devices_.guide) devices_.guide(place);
+}
+
+RecordingHead Session::recording_head(const std::string& version) const {
+    return palpate::recording_head(request_.asset, case_, model_, held(),
+                                   request_.virtual_clock ? "virtual" : "real", version);
+}
+
+void Session::record_to(const std::filesystem::path& recording) {
+    recorder_.emplace(recording);
+    recording_ = recording;
+}
+
+void Session::start() {
+    try {
+        loop_->start();
+    } catch (...) {
+        if (recorder_) std::filesystem::remove(recording_);  // it holds nothing
+        throw;
+    }
+}
+
+void Session::pump(const Sink& sink) {
+    for (TickResult result; loop_->ring().pop(result);) take(result, sink);
+}
+
+void Session::take(const TickResult& result, const Sink& sink) {
+    watch_->add(result);
+    if (stream_) stream_->show(result);
+    if (recorder_) {
+        recorder_->add(result);
+        if (!request_.virtual_clock) recorder_->set_lost(loop_->ring().dropped());
+    }
+    sink(result);
+}
+
+void Session::stop() {
+    if (loop_) loop_->stop();
+}
+
+void Session::run_virtual(double seconds, const Sink& sink) {
+    loop_->run_virtual(static_cast<std::int64_t>(1000 * seconds),
+                       [&](const TickResult& result) { take(result, sink); });
+}
+
+nlohmann::ordered_json Session::faults_json() const {
+    return watch_->faults_json();
+}
+
+std::optional<std::int64_t> Session::recorded_rows() const {
+    return recorder_ ? std::optional(recorder_->rows()) : std::nullopt;
+}
+
+ServoStatistics Session::statistics() const {
+    ServoStatistics statistics = loop_->statistics();
+    if (request_.virtual_clock)
+        statistics.lost_records = 0;  // the sink got them all, and nobody reads the ring
+    return statistics;
+}
+
+std::vector<Device*> Session::held() const {
+    std::vector<Device*> held;
+    for (const auto& device : devices_.devices) held.push_back(device.get());
+    return held;
+}
+
+}  // namespace palpate

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/model/body.hpp"
+#include "formats/recording/recording.hpp"
+#include "runtime/devices/device_kind.hpp"
+#include "runtime/haptics/haptic_model.hpp"
+#include "runtime/haptics/servo_loop.hpp"
+#include "runtime/session/live_stream.hpp"
+#include "runtime/session/run_recorder.hpp"
+#include "runtime/session/run_watch.hpp"
+
+namespace palpate {
+
+/// What a session is to be.
+struct SessionRequest {
+    std::filesystem::path asset;               ///< read, and watched while the session runs against the clock
+    std::string method{usual_contact_method};  ///< a name of contact_methods()
+    std::size_t tool_count = 1;
+    bool virtual_clock = false;  ///< ticks as fast as possible; forces do not depend on the machine
+    std::string stream{};        ///< "PORT" or "ADDRESS:PORT" of a live stream; empty: none
+};
+
+/// One run with a patient's model and the devices that touch it: haptic and collision loop, watch over
+/// faults, live stream, recording, statistics. Prepared in three steps, each of which throws what cannot be:
+/// made, hold(), and where wanted record_to(); after that only start() or run_virtual(), whose ticks pump()
+/// or the sink hand out. One thread, but where said otherwise.
+class Session {
+  public:
+    using Sink = std::function<void(const TickResult&)>;
+
+    /// Reads the asset and prepares its model. `tell` gets a sentence for each fault when it begins. Throws
+    /// as load_asset() and HapticModel.
+    explicit Session(SessionRequest request, std::function<void(const std::string&)> tell = {});
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
+    ~Session();  ///< stops
+
+    const Case& patient_case() const noexcept { return case_; }
+    const HapticModel& model() const noexcept { return model_; }
+
+    /// Takes devices, one for each tool, couples the model to what they bear and begins to listen for viewers
+    /// of the stream. Once, before what follows. Throws as ServoLoop and LiveStream.
+    void hold(OpenDevices devices);
+    /// Of the first device.
+    std::string device_name() const { return devices_.devices.front()->name(); }
+    /// Says where mouse and keyboard want a guided hand (p_P, mm); nothing where no hand is guided.
+    void guide(const Eigen::Vector3d& place);
+
+    /// What a recording of this session says of it. Throws as recording_head().
+    RecordingHead recording_head(const std::string& version) const;
+    /// Puts every tick into what make_recording() made with that head. Throws as RunRecorder.
+    void record_to(const std::filesystem::path& recording);
+
+    /// Starts to tick against the clock; returns once the servo is set up. Throws as Servo::start(); an empty
+    /// recording is removed then.
+    void start();
+    /// Hands every result since the last call to watch, stream, recording and `sink`, in this thread.
+    void pump(const Sink& sink);
+    /// The latest result of a tool, beside pump().
+    const TickResult& latest(std::size_t tool = 0) noexcept { return loop_->latest(tool).read(); }
+    /// Once a frame, where there is a window: says that it still draws.
+    void visual_beat() noexcept { loop_->visual_beat(); }
+    /// Takes the forces to zero and ends the servo. What it left is still to be pumped.
+    void stop();
+
+    /// Ticks for `seconds` in this thread instead, as fast as possible.
+    void run_virtual(double seconds, const Sink& sink);
+
+    /// Faults of the last two seconds before `time` (s), and of the whole run: see RunWatch.
+    std::uint32_t recent_faults(double time) const { return watch_->recent(time); }
+    nlohmann::ordered_json faults_json() const;
+    /// Rows recorded so far; nothing without a recording.
+    std::optional<std::int64_t> recorded_rows() const;
+    /// Not while it runs.
+    ServoStatistics statistics() const;
+
+  private:
+    void take(const TickResult& result, const Sink& sink);
+    std::vector<Device*> held() const;
+
+    SessionRequest request_;
+    std::function<void(const std::string&)> tell_;
+    Case case_;
+    HapticModel model_;
+    OpenDevices devices_;
+    std::optional<ServoLoop> loop_;
+    std::optional<RunWatch> watch_;
+    std::optional<LiveStream> stream_;
+    std::optional<RunRecorder> recorder_;
+    std::filesystem::path recording_;
+};
+
+}  // namespace palpate

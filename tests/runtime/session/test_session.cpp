@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <chrono>
+#include <gtest/gtest.h>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "formats/asset/asset.hpp"
+#include "formats/model/errors.hpp"
+#include "formats/recording/recording_writer.hpp"
+#include "runtime/devices/simulation.hpp"
+#include "runtime/session/device_list.hpp"
+#include "runtime/session/replay.hpp"
+#include "runtime/session/session.hpp"
+#include "runtime/session/touch_target.hpp"
+#include "tests/formats/sample_case.hpp"
+#include "tests/formats/scratch.hpp"
+#include "tests/runtime/elastic_cube.hpp"
+
+namespace palpate {
+namespace {
+
+std::filesystem::path sample_asset(const sample::Scratch& scratch) {
+    Case patient_case = sample::sample_case();
+    patient_case.deformable_bodies = {sample::true_elastic_cube(3)};
+    const auto path = scratch / "sample.vtkhdf";
+    write_asset(path, patient_case);
+    return path;
+}
+
+// Presses on the cube, with a device in a hand that gives way.
+void hold_a_press(Session& session) {
+    const TouchPoint place = choose_touch_target(session.patient_case(), session.model(), "", {}).place;
+    const HandPath path = press_path(place, {.tool_radius = session.model().contact_radius(), .seconds = 2});
+    session.hold(
+        choose_device("touch").open({.tools = {scripted_tool(path, place.normal, {0, 0, 0})}, .limits = {}}));
+}
+
+void record(Session& session, const std::filesystem::path& file) {
+    make_recording(file, session.recording_head("0"), 4000);
+    session.record_to(file);
+}
+
+TEST(Session, ticks_records_and_counts_in_virtual_time_and_replays_bit_for_bit) {
+    for (const ContactMethodEntry& method : contact_methods()) {
+        const sample::Scratch scratch;
+        const auto asset = sample_asset(scratch), file = scratch / "run.h5";
+        std::int64_t felt = 0, seen = 0;
+        {
+            Session session({.asset = asset, .method = std::string(method.name), .virtual_clock = true});
+            hold_a_press(session);
+            record(session, file);
+            session.run_virtual(2, [&](const TickResult& result) {
+                EXPECT_EQ(result.tick, seen++);
+                felt += result.contact_count > 0;
+            });
+            EXPECT_EQ(session.statistics().ticks, 2000);
+            EXPECT_EQ(session.statistics().lost_records, 0);
+            EXPECT_EQ(session.recorded_rows(), 2000);
+            EXPECT_TRUE(session.faults_json().empty());
+            EXPECT_EQ(session.device_name(), "simulated touch, scripted hand");
+        }
+        EXPECT_EQ(seen, 2000);
+        EXPECT_GT(felt, 100) << method.name;
+        const Recording recording = read_recording(file);
+        EXPECT_EQ(recording.head.clock, "virtual");
+        EXPECT_EQ(recording.head.scheme, method.name);
+        const Case patient_case = read_asset(asset);
+        const auto model = model_of(recording, file, asset, patient_case);
+        const ReplayOutcome outcome = replay(recording, *model, [](const TickResult&) {});
+        EXPECT_EQ(outcome.ticks, 2000);
+        EXPECT_EQ(outcome.different_ticks, 0) << method.name;
+    }
+}
+
+TEST(Session, hands_out_every_tick_of_the_real_clock_once_and_in_order) {
+    const sample::Scratch scratch;
+    Session session({.asset = sample_asset(scratch)});
+    hold_a_press(session);
+    record(session, scratch / "run.h5");
+    std::int64_t next = 0;
+    const Session::Sink in_order = [&](const TickResult& result) { EXPECT_EQ(result.tick, next++); };
+    session.start();
+    while (next < 200) {
+        session.pump(in_order);
+        EXPECT_GE(session.latest().tick + 1, next);
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    session.stop();
+    session.pump(in_order);
+    EXPECT_EQ(session.statistics().ticks, next);
+    EXPECT_EQ(session.statistics().lost_records, 0);
+    EXPECT_EQ(session.recorded_rows(), next);
+    EXPECT_EQ(read_recording(scratch / "run.h5").head.clock, "real");
+}
+
+TEST(Session, tells_of_a_fault_once) {
+    const sample::Scratch scratch;
+    const auto asset = sample_asset(scratch);
+    std::vector<std::string> told;
+    Session session({.asset = asset}, [&](const std::string& sentence) { told.push_back(sentence); });
+    hold_a_press(session);
+    std::filesystem::remove(asset);
+    std::int64_t faulty = 0;
+    session.start();
+    for (int wait = 0; wait < 3000 && faulty < 100; ++wait) {
+        session.pump([&](const TickResult& result) { faulty += (result.faults & asset_removed) != 0; });
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    EXPECT_TRUE(session.recent_faults(session.latest().time) & asset_removed);
+    session.stop();
+    EXPECT_GE(faulty, 100);
+    const auto of_asset = [](const auto& text) { return text.find("asset_removed") != std::string::npos; };
+    EXPECT_EQ(std::ranges::count_if(told, of_asset), 1);
+}
+
+// A driver whose scheduler does not start.
+class DeadServo final : public Servo {
+  public:
+    void start(OnTick) override { throw SystemFailure({"servo", "does not start", "", ""}); }
+    void stop() override {}
+};
+
+TEST(Session, a_servo_that_does_not_start_leaves_no_empty_recording) {
+    const sample::Scratch scratch;
+    DeadServo servo;
+    Session session({.asset = sample_asset(scratch)});
+    OpenDevices devices = choose_device("").open(
+        {.tools = {scripted_tool(HandPath({{0, {0, 0, 50}}}), {0, 0, 1}, {0, 0, 0})}, .limits = {}});
+    devices.servo = &servo;
+    session.hold(std::move(devices));
+    record(session, scratch / "run.h5");
+    EXPECT_THROW(session.start(), SystemFailure);
+    EXPECT_FALSE(std::filesystem::exists(scratch / "run.h5"));
+}
+
+TEST(Session, guides_the_hand_that_nothing_else_moves) {
+    const sample::Scratch scratch;
+    Session session({.asset = sample_asset(scratch), .virtual_clock = true});
+    const Eigen::Vector3d start{0, 0, 60}, there{1, 2, 62};
+    session.hold(choose_device("").open({.tools = {{.place = DevicePlace{.start = start}}}, .limits = {}}));
+    session.guide(there);
+    TickResult last{};
+    session.run_virtual(0.5, [&](const TickResult& result) { last = result; });
+    for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(last.device_position[axis], there[axis], 1e-9);
+}
+
+TEST(Session, takes_as_many_devices_as_it_has_tools) {
+    const sample::Scratch scratch;
+    Session session({.asset = sample_asset(scratch), .tool_count = 2, .virtual_clock = true});
+    EXPECT_THROW(hold_a_press(session), InvalidInput);
+}
+
+}  // namespace
+}  // namespace palpate
