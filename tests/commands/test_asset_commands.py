@@ -170,7 +170,7 @@ class Pack(AssetCommand):
         self.assertNothingLeft()
 
     def test_wrong_arguments_are_usage_errors(self):
-        for text in ("skull", "skull=a", "=a,b", "skull=,b", "skull=a,"):
+        for text in ("skull", "skull=", "=a,b", "skull=,b", "skull=a,"):
             made = run(BIN / "palpate-pack", "--name", "case", "--rigid", text, "-o", self.asset)
             self.assertFails(made, USAGE, "NAME=SURFACE.vtp,TREE.obb.h5")
         self.assertNothingLeft()

@@ -105,8 +105,8 @@ class Build(unittest.TestCase):
     def test_first_build_runs_every_stage_and_leaves_asset_and_report(self):
         self.assertTrue(all(row["status"] == "run" for row in self.first["stages"]))
         names = [row["stage"] for row in self.first["stages"]]
-        self.assertEqual(names, ["import volume", "import labels", "segment", "surface spine", "obb spine",
-                                 "mesh liver", "obb liver", "condense liver", "pack", "touch", "report"])
+        self.assertEqual(names, ["import volume", "import labels", "segment", "surface spine",
+                                 "mesh liver", "condense liver", "pack", "touch", "report"])
         self.assertTrue((self.folder / "case.vtkhdf").exists())
         self.assertIn("</html>", (self.folder / "case.html").read_text())
 

@@ -98,13 +98,18 @@ class Mesh(MeshingCommand):
             self.assertLess(region["centroid_distance_mm"], 0.05)
             self.assertLess(region["surface_distance_mm"]["mean"], 0.1)  # the facet distance is 0.3
         self.assertEqual(result["attempts"], [{"tetrahedra": result["tetrahedra"], "misses": []}])
-        angles = next(check for check in result["checks"] if "dihedral" in check["what"])
-        self.assertEqual((angles["limit"], angles["kept"]), ("12° ... 165°", True))
+        checks = {check["name"]: check for check in result["checks"]}
+        self.assertEqual([(checks[name]["bound"], checks[name]["limit"], checks[name]["unit"], checks[name]["met"])
+                          for name in ("min_dihedral_deg", "max_dihedral_deg")],
+                         [("at least", 12, "degrees", True), ("at most", 165, "degrees", True)])
+        self.assertEqual(checks["min_dihedral_deg"]["value"], result["min_dihedral_deg"])
+        self.assertEqual(checks["min_dice"]["value"], result["dice"])
 
     def test_missed_limits_are_listed_with_every_attempt(self):
         result = self.result_of("mesh", *self.mesh("--max-mean-distance", 0.04, "--attempts", 8))
         first, last = result["attempts"][0], result["attempts"][-1]
-        self.assertIn("mean surface distance", first["misses"][0]["what"])
+        self.assertEqual(first["misses"][0]["name"], "max_mean_distance_mm")
+        self.assertGreater(first["misses"][0]["value"], 0.04)
         self.assertEqual(last, {"tetrahedra": result["tetrahedra"], "misses": []})
         self.assertGreater(last["tetrahedra"], first["tetrahedra"])
 
@@ -121,7 +126,7 @@ class Mesh(MeshingCommand):
         self.assertGreater(fine["tetrahedra"], 2 * coarse["tetrahedra"])
 
     def test_missed_contract_names_the_worst_places(self):
-        self.expect_refusal(QUALITY, ["dihedral angles", " at (", "70° ... "], "mesh",
+        self.expect_refusal(QUALITY, ["smallest dihedral angle is", " at (", "at least 70°"], "mesh",
                             *self.mesh("--min-dihedral-deg", 70))
         self.expect_refusal(QUALITY, ["Dice coefficient of the body", "0.99999", "after 2 meshes"], "mesh",
                             *self.mesh("--min-dice", 0.99999, "--attempts", 2))

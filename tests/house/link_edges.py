@@ -21,15 +21,18 @@ ROOMS = {
     "asset": {"model", "hdf5", "openssl", "threads"},
     "recording": {"model", "asset"},
     "imaging": {"model", "itk", "hdf5", "dcmtk", "vtk", "json"},  # HDF5 is one of ITK's own
-    "meshing": {"model", "cgal", "vtk"},
+    "meshing": {"model", "cgal", "vtk", "json"},
     "obb": {"model"},
     "fem": {"model", "linear_algebra"},
     "linear_algebra": {"cholmod", "metis", "lapack"},
-    "report": {"model", "asset", "vtk", "json"},
+    "report": {"model", "asset", "meshing", "vtk", "json"},
     "cli": {"model", "cli11", "spdlog", "json", "toml"},
-    "mesh": {"model", "meshing", "json", "fmt"},
-    "condense": {"model", "fem", "json"},
-    "case_builder": {"model", "asset", "cli", "json", "toml"},
+    "requests": {"model", "cli", "json"},
+    "stage_images": {"requests", "imaging"},
+    "stage_shapes": {"requests", "imaging", "meshing"},
+    "stage_bodies": {"requests", "fem", "meshing"},
+    "stage_cases": {"requests", "asset", "meshing", "obb"},
+    "case_builder": {"model", "asset", "cli", "requests", "json", "toml"},
     "seeds": {"model", "imaging", "vtk"},
     "hd_conformance": {"model", "devices", "json"},
     "realtime": {"records"},
@@ -42,7 +45,8 @@ ROOMS = {
     "session": {"model", "asset", "recording", "json", "realtime", "collision", "haptics", "devices", "openigtlink"},
 }
 ROOMS["experiments"] = {"asset", "cli", "session", "fem", "meshing", "obb", "cgal_peer"}  # measures both sides
-COMMANDS = {"model", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "case_builder", "mesh", "condense", "seeds", "json"}
+COMMANDS = {"model", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "case_builder", "requests", "stage_images", "stage_shapes",
+            "stage_bodies", "stage_cases", "seeds", "json"}
 APPS = {"model", "asset", "recording", "cli", "realtime", "collision", "haptics", "devices", "openigtlink", "session", "json"}
 EXECUTABLES = {
     "palpate": {"cli", "model"},

@@ -14,55 +14,45 @@
 namespace palpate::build {
 namespace {
 
-std::string joined(const std::vector<double>& values) {
-    return fmt::format("{}", fmt::join(values, ","));
+// Sets a number, a text or a flag of a request if the table has the key.
+template <typename T>
+void read(TableReader& table, const std::string& key, T& value) {
+    if (const auto found = table.optional<T>(key)) value = *found;
 }
 
-// The rules under `key`, { touching = "skull" } or { sphere_mm = [x, y, z, r] } ..., as palpate condense
-// takes them; files that they name are added to `files`.
-std::vector<std::string> node_rules(TableReader& body, const std::string& key,
-                                    const std::filesystem::path& folder,
-                                    std::vector<std::filesystem::path>& files) {
-    std::vector<std::string> rules;
+// The rules under `key`, { touching = "skull" } or { sphere_mm = [x, y, z, r] } ...
+std::vector<stages::NodePick> node_picks(TableReader& body, const std::string& key,
+                                         const std::filesystem::path& folder) {
+    std::vector<stages::NodePick> picks;
     for (TableReader table : body.tables(key)) {
-        std::vector<std::string> found;
-        if (const auto label = table.optional<std::string>("touching")) found.push_back("touching:" + *label);
-        if (const auto region = table.optional<std::string>("region")) found.push_back("region:" + *region);
-        for (const auto& [shape, count] :
-             std::map<std::string, std::size_t>{{"box", 6}, {"sphere", 4}, {"plane", 6}})
-            if (const auto numbers = table.optional_numbers(shape + "_mm", count))
-                found.push_back(shape + ":" + joined(*numbers));
-        if (const auto file = table.optional<std::string>("nodes_file")) {
-            files.push_back(folder / *file);
-            found.push_back("nodes:" + files.back().string());
-        }
+        stages::NodePick pick;
+        read(table, "touching", pick.touching);
+        read(table, "region", pick.region);
+        pick.box_mm = table.optional_numbers("box_mm", 6).value_or(std::vector<double>{});
+        pick.sphere_mm = table.optional_numbers("sphere_mm", 4).value_or(std::vector<double>{});
+        pick.plane_mm = table.optional_numbers("plane_mm", 6).value_or(std::vector<double>{});
+        if (const auto file = table.optional<std::string>("nodes_file")) pick.nodes_file = folder / *file;
         table.refuse_unknown();
-        if (found.size() != 1)
+        if (table.raw().size() != 1)
             body.fail(table.raw(), key, "has a rule that is not understood",
                       "one of { touching = \"label\" }, { region = \"name\" }, { box_mm = [6] }, { sphere_mm "
                       "= [4] }, "
                       "{ plane_mm = [6] }, { nodes_file = \"nodes.txt\" }");
-        rules.push_back(found.front());
+        picks.push_back(std::move(pick));
     }
-    return rules;
+    return picks;
 }
 
-// How the compliance is computed and stored, as options of palpate condense.
-std::vector<std::string> condense_options(TableReader& body) {
-    std::vector<std::string> options;
-    const auto add = [&](const std::string& option, const std::string& value) {
-        options.push_back(option);
-        options.push_back(value);
-    };
-    if (const auto element = body.choice("element", {"linear", "quadratic"})) add("--element", *element);
+// How the compliance is computed and stored.
+void read_compliance(TableReader& body, stages::CondenseRequest& request) {
+    request.element = body.choice("element", {"linear", "quadratic"}).value_or(request.element);
     TableReader compliance = body.table("compliance");
-    for (const auto& [key, option] : std::map<std::string, std::string>{
-             {"accuracy", "--accuracy"}, {"size_mib", "--size"}, {"memory_gib", "--memory"}})
-        if (const auto value = compliance.positive(key)) add(option, fmt::format("{}", *value));
-    if (const auto form = compliance.choice("representation", {"auto", "dense", "hierarchical"}))
-        add("--representation", *form);
+    request.accuracy = compliance.positive("accuracy").value_or(request.accuracy);
+    request.size_mib = compliance.positive("size_mib").value_or(request.size_mib);
+    request.memory_gib = compliance.positive("memory_gib").value_or(request.memory_gib);
+    request.representation = compliance.choice("representation", {"auto", "dense", "hierarchical"})
+                                 .value_or(request.representation);
     compliance.refuse_unknown();
-    return options;
 }
 
 nlohmann::ordered_json to_json(const toml::node& node) {
@@ -111,106 +101,111 @@ std::string body_name(TableReader& reader) {
 }
 
 // Keys PREFIX_file, PREFIX_unit and PREFIX_frame; with a file, none of the keys that `excluded` names.
-std::optional<ImportedFile> imported_file(TableReader& reader, const std::string& prefix,
-                                          const std::filesystem::path& folder,
-                                          std::initializer_list<const char*> excluded) {
+void read_imported_file(TableReader& reader, const std::string& prefix, const std::filesystem::path& folder,
+                        std::initializer_list<const char*> excluded, std::filesystem::path& file,
+                        std::string& unit, std::string& frame) {
     const auto path = reader.optional<std::string>(prefix + "_file");
-    const auto unit = reader.optional<std::string>(prefix + "_unit"),
-               frame = reader.optional<std::string>(prefix + "_frame");
-    if (!path && (unit || frame))
+    read(reader, prefix + "_unit", unit);
+    read(reader, prefix + "_frame", frame);
+    if (!path && (reader.has(prefix + "_unit") || reader.has(prefix + "_frame")))
         reader.fail(reader.raw(), prefix + "_file", "is missing", "", "or leave out its unit and frame");
-    if (!path) return std::nullopt;
+    if (!path) return;
     for (const char* key : excluded)
         if (reader.has(key))
             reader.fail(*reader.raw().get(key), key, "makes no sense beside " + prefix + "_file", "",
                         "leave one of them out");
-    return ImportedFile{folder / *path, unit.value_or("mm"), frame.value_or("")};
+    file = folder / *path;
 }
 
 RigidSpec rigid(TableReader reader, const std::filesystem::path& folder) {
     RigidSpec spec;
     spec.name = body_name(reader);
-    spec.file = imported_file(reader, "surface", folder, {"label", "isovalue_hu"});
-    spec.label = reader.optional<std::string>("label").value_or(spec.name);
-    spec.isovalue = reader.optional<double>("isovalue_hu");
-    spec.max_triangles = reader.optional<std::int64_t>("max_triangles");
-    spec.max_distance = reader.optional<double>("max_distance_mm");
+    stages::SurfaceRequest& surface = spec.surface;
+    read_imported_file(reader, "surface", folder, {"label", "isovalue_hu"}, surface.surface_file,
+                       surface.unit, surface.frame);
+    const std::string label = reader.optional<std::string>("label").value_or(spec.name);
+    if (surface.surface_file.empty()) surface.label_names = {label};
+    surface.isovalue = reader.optional<double>("isovalue_hu");
+    read(reader, "max_triangles", surface.max_triangles);
+    read(reader, "max_distance_mm", surface.max_distance);
     reader.refuse_unknown();
     return spec;
 }
 
-// Optional numbers `key` of a table, under the option names that a command knows them by.
-std::map<std::string, double> options(TableReader reader,
-                                      const std::map<std::string, std::string>& option_of_key) {
-    std::map<std::string, double> values;
-    for (const auto& [key, option] : option_of_key)
-        if (const auto value = reader.optional<double>(key)) values[option] = *value;
-    reader.refuse_unknown();
-    return values;
+// The fields of a record that a table gives, each under key_of() and in the unit that people write.
+template <typename Table, typename Record>
+void read_record(TableReader& reader, const Table& table, Record& record) {
+    for_each_field(table, [&](const auto& field) {
+        if (const auto value = reader.optional<double>(key_of(field)))
+            record.*field.member = *value / field.written_factor;
+    });
 }
 
-// The options of palpate pack and mesh that set a record's fields, by their keys in a case file.
-template <typename Table>
-std::map<std::string, std::string> option_of_key(const Table& table) {
-    std::map<std::string, std::string> options;
-    for_each_field(table, [&](const auto& field) { options[key_of(field)] = option_name(field.name); });
-    return options;
-}
-
-// near = "label" or [x, y, z], within_mm, cell_size_mm: as palpate mesh --near takes it.
-std::string near_rule(TableReader& rule) {
-    const bool point = rule.raw().get_as<toml::array>("near") != nullptr;
-    const std::string place = point ? joined(rule.numbers("near", 3)) : rule.required<std::string>("near");
-    const auto size = rule.required<double>("cell_size_mm"), within = rule.required<double>("within_mm");
+// near = "label" or [x, y, z], within_mm, cell_size_mm.
+stages::NearPlace near_place(TableReader& rule) {
+    stages::NearPlace place;
+    if (rule.raw().get_as<toml::array>("near") != nullptr) {
+        const std::vector<double> point = rule.numbers("near", 3);
+        place.point = {point[0], point[1], point[2]};
+    } else {
+        place.label = rule.required<std::string>("near");
+    }
+    place.cell_size = rule.required<double>("cell_size_mm");
+    place.within = rule.required<double>("within_mm");
     rule.refuse_unknown();
-    return fmt::format("{}={},{}", place, size, within);
+    return place;
+}
+
+void read_region(TableReader& region, DeformableSpec& spec) {
+    const auto label = region.required<std::string>("label");
+    spec.condense.materials.push_back(
+        {label, region.required<double>("youngs_modulus_kpa"), region.required<double>("poissons_ratio")});
+    const auto cell_size = region.optional<double>("cell_size_mm");
+    const auto mesh_region = region.optional<std::int64_t>("mesh_region");
+    region.refuse_unknown();
+    stages::MeshRequest& mesh = spec.mesh;
+    if (!mesh.mesh_file.empty()) {  // whose cells have their sizes and regions already
+        if (mesh_region) mesh.region_names.push_back({static_cast<std::int32_t>(*mesh_region), label});
+        return;
+    }
+    mesh.regions.push_back(label);
+    if (cell_size) mesh.region_cell_sizes.push_back({label, *cell_size});
 }
 
 DeformableSpec deformable(TableReader reader, const std::filesystem::path& folder) {
     DeformableSpec spec;
-    spec.name = body_name(reader);
-    spec.file = imported_file(reader, "mesh", folder, {"mesh"});
-    spec.sizing = options(reader.table("mesh"), {{"cell_size_mm", "--cell-size"},
-                                                 {"facet_size_mm", "--facet-size"},
-                                                 {"facet_distance_mm", "--facet-distance"},
-                                                 {"smoothing_mm", "--smoothing"}});
-    for (TableReader place : reader.tables("refine")) spec.near.push_back(near_rule(place));
-    spec.fixed = node_rules(reader, "fixed", folder, spec.node_files);
-    spec.contact = node_rules(reader, "contact", folder, spec.node_files);
-    spec.condense_options = condense_options(reader);
-    for (TableReader region : reader.tables("region")) {
-        spec.regions.push_back(
-            {region.required<std::string>("label"), region.required<double>("youngs_modulus_kpa"),
-             region.required<double>("poissons_ratio"), region.optional<double>("cell_size_mm"),
-             region.optional<std::int64_t>("mesh_region")});
-        region.refuse_unknown();
-    }
-    if (spec.regions.empty())
+    spec.name = spec.condense.name = body_name(reader);
+    stages::MeshRequest& mesh = spec.mesh;
+    read_imported_file(reader, "mesh", folder, {"mesh"}, mesh.mesh_file, mesh.unit, mesh.frame);
+    TableReader sizes = reader.table("mesh");
+    read(sizes, "cell_size_mm", mesh.sizing.cell_size);
+    read(sizes, "facet_size_mm", mesh.sizing.facet_size);
+    read(sizes, "facet_distance_mm", mesh.sizing.facet_distance);
+    read(sizes, "smoothing_mm", mesh.sizing.smoothing);
+    sizes.refuse_unknown();
+    for (TableReader rule : reader.tables("refine"))
+        if (const stages::NearPlace place = near_place(rule); mesh.mesh_file.empty())
+            mesh.near.push_back(place);
+    spec.condense.fixed = node_picks(reader, "fixed", folder);
+    spec.condense.contact = node_picks(reader, "contact", folder);
+    read_compliance(reader, spec.condense);
+    for (TableReader region : reader.tables("region")) read_region(region, spec);
+    if (spec.condense.materials.empty())
         reader.fail(reader.raw(), "region", "is missing", "[[deformable.region]] with a label");
     reader.refuse_unknown();
     return spec;
 }
 
 void read_import_options(TableReader& input, const std::filesystem::path& folder, CaseFile& result) {
-    const auto add = [](std::vector<std::string>& options, const std::string& option,
-                        const std::string& value) {
-        options.push_back(option);
-        options.push_back(value);
-    };
-    if (const auto series = input.text_or_number("series")) add(result.volume_options, "--series", *series);
-    if (input.optional<bool>("accept_gaps").value_or(false))
-        result.volume_options.emplace_back("--accept-gaps");
-    if (const auto frame = input.optional<std::string>("nifti_frame")) {
-        add(result.volume_options, "--nifti-frame", *frame);
-        add(result.labels_options, "--nifti-frame", *frame);
-    }
+    result.volume_import.series = input.text_or_number("series").value_or("");
+    read(input, "accept_gaps", result.volume_import.accept_gaps);
+    read(input, "nifti_frame", result.volume_import.nifti_frame);
+    result.labels_import.nifti_frame = result.volume_import.nifti_frame;
     if (const auto names = input.optional<std::string>("label_names")) {
         if (std::filesystem::is_regular_file(folder / *names)) result.label_table = folder / *names;
-        add(result.labels_options, "--label-names",
-            result.label_table ? result.label_table->string() : *names);
+        result.labels_import.label_names = result.label_table ? result.label_table->string() : *names;
     }
-    if (const auto overlaps = input.optional<std::string>("overlaps"))
-        add(result.labels_options, "--overlaps", *overlaps);
+    read(input, "overlaps", result.labels_import.overlaps);
 }
 
 toml::table parse(const std::filesystem::path& path) {
@@ -249,10 +244,12 @@ CaseFile read_case_file(const std::filesystem::path& path) {
         result.rigid.push_back(rigid(table, path.parent_path()));
     for (const TableReader& table : root.tables("deformable"))
         result.deformable.push_back(deformable(table, path.parent_path()));
-    result.haptics = options(root.table("haptics"), option_of_key(haptic_fields));
-    auto of_quality = option_of_key(quality_fields);
-    of_quality["attempts"] = "--attempts";
-    result.quality = options(root.table("quality"), of_quality);
+    TableReader haptics = root.table("haptics"), quality = root.table("quality");
+    read_record(haptics, haptic_fields, result.haptics);
+    haptics.refuse_unknown();
+    read_record(quality, quality_fields, result.quality);
+    read(quality, "attempts", result.attempts);
+    quality.refuse_unknown();
     root.refuse_unknown();
     std::set<std::string> names;
     const auto require_new = [&](const std::string& name) {
@@ -266,15 +263,26 @@ CaseFile read_case_file(const std::filesystem::path& path) {
     return result;
 }
 
+stages::StructureRequest structure_request(
+    const StructureSpec& structure, const std::string& key_ending,
+    const std::function<std::string(const std::filesystem::path&)>& file_value) {
+    stages::StructureRequest request{.words = "", .name = structure.name, .recipe = structure.recipe};
+    request.parameters = structure.parameters;
+    for (const auto& [key, file] : structure.files) request.parameters[key + key_ending] = file_value(file);
+    return request;
+}
+
 bool needs_labels(const CaseFile& case_file) {
-    const auto made_here = [](const auto& body) { return !body.file; };
-    return !case_file.structures.empty() || std::ranges::any_of(case_file.rigid, made_here) ||
-           std::ranges::any_of(case_file.deformable, made_here);
+    return !case_file.structures.empty() || std::ranges::any_of(case_file.rigid, [](const RigidSpec& body) {
+        return body.surface.surface_file.empty();
+    }) || std::ranges::any_of(case_file.deformable, [](const DeformableSpec& body) {
+        return body.mesh.mesh_file.empty();
+    });
 }
 
 void require_what_the_bodies_need(const CaseFile& case_file) {
     for (const RigidSpec& body : case_file.rigid)
-        if (body.isovalue && !case_file.volume)
+        if (body.surface.isovalue && !case_file.volume)
             throw InvalidInput({"rigid body '" + body.name + "'",
                                 "isovalue_hu needs grey values, and no volume is named", "",
                                 "set input.volume or pass --volume, or leave isovalue_hu out"});

@@ -1,11 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "formats/records/haptic_settings.hpp"
+#include "formats/records/quality_contract.hpp"
+#include "tools/stages/requests/condense_request.hpp"
+#include "tools/stages/requests/import_request.hpp"
+#include "tools/stages/requests/mesh_request.hpp"
+#include "tools/stages/requests/segment_request.hpp"
+#include "tools/stages/requests/surface_request.hpp"
 
 namespace palpate::build {
 
@@ -18,44 +27,24 @@ struct StructureSpec {
         files;  ///< parameters file, seeds_file and scribbles, resolved
 };
 
-/// A mesh or surface that somebody made elsewhere.
-struct ImportedFile {
-    std::filesystem::path path;
-    std::string unit = "mm";  ///< um, mm, cm, m or in
-    std::string frame{};      ///< lps or ras; empty: what the file states, else lps
-};
+/// A structure as `palpate segment` takes it; `file_value` writes a file that its recipe reads, under the
+/// parameter's name and `key_ending`.
+stages::StructureRequest structure_request(
+    const StructureSpec& structure, const std::string& key_ending,
+    const std::function<std::string(const std::filesystem::path&)>& file_value);
 
 /// A rigid body: an imported surface, or the surface of a label, or of a grey isovalue near a label.
 struct RigidSpec {
     std::string name;
-    std::optional<ImportedFile> file;
-    std::string label;
-    std::optional<double> isovalue;  ///< HU
-    std::optional<std::int64_t> max_triangles;
-    std::optional<double> max_distance;  ///< mm that decimation may move the surface
+    stages::SurfaceRequest surface;  ///< but for the volume, labels and output of the build
 };
 
-/// One region of a deformable body.
-struct RegionSpec {
-    std::string label;
-    double youngs_modulus_kpa = 0;
-    double poissons_ratio = 0;
-    std::optional<double> cell_size_mm;
-    std::optional<std::int64_t> mesh_region;  ///< its value in an imported mesh
-};
-
-/// A deformable body: regions meshed together, or an imported mesh of them, with rules of `palpate condense`
-/// for the nodes that are held and for those that can be touched.
+/// A deformable body: regions meshed together, or an imported mesh of them, the nodes that are held and those
+/// that can be touched.
 struct DeformableSpec {
     std::string name;
-    std::optional<ImportedFile> file;
-    std::vector<RegionSpec> regions;
-    std::vector<std::string> fixed;                 ///< "touching:skull", "sphere:x,y,z,r", ...
-    std::vector<std::string> contact;               ///< likewise; none: all that is not fixed
-    std::vector<std::filesystem::path> node_files;  ///< those that rules "nodes:FILE" name, resolved
-    std::vector<std::string> condense_options;      ///< of `palpate condense`: element, accuracy, budgets
-    std::vector<std::string> near;         ///< "tumour=3,10", "x,y,z=3,10", as `palpate mesh --near` takes it
-    std::map<std::string, double> sizing;  ///< options of `palpate mesh` by name, mm or degrees
+    stages::MeshRequest mesh;          ///< but for the labels and output of the build
+    stages::CondenseRequest condense;  ///< but for the mesh and output of the build
 };
 
 /// A case file, schema 1: what to build for one patient. Paths are absolute or relative to the case file.
@@ -63,14 +52,15 @@ struct CaseFile {
     std::string name;
     std::optional<std::filesystem::path> volume;       ///< CT or MRI
     std::optional<std::filesystem::path> labels;       ///< label map that structures are imported from
-    std::vector<std::string> volume_options;           ///< of `palpate import`: series, gaps, frame
-    std::vector<std::string> labels_options;           ///< of `palpate import`: names, overlaps, frame
-    std::optional<std::filesystem::path> label_table;  ///< the file among labels_options, if one is
+    stages::ImportRequest volume_import;               ///< how to read it: series, gaps, frame
+    stages::ImportRequest labels_import;               ///< how to read them: names, overlaps, frame
+    std::optional<std::filesystem::path> label_table;  ///< the file that has their names, if one has
     std::vector<StructureSpec> structures;
     std::vector<RigidSpec> rigid;
     std::vector<DeformableSpec> deformable;
-    std::map<std::string, double> haptics;  ///< options of `palpate pack` by name
-    std::map<std::string, double> quality;  ///< contract options of `palpate mesh` by name
+    HapticSettings haptics;
+    QualityContract quality;
+    int attempts = stages::MeshRequest{}.attempts;  ///< to keep the contract
 };
 
 /// Reads a case file. Throws InvalidInput naming file, line and key for a syntax error, an unknown key (with

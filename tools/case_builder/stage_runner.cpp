@@ -23,16 +23,20 @@ nlohmann::ordered_json read_json(const std::filesystem::path& path) {
     return nlohmann::ordered_json::parse(stream, nullptr, false);
 }
 
-// Everything that decides about a stage's outputs. Folders do not: a build that moved is still up to date.
-std::string key_of(const Stage& stage, const std::filesystem::path& program) {
-    std::string text = sha256_file(program) + "\n";
-    for (std::string argument : stage.arguments) {
+// A request with the names of its stage's files instead of their paths.
+nlohmann::ordered_json without_folders(nlohmann::ordered_json json, const Stage& stage) {
+    if (json.is_structured())
+        for (auto& item : json) item = without_folders(item, stage);
+    else if (json.is_string())
         for (const auto* paths : {&stage.inputs, &stage.outputs})
             for (const auto& path : *paths)
-                if (const auto at = argument.find(path.string()); at != std::string::npos)
-                    argument.replace(at, path.string().size(), path.filename().string());
-        text += argument + "\n";
-    }
+                if (json == path.string()) return path.filename().string();
+    return json;
+}
+
+// Everything that decides about a stage's outputs. Folders do not: a build that moved is still up to date.
+std::string key_of(const Stage& stage, const std::filesystem::path& program) {
+    std::string text = sha256_file(program) + "\n" + without_folders(stage.request, stage).dump() + "\n";
     for (const auto& input : stage.inputs) text += content_digest(input) + "\n";
     return digest_of_text(text);
 }
@@ -107,11 +111,13 @@ StageRecord StageRunner::run(Stage stage) const {
     if (!up_to_date) {
         spdlog::info("{}", stage.name);
         std::filesystem::create_directories(folder_);
-        for (const std::string& extra : {std::string("--force"), std::string("--json"), result.string(),
-                                         std::string("--threads"), std::to_string(threads_)})
-            stage.arguments.push_back(extra);
-        if (quiet_) stage.arguments.emplace_back("--quiet");
-        const ChildResult child = run_child(program, stage.arguments);
+        const auto request = std::filesystem::path(result).replace_extension(".request.json");
+        cli::write_text_file(request, stage.request.dump(2) + "\n", true);
+        std::vector<std::string> arguments{
+            "--request", request.string(),        "--force", "--json", result.string(),
+            "--threads", std::to_string(threads_)};
+        if (quiet_) arguments.emplace_back("--quiet");
+        const ChildResult child = run_child(program, arguments);
         if (child.exit_code != 0) fail(stage, child.exit_code);
         record = {{"key", key}, {"seconds", child.seconds}, {"peak_memory_bytes", child.peak_memory_bytes}};
         for (const auto& output : stage.outputs)

@@ -11,7 +11,7 @@ namespace palpate::build {
 struct Stage {
     std::string name;                            ///< "mesh wall"; unique in a build
     std::string command;                         ///< "mesh" runs palpate-mesh
-    std::vector<std::string> arguments;          ///< without --json, --force and --threads
+    nlohmann::ordered_json request;              ///< what the command is asked for, see cli::Command
     std::vector<std::filesystem::path> inputs;   ///< files (or folders) whose content decides about a rerun
     std::vector<std::filesystem::path> outputs;  ///< files that must be there afterwards
 };
@@ -28,9 +28,10 @@ struct StageRecord {
 /// SHA-256 of a file's content; of a folder, of its files' relative names and digests.
 std::string content_digest(const std::filesystem::path& path);
 
-/// Runs stages in order, each only if its program, arguments or the content of an input changed since its
-/// record in `folder`, or an output is missing or altered. Each leaves the command's result as `<stage>.json`
-/// and its record as `<stage>.stage.json`, blanks written as '-'.
+/// Runs stages in order, each only if its program, request or the content of an input changed since its
+/// record in `folder`, or an output is missing or altered. Each leaves its request as
+/// `<stage>.request.json`, the command's result as `<stage>.json` and its record as `<stage>.stage.json`,
+/// blanks written as '-'.
 class StageRunner {
   public:
     /// `programs` holds the palpate-<command> executables; `folder` is made by the first run().

@@ -16,8 +16,8 @@ struct BuildPaths {
     std::filesystem::path report;  ///< .html
 };
 
-/// Lists the stages from image to asset, in order; the last one is "pack". Writes the files that carry
-/// parameters (recipes.json, provenance.json) into `paths.parts`.
+/// Lists the stages from image to asset, in order; the last one is "pack". Writes what made the
+/// asset's parts, provenance.json, into `paths.parts`.
 std::vector<Stage> stages_to_asset(const CaseFile& case_file, const BuildPaths& paths);
 
 /// The stage that presses the finished asset for four seconds of real time.

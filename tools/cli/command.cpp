@@ -2,6 +2,7 @@
 #include "tools/cli/command.hpp"
 
 #include <CLI/CLI.hpp>
+#include <cassert>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -17,6 +18,8 @@
 
 #include "formats/model/errors.hpp"
 #include "formats/model/label_map.hpp"
+#include "tools/cli/request_format.hpp"
+#include "tools/cli/result_lines.hpp"
 #include "tools/cli/slicer_xml.hpp"
 
 namespace palpate::cli {
@@ -36,55 +39,42 @@ std::int64_t peak_memory_bytes() {
     return std::int64_t{usage.ru_maxrss} * 1024;  // Linux reports KiB
 }
 
-std::string cell_text(const nlohmann::ordered_json& value) {
-    if (value.is_string()) return value.get<std::string>();
-    if (value.is_number_float()) return fmt::format("{:.4g}", value.get<double>());
-    return value.dump();
-}
-
-bool is_table(const nlohmann::ordered_json& value) {
-    return value.is_array() && !value.empty() &&
-           std::ranges::all_of(value, [](const auto& row) { return row.is_object(); });
-}
-
-// Rows of scalars under their keys, columns as wide as their widest cell; nested values are left to --json.
-void print_table(const nlohmann::ordered_json& rows, const std::string& name) {
-    std::vector<std::string> keys;
-    for (const auto& [key, cell] : rows.front().items())
-        if (cell.is_primitive()) keys.push_back(key);
-    std::cout << '\n' << name << '\n';
-    std::vector<std::size_t> widths;
-    for (const std::string& key : keys) {
-        std::size_t width = key.size();
-        for (const auto& row : rows)
-            width = std::max(width, cell_text(row.value(key, nlohmann::ordered_json())).size());
-        widths.push_back(width);
-        std::cout << fmt::format("  {:<{}}", key, width);
-    }
-    for (const auto& row : rows) {
-        std::cout << '\n';
-        for (std::size_t k = 0; k < keys.size(); ++k)
-            std::cout << fmt::format("  {:<{}}", cell_text(row.value(keys[k], nlohmann::ordered_json())),
-                                     widths[k]);
-    }
-    std::cout << "\n\n";
-}
-
-void print_lines(const nlohmann::ordered_json& value, const std::string& prefix) {
-    for (const auto& [key, item] : value.items()) {
-        const std::string name = prefix.empty() ? key : prefix + "." + key;
-        if (item.is_object())
-            print_lines(item, name);
-        else if (is_table(item))
-            print_table(item, name);
-        else
-            std::cout << name << ' ' << cell_text(item) << '\n';
-    }
-}
-
 // Refuses "nan" and "inf", which CLI11 reads as numbers; an empty text means accepted.
 std::string finite_number(const std::string& text) {
     return std::isfinite(std::strtod(text.c_str(), nullptr)) ? "" : text + " is not a finite number";
+}
+
+template <typename T>
+nlohmann::ordered_json json_of(const T& value) {
+    return value;
+}
+
+nlohmann::ordered_json json_of(const std::filesystem::path& path) {
+    return path.string();
+}
+
+nlohmann::ordered_json json_of(const std::vector<std::filesystem::path>& paths) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const auto& path : paths) list.push_back(path.string());
+    return list;
+}
+
+template <typename T>
+nlohmann::ordered_json json_of(const std::optional<T>& value) {
+    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+}
+
+template <typename T>
+std::function<nlohmann::ordered_json()> value_of(const T& variable) {
+    return [&variable] { return json_of(variable); };
+}
+
+// "max_triangles" for "--max-triangles".
+std::string key_from(const Option& option) {
+    std::string key = option.name();
+    key.erase(0, key.find_first_not_of('-'));
+    std::ranges::replace(key, '-', '_');
+    return key;
 }
 
 std::string help_footer(const CommandText& text) {
@@ -113,6 +103,11 @@ Command::Command(CommandText text)
     app_->add_flag("--quiet", quiet_, "say nothing but errors")->group(group);
     app_->add_flag("--verbose", verbose_, "say more")->group(group);
     app_->add_flag("--force", force_, "replace existing outputs")->group(group);
+    app_->set_config("--request", "",
+                     "take options from this JSON file, such as a build leaves in OUTPUT.parts")
+        ->group(group);
+    app_->config_formatter(std::make_shared<RequestFormat>(*this));
+    app_->allow_config_extras(CLI::config_extras_mode::error);
     app_->add_flag("--xml")
         ->description("print the Slicer Execution Model description and exit")
         ->group(group);
@@ -123,56 +118,97 @@ Command::Command(CommandText text)
 
 Command::~Command() = default;
 
-Option Command::remember(Parameter::Kind kind, Option option, const std::string& help) {
-    parameters_.push_back({kind, option, help});
+Option Command::remember(Parameter::Kind kind, Option option, const std::string& help, const std::string& key,
+                         std::function<nlohmann::ordered_json()> value) {
+    const std::string unset = value().dump();
+    parameters_.push_back(
+        {kind, option, help, key.empty() ? key_from(option) : key, std::move(value), unset});
     return option;
 }
 
 Option Command::input(const std::string& names, std::filesystem::path& value, const std::string& help) {
-    return remember(Parameter::Kind::input_file, Option(app_->add_option(names, value, help)), help);
+    return remember(Parameter::Kind::input_file, Option(app_->add_option(names, value, help)), help, "",
+                    value_of(value));
 }
 
 Option Command::input(const std::string& names, std::vector<std::filesystem::path>& values,
                       const std::string& help) {
-    return remember(Parameter::Kind::input_file, Option(app_->add_option(names, values, help)), help);
+    return remember(Parameter::Kind::input_file, Option(app_->add_option(names, values, help)), help, "",
+                    value_of(values));
 }
 
 Option Command::output(const std::string& names, std::filesystem::path& value, const std::string& help) {
-    return remember(Parameter::Kind::output_file, Option(app_->add_option(names, value, help)), help);
+    return remember(Parameter::Kind::output_file, Option(app_->add_option(names, value, help)), help, "",
+                    value_of(value));
 }
 
 Option Command::flag(const std::string& names, bool& value, const std::string& help) {
-    return remember(Parameter::Kind::flag, Option(app_->add_flag(names, value, help)), help);
+    return remember(Parameter::Kind::flag, Option(app_->add_flag(names, value, help)), help, "",
+                    value_of(value));
 }
 
 template <typename T>
-Option Command::option(const std::string& names, T& value, const std::string& help, const std::string& unit) {
+Option Command::option(const std::string& names, T& value, const std::string& help, const std::string& unit,
+                       const std::string& key) {
     const std::string full_help = unit.empty() ? help : help + " [" + unit + "]";
     CLI::Option* const option = app_->add_option(names, value, full_help);
     auto kind = Parameter::Kind::text;
     if constexpr (std::is_floating_point_v<T>) {
         kind = Parameter::Kind::number;
         option->default_str(fmt::format("{}", value))->check(finite_number);
+    } else if constexpr (std::is_same_v<T, std::optional<double>>) {
+        kind = Parameter::Kind::number;
+        option->check(finite_number);
     } else if constexpr (std::is_integral_v<T>) {
         kind = Parameter::Kind::integer;
         option->default_str(fmt::format("{}", value));
     } else if constexpr (std::is_same_v<T, std::string>) {
         if (!value.empty()) option->default_str(value);
     }
-    return remember(kind, Option(option), full_help);
+    return remember(kind, Option(option), full_help, key, value_of(value));
 }
 
-template Option Command::option(const std::string&, double&, const std::string&, const std::string&);
-template Option Command::option(const std::string&, int&, const std::string&, const std::string&);
-template Option Command::option(const std::string&, std::int64_t&, const std::string&, const std::string&);
-template Option Command::option(const std::string&, std::uint64_t&, const std::string&, const std::string&);
+Option Command::items(const std::string& names, ItemList list, const std::string& help,
+                      const std::string& unit, const std::string& key) {
+    const std::string full_help = unit.empty() ? help : help + " [" + unit + "]";
+    const std::function<void(const std::vector<std::string>&)> read = list.read;
+    CLI::Option* const option = app_->add_option_function<std::vector<std::string>>(names, read, full_help);
+    return remember(Parameter::Kind::text, Option(option), full_help, key, std::move(list.write));
+}
+
+nlohmann::ordered_json Command::request() const {
+    nlohmann::ordered_json request = nlohmann::ordered_json::object();
+    for (const Parameter& parameter : parameters_)
+        if (auto value = parameter.value(); value.dump() != parameter.unset)
+            request[parameter.key] = std::move(value);
+    return request;
+}
+
+const std::string& Command::key_of(const std::string& option) const {
+    const auto found = std::ranges::find_if(
+        parameters_, [&](const Parameter& parameter) { return parameter.option.name() == option; });
+    assert(found != parameters_.end());
+    return found->key;
+}
+
+template Option Command::option(const std::string&, double&, const std::string&, const std::string&,
+                                const std::string&);
+template Option Command::option(const std::string&, int&, const std::string&, const std::string&,
+                                const std::string&);
+template Option Command::option(const std::string&, std::int64_t&, const std::string&, const std::string&,
+                                const std::string&);
+template Option Command::option(const std::string&, std::uint64_t&, const std::string&, const std::string&,
+                                const std::string&);
 template Option Command::option(const std::string&, std::optional<std::uint64_t>&, const std::string&,
+                                const std::string&, const std::string&);
+template Option Command::option(const std::string&, std::optional<double>&, const std::string&,
+                                const std::string&, const std::string&);
+template Option Command::option(const std::string&, std::string&, const std::string&, const std::string&,
                                 const std::string&);
-template Option Command::option(const std::string&, std::string&, const std::string&, const std::string&);
 template Option Command::option(const std::string&, std::vector<double>&, const std::string&,
-                                const std::string&);
+                                const std::string&, const std::string&);
 template Option Command::option(const std::string&, std::vector<std::string>&, const std::string&,
-                                const std::string&);
+                                const std::string&, const std::string&);
 
 int Command::parse(int argc, char** argv) {
     // Not left to CLI11: --xml must work without the required arguments.
@@ -200,6 +236,9 @@ int Command::parse(int argc, char** argv) {
                 std::cerr << "; did you mean " << near.front() << "?";
         }
         std::cerr << '\n';
+    } catch (const CLI::FileError&) {
+        throw InvalidInput(
+            {app_->get_option("--request")->as<std::string>(), "no such file", "", "check the path"});
     } catch (const CLI::ParseError& error) {
         std::cerr << "palpate-" << text_.name << ": " << error.what() << "; see 'palpate " << text_.name
                   << " --help'\n";
@@ -221,20 +260,20 @@ void Command::emit(nlohmann::ordered_json result, const std::string& text, doubl
     } else if (!text.empty()) {
         std::cout << text;
     } else {
-        print_lines(result, "");
+        print_result(result);
     }
 }
 
 int Command::run(int argc, char** argv, const std::function<nlohmann::ordered_json(Session&)>& job) {
-    if (const int code = parse(argc, argv); code >= 0) return code;
     const std::string program = "palpate-" + text_.name;
-    set_up_logging(program, quiet_, verbose_);
-    remove_staged_files_on_interrupt();
     const auto start = std::chrono::steady_clock::now();
     const auto say = [&](const std::exception& error) {
         std::cerr << program << ": " << with_final_names(error.what()) << '\n';
     };
     try {
+        if (const int code = parse(argc, argv); code >= 0) return code;
+        set_up_logging(program, quiet_, verbose_);
+        remove_staged_files_on_interrupt();
         for (const Parameter& parameter : parameters_)
             if (parameter.kind == Parameter::Kind::input_file)
                 for (const std::string& path : parameter.option.words())

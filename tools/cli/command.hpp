@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "formats/model/errors.hpp"
+#include "tools/cli/item_list.hpp"
 #include "tools/cli/option.hpp"
 #include "tools/cli/progress.hpp"
 #include "tools/cli/staged_file.hpp"
@@ -43,12 +44,15 @@ struct CommandText {
     std::string notes;                  ///< further help: formats, units, sources; may be empty
 };
 
-/// One option as the help and the Slicer description know it.
+/// One option as the help, the Slicer description and request files know it.
 struct Parameter {
     enum class Kind { input_file, output_file, number, integer, text, flag };
     Kind kind;
     Option option;
     std::string help;
+    std::string key;                                ///< in request files: "cell_size_mm"
+    std::function<nlohmann::ordered_json()> value;  ///< of the variable, at present
+    std::string unset;                              ///< that value before anything was read, as JSON text
 };
 
 /// What one run of a command may use.
@@ -77,6 +81,10 @@ struct Session {
 ///         command.output("-o,--output", output, "OBB tree (.obb.h5)")->required();
 ///         return command.run(argc, argv, [&](cli::Session& session) { ...; return Json{...}; });
 ///     }
+///
+/// What the options say can come from a file as well, `--request FILE.json`: one JSON object whose keys are
+/// the options' names with '_' for '-' ("max_triangles") or the key that an option was given
+/// ("cell_size_mm"). Rules and errors are the same; an option on the command line goes before the file's.
 class Command {
   public:
     explicit Command(CommandText text);
@@ -91,9 +99,23 @@ class Command {
     Option flag(const std::string& names, bool& value, const std::string& help);
 
     /// Adds a number, a text or a list of either; command.cpp lists the types. `unit` ("mm", "kPa", "" for
-    /// none) and the default, which is the present content of `value`, are part of the help.
+    /// none) and the default, which is the present content of `value`, are part of the help. `key` is its
+    /// name in request files if that is another than the option's.
     template <typename T>
-    Option option(const std::string& names, T& value, const std::string& help, const std::string& unit = "");
+    Option option(const std::string& names, T& value, const std::string& help, const std::string& unit = "",
+                  const std::string& key = "");
+
+    /// Adds a list of records, each a word on the command line and a JSON object in a request file; see
+    /// item_list().
+    Option items(const std::string& names, ItemList list, const std::string& help,
+                 const std::string& unit = "", const std::string& key = "");
+
+    /// The present values of all variables that are not as they were when they were added, under their keys:
+    /// what `--request` reads.
+    nlohmann::ordered_json request() const;
+
+    /// The key in request files of an option, "--cell-size". Precondition: there is such an option.
+    const std::string& key_of(const std::string& option) const;
 
     /// Parses, runs `job`, writes its JSON result to stdout (as lines "name value", or as JSON with --json),
     /// and returns the exit code. `job` returns an object; run() adds schema, version, seconds and peak
@@ -104,7 +126,8 @@ class Command {
     const std::vector<Parameter>& parameters() const { return parameters_; }
 
   private:
-    Option remember(Parameter::Kind kind, Option option, const std::string& help);
+    Option remember(Parameter::Kind kind, Option option, const std::string& help, const std::string& key,
+                    std::function<nlohmann::ordered_json()> value);
     int parse(int argc, char** argv);
     void emit(nlohmann::ordered_json result, const std::string& text, double seconds,
               StagedFile* json_file) const;

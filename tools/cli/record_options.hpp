@@ -11,7 +11,8 @@ namespace palpate::cli {
 template <typename Table, typename Record>
 void record_options(Command& command, const Table& table, Record& record, const std::string& before = "") {
     for_each_field(table, [&](const auto& field) {
-        command.option(option_name(field.name), record.*field.member, before + field.meaning, field.unit);
+        command.option(option_name(field.name), record.*field.member, before + field.meaning, field.unit,
+                       key_of(field));
     });
 }
 

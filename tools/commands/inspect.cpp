@@ -5,8 +5,7 @@
 #include "formats/asset/asset.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/record_json.hpp"
-#include "tools/commands/condense/arguments.hpp"
-#include "tools/commands/condense/results.hpp"
+#include "tools/stages/body_result.hpp"
 
 namespace {
 using namespace palpate;
@@ -56,9 +55,9 @@ void add_regions(Json& rows, const DeformableBody& body) {
 
 Json row_of(const std::string& name, const DeformableBody& body) {
     Json row{{"body", name},
-             {"element_order", condensation::name_of(body.element_order)},
-             {"representation", condensation::representation_of(body.compliance)}};
-    row.update(condensation::to_json(body.certificate));
+             {"element_order", stages::name_of(body.element_order)},
+             {"representation", stages::representation_of(body.compliance)}};
+    row.update(stages::to_json(body.certificate));
     return row;
 }
 

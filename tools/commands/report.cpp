@@ -3,7 +3,6 @@
 #include "tools/report/report.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <fmt/format.h>
 #include <fstream>
 #include <iterator>
@@ -15,6 +14,8 @@
 #include "tools/meshing/measures/surface_distance.hpp"
 #include "tools/meshing/surfaces/surfaces.hpp"
 #include "tools/report/html.hpp"
+#include "tools/stages/requests/report_request.hpp"
+#include "tools/stages/surface.hpp"
 
 namespace {
 
@@ -56,43 +57,30 @@ SurfaceComparison comparison_of(const std::string& body, const TriangleMesh& sur
             distance.farthest};
 }
 
-// "skull" or "skull,226": a body is the outline of its label or the grey isovalue around it.
-struct RigidOrigin {
-    std::string body, label;
-    std::optional<double> isovalue;
-};
-
-RigidOrigin parse_origin(const std::string& text) {
-    const auto equals = text.find('='), comma = text.find(',', equals == std::string::npos ? 0 : equals);
-    RigidOrigin origin{text.substr(0, equals), "", {}};
-    if (equals != std::string::npos) origin.label = text.substr(equals + 1, comma - equals - 1);
-    double value = 0;
-    const char* end = text.data() + text.size();
-    if (comma != std::string::npos && std::from_chars(text.data() + comma + 1, end, value).ptr == end)
-        origin.isovalue = value;
-    if (origin.body.empty() || origin.label.empty() || (comma != std::string::npos && !origin.isovalue))
-        throw UsageError({"--rigid " + text, "cannot be read", "BODY=LABEL or BODY=LABEL,ISOVALUE", ""});
-    return origin;
-}
-
-// What `palpate surface` makes before it decimates.
-TriangleMesh full_surface(const RigidOrigin& origin, const LabelMap& labels, const Volume* volume,
-                          const std::string& culprit) {
-    const std::array<std::int32_t, 1> value{require_label(labels, origin.label, culprit).value};
-    constexpr std::int64_t min_triangles = 100;
-    if (!origin.isovalue) return keep_large_pieces(label_surface(labels, value), min_triangles);
-    if (volume == nullptr)
+// The rigid body's surface against what `palpate surface` made of the same origin before it decimated.
+SurfaceComparison comparison_of(const stages::RigidOrigin& origin, const Case& patient_case,
+                                const LabelMap& labels, const std::optional<Volume>& volume,
+                                const std::filesystem::path& labels_path) {
+    const auto body = std::ranges::find(patient_case.rigid_bodies, origin.body, &RigidBody::name);
+    if (body == patient_case.rigid_bodies.end())
+        throw InvalidInput({"--rigid " + origin.body + "=" + origin.label, "the case has no such rigid body",
+                            "", "see 'palpate inspect'"});
+    if (origin.isovalue && !volume)
         throw UsageError(
             {"--rigid", "an isovalue needs --volume", "", "give the volume, or the label alone"});
-    constexpr int mask_reach = 2;
-    Volume masked = *volume;
-    keep_near_labels(masked, labels, value, mask_reach);
-    return keep_large_pieces(isosurface(masked, *origin.isovalue), min_triangles);
+    stages::SurfaceRequest request;
+    request.labels = labels_path;
+    request.label_names = {origin.label};
+    request.isovalue = origin.isovalue;
+    const TriangleMesh full = full_surface(request, labels, origin.isovalue ? volume : std::nullopt);
+    const std::string what = origin.isovalue ? fmt::format("the surface at {:g} HU", *origin.isovalue)
+                                             : "the outline of " + origin.label;
+    return comparison_of(origin.body, body->surface,
+                         what + ", " + html::grouped(std::ssize(full.triangles)) + " triangles", full);
 }
 
-std::vector<SurfaceComparison> comparisons_of(const Case& patient_case, const LabelMap& labels,
-                                              const Volume* volume, const std::vector<std::string>& origins,
-                                              const std::string& culprit) {
+std::vector<SurfaceComparison> comparisons_of(const stages::ReportRequest& request, const Case& patient_case,
+                                              const LabelMap& labels, const std::optional<Volume>& volume) {
     std::vector<SurfaceComparison> comparisons;
     for (const DeformableBody& body : patient_case.deformable_bodies) {
         std::vector<std::int32_t> values;
@@ -106,20 +94,32 @@ std::vector<SurfaceComparison> comparisons_of(const Case& patient_case, const La
             comparisons.push_back(comparison_of(body.name, body.boundary.surface, "the outline of " + names,
                                                 label_surface(labels, values)));
     }
-    for (const std::string& text : origins) {
-        const RigidOrigin origin = parse_origin(text);
-        const auto body = std::ranges::find(patient_case.rigid_bodies, origin.body, &RigidBody::name);
-        if (body == patient_case.rigid_bodies.end())
-            throw InvalidInput(
-                {"--rigid " + text, "the case has no such rigid body", "", "see 'palpate inspect'"});
-        const TriangleMesh full = full_surface(origin, labels, volume, culprit);
-        const std::string what = origin.isovalue ? fmt::format("the surface at {:g} HU", *origin.isovalue)
-                                                 : "the outline of " + origin.label;
-        comparisons.push_back(
-            comparison_of(origin.body, body->surface,
-                          what + ", " + html::grouped(std::ssize(full.triangles)) + " triangles", full));
-    }
+    for (const stages::RigidOrigin& origin : request.rigid)
+        comparisons.push_back(comparison_of(origin, patient_case, labels, volume, request.labels));
     return comparisons;
+}
+
+std::string page_of(const stages::ReportRequest& request, cli::Session& session) {
+    const Case patient_case = read_asset(request.asset);
+    std::optional<Volume> volume;
+    std::optional<LabelMap> labels;
+    if (!request.volume.empty()) volume = read_volume(request.volume);
+    if (!request.labels.empty()) labels = read_label_map(request.labels);
+    ReportInputs inputs{.patient_case = patient_case,
+                        .volume = volume ? &*volume : nullptr,
+                        .labels = labels ? &*labels : nullptr};
+    if (!request.rigid.empty() && !labels)
+        throw UsageError({"--rigid", "needs --labels", "the label map that the body was made from", ""});
+    if (labels) {
+        session.progress.step("measuring distances", 0.1);
+        inputs.comparisons = comparisons_of(request, patient_case, *labels, volume);
+    }
+    if (!request.touch.empty()) inputs.touch = json_of(request.touch);
+    if (!request.curve.empty()) inputs.force_curve_svg = svg_of(request.curve);
+    if (!request.stages.empty())
+        inputs.stages = stages_from_json(json_of(request.stages), request.stages.string());
+    session.progress.step("drawing", 0.3);
+    return html_report(inputs);
 }
 
 }  // namespace
@@ -134,46 +134,15 @@ int main(int argc, char** argv) {
               "--curve force.svg -o head.html"},
          .notes =
              "Pictures are drawn on the display that DISPLAY names, without one on an Xvfb of its own."});
-    std::filesystem::path asset, volume_path, labels_path, touch, curve, stages, output;
-    std::vector<std::string> rigid;
-    command.input("asset", asset, "case to report on (.vtkhdf)").required();
-    command.input("--volume", volume_path, "volume to show slices of, any format of 'palpate import'");
-    command.input("--labels", labels_path, "label map to show contours of (.seg.nrrd)");
-    command.option(
-        "--rigid", rigid,
-        "BODY=LABEL or BODY=LABEL,ISOVALUE: what a rigid body was made from, to map its distance; repeat "
-        "for more");
-    command.input("--touch", touch, "statistics made by 'palpate touch --json'");
-    command.input("--curve", curve, "force curve made by 'palpate touch --curve' (.svg)");
-    command.input("--stages", stages, "stage times and peak memory made by 'palpate build' (.json)");
-    command.output("-o,--output", output, "page to write (.html)").required();
-
+    stages::ReportRequest request;
+    declare(command, request);
     return command.run(argc, argv, [&](cli::Session& session) {
-        cli::StagedFile page = session.stage(output);
+        cli::StagedFile page = session.stage(request.output);
         set_imaging_threads(session.threads);
         session.progress.step("reading the case", 0);
-        const Case patient_case = read_asset(asset);
-        std::optional<Volume> volume;
-        std::optional<LabelMap> labels;
-        if (!volume_path.empty()) volume = read_volume(volume_path);
-        if (!labels_path.empty()) labels = read_label_map(labels_path);
-        ReportInputs inputs{.patient_case = patient_case,
-                            .volume = volume ? &*volume : nullptr,
-                            .labels = labels ? &*labels : nullptr};
-        if (!rigid.empty() && !labels)
-            throw UsageError({"--rigid", "needs --labels", "the label map that the body was made from", ""});
-        if (labels) {
-            session.progress.step("measuring distances", 0.1);
-            inputs.comparisons =
-                comparisons_of(patient_case, *labels, inputs.volume, rigid, labels_path.string());
-        }
-        if (!touch.empty()) inputs.touch = json_of(touch);
-        if (!curve.empty()) inputs.force_curve_svg = svg_of(curve);
-        if (!stages.empty()) inputs.stages = stages_from_json(json_of(stages), stages.string());
-        session.progress.step("drawing", 0.3);
-        const std::string html = html_report(inputs);
+        const std::string html = page_of(request, session);
         page.write_text(html);
         page.commit();
-        return nlohmann::json{{"report", output.string()}, {"bytes", html.size()}};
+        return nlohmann::json{{"report", request.output.string()}, {"bytes", html.size()}};
     });
 }

@@ -52,6 +52,59 @@ ordered_json describe(const SeedWindowResult& result, const std::filesystem::pat
     return description;
 }
 
+// What the command line asks for.
+struct SeedsRequest {
+    std::filesystem::path volume, seeds, output = "seed.mrk.json";
+    std::vector<std::string> labels;
+    std::vector<double> window_level;
+};
+
+void declare_seeds(cli::Command& command, SeedsRequest& request) {
+    command.input("volume", request.volume, "volume, any format that 'palpate import' reads").required();
+    command.output("-o,--output", request.output, "seeds for 3D Slicer, 'segment' and case files (.mrk.json)")
+        .shown_default(request.output.string());
+    command
+        .option("--label", request.labels,
+                "a structure to place seeds in, up to nine [default: the output's name up to its first dot]")
+        .one_value_each();  // the next word may be the volume
+    command.input("--seeds", request.seeds, "seeds to start from (.mrk.json, .fcsv)");
+    command
+        .option("--window-level", request.window_level,
+                "WIDTH,LEVEL of the grey window at first [default: 400,40 for a CT, else the 1st to 99th "
+                "percentile]",
+                "HU, or the volume's own values")
+        .one_value_each(',');
+}
+
+ordered_json run_seeds(SeedsRequest request, cli::Session& session) {
+    const std::filesystem::path& output = request.output;
+    if (!output.filename().string().ends_with(".mrk.json"))
+        throw UsageError({"--output", output.string(), "a name that ends in .mrk.json", ""});
+    for (const std::string& label : request.labels) check_label(label);
+    session.stage(output);  // refuses now what could not be written after the clicking
+    session.progress.step("reading", 0);
+    const Volume volume =
+        read_volume(request.volume, [](std::string_view text) { spdlog::warn("{}", text); });
+    const std::vector<Seed> seeds = request.seeds.empty() ? std::vector<Seed>{} : read_seeds(request.seeds);
+    if (request.labels.empty() && seeds.empty()) request.labels.push_back(structure_of(output));
+    SeedWindowSettings settings{.title = request.volume.filename().string(),
+                                .state = start_state(volume.grid, request.labels, seeds),
+                                .greys = greys_of(volume, request.window_level),
+                                .save = {}};
+    bool written = false;
+    settings.save = [&](std::span<const Seed> placed) {
+        cli::StagedFile staged(output, session.force || written);
+        write_seeds(staged.path(), placed);
+        staged.commit();
+        written = true;
+        return output.string();
+    };
+    session.progress.finish();
+    const SeedWindowResult result = run_seed_window(volume, settings);
+    if (unsaved(result.state)) spdlog::warn("closed without saving the seeds as they were");
+    return describe(result, output, written);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -75,48 +128,7 @@ int main(int argc, char** argv) {
              "width (sideways) and level (up and down).\nZ zooms about the crosshair, H hides the help, S "
              "saves, Q or Escape quits, a second time where seeds are not\nsaved. The window needs an X "
              "display; elsewhere place points in 3D Slicer, whose files are read as well."});
-    std::filesystem::path volume_path, seeds_path, output = "seed.mrk.json";
-    std::vector<std::string> labels;
-    std::vector<double> window_level;
-    command.input("volume", volume_path, "volume, any format that 'palpate import' reads").required();
-    command.output("-o,--output", output, "seeds for 3D Slicer, 'segment' and case files (.mrk.json)")
-        .shown_default(output.string());
-    command
-        .option("--label", labels,
-                "a structure to place seeds in, up to nine [default: the output's name up to its first dot]")
-        .one_value_each();  // the next word may be the volume
-    command.input("--seeds", seeds_path, "seeds to start from (.mrk.json, .fcsv)");
-    command
-        .option("--window-level", window_level,
-                "WIDTH,LEVEL of the grey window at first [default: 400,40 for a CT, else the 1st to 99th "
-                "percentile]",
-                "HU, or the volume's own values")
-        .one_value_each(',');
-    return command.run(argc, argv, [&](cli::Session& session) -> ordered_json {
-        if (!output.filename().string().ends_with(".mrk.json"))
-            throw UsageError({"--output", output.string(), "a name that ends in .mrk.json", ""});
-        for (const std::string& label : labels) check_label(label);
-        session.stage(output);  // refuses now what could not be written after the clicking
-        session.progress.step("reading", 0);
-        const Volume volume =
-            read_volume(volume_path, [](std::string_view text) { spdlog::warn("{}", text); });
-        const std::vector<Seed> seeds = seeds_path.empty() ? std::vector<Seed>{} : read_seeds(seeds_path);
-        if (labels.empty() && seeds.empty()) labels.push_back(structure_of(output));
-        SeedWindowSettings settings{.title = volume_path.filename().string(),
-                                    .state = start_state(volume.grid, labels, seeds),
-                                    .greys = greys_of(volume, window_level),
-                                    .save = {}};
-        bool written = false;
-        settings.save = [&](std::span<const Seed> placed) {
-            cli::StagedFile staged(output, session.force || written);
-            write_seeds(staged.path(), placed);
-            staged.commit();
-            written = true;
-            return output.string();
-        };
-        session.progress.finish();
-        const SeedWindowResult result = run_seed_window(volume, settings);
-        if (unsaved(result.state)) spdlog::warn("closed without saving the seeds as they were");
-        return describe(result, output, written);
-    });
+    SeedsRequest request;
+    declare_seeds(command, request);
+    return command.run(argc, argv, [&](cli::Session& session) { return run_seeds(request, session); });
 }

@@ -11,6 +11,7 @@
 #include "tools/imaging/recipes/recipe.hpp"
 #include "tools/imaging/recipes/segmentation.hpp"
 #include "tools/imaging/voxels/label_statistics.hpp"
+#include "tools/stages/requests/segment_request.hpp"
 
 namespace {
 
@@ -33,6 +34,17 @@ RecipeValue recipe_value(const ordered_json& value, const std::string& culprit) 
     return numbers;
 }
 
+// One structure of a request or a recipe file.
+StructureRecipe recipe_of(const stages::StructureRequest& structure, const std::string& culprit) {
+    if (!structure.words.empty()) return parse_structure(structure.words);
+    StructureRecipe recipe{structure.name, structure.recipe, {}};
+    for (const auto& [key, value] : structure.parameters.items()) {
+        recipe.parameters[key] = recipe_value(value, culprit + ": " + key);
+        recipe.order.push_back(key);
+    }
+    return recipe;
+}
+
 std::vector<StructureRecipe> read_recipes(const std::filesystem::path& path) {
     std::ifstream stream(path);
     const ordered_json document = ordered_json::parse(stream, nullptr, false);
@@ -51,14 +63,11 @@ std::vector<StructureRecipe> read_recipes(const std::filesystem::path& path) {
         if (!item.contains("name") || !item["name"].is_string()) throw refuse("a structure has no name");
         if (!item.contains("recipe") || !item["recipe"].is_string())
             throw refuse("a structure has no recipe");
-        StructureRecipe structure{item["name"], item["recipe"], {}};
-        const ordered_json parameters = item.value("parameters", ordered_json::object());
-        if (!parameters.is_object()) throw refuse("parameters of '" + structure.name + "' are no object");
-        for (const auto& [key, value] : parameters.items()) {
-            structure.parameters[key] = recipe_value(value, path.string() + ": " + key);
-            structure.order.push_back(key);
-        }
-        structures.push_back(std::move(structure));
+        stages::StructureRequest structure{.words = "", .name = item["name"], .recipe = item["recipe"]};
+        structure.parameters = item.value("parameters", ordered_json::object());
+        if (!structure.parameters.is_object())
+            throw refuse("parameters of '" + structure.name + "' are no object");
+        structures.push_back(recipe_of(structure, path.string()));
     }
     return structures;
 }
@@ -104,6 +113,43 @@ json describe(const LabelMap& map, const std::vector<std::string>& notes) {
     return {{"labels", labels}, {"notes", notes}};
 }
 
+std::vector<StructureRecipe> structures_of(const stages::SegmentRequest& request) {
+    std::vector<StructureRecipe> structures;
+    if (!request.recipes.empty()) structures = read_recipes(request.recipes);
+    for (const stages::StructureRequest& structure : request.structures)
+        structures.push_back(recipe_of(structure, structure.name));
+    if (structures.empty()) throw UsageError({"--structure", "none given", "at least one, or --recipes", ""});
+    return structures;
+}
+
+json run_segment(const stages::SegmentRequest& request, cli::Session& session) {
+    const std::vector<StructureRecipe> structures = structures_of(request);
+    if (request.volume.empty() && request.labels.empty())
+        throw UsageError({"--volume", "not given, nor --labels", "at least one of them", ""});
+    set_imaging_threads(session.threads);
+    auto staged = session.stage(request.output);
+    session.progress.step("reading", 0);
+    std::vector<std::string> notes;
+    const NoteSink note = [&](std::string_view text) {
+        spdlog::warn("{}", text);
+        notes.emplace_back(text);
+    };
+    std::optional<Volume> volume;
+    std::optional<LabelMap> prior;
+    if (!request.volume.empty()) volume = read_volume(request.volume, note);
+    if (!request.labels.empty()) prior = read_label_map(request.labels, note);
+    const LabelMap map = segment(
+        volume ? &*volume : nullptr, prior ? &*prior : nullptr, structures,
+        [&](std::string_view name, double fraction) {
+            session.progress.step(std::string("segmenting ") + std::string(name), 0.1 + 0.8 * fraction);
+        },
+        note);
+    session.progress.step("writing", 0.9);
+    write_label_map(staged.path(), map);
+    staged.commit();
+    return describe(map, notes);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -120,42 +166,7 @@ int main(int argc, char** argv) {
               "palpate segment --labels prior.seg.nrrd --structure 'liver: recipe=import' --structure "
               "'tumour: recipe=sphere inside=liver center_mm=80,90,140 radius_mm=12' -o labels.seg.nrrd"},
          .notes = recipe_help()});
-    std::filesystem::path volume_path, labels_path, recipes_path, output;
-    std::vector<std::string> texts;
-    command.input("--volume", volume_path, "CT volume in HU, any format that 'palpate import' reads");
-    command.input("--labels", labels_path, "label map that the recipe 'import' takes structures from");
-    command.input("--recipes", recipes_path, "structures as JSON, before those of --structure");
-    command.option("--structure", texts, "one structure, 'name: recipe=... parameter=value ...'");
-    command.output("-o,--output", output, "label map (.seg.nrrd)").required();
-    return command.run(argc, argv, [&](cli::Session& session) -> json {
-        std::vector<StructureRecipe> structures;
-        if (!recipes_path.empty()) structures = read_recipes(recipes_path);
-        for (const std::string& text : texts) structures.push_back(parse_structure(text));
-        if (structures.empty())
-            throw UsageError({"--structure", "none given", "at least one, or --recipes", ""});
-        if (volume_path.empty() && labels_path.empty())
-            throw UsageError({"--volume", "not given, nor --labels", "at least one of them", ""});
-        set_imaging_threads(session.threads);
-        auto staged = session.stage(output);
-        session.progress.step("reading", 0);
-        std::vector<std::string> notes;
-        const NoteSink note = [&](std::string_view text) {
-            spdlog::warn("{}", text);
-            notes.emplace_back(text);
-        };
-        std::optional<Volume> volume;
-        std::optional<LabelMap> prior;
-        if (!volume_path.empty()) volume = read_volume(volume_path, note);
-        if (!labels_path.empty()) prior = read_label_map(labels_path, note);
-        const LabelMap map = segment(
-            volume ? &*volume : nullptr, prior ? &*prior : nullptr, structures,
-            [&](std::string_view name, double fraction) {
-                session.progress.step(std::string("segmenting ") + std::string(name), 0.1 + 0.8 * fraction);
-            },
-            note);
-        session.progress.step("writing", 0.9);
-        write_label_map(staged.path(), map);
-        staged.commit();
-        return describe(map, notes);
-    });
+    stages::SegmentRequest request;
+    declare(command, request);
+    return command.run(argc, argv, [&](cli::Session& session) { return run_segment(request, session); });
 }

@@ -97,6 +97,34 @@ void check_mechanics(Checks& checks, const DeformableBody& body, std::int32_t co
     }
 }
 
+Json verify(const std::filesystem::path& asset, std::int32_t columns, std::int32_t loads,
+            cli::Session& session) {
+    set_linear_algebra_threads(session.threads);
+    session.progress.step("read and check digests", 0);
+    const Case patient_case = read_asset(asset);
+    Checks checks;
+    checks.add("asset", "every digest and the manifest", true, std::filesystem::file_size(asset), "bytes");
+    checks.add("asset", "every index in range, every number finite", true, "", "");
+    for (const RigidBody& body : patient_case.rigid_bodies)
+        check_tree(checks, body.name, body.obb_tree, body.surface);
+    for (const DeformableBody& body : patient_case.deformable_bodies) {
+        session.progress.step("solve " + body.name + " again", 0.5);
+        checks.add(body.name, "compliance, mesh, material and boundary belong together", true,
+                   body.contact_nodes.size(), "contact nodes");
+        check_tree(checks, body.name, body.obb_tree, body.boundary.surface);
+        check_mechanics(checks, body, columns, loads);
+    }
+    if (!checks.failed().empty())
+        session.shortfall =
+            ErrorDetail{asset.string(),
+                        fmt::format("{} of {} checks failed, first '{}'", checks.failed().size(),
+                                    checks.rows().size(), checks.failed().front()),
+                        "none", "build the case again"};
+    return Json{{"name", patient_case.name},
+                {"verdict", checks.failed().empty() ? "ok" : "failed"},
+                {"checks", checks.rows()}};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -117,31 +145,6 @@ int main(int argc, char** argv) {
     command.input("asset", asset, "asset (.vtkhdf)").required();
     command.option("--columns", columns, "columns of each compliance to solve again").range(1, 100000);
     command.option("--loads", loads, "random contact loads to solve again").range(1, 100000);
-    return command.run(argc, argv, [&](cli::Session& session) {
-        set_linear_algebra_threads(session.threads);
-        session.progress.step("read and check digests", 0);
-        const Case patient_case = read_asset(asset);
-        Checks checks;
-        checks.add("asset", "every digest and the manifest", true, std::filesystem::file_size(asset),
-                   "bytes");
-        checks.add("asset", "every index in range, every number finite", true, "", "");
-        for (const RigidBody& body : patient_case.rigid_bodies)
-            check_tree(checks, body.name, body.obb_tree, body.surface);
-        for (const DeformableBody& body : patient_case.deformable_bodies) {
-            session.progress.step("solve " + body.name + " again", 0.5);
-            checks.add(body.name, "compliance, mesh, material and boundary belong together", true,
-                       body.contact_nodes.size(), "contact nodes");
-            check_tree(checks, body.name, body.obb_tree, body.boundary.surface);
-            check_mechanics(checks, body, columns, loads);
-        }
-        if (!checks.failed().empty())
-            session.shortfall =
-                ErrorDetail{asset.string(),
-                            fmt::format("{} of {} checks failed, first '{}'", checks.failed().size(),
-                                        checks.rows().size(), checks.failed().front()),
-                            "none", "build the case again"};
-        return Json{{"name", patient_case.name},
-                    {"verdict", checks.failed().empty() ? "ok" : "failed"},
-                    {"checks", checks.rows()}};
-    });
+    return command.run(argc, argv,
+                       [&](cli::Session& session) { return verify(asset, columns, loads, session); });
 }

@@ -206,7 +206,8 @@ std::string swatch(const Label& label) {
                        std::lround(255 * label.colour[2]), html::escaped(label.name));
 }
 
-std::string slices_section(const ReportInputs& inputs) {
+std::string slices_section(const ReportPage& page) {
+    const ReportInputs& inputs = page.inputs;
     std::string lead, content;
     if (!inputs.volume && !inputs.labels) {
         content = html::missing(
@@ -239,7 +240,8 @@ const std::vector<NamedDirection>& view_directions() {
     return directions;
 }
 
-std::string bodies_section(const Case& patient_case) {
+std::string bodies_section(const ReportPage& page) {
+    const Case& patient_case = page.inputs.patient_case;
     std::vector<ViewDirection> directions;
     for (const NamedDirection& view : view_directions()) directions.push_back(view.direction);
     const auto side_by_side = [&](const std::vector<SceneView>& views, const std::string& name) {

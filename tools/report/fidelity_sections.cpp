@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <fmt/format.h>
-#include <numeric>
 
+#include "tools/meshing/measures/quality.hpp"
 #include "tools/report/html.hpp"
 #include "tools/report/pictures/colour_scale.hpp"
 #include "tools/report/sections.hpp"
@@ -10,8 +10,6 @@
 
 namespace palpate {
 namespace {
-
-constexpr std::size_t shown = 5;  // worst tetrahedra of a body
 
 struct WorstElement {
     std::size_t tetrahedron;
@@ -22,23 +20,12 @@ struct WorstElement {
 
 // Those whose angles come nearest to 0 or 180 degrees.
 std::vector<WorstElement> worst_of(const TetMesh& mesh) {
-    std::vector<std::pair<double, double>> angles;
-    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
-        const auto [low, high] = std::ranges::minmax(tet_shape(mesh, t).dihedral_deg);
-        angles.emplace_back(low, high);
-    }
-    std::vector<std::size_t> order(angles.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::stable_sort(
-        order, {}, [&](std::size_t t) { return std::min(angles[t].first, 180 - angles[t].second); });
-    order.resize(std::min(shown, order.size()));
     std::vector<WorstElement> worst;
-    for (const std::size_t t : order) {
-        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-        for (const std::int32_t node : mesh.tetrahedra[t]) sum += mesh.rest_positions[node];
+    for (const WorstTetrahedron& tet : measure(mesh).worst) {
+        const auto t = static_cast<std::size_t>(tet.tetrahedron);
         const auto name = std::ranges::find(mesh.region_names, mesh.regions[t], &Label::value);
         worst.push_back(
-            {t, angles[t].first, angles[t].second, sum / 4,
+            {t, tet.min_dihedral_deg, tet.max_dihedral_deg, tet.centroid,
              name != mesh.region_names.end() ? *name : Label{mesh.regions[t], "", {0.8F, 0.8F, 0.8F}}});
     }
     return worst;
@@ -102,7 +89,8 @@ const TriangleMesh* surface_of(const Case& patient_case, const std::string& name
 
 }  // namespace
 
-std::string worst_section(const std::vector<MeasuredBody>& bodies) {
+std::string worst_section(const ReportPage& page) {
+    const std::vector<MeasuredBody>& bodies = page.bodies;
     if (bodies.empty()) return "";
     std::string content;
     for (const MeasuredBody& measured : bodies)
@@ -114,7 +102,8 @@ std::string worst_section(const std::vector<MeasuredBody>& bodies) {
         content);
 }
 
-std::string distances_section(const ReportInputs& inputs) {
+std::string distances_section(const ReportPage& page) {
+    const ReportInputs& inputs = page.inputs;
     std::string content;
     std::vector<std::vector<std::string>> rows;
     for (const SurfaceComparison& comparison : inputs.comparisons) {

@@ -44,10 +44,10 @@ std::string rigid_table(const Case& patient_case) {
 
 }  // namespace
 
-std::string mesh_section(const Case& patient_case, const std::vector<MeasuredBody>& bodies) {
+std::string mesh_section(const ReportPage& page) {
     std::vector<std::vector<std::string>> rows;
     std::string charts;
-    for (const auto& [body, mesh, checks] : bodies) {
+    for (const auto& [body, mesh, checks] : page.bodies) {
         std::string volumes;
         for (std::size_t i = 0; i < body.mesh.region_names.size(); ++i)
             volumes += fmt::format("<div>{} {:.2f} ml</div>", swatch(body.mesh.region_names[i]),
@@ -57,7 +57,7 @@ std::string mesh_section(const Case& patient_case, const std::vector<MeasuredBod
                         count_of(body.contact_nodes), count_of(body.fixed_nodes), volumes,
                         fmt::format("{:.1f}° – {:.1f}°", mesh.min_dihedral_deg, mesh.max_dihedral_deg),
                         fmt::format("{:.2f} / {:.2f}", mesh.min_radius_ratio, mesh.mean_radius_ratio)});
-        charts += body_title(bodies, body) + "<div class=\"two\">\n" +
+        charts += body_title(page.bodies, body) + "<div class=\"two\">\n" +
                   html::figure(histogram_svg(mesh.dihedral_deg, "dihedral angle", "°", 6),
                                "All six dihedral angles of every tetrahedron; a regular one has 70.5°.") +
                   html::figure(histogram_svg(mesh.radius_ratio, "radius ratio", "", 5),
@@ -77,10 +77,11 @@ std::string mesh_section(const Case& patient_case, const std::vector<MeasuredBod
                                 {"Dihedral angles", true},
                                 {"Radius ratio, min / mean", true}},
                                rows);
-    return html::section("mesh", "Meshes", "", content + charts + rigid_table(patient_case));
+    return html::section("mesh", "Meshes", "", content + charts + rigid_table(page.inputs.patient_case));
 }
 
-std::string mechanics_section(const Case& patient_case) {
+std::string mechanics_section(const ReportPage& page) {
+    const Case& patient_case = page.inputs.patient_case;
     std::vector<std::vector<std::string>> rows;
     for (const DeformableBody& body : patient_case.deformable_bodies)
         for (const RegionMaterial& entry : body.materials) {
@@ -120,7 +121,8 @@ std::string mechanics_section(const Case& patient_case) {
     return html::section("mechanics", "Materials and boundary", "Isotropic linear elasticity.", content);
 }
 
-std::string certificate_section(const std::vector<MeasuredBody>& bodies) {
+std::string certificate_section(const ReportPage& page) {
+    const std::vector<MeasuredBody>& bodies = page.bodies;
     std::string content;
     for (const MeasuredBody& measured : bodies) {
         std::vector<std::vector<std::string>> rows;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/report/quality.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
-#include <numbers>
+
+#include "tools/meshing/measures/quality.hpp"
 
 namespace palpate {
 namespace {
@@ -18,33 +17,6 @@ void count(BinCounts& histogram, double value) {
 }
 
 }  // namespace
-
-TetShape tet_shape(const TetMesh& mesh, std::size_t t) {
-    std::array<Eigen::Vector3d, 4> p;
-    for (std::size_t corner = 0; corner < 4; ++corner)
-        p[corner] = mesh.rest_positions[mesh.tetrahedra[t][corner]];
-    const Eigen::Vector3d a = p[1] - p[0], b = p[2] - p[0], c = p[3] - p[0];
-    // Outward normals, twice the area long, of the faces opposite to corners 0 ... 3.
-    const std::array<Eigen::Vector3d, 4> normal{(p[2] - p[1]).cross(p[3] - p[1]), c.cross(b), a.cross(c),
-                                                b.cross(a)};
-    TetShape shape;
-    std::size_t edge = 0;
-    for (std::size_t i = 0; i < 4; ++i)
-        for (std::size_t j = i + 1; j < 4; ++j) {
-            const double outer = std::atan2(normal[i].cross(normal[j]).norm(), normal[i].dot(normal[j]));
-            shape.dihedral_deg[edge++] = 180 - outer * 180 / std::numbers::pi;
-        }
-    const double six_v = a.dot(b.cross(c));
-    assert(six_v > 0);
-    double double_area = 0;
-    for (const Eigen::Vector3d& n : normal) double_area += n.norm();
-    const double inradius = six_v / double_area;
-    const double circumradius =
-        (a.squaredNorm() * b.cross(c) + b.squaredNorm() * c.cross(a) + c.squaredNorm() * a.cross(b)).norm() /
-        (2 * six_v);
-    shape.radius_ratio = 3 * inradius / circumradius;
-    return shape;
-}
 
 MeshSummary summarise(const TetMesh& mesh) {
     MeshSummary summary;

@@ -1,22 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "formats/model/tet_mesh.hpp"
 
 namespace palpate {
-
-/// The shape of one tetrahedron.
-struct TetShape {
-    std::array<double, 6> dihedral_deg{};  ///< the angle inside at each edge, 0 ... 180
-    double radius_ratio = 0;               ///< 3 inradius / circumradius: 1 regular, 0 flat
-};
-
-/// Measures tetrahedron `t`; its volume must be positive (asserted). Source of both formulas: Shewchuk,
-/// "What is a good linear element?", 2002.
-TetShape tet_shape(const TetMesh& mesh, std::size_t t);
 
 /// Counts of equal bins over [low, high]; values beyond an end are counted in the end's bin.
 struct BinCounts {

@@ -62,37 +62,24 @@ std::string key_figures(const ReportInputs& inputs, const std::vector<MeasuredBo
 
 std::string html_report(const ReportInputs& inputs) {
     const VirtualDisplay display;
-    const Case& patient_case = inputs.patient_case;
-    std::vector<MeasuredBody> bodies;
-    for (const DeformableBody& body : patient_case.deformable_bodies) {
+    ReportPage page{inputs, {}};
+    for (const DeformableBody& body : inputs.patient_case.deformable_bodies) {
         MeshSummary mesh = summarise(body.mesh);
         std::vector<Check> checks = checks_of(body, mesh);
-        bodies.push_back({body, std::move(mesh), std::move(checks)});
+        page.bodies.push_back({body, std::move(mesh), std::move(checks)});
     }
-    const std::string name = html::escaped(patient_case.name);
-    std::string navigation;
-    for (const auto& [anchor, title] : {std::pair{"slices", "Slices"},
-                                        {"bodies", "Bodies"},
-                                        {"mesh", "Meshes"},
-                                        {"contract", "Contract"},
-                                        {"worst", "Worst elements"},
-                                        {"distances", "Distances"},
-                                        {"mechanics", "Materials"},
-                                        {"certificate", "Certificate"},
-                                        {"touch", "Touch"},
-                                        {"stages", "Stages"},
-                                        {"provenance", "Provenance"}})
-        navigation += fmt::format("<a href=\"#{}\">{}</a>", anchor, title);
+    const std::string name = html::escaped(inputs.patient_case.name);
+    std::string navigation, content;
+    for (const Section& section : report_sections) {
+        navigation += fmt::format("<a href=\"#{}\">{}</a>", section.anchor, section.title);
+        content += section.make(page);
+    }
     return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
            "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>" +
            name + " – Palpate report</title>\n<style>" + std::string(page_style) +
            "</style>\n</head>\n<body>\n<main>\n<header>\n<p class=\"kind\">Palpate report</p>\n<h1>" + name +
-           "</h1>\n" + verdict(bodies) + key_figures(inputs, bodies) + "</header>\n<nav>" + navigation +
-           "</nav>\n" + slices_section(inputs) + bodies_section(patient_case) +
-           mesh_section(patient_case, bodies) + contract_section(patient_case.provenance) +
-           worst_section(bodies) + distances_section(inputs) + mechanics_section(patient_case) +
-           certificate_section(bodies) + touch_section(inputs) + stages_section(inputs.stages) +
-           provenance_section(patient_case.provenance) +
+           "</h1>\n" + verdict(page.bodies) + key_figures(inputs, page.bodies) + "</header>\n<nav>" +
+           navigation + "</nav>\n" + content +
            "<footer>Lengths in mm, positions in the patient frame: L left, P posterior, S superior (LPS). "
            "Not a "
            "medical device; not for diagnosis or treatment.</footer>\n</main>\n</body>\n</html>\n";

@@ -65,7 +65,8 @@ std::string percentiles(const nlohmann::json& touch) {
 
 }  // namespace
 
-std::string touch_section(const ReportInputs& inputs) {
+std::string touch_section(const ReportPage& page) {
+    const ReportInputs& inputs = page.inputs;
     std::string content;
     if (!inputs.force_curve_svg.empty())
         content += html::figure("<div class=\"chart\"><img alt=\"Force over time\" src=\"" +
@@ -105,7 +106,8 @@ std::vector<StageRecord> stages_from_json(const nlohmann::json& json, const std:
     return stages;
 }
 
-std::string stages_section(const std::vector<StageRecord>& stages) {
+std::string stages_section(const ReportPage& page) {
+    const std::vector<StageRecord>& stages = page.inputs.stages;
     if (stages.empty())
         return html::section(
             "stages", "Stages", "",
@@ -125,7 +127,8 @@ std::string stages_section(const std::vector<StageRecord>& stages) {
         html::figure(stages_svg(stages), ""));
 }
 
-std::string provenance_section(const std::string& provenance) {
+std::string provenance_section(const ReportPage& page) {
+    const std::string& provenance = page.inputs.patient_case.provenance;
     nlohmann::json json = nlohmann::json::parse(provenance, nullptr, false);
     if (json.is_object()) json.erase("meshes");  // contract_section() shows them
     std::string content;

@@ -17,18 +17,38 @@ struct MeasuredBody {
     std::vector<Check> checks;
 };
 
-/// The parts of the page, each one HTML section.
-std::string slices_section(const ReportInputs& inputs);
-std::string bodies_section(const Case& patient_case);
-std::string mesh_section(const Case& patient_case, const std::vector<MeasuredBody>& bodies);
-std::string contract_section(const std::string& provenance);
-std::string worst_section(const std::vector<MeasuredBody>& bodies);
-std::string distances_section(const ReportInputs& inputs);
-std::string mechanics_section(const Case& patient_case);
-std::string certificate_section(const std::vector<MeasuredBody>& bodies);
-std::string touch_section(const ReportInputs& inputs);
-std::string stages_section(const std::vector<StageRecord>& stages);
-std::string provenance_section(const std::string& provenance);
+/// What a section may draw on.
+struct ReportPage {
+    const ReportInputs& inputs;
+    std::vector<MeasuredBody> bodies;
+};
+
+using SectionFunction = std::string(const ReportPage&);
+SectionFunction slices_section, bodies_section, mesh_section, contract_section, worst_section,
+    distances_section, mechanics_section, certificate_section, touch_section, stages_section,
+    provenance_section;
+
+/// A part of the page: what the navigation shows, and what makes its HTML; "" leaves it out.
+struct Section {
+    const char* anchor;
+    const char* title;
+    SectionFunction* make;
+};
+
+/// The sections in the order of the page.
+inline constexpr Section report_sections[] = {
+    {"slices", "Slices", slices_section},
+    {"bodies", "Bodies", bodies_section},
+    {"mesh", "Meshes", mesh_section},
+    {"contract", "Contract", contract_section},
+    {"worst", "Worst elements", worst_section},
+    {"distances", "Distances", distances_section},
+    {"mechanics", "Materials", mechanics_section},
+    {"certificate", "Certificate", certificate_section},
+    {"touch", "Touch", touch_section},
+    {"stages", "Stages", stages_section},
+    {"provenance", "Provenance", provenance_section},
+};
 
 /// The two directions that bodies are looked at from, with words.
 struct NamedDirection {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "tools/meshing/measures/quality.hpp"
 #include "tools/report/html.hpp"
 
 namespace palpate {

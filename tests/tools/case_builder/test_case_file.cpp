@@ -50,13 +50,14 @@ TEST(CaseFile, reads_what_people_write) {
     EXPECT_FALSE(file.volume);
     EXPECT_EQ(file.structures.at(0).parameters.at("center_mm"), nlohmann::ordered_json::parse("[1, 2.5, 3]"));
     const DeformableSpec& body = file.deformable.at(0);
-    EXPECT_EQ(body.sizing.at("--cell-size"), 8);
-    EXPECT_EQ(body.fixed, (std::vector<std::string>{"touching:skull", "sphere:1,2,3.5,4"}));
-    EXPECT_EQ(body.regions.at(0).youngs_modulus_kpa, 6);
+    EXPECT_EQ(body.mesh.sizing.cell_size, 8);
+    EXPECT_EQ(body.mesh.regions, (std::vector<std::string>{"liver"}));
+    EXPECT_EQ(body.condense.fixed.at(0).touching, "skull");
+    EXPECT_EQ(body.condense.fixed.at(1).sphere_mm, (std::vector<double>{1, 2, 3.5, 4}));
+    EXPECT_EQ(body.condense.materials.at(0).youngs_modulus_kpa, 6);
 }
 
-TEST(CaseFile, how_the_inputs_are_read_becomes_options_of_import) {
-    using Texts = std::vector<std::string>;
+TEST(CaseFile, how_the_inputs_are_read_becomes_requests_of_import) {
     const auto with = [](const std::string& lines) {
         std::string text = minimal;
         text.insert(text.find("[[structure]]"), lines);
@@ -64,18 +65,22 @@ TEST(CaseFile, how_the_inputs_are_read_becomes_options_of_import) {
     };
     const CaseFile file =
         with("series = 3\naccept_gaps = true\nlabel_names = \"totalsegmentator:v2/total\"\n");
-    EXPECT_EQ(file.volume_options, (Texts{"--series", "3", "--accept-gaps"}));
-    EXPECT_EQ(file.labels_options, (Texts{"--label-names", "totalsegmentator:v2/total"}));
+    EXPECT_EQ(file.volume_import.series, "3");
+    EXPECT_TRUE(file.volume_import.accept_gaps);
+    EXPECT_EQ(file.labels_import.label_names, "totalsegmentator:v2/total");
+    EXPECT_FALSE(file.labels_import.accept_gaps);
     EXPECT_FALSE(file.label_table);
-    EXPECT_EQ(with("series = \"portal venous\"\n").volume_options, (Texts{"--series", "portal venous"}));
+    EXPECT_EQ(with("series = \"portal venous\"\n").volume_import.series, "portal venous");
 
     const auto table = written(minimal).parent_path() / "names.ctbl";
     std::ofstream(table) << "1 liver\n";
     const CaseFile named =
         with("label_names = \"names.ctbl\"\noverlaps = \"smaller\"\nnifti_frame = \"qform\"\n");
     EXPECT_EQ(named.label_table, table);
-    EXPECT_EQ(named.labels_options,
-              (Texts{"--nifti-frame", "qform", "--label-names", table.string(), "--overlaps", "smaller"}));
+    EXPECT_EQ(named.labels_import.label_names, table.string());
+    EXPECT_EQ(named.labels_import.overlaps, "smaller");
+    EXPECT_EQ(named.labels_import.nifti_frame, "qform");
+    EXPECT_EQ(named.volume_import.nifti_frame, "qform");
     EXPECT_THROW(with("accept_gaps = \"yes\"\n"), InvalidInput);
 }
 
@@ -138,12 +143,15 @@ TEST(CaseFile, nodes_are_held_and_touched_by_the_same_rules) {
                  "fixed = " + rules + "\ncontact = " + rules);
     const DeformableSpec body = read_case_file(written(text)).deformable.at(0);
     const auto file = written(text).parent_path() / "sets/rim.txt";
-    const std::vector<std::string> expected{"touching:background", "region:tumour",
-                                            "box:0,0,0,1,2.5,3",   "sphere:1,2,3,4",
-                                            "plane:0,0,0,0,0,1",   "nodes:" + file.string()};
-    EXPECT_EQ(body.fixed, expected);
-    EXPECT_EQ(body.contact, expected);
-    EXPECT_EQ(body.node_files, (std::vector<std::filesystem::path>{file, file}));
+    for (const auto& picks : {body.condense.fixed, body.condense.contact}) {
+        ASSERT_EQ(picks.size(), 6U);
+        EXPECT_EQ(picks[0].touching, "background");
+        EXPECT_EQ(picks[1].region, "tumour");
+        EXPECT_EQ(picks[2].box_mm, (std::vector<double>{0, 0, 0, 1, 2.5, 3}));
+        EXPECT_EQ(picks[3].sphere_mm, (std::vector<double>{1, 2, 3, 4}));
+        EXPECT_EQ(picks[4].plane_mm, (std::vector<double>{0, 0, 0, 0, 0, 1}));
+        EXPECT_EQ(picks[5].nodes_file, file);
+    }
 }
 
 TEST(CaseFile, a_rule_that_is_not_understood_is_refused) {
@@ -159,16 +167,19 @@ TEST(CaseFile, a_rule_that_is_not_understood_is_refused) {
     EXPECT_NE(message(with_lines("contact = \"skull\"\n")).find("'contact'"), std::string::npos);
 }
 
-TEST(CaseFile, element_and_compliance_become_options_of_condense) {
-    EXPECT_TRUE(read_case_file(written(minimal)).deformable.at(0).condense_options.empty());
-    const DeformableSpec body =
+TEST(CaseFile, element_and_compliance_become_a_request_of_condense) {
+    EXPECT_EQ(read_case_file(written(minimal)).deformable.at(0).condense.element, "linear");
+    const stages::CondenseRequest request =
         read_case_file(
-            written(with_lines("element = \"quadratic\"\ncompliance = { accuracy = 1e-3, size_mib = 50, "
+            written(with_lines("element = \"quadratic\"\ncompliance = { accuracy = 2e-3, size_mib = 50, "
                                "memory_gib = 2.5, representation = \"hierarchical\" }\n")))
-            .deformable.at(0);
-    EXPECT_EQ(body.condense_options,
-              (std::vector<std::string>{"--element", "quadratic", "--accuracy", "0.001", "--memory", "2.5",
-                                        "--size", "50", "--representation", "hierarchical"}));
+            .deformable.at(0)
+            .condense;
+    EXPECT_EQ(request.element, "quadratic");
+    EXPECT_EQ(request.accuracy, 2e-3);
+    EXPECT_EQ(request.size_mib, 50);
+    EXPECT_EQ(request.memory_gib, 2.5);
+    EXPECT_EQ(request.representation, "hierarchical");
 }
 
 TEST(CaseFile, wrong_values_of_element_and_compliance_are_refused_with_line_and_what_is_meant) {
@@ -207,11 +218,12 @@ surface_file = "skull.stl"
 surface_frame = "ras"
 )"));
     EXPECT_FALSE(needs_labels(file));
-    EXPECT_EQ(file.deformable.at(0).file->path.filename(), "liver.msh");
-    EXPECT_EQ(file.deformable.at(0).file->unit, "cm");
-    EXPECT_EQ(file.deformable.at(0).regions.at(0).mesh_region, 1);
-    EXPECT_EQ(file.rigid.at(0).file->unit, "mm");
-    EXPECT_EQ(file.rigid.at(0).file->frame, "ras");
+    const stages::MeshRequest& mesh = file.deformable.at(0).mesh;
+    EXPECT_EQ(mesh.mesh_file.filename(), "liver.msh");
+    EXPECT_EQ(mesh.unit, "cm");
+    EXPECT_EQ(mesh.region_names.at(0).mesh_region, 1);
+    EXPECT_EQ(file.rigid.at(0).surface.unit, "mm");
+    EXPECT_EQ(file.rigid.at(0).surface.frame, "ras");
     EXPECT_TRUE(needs_labels(read_case_file(written(minimal))));
 }
 

@@ -8,7 +8,7 @@
 namespace palpate::build {
 namespace {
 
-// A folder with a made-up command palpate-copy INPUT -o OUTPUT that counts its runs.
+// A folder with a made-up command palpate-copy that counts its runs and copies as its request says.
 class StageRunnerTest : public testing::Test {
   protected:
     void SetUp() override {
@@ -16,10 +16,13 @@ class StageRunnerTest : public testing::Test {
                   testing::UnitTest::GetInstance()->current_test_info()->name();
         std::filesystem::remove_all(folder_);
         std::filesystem::create_directories(folder_);
-        write(
-            "palpate-copy",
-            "#!/bin/sh\necho run >> \"$(dirname \"$0\")/runs\"\ncp \"$1\" \"$3\"\n"
-            "while [ $# -gt 0 ]; do [ \"$1\" = --json ] && echo '{\"answer\": 42}' > \"$2\"; shift; done\n");
+        write("palpate-copy",
+              "#!/bin/sh\necho run >> \"$(dirname \"$0\")/runs\"\n"
+              "value() { sed -n 's/.*\"'$1'\": \"\\(.*\\)\".*/\\1/p' \"$request\"; }\n"
+              "while [ $# -gt 0 ]; do\n"
+              "[ \"$1\" = --request ] && request=$2\n"
+              "[ \"$1\" = --json ] && echo '{\"answer\": 42}' > \"$2\"\nshift; done\n"
+              "cp \"$(value input)\" \"$(value output)\"\n");
         write("palpate-refuse", "#!/bin/sh\nexit 3\n");
         for (const char* program : {"palpate-copy", "palpate-refuse"})
             std::filesystem::permissions(folder_ / program, std::filesystem::perms::owner_all);
@@ -37,10 +40,13 @@ class StageRunnerTest : public testing::Test {
         return count;
     }
 
-    StageRecord run(const std::vector<std::string>& more = {}) const {
+    StageRecord run(int depth = 0) const {
         const auto input = folder_ / "input", output = folder_ / "output";
-        Stage stage{"copy it", "copy", {input.string(), "-o", output.string()}, {input}, {output}};
-        stage.arguments.insert(stage.arguments.end(), more.begin(), more.end());
+        const Stage stage{"copy it",
+                          "copy",
+                          {{"input", input.string()}, {"output", output.string()}, {"depth", depth}},
+                          {input},
+                          {output}};
         return StageRunner(folder_, folder_ / "parts", 1, true).run(stage);
     }
 
@@ -55,16 +61,25 @@ TEST_F(StageRunnerTest, runs_once_and_remembers_the_result) {
     EXPECT_EQ(runs(), 1);
 }
 
-TEST_F(StageRunnerTest, runs_again_when_content_argument_output_or_program_changes) {
+TEST_F(StageRunnerTest, runs_again_when_content_request_output_or_program_changes) {
     run();
     write("input", "two");
     EXPECT_TRUE(run().ran);
-    EXPECT_TRUE(run({"--depth", "3"}).ran);
+    EXPECT_TRUE(run(3).ran);
     write("output", "altered");
-    EXPECT_TRUE(run({"--depth", "3"}).ran);
+    EXPECT_TRUE(run(3).ran);
     std::ofstream(folder_ / "palpate-copy", std::ios::app) << "# newer\n";
-    EXPECT_TRUE(run({"--depth", "3"}).ran);
-    EXPECT_FALSE(run({"--depth", "3"}).ran);
+    EXPECT_TRUE(run(3).ran);
+    EXPECT_FALSE(run(3).ran);
+}
+
+TEST_F(StageRunnerTest, a_folder_that_moved_is_up_to_date) {
+    run();
+    const auto before = folder_;
+    folder_ += "_moved";
+    std::filesystem::remove_all(folder_);
+    std::filesystem::rename(before, folder_);
+    EXPECT_FALSE(run().ran);
 }
 
 TEST_F(StageRunnerTest, touching_a_file_without_changing_it_runs_nothing) {

@@ -12,12 +12,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string line_of(const std::vector<Stage>& stages, const std::string& name) {
+nlohmann::ordered_json request_of(const std::vector<Stage>& stages, const std::string& name) {
     const auto stage = std::ranges::find(stages, name, &Stage::name);
-    if (stage == stages.end()) return "no such stage";
-    std::string line = stage->command;
-    for (const std::string& argument : stage->arguments) line += " " + argument;
-    return line;
+    return stage == stages.end() ? "no such stage" : stage->request;
 }
 
 TEST(Stages, the_frame_of_nifti_files_is_asked_for_only_where_the_input_is_one) {
@@ -28,12 +25,19 @@ TEST(Stages, the_frame_of_nifti_files_is_asked_for_only_where_the_input_is_one) 
     file.name = "x";
     file.volume = folder / "series";
     file.labels = folder / "l.nii.gz";
-    file.volume_options = {"--series", "3", "--nifti-frame", "qform"};
-    file.labels_options = {"--nifti-frame", "qform"};
+    file.volume_import.series = "3";
+    file.volume_import.nifti_frame = file.labels_import.nifti_frame = "qform";
     const std::vector<Stage> stages =
         stages_to_asset(file, {folder / "parts", folder / "x.vtkhdf", folder / "x.html"});
-    EXPECT_NE(line_of(stages, "import volume").find("series --series 3 -o"), std::string::npos);
-    EXPECT_NE(line_of(stages, "import labels").find("--labels --nifti-frame qform -o"), std::string::npos);
+    EXPECT_EQ(request_of(stages, "import volume"),
+              nlohmann::ordered_json({{"input", (folder / "series").string()},
+                                      {"output", (folder / "parts" / "volume.nrrd").string()},
+                                      {"series", "3"}}));
+    EXPECT_EQ(request_of(stages, "import labels"),
+              nlohmann::ordered_json({{"input", (folder / "l.nii.gz").string()},
+                                      {"output", (folder / "parts" / "prior.seg.nrrd").string()},
+                                      {"nifti_frame", "qform"},
+                                      {"labels", true}}));
     fs::remove_all(folder);
 }
 
@@ -45,29 +49,40 @@ TEST(Stages, imported_files_replace_image_and_labels_and_their_names_stay_out_of
     file.name = "x";
     DeformableSpec liver;
     liver.name = "liver";
-    liver.file = ImportedFile{folder / "doe_john.msh", "cm", "ras"};
-    liver.regions = {{"liver", 6, 0.45, {}, 1}};
+    liver.mesh.mesh_file = folder / "doe_john.msh";
+    liver.mesh.unit = "cm";
+    liver.mesh.frame = "ras";
+    liver.mesh.region_names = {{1, "liver"}};
+    liver.condense.materials = {{"liver", 6, 0.45}};
     file.deformable = {liver};
+    file.quality.max_distance = 2;
     RigidSpec skull;
     skull.name = "skull";
-    skull.file = ImportedFile{folder / "doe_john.stl"};
-    skull.max_triangles = 1000;
-    skull.max_distance = 0.5;
+    skull.surface.surface_file = folder / "doe_john.stl";
+    skull.surface.max_triangles = 1000;
+    skull.surface.max_distance = 0.5;
     file.rigid = {skull};
     const std::vector<Stage> stages =
         stages_to_asset(file, {folder / "parts", folder / "x.vtkhdf", folder / "x.html"});
 
     std::vector<std::string> names;
     std::ranges::transform(stages, std::back_inserter(names), &Stage::name);
-    EXPECT_EQ(names, (std::vector<std::string>{"surface skull", "obb skull", "mesh liver", "obb liver",
-                                               "condense liver", "pack"}));
-    EXPECT_EQ(line_of(stages, "mesh liver"), "mesh --mesh-file " + (folder / "doe_john.msh").string() +
-                                                 " --unit cm --frame ras --region-name 1=liver -o " +
-                                                 (folder / "parts" / "liver.vtu").string());
-    EXPECT_EQ(line_of(stages, "surface skull"), "surface --surface-file " +
-                                                    (folder / "doe_john.stl").string() +
-                                                    " --unit mm --max-triangles 1000 --max-distance 0.5 -o " +
-                                                    (folder / "parts" / "skull.vtp").string());
+    EXPECT_EQ(names, (std::vector<std::string>{"surface skull", "mesh liver", "condense liver", "pack"}));
+    EXPECT_EQ(request_of(stages, "mesh liver").dump(),
+              nlohmann::ordered_json(
+                  {{"mesh_file", (folder / "doe_john.msh").string()},
+                   {"mesh_unit", "cm"},
+                   {"mesh_frame", "ras"},
+                   {"region_name", {nlohmann::ordered_json{{"mesh_region", 1}, {"label", "liver"}}}},
+                   {"max_distance_voxel_diagonals", 2.0},
+                   {"output", (folder / "parts" / "liver.vtu").string()}})
+                  .dump());
+    EXPECT_EQ(request_of(stages, "surface skull").dump(),
+              nlohmann::ordered_json({{"surface_file", (folder / "doe_john.stl").string()},
+                                      {"max_triangles", 1000},
+                                      {"max_distance_mm", 0.5},
+                                      {"output", (folder / "parts" / "skull.vtp").string()}})
+                  .dump());
     std::ifstream stream(folder / "parts" / "provenance.json");
     const std::string provenance{std::istreambuf_iterator<char>(stream), {}};
     EXPECT_NE(provenance.find("liver_file_sha256"), std::string::npos);
@@ -75,7 +90,7 @@ TEST(Stages, imported_files_replace_image_and_labels_and_their_names_stay_out_of
     fs::remove_all(folder);
 }
 
-TEST(Stages, rules_and_options_of_a_body_reach_condense_and_its_node_files_decide_about_a_rerun) {
+TEST(Stages, rules_of_a_body_reach_condense_and_its_node_files_decide_about_a_rerun) {
     const fs::path folder = fs::path(testing::TempDir()) / ("palpate_rules_" + std::to_string(getpid()));
     fs::create_directories(folder);
     const fs::path nodes = folder / "doe_john.txt";
@@ -84,27 +99,29 @@ TEST(Stages, rules_and_options_of_a_body_reach_condense_and_its_node_files_decid
     file.name = "x";
     DeformableSpec liver;
     liver.name = "liver";
-    liver.file = ImportedFile{folder / "liver.msh"};
-    liver.regions = {{"liver", 6, 0.45, {}, 1}};
-    liver.fixed = {"touching:skull", "nodes:" + nodes.string()};
-    liver.contact = {"region:tumour"};
-    liver.node_files = {nodes};
-    liver.condense_options = {"--element", "quadratic", "--accuracy", "0.001"};
+    liver.mesh.mesh_file = folder / "liver.msh";
+    liver.condense.materials = {{"liver", 6, 0.45}};
+    liver.condense.fixed.resize(2);
+    liver.condense.fixed[0].touching = "skull";
+    liver.condense.fixed[1].nodes_file = nodes;
+    liver.condense.contact.resize(1);
+    liver.condense.contact[0].region = "tumour";
+    liver.condense.element = "quadratic";
     file.deformable = {liver};
     const std::vector<Stage> stages =
         stages_to_asset(file, {folder / "parts", folder / "x.vtkhdf", folder / "x.html"});
-    EXPECT_NE(line_of(stages, "condense liver")
-                  .find(" --fixed touching:skull --fixed nodes:" + nodes.string() +
-                        " --contact region:tumour --element quadratic --accuracy 0.001 -o "),
-              std::string::npos)
-        << line_of(stages, "condense liver");
+    const auto request = request_of(stages, "condense liver");
+    EXPECT_EQ(request["fixed"].dump(),
+              R"([{"touching":"skull"},{"nodes_file":")" + nodes.string() + R"("}])");
+    EXPECT_EQ(request["contact"].dump(), R"([{"region":"tumour"}])");
+    EXPECT_EQ(request["element"], "quadratic");
     const auto condense = std::ranges::find(stages, "condense liver", &Stage::name);
     EXPECT_EQ(condense->inputs, (std::vector<fs::path>{folder / "parts" / "liver.vtu", nodes}));
 
     std::ifstream stream(folder / "parts" / "provenance.json");
     const std::string provenance{std::istreambuf_iterator<char>(stream), {}};
     EXPECT_NE(provenance.find("liver_nodes_1_sha256"), std::string::npos);
-    EXPECT_NE(provenance.find("--fixed nodes:liver_nodes_1 "), std::string::npos) << provenance;
+    EXPECT_NE(provenance.find(R"("nodes_file": "liver_nodes_1")"), std::string::npos) << provenance;
     EXPECT_EQ(provenance.find("doe"), std::string::npos) << provenance;
     fs::remove_all(folder);
 }

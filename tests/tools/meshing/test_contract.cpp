@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
+#include <limits>
+#include <nlohmann/json.hpp>
 
 #include "formats/model/errors.hpp"
 #include "tests/tools/meshing/phantom.hpp"
 #include "tools/meshing/contract/contract.hpp"
+#include "tools/meshing/contract/contract_json.hpp"
 #include "tools/meshing/contract/mesh_to_contract.hpp"
 
 namespace palpate {
@@ -18,7 +21,7 @@ TEST(QualityContract, coarse_request_is_made_finer_until_it_is_kept) {
     const ContractedMesh result = mesh_to_contract(map, test::organ_and_lesion, coarse, contract, 8);
     EXPECT_GT(result.attempts.size(), 1U);
     EXPECT_EQ(result.attempts.front().misses.size(), once.attempts.back().misses.size());
-    EXPECT_TRUE(result.attempts.back().misses.empty()) << result.attempts.back().misses.front().what;
+    EXPECT_TRUE(result.attempts.back().misses.empty()) << what_text(result.attempts.back().misses.front());
     EXPECT_GT(result.attempts.back().tetrahedra, once.attempts.back().tetrahedra);
 }
 
@@ -30,7 +33,8 @@ TEST(QualityContract, any_direction_matrix_keeps_it) {
     for (const Eigen::Matrix3d& direction : {flipped, permuted, oblique}) {
         const LabelMap map = test::organ_with_lesion(direction);
         const ContractedMesh result = mesh_to_contract(map, test::organ_and_lesion, {.cell_size = 4}, {}, 4);
-        EXPECT_TRUE(result.attempts.back().misses.empty()) << result.attempts.back().misses.front().what;
+        EXPECT_TRUE(result.attempts.back().misses.empty())
+            << what_text(result.attempts.back().misses.front());
     }
 }
 
@@ -43,8 +47,9 @@ TEST(QualityContract, impossible_limit_is_named_after_the_last_attempt) {
     ASSERT_EQ(result.attempts.size(), 2U);
     const auto& missed = result.attempts.back().misses;
     ASSERT_EQ(missed.size(), 2U);
-    EXPECT_NE(missed[1].what.find("Dice coefficient of 'lesion'"), std::string::npos) << missed[1].what;
-    EXPECT_NE(missed[1].limit.find("0.99999"), std::string::npos);
+    EXPECT_EQ(missed[1].name, "min_region_dice");
+    EXPECT_EQ(missed[1].region_name, "lesion");
+    EXPECT_EQ(missed[1].limit, 0.99999);
 }
 
 // A mesh of one region whose measures are set by hand.
@@ -82,7 +87,9 @@ TEST(ContractMisses, flat_tetrahedron_is_named_with_its_place_and_size) {
     made.measures.quality.max_dihedral_deg = made.measures.quality.worst[0].max_dihedral_deg = 165.5;
     const auto missed = misses(check_shape({}, made.mesh, made.measures.quality));
     ASSERT_EQ(missed.size(), 1U);
-    EXPECT_EQ(missed[0].found, "40.0° ... 165.5°: 40.0° ... 165.5° at (1.0, 2.0, 3.0)");
+    EXPECT_EQ(what_text(missed[0]), "the largest dihedral angle");
+    EXPECT_EQ(value_text(missed[0]), "165.5° at (1.0, 2.0, 3.0)");
+    EXPECT_EQ(limit_text(missed[0]), "at most 165°");
     EXPECT_EQ(missed[0].places.at(0), Eigen::Vector3d(1, 2, 3));
     EXPECT_DOUBLE_EQ(missed[0].size, 5);
 }
@@ -100,7 +107,7 @@ TEST(ContractMisses, every_limit_of_fidelity_is_checked) {
         HandMade made = sound();
         spoil(made.measures);
         const auto missed = misses(check_fidelity({}, made.mesh, made.measures, made.grid));
-        return missed.size() == 1 ? missed[0].what + " is " + missed[0].found
+        return missed.size() == 1 ? what_text(missed[0]) + " is " + value_text(missed[0])
                                   : std::string("misses: ") + std::to_string(missed.size());
     };
     EXPECT_EQ(missed_by([](MeshMeasures& m) { m.fidelity.body.dice = 0.97; }),
@@ -118,7 +125,38 @@ TEST(ContractMisses, every_limit_of_fidelity_is_checked) {
     EXPECT_EQ(missed_by([](MeshMeasures& m) { m.distances[0].maximum = 1.8; }),
               "the largest surface distance of 'organ' is 1.800 mm at (0.0, 0.0, 0.0)");
     EXPECT_EQ(missed_by([](MeshMeasures& m) { m.components[0].covered = 0.4; }),
-              "the share in the mesh of a component of 'organ' is 40 % (4 mm³ around (1.0, 1.0, 1.0))");
+              "the share of the component of 4 mm³ of 'organ' is 40.000 % at (1.0, 1.0, 1.0)");
+}
+
+TEST(ContractMisses, a_tetrahedron_too_flat_both_ways_is_made_finer_at_one_place) {
+    HandMade made = sound();
+    made.measures.quality.min_dihedral_deg = made.measures.quality.worst[0].min_dihedral_deg = 5;
+    made.measures.quality.max_dihedral_deg = made.measures.quality.worst[0].max_dihedral_deg = 170;
+    const auto missed = misses(check_shape({}, made.mesh, made.measures.quality));
+    ASSERT_EQ(missed.size(), 2U);
+    EXPECT_EQ(missed[0].name, "min_dihedral_deg");
+    EXPECT_EQ(missed[0].value, 5);
+    EXPECT_EQ(missed[1].places, missed[0].places);
+    EXPECT_EQ(missed[1].size, missed[0].size);
+}
+
+TEST(ContractChecks, are_numbers_in_json_and_back) {
+    HandMade made = sound();
+    made.measures.distances[0].maximum = std::numeric_limits<double>::infinity();
+    auto checks = check_fidelity({}, made.mesh, made.measures, made.grid);
+    const auto shape = check_shape({}, made.mesh, made.measures.quality);
+    checks.insert(checks.end(), shape.begin(), shape.end());
+    for (const ContractCheck& check : checks) {
+        const auto json = nlohmann::ordered_json::parse(to_json(check).dump());
+        EXPECT_TRUE(json["limit"].is_number()) << json;
+        const auto read = contract_check_from(json);
+        ASSERT_TRUE(read) << json;
+        EXPECT_EQ(read->value, check.value) << json;
+        EXPECT_EQ(read->met, check.met);
+        EXPECT_EQ(what_text(*read) + value_text(*read) + limit_text(*read),
+                  what_text(check) + value_text(check) + limit_text(check));
+    }
+    EXPECT_FALSE(contract_check_from({{"what", "the volume error"}, {"found", "1 %"}}));
 }
 
 TEST(ContractMisses, limits_grow_with_coarse_voxels_alone) {

@@ -14,6 +14,7 @@
 #include <vtkUnstructuredGrid.h>
 
 #include "tests/formats/sample_case.hpp"
+#include "tools/meshing/measures/quality.hpp"
 #include "tools/report/quality.hpp"
 
 namespace palpate {
@@ -61,7 +62,7 @@ std::vector<double> vtk_measure(const TetMesh& mesh, int measure) {
 }
 
 TEST(TetShape, regular_tetrahedron_has_arccos_of_a_third_and_ratio_one) {
-    const TetShape shape = tet_shape(one_tet({{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}}), 0);
+    const TetShape shape = tet_shape(one_tet({{{1, 1, 1}, {-1, 1, -1}, {1, -1, -1}, {-1, -1, 1}}}), 0);
     for (const double angle : shape.dihedral_deg) EXPECT_NEAR(angle, 70.528779365509308, round_off);
     EXPECT_NEAR(shape.radius_ratio, 1, round_off);
 }

@@ -12,6 +12,7 @@
 #include "tests/formats/sample_case.hpp"
 #include "tools/report/pictures/colour_scale.hpp"
 #include "tools/report/report.hpp"
+#include "tools/report/sections.hpp"
 
 namespace palpate {
 namespace {
@@ -23,7 +24,9 @@ Case hostile_case() {
     patient_case.deformable_bodies.front().mesh.region_names.back().name = "tumour <b>";
     patient_case.provenance =
         R"({"tool":{"name":"<i>palpate</i>"},"inputs":["a & b"],"meshes":{"cube":{"checks":[)"
-        R"({"what":"the mean surface distance of 'cube'","found":"0.3 mm","limit":"at most 0.25 mm","kept":false}]}}})";
+        R"({"name":"max_mean_distance_mm","measure":"the mean <i>surface</i> distance","region":"cube","value":0.3,)"
+        R"("bound":"at most","limit":0.25,"unit":"mm","met":false},)"
+        R"({"what":"the volume error of 'cube'","found":"0.5 %","limit":"at most 1 %","kept":true}]}}})";
     return patient_case;
 }
 
@@ -159,17 +162,20 @@ TEST_F(ReportTest, page_needs_nothing_from_outside) {
 
 TEST_F(ReportTest, all_sections_are_there) {
     const std::string page = full_page();
-    for (const char* id : {"slices", "bodies", "mesh", "contract", "mechanics", "certificate", "touch",
-                           "stages", "provenance"}) {
-        EXPECT_TRUE(contains(page, "<section id=\"" + std::string(id) + "\">")) << id;
-        EXPECT_TRUE(contains(page, "href=\"#" + std::string(id) + "\"")) << id;
+    for (const Section& section : report_sections) {
+        const std::string id = section.anchor;
+        EXPECT_TRUE(contains(page, "<section id=\"" + id + "\">")) << id;
+        EXPECT_TRUE(contains(page, "<a href=\"#" + id + "\">" + section.title)) << id;
     }
     EXPECT_FALSE(contains(page, "class=\"missing\""));
     EXPECT_TRUE(contains(page, "✓ Verified"));
     for (const char* figure : {"10\u202f000", "1.25 N", "3.5 mm", "11.25"})
         EXPECT_TRUE(contains(page, figure)) << figure;
     EXPECT_TRUE(contains(page, "3.25 s"));
+    EXPECT_TRUE(contains(page, "the mean &lt;i&gt;surface&lt;/i&gt; distance of &#39;cube&#39;"));
+    EXPECT_TRUE(contains(page, "0.300 mm"));
     EXPECT_TRUE(contains(page, "at most 0.25 mm"));
+    EXPECT_TRUE(contains(page, "at most 1 %"));  // as the first assets say it
     EXPECT_TRUE(contains(page, "<strong>missed</strong>"));
 }
 

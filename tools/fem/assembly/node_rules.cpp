@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <fmt/format.h>
 #include <fstream>
 #include <functional>
 #include <iterator>
@@ -22,9 +23,18 @@ std::optional<double> number_of(std::string_view text) {
     return value;
 }
 
-// The numbers of a rule; `meaning`, such as "x,y,z,radius", tells how many there are.
-std::vector<double> numbers_of(std::string_view text, std::string_view meaning, const std::string& rule) {
+constexpr std::string_view box_meaning = "x0,y0,z0,x1,y1,z1", sphere_meaning = "x,y,z,radius",
+                           plane_meaning = "x,y,z,nx,ny,nz";
+
+// `meaning`, such as "x,y,z,radius", tells how many numbers there must be.
+void require_count(const std::vector<double>& numbers, std::string_view meaning, const std::string& rule) {
     const auto expected = static_cast<std::size_t>(std::ranges::count(meaning, ',')) + 1;
+    if (numbers.size() != expected)
+        throw UsageError({rule, "it has " + std::to_string(numbers.size()) + " numbers",
+                          std::to_string(expected) + ": " + std::string(meaning) + " in LPS mm", ""});
+}
+
+std::vector<double> numbers_of(std::string_view text, std::string_view meaning, const std::string& rule) {
     std::vector<double> numbers;
     for (std::size_t begin = 0; begin <= text.size();) {
         const std::size_t comma = std::min(text.find(',', begin), text.size());
@@ -37,14 +47,11 @@ std::vector<double> numbers_of(std::string_view text, std::string_view meaning, 
         numbers.push_back(*value);
         begin = comma + 1;
     }
-    if (numbers.size() != expected)
-        throw UsageError({rule, "it has " + std::to_string(numbers.size()) + " numbers",
-                          std::to_string(expected) + ": " + std::string(meaning) + " in LPS mm", ""});
     return numbers;
 }
 
-InsideBox box_of(std::string_view text, const std::string& rule) {
-    const auto n = numbers_of(text, "x0,y0,z0,x1,y1,z1", rule);
+InsideBox box_of(const std::vector<double>& n, const std::string& rule) {
+    require_count(n, box_meaning, rule);
     const InsideBox box{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
     if ((box.lower.array() > box.upper.array()).any())
         throw UsageError({rule, "its first corner is not below its second one",
@@ -53,18 +60,23 @@ InsideBox box_of(std::string_view text, const std::string& rule) {
     return box;
 }
 
-InsideSphere sphere_of(std::string_view text, const std::string& rule) {
-    const auto n = numbers_of(text, "x,y,z,radius", rule);
+InsideSphere sphere_of(const std::vector<double>& n, const std::string& rule) {
+    require_count(n, sphere_meaning, rule);
     if (!(n[3] > 0)) throw UsageError({rule, "its radius is not positive", "more than 0 mm", ""});
     return {{n[0], n[1], n[2]}, n[3]};
 }
 
-BeyondPlane plane_of(std::string_view text, const std::string& rule) {
-    const auto n = numbers_of(text, "x,y,z,nx,ny,nz", rule);
+BeyondPlane plane_of(const std::vector<double>& n, const std::string& rule) {
+    require_count(n, plane_meaning, rule);
     const BeyondPlane plane{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
     if (plane.normal.isZero(0))
         throw UsageError({rule, "its normal has no length", "a direction, such as 0,0,1", ""});
     return plane;
+}
+
+// "--fixed sphere:1,2,3.5,4".
+std::string rule_text(std::string_view option, std::string_view kind, const std::vector<double>& numbers) {
+    return fmt::format("{} {}:{}", option, kind, fmt::join(numbers, ","));
 }
 
 std::int32_t outside_value(const TetMesh& mesh, const std::string& name, const std::string& rule) {
@@ -210,11 +222,26 @@ NodeRule parse_node_rule(std::string_view option, std::string_view text) {
     if (kind == "touching" && !rest.empty()) return {rule, TouchingLabel{std::string(rest)}};
     if (kind == "region" && !rest.empty()) return {rule, OfRegion{std::string(rest)}};
     if (kind == "nodes" && !rest.empty()) return {rule, ListedNodes{rest}};
-    if (kind == "box") return {rule, box_of(rest, rule)};
-    if (kind == "sphere") return {rule, sphere_of(rest, rule)};
-    if (kind == "plane") return {rule, plane_of(rest, rule)};
+    if (kind == "box") return {rule, box_of(numbers_of(rest, box_meaning, rule), rule)};
+    if (kind == "sphere") return {rule, sphere_of(numbers_of(rest, sphere_meaning, rule), rule)};
+    if (kind == "plane") return {rule, plane_of(numbers_of(rest, plane_meaning, rule), rule)};
     throw UsageError({std::string(option) + " '" + std::string(text) + "'", "is no rule that picks nodes",
                       std::string(node_rule_grammar), ""});
+}
+
+NodeRule box_rule(std::string_view option, const std::vector<double>& corners) {
+    const std::string rule = rule_text(option, "box", corners);
+    return {rule, box_of(corners, rule)};
+}
+
+NodeRule sphere_rule(std::string_view option, const std::vector<double>& center_and_radius) {
+    const std::string rule = rule_text(option, "sphere", center_and_radius);
+    return {rule, sphere_of(center_and_radius, rule)};
+}
+
+NodeRule plane_rule(std::string_view option, const std::vector<double>& point_and_normal) {
+    const std::string rule = rule_text(option, "plane", point_and_normal);
+    return {rule, plane_of(point_and_normal, rule)};
 }
 
 std::vector<std::int32_t> fixed_nodes_of(const TetMesh& mesh, const BoundarySurface& boundary,

@@ -56,6 +56,12 @@ inline constexpr std::string_view node_rule_grammar =
 /// length.
 NodeRule parse_node_rule(std::string_view option, std::string_view text);
 
+/// The same rules from numbers: x0, y0, z0, x1, y1, z1 of a box; x, y, z, r of a sphere; x, y, z, nx, ny, nz
+/// of a plane. Throw as parse_node_rule() does.
+NodeRule box_rule(std::string_view option, const std::vector<double>& corners);
+NodeRule sphere_rule(std::string_view option, const std::vector<double>& center_and_radius);
+NodeRule plane_rule(std::string_view option, const std::vector<double>& point_and_normal);
+
 /// Returns the nodes that any rule picks, ascending: surface nodes, and interior ones where a file lists
 /// them. Throws InvalidInput if a rule names an unknown label or region (with the nearest names), picks no
 /// node, or its file cannot be read or holds something else than a node's index (with file, line and value).

@@ -64,71 +64,90 @@ MeshMeasures measure(const TetMesh& mesh, const RegionLabels& labels,
 
 std::vector<ContractCheck> check_shape(const QualityContract& contract, const TetMesh& mesh,
                                        const MeshQuality& quality) {
-    ContractCheck angles{
-        .what = "the range of dihedral angles",
-        .found = fmt::format("{:.1f}° ... {:.1f}°", quality.min_dihedral_deg, quality.max_dihedral_deg),
-        .limit = fmt::format("{:g}° ... {:g}°", contract.min_dihedral_deg, contract.max_dihedral_deg),
-        .kept = quality.min_dihedral_deg >= contract.min_dihedral_deg &&
-                quality.max_dihedral_deg <= contract.max_dihedral_deg};
-    for (const WorstTetrahedron& worst : quality.worst)
-        if (worst.min_dihedral_deg < contract.min_dihedral_deg ||
-            worst.max_dihedral_deg > contract.max_dihedral_deg) {
-            angles.found +=
-                fmt::format("{} {:.1f}° ... {:.1f}° at {}", angles.places.empty() ? ":" : ",",
-                            worst.min_dihedral_deg, worst.max_dihedral_deg, place_text(worst.centroid));
-            angles.places.push_back(worst.centroid);
-            angles.size = std::max(angles.size, longest_edge(mesh, worst.tetrahedron));
+    using Bound = ContractCheck::Bound;
+    ContractCheck smallest{.name = "min_dihedral_deg",
+                           .measure = "the smallest dihedral angle",
+                           .value = quality.min_dihedral_deg,
+                           .bound = Bound::at_least,
+                           .limit = contract.min_dihedral_deg,
+                           .unit = "degrees",
+                           .met = quality.min_dihedral_deg >= contract.min_dihedral_deg};
+    ContractCheck largest{.name = "max_dihedral_deg",
+                          .measure = "the largest dihedral angle",
+                          .value = quality.max_dihedral_deg,
+                          .limit = contract.max_dihedral_deg,
+                          .unit = "degrees",
+                          .met = quality.max_dihedral_deg <= contract.max_dihedral_deg};
+    // A tetrahedron that is too flat mostly has both angles: its surroundings are made finer as one.
+    std::vector<Eigen::Vector3d> places;
+    double size = 0;
+    for (const WorstTetrahedron& worst : quality.worst) {
+        if (worst.min_dihedral_deg == quality.min_dihedral_deg) smallest.at = worst.centroid;
+        if (worst.max_dihedral_deg == quality.max_dihedral_deg) largest.at = worst.centroid;
+        if (worst.min_dihedral_deg >= contract.min_dihedral_deg &&
+            worst.max_dihedral_deg <= contract.max_dihedral_deg)
+            continue;
+        places.push_back(worst.centroid);
+        size = std::max(size, longest_edge(mesh, worst.tetrahedron));
+    }
+    for (ContractCheck* angle : {&smallest, &largest})
+        if (!angle->met) {
+            angle->places = places;
+            angle->size = size;
         }
-    std::vector<ContractCheck> checks{std::move(angles)};
-    const auto none = [&](const char* what, std::int64_t count) {
-        checks.push_back({.what = what, .found = fmt::format("{}", count), .limit = "0", .kept = count == 0});
+    std::vector<ContractCheck> checks{std::move(smallest), std::move(largest)};
+    const auto none = [&](const char* name, const char* measure, std::int64_t count) {
+        checks.push_back({.name = name,
+                          .measure = measure,
+                          .value = static_cast<double>(count),
+                          .limit = 0,
+                          .met = count == 0});
     };
-    none("the number of inverted tetrahedra", quality.inverted);
-    none("the number of non-manifold edges of the boundary", quality.boundary.non_manifold_edges);
-    none("the number of open edges of the boundary", quality.boundary.open_edges);
+    none("inverted_tetrahedra", "the number of inverted tetrahedra", quality.inverted);
+    none("non_manifold_edges", "the number of non-manifold edges of the boundary",
+         quality.boundary.non_manifold_edges);
+    none("open_edges", "the number of open edges of the boundary", quality.boundary.open_edges);
     return checks;
 }
 
 std::vector<ContractCheck> check_fidelity(const QualityContract& contract, const TetMesh& mesh,
                                           const MeshMeasures& measures, const ImageGrid& grid) {
+    using Bound = ContractCheck::Bound;
     std::vector<ContractCheck> checks;
     const double coarseness = std::max(1.0, std::cbrt(grid.voxel_volume()));
-    const auto add = [&](const char* what, std::int32_t region, const std::string& found,
-                         const std::string& limit, bool kept) {
-        const std::string owner = region == 0 ? "the body" : "'" + region_name(mesh, region) + "'";
-        checks.push_back({.what = fmt::format("{} of {}", what, owner),
-                          .found = found,
+    const auto add = [&](const char* name, const std::string& measure, std::int32_t region, double value,
+                         Bound bound, double limit, const char* unit) -> ContractCheck& {
+        checks.push_back({.name = name,
+                          .measure = measure,
+                          .region = region,
+                          .region_name = region == 0 ? "" : region_name(mesh, region),
+                          .value = value,
+                          .bound = bound,
                           .limit = limit,
-                          .kept = kept,
-                          .region = region});
-    };
-    const auto at_most = [&](const char* what, std::int32_t region, double found, double limit,
-                             const char* unit) {
-        add(what, region, fmt::format("{:.3f} {}", found, unit),
-            fmt::format("at most {:.3g} {}", limit, unit), std::abs(found) <= limit);
-    };
-    const auto at_least = [&](const char* what, std::int32_t region, double found, double limit) {
-        add(what, region, fmt::format("{:.4f}", found), fmt::format("at least {:g}", limit), found >= limit);
+                          .unit = unit,
+                          .met = bound == Bound::at_least ? value >= limit : std::abs(value) <= limit});
+        return checks.back();
     };
     const RegionFidelity& body = measures.fidelity.body;
-    at_least("the Dice coefficient", 0, body.dice, contract.min_dice);
-    at_most("the centroid's distance", 0, body.centroid_distance, contract.max_centroid_distance * coarseness,
-            "mm");
+    add("min_dice", "the Dice coefficient", 0, body.dice, Bound::at_least, contract.min_dice, "");
+    add("max_centroid_distance_mm", "the centroid's distance", 0, body.centroid_distance, Bound::at_most,
+        contract.max_centroid_distance * coarseness, "mm");
     for (const RegionFidelity& region : measures.fidelity.regions) {
-        at_most("the volume error", region.region, region.volume_error_percent,
-                contract.max_volume_error_percent, "%");
-        at_least("the Dice coefficient", region.region, region.dice, contract.min_region_dice);
+        add("max_volume_error_percent", "the volume error", region.region, region.volume_error_percent,
+            Bound::at_most, contract.max_volume_error_percent, "%");
+        add("min_region_dice", "the Dice coefficient", region.region, region.dice, Bound::at_least,
+            contract.min_region_dice, "");
     }
     for (const RegionDistance& distance : measures.distances) {
-        at_most("the mean surface distance", distance.region, distance.mean,
-                contract.max_mean_distance * coarseness, "mm");
-        at_most("the 95th percentile of the surface distance", distance.region, distance.percentile_95,
-                contract.max_p95_distance * coarseness, "mm");
+        add("max_mean_distance_mm", "the mean surface distance", distance.region, distance.mean,
+            Bound::at_most, contract.max_mean_distance * coarseness, "mm");
+        add("max_p95_distance_mm", "the 95th percentile of the surface distance", distance.region,
+            distance.percentile_95, Bound::at_most, contract.max_p95_distance * coarseness, "mm");
         const double limit = contract.max_distance * grid.spacing.norm();
-        at_most("the largest surface distance", distance.region, distance.maximum, limit, "mm");
-        ContractCheck& largest = checks.back();
-        if (largest.kept) continue;
-        largest.found += " at " + place_text(distance.farthest);
+        ContractCheck& largest = add("max_distance_voxel_diagonals", "the largest surface distance",
+                                     distance.region, distance.maximum, Bound::at_most, limit, "mm");
+        largest.at = distance.farthest;
+        if (largest.met) continue;
         largest.places = places_beyond(distance, limit);
         largest.size = 2 * limit;
     }
@@ -136,20 +155,18 @@ std::vector<ContractCheck> check_fidelity(const QualityContract& contract, const
     const std::size_t before = checks.size();
     for (const ComponentCover& component : measures.components)
         if (component.covered < 0.5)
-            add("the share in the mesh of a component", component.region,
-                fmt::format("{:.0f} % ({:.0f} mm³ around {})", 100 * component.covered, component.volume,
-                            place_text(component.centroid)),
-                "at least 50 %", false);
+            add("component_share", fmt::format("the share of the component of {:.0f} mm³", component.volume),
+                component.region, 100 * component.covered, Bound::at_least, 50, "%")
+                .at = component.centroid;
     if (checks.size() == before)
-        add("the number of missing components", 0, fmt::format("0 of {}", measures.components.size()), "0",
-            true);
+        add("missing_components", "the number of missing components", 0, 0, Bound::at_most, 0, "");
     return checks;
 }
 
 std::vector<ContractCheck> misses(std::span<const ContractCheck> checks) {
     std::vector<ContractCheck> result;
     std::ranges::copy_if(checks, std::back_inserter(result),
-                         [](const ContractCheck& check) { return !check.kept; });
+                         [](const ContractCheck& check) { return !check.met; });
     return result;
 }
 

@@ -64,6 +64,11 @@ double radius_ratio(const std::array<Eigen::Vector3d, 4>& p, double volume) {
 
 }  // namespace
 
+TetShape tet_shape(const TetMesh& mesh, std::size_t t) {
+    const auto p = corners_of(mesh, t);
+    return {dihedral_angles_deg(p), radius_ratio(p, six_volume(mesh, t) / 6)};
+}
+
 // The sine of the dihedral angle at an edge e between faces of areas A and B is 1.5 V |e| / (A B), which is
 // the same for an angle and for what it lacks to 180°.
 double flatness_deg(const TetMesh& mesh, std::size_t t) {

@@ -54,6 +54,17 @@ struct MeshQuality {
     SurfaceQuality boundary;                   ///< of boundary_surface(mesh)
 };
 
+/// The shape of one tetrahedron.
+struct TetShape {
+    /// The angle inside, 0 ... 180, between the faces opposite to corners i and j: (0, 1), (0, 2), ... (2,
+    /// 3).
+    std::array<double, 6> dihedral_deg{};
+    double radius_ratio = 0;  ///< 3 inradius / circumradius: 1 regular, 0 flat or inverted
+};
+
+/// Measures tetrahedron `t`. Source of both formulas: Shewchuk, "What is a good linear element?", 2002.
+TetShape tet_shape(const TetMesh& mesh, std::size_t t);
+
 /// Measures a tetrahedral mesh of one tetrahedron or more. Cost: O(n log n), 0.1 s for 50 000 tetrahedra.
 MeshQuality measure(const TetMesh& mesh);
 

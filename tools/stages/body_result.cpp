@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/commands/condense/results.hpp"
+#include "tools/stages/body_result.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "tools/cli/record_json.hpp"
 
-namespace palpate::condensation {
+namespace palpate::stages {
 
 using Json = nlohmann::ordered_json;
 
@@ -24,9 +24,27 @@ Json to_json(const CondensationPlan& plan) {
     return {{"method", name_of(plan.chosen.method)}, {"reason", plan.reason}, {"forecasts", forecasts}};
 }
 
+Json to_json(const DeformableBody& body, const CondensationPlan& plan) {
+    return {{"name", body.name},
+            {"nodes", body.mesh.rest_positions.size()},
+            {"tetrahedra", body.mesh.tetrahedra.size()},
+            {"element_order", name_of(body.element_order)},
+            {"surface_nodes", body.boundary.nodes.size()},
+            {"fixed_nodes", body.fixed_nodes.size()},
+            {"contact_nodes", body.contact_nodes.size()},
+            {"representation", representation_of(body.compliance)},
+            {"compliance_bytes", value_bytes(body.compliance)},
+            {"plan", to_json(plan)},
+            {"certificate", to_json(body.certificate)}};
+}
+
+std::string name_of(ElementOrder order) {
+    return order == ElementOrder::linear ? "linear" : "quadratic";
+}
+
 std::string representation_of(const SurfaceCompliance& compliance) {
     const auto* blocks = std::get_if<HierarchicalCompliance>(&compliance);
     return blocks ? fmt::format("hierarchical to {:g}", blocks->accuracy) : "dense";
 }
 
-}  // namespace palpate::condensation
+}  // namespace palpate::stages

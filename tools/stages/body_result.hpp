@@ -5,15 +5,21 @@
 #include "formats/model/body.hpp"
 #include "tools/fem/condensation/condensation_plan.hpp"
 
-namespace palpate::condensation {
+namespace palpate::stages {
 
 /// What a certificate says, by the names of its figures.
 nlohmann::ordered_json to_json(const Certificate& certificate);
 
+/// A condensed body in figures, its plan and its certificate.
+nlohmann::ordered_json to_json(const DeformableBody& body, const CondensationPlan& plan);
+
 /// What was chosen, why, and every method's forecast.
 nlohmann::ordered_json to_json(const CondensationPlan& plan);
+
+/// "linear" or "quadratic".
+std::string name_of(ElementOrder order);
 
 /// "dense", or "hierarchical to 0.001".
 std::string representation_of(const SurfaceCompliance& compliance);
 
-}  // namespace palpate::condensation
+}  // namespace palpate::stages

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/commands/mesh/results.hpp"
+#include "tools/stages/mesh_result.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "formats/model/errors.hpp"
+#include "tools/meshing/contract/contract_json.hpp"
 
-namespace palpate::mesh {
+namespace palpate::stages {
 
 Json to_json(const TetMesh& mesh, const MeshQuality& quality) {
     Json worst = Json::array();
@@ -59,9 +60,7 @@ Json to_json(const TetMesh& mesh, const MeshMeasures& measures) {
 
 Json to_json(std::span<const ContractCheck> checks) {
     Json list = Json::array();
-    for (const ContractCheck& check : checks)
-        list.push_back(
-            {{"what", check.what}, {"found", check.found}, {"limit", check.limit}, {"kept", check.kept}});
+    for (const ContractCheck& check : checks) list.push_back(palpate::to_json(check));
     return list;
 }
 
@@ -72,13 +71,13 @@ Json to_json(const std::vector<MeshAttempt>& attempts) {
     return list;
 }
 
-void require_kept(std::span<const ContractCheck> checks, const std::string& culprit,
-                  const std::string& next_step) {
+void require_met(std::span<const ContractCheck> checks, const std::string& culprit,
+                 const std::string& next_step) {
     std::string found;
     for (const ContractCheck& check : misses(checks))
-        found += fmt::format("{}{} is {} (expected {})", found.empty() ? "" : "; ", check.what, check.found,
-                             check.limit);
+        found += fmt::format("{}{} is {} (expected {})", found.empty() ? "" : "; ", what_text(check),
+                             value_text(check), limit_text(check));
     if (!found.empty()) throw QualityNotMet({culprit, found, "", next_step});
 }
 
-}  // namespace palpate::mesh
+}  // namespace palpate::stages

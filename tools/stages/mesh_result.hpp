@@ -5,7 +5,7 @@
 
 #include "tools/meshing/contract/mesh_to_contract.hpp"
 
-namespace palpate::mesh {
+namespace palpate::stages {
 
 using Json = nlohmann::ordered_json;
 
@@ -15,15 +15,15 @@ Json to_json(const TetMesh& mesh, const MeshQuality& quality);
 /// The same and how faithful it is to its labels, region by region.
 Json to_json(const TetMesh& mesh, const MeshMeasures& measures);
 
-/// The contract check by check: what, found, limit, kept.
+/// The contract check by check, as numbers.
 Json to_json(std::span<const ContractCheck> checks);
 
 /// What each attempt missed.
 Json to_json(const std::vector<MeshAttempt>& attempts);
 
-/// Throws QualityNotMet with every check that is not kept, if there is one; `culprit` is the output,
+/// Throws QualityNotMet with every check that is not met, if there is one; `culprit` is the output,
 /// `next_step` what to do.
-void require_kept(std::span<const ContractCheck> checks, const std::string& culprit,
-                  const std::string& next_step);
+void require_met(std::span<const ContractCheck> checks, const std::string& culprit,
+                 const std::string& next_step);
 
-}  // namespace palpate::mesh
+}  // namespace palpate::stages

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/cli/result_lines.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+namespace palpate::cli {
+namespace {
+
+std::string cell_text(const nlohmann::ordered_json& value) {
+    if (value.is_string()) return value.get<std::string>();
+    if (value.is_number_float()) return fmt::format("{:.4g}", value.get<double>());
+    return value.dump();
+}
+
+bool is_table(const nlohmann::ordered_json& value) {
+    return value.is_array() && !value.empty() &&
+           std::ranges::all_of(value, [](const auto& row) { return row.is_object(); });
+}
+
+// Rows of scalars under their keys, columns as wide as their widest cell; nested values are left to --json.
+void print_table(const nlohmann::ordered_json& rows, const std::string& name) {
+    std::vector<std::string> keys;
+    for (const auto& [key, cell] : rows.front().items())
+        if (cell.is_primitive()) keys.push_back(key);
+    std::cout << '\n' << name << '\n';
+    std::vector<std::size_t> widths;
+    for (const std::string& key : keys) {
+        std::size_t width = key.size();
+        for (const auto& row : rows)
+            width = std::max(width, cell_text(row.value(key, nlohmann::ordered_json())).size());
+        widths.push_back(width);
+        std::cout << fmt::format("  {:<{}}", key, width);
+    }
+    for (const auto& row : rows) {
+        std::cout << '\n';
+        for (std::size_t k = 0; k < keys.size(); ++k)
+            std::cout << fmt::format("  {:<{}}", cell_text(row.value(keys[k], nlohmann::ordered_json())),
+                                     widths[k]);
+    }
+    std::cout << "\n\n";
+}
+
+void print_lines(const nlohmann::ordered_json& value, const std::string& prefix) {
+    for (const auto& [key, item] : value.items()) {
+        const std::string name = prefix.empty() ? key : prefix + "." + key;
+        if (item.is_object())
+            print_lines(item, name);
+        else if (is_table(item))
+            print_table(item, name);
+        else
+            std::cout << name << ' ' << cell_text(item) << '\n';
+    }
+}
+
+}  // namespace
+
+void print_result(const nlohmann::ordered_json& result) {
+    print_lines(result, "");
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/stages/body.hpp"
+
+#include <algorithm>
+
+#include "formats/model/errors.hpp"
+#include "tools/fem/assembly/node_rules.hpp"
+#include "tools/fem/certificate/discretisation_error.hpp"
+#include "tools/fem/condensation/condense.hpp"
+#include "tools/meshing/files/mesh_files.hpp"
+#include "tools/stages/body_result.hpp"
+
+namespace palpate::stages {
+namespace {
+
+ElementOrder element_order_of(const std::string& text) {
+    for (const ElementOrder order : {ElementOrder::linear, ElementOrder::quadratic})
+        if (text == name_of(order)) return order;
+    throw UsageError({"--element " + text, "is no kind of element", "linear or quadratic", ""});
+}
+
+Representation representation_from(const std::string& text) {
+    if (text == "auto") return Representation::automatic;
+    if (text == "dense") return Representation::dense;
+    if (text == "hierarchical") return Representation::hierarchical;
+    throw UsageError(
+        {"--representation " + text, "is no way to store a compliance", "auto, dense or hierarchical", ""});
+}
+
+std::vector<RegionMaterial> materials_of(const CondenseRequest& request, const TetMesh& mesh) {
+    std::vector<RegionMaterial> materials;
+    for (const LabelMaterial& material : request.materials)
+        materials.push_back(
+            {require_label(mesh.region_names, material.label, request.mesh.filename().string()).value,
+             {.youngs_modulus = material.youngs_modulus_kpa * 1e-3,
+              .poissons_ratio = material.poissons_ratio}});
+    std::ranges::sort(materials, {}, &RegionMaterial::region);
+    return materials;
+}
+
+std::vector<NodeRule> rules_of(const std::string& option, const std::vector<NodePick>& picks) {
+    std::vector<NodeRule> rules;
+    for (const NodePick& pick : picks)
+        if (!pick.words.empty())
+            rules.push_back(parse_node_rule(option, pick.words));
+        else if (!pick.touching.empty())
+            rules.push_back({option + " touching:" + pick.touching, TouchingLabel{pick.touching}});
+        else if (!pick.region.empty())
+            rules.push_back({option + " region:" + pick.region, OfRegion{pick.region}});
+        else if (!pick.nodes_file.empty())
+            rules.push_back({option + " nodes:" + pick.nodes_file.string(), ListedNodes{pick.nodes_file}});
+        else if (!pick.sphere_mm.empty())
+            rules.push_back(sphere_rule(option, pick.sphere_mm));
+        else if (!pick.plane_mm.empty())
+            rules.push_back(plane_rule(option, pick.plane_mm));
+        else
+            rules.push_back(box_rule(option, pick.box_mm));
+    return rules;
+}
+
+}  // namespace
+
+MadeBody make_body(const CondenseRequest& request, int threads, const ProgressCallback& progress,
+                   const std::function<void(const CondensationPlan&)>& announce) {
+    const auto fixed = rules_of("--fixed", request.fixed), contact = rules_of("--contact", request.contact);
+    DeformableBody body;
+    body.element_order = element_order_of(request.element);
+    const Representation representation = representation_from(request.representation);
+    body.name = request.name.empty() ? request.mesh.stem().string() : request.name;
+    body.mesh = read_tetrahedra(request.mesh);
+    body.materials = materials_of(request, body.mesh);
+    const BoundarySurface boundary = boundary_surface(body.mesh);
+    body.fixed_nodes = fixed_nodes_of(body.mesh, boundary, fixed);
+    body.contact_nodes = contact_nodes_of(body.mesh, boundary, contact, body.fixed_nodes);
+    progress("forecasting", 0);
+    body = prepared_body(std::move(body));
+    CondensationPlan plan = plan_condensation(body, {.representation = representation,
+                                                     .accuracy = request.accuracy,
+                                                     .memory_bytes = request.memory_gib * 0x1p30,
+                                                     .size_bytes = request.size_mib * 0x1p20,
+                                                     .threads = threads});
+    announce(plan);
+    body = condensed_body(std::move(body), plan, progress);
+    if (request.discretisation_error) {
+        progress("solving on richer elements", 0.95);
+        body.certificate.discretisation_error = estimate_discretisation_error(body);
+    }
+    return {std::move(body), std::move(plan)};
+}
+
+}  // namespace palpate::stages

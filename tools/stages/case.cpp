@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/stages/case.hpp"
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "formats/asset/parts.hpp"
+#include "formats/model/errors.hpp"
+#include "tools/cli/software.hpp"
+#include "tools/meshing/files/mesh_files.hpp"
+#include "tools/obb/build_obb_tree.hpp"
+
+namespace palpate::stages {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// A slash may be a folder of whoever made the asset, and folders carry names of people.
+void refuse_paths(const Json& value, const std::string& culprit) {
+    if (value.is_structured())
+        for (const auto& [key, item] : value.items()) {
+            refuse_paths(key, culprit);
+            refuse_paths(item, culprit);
+        }
+    else if (value.is_string() &&
+             value.get_ref<const std::string&>().find_first_of("/\\") != std::string::npos)
+        throw InvalidInput(
+            {culprit, "holds a path: \"" + value.get<std::string>() + '"', "no '/' and no '\\'",
+             "give file names without folders; an asset carries nothing that leads to a person"});
+}
+
+Json read_provenance(const std::filesystem::path& path) {
+    if (path.empty()) return Json::object();
+    std::ifstream stream(path, std::ios::binary);
+    Json json;
+    try {
+        json = Json::parse(stream);
+    } catch (const Json::parse_error& error) {
+        throw InvalidInput({path.string(), error.what(), "JSON", "mend the file"});
+    }
+    if (json.contains("schema")) json.erase("schema");  // "palpate.mesh/1" is no path
+    refuse_paths(json, path.string());
+    return json;
+}
+
+// What `palpate mesh --json` says of bodies' meshes, by body; times and memory differ from run to run and
+// stay out of the asset.
+Json read_mesh_results(const std::vector<NamedFile>& files) {
+    Json meshes = Json::object();
+    for (const auto& [name, file] : files) {
+        Json result = read_provenance(file);
+        for (const char* key : {"version", "seconds", "peak_memory_bytes"}) result.erase(key);
+        meshes[name] = std::move(result);
+    }
+    return meshes;
+}
+
+ObbTree tree_of(const BodyFiles& files, const TriangleMesh& surface) {
+    return files.tree.empty() ? build_obb_tree(surface) : read_obb_part(files.tree, surface);
+}
+
+RigidBody read_rigid(const BodyFiles& files) {
+    RigidBody body{files.name, read_surface(files.body), {}};
+    body.obb_tree = tree_of(files, body.surface);
+    return body;
+}
+
+DeformableBody read_deformable(const BodyFiles& files) {
+    DeformableBody body = read_body_part(files.body);
+    body.name = files.name;
+    body.obb_tree = tree_of(files, body.boundary.surface);
+    return body;
+}
+
+}  // namespace
+
+Case make_case(const PackRequest& request, const ProgressCallback& progress) {
+    Case made{.name = request.name,
+              .rigid_bodies = {},
+              .deformable_bodies = {},
+              .haptics = request.haptics,
+              .provenance = ""};
+    made.provenance = Json{{"software", cli::software_versions()},
+                           {"build", read_provenance(request.provenance)},
+                           {"meshes", read_mesh_results(request.mesh_results)}}
+                          .dump();
+    progress("read parts and build trees", 0);
+    for (const BodyFiles& files : request.rigid) made.rigid_bodies.push_back(read_rigid(files));
+    for (const BodyFiles& files : request.deformable)
+        made.deformable_bodies.push_back(read_deformable(files));
+    return made;
+}
+
+}  // namespace palpate::stages

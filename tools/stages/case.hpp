@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include "formats/model/body.hpp"
+#include "formats/model/progress.hpp"
+#include "tools/stages/requests/pack_request.hpp"
+
+namespace palpate::stages {
+
+/// Joins the parts that a request names to a case, builds the OBB trees that it does not name, and states in
+/// the provenance the software's versions, what made the parts and what their meshes are like; writes
+/// nothing. Throws InvalidInput if a tree was built over another surface, if the provenance is no JSON or
+/// holds a path, and as what it reads with. Cost: build_obb_tree() of every body.
+Case make_case(const PackRequest& request, const ProgressCallback& progress);
+
+}  // namespace palpate::stages

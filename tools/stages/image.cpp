@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/stages/image.hpp"
+
+#include <algorithm>
+
+#include "formats/model/errors.hpp"
+#include "tools/imaging/files/label_names.hpp"
+
+namespace palpate::stages {
+namespace {
+
+nlohmann::ordered_json describe(const ImageGrid& grid) {
+    const auto numbers = [](const auto& v) { return std::vector<double>(v.data(), v.data() + v.size()); };
+    return {{"size", grid.size},
+            {"spacing_mm", numbers(grid.spacing)},
+            {"origin_mm", numbers(grid.origin)},
+            {"direction_columns", numbers(grid.direction)}};
+}
+
+nlohmann::ordered_json describe(const LabelMap& map) {
+    nlohmann::ordered_json result = {{"grid", describe(map.grid)},
+                                     {"labels", nlohmann::ordered_json::array()}};
+    std::vector<std::size_t> voxels(65536, 0);
+    for (const std::uint16_t value : map.labels) ++voxels[value];
+    for (const Label& label : map.names) {
+        const std::size_t count = voxels[label.value];
+        result["labels"].push_back(
+            {{"name", label.name},
+             {"value", label.value},
+             {"voxels", count},
+             {"volume_ml", static_cast<double>(count) * map.grid.voxel_volume() / 1000}});
+    }
+    return result;
+}
+
+Overlaps overlaps_of(const std::string& text) {
+    if (text.empty() || text == "refuse") return Overlaps::refuse;
+    if (text == "later") return Overlaps::later_wins;
+    if (text == "smaller") return Overlaps::smaller_wins;
+    throw UsageError({"--overlaps", "'" + text + "'", "refuse, later or smaller", ""});
+}
+
+}  // namespace
+
+void check_request(const ImportRequest& request) {
+    const auto require = [](bool fits, const char* option, const char* input_kind, const char* advice) {
+        if (!fits) throw UsageError({option, std::string("is for ") + input_kind, "", advice});
+    };
+    std::error_code none;
+    const bool labels = request.labels,
+               dicom_image =
+                   !labels && (std::filesystem::is_directory(request.input, none) || is_dicom(request.input));
+    require(labels || request.label_names.empty(), "--label-names", "label maps", "add --labels");
+    require(labels || request.overlaps.empty(), "--overlaps", "label maps", "add --labels");
+    require(dicom_image || request.series.empty(), "--series", "DICOM images", "leave it out");
+    require(dicom_image || !request.accept_gaps, "--accept-gaps", "DICOM images", "leave it out");
+    require(request.nifti_frame.empty() || is_nifti(request.input), "--nifti-frame", "NIfTI files",
+            "leave it out");
+    if (request.list != request.output.empty())
+        throw UsageError(
+            {"--output", request.list ? "given with --list" : "not given", "", "give one of them"});
+}
+
+ReadOptions read_options_of(const ImportRequest& request) {
+    return {.series = request.series,
+            .accept_gaps = request.accept_gaps,
+            .nifti_frame = request.nifti_frame,
+            .overlaps = overlaps_of(request.overlaps)};
+}
+
+nlohmann::ordered_json import_image(const ImportRequest& request, const ReadOptions& options,
+                                    const std::filesystem::path& file, const ProgressCallback& progress,
+                                    const NoteSink& note) {
+    progress("reading", 0);
+    if (request.labels) {
+        LabelMap map = read_label_map(request.input, note, options);
+        name_labels(map, request.label_names, note);
+        progress("writing", 0.5);
+        write_label_map(file, map);
+        return describe(map);
+    }
+    const Volume volume = read_volume(request.input, note, options);
+    const auto [low, high] = std::ranges::minmax(volume.values);
+    progress("writing", 0.5);
+    write_volume(file, volume);
+    return {{"grid", describe(volume.grid)}, {"lowest", low}, {"highest", high}};
+}
+
+}  // namespace palpate::stages

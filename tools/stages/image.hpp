@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <nlohmann/json.hpp>
+
+#include "formats/model/progress.hpp"
+#include "tools/imaging/files/image_files.hpp"
+#include "tools/stages/requests/import_request.hpp"
+
+namespace palpate::stages {
+
+/// Throws UsageError for what a request asks of an input that has no such thing, and unless it either lists
+/// or names an output. `overlaps` counts as asked for if it is not empty.
+void check_request(const ImportRequest& request);
+
+/// How to read the request's input. Throws UsageError for an unknown word.
+ReadOptions read_options_of(const ImportRequest& request);
+
+/// Reads the request's volume or label map as `options` say, names its labels and writes it to `file`;
+/// returns the grid, and the labels or the range of values. Throws as read_volume(), read_label_map() and
+/// name_labels() do.
+nlohmann::ordered_json import_image(const ImportRequest& request, const ReadOptions& options,
+                                    const std::filesystem::path& file, const ProgressCallback& progress,
+                                    const NoteSink& note);
+
+}  // namespace palpate::stages

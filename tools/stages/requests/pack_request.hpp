@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "formats/model/body.hpp"
+#include "tools/cli/command.hpp"
+
+namespace palpate::stages {
+
+/// A body's files: "skull=skull.vtp", "skull=skull.vtp,skull.obb.h5" or {"name": "skull", "body":
+/// "skull.vtp", "tree": "skull.obb.h5"}.
+struct BodyFiles {
+    std::string name;
+    std::filesystem::path body;  ///< surface (.vtp) or condensed body (.body.h5)
+    std::filesystem::path tree;  ///< OBB tree (.obb.h5); empty: it is built
+};
+
+/// What `palpate mesh --json` said of a body: "wall=wall.json" or {"name": "wall", "file": "wall.json"}.
+struct NamedFile {
+    std::string name;
+    std::filesystem::path file;
+};
+
+void to_json(nlohmann::ordered_json& json, const BodyFiles& files);
+void from_json(const nlohmann::ordered_json& json, BodyFiles& files);
+void to_json(nlohmann::ordered_json& json, const NamedFile& file);
+void from_json(const nlohmann::ordered_json& json, NamedFile& file);
+
+/// What `palpate pack` is asked for.
+struct PackRequest {
+    std::string name;  ///< of the case
+    std::vector<BodyFiles> rigid, deformable;
+    HapticSettings haptics;
+    std::vector<NamedFile> mesh_results;
+    std::filesystem::path provenance;  ///< what made the parts (.json); may be empty
+    std::filesystem::path output;      ///< .vtkhdf
+};
+
+/// Binds the options of `palpate pack`.
+void declare(cli::Command& command, PackRequest& request);
+
+}  // namespace palpate::stages
