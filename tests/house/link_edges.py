@@ -32,7 +32,7 @@ ROOMS = {
     "stage_shapes": {"requests", "imaging", "meshing"},
     "stage_bodies": {"requests", "fem", "meshing"},
     "stage_cases": {"requests", "asset", "meshing", "obb"},
-    "case_builder": {"model", "asset", "cli", "requests", "json", "toml"},
+    "case_builder": {"model", "asset", "cli", "imaging", "requests", "json", "toml"},
     "seeds": {"model", "imaging", "vtk"},
     "hd_conformance": {"model", "devices", "json"},
     "realtime": {"records"},

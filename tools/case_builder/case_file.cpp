@@ -10,6 +10,7 @@
 #include "formats/records/haptic_settings.hpp"
 #include "formats/records/quality_contract.hpp"
 #include "tools/case_builder/table_reader.hpp"
+#include "tools/imaging/recipes/recipe.hpp"
 
 namespace palpate::build {
 namespace {
@@ -83,7 +84,7 @@ StructureSpec structure(TableReader reader, const std::filesystem::path& folder)
     spec.name = reader.required<std::string>("name");
     spec.recipe = reader.required<std::string>("recipe");
     for (const std::string& key : keys_as_written(reader.raw()))
-        if (key == "file" || key == "seeds_file" || key == "scribbles")
+        if (is_file_parameter(key))
             spec.files[key] = folder / reader.required<std::string>(key);
         else if (key != "name" && key != "recipe")
             spec.parameters[key] = to_json(*reader.raw().get(key));

@@ -23,8 +23,7 @@ struct StructureSpec {
     std::string name;
     std::string recipe;
     nlohmann::ordered_json parameters = nlohmann::ordered_json::object();  ///< in the order written
-    std::map<std::string, std::filesystem::path>
-        files;  ///< parameters file, seeds_file and scribbles, resolved
+    std::map<std::string, std::filesystem::path> files;  ///< parameters that are files, resolved
 };
 
 /// A structure as `palpate segment` takes it; `file_value` writes a file that its recipe reads, under the

@@ -36,4 +36,11 @@ const RecipeParameter* find_parameter(const Recipe& recipe, const std::string& n
     return found == recipe.parameters.end() ? nullptr : &*found;
 }
 
+bool is_file_parameter(const std::string& name) {
+    return std::ranges::any_of(recipes(), [&](const Recipe& recipe) {
+        const RecipeParameter* parameter = find_parameter(recipe, name);
+        return parameter != nullptr && parameter->kind == RecipeParameter::Kind::file;
+    });
+}
+
 }  // namespace palpate

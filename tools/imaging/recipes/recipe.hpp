@@ -54,6 +54,9 @@ const Recipe* find_recipe(const std::string& name);
 /// The parameter of that name, null if the recipe has none.
 const RecipeParameter* find_parameter(const Recipe& recipe, const std::string& name);
 
+/// Tells whether a parameter of that name, of whatever recipe, is the path of a file that is read.
+bool is_file_parameter(const std::string& name);
+
 /// The parameters of the cleaning steps that follow most recipes, in the order in which they apply where none
 /// is written.
 RecipeParameters cleaning_parameters();
