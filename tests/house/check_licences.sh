@@ -12,7 +12,7 @@ while IFS= read -r -d '' file; do
         *) licence='(Apache-2.0|GPL-3.0-or-later)' ;;
     esac
     head -n 2 "$file" | grep -qE "SPDX-License-Identifier: $licence\$" || { echo "$file: no '$licence' line"; status=1; }
-done < <(find formats tools runtime tests pipelines sample_data cmake .ci \
+done < <(find formats tools runtime tests docs pipelines sample_data cmake .ci \
     \( -name '*.cpp' -o -name '*.hpp' -o -name '*.py' -o -name '*.sh' -o -name '*.cmake' -o -name 'CMakeLists.txt' \
     -o -name Snakefile -o -path .ci/run \) -not -path '*/cache/*' -print0)
 exit $status

@@ -215,7 +215,7 @@ toml::table parse(const std::filesystem::path& path) {
     } catch (const toml::parse_error& error) {
         const auto line = error.source().begin.line;
         throw InvalidInput({line > 0 ? fmt::format("{}:{}", path.string(), line) : path.string(),
-                            std::string(error.description()), "", "see README, 'The case file'"});
+                            std::string(error.description()), "", "see docs/case_file.md"});
     }
 }
 
