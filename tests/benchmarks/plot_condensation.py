@@ -10,18 +10,23 @@ near-black, because the page decides. Lines with a figure become the page's tabl
 """
 import argparse
 import json
-import math
 import sys
-from html import escape
 from itertools import pairwise
 from pathlib import Path
 
-# method, label, colour
-SERIES = [("exact", "dense", "#3d84d6"), ("hierarchical", "hierarchical", "#d8732a")]
-INK, FAINT = "#768390", "#8b949e"
-WIDTH, HEIGHT = 960, 450
-PANEL = {"top": 92, "height": 280, "width": 320}
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+
+INK = "#768390"
+# method: label, colour
+SERIES = {"exact": ("dense", "#3d84d6"), "hierarchical": ("hierarchical", "#d8732a")}
 NODE_TICKS = [200, 500, 1000, 2000, 5000, 10000, 20000, 50000]
+STYLE = {"svg.fonttype": "none", "svg.hashsalt": "palpate", "font.size": 9, "axes.titlelocation": "left",
+         "axes.grid": True, "axes.grid.axis": "y", "grid.alpha": 0.25, "ytick.left": False,
+         **{f"axes.spines.{side}": False for side in ("left", "top", "right")},
+         **dict.fromkeys(("text.color", "axes.titlecolor", "axes.labelcolor", "axes.edgecolor", "xtick.color",
+                          "ytick.color", "grid.color"), INK)}
 
 
 def in_units(value, units):
@@ -54,177 +59,94 @@ def read_lines(paths):
 
 
 def series_of(lines, family):
-    """{method: [(nodes, line)]} ascending by nodes, one line a body."""
+    """{method: [line]} ascending by nodes, one line a body."""
     best = {}
     for line in lines:
-        if "method" not in line or not line["body"].startswith(family):
+        if line.get("method") not in SERIES or not line["body"].startswith(family):
             continue
         key = (line["method"], line["body"])
         if key not in best or line["seconds"] < best[key]["seconds"]:
             best[key] = line
-    series = {}
-    for (method, _), line in best.items():
-        series.setdefault(method, []).append((line["surface_nodes"], line))
-    return {method: sorted(points, key=lambda point: point[0]) for method, points in series.items()}
+    ascending = sorted(best.values(), key=lambda line: line["surface_nodes"])
+    return {method: found for method in SERIES if (found := [line for line in ascending if line["method"] == method])}
 
 
-def extended(points, power, nodes):
-    """The points, and one more at `nodes` by the power law that the last measured one is on."""
-    last_nodes, last = points[-1]
-    return [*points, (nodes, last * (nodes / last_nodes) ** power)] if nodes > last_nodes else points
+def extended(nodes, values, power, largest):
+    """One more point at the largest number of nodes, by the power law that the last measured one is on."""
+    if nodes[-1] >= largest:
+        return nodes, values
+    return np.append(nodes, largest), np.append(values, values[-1] * (largest / nodes[-1]) ** power)
 
 
-def value_at(points, nodes):
-    """Interpolates between points as a power law; None outside them."""
-    for (x0, y0), (x1, y1) in pairwise(points):
-        if x0 <= nodes <= x1:
-            share = math.log(nodes / x0) / math.log(x1 / x0)
-            return y0 * (y1 / y0) ** share
-    return None
-
-
-def crossover(dense, hierarchical):
-    """The number of nodes from which the hierarchical form stays below the dense one, and the value there; None if
-    that never happens or is so from the first common size on."""
-    common = sorted({x for x, _ in dense + hierarchical})
-    common = [x for x in common if value_at(dense, x) and value_at(hierarchical, x)]
-    gaps = [(x, math.log(value_at(hierarchical, x) / value_at(dense, x))) for x in common]
-    found = None
-    for (x0, gap0), (x1, gap1) in pairwise(gaps):
+def verdict(dense, hierarchical):
+    """From which number of nodes on the hierarchical form costs less, between points by power laws; None if there is no
+    such crossing. And which of the two costs less at every size, or None."""
+    low, high = (pick(curve[0][end] for curve in (dense, hierarchical)) for pick, end in ((max, 0), (min, -1)))
+    nodes = np.array([n for n in np.union1d(dense[0], hierarchical[0]) if low <= n <= high])
+    logs = [np.interp(np.log(nodes), np.log(x), np.log(y)) for x, y in (hierarchical, dense)]
+    gaps, found = logs[0] - logs[1], None
+    for (x0, gap0), (x1, gap1) in pairwise(zip(nodes, gaps)):
         if gap0 > 0 >= gap1:
-            nodes = x0 * (x1 / x0) ** (gap0 / (gap0 - gap1))
-            found = nodes, value_at(dense, nodes)
+            found = x0 * (x1 / x0) ** (gap0 / (gap0 - gap1))
         elif gap1 > 0:
             found = None
-    return found
+    always = "hierarchical" if (gaps < 0).all() else "dense" if (gaps > 0).all() else None
+    return found, always
 
 
-class Panel:
-    """One log-log diagram; maps nodes and values to the picture."""
-
-    def __init__(self, left, nodes, values):
-        self.left, self.right = left, left + PANEL["width"]
-        self.top, self.bottom = PANEL["top"], PANEL["top"] + PANEL["height"]
-        self.nodes = (nodes[0] / 1.15, nodes[1] * 1.15)
-        self.values = (values[0] / 1.6, values[1] * 1.6)
-
-    def x(self, nodes):
-        low, high = self.nodes
-        return self.left + (self.right - self.left) * math.log(nodes / low) / math.log(high / low)
-
-    def y(self, value):
-        low, high = self.values
-        return self.bottom - (self.bottom - self.top) * math.log(value / low) / math.log(high / low)
-
-    def path(self, points):
-        return "M" + " L".join(f"{self.x(nodes):.1f} {self.y(value):.1f}" for nodes, value in points)
-
-
-def text(x, y, words, size=13, colour=INK, anchor="start", weight="normal"):
-    return (f'<text x="{x:.1f}" y="{y:.1f}" font-size="{size}" fill="{colour}" text-anchor="{anchor}" '
-            f'font-weight="{weight}">{escape(words)}</text>')
-
-
-def draw_axes(panel, title, sentence, ticks, text_of):
-    parts = [text(panel.left, panel.top - 32, title, 15, INK, weight="600"),
-             text(panel.left, panel.top - 14, sentence, 12)]
-    for tick in ticks:
-        if panel.values[0] <= tick <= panel.values[1]:
-            y = panel.y(tick)
-            parts.append(f'<path d="M{panel.left} {y:.1f} H{panel.right}" stroke="{FAINT}" stroke-opacity="0.25"/>')
-            parts.append(text(panel.left - 8, y + 4, text_of(tick), 12, anchor="end"))
-    for tick in NODE_TICKS:
-        if panel.nodes[0] <= tick <= panel.nodes[1]:
-            x = panel.x(tick)
-            parts.append(f'<path d="M{x:.1f} {panel.bottom} v5" stroke="{FAINT}" stroke-opacity="0.6"/>')
-            parts.append(text(x, panel.bottom + 20, count_text(tick), 12, anchor="middle"))
-    parts.append(f'<path d="M{panel.left} {panel.bottom} H{panel.right}" stroke="{FAINT}" stroke-opacity="0.6"/>')
-    parts.append(text((panel.left + panel.right) / 2, panel.bottom + 42, "surface nodes", 12, anchor="middle"))
-    return parts
-
-
-def draw_series(panel, points, measured, colour, label, text_of, lift):
-    """Measured points with a line, its extrapolation dashed, the name and the last value at the end, lifted."""
-    parts = [f'<path d="{panel.path(points[:measured])}" fill="none" stroke="{colour}" stroke-width="2.5" '
-             'stroke-linejoin="round"/>']
-    if measured < len(points):
-        parts.append(f'<path d="{panel.path(points[measured - 1:])}" fill="none" stroke="{colour}" '
-                     'stroke-width="2" stroke-dasharray="2 5" stroke-linecap="round"/>')
-    parts += [f'<circle cx="{panel.x(nodes):.1f}" cy="{panel.y(value):.1f}" r="3.5" fill="{colour}"/>'
-              for nodes, value in points[:measured]]
-    nodes, value = points[-1]
-    x, y = panel.x(nodes) + 10, panel.y(value) + 4 - lift
-    parts.append(text(x, y, label, 13, colour, weight="600"))
-    parts.append(text(x, y + 15, text_of(value) if measured == len(points) else f"≈ {text_of(value)}", 12, colour))
-    return parts
-
-
-def draw_crossover(panel, nodes, value, text_of):
-    """A ring where the curves cross, named below them, where neither runs."""
-    x, y = panel.x(nodes), panel.y(value)
-    return [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="7" fill="none" stroke="{INK}" stroke-width="1.5"/>',
-            f'<path d="M{x:.1f} {y + 8:.1f} V{y + 30:.1f}" stroke="{INK}" stroke-opacity="0.7"/>',
-            text(x - 4, y + 45, f"equal at {count_text(round(nodes, -2))} nodes", 12, INK, weight="600"),
-            text(x - 4, y + 60, text_of(value), 12, INK)]
-
-
-def verdict(curves, less, text_of):
-    """The crossover, and one sentence about it."""
-    if len(curves) < 2:
-        return None, ""
-    dense, hierarchical = curves["exact"], curves["hierarchical"]
-    found = crossover(dense, hierarchical)
+def sentence_of(found, always, less):
     if found:
-        return found, f"hierarchical is {less} from {count_text(round(found[0], -2))} nodes, {text_of(found[1])}"
-    wins = {value < value_at(dense, nodes) for nodes, value in hierarchical if value_at(dense, nodes)}
-    if len(wins) != 1:
-        return None, "neither wins from some size on"
-    return None, f"{'hierarchical' if wins == {True} else 'dense'} is {less} at every size measured"
+        return f"hierarchical is {less} from {count_text(round(found, -2))} nodes"
+    return f"{always} is {less} at every size measured" if always else "neither wins from some size on"
 
 
-def lifts(panel, curves):
-    """How far each curve's name must go up or down so that names at nearly the same height keep apart."""
-    height = 34
-    ends = sorted(curves, key=lambda method: panel.y(curves[method][-1][1]))
-    if len(ends) < 2:
-        return dict.fromkeys(ends, 0)
-    gap = panel.y(curves[ends[1]][-1][1]) - panel.y(curves[ends[0]][-1][1])
-    return {ends[0]: max(0, height - gap) / 2, ends[1]: -max(0, height - gap) / 2}
+def draw_quantity(axes, series, key, title, less, power, ticks, text_of):
+    largest = max(lines[-1]["surface_nodes"] for lines in series.values())
+    curves = {}
+    for method, lines in series.items():
+        nodes, values = (np.array([line[k] for line in lines], float) for k in ("surface_nodes", key))
+        colour = SERIES[method][1]
+        axes.loglog(nodes, values, "o-", color=colour, linewidth=2, markersize=5)
+        measured = len(nodes)
+        curves[method] = extended(nodes, values, power, largest) if method == "exact" else (nodes, values)
+        axes.loglog(*(part[measured - 1:] for part in curves[method]), ":", color=colour, linewidth=2)
+    top = max(curves, key=lambda method: curves[method][1][-1])
+    for method, (nodes, values) in curves.items():
+        label, colour = SERIES[method]
+        about = "≈ " if len(nodes) > len(series[method]) else ""
+        # Above the upper end and below the lower one: names keep apart however near the ends are.
+        axes.annotate(f"{label}\n{about}{text_of(values[-1])}", (nodes[-1], values[-1]), (8, 0), color=colour,
+                      textcoords="offset points", va="bottom" if method == top else "top", annotation_clip=False)
+    sentence = "one form only, nothing to compare"
+    if len(curves) == 2:
+        found, always = verdict(curves["exact"], curves["hierarchical"])
+        sentence = sentence_of(found, always, less)
+        if found:
+            value = np.exp(np.interp(np.log(found), *np.log(curves["exact"])))
+            axes.plot(found, value, "o", markersize=11, markerfacecolor="none", color=INK)
+            axes.annotate(f"equal at {count_text(round(found, -2))} nodes,\n{text_of(value)}", (found, value), (12, -12),
+                          textcoords="offset points", va="top")
+    print(f"{title}: {sentence}")
+    axes.set_title(f"{title}\n{sentence}", fontsize=10)
+    axes.set_xlabel("surface nodes")
+    axes.minorticks_off()
+    for set_ticks, wanted, (low, high), text in ((axes.set_xticks, NODE_TICKS, axes.get_xlim(), count_text),
+                                                 (axes.set_yticks, ticks, axes.get_ylim(), text_of)):
+        shown = [tick for tick in wanted if low <= tick <= high]
+        set_ticks(shown, [text(tick) for tick in shown])
 
 
-def draw_quantity(left, series, key, title, less, power, ticks, text_of):
-    curves = {method: [(nodes, line[key]) for nodes, line in points] for method, points in series.items()}
-    measured = {method: len(points) for method, points in curves.items()}
-    largest = max(points[-1][0] for points in curves.values())
-    if "exact" in curves:
-        curves["exact"] = extended(curves["exact"], power, largest)
-    every = [point for points in curves.values() for point in points]
-    nodes, values = [point[0] for point in every], [point[1] for point in every]
-    panel = Panel(left, (min(nodes), max(nodes)), (min(values), max(values)))
-    found, sentence = verdict(curves, less, text_of)
-    print(f"{title}: {sentence or 'one form only, nothing to compare'}")
-    parts = draw_axes(panel, title, sentence, ticks, text_of)
-    lift = lifts(panel, curves)
-    for method, label, colour in SERIES:
-        if method in curves:
-            parts += draw_series(panel, curves[method], measured[method], colour, label, text_of, lift[method])
-    if found:
-        parts += draw_crossover(panel, *found, text_of)
-    return parts
-
-
-def draw(series, processor):
-    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" '
-             f'height="{HEIGHT}" font-family="system-ui, -apple-system, Segoe UI, Helvetica, Arial, sans-serif" '
-             'role="img" aria-label="Time and size of a surface compliance against surface nodes">']
-    parts.append(text(18, 28, "What a surface compliance costs", 18, INK, weight="600"))
-    for left, (key, title, *rest) in zip((72, 542), QUANTITIES):
-        if processor and key == "seconds":
-            key, title = "cpu_seconds", "Processor time to build"
-        parts += draw_quantity(left, series, key, title, *rest)
-    parts.append(text(18, HEIGHT - 8, "Points are measured; dotted: the dense form as the cube (time) and the square "
-                                      "(size) of the nodes.", 11))
-    return "\n".join([*parts, "</svg>"]) + "\n"
+def draw(series, processor, path):
+    with matplotlib.rc_context(STYLE):
+        figure = Figure(figsize=(10, 4.7), layout="constrained")
+        figure.suptitle("What a surface compliance costs", x=0.01, ha="left", fontsize=13)
+        for axes, (key, title, *rest) in zip(figure.subplots(1, 2), QUANTITIES):
+            if processor and key == "seconds":
+                key, title = "cpu_seconds", "Processor time to build"
+            draw_quantity(axes, series, key, title, *rest)
+        figure.supxlabel("Points are measured; dotted: the dense form as the cube (time) and the square (size) of the nodes.",
+                         x=0.01, ha="left", fontsize=8)
+        figure.savefig(path, format="svg", transparent=True, metadata={"Date": None})
 
 
 def table_of(lines):
@@ -271,12 +193,11 @@ def main():
     parser.add_argument("--table", type=Path, help="Markdown page whose table is replaced")
     options = parser.parse_args()
     lines = read_lines(options.lines)
-    series = series_of(lines, options.family)
-    series = {method: series[method] for method, _, _ in SERIES if method in series}
-    if options.output and not series:
-        sys.exit(f"plot_condensation.py: no exact or hierarchical measurement of a body named {options.family}...")
     if options.output:
-        options.output.write_text(draw(series, options.processor))
+        series = series_of(lines, options.family)
+        if not series:
+            sys.exit(f"plot_condensation.py: no exact or hierarchical measurement of a body named {options.family}...")
+        draw(series, options.processor, options.output)
     if options.table:
         write_table(options.table, table_of(lines))
 

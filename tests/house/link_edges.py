@@ -16,6 +16,7 @@ EVERYWHERE = {"dl", "eigen", "fmt", "threads"}
 TEST_SUPPORT = {"palpate_cgal_peer", "palpate_house", "palpate_phantoms", "palpate_sample_case"}
 # What each room may link directly: rooms of ours, and families of other libraries.
 ROOMS = {
+    "drawing": set(),
     "records": set(),
     "model": {"records"},
     "asset": {"model", "hdf5", "openssl", "threads"},
@@ -25,8 +26,8 @@ ROOMS = {
     "obb": {"model"},
     "fem": {"model", "linear_algebra"},
     "linear_algebra": {"cholmod", "metis", "lapack"},
-    "report": {"model", "asset", "meshing", "vtk", "json"},
-    "cli": {"model", "cli11", "spdlog", "json", "toml"},
+    "report": {"model", "asset", "drawing", "meshing", "vtk", "json"},
+    "cli": {"model", "drawing", "cli11", "spdlog", "json", "toml"},
     "requests": {"model", "cli", "json"},
     "stage_images": {"requests", "imaging"},
     "stage_shapes": {"requests", "imaging", "meshing"},
@@ -42,9 +43,9 @@ ROOMS = {
     "doctor": {"model", "realtime", "haptics", "devices", "json"},
     "openigtlink": {"model", "realtime", "haptics", "devices", "igtl"},
     "visual": {"model", "realtime", "vtk"},
-    "session": {"model", "asset", "recording", "json", "realtime", "collision", "haptics", "devices", "openigtlink"},
+    "session": {"model", "asset", "recording", "drawing", "json", "realtime", "collision", "haptics", "devices", "openigtlink"},
 }
-ROOMS["experiments"] = {"asset", "cli", "session", "fem", "meshing", "obb", "cgal_peer"}  # measures both sides
+ROOMS["experiments"] = {"asset", "drawing", "cli", "session", "fem", "meshing", "obb", "cgal_peer"}  # measures both sides
 COMMANDS = {"model", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "case_builder", "requests", "stage_images", "stage_shapes",
             "stage_bodies", "stage_cases", "seeds", "json"}
 APPS = {"model", "asset", "recording", "cli", "realtime", "collision", "haptics", "devices", "openigtlink", "session", "json"}
@@ -56,7 +57,7 @@ EXECUTABLES = {
     "palpate-bench": {"experiments"},
 }
 HEAVY = {"itk", "cgal", "cholmod", "metis", "vtk"}
-LEAN = {"palpate_records", "palpate_model", "palpate_asset", "palpate_recording", "palpate_cli", "palpate_realtime", "palpate_collision",
+LEAN = {"palpate_drawing", "palpate_records", "palpate_model", "palpate_asset", "palpate_recording", "palpate_cli", "palpate_realtime", "palpate_collision",
         "palpate_haptics", "palpate_devices", "palpate_openigtlink", "palpate_session", "palpate_doctor", "palpate-touch",
         "palpate-doctor"}
 # These two draw, so VTK is theirs; nothing else that is heavy.

@@ -3,27 +3,13 @@
 
 #include <CLI/CLI.hpp>
 
+#include "formats/drawing/markup.hpp"
 #include "tools/cli/command.hpp"
 
 namespace palpate::cli {
 namespace {
 
-std::string escaped(const std::string& text) {
-    std::string result;
-    for (const char c : text) {
-        if (c == '&')
-            result += "&amp;";
-        else if (c == '<')
-            result += "&lt;";
-        else if (c == '>')
-            result += "&gt;";
-        else if (c == '"')
-            result += "&quot;";
-        else
-            result += c;
-    }
-    return result;
-}
+using drawing::escaped;
 
 std::string element(const std::string& name, const std::string& text) {
     return "      <" + name + ">" + escaped(text) + "</" + name + ">\n";

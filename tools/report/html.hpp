@@ -5,10 +5,11 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/drawing/markup.hpp"
+
 namespace palpate::html {
 
-/// Replaces & < > " ' by character references.
-std::string escaped(std::string_view text);
+using drawing::escaped;
 
 /// "data:<media_type>;base64,..." of some bytes.
 std::string data_uri(std::string_view media_type, std::string_view bytes);

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <memory>
 
-#include "tools/experiments/chart.hpp"
+#include "formats/drawing/chart.hpp"
 #include "tools/experiments/puncture/approach_run.hpp"
 #include "tools/experiments/puncture/puncture_groups.hpp"
 #include "tools/experiments/rigid_case.hpp"
@@ -19,6 +19,9 @@
 
 namespace palpate::bench {
 namespace {
+
+using drawing::Chart;
+using drawing::Series;
 
 using Json = nlohmann::ordered_json;
 
@@ -108,14 +111,12 @@ const Approach& shown_approach(const GroupRun& run) {
 Chart speed_chart(std::string& table, Json& result, Bench& bench) {
     Chart chart{.title = fmt::format("Punctures in {} approaches", per_speed),
                 .x_label = "speed of the hand [mm/s]",
-                .y_label = "punctures [%]",
-                .series = {}};
+                .y_label = "punctures [%]"};
     table += fmt::format(
         "\n## By speed\n\nPunctures in the same {} approaches at each speed.\n\n"
         "| mm/s | single | twice | continuous |\n|--:|--:|--:|--:|\n",
         per_speed);
-    for (const std::string_view name : schemes)
-        chart.series.push_back({.name = std::string(name), .x = {}, .y = {}});
+    for (const std::string_view name : schemes) chart.series.push_back({.name = std::string(name)});
     auto approaches = bench.draw(per_speed, [](std::size_t) { return speeds.front(); });
     for (const double speed : speeds) {
         for (Approach& approach : approaches) approach.speed = speed;
@@ -140,14 +141,12 @@ std::array<Chart, 2> curves(Bench& bench, const Approach& approach) {
         fmt::format("{:.0f} mm/s onto {:.1f} mm of bone: ", approach.speed, approach.place.thickness);
     std::array<Chart, 2> charts{Chart{.title = title + "force against the approach",
                                       .x_label = "time since the hand passed the surface [s]",
-                                      .y_label = "N",
-                                      .series = {}},
+                                      .y_label = "N"},
                                 Chart{.title = title + "depth of the tip",
                                       .x_label = "time since the hand passed the surface [s]",
-                                      .y_label = "mm",
-                                      .series = {}}};
+                                      .y_label = "mm"}};
     for (const std::string_view name : schemes) {
-        Series force{.name = std::string(name), .x = {}, .y = {}}, depth = force;
+        Series force{.name = std::string(name)}, depth = force;
         const std::size_t scheme = charts[0].series.size();
         run_approach(bench.model(scheme), bench.device, approach, false, [&](const ApproachTick& tick) {
             if (tick.depth < -5) return;
@@ -228,8 +227,8 @@ Findings puncture(const Options& options, cli::Session& session) {
     findings.result["fast"] = fast_table(findings.table, bench);
 
     const auto [force, depth] = curves(bench, shown_approach(run));
-    findings.pictures.emplace_back("puncture_by_speed", charts_svg({by_speed}));
-    findings.pictures.emplace_back("puncture_curves", charts_svg({force, depth}));
+    findings.pictures.emplace_back("puncture_by_speed", drawing::charts_svg({by_speed}));
+    findings.pictures.emplace_back("puncture_curves", drawing::charts_svg({force, depth}));
     return findings;
 }
 

@@ -7,13 +7,16 @@
 #include <limits>
 #include <memory>
 
+#include "formats/drawing/chart.hpp"
 #include "runtime/haptics/haptic_model.hpp"
-#include "tools/experiments/chart.hpp"
 #include "tools/experiments/rigid_case.hpp"
 #include "tools/experiments/stability/wall_stability.hpp"
 
 namespace palpate::bench {
 namespace {
+
+using drawing::Chart;
+using drawing::Series;
 
 using Json = nlohmann::ordered_json;
 
@@ -209,12 +212,11 @@ std::string picture(const Json& limits) {
     Chart chart{.title = fmt::format("Stiffest stable wall, {:g} g", 1e3 * charted_mass_kg),
                 .x_label = "damping b [N s/m]",
                 .y_label = "stiffness [N/mm]",
-                .series = {},
                 .log_x = true,
                 .log_y = true};
     for (const int period : refresh_periods) {
-        Series measured{.name = fmt::format("T = {} ms", period), .x = {}, .y = {}, .markers = true};
-        Series bound{.name = fmt::format("2b / {} ms", period), .x = {}, .y = {}, .markers = false};
+        Series measured{.name = fmt::format("T = {} ms", period), .markers = true};
+        Series bound{.name = fmt::format("2b / {} ms", period), .markers = false};
         for (const Json& row : limits) {
             if (row["period_ms"] != period || row["mass_kg"] != charted_mass_kg) continue;
             for (Series* series : {&measured, &bound})
@@ -224,7 +226,7 @@ std::string picture(const Json& limits) {
         }
         for (Series* series : {&measured, &bound}) chart.series.push_back(*series);
     }
-    return charts_svg({chart});
+    return drawing::charts_svg({chart});
 }
 
 }  // namespace

@@ -9,13 +9,16 @@
 #include <map>
 #include <utility>
 
+#include "formats/drawing/chart.hpp"
 #include "runtime/haptics/contact/body_pair.hpp"
-#include "tools/experiments/chart.hpp"
 #include "tools/experiments/soft_ellipsoid.hpp"
 #include "tools/obb/build_obb_tree.hpp"
 
 namespace palpate::bench {
 namespace {
+
+using drawing::Chart;
+using drawing::Series;
 
 using Eigen::Index;
 using Eigen::Vector3d;
@@ -187,12 +190,10 @@ Findings split(const Options&, cli::Session& session) {
     Chart imbalance{.title = "Net force that the split by force ratio leaves, 2 mm deep",
                     .x_label = "stiffness of B / stiffness of A",
                     .y_label = "|F_A + F_B| / |F| (%)",
-                    .series = {},
                     .log_x = true};
     Chart left{.title = "What is left of the intersection, equally stiff",
                .x_label = "depth (mm)",
-               .y_label = "deepest node (mm)",
-               .series = {}};
+               .y_label = "deepest node (mm)"};
     Findings findings{
         .result = {{"schema", "palpate.bench.split/1"}, {"pairs", nlohmann::ordered_json::array()}},
         .table = preamble,
@@ -200,9 +201,8 @@ Findings split(const Options&, cli::Session& session) {
     const std::vector<Pair> all = pairs();
     for (std::size_t p = 0; p < all.size(); ++p) {
         const Pair& pair = all[p];
-        Series net_split{.name = pair.name, .x = {}, .y = {}},
-            left_split{.name = pair.name + ", split", .x = {}, .y = {}},
-            left_exact{.name = pair.name + ", exact", .x = {}, .y = {}};
+        Series net_split{.name = pair.name}, left_split{.name = pair.name + ", split"},
+            left_exact{.name = pair.name + ", exact"};
         for (const double ratio : stiffness_ratios) {
             session.progress.step(fmt::format("{}, 1 : {}", pair.name, ratio),
                                   static_cast<double>(p + 1) / static_cast<double>(all.size() + 1));
@@ -230,7 +230,7 @@ Findings split(const Options&, cli::Session& session) {
         left.series.push_back(std::move(left_split));
         left.series.push_back(std::move(left_exact));
     }
-    findings.pictures.emplace_back("split", charts_svg({imbalance, left}));
+    findings.pictures.emplace_back("split", drawing::charts_svg({imbalance, left}));
     return findings;
 }
 

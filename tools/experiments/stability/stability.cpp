@@ -9,15 +9,18 @@
 #include <random>
 
 #include "formats/asset/asset.hpp"
+#include "formats/drawing/chart.hpp"
 #include "runtime/devices/dynamic_device.hpp"
 #include "runtime/haptics/servo_loop.hpp"
 #include "runtime/session/run_record.hpp"
 #include "runtime/session/touch_target.hpp"
-#include "tools/experiments/chart.hpp"
 #include "tools/experiments/force_quality.hpp"
 
 namespace palpate::bench {
 namespace {
+
+using drawing::Chart;
+using drawing::Series;
 
 using Json = nlohmann::ordered_json;
 
@@ -276,7 +279,8 @@ Findings stability(const Options& options, cli::Session& session) {
         Comparison comparison = compare_schemes(patient_case, normals);
         curves.insert(curves.end(), comparison.json.begin(), comparison.json.end());
         curve_rows += comparison.rows;
-        findings.pictures.emplace_back("stability_" + patient_case.name, charts_svg(comparison.charts));
+        findings.pictures.emplace_back("stability_" + patient_case.name,
+                                       drawing::charts_svg(comparison.charts));
         const LongRun run = push_at_random(patient_case, normals, seconds, options.seed, session);
         long_runs.push_back(long_run_json(patient_case, run));
         long_rows += long_run_row(patient_case, run);

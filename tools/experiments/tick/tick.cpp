@@ -7,14 +7,17 @@
 #include <optional>
 
 #include "formats/asset/asset.hpp"
+#include "formats/drawing/chart.hpp"
 #include "runtime/realtime/thread_setup.hpp"
-#include "tools/experiments/chart.hpp"
 #include "tools/experiments/tick/tick_rigid.hpp"
 #include "tools/experiments/tick/tick_soft.hpp"
 #include "tools/meshing/files/mesh_files.hpp"
 
 namespace palpate::bench {
 namespace {
+
+using drawing::Chart;
+using drawing::Series;
 
 using Json = nlohmann::ordered_json;
 
@@ -114,7 +117,7 @@ HandPath first_seconds(const HandPath& path, double seconds) {
 Series exceedance(const TickRow& row) {
     constexpr std::string_view ours = "continuous, ";
     const std::string name = row.name.starts_with(ours) ? row.name.substr(ours.size()) : row.name;
-    Series series{.name = name, .x = {}, .y = {}};
+    Series series{.name = name};
     for (const double share :
          {0.9, 0.75, 0.5, 0.25, 0.1, 0.05, 0.02, 0.01, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4}) {
         series.x.push_back(us(row.times, 1 - share));
@@ -127,7 +130,6 @@ Chart distribution_chart(const std::vector<TickRow>& rows) {
     Chart chart{.title = "On the bone: how many ticks or queries take longer",
                 .x_label = "us",
                 .y_label = "% of all",
-                .series = {},
                 .log_x = true,
                 .log_y = true};
     for (const TickRow& row : rows)
@@ -140,7 +142,6 @@ Chart contacts_chart(const std::vector<SoftTicks::Point>& points) {
     Chart chart{.title = "On a soft body, without friction",
                 .x_label = "contact points with force",
                 .y_label = "us",
-                .series = {},
                 .log_x = false,
                 .log_y = true};
     for (const auto& [label, value] :
@@ -148,7 +149,7 @@ Chart contacts_chart(const std::vector<SoftTicks::Point>& points) {
         for (const SoftTicks::Point& point : points) {
             const std::string name = fmt::format("{} nodes, {}", point.nodes, label);
             if (chart.series.empty() || chart.series.back().name != name)
-                chart.series.push_back({.name = name, .x = {}, .y = {}});
+                chart.series.push_back({.name = name});
             chart.series.back().x.push_back(point.pressed);
             chart.series.back().y.push_back(point.*value);
         }
@@ -207,7 +208,7 @@ Findings tick(const Options& options, cli::Session& session) {
     add_table(findings, "Every 1 ms, alone and with as many busy threads as cores", load.rows);
     findings.table += "\nScheduling of the thread that ticks: " + load.scheduling + ".\n";
     findings.result["scheduling"] = load.scheduling;
-    findings.pictures.emplace_back("tick", charts_svg(charts));
+    findings.pictures.emplace_back("tick", drawing::charts_svg(charts));
     session.progress.finish();
     return findings;
 }
