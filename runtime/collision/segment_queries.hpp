@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "runtime/collision/collision_surface.hpp"
+#include "runtime/collision/triangle_queries.hpp"
 
 namespace palpate {
 
@@ -33,23 +33,5 @@ struct SegmentTrianglePair {
 /// triangle has no area. Realtime-safe.
 std::optional<SegmentTrianglePair> pierce(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                           const TriangleCorners& t) noexcept;
-
-/// Finds the nearest points of segment a-b and triangle `t` (mm): where it pierces the triangle, else the
-/// nearest of its ends to the triangle and of the segment to the edges. Realtime-safe.
-SegmentTrianglePair closest_points_of_segment_and_triangle(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                                                           const TriangleCorners& t) noexcept;
-
-/// The surface point nearest to a segment.
-struct ClosestToSegment {
-    ClosestPoint foot;    ///< on the surface; distance 0 where the segment pierces it
-    double fraction = 0;  ///< of the segment, 0 ... 1
-    Eigen::Vector3d segment_point = Eigen::Vector3d::Zero();  ///< p_P, mm
-};
-
-/// Finds the surface point nearest to segment a-b (mm), such as the axis of a capsule, within max_distance
-/// (mm); nullopt if there is none. Of several at one distance, such as where the segment pierces the surface
-/// often, any one. Thread-safe, realtime-safe.
-std::optional<ClosestToSegment> closest_to_segment(const CollisionSurface& surface, const Eigen::Vector3d& a,
-                                                   const Eigen::Vector3d& b, double max_distance) noexcept;
 
 }  // namespace palpate

@@ -23,10 +23,10 @@ constexpr double thermal_time_s = 100;
 
 // Mass at the tip, backdrive friction, resolution, size of the workspace: as quoted from the data sheets of
 // SensAble Technologies and 3D Systems; the sheets themselves were not at hand to check them by. That the
-// workspace's middle is D's origin is a choice; of the Touch, phantom_kinematics.hpp reaches all of it so.
+// workspace's middle is D's origin is a choice; a Touch's arm reaches all of it so
+// (test_phantom_kinematics.cpp).
 const std::array<DeviceModel, 3> models{{
     {.name = "touch",
-     .product = "PHANTOM Omni",
      .mass_kg = 0.045,
      .damping = damping_for(0.5),
      .coulomb_friction = 0.26,
@@ -37,9 +37,9 @@ const std::array<DeviceModel, 3> models{{
      .max_continuous_force = 0.88,  // HDAPI, HD_NOMINAL_MAX_CONTINUOUS_FORCE
      .thermal_time_s = thermal_time_s,
      .workspace_low = {-80, -60, -35},
-     .workspace_high = {80, 60, 35}},
-    {.name = "desktop",
-     .product = "PHANTOM Desktop",  // Touch X
+     .workspace_high = {80, 60, 35},
+     .product = "PHANTOM Omni"},
+    {.name = "desktop",  // and the Touch X
      .mass_kg = 0.045,
      .damping = damping_for(1.0),
      .coulomb_friction = 0.06,
@@ -50,9 +50,9 @@ const std::array<DeviceModel, 3> models{{
      .max_continuous_force = 1.75,  // data sheet
      .thermal_time_s = thermal_time_s,
      .workspace_low = {-80, -60, -60},
-     .workspace_high = {80, 60, 60}},
+     .workspace_high = {80, 60, 60},
+     .product = "PHANTOM Desktop"},
     {.name = "premium",
-     .product = "PHANTOM Premium 1.5",
      .mass_kg = 0.075,
      .damping = damping_for(0.8),
      .coulomb_friction = 0.04,
@@ -63,7 +63,8 @@ const std::array<DeviceModel, 3> models{{
      .max_continuous_force = 1.4,  // as a public stand-in for HDAPI states it
      .thermal_time_s = thermal_time_s,
      .workspace_low = {-190.5, -133.5, -95.5},
-     .workspace_high = {190.5, 133.5, 95.5}},
+     .workspace_high = {190.5, 133.5, 95.5},
+     .product = "PHANTOM Premium 1.5"},
 }};
 
 }  // namespace

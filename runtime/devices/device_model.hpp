@@ -12,7 +12,6 @@ namespace palpate {
 /// What a force-feedback device is, as the hand feels it: along each axis a mass on ideal motors.
 struct DeviceModel {
     std::string name;                 ///< "touch", "desktop", "premium"
-    std::string product;              ///< "PHANTOM Omni"
     double mass_kg = 0;               ///< apparent at the tip
     double damping = 0;               ///< viscous, N s/mm
     double coulomb_friction = 0;      ///< backdrive friction, N
@@ -24,6 +23,7 @@ struct DeviceModel {
     double thermal_time_s = 1;        ///< in which the motors warm and cool by 1 - 1/e
     std::array<double, 3> workspace_low{0, 0, 0};  ///< mm, corners of the usable box, frame D
     std::array<double, 3> workspace_high{0, 0, 0};
+    std::string product{};  ///< what is simulated: "PHANTOM Omni"
 };
 
 /// What a device of this model states of itself, at 1 kHz.

@@ -30,13 +30,4 @@ SetupResult lock_memory() {
                    "allow it with 'memlock' in /etc/security/limits.conf");
 }
 
-SetupResult pin_to_core(int core) {
-    cpu_set_t cores;
-    CPU_ZERO(&cores);
-    if (core < 0 || core >= CPU_SETSIZE) return {false, "core " + std::to_string(core) + " does not exist"};
-    CPU_SET(static_cast<std::size_t>(core), &cores);
-    return outcome(pthread_setaffinity_np(pthread_self(), sizeof(cores), &cores),
-                   "running on core " + std::to_string(core), "choose a core that this process may use");
-}
-
 }  // namespace palpate

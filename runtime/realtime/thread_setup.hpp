@@ -16,7 +16,4 @@ SetupResult request_fifo_priority(int priority);
 /// Locks all present and future pages of the process in memory, so that no tick waits for the disk.
 SetupResult lock_memory();
 
-/// Keeps the calling thread on one core (0-based).
-SetupResult pin_to_core(int core);
-
 }  // namespace palpate

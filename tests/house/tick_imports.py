@@ -17,7 +17,7 @@ from pathlib import Path
 TICK = {
     "runtime/collision/CMakeFiles/palpate_collision.dir": {
         "neighbourhood": "sweeps against the triangles around the tool",
-        "segment_queries": "segments against triangles and surface",
+        "segment_queries": "segments against segments and triangles",
         "surface_access": "triangles and nodes, read by every query",
         "surface_normals": "inside or outside, normals",
         "surface_queries": "nearest point, sweep, triangles near",

@@ -59,8 +59,4 @@ std::vector<Check> checks_of(const DeformableBody& body, const MeshSummary& mesh
     };
 }
 
-bool all_hold(const std::vector<Check>& checks) {
-    return std::ranges::all_of(checks, &Check::holds);
-}
-
 }  // namespace palpate

@@ -20,7 +20,4 @@ struct Check {
 /// Judges what was measured when the body was condensed, and the shape of its mesh.
 std::vector<Check> checks_of(const DeformableBody& body, const MeshSummary& mesh);
 
-/// Tells whether all checks hold; true for none.
-bool all_hold(const std::vector<Check>& checks);
-
 }  // namespace palpate

@@ -111,7 +111,7 @@ void HdServo::stop() {
 std::vector<SetupResult> HdServo::setup() const {
     std::vector<SetupResult> results;
     if (!devices_.empty() && devices_.front()->limits().rate_hz > 0)
-        results.push_back({true, "the device's scheduler ticks 1000 times a second"});
+        results.emplace_back(true, "the device's scheduler ticks 1000 times a second");
     std::ranges::copy(notes_, std::back_inserter(results));
     return results;
 }

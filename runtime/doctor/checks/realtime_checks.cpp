@@ -105,8 +105,8 @@ Finding timer(const Machine& machine) {
 }
 
 Finding clock_source(const Machine& machine) {
-    const std::string folder = "/sys/devices/system/clocksource/clocksource0/";
-    const auto current = text_of(machine, folder + "current_clocksource");
+    const std::filesystem::path folder = "/sys/devices/system/clocksource/clocksource0";
+    const auto current = text_of(machine, folder / "current_clocksource");
     if (!current) return {"clock_source", realtime_group, Level::ok, "the kernel does not say", ""};
     // Read through a bus, some microseconds a time, or no clock at all.
     constexpr std::array<std::string_view, 4> slow{"hpet", "acpi_pm", "jiffies", "refined-jiffies"};
@@ -114,9 +114,9 @@ Finding clock_source(const Machine& machine) {
     if (std::ranges::find(slow, *current) == slow.end()) return finding;
     finding.level = Level::warning;
     finding.found += ", which is slow to read";
-    const std::string others = text_of(machine, folder + "available_clocksource").value_or("");
+    const std::string others = text_of(machine, folder / "available_clocksource").value_or("");
     finding.fix = (" " + others + " ").find(" tsc ") != std::string::npos
-                      ? fmt::format("echo tsc | sudo tee {}current_clocksource", folder)
+                      ? fmt::format("echo tsc | sudo tee {}/current_clocksource", folder.string())
                       : "# the kernel holds this CPU's time stamp counter for unstable; see why:\n"
                         "sudo dmesg | grep -i -e clocksource -e tsc";
     return finding;

@@ -50,77 +50,30 @@ TEST(SegmentQueries, points_of_two_segments_are_each_nearest_to_the_other) {
     }
 }
 
-TEST(SegmentQueries, points_of_segment_and_triangle_are_each_nearest_to_the_other) {
+TEST(SegmentQueries, a_segment_pierces_where_it_crosses_the_inside_of_a_triangle) {
     std::mt19937 generator(2);
-    int pierced = 0;
-    for (int i = 0; i < 20000; ++i) {
-        const TriangleCorners t = awkward_triangle(Vector3d::Zero(), generator);
-        Vector3d a = point_near_origin(generator), b = point_near_origin(generator);
-        if (i % 7 == 1) b += 20 * ((t[0] + t[1] + t[2]) / 3 - a);  // through the face
-        if (i % 7 == 2) b = 2 * t[0] - a;                          // through a corner
-        if (i % 7 == 3) b = t[0] + t[1] - a;                       // through an edge
-        if (i % 7 == 4) a = t[1];
-        if (i % 70 == 5) b = a;
-        const SegmentTrianglePair pair = closest_points_of_segment_and_triangle(a, b, t);
-        const Vector3d on_triangle = pair.foot.barycentric[0] * t[0] + pair.foot.barycentric[1] * t[1] +
-                                     pair.foot.barycentric[2] * t[2];
-        const double distance = std::sqrt(pair.foot.squared_distance);
-        ASSERT_GE(pair.foot.barycentric.minCoeff(), 0) << i;
-        ASSERT_NEAR((on_triangle - pair.foot.point).norm(), 0, segment_tolerance) << i;
-        ASSERT_NEAR((a + pair.fraction * (b - a) - pair.segment_point).norm(), 0, segment_tolerance) << i;
-        ASSERT_NEAR((pair.segment_point - pair.foot.point).norm(), distance, segment_tolerance) << i;
-        ASSERT_NEAR((nearest_on_segment(pair.foot.point, a, b) - pair.foot.point).norm(), distance,
-                    segment_tolerance)
-            << i;
-        ASSERT_NEAR(std::sqrt(closest_point_on_triangle(pair.segment_point, t).squared_distance), distance,
-                    segment_tolerance)
-            << i;
-        pierced += distance < segment_tolerance;
-    }
-    EXPECT_GT(pierced, 5000);
-}
-
-TEST(SegmentQueries, nearest_surface_point_is_that_of_all_triangles) {
-    Scene scene;
-    const CollisionSurface surface(scene.mesh, tilted_tree(scene.mesh, 3), "scene");
-    int found_count = 0, cut_count = 0;
+    std::uniform_real_distribution<double> uniform(0.1, 1);
     for (int i = 0; i < 10000; ++i) {
-        const TriangleCorners t = surface.corners(i % surface.triangle_count());
-        const Vector3d a = scene.awkward_point(t);
-        const Vector3d b = i % 3 ? scene.awkward_point(t) : Vector3d(a + 0.02 * (scene.point() - a));
-        const double reach = i % 2 ? 1.0 : 2000.0;
-        double best = reach * reach;
-        bool expected = false;
-        for (std::int32_t slot = 0; slot < surface.triangle_count(); ++slot) {
-            const double here =
-                closest_points_of_segment_and_triangle(a, b, surface.corners(slot)).foot.squared_distance;
-            if (here <= best) expected = true;
-            best = std::min(best, here);
-        }
-        const auto found = closest_to_segment(surface, a, b, reach);
-        ASSERT_EQ(found.has_value(), expected) << i;
-        if (!found) continue;
-        ++found_count;
-        cut_count += best == 0;
-        ASSERT_NEAR(found->foot.distance, std::sqrt(best), segment_tolerance) << i;
-        ASSERT_NEAR((found->segment_point - found->foot.point).norm(), found->foot.distance,
-                    segment_tolerance)
-            << i;
-        ASSERT_EQ(found->foot.triangle, surface.mesh_triangle(found->foot.slot));
+        TriangleCorners t;
+        for (Vector3d& corner : t) corner = 10 * Vector3d::NullaryExpr([&] { return uniform(generator); });
+        const Vector3d normal = (t[1] - t[0]).cross(t[2] - t[0]);
+        if (normal.norm() < 1) continue;
+        Vector3d weights = Vector3d::NullaryExpr([&] { return uniform(generator); });
+        weights /= weights.sum();
+        const auto at = [&](const Vector3d& w) -> Vector3d {
+            return w[0] * t[0] + w[1] * t[1] + w[2] * t[2];
+        };
+        const Vector3d sideways = uniform(generator) * (t[1] - t[0]), over = normal.normalized() + sideways;
+        const auto through = pierce(at(weights) - over, at(weights) + 3 * over, t);
+        ASSERT_TRUE(through) << i;
+        ASSERT_NEAR(through->fraction, 0.25, segment_tolerance) << i;
+        ASSERT_NEAR((through->segment_point - at(weights)).norm(), 0, segment_tolerance) << i;
+        ASSERT_NEAR((through->foot.barycentric - weights).norm(), 0, segment_tolerance) << i;
+        ASSERT_EQ(through->foot.squared_distance, 0) << i;
+        EXPECT_FALSE(pierce(at(weights) + 1e-6 * over, at(weights) + over, t)) << i;  // ends before it
+        const Vector3d outside = at({-0.01, 0.5, 0.51});
+        EXPECT_FALSE(pierce(outside - over, outside + over, t)) << i;
     }
-    EXPECT_GT(found_count, 5000);
-    EXPECT_GT(cut_count, 1000);
-}
-
-TEST(SegmentQueries, capsule_over_a_plate_touches_below_its_middle) {
-    const TriangleMesh plate{{{-10, -10, 0}, {10, -10, 0}, {0, 20, 0}}, {{0, 1, 2}}};
-    const CollisionSurface surface(plate, tilted_tree(plate, 3), "plate");
-    const auto found = closest_to_segment(surface, {0, 0, 5}, {0, 4, 3}, 3);
-    ASSERT_TRUE(found);
-    EXPECT_EQ(found->fraction, 1);
-    EXPECT_NEAR(found->foot.distance, 3, segment_tolerance);
-    EXPECT_NEAR((found->foot.point - Vector3d(0, 4, 0)).norm(), 0, segment_tolerance);
-    EXPECT_FALSE(closest_to_segment(surface, {0, 0, 5}, {0, 4, 3}, 2.999));
 }
 
 }  // namespace

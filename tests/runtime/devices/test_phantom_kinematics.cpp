@@ -4,7 +4,7 @@
 #include <random>
 
 #include "runtime/devices/device_model.hpp"
-#include "runtime/devices/phantom_kinematics.hpp"
+#include "tests/runtime/devices/phantom_kinematics.hpp"
 
 namespace palpate {
 namespace {

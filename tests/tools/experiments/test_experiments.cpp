@@ -123,7 +123,7 @@ TEST(RunApproach, a_wall_thicker_than_the_way_between_detections_holds_with_ever
         HapticModel model(c, scheme);
         const Outcome outcome =
             run_approach(model, find_device_model("desktop"), onto_shell(radius, thickness, 145), false);
-        EXPECT_FALSE(is_puncture(outcome, 1)) << static_cast<int>(scheme);
+        EXPECT_FALSE(is_puncture(outcome, 1)) << scheme;
         EXPECT_FALSE(is_pulled(outcome));
         const double detection = scheme == "single" ? 1.0 / 30 : 0.002;
         EXPECT_LE(outcome.latency, detection + 0.001);

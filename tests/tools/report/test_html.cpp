@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <gtest/gtest.h>
 
 #include "tests/formats/sample_case.hpp"
@@ -39,6 +40,9 @@ TEST(Charts, histogram_of_nothing_is_drawn_empty) {
 TEST(Verdict, a_sound_body_passes_and_each_fault_is_found) {
     const DeformableBody body = sample::elastic_cube(2);
     const MeshSummary mesh = summarise(body.mesh);
+    const auto all_hold = [](const std::vector<Check>& checks) {
+        return std::ranges::all_of(checks, &Check::holds);
+    };
     EXPECT_TRUE(all_hold(checks_of(body, mesh)));
     const auto fails_with = [&](auto fault) {
         DeformableBody broken = body;

@@ -3,38 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
+
+#include "formats/model/disjoint_sets.hpp"
 
 namespace palpate {
 namespace {
 
 using Eigen::Vector3d;
-
-class DisjointSets {
-  public:
-    explicit DisjointSets(std::size_t count) : parent_(count) {
-        std::iota(parent_.begin(), parent_.end(), 0);
-    }
-    // The lowest member of a set stands for it.
-    std::size_t root(std::size_t i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void unite(std::size_t a, std::size_t b) {
-        a = root(a), b = root(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-    // A number for each member's set, counted from 0 in the order of their lowest members.
-    std::vector<std::size_t> numbered() {
-        std::vector<std::size_t> number(parent_.size());
-        std::size_t count = 0;
-        for (std::size_t i = 0; i < parent_.size(); ++i) number[i] = root(i) == i ? count++ : number[root(i)];
-        return number;
-    }
-
-  private:
-    std::vector<std::size_t> parent_;
-};
 
 // The number of each tetrahedron's piece, tetrahedra with a common face being in one.
 std::vector<std::size_t> face_connected(const TetMesh& mesh) {
@@ -54,7 +29,7 @@ std::vector<std::size_t> face_connected(const TetMesh& mesh) {
     std::ranges::sort(faces, {}, &Face::nodes);
     DisjointSets sets(mesh.tetrahedra.size());
     for (std::size_t i = 1; i < faces.size(); ++i)
-        if (faces[i].nodes == faces[i - 1].nodes) sets.unite(faces[i].tetrahedron, faces[i - 1].tetrahedron);
+        if (faces[i].nodes == faces[i - 1].nodes) sets.join(faces[i].tetrahedron, faces[i - 1].tetrahedron);
     return sets.numbered();
 }
 
@@ -100,7 +75,7 @@ void join_locked_pieces(const TetMesh& mesh, std::vector<std::size_t>& piece_of)
         for (const auto& [pair, nodes] : shared_nodes(joints_of(mesh, piece_of))) {
             const double size = std::min(pieces[pair.first].size(), pieces[pair.second].size());
             if (span_of(positions_of(mesh, nodes), size) < 2) continue;
-            sets.unite(pair.first, pair.second);
+            sets.join(pair.first, pair.second);
             joined = true;
         }
         const auto number = sets.numbered();

@@ -8,9 +8,9 @@
 #include <numeric>
 #include <vector>
 
+#include "formats/model/disjoint_sets.hpp"
 #include "formats/model/errors.hpp"
 #include "tools/meshing/files/text.hpp"
-#include "tools/meshing/measures/disjoint_sets.hpp"
 
 namespace palpate {
 namespace {

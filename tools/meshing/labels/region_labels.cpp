@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string>
 
+#include "formats/model/disjoint_sets.hpp"
 #include "formats/model/errors.hpp"
-#include "tools/meshing/measures/disjoint_sets.hpp"
 
 namespace palpate {
 namespace {

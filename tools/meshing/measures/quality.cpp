@@ -7,7 +7,7 @@
 #include <map>
 #include <numbers>
 
-#include "tools/meshing/measures/disjoint_sets.hpp"
+#include "formats/model/disjoint_sets.hpp"
 #include "tools/meshing/measures/tet_faces.hpp"
 
 namespace palpate {
@@ -130,14 +130,8 @@ std::vector<std::int32_t> face_components(const TetMesh& mesh) {
     DisjointSets pieces(mesh.tetrahedra.size());
     for (std::size_t i = 1; i < faces.size(); ++i)
         if (faces[i].sorted_nodes == faces[i - 1].sorted_nodes) pieces.join(faces[i].tet, faces[i - 1].tet);
-    std::vector<std::int32_t> number(mesh.tetrahedra.size(), -1), result;
-    std::int32_t next = 0;
-    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
-        std::int32_t& id = number[pieces.root(t)];
-        if (id < 0) id = next++;
-        result.push_back(id);
-    }
-    return result;
+    const std::vector<std::size_t> number = pieces.numbered();
+    return {number.begin(), number.end()};
 }
 
 MeshQuality measure(const TetMesh& mesh) {

@@ -13,10 +13,10 @@
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 
+#include "formats/model/disjoint_sets.hpp"
 #include "formats/model/errors.hpp"
 #include "tools/meshing/labels/region_labels.hpp"
 #include "tools/meshing/labels/smoothed_labels.hpp"
-#include "tools/meshing/measures/disjoint_sets.hpp"
 #include "tools/meshing/measures/quality.hpp"
 
 namespace palpate {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <map>
 
-#include "tools/meshing/measures/disjoint_sets.hpp"
+#include "formats/model/disjoint_sets.hpp"
 #include "tools/meshing/measures/quality.hpp"
 #include "tools/meshing/measures/tet_faces.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/devices/phantom_kinematics.hpp"
+#include "tests/runtime/devices/phantom_kinematics.hpp"
 
 #include <cmath>
 #include <numbers>
