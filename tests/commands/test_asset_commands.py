@@ -161,6 +161,14 @@ class Pack(AssetCommand):
         self.assertFails(made, INVALID, "wall.obb.h5", "was built over another surface", "palpate obb")
         self.assertNothingLeft()
 
+    def test_trees_that_are_not_given_are_built_as_obb_builds_them(self):
+        given, built = self.folder / "given.vtkhdf", self.folder / "built.vtkhdf"
+        self.assertEqual(self.pack(output=given).returncode, OK)
+        made = run(BIN / "palpate-pack", "--name", "case", "--rigid", f"skull={self.parts / 'skull.vtp'}",
+                   "--deformable", f"wall={self.parts / 'wall.body.h5'}", "-o", built)
+        self.assertEqual(made.returncode, OK, made.stderr)
+        self.assertEqual(built.read_bytes(), given.read_bytes())
+
     def test_parts_that_are_not_what_they_should_be_are_refused(self):
         made = run(BIN / "palpate-pack", "--name", "case", "--deformable",
                    f"wall={self.parts / 'wall.obb.h5'},{self.parts / 'wall.obb.h5'}", "-o", self.asset)

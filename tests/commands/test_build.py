@@ -113,6 +113,14 @@ class Build(unittest.TestCase):
     def test_nothing_changed_runs_no_stage(self):
         self.assertEqual(self.stages_run(), [])
 
+    def test_a_stage_is_repeated_by_the_request_that_the_build_left(self):
+        request = self.folder / "case.parts" / "surface-spine.request.json"
+        self.assertEqual(set(json.loads(request.read_text())), {"labels", "label", "output"})
+        again = self.folder / "again.vtp"
+        repeated = run(BIN / "palpate-surface", "--request", request, "-o", again)
+        self.assertEqual(repeated.returncode, 0, repeated.stderr)
+        self.assertEqual(again.read_bytes(), (self.folder / "case.parts" / "spine.vtp").read_bytes())
+
     def test_another_modulus_reruns_only_from_condensation_on(self):
         self.change("youngs_modulus_kpa = 6.3", "youngs_modulus_kpa = 7")
         self.assertEqual(self.stages_run(), ["condense liver", "pack", "touch", "report"])
