@@ -242,7 +242,7 @@ class Touch(SampleAsset):
             (["--target", "1,2,3,4"], 2, "--target"),
             (["--seconds", "0"], 2, "--seconds"),
             (["--speed", "-1"], 2, "--speed"),
-            (["--scheme", "thrice"], 2, "single, twice or continuous"),
+            (["--scheme", "thrice"], 2, "expected single, twice"),
             (["--device", "omni"], 2, "touch, desktop, premium"),
             (["--shaft", "0,0,0"], 2, "--shaft"),
             (["--scheme", "twice", "--second", self.second()], 2, "one tool"),

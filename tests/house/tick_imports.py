@@ -7,7 +7,8 @@ tick_imports.py --objects A.o ...  these objects instead
 
 Every undefined symbol of a listed object must be harmless (HARMLESS) or defined in a listed object, so the list is closed
 under calls: what the tick calls is on it. Calls through virtual functions and function pointers leave no symbol; those of
-contact methods are on the list by their folder, the allocation trap of tests/runtime sees the others. Instrumented builds import their sanitizer, so they are not checked.
+contact methods are on the list by their folder, the allocation trap of tests/runtime sees the others.
+Instrumented builds import their sanitizer, so they are not checked.
 """
 import subprocess
 import sys

@@ -41,11 +41,19 @@ TEST(DeviceList, says_of_each_device_by_what_it_is_named_and_what_it_is) {
         }
     }
     EXPECT_TRUE(device_kinds().front().name.empty());
-    EXPECT_EQ(device_usages([](const DeviceKind&) { return true; }, false),
-              "touch, desktop, premium, openhaptics[:NAME] or igtl:HOST:PORT[/NAME]");
-    EXPECT_EQ(
-        device_usages([](const DeviceKind& kind) { return !kind.simulated && kind.renders_force; }, true),
-        "openhaptics[:NAME] or openhaptics:NAME,NAME");
+}
+
+TEST(DeviceList, names_the_forms_of_the_devices_that_are_asked_for) {
+    const auto of_driver = [](const DeviceKind& kind) { return kind.name == "openhaptics"; };
+    EXPECT_EQ(device_usages(of_driver, false), "openhaptics[:NAME]");
+    EXPECT_EQ(device_usages(of_driver, true), "openhaptics[:NAME] or openhaptics:NAME,NAME");
+    const auto stylus = [](const DeviceKind& kind) { return kind.name == "touch" || kind.name == "igtl"; };
+    EXPECT_EQ(device_usages(stylus, true), "touch or igtl:HOST:PORT[/NAME]");
+    const std::string sentences = device_sentences();
+    for (const DeviceKind& kind : device_kinds())
+        if (!kind.name.empty()) {
+            EXPECT_NE(sentences.find(kind.sentence), std::string::npos) << kind.name;
+        }
 }
 
 TEST(DeviceList, reads_name_and_address) {
@@ -60,9 +68,8 @@ TEST(DeviceList, reads_name_and_address) {
 }
 
 TEST(DeviceList, refuses_what_it_does_not_know_with_what_it_knows) {
-    const std::string all =
-        "(expected touch, desktop, premium, openhaptics[:NAME], openhaptics:NAME,NAME or "
-        "igtl:HOST:PORT[/NAME])";
+    const std::string all = "(expected " + device_usages([](const DeviceKind&) { return true; }, true) + ")";
+    EXPECT_TRUE(all.starts_with("(expected touch, desktop, premium"));
     for (const std::string text : {"falcon", "touch:1", "touch:", "openhapticsX", ":", ":x"})
         EXPECT_EQ(refusal_of(text), "--device: " + text + " " + all);
     for (const std::string text : {"openhaptics:", "openhaptics:A,", "openhaptics:,A"})
