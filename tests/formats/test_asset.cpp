@@ -503,7 +503,7 @@ INSTANTIATE_TEST_SUITE_P(
               "compliance/dense: is float32"},
         Fault{"element_order_unknown", [](auto& b) { b.element_order = static_cast<ElementOrder>(3); },
               "has element_order 3 (expected 1 (linear) or 2 (quadratic))"},
-        Fault{"certificate_nan", [](auto& b) { b.certificate.residual = nan; }, "certificate: has a figure"}),
+        Fault{"certificate_nan", [](auto& b) { b.certificate.residual = nan; }, "certificate: residual is"}),
     [](const auto& info) { return std::string(info.param.name); });
 
 struct BlockFault {
