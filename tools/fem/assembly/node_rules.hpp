@@ -51,7 +51,7 @@ inline constexpr std::string_view node_rule_grammar =
     "nodes:FILE (text, one node index a line, counted from 0, '#' for comments)";
 
 /// Reads a rule of `option`, "--fixed" or "--contact", in the words of node_rule_grammar; positions and
-/// radius are LPS mm. Throws UsageError naming the rule for an unknown kind, a number that is none or not
+/// radius are LPS mm. Throws UsageError naming the rule for an unknown kind, a number that is not
 /// finite, a wrong count of numbers, a box turned inside out, a radius that is not positive, a normal of no
 /// length.
 NodeRule parse_node_rule(std::string_view option, std::string_view text);
