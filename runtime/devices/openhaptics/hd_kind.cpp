@@ -43,8 +43,8 @@ DeviceKind openhaptics_kind() {
             .usage = "openhaptics[:NAME]",
             .usage_of_several = "openhaptics:NAME,NAME",
             .sentence =
-                "Phantoms and Touches, one tool each, by the names of the driver's setup program; "
-                "PALPATE_HD_LIBRARY may name the driver's library",
+                "Phantoms and Touches, one tool each, by the names of the driver's setup program "
+                "(PALPATE_HD_LIBRARY may name the driver's library)",
             .tool_count = count_names,
             .open = open_driver};
 }
