@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <cstdint>
-#include <filesystem>
 #include <optional>
-#include <string>
 
 #include "formats/model/body.hpp"
+#include "runtime/apps/touch_options.hpp"
 #include "runtime/devices/device_kind.hpp"
 #include "runtime/devices/hand_path.hpp"
 #include "runtime/haptics/haptic_model.hpp"
@@ -14,16 +12,6 @@
 #include "tools/cli/command.hpp"
 
 namespace palpate {
-
-/// What the user asked of touch.
-struct TouchOptions {
-    std::filesystem::path asset, log, curve, record, replay;
-    std::string script = "press", body, target, second, scheme{usual_contact_method}, device, shaft, stream;
-    double seconds = 10, depth = 3, speed = 20, record_seconds = 300;
-    std::uint64_t seed = 1;
-    std::optional<std::size_t> column;
-    bool seconds_given = false, virtual_clock = false;
-};
 
 /// What the hand does, and where if that was chosen here.
 struct TouchPlan {
