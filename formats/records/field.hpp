@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <type_traits>
 
 namespace palpate {
 
@@ -110,6 +111,17 @@ std::string key_of(const char* name, std::string_view written_unit);
 template <typename Record, typename T, typename Stored>
 std::string key_of(const Field<Record, T, Stored>& field) {
     return key_of(field.name, field.written_unit != nullptr ? field.written_unit : field.unit);
+}
+
+/// The same of the field that a table has for a member; empty if it has none.
+template <typename Table, typename Record, typename T>
+std::string key_of(const Table& table, T Record::*member) {
+    std::string key;
+    for_each_field(table, [&](const auto& field) {
+        if constexpr (std::is_same_v<decltype(field.member), T Record::*>)
+            if (field.member == member) key = key_of(field);
+    });
+    return key;
 }
 
 /// The name of the option that sets a field: "--tool-radius".

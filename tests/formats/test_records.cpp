@@ -72,6 +72,7 @@ TEST(Records, keys_options_and_titles_follow_from_name_and_unit) {
     EXPECT_EQ(key_of("coupling_stiffness", "N/mm"), "coupling_stiffness_n_per_mm");
     EXPECT_EQ(key_of(std::get<0>(material_fields)), "youngs_modulus_kpa");
     EXPECT_EQ(key_of("min_dihedral_deg", "degrees"), "min_dihedral_deg");
+    EXPECT_EQ(key_of(quality_fields, &QualityContract::max_distance), "max_distance_voxel_diagonals");
     EXPECT_EQ(option_name("max_p95_distance"), "--max-p95-distance");
     EXPECT_EQ(title_of("tool_radius"), "Tool radius");
 }

@@ -65,14 +65,14 @@ MeshMeasures measure(const TetMesh& mesh, const RegionLabels& labels,
 std::vector<ContractCheck> check_shape(const QualityContract& contract, const TetMesh& mesh,
                                        const MeshQuality& quality) {
     using Bound = ContractCheck::Bound;
-    ContractCheck smallest{.name = "min_dihedral_deg",
+    ContractCheck smallest{.name = key_of(quality_fields, &QualityContract::min_dihedral_deg),
                            .measure = "the smallest dihedral angle",
                            .value = quality.min_dihedral_deg,
                            .bound = Bound::at_least,
                            .limit = contract.min_dihedral_deg,
                            .unit = "degrees",
                            .met = quality.min_dihedral_deg >= contract.min_dihedral_deg};
-    ContractCheck largest{.name = "max_dihedral_deg",
+    ContractCheck largest{.name = key_of(quality_fields, &QualityContract::max_dihedral_deg),
                           .measure = "the largest dihedral angle",
                           .value = quality.max_dihedral_deg,
                           .limit = contract.max_dihedral_deg,
@@ -115,8 +115,8 @@ std::vector<ContractCheck> check_fidelity(const QualityContract& contract, const
     using Bound = ContractCheck::Bound;
     std::vector<ContractCheck> checks;
     const double coarseness = std::max(1.0, std::cbrt(grid.voxel_volume()));
-    const auto add = [&](const char* name, const std::string& measure, std::int32_t region, double value,
-                         Bound bound, double limit, const char* unit) -> ContractCheck& {
+    const auto add = [&](const std::string& name, const std::string& measure, std::int32_t region,
+                         double value, Bound bound, double limit, const char* unit) -> ContractCheck& {
         checks.push_back({.name = name,
                           .measure = measure,
                           .region = region,
@@ -129,23 +129,27 @@ std::vector<ContractCheck> check_fidelity(const QualityContract& contract, const
         return checks.back();
     };
     const RegionFidelity& body = measures.fidelity.body;
-    add("min_dice", "the Dice coefficient", 0, body.dice, Bound::at_least, contract.min_dice, "");
-    add("max_centroid_distance_mm", "the centroid's distance", 0, body.centroid_distance, Bound::at_most,
-        contract.max_centroid_distance * coarseness, "mm");
+    add(key_of(quality_fields, &QualityContract::min_dice), "the Dice coefficient", 0, body.dice,
+        Bound::at_least, contract.min_dice, "");
+    add(key_of(quality_fields, &QualityContract::max_centroid_distance), "the centroid's distance", 0,
+        body.centroid_distance, Bound::at_most, contract.max_centroid_distance * coarseness, "mm");
     for (const RegionFidelity& region : measures.fidelity.regions) {
-        add("max_volume_error_percent", "the volume error", region.region, region.volume_error_percent,
-            Bound::at_most, contract.max_volume_error_percent, "%");
-        add("min_region_dice", "the Dice coefficient", region.region, region.dice, Bound::at_least,
-            contract.min_region_dice, "");
+        add(key_of(quality_fields, &QualityContract::max_volume_error_percent), "the volume error",
+            region.region, region.volume_error_percent, Bound::at_most, contract.max_volume_error_percent,
+            "%");
+        add(key_of(quality_fields, &QualityContract::min_region_dice), "the Dice coefficient", region.region,
+            region.dice, Bound::at_least, contract.min_region_dice, "");
     }
     for (const RegionDistance& distance : measures.distances) {
-        add("max_mean_distance_mm", "the mean surface distance", distance.region, distance.mean,
-            Bound::at_most, contract.max_mean_distance * coarseness, "mm");
-        add("max_p95_distance_mm", "the 95th percentile of the surface distance", distance.region,
-            distance.percentile_95, Bound::at_most, contract.max_p95_distance * coarseness, "mm");
+        add(key_of(quality_fields, &QualityContract::max_mean_distance), "the mean surface distance",
+            distance.region, distance.mean, Bound::at_most, contract.max_mean_distance * coarseness, "mm");
+        add(key_of(quality_fields, &QualityContract::max_p95_distance),
+            "the 95th percentile of the surface distance", distance.region, distance.percentile_95,
+            Bound::at_most, contract.max_p95_distance * coarseness, "mm");
         const double limit = contract.max_distance * grid.spacing.norm();
-        ContractCheck& largest = add("max_distance_voxel_diagonals", "the largest surface distance",
-                                     distance.region, distance.maximum, Bound::at_most, limit, "mm");
+        ContractCheck& largest =
+            add(key_of(quality_fields, &QualityContract::max_distance), "the largest surface distance",
+                distance.region, distance.maximum, Bound::at_most, limit, "mm");
         largest.at = distance.farthest;
         if (largest.met) continue;
         largest.places = places_beyond(distance, limit);
