@@ -36,8 +36,8 @@ int main(int argc, char** argv) {
         const Phantom phantom = kind == "head" ? head_phantom(options) : abdomen_phantom(options);
         auto staged_volume = session.stage(volume);
         auto staged_truth = session.stage(truth);
-        write_volume(staged_volume.path(), phantom.volume);
-        write_label_map(staged_truth.path(), phantom.truth);
+        imaging::write_volume(staged_volume.path(), phantom.volume);
+        imaging::write_label_map(staged_truth.path(), phantom.truth);
         staged_volume.commit();
         staged_truth.commit();
         return {{"size", phantom.volume.grid.size}};

@@ -19,6 +19,8 @@
 namespace palpate {
 namespace {
 
+using namespace fem;
+
 constexpr const char* schema = "palpate.bench.condensation.1";
 
 struct Options {
@@ -51,8 +53,8 @@ Json heading(const std::filesystem::path& path, const DeformableBody& body) {
 std::vector<Json> measure_body(const Options& options, const std::filesystem::path& path,
                                std::ofstream& json) {
     const NodeRule rule =
-        options.fixed.empty() ? ellipsoid_support : parse_node_rule("--fixed", options.fixed);
-    const DeformableBody body = held_body(read_tetrahedra(path), rule);
+        options.fixed.empty() ? experiments::ellipsoid_support : parse_node_rule("--fixed", options.fixed);
+    const DeformableBody body = experiments::held_body(meshing::read_tetrahedra(path), rule);
     const auto dofs = static_cast<double>(3 * body.contact_nodes.size());
     std::vector<Json> measurements;
     for (int repeat = 0; repeat < options.repeats; ++repeat)
@@ -125,7 +127,7 @@ int run(int argc, char** argv) {
 }  // namespace palpate
 
 int main(int argc, char** argv) try {
-    palpate::restart_with_fitting_kernels(argv);
+    palpate::fem::restart_with_fitting_kernels(argv);
     return palpate::run(argc, argv);
 } catch (const std::exception& error) {
     std::fprintf(stderr, "bench_condensation: %s\n", error.what());

@@ -22,6 +22,8 @@
 namespace {
 
 using namespace palpate;
+using namespace palpate::imaging;
+using namespace palpate::report;
 
 Mask mask_of(const std::string& path, const std::string& name) {
     const LabelMap map = read_label_map(path);

@@ -27,6 +27,9 @@
 namespace palpate {
 namespace {
 
+using namespace imaging;
+using namespace meshing;
+
 // Cuts a label with a margin out of a map, at the origin and along the axes, which is all that Image_3 knows;
 // writes it as FOLDER/case.seg.nrrd and FOLDER/case.inr.
 void extract(const std::string& labels, const std::string& name, const std::string& folder) {

@@ -12,7 +12,7 @@
 #include "tools/case_builder/table_reader.hpp"
 #include "tools/imaging/recipes/recipe.hpp"
 
-namespace palpate::build {
+namespace palpate::case_builder {
 namespace {
 
 // Sets a number, a text or a flag of a request if the table has the key.
@@ -84,7 +84,7 @@ StructureSpec structure(TableReader reader, const std::filesystem::path& folder)
     spec.name = reader.required<std::string>("name");
     spec.recipe = reader.required<std::string>("recipe");
     for (const std::string& key : keys_as_written(reader.raw()))
-        if (is_file_parameter(key))
+        if (imaging::is_file_parameter(key))
             spec.files[key] = folder / reader.required<std::string>(key);
         else if (key != "name" && key != "recipe")
             spec.parameters[key] = to_json(*reader.raw().get(key));
@@ -289,4 +289,4 @@ void require_what_the_bodies_need(const CaseFile& case_file) {
                                 "set input.volume or pass --volume, or leave isovalue_hu out"});
 }
 
-}  // namespace palpate::build
+}  // namespace palpate::case_builder

@@ -16,7 +16,7 @@
 #include "tools/stages/requests/segment_request.hpp"
 #include "tools/stages/requests/surface_request.hpp"
 
-namespace palpate::build {
+namespace palpate::case_builder {
 
 /// A structure to segment: a recipe of `palpate segment` with its parameters as that command takes them.
 struct StructureSpec {
@@ -73,4 +73,4 @@ bool needs_labels(const CaseFile& case_file);
 /// Throws InvalidInput if a body asks for a grey isovalue and no volume is named.
 void require_what_the_bodies_need(const CaseFile& case_file);
 
-}  // namespace palpate::build
+}  // namespace palpate::case_builder

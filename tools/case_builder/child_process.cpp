@@ -15,7 +15,7 @@
 
 extern char** environ;
 
-namespace palpate::build {
+namespace palpate::case_builder {
 namespace {
 
 pid_t spawn(const std::filesystem::path& program, const std::vector<std::string>& arguments) {
@@ -52,4 +52,4 @@ ChildResult run_child(const std::filesystem::path& program, const std::vector<st
     return result;
 }
 
-}  // namespace palpate::build
+}  // namespace palpate::case_builder

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace palpate::build {
+namespace palpate::case_builder {
 
 /// How a child process ended and what it took.
 struct ChildResult {
@@ -19,4 +19,4 @@ struct ChildResult {
 /// Throws SystemFailure if the program cannot be started.
 ChildResult run_child(const std::filesystem::path& program, const std::vector<std::string>& arguments);
 
-}  // namespace palpate::build
+}  // namespace palpate::case_builder

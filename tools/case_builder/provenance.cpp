@@ -5,7 +5,7 @@
 
 #include "formats/asset/hdf5/digest.hpp"
 
-namespace palpate::build {
+namespace palpate::case_builder {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -57,4 +57,4 @@ Json provenance(const CaseFile& case_file, std::span<const Stage> before) {
     return {{"inputs", inputs}, {"structures", structures}, {"steps", steps}};
 }
 
-}  // namespace palpate::build
+}  // namespace palpate::case_builder

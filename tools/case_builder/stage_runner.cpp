@@ -11,7 +11,7 @@
 #include "tools/case_builder/child_process.hpp"
 #include "tools/cli/command.hpp"
 
-namespace palpate::build {
+namespace palpate::case_builder {
 namespace {
 
 std::string digest_of_text(const std::string& text) {
@@ -127,4 +127,4 @@ StageRecord StageRunner::run(Stage stage) const {
     return {stage.name, !up_to_date, record["seconds"], record["peak_memory_bytes"], read_json(result)};
 }
 
-}  // namespace palpate::build
+}  // namespace palpate::case_builder

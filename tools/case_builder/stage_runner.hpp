@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace palpate::build {
+namespace palpate::case_builder {
 
 /// One step of a build: a palpate command that turns input files into output files.
 struct Stage {
@@ -55,4 +55,4 @@ class StageRunner {
     bool quiet_;
 };
 
-}  // namespace palpate::build
+}  // namespace palpate::case_builder

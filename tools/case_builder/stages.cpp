@@ -11,7 +11,7 @@
 #include "tools/stages/requests/report_request.hpp"
 #include "tools/stages/requests/segment_request.hpp"
 
-namespace palpate::build {
+namespace palpate::case_builder {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -175,4 +175,4 @@ Stage report_stage(const CaseFile& case_file, const BuildPaths& paths,
     return stage;
 }
 
-}  // namespace palpate::build
+}  // namespace palpate::case_builder

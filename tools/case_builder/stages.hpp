@@ -7,7 +7,7 @@
 #include "tools/case_builder/case_file.hpp"
 #include "tools/case_builder/stage_runner.hpp"
 
-namespace palpate::build {
+namespace palpate::case_builder {
 
 /// Where a build's files go.
 struct BuildPaths {
@@ -28,4 +28,4 @@ Stage touch_stage(const BuildPaths& paths);
 Stage report_stage(const CaseFile& case_file, const BuildPaths& paths,
                    const std::vector<StageRecord>& records, const std::filesystem::path& touch_result);
 
-}  // namespace palpate::build
+}  // namespace palpate::case_builder

@@ -8,7 +8,7 @@
 #include "formats/model/errors.hpp"
 #include "formats/model/label_map.hpp"
 
-namespace palpate::build {
+namespace palpate::case_builder {
 
 TableReader::TableReader(const toml::table& table, std::string file, std::string where)
     : table_(table), file_(std::move(file)), where_(std::move(where)) {}
@@ -98,4 +98,4 @@ std::string TableReader::place_of(const std::string& key) const {
     return where_.empty() ? key : where_ + "." + key;
 }
 
-}  // namespace palpate::build
+}  // namespace palpate::case_builder

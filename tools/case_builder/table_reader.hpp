@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace palpate::build {
+namespace palpate::case_builder {
 
 /// Reads one table of a TOML file and remembers which keys it was asked for, so that the others can be
 /// refused. Everything throws InvalidInput naming file, line and key if a value is missing or has the wrong
@@ -72,4 +72,4 @@ class TableReader {
     std::set<std::string> known_;
 };
 
-}  // namespace palpate::build
+}  // namespace palpate::case_builder

@@ -7,9 +7,9 @@
 namespace {
 using namespace palpate;
 
-nlohmann::ordered_json stages_json(const std::vector<build::StageRecord>& records) {
+nlohmann::ordered_json stages_json(const std::vector<case_builder::StageRecord>& records) {
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-    for (const build::StageRecord& record : records)
+    for (const case_builder::StageRecord& record : records)
         rows.push_back({{"stage", record.name},
                         {"status", record.ran ? "run" : "up to date"},
                         {"seconds", record.seconds},
@@ -18,7 +18,7 @@ nlohmann::ordered_json stages_json(const std::vector<build::StageRecord>& record
     return rows;
 }
 
-void require_our_output(const build::StageRunner& runner, const std::string& stage,
+void require_our_output(const case_builder::StageRunner& runner, const std::string& stage,
                         const std::filesystem::path& output) {
     if (std::filesystem::exists(output) && !runner.made_by_us(stage, output))
         throw InvalidInput({output.string(), "exists and was not made from these parts", "",
@@ -48,25 +48,25 @@ int main(int argc, char** argv) {
         if (output.has_parent_path() && !std::filesystem::is_directory(output.parent_path()))
             throw InvalidInput({output.string(), "its folder does not exist", "",
                                 "make it first: mkdir -p " + output.parent_path().string()});
-        build::CaseFile case_file = build::read_case_file(case_path);
+        case_builder::CaseFile case_file = case_builder::read_case_file(case_path);
         if (!volume.empty()) case_file.volume = volume;
         if (!labels.empty()) case_file.labels = labels;
-        build::require_what_the_bodies_need(case_file);
+        case_builder::require_what_the_bodies_need(case_file);
         if (parts.empty()) parts = std::filesystem::path(output).replace_extension(".parts");
-        const build::BuildPaths paths{parts, output,
-                                      std::filesystem::path(output).replace_extension(".html")};
-        const build::StageRunner runner(std::filesystem::read_symlink("/proc/self/exe").parent_path(), parts,
-                                        session.threads, session.quiet);
+        const case_builder::BuildPaths paths{parts, output,
+                                             std::filesystem::path(output).replace_extension(".html")};
+        const case_builder::StageRunner runner(std::filesystem::read_symlink("/proc/self/exe").parent_path(),
+                                               parts, session.threads, session.quiet);
         if (!session.force) {
             require_our_output(runner, "pack", paths.asset);
             require_our_output(runner, "report", paths.report);
         }
-        std::vector<build::StageRecord> records;
-        for (const build::Stage& stage : build::stages_to_asset(case_file, paths))
+        std::vector<case_builder::StageRecord> records;
+        for (const case_builder::Stage& stage : case_builder::stages_to_asset(case_file, paths))
             records.push_back(runner.run(stage));
-        records.push_back(runner.run(build::touch_stage(paths)));
+        records.push_back(runner.run(case_builder::touch_stage(paths)));
         records.push_back(
-            runner.run(build::report_stage(case_file, paths, records, runner.result_path("touch"))));
+            runner.run(case_builder::report_stage(case_file, paths, records, runner.result_path("touch"))));
         return nlohmann::ordered_json{{"asset", paths.asset.string()},
                                       {"report", paths.report.string()},
                                       {"stages", stages_json(records)}};

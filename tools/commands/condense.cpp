@@ -13,6 +13,7 @@
 
 namespace {
 using namespace palpate;
+using namespace palpate::fem;
 
 void say_plan(const CondensationPlan& plan) {
     constexpr double mebibyte = 0x1p20;

@@ -9,6 +9,7 @@
 namespace {
 
 using namespace palpate;
+using namespace palpate::imaging;
 
 const cli::CommandText text{
     .name = "import",

@@ -30,11 +30,11 @@ int main(int argc, char** argv) {
     declare(command, request);
     return command.run(argc, argv, [&](cli::Session& session) {
         cli::StagedFile staged = session.stage(request.output);
-        set_imaging_threads(session.threads);
+        imaging::set_imaging_threads(session.threads);
         stages::MadeMesh made = make_mesh(
             request, [&](std::string_view what, double done) { session.progress.step(what, done); },
             [](std::string_view text) { spdlog::info("{}", text); });
-        write_tetrahedra(staged.path(), made.mesh);
+        meshing::write_tetrahedra(staged.path(), made.mesh);
         staged.commit();
         return made.result;
     });

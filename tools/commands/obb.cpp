@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
                       "palpate obb liver.vtu -o liver.obb.h5 --json -"},
          .notes = "Of tetrahedra the outer boundary is taken. Source: Gottschalk, Lin, Manocha 1996."});
     std::filesystem::path input, output;
-    ObbTreeOptions options;
+    obb::ObbTreeOptions options;
     command.input("surface", input, "triangle surface (.vtp) or tetrahedra (.vtu), LPS mm").required();
     command.option("--leaf-triangles", options.max_leaf_triangles, "most triangles in a leaf")
         .range(1, most_leaf_triangles);
@@ -30,10 +30,10 @@ int main(int argc, char** argv) {
         cli::StagedFile staged = session.stage(output);
         session.progress.step("read", 0);
         const TriangleMesh surface = input.extension() == ".vtp"
-                                         ? read_surface(input)
-                                         : boundary_surface(read_tetrahedra(input)).surface;
+                                         ? meshing::read_surface(input)
+                                         : boundary_surface(meshing::read_tetrahedra(input)).surface;
         session.progress.step("build", 0.5);
-        const ObbTree tree = build_obb_tree(surface, options);
+        const ObbTree tree = obb::build_obb_tree(surface, options);
         write_obb_part(staged.path(), tree, surface);
         staged.commit();
         const auto leaves =

@@ -20,6 +20,9 @@
 namespace {
 
 using namespace palpate;
+using namespace palpate::imaging;
+using namespace palpate::meshing;
+using namespace palpate::report;
 
 std::string text_of(const std::filesystem::path& path) {
     std::ifstream stream(path, std::ios::binary);

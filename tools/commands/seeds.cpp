@@ -12,6 +12,8 @@
 namespace {
 
 using namespace palpate;
+using namespace palpate::imaging;
+using namespace palpate::seeds;
 using nlohmann::ordered_json;
 
 // "liver.mrk.json" holds seeds of the liver.

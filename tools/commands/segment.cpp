@@ -16,6 +16,7 @@
 namespace {
 
 using namespace palpate;
+using namespace palpate::imaging;
 using nlohmann::json;
 using nlohmann::ordered_json;  // cleaning steps apply in the order written
 

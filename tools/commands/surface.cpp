@@ -13,7 +13,7 @@ using namespace palpate;
 nlohmann::json to_json(const stages::MadeSurface& made) {
     nlohmann::json result;
     if (made.decimated) {
-        const SurfaceDistance& distance = made.decimated->distance;
+        const meshing::SurfaceDistance& distance = made.decimated->distance;
         const Eigen::Vector3d& p = distance.farthest;
         result["decimation"] = {{"triangles_before", made.decimated->triangles_before},
                                 {"mean_distance_mm", distance.mean},
@@ -50,11 +50,11 @@ int main(int argc, char** argv) {
     declare(command, request);
     return command.run(argc, argv, [&](cli::Session& session) {
         cli::StagedFile staged = session.stage(request.output);
-        set_imaging_threads(session.threads);
+        imaging::set_imaging_threads(session.threads);
         const stages::MadeSurface made = make_surface(
             request, [&](std::string_view what, double done) { session.progress.step(what, done); },
             [](std::string_view text) { spdlog::info("{}", text); });
-        write_surface(staged.path(), made.surface);
+        meshing::write_surface(staged.path(), made.surface);
         staged.commit();
         return to_json(made);
     });

@@ -12,6 +12,7 @@
 
 namespace {
 using namespace palpate;
+using namespace palpate::fem;
 using Json = nlohmann::ordered_json;
 
 // float32 round-off of a box 1 m from the origin; far below what a hand or a tool radius could notice.

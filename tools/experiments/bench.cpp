@@ -12,7 +12,7 @@
 #include "tools/experiments/stability/stability.hpp"
 #include "tools/experiments/tick/tick.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 namespace {
 
 const std::vector<Experiment> experiments{
@@ -62,7 +62,7 @@ std::string notes() {
 }
 
 }  // namespace
-}  // namespace palpate::bench
+}  // namespace palpate::experiments
 
 int main(int argc, char** argv) {
     using namespace palpate;
@@ -72,9 +72,9 @@ int main(int argc, char** argv) {
          .examples = {"palpate bench puncture --surface skull.vtp -o results",
                       "palpate bench stability --case nasopharynx.vtkhdf --case liver.vtkhdf "
                       "--json stability.json"},
-         .notes = bench::notes()});
+         .notes = experiments::notes()});
     std::string name;
-    bench::Options options;
+    experiments::Options options;
     command.option("experiment", name, "which one").required();
     command.input("--surface", options.surface, "triangles of a bone (.vtp), LPS mm");
     command.input("--case", options.cases, "assets (.vtkhdf)");
@@ -82,5 +82,6 @@ int main(int argc, char** argv) {
     command.output("-o,--output", options.output, "folder for the table (.md) and the pictures (.svg)");
     command.option("--seed", options.seed, "of everything random");
     command.option("--seconds", options.seconds, "how long; 0 is the experiment's own", "s");
-    return command.run(argc, argv, [&](cli::Session& session) { return bench::run(name, options, session); });
+    return command.run(argc, argv,
+                       [&](cli::Session& session) { return experiments::run(name, options, session); });
 }

@@ -9,7 +9,7 @@
 
 #include "tools/cli/command.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 
 /// What an experiment may be told. Each reads what it needs.
 struct Options {
@@ -33,4 +33,4 @@ struct Experiment {
     Findings (*run)(const Options&, cli::Session&);
 };
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

@@ -9,7 +9,7 @@
 #include "runtime/haptics/servo_loop.hpp"
 #include "runtime/session/touch_target.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 namespace {
 
 using Eigen::Vector3d;
@@ -180,4 +180,4 @@ FaultRun run_with_faults(const Case& patient_case, std::string_view method, cons
     return run;
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

@@ -11,7 +11,7 @@
 #include "runtime/devices/device_model.hpp"
 #include "runtime/session/fault_log.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 
 /// A fault that is made to happen, from the first to before the last of these ticks.
 struct Injection {
@@ -46,4 +46,4 @@ FaultRun run_with_faults(const Case& patient_case, std::string_view method, cons
                          const std::vector<Injection>& injections, std::int64_t ticks,
                          std::mt19937_64& random);
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

@@ -6,7 +6,7 @@
 #include "formats/asset/asset.hpp"
 #include "tools/experiments/fault_run.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -88,4 +88,4 @@ Findings faults(const Options& options, cli::Session& session) {
     return findings;
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

@@ -8,7 +8,7 @@
 
 #include "formats/model/arrays.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 namespace {
 
 using Eigen::Vector3d;
@@ -146,4 +146,4 @@ void ForceQuality::count_energy(const Vector3d& force, const Vector3d& tip) {
     over_ = over_ || over > work_rounding;
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

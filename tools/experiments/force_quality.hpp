@@ -11,7 +11,7 @@
 #include "formats/records/tick_result.hpp"
 #include "runtime/haptics/haptic_model.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 
 /// The surfaces at rest, asked which way is out of the tissue.
 class RestNormals {
@@ -101,4 +101,4 @@ class ForceQuality {
     double episode_given_ = 0, episode_bound_ = 0;
 };
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

@@ -19,7 +19,7 @@
 #include "runtime/session/statistics_json.hpp"
 #include "runtime/session/touch_target.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -150,4 +150,4 @@ Findings realtime(const Options& options, cli::Session& session) {
     return findings;
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

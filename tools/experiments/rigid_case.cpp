@@ -5,7 +5,7 @@
 
 #include "tools/obb/build_obb_tree.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 
 Case rigid_case(const std::string& name, TriangleMesh surface, const HapticSettings& haptics) {
     Case made;
@@ -13,7 +13,7 @@ Case rigid_case(const std::string& name, TriangleMesh surface, const HapticSetti
     RigidBody& body = made.rigid_bodies.emplace_back();
     body.name = name;
     body.surface = std::move(surface);
-    body.obb_tree = build_obb_tree(body.surface);
+    body.obb_tree = obb::build_obb_tree(body.surface);
     made.haptics = haptics;
     return made;
 }
@@ -28,4 +28,4 @@ TriangleMesh plate_surface() {
     return plate;
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

@@ -4,7 +4,7 @@
 
 #include "formats/model/body.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 
 /// A case of one rigid body, its OBB tree built.
 Case rigid_case(const std::string& name, TriangleMesh surface, const HapticSettings& haptics);
@@ -12,4 +12,4 @@ Case rigid_case(const std::string& name, TriangleMesh surface, const HapticSetti
 /// A plate whose top is z = 0, 200 mm square and 100 mm thick, closed.
 TriangleMesh plate_surface();
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

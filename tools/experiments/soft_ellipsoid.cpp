@@ -11,8 +11,9 @@
 #include "tools/meshing/tetrahedra/tetrahedralise.hpp"
 #include "tools/obb/build_obb_tree.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 
+using namespace fem;
 using Eigen::Index;
 using Eigen::Vector3d;
 
@@ -32,15 +33,15 @@ DeformableBody body_of(const Ellipsoid& shape) {
                 const Vector3d p = map.grid.point_of(Vector3d(i, j, k));
                 map.labels.push_back(p.cwiseQuotient(shape.semi_axes).squaredNorm() <= 1 ? organ : 0);
             }
-    MeshSizing sizing;
+    meshing::MeshSizing sizing;
     sizing.cell_size = 0.87 * shape.spacing;
     sizing.facet_size = 0.92 * shape.spacing;
     const double cut = 0.6 * shape.held_side * shape.semi_axes.z();
-    DeformableBody body = held_body(tetrahedralise(map, std::array{organ}, sizing),
+    DeformableBody body = held_body(meshing::tetrahedralise(map, std::array{organ}, sizing),
                                     {"plane", BeyondPlane{{0, 0, cut}, {0, 0, shape.held_side}}});
     for (RegionMaterial& region : body.materials) region.material.poissons_ratio = shape.poissons_ratio;
     body.compliance = to_stored(condense_by_trailing_block(body, [](std::string_view, double) {}));
-    body.obb_tree = build_obb_tree(body.boundary.surface);
+    body.obb_tree = obb::build_obb_tree(body.boundary.surface);
     return body;
 }
 
@@ -57,8 +58,8 @@ DeformableBody changed(DeformableBody body, double stiffness, double sign) {
     if (sign > 0) return body;
     for (Vector3d& p : body.boundary.surface.vertices) p.z() = -p.z();
     for (Triangle& t : body.boundary.surface.triangles) std::swap(t[1], t[2]);
-    body.obb_tree = build_obb_tree(body.boundary.surface);
+    body.obb_tree = obb::build_obb_tree(body.boundary.surface);
     return body;
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

@@ -4,7 +4,7 @@
 
 #include "formats/model/body.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 
 /// A soft ellipsoid about the origin, of 3 kPa.
 struct Ellipsoid {
@@ -22,4 +22,4 @@ DeformableBody body_of(const Ellipsoid& shape);
 /// in z. The mesh and the materials stay as they were.
 DeformableBody changed(DeformableBody body, double stiffness, double sign);
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-namespace palpate::bench {
+namespace palpate::experiments {
 namespace {
 
 // Chance of at most `count` successes.
@@ -48,4 +48,4 @@ double mean(const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

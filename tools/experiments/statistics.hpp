@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-namespace palpate::bench {
+namespace palpate::experiments {
 
 /// A share of trials and what is known of the chance behind it.
 struct Interval {
@@ -17,4 +17,4 @@ Interval chance_interval(int count, int trials);
 double quantile(std::vector<double> values, double fraction);
 double mean(const std::vector<double>& values);  ///< NaN if there are none
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

@@ -11,7 +11,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::obb {
 namespace {
 
 // A triangle as a uniform plate: its integrals of 1, x and x xᵀ.
@@ -172,4 +172,4 @@ ObbTree build_obb_tree(const TriangleMesh& surface, const ObbTreeOptions& option
     return Builder(surface, options).build();
 }
 
-}  // namespace palpate
+}  // namespace palpate::obb

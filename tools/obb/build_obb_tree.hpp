@@ -5,7 +5,7 @@
 #include "formats/model/obb_tree.hpp"
 #include "formats/model/triangle_mesh.hpp"
 
-namespace palpate {
+namespace palpate::obb {
 
 struct ObbTreeOptions {
     std::int32_t max_leaf_triangles = 4;  ///< 1 ... most_leaf_triangles
@@ -24,4 +24,4 @@ struct ObbTreeOptions {
 /// Cost: O(n log n), 0.2 s for 352 000 triangles.
 ObbTree build_obb_tree(const TriangleMesh& surface, const ObbTreeOptions& options = {});
 
-}  // namespace palpate
+}  // namespace palpate::obb

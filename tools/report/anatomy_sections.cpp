@@ -12,7 +12,7 @@
 #include "tools/report/sections.hpp"
 #include "tools/report/view_svg.hpp"
 
-namespace palpate {
+namespace palpate::report {
 namespace {
 
 using Eigen::Vector3d;
@@ -268,4 +268,4 @@ std::string bodies_section(const ReportPage& page) {
                          content);
 }
 
-}  // namespace palpate
+}  // namespace palpate::report

@@ -6,7 +6,7 @@
 
 #include "tools/report/html.hpp"
 
-namespace palpate {
+namespace palpate::report {
 
 using html::escaped;
 
@@ -80,4 +80,4 @@ std::string stages_svg(const std::vector<StageRecord>& stages) {
     return svg + "</svg>";
 }
 
-}  // namespace palpate
+}  // namespace palpate::report

@@ -6,7 +6,7 @@
 
 #include "tools/report/quality.hpp"
 
-namespace palpate {
+namespace palpate::report {
 
 /// One stage of a build.
 struct StageRecord {
@@ -23,4 +23,4 @@ std::string histogram_svg(const BinCounts& histogram, const std::string& axis, c
 /// Draws one bar per stage as inline SVG: length is time, the text beside it time and peak memory.
 std::string stages_svg(const std::vector<StageRecord>& stages);
 
-}  // namespace palpate
+}  // namespace palpate::report

@@ -5,8 +5,10 @@
 #include "tools/report/html.hpp"
 #include "tools/report/sections.hpp"
 
-namespace palpate {
+namespace palpate::report {
 namespace {
+
+using namespace meshing;
 
 using Row = std::vector<std::string>;
 
@@ -44,4 +46,4 @@ std::string contract_section(const ReportPage& page) {
                      : html::table({{"Body"}, {"What"}, {"Found", true}, {"Limit", true}, {""}}, rows));
 }
 
-}  // namespace palpate
+}  // namespace palpate::report

@@ -8,7 +8,7 @@
 #include "tools/report/sections.hpp"
 #include "tools/report/view_svg.hpp"
 
-namespace palpate {
+namespace palpate::report {
 namespace {
 
 struct WorstElement {
@@ -21,7 +21,7 @@ struct WorstElement {
 // Those whose angles come nearest to 0 or 180 degrees.
 std::vector<WorstElement> worst_of(const TetMesh& mesh) {
     std::vector<WorstElement> worst;
-    for (const WorstTetrahedron& tet : measure(mesh).worst) {
+    for (const meshing::WorstTetrahedron& tet : meshing::measure(mesh).worst) {
         const auto t = static_cast<std::size_t>(tet.tetrahedron);
         const auto name = std::ranges::find(mesh.region_names, mesh.regions[t], &Label::value);
         worst.push_back(
@@ -139,4 +139,4 @@ std::string distances_section(const ReportPage& page) {
             content);
 }
 
-}  // namespace palpate
+}  // namespace palpate::report

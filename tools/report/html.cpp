@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace palpate::html {
+namespace palpate::report::html {
 
 std::string data_uri(std::string_view media_type, std::string_view bytes) {
     constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -65,4 +65,4 @@ std::string significant(double value, int digits) {
     return fmt::format("{:.{}g}", value, digits);
 }
 
-}  // namespace palpate::html
+}  // namespace palpate::report::html

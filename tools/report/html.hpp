@@ -7,7 +7,7 @@
 
 #include "formats/drawing/markup.hpp"
 
-namespace palpate::html {
+namespace palpate::report::html {
 
 using drawing::escaped;
 
@@ -44,4 +44,4 @@ std::string grouped(std::int64_t value);
 /// `digits` significant digits, without an exponent where that reads well ("0.00012", "5.9e-08").
 std::string significant(double value, int digits = 3);
 
-}  // namespace palpate::html
+}  // namespace palpate::report::html

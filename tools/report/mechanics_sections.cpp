@@ -7,7 +7,7 @@
 #include "tools/report/html.hpp"
 #include "tools/report/sections.hpp"
 
-namespace palpate {
+namespace palpate::report {
 namespace {
 
 using html::escaped;
@@ -143,4 +143,4 @@ std::string certificate_section(const ReportPage& page) {
         content);
 }
 
-}  // namespace palpate
+}  // namespace palpate::report

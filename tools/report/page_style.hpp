@@ -2,7 +2,7 @@
 #pragma once
 #include <string_view>
 
-namespace palpate {
+namespace palpate::report {
 
 /// The report's style sheet: light and dark by the reader's choice, light on paper.
 inline constexpr std::string_view page_style = R"css(
@@ -75,4 +75,4 @@ h2,h3{break-after:avoid}*{print-color-adjust:exact;-webkit-print-color-adjust:ex
 .three{grid-template-columns:repeat(3,1fr)}.two{grid-template-columns:repeat(2,1fr)}}
 )css";
 
-}  // namespace palpate
+}  // namespace palpate::report

@@ -7,7 +7,7 @@
 
 #include "tools/meshing/measures/quality.hpp"
 
-namespace palpate {
+namespace palpate::report {
 namespace {
 
 void count(BinCounts& histogram, double value) {
@@ -25,7 +25,7 @@ MeshSummary summarise(const TetMesh& mesh) {
     summary.region_volumes.resize(mesh.region_names.size());
     summary.min_volume = std::numeric_limits<double>::infinity();
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
-        const TetShape shape = tet_shape(mesh, t);
+        const meshing::TetShape shape = meshing::tet_shape(mesh, t);
         for (const double angle : shape.dihedral_deg) {
             count(summary.dihedral_deg, angle);
             summary.min_dihedral_deg = std::min(summary.min_dihedral_deg, angle);
@@ -43,4 +43,4 @@ MeshSummary summarise(const TetMesh& mesh) {
     return summary;
 }
 
-}  // namespace palpate
+}  // namespace palpate::report

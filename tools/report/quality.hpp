@@ -5,7 +5,7 @@
 
 #include "formats/model/tet_mesh.hpp"
 
-namespace palpate {
+namespace palpate::report {
 
 /// Counts of equal bins over [low, high]; values beyond an end are counted in the end's bin.
 struct BinCounts {
@@ -29,4 +29,4 @@ struct MeshSummary {
 /// Measures every tetrahedron of a mesh with at least one; linear in their number.
 MeshSummary summarise(const TetMesh& mesh);
 
-}  // namespace palpate
+}  // namespace palpate::report

@@ -9,7 +9,7 @@
 #include "tools/report/pictures/virtual_display.hpp"
 #include "tools/report/sections.hpp"
 
-namespace palpate {
+namespace palpate::report {
 namespace {
 
 std::string verdict(const std::vector<MeasuredBody>& bodies) {
@@ -85,4 +85,4 @@ std::string html_report(const ReportInputs& inputs) {
            "medical device; not for diagnosis or treatment.</footer>\n</main>\n</body>\n</html>\n";
 }
 
-}  // namespace palpate
+}  // namespace palpate::report

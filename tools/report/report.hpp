@@ -9,7 +9,7 @@
 #include "formats/model/label_map.hpp"
 #include "tools/report/charts.hpp"
 
-namespace palpate {
+namespace palpate::report {
 
 /// How far one body's surface is from what it was made from.
 struct SurfaceComparison {
@@ -39,4 +39,4 @@ std::vector<StageRecord> stages_from_json(const nlohmann::json& json, const std:
 /// display or Xvfb (VirtualDisplay); throws SystemFailure where there is neither.
 std::string html_report(const ReportInputs& inputs);
 
-}  // namespace palpate
+}  // namespace palpate::report

@@ -5,7 +5,7 @@
 #include "tools/report/html.hpp"
 #include "tools/report/sections.hpp"
 
-namespace palpate {
+namespace palpate::report {
 namespace {
 
 using html::escaped;
@@ -145,4 +145,4 @@ std::string provenance_section(const ReportPage& page) {
                          "Versions, options and input digests as the asset records them.", content);
 }
 
-}  // namespace palpate
+}  // namespace palpate::report

@@ -8,7 +8,7 @@
 #include "tools/report/report.hpp"
 #include "tools/report/verdict.hpp"
 
-namespace palpate {
+namespace palpate::report {
 
 /// A deformable body with what the report derives from it once.
 struct MeasuredBody {
@@ -60,4 +60,4 @@ const std::vector<NamedDirection>& view_directions();
 /// A coloured square beside a name.
 std::string swatch(const Label& label);
 
-}  // namespace palpate
+}  // namespace palpate::report

@@ -5,7 +5,7 @@
 
 #include "tools/report/html.hpp"
 
-namespace palpate {
+namespace palpate::report {
 
 using html::significant;
 
@@ -59,4 +59,4 @@ std::vector<Check> checks_of(const DeformableBody& body, const MeshSummary& mesh
     };
 }
 
-}  // namespace palpate
+}  // namespace palpate::report

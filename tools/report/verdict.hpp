@@ -6,7 +6,7 @@
 #include "formats/model/body.hpp"
 #include "tools/report/quality.hpp"
 
-namespace palpate {
+namespace palpate::report {
 
 /// One figure of a body, what it means and whether it is as it must be.
 struct Check {
@@ -20,4 +20,4 @@ struct Check {
 /// Judges what was measured when the body was condensed, and the shape of its mesh.
 std::vector<Check> checks_of(const DeformableBody& body, const MeshSummary& mesh);
 
-}  // namespace palpate
+}  // namespace palpate::report

@@ -9,7 +9,7 @@
 #include "tools/meshing/measures/quality.hpp"
 #include "tools/report/html.hpp"
 
-namespace palpate {
+namespace palpate::report {
 namespace {
 
 using Eigen::Vector2d;
@@ -108,7 +108,7 @@ std::string tetrahedron_svg(const TetMesh& mesh, std::size_t t, const Label& reg
             faces += fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}L{:.1f} {:.1f}Z", q[a].x(), q[a].y(), q[b].x(),
                                  q[b].y(), q[c].x(), q[c].y());
     }
-    const TetShape shape = tet_shape(mesh, t);
+    const meshing::TetShape shape = meshing::tet_shape(mesh, t);
     std::vector<Vector2d> taken;
     const auto [sharpest, bluntest] = std::ranges::minmax(shape.dihedral_deg);
     std::size_t edge = 0;
@@ -139,4 +139,4 @@ std::string tetrahedron_svg(const TetMesh& mesh, std::size_t t, const Label& reg
         angles);
 }
 
-}  // namespace palpate
+}  // namespace palpate::report

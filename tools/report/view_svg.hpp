@@ -7,7 +7,7 @@
 #include "tools/report/pictures/scene.hpp"
 #include "tools/report/quality.hpp"
 
-namespace palpate {
+namespace palpate::report {
 
 /// Shows a picture of the scene as inline SVG: letters in a corner say which of the patient's sides face the
 /// reader (R or L, A or P, S or I), and the marks are ringed with their names beside them.
@@ -18,4 +18,4 @@ std::string view_svg(const SceneView& view, const ViewDirection& direction, cons
 /// edges; the sharpest and the bluntest stand out.
 std::string tetrahedron_svg(const TetMesh& mesh, std::size_t t, const Label& region);
 
-}  // namespace palpate
+}  // namespace palpate::report

@@ -5,7 +5,7 @@
 
 #include "tools/imaging/voxels/hounsfield.hpp"
 
-namespace palpate {
+namespace palpate::seeds {
 
 double GreyPreset::shade(double value) const {
     return std::clamp((value - level) / width + 0.5, 0.0, 1.0);
@@ -13,7 +13,7 @@ double GreyPreset::shade(double value) const {
 
 GreyScale grey_scale(const Volume& volume) {
     GreyScale scale;
-    scale.offset = hounsfield_offset(volume);
+    scale.offset = imaging::hounsfield_offset(volume);
     scale.hounsfield = scale.offset > 0 || std::ranges::min(volume.values) <= -500;
     if (scale.hounsfield) {
         scale.presets = {{"soft tissue", 400, 40},
@@ -38,4 +38,4 @@ GreyScale grey_scale(const Volume& volume) {
     return scale;
 }
 
-}  // namespace palpate
+}  // namespace palpate::seeds

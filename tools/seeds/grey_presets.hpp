@@ -5,7 +5,7 @@
 
 #include "formats/model/image_grid.hpp"
 
-namespace palpate {
+namespace palpate::seeds {
 
 /// Which values are drawn between black and white: level - width / 2 ... level + width / 2.
 struct GreyPreset {
@@ -29,4 +29,4 @@ struct GreyScale {
 /// or less, as air has, or of a CT stored as value + 1024. Linear in voxels.
 GreyScale grey_scale(const Volume& volume);
 
-}  // namespace palpate
+}  // namespace palpate::seeds

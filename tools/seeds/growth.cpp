@@ -3,8 +3,10 @@
 
 #include <utility>
 
-namespace palpate {
+namespace palpate::seeds {
 namespace {
+
+using namespace imaging;
 
 Growth grow(const Volume& volume, const std::vector<Seed>& seeds) {
     Growth growth;
@@ -80,4 +82,4 @@ void GrowthWorker::work() {
     }
 }
 
-}  // namespace palpate
+}  // namespace palpate::seeds

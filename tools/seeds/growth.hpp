@@ -11,7 +11,7 @@
 
 #include "tools/imaging/voxels/grow_from_seeds.hpp"
 
-namespace palpate {
+namespace palpate::seeds {
 
 /// What grew from some seeds.
 struct Growth {
@@ -32,7 +32,7 @@ class GrowthWorker {
     ~GrowthWorker();
 
     /// Asks for a growth; returns at once.
-    void request(std::vector<Seed> seeds);
+    void request(std::vector<imaging::Seed> seeds);
     /// Tells whether something asked for has not been taken yet.
     bool busy() const;
     /// The latest growth since the last call, nothing if there is none; throws what growing threw, such as
@@ -43,7 +43,7 @@ class GrowthWorker {
 
   private:
     struct Request {
-        std::vector<Seed> seeds;
+        std::vector<imaging::Seed> seeds;
         std::chrono::steady_clock::time_point asked;
     };
     void work();
@@ -59,4 +59,4 @@ class GrowthWorker {
     std::thread thread_;  // last: starts when all else is there
 };
 
-}  // namespace palpate
+}  // namespace palpate::seeds

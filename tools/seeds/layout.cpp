@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpate {
+namespace palpate::seeds {
 
 using Eigen::Vector2d;
 
@@ -42,4 +42,4 @@ Layout lay_out(const ImageGrid& grid, const std::array<SliceView, 3>& views, con
     return layout;
 }
 
-}  // namespace palpate
+}  // namespace palpate::seeds

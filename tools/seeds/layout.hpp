@@ -2,7 +2,7 @@
 #pragma once
 #include "tools/seeds/slice_view.hpp"
 
-namespace palpate {
+namespace palpate::seeds {
 
 /// Where everything is in a window: axial upper left, coronal below it, sagittal beside the coronal, so that
 /// neighbours share an axis; the legend upper right, a status line at the bottom. All at one scale.
@@ -16,4 +16,4 @@ struct Layout {
 Layout lay_out(const ImageGrid& grid, const std::array<SliceView, 3>& views, const Eigen::Vector2d& size,
                double zoom, const std::array<std::int32_t, 3>& middle);
 
-}  // namespace palpate
+}  // namespace palpate::seeds

@@ -7,7 +7,7 @@
 
 #include "tools/seeds/slice_pane.hpp"
 
-namespace palpate {
+namespace palpate::seeds {
 namespace {
 
 constexpr auto help_keys =
@@ -22,7 +22,7 @@ constexpr double edge = 16, help_indent = 170;  // pixels
 
 std::string row_text(const SeedState& state, std::size_t number, const Growth* growth) {
     const std::string& label = state.labels[number];
-    const auto seeds = std::ranges::count(state.seeds, label, &Seed::label);
+    const auto seeds = std::ranges::count(state.seeds, label, &imaging::Seed::label);
     std::string text = fmt::format("{}   {} seed{}", label, seeds, seeds == 1 ? "" : "s");
     if (growth == nullptr) return text;
     const auto grown = std::ranges::find(growth->map.names, label, &palpate::Label::name);
@@ -114,4 +114,4 @@ void Legend::place(const Layout& layout, const Eigen::Vector2d& window_size) {
     message_->SetPosition(layout.status.size[0] - edge, 8);
 }
 
-}  // namespace palpate
+}  // namespace palpate::seeds

@@ -12,7 +12,7 @@
 #include "tools/seeds/layout.hpp"
 #include "tools/seeds/seed_state.hpp"
 
-namespace palpate {
+namespace palpate::seeds {
 
 /// The window's texts: labels with their keys, colours, seeds and volumes, the grey window, the help, and the
 /// status line with the place under the pointer (left) and what happened last (right).
@@ -38,4 +38,4 @@ class Legend {
     std::vector<Row> rows_;  // by label number
 };
 
-}  // namespace palpate
+}  // namespace palpate::seeds

@@ -7,7 +7,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::seeds {
 namespace {
 
 constexpr double contrast_step = 200;  // pixels of drag for a factor of e
@@ -84,12 +84,12 @@ void SeedEditor::remove(const Eigen::Vector3d& index, double reach) {
 
 void SeedEditor::move_crosshair(const Eigen::Vector3d& index) {
     acted();
-    palpate::move_crosshair(state_, volume_.grid, index);
+    palpate::seeds::move_crosshair(state_, volume_.grid, index);
 }
 
 void SeedEditor::scroll(const SliceView& view, int steps) {
     acted();
-    palpate::scroll(state_, volume_.grid, view, steps);
+    palpate::seeds::scroll(state_, volume_.grid, view, steps);
 }
 
 void SeedEditor::drag_grey(double right, double up) {
@@ -140,4 +140,4 @@ void SeedEditor::quit() {
     if (!closed_) say("seeds are not saved: S saves, Q again quits without");
 }
 
-}  // namespace palpate
+}  // namespace palpate::seeds

@@ -9,10 +9,10 @@
 #include "tools/seeds/growth.hpp"
 #include "tools/seeds/seed_state.hpp"
 
-namespace palpate {
+namespace palpate::seeds {
 
 /// Writes seeds and returns where to; throws an Error if it cannot.
-using SaveSeeds = std::function<std::string(std::span<const Seed>)>;
+using SaveSeeds = std::function<std::string(std::span<const imaging::Seed>)>;
 
 /// What mouse and keyboard mean: changes the seeds and how they are looked at, and lets them grow. Knows
 /// nothing of windows. One thread, beside the one that grows.
@@ -74,4 +74,4 @@ class SeedEditor {
     GrowthWorker worker_;
 };
 
-}  // namespace palpate
+}  // namespace palpate::seeds

@@ -6,8 +6,10 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::seeds {
 namespace {
+
+using namespace imaging;
 
 constexpr std::size_t most_structures = 9;  // one number key each
 
@@ -108,4 +110,4 @@ bool unsaved(const SeedState& state) {
     });
 }
 
-}  // namespace palpate
+}  // namespace palpate::seeds

@@ -7,22 +7,22 @@
 #include "tools/imaging/voxels/seeds.hpp"
 #include "tools/seeds/slice_view.hpp"
 
-namespace palpate {
+namespace palpate::seeds {
 
 /// What a person has done so far; drawing and growing look at it, the functions below change it.
 struct SeedState {
     std::vector<std::string> labels{"background"};   ///< by number key: 0 is "background", 1 ... 9 structures
     std::size_t active = 0;                          ///< of `labels`
-    std::vector<Seed> seeds;                         ///< in the order placed
-    std::vector<Seed> saved;                         ///< as last written or read
-    std::vector<std::vector<Seed>> past;             ///< seeds before each change, latest last
+    std::vector<imaging::Seed> seeds;                ///< in the order placed
+    std::vector<imaging::Seed> saved;                ///< as last written or read
+    std::vector<std::vector<imaging::Seed>> past;    ///< seeds before each change, latest last
     std::array<std::int32_t, 3> crosshair{0, 0, 0};  ///< voxel in which the three slices meet
 };
 
 /// A state for `labels` (structures) and seeds read earlier, whose labels are added; the crosshair is in the
 /// last of those seeds, else in the middle of the grid. Throws UsageError for more than nine structures.
 SeedState start_state(const ImageGrid& grid, const std::vector<std::string>& labels,
-                      const std::vector<Seed>& seeds);
+                      const std::vector<imaging::Seed>& seeds);
 
 /// Places a seed of the active label at a continuous voxel index and moves the crosshair there.
 void place_seed(SeedState& state, const ImageGrid& grid, const Eigen::Vector3d& index);
@@ -51,4 +51,4 @@ std::array<float, 3> label_colour(std::size_t number);
 /// Tells whether the seeds differ from those last written or read.
 bool unsaved(const SeedState& state);
 
-}  // namespace palpate
+}  // namespace palpate::seeds

@@ -17,7 +17,7 @@
 #include "tools/seeds/legend.hpp"
 #include "tools/seeds/slice_pane.hpp"
 
-namespace palpate {
+namespace palpate::seeds {
 namespace {
 
 using Eigen::Vector2d;
@@ -283,4 +283,4 @@ SeedWindowResult run_seed_window(const Volume& volume, const SeedWindowSettings&
     return {editor.state(), editor.growth(), editor.growths(), editor.longest_growth()};
 }
 
-}  // namespace palpate
+}  // namespace palpate::seeds

@@ -5,7 +5,7 @@
 
 #include "tools/seeds/seed_editor.hpp"
 
-namespace palpate {
+namespace palpate::seeds {
 
 /// What the window is opened with.
 struct SeedWindowSettings {
@@ -28,4 +28,4 @@ struct SeedWindowResult {
 /// answers, InvalidInput if a seed given lies outside the volume.
 SeedWindowResult run_seed_window(const Volume& volume, const SeedWindowSettings& settings);
 
-}  // namespace palpate
+}  // namespace palpate::seeds

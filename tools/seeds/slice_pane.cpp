@@ -17,7 +17,7 @@
 #include <vtkTextProperty.h>
 #include <vtkUnsignedCharArray.h>
 
-namespace palpate {
+namespace palpate::seeds {
 namespace {
 
 using Eigen::Vector2d;
@@ -172,7 +172,7 @@ void SlicePane::draw_seeds(const SeedState& state) {
     vtkNew<vtkCellArray> vertices;
     vtkNew<vtkUnsignedCharArray> colours;
     colours->SetNumberOfComponents(3);
-    for (const Seed& seed : state.seeds) {
+    for (const imaging::Seed& seed : state.seeds) {
         const Vector3d index = grid_.index_of(seed.p_P);
         const double off = index[view_.across] - state.crosshair[view_.across];
         if (std::abs(off) * spacing > reach) continue;
@@ -204,4 +204,4 @@ void SlicePane::place(const PaneFrame& frame, const Vector2d& window_size) {
     title_->SetPosition(8, s[1] - 6);
 }
 
-}  // namespace palpate
+}  // namespace palpate::seeds

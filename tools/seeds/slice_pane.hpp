@@ -14,7 +14,7 @@
 #include "tools/seeds/seed_state.hpp"
 #include "tools/seeds/slice_picture.hpp"
 
-namespace palpate {
+namespace palpate::seeds {
 
 /// One view's part of the window: the slice through the crosshair with what has grown, the seeds near it, the
 /// crosshair and the letters at the edges. VTK's world coordinates are the view's pane coordinates, mm.
@@ -55,4 +55,4 @@ void set_viewport(vtkRenderer* renderer, const PaneFrame& frame, const Eigen::Ve
 /// Makes a text in the window's type, light on dark.
 void set_type(vtkTextActor* actor, int size);
 
-}  // namespace palpate
+}  // namespace palpate::seeds

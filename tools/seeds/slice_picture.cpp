@@ -6,7 +6,7 @@
 
 #include "tools/seeds/seed_state.hpp"
 
-namespace palpate {
+namespace palpate::seeds {
 namespace {
 
 constexpr float tint = 0.28F;  // of the label's colour inside its contour
@@ -64,7 +64,7 @@ SlicePicture slice_picture(const Volume& volume, const SliceView& view, std::int
     std::vector<std::uint16_t> shown(pixels);
     each_pixel(grid, view, slice,
                [&](std::size_t pixel, std::size_t voxel) { shown[pixel] = growth->map.labels[voxel]; });
-    const double block = preview_parameters(grid).spacing_mm;
+    const double block = imaging::preview_parameters(grid).spacing_mm;
     const auto radius = [&](int axis) {
         return static_cast<int>(std::lround(block / grid.spacing[axis] / 2));
     };
@@ -92,4 +92,4 @@ SlicePicture slice_picture(const Volume& volume, const SliceView& view, std::int
     return picture;
 }
 
-}  // namespace palpate
+}  // namespace palpate::seeds

@@ -7,7 +7,7 @@
 #include "tools/seeds/growth.hpp"
 #include "tools/seeds/slice_view.hpp"
 
-namespace palpate {
+namespace palpate::seeds {
 
 /// One slice as pixels, a pixel a voxel, rows from the top.
 struct SlicePicture {
@@ -24,4 +24,4 @@ SlicePicture slice_picture(const Volume& volume, const SliceView& view, std::int
                            const GreyPreset& grey, const Growth* growth,
                            const std::vector<std::string>& labels);
 
-}  // namespace palpate
+}  // namespace palpate::seeds

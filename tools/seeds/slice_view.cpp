@@ -6,7 +6,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace palpate {
+namespace palpate::seeds {
 namespace {
 
 using Eigen::Vector2d;
@@ -115,4 +115,4 @@ bool PaneFrame::shows(const Vector2d& point) const {
     return ((point - center).array().abs() <= inner * pixel * size.array()).all();
 }
 
-}  // namespace palpate
+}  // namespace palpate::seeds

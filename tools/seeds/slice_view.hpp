@@ -6,7 +6,7 @@
 
 #include "formats/model/image_grid.hpp"
 
-namespace palpate {
+namespace palpate::seeds {
 
 /// How the slices across one index axis of a volume are shown: each index axis counts as the patient's axis
 /// it is closest to, so oblique, flipped and left-handed volumes are shown in their own slices. Radiological
@@ -52,4 +52,4 @@ struct PaneFrame {
     bool shows(const Eigen::Vector2d& point) const;
 };
 
-}  // namespace palpate
+}  // namespace palpate::seeds

@@ -13,6 +13,8 @@
 namespace palpate::stages {
 namespace {
 
+using namespace fem;
+
 ElementOrder element_order_of(const std::string& text) {
     for (const ElementOrder order : {ElementOrder::linear, ElementOrder::quadratic})
         if (text == name_of(order)) return order;
@@ -67,7 +69,7 @@ MadeBody make_body(const CondenseRequest& request, int threads, const ProgressCa
     body.element_order = element_order_of(request.element);
     const Representation representation = representation_from(request.representation);
     body.name = request.name.empty() ? request.mesh.stem().string() : request.name;
-    body.mesh = read_tetrahedra(request.mesh);
+    body.mesh = meshing::read_tetrahedra(request.mesh);
     body.materials = materials_of(request, body.mesh);
     const BoundarySurface boundary = boundary_surface(body.mesh);
     body.fixed_nodes = fixed_nodes_of(body.mesh, boundary, fixed);

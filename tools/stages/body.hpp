@@ -12,7 +12,7 @@ namespace palpate::stages {
 /// A condensed body and how that was done.
 struct MadeBody {
     DeformableBody body;
-    CondensationPlan plan;
+    fem::CondensationPlan plan;
 };
 
 /// Reads a mesh, holds its nodes and condenses it; writes nothing. `announce` is given the plan before the
@@ -20,6 +20,6 @@ struct MadeBody {
 /// region that the mesh does not have (with the nearest names), and as fixed_nodes_of(), contact_nodes_of()
 /// and condensed_body() do.
 MadeBody make_body(const CondenseRequest& request, int threads, const ProgressCallback& progress,
-                   const std::function<void(const CondensationPlan&)>& announce);
+                   const std::function<void(const fem::CondensationPlan&)>& announce);
 
 }  // namespace palpate::stages

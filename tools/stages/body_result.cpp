@@ -8,6 +8,8 @@
 
 namespace palpate::stages {
 
+using namespace fem;
+
 using Json = nlohmann::ordered_json;
 
 Json to_json(const Certificate& certificate) {

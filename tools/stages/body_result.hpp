@@ -11,10 +11,10 @@ namespace palpate::stages {
 nlohmann::ordered_json to_json(const Certificate& certificate);
 
 /// A condensed body in figures, its plan and its certificate.
-nlohmann::ordered_json to_json(const DeformableBody& body, const CondensationPlan& plan);
+nlohmann::ordered_json to_json(const DeformableBody& body, const fem::CondensationPlan& plan);
 
 /// What was chosen, why, and every method's forecast.
-nlohmann::ordered_json to_json(const CondensationPlan& plan);
+nlohmann::ordered_json to_json(const fem::CondensationPlan& plan);
 
 /// "linear" or "quadratic".
 std::string name_of(ElementOrder order);

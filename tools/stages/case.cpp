@@ -56,11 +56,11 @@ Json read_mesh_results(const std::vector<NamedFile>& files) {
 }
 
 ObbTree tree_of(const BodyFiles& files, const TriangleMesh& surface) {
-    return files.tree.empty() ? build_obb_tree(surface) : read_obb_part(files.tree, surface);
+    return files.tree.empty() ? obb::build_obb_tree(surface) : read_obb_part(files.tree, surface);
 }
 
 RigidBody read_rigid(const BodyFiles& files) {
-    RigidBody body{files.name, read_surface(files.body), {}};
+    RigidBody body{files.name, meshing::read_surface(files.body), {}};
     body.obb_tree = tree_of(files, body.surface);
     return body;
 }

@@ -9,6 +9,8 @@
 namespace palpate::stages {
 namespace {
 
+using namespace imaging;
+
 nlohmann::ordered_json describe(const ImageGrid& grid) {
     const auto numbers = [](const auto& v) { return std::vector<double>(v.data(), v.data() + v.size()); };
     return {{"size", grid.size},

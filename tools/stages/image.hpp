@@ -13,13 +13,13 @@ namespace palpate::stages {
 void check_request(const ImportRequest& request);
 
 /// How to read the request's input. Throws UsageError for an unknown word.
-ReadOptions read_options_of(const ImportRequest& request);
+imaging::ReadOptions read_options_of(const ImportRequest& request);
 
 /// Reads the request's volume or label map as `options` say, names its labels and writes it to `file`;
 /// returns the grid, and the labels or the range of values. Throws as read_volume(), read_label_map() and
 /// name_labels() do.
-nlohmann::ordered_json import_image(const ImportRequest& request, const ReadOptions& options,
+nlohmann::ordered_json import_image(const ImportRequest& request, const imaging::ReadOptions& options,
                                     const std::filesystem::path& file, const ProgressCallback& progress,
-                                    const NoteSink& note);
+                                    const imaging::NoteSink& note);
 
 }  // namespace palpate::stages

@@ -13,6 +13,9 @@
 namespace palpate::stages {
 namespace {
 
+using namespace imaging;
+using namespace meshing;
+
 struct Body {
     TetMesh mesh;
     std::int64_t pieces = 0;

@@ -19,6 +19,7 @@ struct MadeMesh {
 /// regions; writes nothing. Throws UsageError if the request has nothing to mesh or a size for a label that
 /// is no region, InvalidInput if the body has several pieces and may not, QualityNotMet if the contract is
 /// missed, and as what it calls.
-MadeMesh make_mesh(const MeshRequest& request, const ProgressCallback& progress, const NoteSink& note);
+MadeMesh make_mesh(const MeshRequest& request, const ProgressCallback& progress,
+                   const imaging::NoteSink& note);
 
 }  // namespace palpate::stages

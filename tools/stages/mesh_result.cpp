@@ -10,6 +10,8 @@
 
 namespace palpate::stages {
 
+using namespace meshing;
+
 Json to_json(const TetMesh& mesh, const MeshQuality& quality) {
     Json worst = Json::array();
     for (const WorstTetrahedron& tet : quality.worst)
@@ -60,7 +62,7 @@ Json to_json(const TetMesh& mesh, const MeshMeasures& measures) {
 
 Json to_json(std::span<const ContractCheck> checks) {
     Json list = Json::array();
-    for (const ContractCheck& check : checks) list.push_back(palpate::to_json(check));
+    for (const ContractCheck& check : checks) list.push_back(meshing::to_json(check));
     return list;
 }
 

@@ -10,20 +10,20 @@ namespace palpate::stages {
 using Json = nlohmann::ordered_json;
 
 /// Size and shape of any mesh.
-Json to_json(const TetMesh& mesh, const MeshQuality& quality);
+Json to_json(const TetMesh& mesh, const meshing::MeshQuality& quality);
 
 /// The same and how faithful it is to its labels, region by region.
-Json to_json(const TetMesh& mesh, const MeshMeasures& measures);
+Json to_json(const TetMesh& mesh, const meshing::MeshMeasures& measures);
 
 /// The contract check by check, as numbers.
-Json to_json(std::span<const ContractCheck> checks);
+Json to_json(std::span<const meshing::ContractCheck> checks);
 
 /// What each attempt missed.
-Json to_json(const std::vector<MeshAttempt>& attempts);
+Json to_json(const std::vector<meshing::MeshAttempt>& attempts);
 
 /// Throws QualityNotMet with every check that is not met, if there is one; `culprit` is the output,
 /// `next_step` what to do.
-void require_met(std::span<const ContractCheck> checks, const std::string& culprit,
+void require_met(std::span<const meshing::ContractCheck> checks, const std::string& culprit,
                  const std::string& next_step);
 
 }  // namespace palpate::stages

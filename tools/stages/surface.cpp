@@ -12,6 +12,9 @@
 namespace palpate::stages {
 namespace {
 
+using namespace imaging;
+using namespace meshing;
+
 void check_inputs(const SurfaceRequest& request) {
     if (request.volume.empty() && request.labels.empty() && request.surface_file.empty())
         throw UsageError(

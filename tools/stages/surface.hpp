@@ -15,11 +15,11 @@ namespace palpate::stages {
 /// A surface and what was measured of it.
 struct MadeSurface {
     TriangleMesh surface;  ///< LPS mm
-    SurfaceQuality quality;
+    meshing::SurfaceQuality quality;
     /// How far decimation moved it, if it was decimated.
     struct Decimated {
         std::size_t triangles_before = 0;
-        SurfaceDistance distance;
+        meshing::SurfaceDistance distance;
         std::int64_t self_intersecting_pairs = 0;
     };
     std::optional<Decimated> decimated;
@@ -36,6 +36,6 @@ TriangleMesh full_surface(const SurfaceRequest& request, const LabelMap& labels,
 /// request names no input or labels without a label map, QualityNotMet if the result is not closed, manifold
 /// and facing outwards, and as what it calls.
 MadeSurface make_surface(const SurfaceRequest& request, const ProgressCallback& progress,
-                         const NoteSink& note);
+                         const imaging::NoteSink& note);
 
 }  // namespace palpate::stages

@@ -17,6 +17,9 @@
 namespace palpate {
 namespace {
 
+using namespace experiments;
+using namespace meshing;
+
 constexpr std::int32_t organ = 1;
 
 LabelMap ellipsoid_labels(double voxel_edge) {

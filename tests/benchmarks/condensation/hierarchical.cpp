@@ -13,6 +13,8 @@
 namespace palpate {
 namespace {
 
+using namespace fem;
+
 constexpr double accuracy = 1e-3;
 constexpr std::size_t patch_nodes = 32;
 constexpr int patches = 100;

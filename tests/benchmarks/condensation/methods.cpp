@@ -18,6 +18,8 @@
 namespace palpate {
 namespace {
 
+using namespace fem;
+
 Eigen::Index surface_dofs(const DeformableBody& body) {
     return static_cast<Eigen::Index>(3 * body.contact_nodes.size());
 }

@@ -24,6 +24,7 @@
 namespace palpate {
 namespace {
 
+using namespace meshing;
 using Eigen::Vector3d;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Triangles = std::vector<Kernel::Triangle_3>;
@@ -52,7 +53,7 @@ struct NamedSurface {
 };
 
 TriangleMesh read_labels(const std::filesystem::path& path) {
-    const LabelMap map = read_label_map(path);
+    const LabelMap map = imaging::read_label_map(path);
     std::vector<std::int32_t> values;
     for (const Label& label : map.names) values.push_back(label.value);
     return label_surface(map, values);
@@ -78,7 +79,7 @@ class RealSurface : public testing::TestWithParam<NamedSurface> {
         if (!std::filesystem::exists(path))
             GTEST_SKIP() << "PALPATE_DATA: " << GetParam().file << " is absent";
         const TriangleMesh mesh = GetParam().read(path);
-        surface_.emplace(mesh, build_obb_tree(mesh), GetParam().name);
+        surface_.emplace(mesh, obb::build_obb_tree(mesh), GetParam().name);
         for (std::int32_t slot = 0; slot < surface_->triangle_count(); ++slot) {
             const TriangleCorners t = surface_->corners(slot);
             triangles_.emplace_back(cgal(t[0]), cgal(t[1]), cgal(t[2]));

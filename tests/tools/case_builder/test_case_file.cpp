@@ -6,8 +6,10 @@
 #include "tests/tools/imaging/hand_written_images.hpp"
 #include "tools/case_builder/case_file.hpp"
 
-namespace palpate::build {
+namespace palpate::case_builder {
 namespace {
+
+using namespace case_builder;
 
 const std::string minimal = R"(schema = 1
 name = "liver"
@@ -235,4 +237,4 @@ TEST(CaseFile, an_imported_file_beside_what_would_make_it_is_refused) {
 }
 
 }  // namespace
-}  // namespace palpate::build
+}  // namespace palpate::case_builder

@@ -5,8 +5,10 @@
 #include "formats/model/errors.hpp"
 #include "tools/case_builder/stage_runner.hpp"
 
-namespace palpate::build {
+namespace palpate::case_builder {
 namespace {
+
+using namespace case_builder;
 
 // A folder with a made-up command palpate-copy that counts its runs and copies as its request says.
 class StageRunnerTest : public testing::Test {
@@ -102,4 +104,4 @@ TEST_F(StageRunnerTest, knows_its_own_outputs) {
 }
 
 }  // namespace
-}  // namespace palpate::build
+}  // namespace palpate::case_builder

@@ -7,8 +7,10 @@
 
 #include "tools/case_builder/stages.hpp"
 
-namespace palpate::build {
+namespace palpate::case_builder {
 namespace {
+
+using namespace case_builder;
 
 namespace fs = std::filesystem;
 
@@ -127,4 +129,4 @@ TEST(Stages, rules_of_a_body_reach_condense_and_its_node_files_decide_about_a_re
 }
 
 }  // namespace
-}  // namespace palpate::build
+}  // namespace palpate::case_builder

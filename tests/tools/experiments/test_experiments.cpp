@@ -11,9 +11,10 @@
 #include "tools/experiments/stability/wall_stability.hpp"
 #include "tools/experiments/statistics.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 namespace {
 
+using namespace experiments;
 using Eigen::Vector3d;
 
 constexpr HandImpedance no_hand{.stiffness = 0, .damping = 0};
@@ -179,4 +180,4 @@ TEST(FaultRun, a_fault_that_nobody_reports_is_missed) {
 }
 
 }  // namespace
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

@@ -8,9 +8,10 @@
 #include "tests/formats/sample_case.hpp"
 #include "tools/experiments/force_quality.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 namespace {
 
+using namespace experiments;
 using Eigen::Vector3d;
 
 constexpr double stiffness = 0.4;   // N/mm
@@ -145,4 +146,4 @@ TEST(ForceQuality, a_closed_excursion_gives_half_k_dx_squared_a_tick) {
 }
 
 }  // namespace
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

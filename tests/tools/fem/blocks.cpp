@@ -10,6 +10,8 @@
 
 namespace palpate::test {
 
+using namespace fem;
+
 TetMesh block_mesh(std::array<int, 3> cells, const Eigen::Vector3d& size) {
     TetMesh mesh;
     const auto id = [&](int i, int j, int k) { return (k * (cells[1] + 1) + j) * (cells[0] + 1) + i; };

@@ -5,6 +5,8 @@
 
 namespace palpate::test {
 
+using namespace fem;
+
 std::vector<ExactMethod> exact_methods() {
     return {{"trailing_block",
              [](const DeformableBody& body) { return full(condense_by_trailing_block(body, no_progress)); }},

@@ -25,7 +25,7 @@ std::vector<ExactMethod> exact_methods();
 std::string name_of(const testing::TestParamInfo<ExactMethod>& method);
 
 /// C with both triangles, 3m x 3m, mm/N.
-Eigen::MatrixXd full(const ExactCompliance& exact);
+Eigen::MatrixXd full(const fem::ExactCompliance& exact);
 
 /// The stored matrix entry by entry, 3m x 3m, mm/N.
 Eigen::MatrixXd entries_of(const SurfaceCompliance& compliance);

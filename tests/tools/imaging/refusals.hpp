@@ -22,8 +22,8 @@ std::string refusal_of(Call&& call) {
 
 /// The same of reading a volume.
 template <typename Refusal = InvalidInput>
-std::string volume_refusal(const std::filesystem::path& path, const ReadOptions& options = {}) {
-    return refusal_of<Refusal>([&] { read_volume(path, {}, options); });
+std::string volume_refusal(const std::filesystem::path& path, const imaging::ReadOptions& options = {}) {
+    return refusal_of<Refusal>([&] { imaging::read_volume(path, {}, options); });
 }
 
 // Of float32 affines (NIfTI) and decimal headers: 100 mm at 2^-24 relative, over a few terms.

@@ -11,6 +11,8 @@
 namespace palpate {
 namespace {
 
+using namespace imaging;
+
 ImageGrid anisotropic_grid() {
     ImageGrid grid;
     grid.size = {70, 9, 5};  // longer than the lines that are filtered together

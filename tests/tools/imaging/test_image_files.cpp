@@ -17,6 +17,7 @@
 namespace palpate {
 namespace {
 
+using namespace imaging;
 using test::expect_same_place;
 using test::header_tolerance;
 using test::refusal_of;

@@ -10,6 +10,7 @@
 namespace palpate {
 namespace {
 
+using namespace imaging;
 using test::TemporaryFolder;
 using test::write_bytes;
 

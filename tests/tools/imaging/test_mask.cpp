@@ -10,6 +10,8 @@
 namespace palpate {
 namespace {
 
+using namespace imaging;
+
 // Anisotropic and oblique, so that voxel distances and millimetres differ in every way.
 ImageGrid oblique_grid() {
     ImageGrid grid;

@@ -12,6 +12,8 @@
 namespace palpate {
 namespace {
 
+using namespace imaging;
+
 // Float32 headers of NIfTI: 200 mm at 2^-24, over a few terms.
 constexpr double centroid_tolerance = 1e-3;
 

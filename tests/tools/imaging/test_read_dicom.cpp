@@ -16,6 +16,7 @@
 namespace palpate {
 namespace {
 
+using namespace imaging;
 using test::DicomData;
 using test::TemporaryFolder;
 

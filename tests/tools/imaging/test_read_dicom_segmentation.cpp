@@ -11,6 +11,7 @@
 namespace palpate {
 namespace {
 
+using namespace imaging;
 using test::DicomData;
 using test::TemporaryFolder;
 

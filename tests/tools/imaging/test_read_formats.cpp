@@ -15,6 +15,7 @@
 namespace palpate {
 namespace {
 
+using namespace imaging;
 using test::expect_same_place;
 using test::header_tolerance;
 using test::TemporaryFolder;

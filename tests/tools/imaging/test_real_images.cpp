@@ -13,6 +13,8 @@
 namespace palpate {
 namespace {
 
+using namespace imaging;
+
 double mean_within(const Volume& volume, const LabelMap& labels, std::int32_t value) {
     double sum = 0, count = 0;
     for (std::size_t i = 0; i < labels.labels.size(); ++i)

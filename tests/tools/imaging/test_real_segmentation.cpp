@@ -14,8 +14,10 @@
 namespace palpate {
 namespace {
 
+using namespace imaging;
+
 Mask mask_of(const LabelMap& map, const std::string& name) {
-    return mask_of(map, require_label(map, name, "test").value);
+    return imaging::mask_of(map, require_label(map, name, "test").value);
 }
 
 double dice(const Mask& a, const Mask& b) {

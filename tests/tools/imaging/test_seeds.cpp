@@ -12,6 +12,8 @@
 namespace palpate {
 namespace {
 
+using namespace imaging;
+
 std::filesystem::path written(const sample::Scratch& scratch, const std::string& name,
                               const std::string& text) {
     const std::filesystem::path path = scratch / name;

@@ -20,6 +20,8 @@
 namespace palpate {
 namespace {
 
+using namespace imaging;
+
 double dice(const LabelMap& a, const std::string& name_a, const LabelMap& b, const std::string& name_b) {
     const auto value_a = require_label(a, name_a, "a").value, value_b = require_label(b, name_b, "b").value;
     std::size_t both = 0, sum = 0;

@@ -30,16 +30,18 @@ class ImportedFiles : public testing::Test {
         return folder_ / name;
     }
     TetMesh tetrahedra(const std::string& name, const std::string& text,
-                       const ImportedMeshOptions& options = {}) {
-        return read_imported_tetrahedra(written(name, text), options, [&](auto note) { notes_ += note; });
+                       const meshing::ImportedMeshOptions& options = {}) {
+        return meshing::read_imported_tetrahedra(written(name, text), options,
+                                                 [&](auto note) { notes_ += note; });
     }
     TriangleMesh surface(const std::string& name, const std::string& text,
-                         const ImportedMeshOptions& options = {}) {
-        return read_imported_surface(written(name, text), options, [&](auto note) { notes_ += note; });
+                         const meshing::ImportedMeshOptions& options = {}) {
+        return meshing::read_imported_surface(written(name, text), options,
+                                              [&](auto note) { notes_ += note; });
     }
     // What reading a file is refused with.
     std::string refusal(const std::string& name, const std::string& text,
-                        const ImportedMeshOptions& options = {}) {
+                        const meshing::ImportedMeshOptions& options = {}) {
         try {
             name.ends_with("msh") || name.ends_with("mesh") || name.ends_with("vtk") || name.ends_with("vtu")
                 ? static_cast<void>(tetrahedra(name, text, options))
@@ -50,7 +52,7 @@ class ImportedFiles : public testing::Test {
         return "nothing was thrown";
     }
     void expect_refusal(std::initializer_list<const char*> phrases, const std::string& name,
-                        const std::string& text, const ImportedMeshOptions& options = {}) {
+                        const std::string& text, const meshing::ImportedMeshOptions& options = {}) {
         const std::string message = refusal(name, text, options);
         for (const char* phrase : phrases) EXPECT_NE(message.find(phrase), std::string::npos) << message;
     }

@@ -12,6 +12,8 @@
 namespace palpate {
 namespace {
 
+using namespace meshing;
+
 // Two tetrahedra that share node 0 only, or the edge 0-1.
 TetMesh hinged(bool at_edge) {
     TetMesh mesh;

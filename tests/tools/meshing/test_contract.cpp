@@ -12,6 +12,8 @@
 namespace palpate {
 namespace {
 
+using namespace meshing;
+
 TEST(QualityContract, coarse_request_is_made_finer_until_it_is_kept) {
     const LabelMap map = test::organ_with_lesion();
     const MeshSizing coarse{.cell_size = 12, .facet_distance = 4};

@@ -20,6 +20,8 @@
 namespace palpate {
 namespace {
 
+using namespace meshing;
+
 namespace fs = std::filesystem;
 
 using test::bytes;

@@ -10,6 +10,7 @@
 namespace palpate {
 namespace {
 
+using namespace meshing;
 using test::bytes;
 
 class ImportedSurface : public test::ImportedFiles {};

@@ -16,6 +16,8 @@
 namespace palpate {
 namespace {
 
+using namespace meshing;
+
 TEST(RegionLabels, cutting_out_keeps_every_voxel_in_its_place) {
     const LabelMap map =
         test::organ_with_lesion(Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitY()).toRotationMatrix());

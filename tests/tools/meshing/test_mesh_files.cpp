@@ -10,6 +10,8 @@
 namespace palpate {
 namespace {
 
+using namespace meshing;
+
 namespace fs = std::filesystem;
 
 class MeshFiles : public testing::Test {

@@ -12,6 +12,8 @@
 namespace palpate {
 namespace {
 
+using namespace meshing;
+
 constexpr double rounding = 1e-12;
 
 TetMesh one_tetrahedron(std::vector<Eigen::Vector3d> corners) {

@@ -11,6 +11,8 @@
 namespace palpate {
 namespace {
 
+using namespace meshing;
+
 // An organ's mesh with its regions numbered 1 and 2, and the labels it was made from.
 struct NumberedBody {
     MeshDomain domain;

@@ -11,6 +11,8 @@
 namespace palpate {
 namespace {
 
+using namespace meshing;
+
 // Falls off linearly from the centre: the isosurface 100 is the ball of `radius`.
 Volume cone(const Eigen::Matrix3d& direction, double radius) {
     Volume volume;

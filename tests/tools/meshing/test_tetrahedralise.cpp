@@ -11,6 +11,7 @@
 namespace palpate {
 namespace {
 
+using namespace meshing;
 using test::organ_center;
 using test::organ_with_lesion;
 

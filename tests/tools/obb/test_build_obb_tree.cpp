@@ -18,6 +18,8 @@
 namespace palpate {
 namespace {
 
+using namespace obb;
+
 // A torus far from the origin, where float32 is coarse: 40 by 20 quads, halved.
 TriangleMesh torus() {
     constexpr int around = 40, across = 20;
@@ -187,7 +189,7 @@ TEST(ObbTree, skull_of_a_real_head_is_enclosed) {
     const char* data = std::getenv("PALPATE_DATA");
     const std::filesystem::path path = std::filesystem::path(data ? data : "") / "bench_skull/skull.vtp";
     if (!std::filesystem::exists(path)) GTEST_SKIP() << "PALPATE_DATA: bench_skull is absent";
-    const TriangleMesh skull = read_surface(path);
+    const TriangleMesh skull = meshing::read_surface(path);
     const ObbTree tree = build_obb_tree(skull);
     EXPECT_LE(depth(tree), 40U);
     // Walking from every node is quadratic on a large tree; boxes hold what their children hold, so it is

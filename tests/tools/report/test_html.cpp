@@ -10,6 +10,8 @@
 namespace palpate {
 namespace {
 
+using namespace report;
+
 TEST(Html, base64_matches_rfc_4648) {
     for (const auto& [plain, coded] :
          {std::pair{"", ""}, {"f", "Zg=="}, {"fo", "Zm8="}, {"foo", "Zm9v"}, {"foobar", "Zm9vYmFy"}})

@@ -20,6 +20,9 @@
 namespace palpate {
 namespace {
 
+using namespace meshing;
+using namespace report;
+
 constexpr double round_off = 1e-9;
 
 TetMesh one_tet(const std::array<Eigen::Vector3d, 4>& corners) {

@@ -17,6 +17,8 @@
 namespace palpate {
 namespace {
 
+using namespace report;
+
 Case hostile_case() {
     Case patient_case = sample::sample_case(6);
     patient_case.name = "<script>alert('Doe & \"Co\"')</script>";

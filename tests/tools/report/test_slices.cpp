@@ -10,6 +10,8 @@
 namespace palpate {
 namespace {
 
+using namespace report;
+
 const Eigen::Vector3d middle(10, -20, 30);
 
 ImageGrid straight_grid() {

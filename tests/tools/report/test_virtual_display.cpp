@@ -14,6 +14,8 @@
 namespace palpate {
 namespace {
 
+using namespace report;
+
 class VirtualDisplayTest : public testing::Test {
   protected:
     void SetUp() override {

@@ -9,6 +9,9 @@
 namespace palpate {
 namespace {
 
+using namespace imaging;
+using namespace seeds;
+
 const Seed in_liver{"liver", {10, 0, 0}};
 
 TEST(GrowthWorker, gives_the_growth_of_the_last_request) {

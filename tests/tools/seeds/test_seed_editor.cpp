@@ -8,15 +8,17 @@
 namespace palpate {
 namespace {
 
+using namespace seeds;
+
 const Eigen::Vector3d liver_index(28, 30, 32);
 
 class SeedEditorTest : public testing::Test {
   protected:
     const Volume volume = abdomen_phantom().volume;
-    std::vector<Seed> written;
+    std::vector<imaging::Seed> written;
     bool disk_full = false;
     SeedEditor editor{volume, start_state(volume.grid, {"liver"}, {}), grey_scale(volume),
-                      [this](std::span<const Seed> seeds) {
+                      [this](std::span<const imaging::Seed> seeds) {
                           if (disk_full) throw SystemFailure({"a.mrk.json", "disk full", "", ""});
                           written.assign(seeds.begin(), seeds.end());
                           return std::string("a.mrk.json");

@@ -7,6 +7,7 @@
 namespace palpate {
 namespace {
 
+using namespace seeds;
 using Eigen::Vector3d;
 
 const ImageGrid grid{.size = {20, 30, 40}, .spacing = {1, 2, 3}, .origin = {-5, 0, 100}};
@@ -20,7 +21,7 @@ TEST(SeedState, starts_with_the_first_structure_and_the_background_under_key_0) 
 }
 
 TEST(SeedState, takes_labels_and_place_from_seeds_read_earlier) {
-    const std::vector<Seed> seeds{{"background", {0, 0, 100}}, {"spleen", {-3, 8, 109}}};
+    const std::vector<imaging::Seed> seeds{{"background", {0, 0, 100}}, {"spleen", {-3, 8, 109}}};
     const SeedState state = start_state(grid, {"liver"}, seeds);
     EXPECT_EQ(state.labels, (std::vector<std::string>{"background", "liver", "spleen"}));
     EXPECT_EQ(state.crosshair, (std::array<std::int32_t, 3>{2, 4, 3}));

@@ -10,6 +10,7 @@
 namespace palpate {
 namespace {
 
+using namespace seeds;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 

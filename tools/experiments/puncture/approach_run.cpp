@@ -6,7 +6,7 @@
 
 #include "formats/model/arrays.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 namespace {
 
 using Eigen::Vector3d;
@@ -92,4 +92,4 @@ bool is_pulled(const Outcome& outcome) {
     return outcome.pull > felt;
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

@@ -6,7 +6,7 @@
 #include "runtime/haptics/haptic_model.hpp"
 #include "tools/experiments/puncture/approaches.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 
 /// One approach: the hand goes straight at `speed` from run_up before the entry to stroke behind it, where it
 /// stays and presses for press_s.
@@ -49,4 +49,4 @@ bool is_puncture(const Outcome& outcome, double coupling_stiffness);
 /// Ever drawn inwards by more than 0.1 N.
 bool is_pulled(const Outcome& outcome);
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

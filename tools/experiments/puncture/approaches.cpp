@@ -9,7 +9,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 namespace {
 
 using Eigen::Vector3d;
@@ -89,4 +89,4 @@ std::vector<Place> draw_places(const TriangleMesh& mesh, const CollisionSurface&
     return places;
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

@@ -7,7 +7,7 @@
 #include "formats/model/triangle_mesh.hpp"
 #include "runtime/collision/collision_surface.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 
 /// Where a straight approach onto a bone goes in, and what lies behind.
 struct Place {
@@ -28,4 +28,4 @@ struct Place {
 std::vector<Place> draw_places(const TriangleMesh& mesh, const CollisionSurface& surface, double tool_radius,
                                std::size_t count, std::mt19937_64& random);
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

@@ -17,7 +17,7 @@
 #include "tools/experiments/statistics.hpp"
 #include "tools/meshing/files/mesh_files.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 namespace {
 
 using drawing::Chart;
@@ -74,7 +74,9 @@ struct Bench {
 Bench bench_of(const Options& options) {
     if (options.surface.empty())
         throw UsageError({"--surface", "not given", "triangles of a bone (.vtp)", ""});
-    Bench bench{.mesh = read_surface(options.surface), .models = {}, .random = std::mt19937_64(options.seed)};
+    Bench bench{.mesh = meshing::read_surface(options.surface),
+                .models = {},
+                .random = std::mt19937_64(options.seed)};
     const Case bone = rigid_case(options.surface.stem().string(), bench.mesh, settings);
     for (const std::string_view scheme : schemes) {
         bench.models.push_back(std::make_unique<HapticModel>(bone, scheme));
@@ -232,4 +234,4 @@ Findings puncture(const Options& options, cli::Session& session) {
     return findings;
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

@@ -2,11 +2,11 @@
 #pragma once
 #include "tools/experiments/experiments.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 
 /// Counts how often a tool is pushed through a bone (`--surface`) by each contact scheme, as the published
 /// tables 1 and 2 do, says why, and looks for a puncture in 10 000 approaches with `continuous`. Throws
 /// UsageError without a surface.
 Findings puncture(const Options& options, cli::Session& session);
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

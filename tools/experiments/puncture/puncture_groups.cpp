@@ -7,7 +7,7 @@
 
 #include "tools/experiments/statistics.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -209,4 +209,4 @@ Json add_reasons(std::string& table, const GroupRun& run) {
     return result;
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

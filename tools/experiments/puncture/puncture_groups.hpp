@@ -8,7 +8,7 @@
 
 #include "tools/experiments/puncture/approach_run.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 
 inline constexpr std::size_t puncture_groups = 10, approaches_per_group = 10;
 
@@ -34,4 +34,4 @@ nlohmann::ordered_json add_reasons(std::string& table, const GroupRun& run);
 /// "1.1 … 9.9 %", for tables.
 std::string chance_text(int count, int trials);
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

@@ -12,7 +12,7 @@
 #include "tools/experiments/rigid_case.hpp"
 #include "tools/experiments/stability/wall_stability.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 namespace {
 
 using drawing::Chart;
@@ -241,4 +241,4 @@ Findings passivity(const Options&, cli::Session& session) {
     return findings;
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

@@ -14,7 +14,7 @@
 #include "tools/experiments/soft_ellipsoid.hpp"
 #include "tools/obb/build_obb_tree.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 namespace {
 
 using drawing::Chart;
@@ -46,7 +46,7 @@ double gap_left(const std::array<const DeformableBody*, 2>& rest, const BodyPair
             for (const VertexForce& load : forces[side])
                 body.boundary.surface.vertices[v] +=
                     bodies[side].compliance(static_cast<std::int32_t>(v), load.vertex) * load.force;
-        body.obb_tree = build_obb_tree(body.boundary.surface);
+        body.obb_tree = obb::build_obb_tree(body.boundary.surface);
         return ElasticSurface(body);
     };
     return deepest(find_contacts({deformed(0), deformed(1)}, offset, 0));
@@ -234,4 +234,4 @@ Findings split(const Options&, cli::Session& session) {
     return findings;
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

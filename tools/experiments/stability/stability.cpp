@@ -16,7 +16,7 @@
 #include "runtime/session/touch_target.hpp"
 #include "tools/experiments/force_quality.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 namespace {
 
 using drawing::Chart;
@@ -293,4 +293,4 @@ Findings stability(const Options& options, cli::Session& session) {
     return findings;
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

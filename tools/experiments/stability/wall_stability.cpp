@@ -7,7 +7,7 @@
 #include <limits>
 #include <unsupported/Eigen/MatrixFunctions>
 
-namespace palpate::bench {
+namespace palpate::experiments {
 namespace {
 
 constexpr double wall_tick_s = 1e-3;
@@ -94,4 +94,4 @@ double passivity_limit(const WallLoop& loop) {
     return 2 * loop.model.damping / (wall_tick_s * loop.refresh_ticks);
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

@@ -4,7 +4,7 @@
 
 #include "runtime/devices/dynamic_device.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 
 /// A device in front of a virtual wall whose force is computed every `refresh_ticks` ms and held between.
 struct WallLoop {
@@ -44,4 +44,4 @@ double eigenvalue_limit(const WallLoop& loop);
 /// 2 b / T with the device's own damping, N/mm (Colgate, Schenkel 1997, for a wall without damping).
 double passivity_limit(const WallLoop& loop);
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

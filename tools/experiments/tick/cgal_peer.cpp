@@ -9,7 +9,7 @@
 
 #include "tools/experiments/tick/tick_runs.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 namespace {
 
 using Kernel = CGAL::Simple_cartesian<double>;  // plain double: the fastest there is
@@ -51,4 +51,4 @@ PeerTimes time_cgal(const TriangleMesh& surface, std::span<const Eigen::Vector3d
     return times;
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

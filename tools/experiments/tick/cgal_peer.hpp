@@ -6,7 +6,7 @@
 #include "formats/model/triangle_mesh.hpp"
 #include "runtime/realtime/histogram.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 
 /// What CGAL's AABB tree takes for the two queries that a tick is made of.
 struct PeerTimes {
@@ -18,4 +18,4 @@ struct PeerTimes {
 /// starting from the last answer, and whether each step meets the surface.
 PeerTimes time_cgal(const TriangleMesh& surface, std::span<const Eigen::Vector3d> path);
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

@@ -13,7 +13,7 @@
 #include "tools/experiments/tick/tick_soft.hpp"
 #include "tools/meshing/files/mesh_files.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 namespace {
 
 using drawing::Chart;
@@ -179,7 +179,7 @@ Findings tick(const Options& options, cli::Session& session) {
     LoadRows load;
     if (!options.surface.empty()) {
         session.progress.step("bone", 0);
-        const TriangleMesh bone = read_surface(options.surface);
+        const TriangleMesh bone = meshing::read_surface(options.surface);
         const HandPath path = read_hand_path(options.path);
         const RigidTicks rigid = rigid_ticks(bone, path);
         add_table(findings, fmt::format("Bone of {} triangles", bone.triangles.size()), rigid.rows);
@@ -213,4 +213,4 @@ Findings tick(const Options& options, cli::Session& session) {
     return findings;
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

@@ -2,10 +2,10 @@
 #pragma once
 #include "tools/experiments/experiments.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 
 /// Times HapticModel::tick() by scheme, tool, friction, body and number of contacts, alone and with every
 /// core busy; `--surface` and `--path` add the rigid bone, `--case` assets.
 Findings tick(const Options& options, cli::Session& session);
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

@@ -10,7 +10,7 @@
 #include "tools/experiments/tick/cgal_peer.hpp"
 #include "tools/obb/build_obb_tree.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 namespace {
 
 using Eigen::Vector3d;
@@ -30,7 +30,7 @@ std::vector<Vector3d> positions_of(const HandPath& path) {
 
 void add_queries(RigidTicks& found, const TriangleMesh& bone, const HandPath& path) {
     ObbTree tree;
-    found.tree_s = 1e-9 * static_cast<double>(nanoseconds_of([&] { tree = build_obb_tree(bone); }));
+    found.tree_s = 1e-9 * static_cast<double>(nanoseconds_of([&] { tree = obb::build_obb_tree(bone); }));
     std::optional<CollisionSurface> surface;
     found.surface_s =
         1e-9 * static_cast<double>(nanoseconds_of([&] { surface.emplace(bone, tree, "bone"); }));
@@ -102,4 +102,4 @@ RigidTicks rigid_ticks(const TriangleMesh& bone, const HandPath& path) {
     return found;
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

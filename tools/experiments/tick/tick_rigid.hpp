@@ -5,7 +5,7 @@
 #include "formats/model/body.hpp"
 #include "tools/experiments/tick/tick_runs.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 
 /// Ticks on a bone along a hand path, by scheme, tool and friction; the queries that they are made of, beside
 /// CGAL's on the same path.
@@ -22,4 +22,4 @@ Case bone_case(const TriangleMesh& bone, double tool_radius, bool friction);
 /// The settings of all rows: 0.5 N/mm, and friction 0.3 at rest and 0.2 sliding, or none.
 HapticSettings tick_settings(double tool_radius, bool friction);
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

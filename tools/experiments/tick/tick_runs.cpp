@@ -6,7 +6,7 @@
 
 #include "runtime/haptics/collision_loop.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 namespace {
 
 constexpr std::int64_t period_ns = 1'000'000;
@@ -128,4 +128,4 @@ BusyThreads::BusyThreads(unsigned count) {
         });
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

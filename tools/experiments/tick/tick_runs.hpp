@@ -11,7 +11,7 @@
 #include "runtime/realtime/histogram.hpp"
 #include "runtime/realtime/periodic_clock.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 
 /// How long `work` takes, the clock's own time included, ns.
 template <typename Work>
@@ -81,4 +81,4 @@ struct TickRow {
     double limit_p50 = 0, limit_p999 = 0;  ///< us; 0: none
 };
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

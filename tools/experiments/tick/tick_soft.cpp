@@ -10,7 +10,7 @@
 #include "tools/experiments/soft_ellipsoid.hpp"
 #include "tools/experiments/tick/tick_rigid.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 namespace {
 
 using Eigen::Vector3d;
@@ -131,4 +131,4 @@ TickRow case_ticks(const Case& patient_case) {
                   time_ticks(model, {&path, 1}, Counted::touching), 0, 0);
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

@@ -6,7 +6,7 @@
 #include "tools/cli/command.hpp"
 #include "tools/experiments/tick/tick_runs.hpp"
 
-namespace palpate::bench {
+namespace palpate::experiments {
 
 /// A soft body and a tool of the size that presses on about `contacts` of its nodes.
 struct SoftTouchCase {
@@ -30,4 +30,4 @@ SoftTicks soft_ticks(cli::Session& session);
 /// Ticks that touch the first deformable body of an asset as `palpate touch` does.
 TickRow case_ticks(const Case& patient_case);
 
-}  // namespace palpate::bench
+}  // namespace palpate::experiments

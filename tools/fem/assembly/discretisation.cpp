@@ -5,7 +5,7 @@
 
 #include "tools/fem/assembly/sound_tetrahedra.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 namespace {
 
 using Edge = std::array<std::int32_t, 2>;
@@ -115,4 +115,4 @@ NodeGraph node_graph(const Discretisation& discretisation, std::span<const std::
     return graph;
 }
 
-}  // namespace palpate
+}  // namespace palpate::fem

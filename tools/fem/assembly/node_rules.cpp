@@ -12,7 +12,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 namespace {
 
 std::optional<double> number_of(std::string_view text) {
@@ -278,4 +278,4 @@ std::vector<std::int32_t> contact_surface_of(const DeformableBody& body) {
     return body.contact_nodes;
 }
 
-}  // namespace palpate
+}  // namespace palpate::fem

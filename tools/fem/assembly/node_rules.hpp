@@ -10,7 +10,7 @@
 
 #include "formats/model/body.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 
 /// Surface nodes beyond which lies the label of this name; "background" means no label.
 struct TouchingLabel {
@@ -81,4 +81,4 @@ std::vector<std::int32_t> contact_nodes_of(const TetMesh& mesh, const BoundarySu
 /// surface, or fixed, and if no surface node is free.
 std::vector<std::int32_t> contact_surface_of(const DeformableBody& body);
 
-}  // namespace palpate
+}  // namespace palpate::fem

@@ -5,7 +5,7 @@
 
 #include "tools/fem/assembly/discretisation.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 namespace {
 
 using Parts = std::array<std::array<std::size_t, 4>, 4>;
@@ -71,4 +71,4 @@ TetMesh refine_uniformly(const TetMesh& mesh) {
     return refined;
 }
 
-}  // namespace palpate
+}  // namespace palpate::fem

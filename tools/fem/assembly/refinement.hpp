@@ -2,7 +2,7 @@
 #pragma once
 #include "formats/model/tet_mesh.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 
 /// Halves every edge: each tetrahedron becomes eight of an eighth of its volume, four at its corners and four
 /// around the shortest diagonal of the octahedron that remains. Nodes keep their numbers, and the middle of
@@ -14,4 +14,4 @@ namespace palpate {
 /// Source: Bey 1995 (regular refinement), Zhang 1995 (shortest diagonal).
 TetMesh refine_uniformly(const TetMesh& mesh);
 
-}  // namespace palpate
+}  // namespace palpate::fem

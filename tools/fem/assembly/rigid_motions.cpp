@@ -9,7 +9,7 @@
 #include "formats/model/errors.hpp"
 #include "tools/fem/assembly/rigid_pieces.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 namespace {
 
 using Eigen::Index;
@@ -164,4 +164,4 @@ void require_no_rigid_motion(const TetMesh& mesh, std::span<const std::int32_t> 
     refuse(mesh, linkage, *std::ranges::max_element(moving, {}, anchorage));
 }
 
-}  // namespace palpate
+}  // namespace palpate::fem

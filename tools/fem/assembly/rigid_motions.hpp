@@ -5,7 +5,7 @@
 
 #include "formats/model/tet_mesh.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 
 /// Throws InvalidInput if the mesh, held at `fixed_nodes` (ascending), could still move without strain,
 /// naming what moves (place, size), how (freely, about a point, about a line with its direction) and the
@@ -19,4 +19,4 @@ namespace palpate {
 /// its line. Points within a millionth of a piece's size of a line count as on it. Cost: a sort of the faces.
 void require_no_rigid_motion(const TetMesh& mesh, std::span<const std::int32_t> fixed_nodes);
 
-}  // namespace palpate
+}  // namespace palpate::fem

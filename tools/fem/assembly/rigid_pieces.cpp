@@ -6,7 +6,7 @@
 
 #include "formats/model/disjoint_sets.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 namespace {
 
 using Eigen::Vector3d;
@@ -146,4 +146,4 @@ int span_of(const std::vector<Vector3d>& points, double size) {
     return static_cast<int>((spread_of(points).eigenvalues().array() > negligible).count());
 }
 
-}  // namespace palpate
+}  // namespace palpate::fem

@@ -10,7 +10,7 @@
 
 #include "formats/model/tet_mesh.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 
 /// Tetrahedra of a mesh that have no rigid motion against each other.
 struct RigidPiece {
@@ -57,4 +57,4 @@ Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread_of(const std::vector<Eigen
 /// within a millionth of `size`, mm, counts as none.
 int span_of(const std::vector<Eigen::Vector3d>& points, double size);
 
-}  // namespace palpate
+}  // namespace palpate::fem

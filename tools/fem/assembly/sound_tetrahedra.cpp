@@ -8,7 +8,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 namespace {
 
 const Eigen::Vector3d& corner(const TetMesh& mesh, std::size_t t, std::size_t c) {
@@ -52,4 +52,4 @@ void require_sound_tetrahedra(const TetMesh& mesh) {
         if (!(element_quality(mesh, t) > smallest_element_quality)) throw refusal(mesh, t);
 }
 
-}  // namespace palpate
+}  // namespace palpate::fem

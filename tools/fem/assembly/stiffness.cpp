@@ -10,7 +10,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 namespace {
 
 struct Lame {
@@ -195,4 +195,4 @@ LowerSparse assemble_stiffness(const TetMesh& mesh, std::span<const RegionMateri
     return stiffness;
 }
 
-}  // namespace palpate
+}  // namespace palpate::fem

@@ -9,7 +9,7 @@
 #include "formats/model/body.hpp"
 #include "tools/fem/assembly/discretisation.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 
 /// Sparse symmetric matrix by its lower triangle, 64-bit indices.
 using LowerSparse = Eigen::SparseMatrix<double, Eigen::ColMajor, std::int64_t>;
@@ -37,4 +37,4 @@ LowerSparse assemble_stiffness(const TetMesh& mesh, std::span<const RegionMateri
 std::vector<std::int32_t> number_free_nodes(std::size_t node_count,
                                             std::span<const std::int32_t> fixed_nodes);
 
-}  // namespace palpate
+}  // namespace palpate::fem

@@ -13,7 +13,7 @@
 #include "tools/fem/solvers/free_system.hpp"
 #include "tools/fem/solvers/interior_elimination.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 namespace {
 
 using Eigen::Index;
@@ -250,4 +250,4 @@ Certificate recertify(const DeformableBody& body, std::int32_t columns, std::int
     return certificate;
 }
 
-}  // namespace palpate
+}  // namespace palpate::fem

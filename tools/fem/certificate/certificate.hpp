@@ -6,7 +6,7 @@
 
 #include "formats/model/body.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 
 /// Columns that a certificate re-solves, contact loads that it tries, and the seed that picks both.
 inline constexpr std::int32_t certificate_columns = 16;
@@ -37,4 +37,4 @@ Certificate certify(const DeformableBody& body, const SampledColumns& columns);
 Certificate recertify(const DeformableBody& body, std::int32_t columns, std::int32_t loads,
                       std::uint64_t seed);
 
-}  // namespace palpate
+}  // namespace palpate::fem

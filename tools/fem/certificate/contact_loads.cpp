@@ -6,7 +6,7 @@
 #include <numeric>
 #include <random>
 
-namespace palpate {
+namespace palpate::fem {
 namespace {
 
 // Unit normals of the contact nodes, out of the body, weighted by the areas of their triangles.
@@ -96,4 +96,4 @@ LoadError error_of(const SurfaceCompliance& compliance, const ContactLoad& load,
     return {difference.norm() / exact.norm(), worst / largest};
 }
 
-}  // namespace palpate
+}  // namespace palpate::fem

@@ -5,7 +5,7 @@
 
 #include "formats/model/body.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 
 /// The forces of one contact.
 using ContactLoad = std::vector<NodeForce>;
@@ -29,4 +29,4 @@ struct LoadError {
 LoadError error_of(const SurfaceCompliance& compliance, const ContactLoad& load,
                    const Eigen::VectorXd& exact);
 
-}  // namespace palpate
+}  // namespace palpate::fem

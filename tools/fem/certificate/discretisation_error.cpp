@@ -10,7 +10,7 @@
 #include "tools/fem/certificate/contact_loads.hpp"
 #include "tools/fem/solvers/free_system.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 namespace {
 
 using Eigen::Index;
@@ -104,4 +104,4 @@ double estimate_discretisation_error(const DeformableBody& body) {
     return missing[load_count / 2];
 }
 
-}  // namespace palpate
+}  // namespace palpate::fem

@@ -2,7 +2,7 @@
 #pragma once
 #include "formats/model/body.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 
 /// Estimates how much the elements miss: the median over random contact loads of 1 - W / W', where W is the
 /// work of the load on the body's own elements and W' that on richer ones, which contain them: quadratic
@@ -13,4 +13,4 @@ namespace palpate {
 /// contact nodes, boundary. Cost: a factorisation with about 8 times the unknowns.
 double estimate_discretisation_error(const DeformableBody& body);
 
-}  // namespace palpate
+}  // namespace palpate::fem

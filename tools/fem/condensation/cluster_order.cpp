@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace palpate {
+namespace palpate::fem {
 
 std::int32_t cluster_depth(std::int32_t node_count, std::int32_t largest_leaf) {
     std::int32_t depth = 0;
@@ -35,4 +35,4 @@ std::vector<std::int32_t> cluster_order(std::span<const Eigen::Vector3d> points,
     return order;
 }
 
-}  // namespace palpate
+}  // namespace palpate::fem

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace palpate {
+namespace palpate::fem {
 
 /// Returns how often `node_count` nodes are halved until a cluster has at most `largest_leaf`.
 std::int32_t cluster_depth(std::int32_t node_count, std::int32_t largest_leaf);
@@ -14,4 +14,4 @@ std::int32_t cluster_depth(std::int32_t node_count, std::int32_t largest_leaf);
 /// by number across the longest side of its bounding box. Returns the point at each position. Deterministic.
 std::vector<std::int32_t> cluster_order(std::span<const Eigen::Vector3d> points, std::int32_t depth);
 
-}  // namespace palpate
+}  // namespace palpate::fem

@@ -15,7 +15,7 @@
 #include "tools/fem/condensation/low_rank.hpp"
 #include "tools/fem/solvers/dense_kernels.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 namespace {
 
 using Eigen::Index;
@@ -271,4 +271,4 @@ HierarchicalCompliance compress(std::span<const Eigen::Vector3d> points, const C
     return std::move(compressor).stored(columns[0][0]);
 }
 
-}  // namespace palpate
+}  // namespace palpate::fem

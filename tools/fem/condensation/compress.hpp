@@ -8,7 +8,7 @@
 #include "formats/model/compliance.hpp"
 #include "formats/model/progress.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 
 /// Returns the rows of C that belong to contact nodes, 3|nodes| x 3m, mm/N; called from several threads.
 using ComplianceRows = std::function<Eigen::MatrixXd(std::span<const std::int32_t> contact_nodes)>;
@@ -27,4 +27,4 @@ using ComplianceRows = std::function<Eigen::MatrixXd(std::span<const std::int32_
 HierarchicalCompliance compress(std::span<const Eigen::Vector3d> points, const ComplianceRows& rows,
                                 double accuracy, int threads, const ProgressCallback& progress);
 
-}  // namespace palpate
+}  // namespace palpate::fem

@@ -11,7 +11,7 @@
 #include "tools/fem/solvers/dense_kernels.hpp"
 #include "tools/fem/solvers/free_system.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 namespace {
 
 // Parts of the dense kernels' speed that the methods reach, and the part of a factor that a panel of
@@ -134,4 +134,4 @@ CondensationPlan plan_condensation(const DeformableBody& body, const Condensatio
     return plan;
 }
 
-}  // namespace palpate
+}  // namespace palpate::fem

@@ -7,7 +7,7 @@
 
 #include "formats/model/body.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 
 /// How a compliance may be stored.
 enum class Representation { automatic, dense, hierarchical };
@@ -52,4 +52,4 @@ double available_memory();
 /// "trailing block", "panels of solves", "hierarchical".
 std::string name_of(CondensationMethod method);
 
-}  // namespace palpate
+}  // namespace palpate::fem

@@ -19,7 +19,7 @@
 #include "tools/fem/solvers/free_system.hpp"
 #include "tools/fem/solvers/panel_solver.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 namespace {
 
 using Eigen::Index;
@@ -242,4 +242,4 @@ DeformableBody condensed_body(DeformableBody body, const ProgressCallback& progr
     return condensed_body(std::move(body), plan, progress);
 }
 
-}  // namespace palpate
+}  // namespace palpate::fem

@@ -8,7 +8,7 @@
 #include "formats/model/progress.hpp"
 #include "tools/fem/condensation/condensation_plan.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 
 /// A surface compliance in double precision.
 struct ExactCompliance {
@@ -56,4 +56,4 @@ DeformableBody condensed_body(DeformableBody body, const CondensationPlan& plan,
 /// All of it with the default options.
 DeformableBody condensed_body(DeformableBody body, const ProgressCallback& progress);
 
-}  // namespace palpate
+}  // namespace palpate::fem

@@ -8,7 +8,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 namespace {
 
 using Eigen::Index;
@@ -122,4 +122,4 @@ LowRank joined(const std::array<const LowRank*, 4>& parts, const LowRankToleranc
     return whole;
 }
 
-}  // namespace palpate
+}  // namespace palpate::fem

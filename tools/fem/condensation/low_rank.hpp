@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-namespace palpate {
+namespace palpate::fem {
 
 /// A matrix U Vᵀ of rank at most U's columns.
 struct LowRank {
@@ -29,4 +29,4 @@ std::optional<LowRank> truncated(Eigen::MatrixXd matrix, const LowRankTolerance&
 /// smallest of them dropped while rows and columns allow.
 LowRank joined(const std::array<const LowRank*, 4>& parts, const LowRankTolerance& tolerance);
 
-}  // namespace palpate
+}  // namespace palpate::fem

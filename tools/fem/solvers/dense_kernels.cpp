@@ -14,7 +14,7 @@
 #include <unistd.h>
 #include <vector>
 
-namespace palpate {
+namespace palpate::fem {
 
 void restart_with_fitting_kernels(char** argv) {
 #if defined(__x86_64__)
@@ -78,4 +78,4 @@ void for_each_index(std::size_t count, int threads, const std::function<void(std
     if (failure) std::rethrow_exception(failure);
 }
 
-}  // namespace palpate
+}  // namespace palpate::fem

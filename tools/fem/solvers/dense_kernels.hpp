@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <functional>
 
-namespace palpate {
+namespace palpate::fem {
 
 /// Starts the program again with OpenBLAS's kernels for this processor, if OpenBLAS did not find them itself.
 /// OpenBLAS up to 0.3.24 takes an Intel processor that is newer than itself for a Prescott of 2004 (its issue
@@ -22,4 +22,4 @@ double dense_flops_per_second();
 /// kernels run in the thread that calls them. The first exception stops the rest and is thrown again.
 void for_each_index(std::size_t count, int threads, const std::function<void(std::size_t)>& job);
 
-}  // namespace palpate
+}  // namespace palpate::fem

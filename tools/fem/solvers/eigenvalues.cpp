@@ -6,7 +6,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 namespace {
 
 struct Map {
@@ -37,4 +37,4 @@ double largest_eigenvalue(Eigen::Index size, const std::function<void(Eigen::Vec
     return solver.eigenvalues()[0];
 }
 
-}  // namespace palpate
+}  // namespace palpate::fem

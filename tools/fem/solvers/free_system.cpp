@@ -8,7 +8,7 @@
 #include "tools/fem/assembly/discretisation.hpp"
 #include "tools/fem/solvers/ordering.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 namespace {
 
 std::string name_of(const DeformableBody& body, const FreeSystem& system, std::int64_t row) {
@@ -52,4 +52,4 @@ SparseCholesky factorise(const DeformableBody& body, const FreeSystem& system, E
     }
 }
 
-}  // namespace palpate
+}  // namespace palpate::fem

@@ -7,7 +7,7 @@
 #include "tools/fem/assembly/stiffness.hpp"
 #include "tools/fem/solvers/sparse_cholesky.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 
 /// The order of a body's free nodes in its stiffness matrix.
 enum class NodeOrder {
@@ -29,4 +29,4 @@ FreeSystem assemble_free_system(const DeformableBody& body, NodeOrder order);
 /// Factorises the system's stiffness; throws InvalidInput naming the node where it is not positive definite.
 SparseCholesky factorise(const DeformableBody& body, const FreeSystem& system, Elimination elimination);
 
-}  // namespace palpate
+}  // namespace palpate::fem

@@ -3,7 +3,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 namespace {
 
 using Eigen::Index;
@@ -58,4 +58,4 @@ VectorXd InteriorElimination::surface_forces(const VectorXd& displacements) cons
     return result;
 }
 
-}  // namespace palpate
+}  // namespace palpate::fem

@@ -5,7 +5,7 @@
 
 #include "tools/fem/solvers/free_system.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 
 /// The condensed stiffness S = K_ss - K_si K_ii^-1 K_is of the contact nodes (Bro-Nielsen 1998), as a map:
 /// the inverse of C.
@@ -23,4 +23,4 @@ class InteriorElimination {
     std::optional<SparseCholesky> interior_;  // none if there is no free interior node
 };
 
-}  // namespace palpate
+}  // namespace palpate::fem

@@ -8,7 +8,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 namespace {
 
 struct MetisGraph {
@@ -110,4 +110,4 @@ std::vector<std::int32_t> surface_last_ordering(const Discretisation& discretisa
     return number;
 }
 
-}  // namespace palpate
+}  // namespace palpate::fem

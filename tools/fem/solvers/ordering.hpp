@@ -6,7 +6,7 @@
 
 #include "tools/fem/assembly/discretisation.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 
 /// Orders free nodes for condensation: interior nodes by METIS nested dissection of the interior's own graph
 /// and a postorder of its elimination tree, contact nodes last in the given order. Middle nodes of edges
@@ -16,4 +16,4 @@ namespace palpate {
 std::vector<std::int32_t> surface_last_ordering(const Discretisation& discretisation,
                                                 std::span<const std::int32_t> contact_nodes);
 
-}  // namespace palpate
+}  // namespace palpate::fem

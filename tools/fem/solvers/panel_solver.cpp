@@ -5,7 +5,7 @@
 #include <cblas.h>
 #include <utility>
 
-namespace palpate {
+namespace palpate::fem {
 
 PanelSolver::PanelSolver(const SparseCholesky& factor, std::span<const std::int64_t> wanted)
     : factor_(factor.supernodes()),
@@ -98,4 +98,4 @@ Eigen::MatrixXd PanelSolver::solve(std::span<const PanelLoad> entries, Eigen::In
     return result;
 }
 
-}  // namespace palpate
+}  // namespace palpate::fem

@@ -7,7 +7,7 @@
 
 #include "tools/fem/solvers/sparse_cholesky.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 
 /// An entry of a load: a force on one row of K.
 struct PanelLoad {
@@ -38,4 +38,4 @@ class PanelSolver {
     std::vector<char> needed_;                // supernodes that a wanted row is in or below
 };
 
-}  // namespace palpate
+}  // namespace palpate::fem

@@ -8,7 +8,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 
 struct SparseCholesky::Impl {
     cholmod_common common{};
@@ -125,4 +125,4 @@ SparseCholesky::Block SparseCholesky::trailing_block(Eigen::Index size) {
     return {values + skipped * height + skipped, size, size, Eigen::OuterStride<>(height)};
 }
 
-}  // namespace palpate
+}  // namespace palpate::fem

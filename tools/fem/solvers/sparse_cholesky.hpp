@@ -7,7 +7,7 @@
 
 #include "tools/fem/assembly/stiffness.hpp"
 
-namespace palpate {
+namespace palpate::fem {
 
 /// Who chooses the elimination order of a factorisation.
 enum class Elimination {
@@ -70,4 +70,4 @@ class SparseCholesky {
     std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace palpate
+}  // namespace palpate::fem

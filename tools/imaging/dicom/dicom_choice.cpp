@@ -8,7 +8,7 @@
 #include "formats/model/errors.hpp"
 #include "tools/imaging/dicom/dicom_series.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 std::string listed(const std::vector<DicomSeries>& all, bool descriptions) {
@@ -78,4 +78,4 @@ const DicomSeries& choose_series(const std::vector<DicomSeries>& all, const Read
     return *largest;
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -3,7 +3,7 @@
 
 #include <set>
 
-namespace palpate {
+namespace palpate::imaging {
 
 std::string modality_code(const std::string& text) {
     static const std::set<std::string> codes{
@@ -30,4 +30,4 @@ std::string photometric_code(const std::string& text) {
     return codes.contains(text) ? text : "other";
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

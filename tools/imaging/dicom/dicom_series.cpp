@@ -17,7 +17,7 @@
 #include "tools/imaging/dicom/dicom_codes.hpp"
 #include "tools/imaging/files/read_image.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 using gdcm::DataSet;
@@ -247,4 +247,4 @@ std::vector<SeriesSummary> list_series(const std::filesystem::path& path, const 
     return list;
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

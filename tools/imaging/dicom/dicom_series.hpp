@@ -8,7 +8,7 @@
 
 #include "tools/imaging/files/image_files.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 
 /// One slice: a file, or a frame of a file with several.
 struct DicomSlice {
@@ -40,4 +40,4 @@ void number_series(std::vector<DicomSeries>& all);
 const DicomSeries& choose_series(const std::vector<DicomSeries>& all, const ReadOptions& options,
                                  const std::filesystem::path& path, const NoteSink& note);
 
-}  // namespace palpate
+}  // namespace palpate::imaging

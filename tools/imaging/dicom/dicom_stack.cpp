@@ -9,7 +9,7 @@
 #include "formats/model/errors.hpp"
 #include "tools/imaging/files/read_image.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 constexpr double same_place = 1e-3;  // mm
@@ -188,4 +188,4 @@ Volume resample_stack(const Volume& volume, std::span<const SlicePlace> places,
     return result;
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -7,7 +7,7 @@
 
 #include "tools/imaging/files/image_files.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 
 /// Where a slice lies, and what to call it.
 struct SlicePlace {
@@ -34,4 +34,4 @@ StackFault find_stack_fault(std::span<const SlicePlace> places, const Eigen::Vec
 Volume resample_stack(const Volume& volume, std::span<const SlicePlace> places,
                       const std::filesystem::path& path, const NoteSink& note);
 
-}  // namespace palpate
+}  // namespace palpate::imaging

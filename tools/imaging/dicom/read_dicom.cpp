@@ -9,7 +9,7 @@
 #include "tools/imaging/dicom/dicom_stack.hpp"
 #include "tools/imaging/files/read_image.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 std::string name_of(const DicomSlice& slice) {
@@ -155,4 +155,4 @@ Volume read_dicom(const std::filesystem::path& path, const NoteSink& note, const
     return fault.found.empty() ? volume : resample_stack(volume, places, path, note);
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

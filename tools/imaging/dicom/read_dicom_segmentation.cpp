@@ -20,7 +20,7 @@
 #include "tools/imaging/files/read_image.hpp"
 #include "tools/imaging/files/segment_painter.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 struct Frame {
@@ -224,4 +224,4 @@ LabelMap read_dicom_segmentation(const std::filesystem::path& path, const NoteSi
     return painter.finish(path, note);
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -9,7 +9,7 @@
 #include "formats/model/image_grid.hpp"
 #include "formats/model/label_map.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 
 /// Receives what a reader repaired or assumed, one sentence at a time, without text of the input's header or
 /// path; may be empty.
@@ -93,4 +93,4 @@ void write_label_map(const std::filesystem::path& path, const LabelMap& map);
 /// Limits the threads that imaging functions use; results do not depend on it.
 void set_imaging_threads(int count);
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -7,7 +7,7 @@
 
 #include "formats/model/image_grid.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 
 template <typename Voxel>
 using ItkImage = itk::Image<Voxel, 3>;
@@ -40,4 +40,4 @@ std::span<const Voxel> voxels_of(const ItkImage<Voxel>& image) {
 /// The reason in an ITK exception, without class names and addresses, on one line.
 std::string reason_of(const itk::ExceptionObject& error);
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -13,7 +13,7 @@
 #include "tools/imaging/files/read_image.hpp"
 #include "tools/imaging/files/segment_painter.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 // A segment of an NRRD header: the voxels of one value in one layer.
@@ -157,4 +157,4 @@ LabelMap read_label_map(const std::filesystem::path& path, const NoteSink& note,
     return map;
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -10,7 +10,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 void name_by_table(LabelMap& map, const LabelTable& table, const std::string& source, const NoteSink& note) {
@@ -99,4 +99,4 @@ void make_names_unique(LabelMap& map, const NoteSink& note) {
     if (note && repeated > 0) note(fmt::format("{} labels repeat a name; numbered _2, _3 ...", repeated));
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

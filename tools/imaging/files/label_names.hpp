@@ -8,7 +8,7 @@
 #include "formats/model/label_map.hpp"
 #include "tools/imaging/files/image_files.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 
 /// What values mean; colours are default_label_colour() where a source names none.
 using LabelTable = std::map<std::int32_t, Label>;
@@ -44,4 +44,4 @@ void name_labels(LabelMap& map, const std::string& source, const NoteSink& note 
 /// Appends _2, _3 ... to names that occurred before, with a note.
 void make_names_unique(LabelMap& map, const NoteSink& note);
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -16,7 +16,7 @@
 #include "tools/imaging/files/totalsegmentator_labels.hpp"
 #include "tools/imaging/files/trimmed.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 using Colour = std::optional<std::array<float, 3>>;
@@ -216,4 +216,4 @@ LabelTable totalsegmentator_table(std::string_view task) {
                         "version/task, as v2/total", "nearest: " + near});
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

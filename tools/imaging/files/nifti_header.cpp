@@ -11,7 +11,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 static_assert(std::endian::native == std::endian::little);
@@ -176,4 +176,4 @@ Affine nifti_affine(const NiftiHeader& header, const std::filesystem::path& path
     return affine;
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

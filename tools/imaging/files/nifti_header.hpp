@@ -10,7 +10,7 @@
 
 #include "tools/imaging/files/image_files.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 
 /// A file, unpacked on the fly if it is gzip.
 class NiftiStream {
@@ -53,4 +53,4 @@ NiftiHeader read_nifti_header(NiftiStream& stream, const std::filesystem::path& 
 Eigen::Matrix<double, 3, 4> nifti_affine(const NiftiHeader& header, const std::filesystem::path& path,
                                          const NoteSink& note, const std::string& frame);
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -12,7 +12,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 // Directions nearer to orthonormal than this differ by header round-off only.
@@ -199,4 +199,4 @@ void set_imaging_threads(int count) {
     itk::MultiThreaderBase::SetGlobalDefaultNumberOfThreads(static_cast<itk::ThreadIdType>(count));
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -11,7 +11,7 @@
 #include "formats/model/errors.hpp"
 #include "tools/imaging/files/image_files.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 
 /// Voxels in the type that a file stores.
 using StoredVoxels =
@@ -79,4 +79,4 @@ void set_axes(ImageGrid& grid, const Eigen::Matrix3d& axes);
 /// Throws InvalidInput naming the first voxel that is NaN or infinite.
 void check_finite(const Volume& volume, const std::filesystem::path& path);
 
-}  // namespace palpate
+}  // namespace palpate::imaging

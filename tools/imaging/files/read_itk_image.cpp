@@ -20,7 +20,7 @@
 #include "tools/imaging/files/read_image.hpp"
 #include "tools/imaging/files/trimmed.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 itk::ImageIOBase::Pointer image_io_of(const std::filesystem::path& path) {
@@ -327,4 +327,4 @@ StoredImage read_itk_image(const std::filesystem::path& path, const NoteSink& no
     }
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -11,7 +11,7 @@
 #include "tools/imaging/files/nifti_header.hpp"
 #include "tools/imaging/files/read_image.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 constexpr std::size_t largest_header = std::size_t{1} << 26;
@@ -131,4 +131,4 @@ StoredImage read_nifti(const std::filesystem::path& path, const NoteSink& note, 
     return image;
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -24,7 +24,7 @@
 #include "formats/model/errors.hpp"
 #include "tools/imaging/files/read_image.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 // VTK's readers print what is wrong with a file and carry on; this remembers that they did.
@@ -168,4 +168,4 @@ StoredImage read_vtk_image(const std::filesystem::path& path, const NoteSink& no
     return image;
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -8,7 +8,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 
 SegmentPainter::SegmentPainter(const ImageGrid& grid, std::vector<Label> segments,
                                std::span<const std::size_t> voxels, Overlaps rule)
@@ -82,4 +82,4 @@ LabelMap SegmentPainter::finish(const std::filesystem::path& path, const NoteSin
     return map;
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

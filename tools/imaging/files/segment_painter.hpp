@@ -6,7 +6,7 @@
 
 #include "tools/imaging/files/image_files.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 
 /// Paints segments that may overlap into one map, voxel by voxel, in any order.
 class SegmentPainter {
@@ -37,4 +37,4 @@ class SegmentPainter {
     std::vector<std::uint32_t> claimants_;                    // the set of each voxel
 };
 
-}  // namespace palpate
+}  // namespace palpate::imaging

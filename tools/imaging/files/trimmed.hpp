@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace palpate {
+namespace palpate::imaging {
 
 /// `text` without the blanks and line ends around it.
 inline std::string trimmed(std::string_view text) {
@@ -13,4 +13,4 @@ inline std::string trimmed(std::string_view text) {
     return std::string(text.substr(first, text.find_last_not_of(blanks) + 1 - first));
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

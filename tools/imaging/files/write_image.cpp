@@ -13,7 +13,7 @@
 #include "tools/imaging/files/image_files.hpp"
 #include "tools/imaging/files/itk_image.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 // A gzip stream ends in its uncompressed size modulo 2^32, little-endian (RFC 1952 §2.3.1). Teem's writer
@@ -101,4 +101,4 @@ void write_label_map(const std::filesystem::path& path, const LabelMap& map) {
     write_nrrd<std::uint8_t>(path, map.grid, labels, header);
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

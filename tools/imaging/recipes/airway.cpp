@@ -7,7 +7,7 @@
 #include "tools/imaging/recipes/job.hpp"
 #include "tools/imaging/voxels/seed_statistics.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 constexpr double air_seed_reach = 2;  // mm: a seed may miss narrow air by a voxel or two
@@ -86,4 +86,4 @@ Recipe airway_recipe() {
             .make = make_airway};
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

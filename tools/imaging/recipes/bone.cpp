@@ -7,7 +7,7 @@
 #include "tools/imaging/voxels/hounsfield.hpp"
 #include "tools/imaging/voxels/seed_statistics.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 constexpr double tissue_above_hu = -300;
@@ -56,4 +56,4 @@ Recipe bone_recipe() {
             .make = make_bone};
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -2,7 +2,7 @@
 #include "tools/imaging/recipes/job.hpp"
 #include "tools/imaging/recipes/recipe_list.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 
 Recipe brain_recipe() {
     Recipe recipe = import_recipe();
@@ -12,4 +12,4 @@ Recipe brain_recipe() {
     return recipe;
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -4,7 +4,7 @@
 
 #include "tools/imaging/recipes/job.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 using Kind = RecipeParameter::Kind;
@@ -67,4 +67,4 @@ Mask cleaned(Mask mask, const Job& job) {
     return mask;
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -8,7 +8,7 @@
 #include "formats/model/errors.hpp"
 #include "tools/imaging/recipes/job.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 constexpr std::size_t all_strokes = 20'000;
@@ -61,4 +61,4 @@ Recipe grow_from_seeds_recipe() {
             .make = make_grown};
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

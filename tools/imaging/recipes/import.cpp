@@ -6,7 +6,7 @@
 #include "tools/imaging/files/image_files.hpp"
 #include "tools/imaging/recipes/job.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 // The mask as seen from another grid: each voxel centre takes the value of the nearest voxel.
@@ -66,4 +66,4 @@ Recipe import_recipe() {
             .colour = imported_colour};
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

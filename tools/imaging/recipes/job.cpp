@@ -7,7 +7,7 @@
 #include "formats/model/errors.hpp"
 #include "tools/imaging/files/image_files.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 using Kind = RecipeParameter::Kind;
@@ -105,4 +105,4 @@ std::vector<Eigen::Vector3d> seed_points(const Job& job) {
     return points;
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

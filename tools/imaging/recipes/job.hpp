@@ -14,7 +14,7 @@
 #include "tools/imaging/voxels/mask.hpp"
 #include "tools/imaging/voxels/seeds.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 
 constexpr double cubic_mm_per_ml = 1000;
 
@@ -68,4 +68,4 @@ std::vector<Eigen::Vector3d> seed_points(const Job& job);
 /// first, then as written.
 Mask cleaned(Mask mask, const Job& job);
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -5,7 +5,7 @@
 #include "tools/imaging/recipes/job.hpp"
 #include "tools/imaging/voxels/organ.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 Mask make_liver(const Job& job) {
@@ -50,4 +50,4 @@ Recipe liver_recipe() {
         .make = make_liver};
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -5,7 +5,7 @@
 #include "tools/imaging/recipes/job.hpp"
 #include "tools/imaging/voxels/hounsfield.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 // The pieces of a mask that touch `other` by a face.
@@ -64,4 +64,4 @@ Recipe nasopharynx_recipe() {
         .make = make_nasopharynx};
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

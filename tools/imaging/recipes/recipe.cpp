@@ -5,7 +5,7 @@
 
 #include "tools/imaging/recipes/recipe_list.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 
 std::string range_text(RecipeParameter::Range range) {
     switch (range) {
@@ -43,4 +43,4 @@ bool is_file_parameter(const std::string& name) {
     });
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

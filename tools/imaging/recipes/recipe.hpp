@@ -8,7 +8,7 @@
 
 #include "tools/imaging/voxels/mask.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 
 /// A parameter of a recipe, as people write it.
 struct RecipeParameter {
@@ -61,4 +61,4 @@ bool is_file_parameter(const std::string& name);
 /// is written.
 RecipeParameters cleaning_parameters();
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -10,7 +10,7 @@
 #include "formats/model/errors.hpp"
 #include "tools/imaging/files/read_image.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 using Kind = RecipeParameter::Kind;
@@ -214,4 +214,4 @@ std::vector<Eigen::Vector3d> Parameters::points(const std::string& name) const {
     return points;
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -9,7 +9,7 @@
 #include "tools/imaging/recipes/recipe.hpp"
 #include "tools/imaging/recipes/segmentation.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 
 /// A structure's parameters, checked on construction as check_recipe() does; absent ones take their default.
 class Parameters {
@@ -32,4 +32,4 @@ class Parameters {
     std::map<std::string, RecipeValue> values_;
 };
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -10,7 +10,7 @@
 #include "tools/imaging/recipes/job.hpp"
 #include "tools/imaging/voxels/hounsfield.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 void check_names(std::span<const StructureRecipe> structures) {
@@ -98,4 +98,4 @@ LabelMap segment(const Volume* volume, const LabelMap* prior, std::span<const St
     return map;
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

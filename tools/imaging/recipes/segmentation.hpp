@@ -13,7 +13,7 @@
 #include "formats/model/progress.hpp"
 #include "tools/imaging/files/image_files.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 
 /// A parameter as people write it: a number, numbers (a point x, y, z or several, flattened), a text, a flag.
 using RecipeValue = std::variant<double, std::vector<double>, std::string, bool>;
@@ -47,4 +47,4 @@ void check_recipe(const StructureRecipe& structure);
 LabelMap segment(const Volume* volume, const LabelMap* prior, std::span<const StructureRecipe> structures,
                  const ProgressCallback& progress = {}, const NoteSink& note = {});
 
-}  // namespace palpate
+}  // namespace palpate::imaging

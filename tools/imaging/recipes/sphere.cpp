@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/imaging/recipes/job.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 Mask make_sphere(const Job& job) {
@@ -23,4 +23,4 @@ Recipe sphere_recipe() {
             .make = make_sphere};
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

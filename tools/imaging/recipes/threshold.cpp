@@ -2,7 +2,7 @@
 #include "tools/imaging/recipes/job.hpp"
 #include "tools/imaging/voxels/hounsfield.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 Mask make_threshold(const Job& job) {
@@ -25,4 +25,4 @@ Recipe threshold_recipe() {
             .make = make_threshold};
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -10,7 +10,7 @@
 #include "tools/imaging/voxels/necks.hpp"
 #include "tools/imaging/voxels/seed_statistics.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 constexpr double least_contrast = 1.5;  // standard deviations
@@ -78,4 +78,4 @@ Recipe tumour_recipe() {
             .make = make_tumour};
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -10,7 +10,7 @@
 #include "tools/imaging/voxels/filters.hpp"
 #include "tools/imaging/voxels/seed_statistics.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 constexpr double noise_mm = 1;  // deviation of the Gaussian that smooths it
@@ -88,4 +88,4 @@ Recipe vessels_recipe() {
             .make = make_vessels};
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

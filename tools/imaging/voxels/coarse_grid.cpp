@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 ImageGrid cropped_grid(const ImageGrid& grid, const Box& box) {
@@ -140,4 +140,4 @@ Mask refine(const Mask& blocks, const std::array<std::int32_t, 3>& low,
     return result;
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -8,7 +8,7 @@
 #include "formats/model/image_grid.hpp"
 #include "tools/imaging/voxels/mask.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 
 /// Calls visit(i, j, k, offset) for every voxel, in memory's order.
 template <typename Visit>
@@ -45,4 +45,4 @@ Mask crop(const Mask& mask, const Box& box);
 Mask refine(const Mask& blocks, const std::array<std::int32_t, 3>& low,
             const std::array<std::int32_t, 3>& block, const ImageGrid& grid);
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -9,7 +9,7 @@
 #include "tools/imaging/files/itk_image.hpp"
 #include "tools/imaging/voxels/coarse_grid.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 constexpr std::size_t lines_together = 64;  // so that what is worked on stays in the cache
@@ -94,4 +94,4 @@ Volume curvature_flow(const Volume& volume, int iterations) {
     return {volume.grid, {values.begin(), values.end()}};
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -5,7 +5,7 @@
 
 #include "formats/model/image_grid.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 
 /// Weighted mean of the neighbourhood with Gaussian weights of deviation `sigma` (mm), cut off at 3 sigma and
 /// normalised over the voxels that exist. Cost: voxels times 18 sigma / spacing.
@@ -17,4 +17,4 @@ Volume gradient_length(const Volume& volume, double sigma);
 /// Smooths along level sets, so that noise goes and edges stay (curvature flow, Sethian, 1999).
 Volume curvature_flow(const Volume& volume, int iterations);
 
-}  // namespace palpate
+}  // namespace palpate::imaging

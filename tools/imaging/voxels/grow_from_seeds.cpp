@@ -9,7 +9,7 @@
 #include "tools/imaging/voxels/coarse_grid.hpp"
 #include "tools/imaging/voxels/seed_statistics.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 constexpr double statistics_radius = 4;    // mm
@@ -169,4 +169,4 @@ GrowParameters preview_parameters(const ImageGrid& grid) {
     return parameters;
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

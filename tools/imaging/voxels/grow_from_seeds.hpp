@@ -8,7 +8,7 @@
 #include "formats/model/label_map.hpp"
 #include "tools/imaging/voxels/seeds.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 
 struct GrowParameters {
     double tolerance =
@@ -36,4 +36,4 @@ LabelMap grow_from_seeds(const Volume& volume, std::span<const Seed> seeds,
 /// Makes grow_from_seeds() answer within a second for a volume on this grid: at most 400 000 blocks.
 GrowParameters preview_parameters(const ImageGrid& grid);
 
-}  // namespace palpate
+}  // namespace palpate::imaging

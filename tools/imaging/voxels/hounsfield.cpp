@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 // The value from 1 to 200 about which most values lie within 10; 0 if they are less than a hundredth of all.
@@ -50,4 +50,4 @@ double hounsfield_offset(const Volume& volume) {
     return soft_tissue * 20 > volume.values.size() && soft_tissue > 3 * between ? offset : 0;
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -2,7 +2,7 @@
 #pragma once
 #include "tools/imaging/voxels/mask.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 
 /// Voxels of lower ... upper HU, both included.
 Mask threshold(const Volume& volume, double lower_hu, double upper_hu);
@@ -13,4 +13,4 @@ Mask threshold(const Volume& volume, double lower_hu, double upper_hu);
 /// tens of HU off.
 double hounsfield_offset(const Volume& volume);
 
-}  // namespace palpate
+}  // namespace palpate::imaging

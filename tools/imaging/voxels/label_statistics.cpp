@@ -5,7 +5,7 @@
 
 #include "tools/imaging/voxels/mask.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 
 std::vector<LabelStatistics> label_statistics(const LabelMap& map) {
     std::vector<LabelStatistics> all;
@@ -32,4 +32,4 @@ std::vector<LabelStatistics> label_statistics(const LabelMap& map) {
     return all;
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

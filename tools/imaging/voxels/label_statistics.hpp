@@ -5,7 +5,7 @@
 
 #include "formats/model/label_map.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 
 /// What a label map holds of one label.
 struct LabelStatistics {
@@ -20,4 +20,4 @@ struct LabelStatistics {
 /// One entry per name of the map, in its order.
 std::vector<LabelStatistics> label_statistics(const LabelMap& map);
 
-}  // namespace palpate
+}  // namespace palpate::imaging

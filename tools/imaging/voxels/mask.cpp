@@ -12,7 +12,7 @@
 #include "tools/imaging/files/itk_image.hpp"
 #include "tools/imaging/voxels/filters.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 using MaskImage = ItkImage<std::uint8_t>;
@@ -201,4 +201,4 @@ Mask clip(const Mask& mask, const Region& region) {
     return result;
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -8,7 +8,7 @@
 #include "formats/model/image_grid.hpp"
 #include "formats/model/label_map.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 
 /// A set of voxels. Radii and distances are Euclidean, in mm, between voxel centres, whatever the spacing;
 /// what lies beyond the grid's border counts as unknown, neither inside nor outside.
@@ -89,4 +89,4 @@ Mask intersect(const Mask& a, const Mask& b);
 Mask subtract(const Mask& a, const Mask& b);
 Mask clip(const Mask& mask, const Region& region);
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -5,7 +5,7 @@
 #include <array>
 #include <numeric>
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 // Bodies that meet, as a forest; a body's radius is the largest depth in it.
@@ -84,4 +84,4 @@ Mask cut_at_necks(const Mask& mask, std::span<const float> depth, std::span<cons
     return result;
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

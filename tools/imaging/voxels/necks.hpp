@@ -5,7 +5,7 @@
 
 #include "tools/imaging/voxels/mask.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 
 /// The part of a mask that belongs to the given voxels (offsets inside the mask) when the mask is cut at its
 /// necks. A watershed of the distance from the mask's border divides it into bodies; two bodies stay one if
@@ -16,4 +16,4 @@ namespace palpate {
 Mask cut_at_necks(const Mask& mask, std::span<const float> depth, std::span<const std::size_t> inside,
                   double neck_ratio);
 
-}  // namespace palpate
+}  // namespace palpate::imaging

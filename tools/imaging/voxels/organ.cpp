@@ -12,7 +12,7 @@
 #include "tools/imaging/voxels/organ_seeds.hpp"
 #include "tools/imaging/voxels/seed_statistics.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 using Points = std::span<const Eigen::Vector3d>;
@@ -246,4 +246,4 @@ Mask organ(const Volume& volume, Points seeds, const OrganParameters& parameters
     return refine(found, box.low, block, volume.grid);
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -7,7 +7,7 @@
 
 #include "tools/imaging/voxels/mask.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 
 struct OrganParameters {
     double tolerance_hu;        ///< grey values may be so far off the organ's local mean
@@ -33,4 +33,4 @@ struct OrganParameters {
 Mask organ(const Volume& volume, std::span<const Eigen::Vector3d> seeds, const OrganParameters& parameters,
            const std::string& culprit, const std::function<void(std::string_view)>& note = {});
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -8,7 +8,7 @@
 #include "formats/model/errors.hpp"
 #include "tools/imaging/voxels/seed_statistics.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 
 OrganSeeds look_at_seeds(const Volume& volume, std::span<const Eigen::Vector3d> points,
                          const OrganParameters& p, const std::string& culprit,
@@ -58,4 +58,4 @@ double expected_at(const OrganSeeds& seeds, const Eigen::Vector3d& p_P) {
     return sum / weights;
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

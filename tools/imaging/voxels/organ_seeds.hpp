@@ -9,7 +9,7 @@
 
 #include "tools/imaging/voxels/organ.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 
 constexpr double seed_radius_mm = 6;  ///< what is looked at around a seed
 
@@ -28,4 +28,4 @@ OrganSeeds look_at_seeds(const Volume& volume, std::span<const Eigen::Vector3d> 
 /// Mean of the seeds' grey values, weighted by the inverse of their squared distance to p_P.
 double expected_at(const OrganSeeds& seeds, const Eigen::Vector3d& p_P);
 
-}  // namespace palpate
+}  // namespace palpate::imaging

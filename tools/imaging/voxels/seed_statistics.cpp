@@ -9,7 +9,7 @@
 #include "formats/model/errors.hpp"
 #include "tools/imaging/voxels/mask.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 double median(std::vector<float>& values) {
@@ -84,4 +84,4 @@ std::string point_text(const Eigen::Vector3d& p_P) {
     return fmt::format("({}, {}, {}) mm", rounded(p_P[0]), rounded(p_P[1]), rounded(p_P[2]));
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -9,7 +9,7 @@
 #include "formats/model/image_grid.hpp"
 #include "tools/imaging/voxels/mask.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 
 /// Middle and spread of grey values, insensitive to outliers.
 struct GreyStatistics {
@@ -39,4 +39,4 @@ std::vector<std::size_t> voxels_at(const Mask& mask, std::span<const Eigen::Vect
 /// "(12, -3.5, 40) mm".
 std::string point_text(const Eigen::Vector3d& p_P);
 
-}  // namespace palpate
+}  // namespace palpate::imaging

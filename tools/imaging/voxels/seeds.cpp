@@ -12,7 +12,7 @@
 #include "formats/model/errors.hpp"
 #include "tools/imaging/files/trimmed.hpp"
 
-namespace palpate {
+namespace palpate::imaging {
 namespace {
 
 using nlohmann::json;
@@ -192,4 +192,4 @@ std::vector<Seed> seeds_of(std::span<const Seed> seeds, const std::string& name,
     return found;
 }
 
-}  // namespace palpate
+}  // namespace palpate::imaging

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace palpate {
+namespace palpate::imaging {
 
 /// A point that a person placed in a structure.
 struct Seed {
@@ -33,4 +33,4 @@ void write_seeds(const std::filesystem::path& path, std::span<const Seed> seeds)
 /// Throws InvalidInput naming `culprit` and the labels there are if neither holds.
 std::vector<Seed> seeds_of(std::span<const Seed> seeds, const std::string& name, const std::string& culprit);
 
-}  // namespace palpate
+}  // namespace palpate::imaging

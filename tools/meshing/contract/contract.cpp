@@ -7,7 +7,7 @@
 
 #include "tools/meshing/files/text.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 double longest_edge(const TetMesh& mesh, std::int32_t t) {
@@ -174,4 +174,4 @@ std::vector<ContractCheck> misses(std::span<const ContractCheck> checks) {
     return result;
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -9,7 +9,7 @@
 #include "tools/meshing/contract/fidelity.hpp"
 #include "tools/meshing/measures/quality.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 
 /// One limit of the contract against what was measured; if it is not met, what should be finer: the
 /// surroundings of places, else the surface of a region.
@@ -67,4 +67,4 @@ std::vector<ContractCheck> check_fidelity(const QualityContract& contract, const
 /// Those that are not met.
 std::vector<ContractCheck> misses(std::span<const ContractCheck> checks);
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -4,7 +4,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-namespace palpate {
+namespace palpate::meshing {
 
 nlohmann::ordered_json to_json(const ContractCheck& check) {
     nlohmann::ordered_json json{{"name", check.name}, {"measure", check.measure}};
@@ -40,4 +40,4 @@ std::optional<ContractCheck> contract_check_from(const nlohmann::ordered_json& j
     return std::nullopt;
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

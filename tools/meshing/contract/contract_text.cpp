@@ -4,7 +4,7 @@
 #include "tools/meshing/contract/contract.hpp"
 #include "tools/meshing/files/text.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 bool is_count(const ContractCheck& check) {
@@ -34,4 +34,4 @@ std::string limit_text(const ContractCheck& check) {
     return bound + fmt::format("{:.3g} {}", check.limit, check.unit);
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

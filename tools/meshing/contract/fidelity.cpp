@@ -9,7 +9,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 void paint(const Eigen::Matrix<double, 3, 4>& corners, std::int32_t region, const ImageGrid& grid,
@@ -117,4 +117,4 @@ BodyFidelity compare(const TetMesh& mesh, const RegionLabels& labels, std::span<
     return result;
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -9,7 +9,7 @@
 #include "tools/meshing/labels/region_labels.hpp"
 #include "tools/meshing/labels/smoothed_labels.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 
 /// Paints a mesh onto a grid: the region of the tetrahedron that holds each voxel's centre, 0 where none
 /// does. Cost: O(voxels of the tetrahedra's index boxes).
@@ -62,4 +62,4 @@ std::vector<TriangleMesh> region_surfaces(const RegionLabels& labels, const Smoo
 std::vector<RegionDistance> region_distances(const TetMesh& mesh, const RegionLabels& labels,
                                              std::span<const TriangleMesh> surfaces);
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <set>
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 // Triangles 0.7 times as long lie about twice as close to a curved surface.
@@ -74,4 +74,4 @@ ContractedMesh mesh_to_contract(const LabelMap& map, std::span<const std::int32_
     }
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -5,7 +5,7 @@
 #include "tools/meshing/contract/contract.hpp"
 #include "tools/meshing/tetrahedra/tetrahedralise.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 
 /// One mesh on the way to the contract.
 struct MeshAttempt {
@@ -30,4 +30,4 @@ ContractedMesh mesh_to_contract(const LabelMap& map, std::span<const std::int32_
                                 MeshSizing sizing, const QualityContract& contract, int max_attempts,
                                 const ProgressCallback& progress = {});
 
-}  // namespace palpate
+}  // namespace palpate::meshing

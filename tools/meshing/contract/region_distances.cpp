@@ -10,7 +10,7 @@
 #include "tools/meshing/measures/tet_faces.hpp"
 #include "tools/meshing/surfaces/surfaces.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 std::vector<Eigen::Vector3d> samples(const TriangleMesh& surface, double apart) {
@@ -119,4 +119,4 @@ std::vector<RegionDistance> region_distances(const TetMesh& mesh, const RegionLa
     return result;
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -7,7 +7,7 @@
 
 #include "formats/model/tet_mesh.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 
 /// What a file says, before any check: tetrahedra in the file's own unit and frame.
 struct FoundTetrahedra {
@@ -34,4 +34,4 @@ FoundTetrahedra read_medit(const std::filesystem::path& path);
 /// medit:ref, gmsh:physical and gmsh:geometrical. Throws InvalidInput naming the file.
 FoundTetrahedra read_vtk_grid(const std::filesystem::path& path);
 
-}  // namespace palpate
+}  // namespace palpate::meshing

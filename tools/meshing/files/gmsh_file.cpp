@@ -6,7 +6,7 @@
 #include "tools/meshing/files/found_mesh.hpp"
 #include "tools/meshing/files/scanner.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 constexpr int linear_tetrahedron = 4;
@@ -259,4 +259,4 @@ FoundTetrahedra read_gmsh(const std::filesystem::path& path) {
     return GmshReader(path).read();
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -10,7 +10,7 @@
 #include "formats/model/tet_mesh.hpp"
 #include "formats/model/triangle_mesh.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 
 using NoteSink = std::function<void(std::string_view)>;
 
@@ -47,4 +47,4 @@ void adopt_labels(TetMesh& mesh, const LabelMap& map);
 TriangleMesh read_imported_surface(const std::filesystem::path& path, const ImportedMeshOptions& options,
                                    const NoteSink& note = {});
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -9,7 +9,7 @@
 #include "formats/model/errors.hpp"
 #include "tools/meshing/files/text.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 double mm_per_unit(const std::string& unit) {
@@ -57,4 +57,4 @@ std::string extension_of(const std::filesystem::path& path) {
     return lower_case(path.extension().string());
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

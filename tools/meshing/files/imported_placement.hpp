@@ -6,7 +6,7 @@
 
 #include "tools/meshing/files/imported_mesh.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 
 /// Turns positions of a file into mm in LPS, as the options say; `stated` is the frame that the file states
 /// ("" if none). Notes the size of what it placed. Throws UsageError for unknown units and frames and
@@ -20,4 +20,4 @@ std::string listed(const std::map<std::string, std::int64_t>& counts);
 /// A file name's extension in lower case.
 std::string extension_of(const std::filesystem::path& path);
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -17,7 +17,7 @@
 #include "tools/meshing/files/surface_repair.hpp"
 #include "tools/meshing/files/vtk_reading.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 template <typename Reader>
@@ -100,4 +100,4 @@ TriangleMesh read_imported_surface(const std::filesystem::path& path, const Impo
     return repaired_surface(joined_vertices(surface), culprit, note);
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

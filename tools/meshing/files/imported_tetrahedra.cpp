@@ -12,7 +12,7 @@
 #include "tools/meshing/measures/tet_faces.hpp"
 #include "tools/meshing/tetrahedra/body_repair.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 FoundTetrahedra read_solids(const std::filesystem::path& path) {
@@ -261,4 +261,4 @@ void adopt_labels(TetMesh& mesh, const LabelMap& map) {
         if (seen.contains(label.value)) mesh.outside_names.push_back(label);
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -5,7 +5,7 @@
 #include "tools/meshing/files/found_mesh.hpp"
 #include "tools/meshing/files/scanner.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 struct Kind {
@@ -78,4 +78,4 @@ FoundTetrahedra read_medit(const std::filesystem::path& path) {
     return found;
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -23,7 +23,7 @@
 #include "formats/model/errors.hpp"
 #include "tools/meshing/files/vtk_reading.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 namespace fs = std::filesystem;
@@ -206,4 +206,4 @@ void write_tetrahedra(const fs::path& path, const TetMesh& mesh) {
     write_file(writer.Get(), data, path);
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -5,7 +5,7 @@
 #include "formats/model/tet_mesh.hpp"
 #include "formats/model/triangle_mesh.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 
 /// Reads a triangle surface (VTK XML PolyData, `.vtp`); coordinates are taken as LPS mm. Throws InvalidInput
 /// naming the file if it is no such file, holds other cells than triangles, an index out of range or a number
@@ -27,4 +27,4 @@ TetMesh read_tetrahedra(const std::filesystem::path& path);
 /// FieldData the names, values and colours of both and SPACE=LPS. Bytes and errors as write_surface().
 void write_tetrahedra(const std::filesystem::path& path, const TetMesh& mesh);
 
-}  // namespace palpate
+}  // namespace palpate::meshing

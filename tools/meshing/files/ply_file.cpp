@@ -14,7 +14,7 @@
 
 #include "tools/meshing/files/scanner.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 struct Type {
@@ -184,4 +184,4 @@ vtkSmartPointer<vtkPolyData> read_ply(const std::filesystem::path& path) {
     return PlyReader(path).read();
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -10,7 +10,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 constexpr std::string_view white = " \t\r\n\v\f";
@@ -115,4 +115,4 @@ void Scanner::fail(const std::string& found, const std::string& expected,
     throw InvalidInput({fmt::format("{}:{}", path_, line), found, expected, next_step});
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

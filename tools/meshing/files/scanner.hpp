@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace palpate {
+namespace palpate::meshing {
 
 /// A file read into memory and taken apart from front to back: words between white space, numbers, raw bytes.
 /// Everything that is not there or not as asked for throws InvalidInput naming the file and the line.
@@ -52,4 +52,4 @@ class Scanner {
     std::size_t at_ = 0;
 };
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -12,7 +12,7 @@
 #include "formats/model/errors.hpp"
 #include "tools/meshing/files/text.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 // One side of a triangle; sides of one edge are neighbours when sorted.
@@ -240,4 +240,4 @@ TriangleMesh joined_vertices(const TriangleMesh& surface) {
     return result;
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -6,7 +6,7 @@
 
 #include "formats/model/triangle_mesh.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 
 /// Makes a surface the boundary of a body or refuses it: closed, manifold, all triangles facing outwards.
 ///
@@ -22,4 +22,4 @@ TriangleMesh repaired_surface(TriangleMesh surface, const std::string& culprit,
 /// Turns vertices at exactly the same place into one, at the place of the first.
 TriangleMesh joined_vertices(const TriangleMesh& surface);
 
-}  // namespace palpate
+}  // namespace palpate::meshing

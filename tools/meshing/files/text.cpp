@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-namespace palpate {
+namespace palpate::meshing {
 
 std::string lower_case(std::string_view text) {
     std::string lower(text);
@@ -17,4 +17,4 @@ std::string place_text(const Eigen::Vector3d& p_P) {
     return fmt::format("({:.1f}, {:.1f}, {:.1f})", p_P.x(), p_P.y(), p_P.z());
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -14,7 +14,7 @@
 #include "tools/meshing/files/scanner.hpp"
 #include "tools/meshing/files/text.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 // Sizes in binary files.
@@ -163,4 +163,4 @@ void require_sound_legacy(const std::filesystem::path& path) {
     LegacyCheck(path).run();
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

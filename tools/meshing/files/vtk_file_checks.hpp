@@ -2,7 +2,7 @@
 #pragma once
 #include <filesystem>
 
-namespace palpate {
+namespace palpate::meshing {
 
 /// Checks the NumberOf... attributes of a VTK XML file, because VTK's readers allocate what these say: whole
 /// numbers that the file's size has room for, compressed or not. Throws InvalidInput naming the attribute.
@@ -14,4 +14,4 @@ void require_plausible_xml(const std::filesystem::path& path);
 /// and line. Source: VTK user's guide, "Simple legacy formats", and version 5.1 of these.
 void require_sound_legacy(const std::filesystem::path& path);
 
-}  // namespace palpate
+}  // namespace palpate::meshing

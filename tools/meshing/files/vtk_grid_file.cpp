@@ -14,7 +14,7 @@
 #include "tools/meshing/files/imported_placement.hpp"
 #include "tools/meshing/files/vtk_reading.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 // "vtkQuadraticTetra" is "quadratic tetra" to people.
@@ -80,4 +80,4 @@ FoundTetrahedra read_vtk_grid(const std::filesystem::path& path) {
     return from_grid(reader->GetOutput(), path);
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

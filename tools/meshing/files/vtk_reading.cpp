@@ -14,7 +14,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 
 namespace fs = std::filesystem;
 
@@ -112,4 +112,4 @@ std::vector<Label> occurring_labels(const std::vector<std::int32_t>& values,
     return labels;
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -17,7 +17,7 @@
 #include "formats/model/label_map.hpp"
 #include "tools/meshing/files/vtk_file_checks.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 
 /// VTK prints errors unless somebody listens; this listens and remembers that there was one.
 class VtkErrorListener {
@@ -67,4 +67,4 @@ std::string space_of(vtkDataObject* data);
 /// Labels that occur in `values` (those above 0), with the names that `known` gives them or "region <value>".
 std::vector<Label> occurring_labels(const std::vector<std::int32_t>& values, const std::vector<Label>& known);
 
-}  // namespace palpate
+}  // namespace palpate::meshing

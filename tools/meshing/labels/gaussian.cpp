@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 std::vector<float> gaussian_weights(double sigma) {
@@ -61,4 +61,4 @@ void smooth(FloatImage& image) {
     }
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

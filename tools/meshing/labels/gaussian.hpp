@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace palpate {
+namespace palpate::meshing {
 
 /// Where the Gaussian is cut off, in units of sigma.
 inline constexpr double gaussian_reach = 3.0;
@@ -20,4 +20,4 @@ struct FloatImage {
 /// every run.
 void smooth(FloatImage& image);
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 class OutsideProbe {
@@ -79,4 +79,4 @@ std::vector<std::int32_t> outside_labels(const TetMesh& mesh, const LabelMap& ma
     return labels;
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

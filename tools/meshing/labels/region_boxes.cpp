@@ -6,7 +6,7 @@
 
 #include "tools/meshing/labels/gaussian.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 
 std::vector<RegionBox> region_boxes(const RegionLabels& labels, const Index3& reach) {
     std::vector<Index3> low(labels.values.size(), labels.grid.size);
@@ -41,4 +41,4 @@ std::vector<float> smoothed_indicator(const RegionLabels& labels, std::uint8_t r
     return std::move(image.values);
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

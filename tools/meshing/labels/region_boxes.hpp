@@ -6,7 +6,7 @@
 
 #include "tools/meshing/labels/region_labels.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 
 using Index3 = std::array<std::int32_t, 3>;
 
@@ -36,4 +36,4 @@ std::vector<float> smoothed_indicator(const RegionLabels& labels, std::uint8_t r
 /// Gaussian sigma, in voxels, that takes no sheet of one voxel: its smoothed indicator stays at 0.79.
 inline constexpr double fine_sigma_voxels = 0.4;
 
-}  // namespace palpate
+}  // namespace palpate::meshing

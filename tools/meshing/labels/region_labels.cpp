@@ -9,7 +9,7 @@
 #include "formats/model/disjoint_sets.hpp"
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 struct VoxelRange {
@@ -200,4 +200,4 @@ std::int64_t absorb_specks(RegionLabels& labels, double min_volume) {
     return absorbed;
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

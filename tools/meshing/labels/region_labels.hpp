@@ -6,7 +6,7 @@
 
 #include "formats/model/label_map.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 
 /// The regions of a body cut out of a label map: a grid that leaves a margin around them, also beyond the
 /// image, where everything is outside.
@@ -39,4 +39,4 @@ LabelComponents find_components(const RegionLabels& labels);
 /// vanish, pinholes close. Returns the number of components given away.
 std::int64_t absorb_specks(RegionLabels& labels, double min_volume);
 
-}  // namespace palpate
+}  // namespace palpate::meshing

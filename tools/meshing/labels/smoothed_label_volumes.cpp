@@ -6,7 +6,7 @@
 #include "tools/meshing/labels/gaussian.hpp"
 #include "tools/meshing/labels/smoothed_labels.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 constexpr double faces_per_area = 1.5;  // of voxels along a surface, averaged over its directions
@@ -167,4 +167,4 @@ std::vector<float> SmoothedLabels::thinness(const RegionLabels& labels) const {
     return std::move(lost.values);
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

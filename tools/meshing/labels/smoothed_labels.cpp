@@ -6,7 +6,7 @@
 
 #include "tools/meshing/labels/gaussian.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 constexpr float eligible = 0.2F;         // below, a region is too far away to win where others are level
@@ -197,4 +197,4 @@ std::uint8_t SmoothedLabels::region_at(const Eigen::Vector3d& p_P) const {
     return best > outside ? winner : std::uint8_t{0};
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -8,7 +8,7 @@
 #include "tools/meshing/labels/region_boxes.hpp"
 #include "tools/meshing/labels/region_labels.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 
 /// Region labels without stairs: the label at a point is the one with the highest score, where a region's
 /// score is its indicator smoothed by a Gaussian, interpolated linearly, plus an offset of its own that gives
@@ -68,4 +68,4 @@ class SmoothedLabels {
 /// The margin in mm that SmoothedLabels needs around its regions.
 double smoothing_margin(const ImageGrid& grid, double sigma);
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -10,7 +10,7 @@
 #include "formats/model/disjoint_sets.hpp"
 #include "tools/meshing/measures/tet_faces.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 struct DirectedEdge {
@@ -177,4 +177,4 @@ MeshQuality measure(const TetMesh& mesh) {
     return quality;
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -7,7 +7,7 @@
 #include "formats/model/tet_mesh.hpp"
 #include "formats/model/triangle_mesh.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 
 /// What keeps a triangle surface from being the boundary of a body, and its size.
 struct SurfaceQuality {
@@ -75,4 +75,4 @@ double flatness_deg(const TetMesh& mesh, std::size_t t);
 /// of their first tetrahedron.
 std::vector<std::int32_t> face_components(const TetMesh& mesh);
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -10,7 +10,7 @@
 #include <vtkPolyData.h>
 #include <vtkStaticCellLocator.h>
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 vtkNew<vtkPolyData> to_vtk(const TriangleMesh& surface) {
@@ -118,4 +118,4 @@ SurfaceDistance surface_distance(const TriangleMesh& a, const TriangleMesh& b) {
     return summary(samples_a, nearest_places(samples_a, b), samples_b, nearest_places(samples_b, a));
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -7,7 +7,7 @@
 
 #include "formats/model/triangle_mesh.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 
 /// A place on a surface where its distance to another one is measured.
 struct SurfaceSample {
@@ -44,4 +44,4 @@ SurfaceDistance summary(std::span<const SurfaceSample> samples_a, std::span<cons
 /// Measures the distance of two surfaces both ways. Cost: O((m + n) log(m + n)).
 SurfaceDistance surface_distance(const TriangleMesh& a, const TriangleMesh& b);
 
-}  // namespace palpate
+}  // namespace palpate::meshing

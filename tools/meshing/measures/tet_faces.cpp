@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace palpate {
+namespace palpate::meshing {
 
 std::vector<TetFace> sorted_faces(const TetMesh& mesh) {
     std::vector<TetFace> faces;
@@ -39,4 +39,4 @@ std::vector<InterfaceFace> interface_faces(const TetMesh& mesh) {
     return result;
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

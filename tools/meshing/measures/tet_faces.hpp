@@ -4,7 +4,7 @@
 
 #include "formats/model/tet_mesh.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 
 /// One face of one tetrahedron.
 struct TetFace {
@@ -25,4 +25,4 @@ struct InterfaceFace {
 /// All such faces of a mesh, each once.
 std::vector<InterfaceFace> interface_faces(const TetMesh& mesh);
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -21,7 +21,7 @@
 #include "formats/model/errors.hpp"
 #include "tools/meshing/surfaces/surfaces.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 using Point = CGAL::Simple_cartesian<double>::Point_3;
@@ -176,4 +176,4 @@ Decimation decimate_within(const TriangleMesh& surface, std::int64_t max_triangl
                          "allow more triangles or a larger distance"});
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

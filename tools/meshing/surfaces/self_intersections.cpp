@@ -10,7 +10,7 @@
 #include "formats/model/errors.hpp"
 #include "tools/meshing/surfaces/surfaces.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 
 std::int64_t self_intersections(const TriangleMesh& surface) {
     using Mesh = CGAL::Surface_mesh<CGAL::Exact_predicates_inexact_constructions_kernel::Point_3>;
@@ -29,4 +29,4 @@ std::int64_t self_intersections(const TriangleMesh& surface) {
     return static_cast<std::int64_t>(pairs.size());
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

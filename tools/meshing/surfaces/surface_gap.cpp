@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/meshing/surfaces/surface_gap.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 
 std::optional<double> surface_gap(const SmoothedLabels& labels, const InterfaceSide& side,
                                   const Eigen::Vector3d& p_P, double reach) {
@@ -23,4 +23,4 @@ std::optional<double> surface_gap(const SmoothedLabels& labels, const InterfaceS
     return here == side.inner ? distance : -distance;
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

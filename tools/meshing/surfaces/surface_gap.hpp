@@ -4,7 +4,7 @@
 
 #include "tools/meshing/labels/smoothed_labels.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 
 /// A triangle between two regions of SmoothedLabels, seen from `inner`.
 struct InterfaceSide {
@@ -18,4 +18,4 @@ struct InterfaceSide {
 std::optional<double> surface_gap(const SmoothedLabels& labels, const InterfaceSide& side,
                                   const Eigen::Vector3d& p_P, double reach);
 
-}  // namespace palpate
+}  // namespace palpate::meshing

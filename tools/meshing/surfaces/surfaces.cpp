@@ -19,7 +19,7 @@
 #include "tools/meshing/labels/smoothed_labels.hpp"
 #include "tools/meshing/measures/quality.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 TriangleMesh from_vtk(vtkPolyData* data) {
@@ -195,4 +195,4 @@ TriangleMesh keep_largest_piece(const TriangleMesh& surface) {
     return filter_triangles(surface, [&](const Triangle& t) { return piece(t) == largest; });
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

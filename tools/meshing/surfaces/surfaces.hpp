@@ -9,7 +9,7 @@
 #include "tools/meshing/labels/smoothed_labels.hpp"
 #include "tools/meshing/measures/surface_distance.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 
 /// Extracts the surface around everything of `isovalue` or more (HU for CT), facing outwards. Beyond the
 /// image everything counts as low, so the surface is closed there too; values within 1e-4 of the volume's
@@ -61,4 +61,4 @@ Decimation decimate_within(const TriangleMesh& surface, std::int64_t max_triangl
 /// not a manifold. Cost: 1 s for 100 000 triangles.
 std::int64_t self_intersections(const TriangleMesh& surface);
 
-}  // namespace palpate
+}  // namespace palpate::meshing

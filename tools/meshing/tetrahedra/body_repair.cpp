@@ -8,7 +8,7 @@
 #include "tools/meshing/measures/quality.hpp"
 #include "tools/meshing/measures/tet_faces.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 using Edge = std::array<std::int32_t, 2>;  // ascending
@@ -187,4 +187,4 @@ std::int64_t part_pinched_edges(TetMesh& mesh) {
     return removed;
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -4,7 +4,7 @@
 
 #include "formats/model/tet_mesh.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 
 /// Doubles nodes where parts of a body meet in a point or an edge but in no face: such hinges carry no
 /// elastic force that a refined mesh would show, and make the boundary non-manifold. Returns the number of
@@ -25,4 +25,4 @@ std::int64_t remove_crumbs(TetMesh& mesh, double min_volume);
 /// Then calls split_hinges(). Returns the number of tetrahedra removed.
 std::int64_t part_pinched_edges(TetMesh& mesh);
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -16,7 +16,7 @@
 
 #include "tools/meshing/surfaces/surface_gap.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -192,4 +192,4 @@ TetMesh mesh_smoothed_labels(const SmoothedLabels& labels, std::span<const Surfa
     return extract(complex);
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -8,7 +8,7 @@
 #include "tools/meshing/tetrahedra/size_field.hpp"
 #include "tools/meshing/tetrahedra/surface_seeds.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 
 /// Shape bounds of Delaunay refinement and of the optimisation after it.
 struct DelaunayShape {
@@ -25,4 +25,4 @@ TetMesh mesh_smoothed_labels(const SmoothedLabels& labels, std::span<const Surfa
                              SizeField& sizes, double max_gap, const DelaunayShape& shape,
                              const ProgressCallback& progress);
 
-}  // namespace palpate
+}  // namespace palpate::meshing

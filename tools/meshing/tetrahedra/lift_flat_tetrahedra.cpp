@@ -9,7 +9,7 @@
 #include "tools/meshing/measures/quality.hpp"
 #include "tools/meshing/measures/tet_faces.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 class Lifter {
@@ -115,4 +115,4 @@ void lift_flat_tetrahedra(TetMesh& mesh, double bound_deg, double max_surface_mo
     }
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

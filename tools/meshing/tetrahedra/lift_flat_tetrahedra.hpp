@@ -2,7 +2,7 @@
 #pragma once
 #include "formats/model/tet_mesh.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 
 /// Moves the nodes of flat tetrahedra, those with a dihedral angle below `bound_deg` or above 180° -
 /// `bound_deg`, as long as that makes the flattest tetrahedron around the node less flat. Nodes inside a
@@ -10,4 +10,4 @@ namespace palpate {
 /// they were. Tetrahedra keep their nodes, and none becomes flatter than the flattest around. Deterministic.
 void lift_flat_tetrahedra(TetMesh& mesh, double bound_deg, double max_surface_move);
 
-}  // namespace palpate
+}  // namespace palpate::meshing

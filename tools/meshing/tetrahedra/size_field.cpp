@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 void lower(LocalSizes& sizes, const LocalSizes& bounds) {
@@ -60,4 +60,4 @@ LocalSizes SizeField::at(const Eigen::Vector3d& p_P, int region, int other) cons
     return sizes;
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace palpate {
+namespace palpate::meshing {
 
 /// Upper bounds of a mesh's sizes, mm: circumradius of a tetrahedron and of a surface triangle, and distance
 /// of a surface triangle to the surface.
@@ -53,4 +53,4 @@ class SizeField {
     std::map<std::array<int, 3>, std::vector<std::uint32_t>> balls_near_;
 };
 
-}  // namespace palpate
+}  // namespace palpate::meshing

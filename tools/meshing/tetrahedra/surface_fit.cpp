@@ -10,7 +10,7 @@
 #include "tools/meshing/measures/tet_faces.hpp"
 #include "tools/meshing/surfaces/surface_gap.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 const Eigen::Vector3d& corner(const TetMesh& mesh, const InterfaceFace& face, std::size_t c) {
@@ -142,4 +142,4 @@ void match_volumes(TetMesh& mesh, std::span<const double> volumes, double floor_
     }
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -5,7 +5,7 @@
 #include "formats/model/tet_mesh.hpp"
 #include "tools/meshing/labels/smoothed_labels.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 
 // Both functions take meshes whose regions are numbered 1, 2, ... No node moves further than
 // `max_distance` mm at a step, no tetrahedron turns over, and none gets a dihedral angle nearer than
@@ -27,4 +27,4 @@ void fit_surface(TetMesh& mesh, const SmoothedLabels& labels, double floor_deg, 
 /// InvalidInput).
 void match_volumes(TetMesh& mesh, std::span<const double> volumes, double floor_deg, double max_distance);
 
-}  // namespace palpate
+}  // namespace palpate::meshing

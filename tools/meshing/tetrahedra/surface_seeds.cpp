@@ -9,7 +9,7 @@
 #include <optional>
 #include <random>
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 // The face between voxel `voxel` and its next neighbour along `axis`.
@@ -125,4 +125,4 @@ std::vector<SurfaceSeed> scatter_seeds(const RegionLabels& labels, const Smoothe
     return seeds;
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -6,7 +6,7 @@
 #include "tools/meshing/labels/smoothed_labels.hpp"
 #include "tools/meshing/tetrahedra/size_field.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 
 /// A point where two regions of SmoothedLabels meet.
 struct SurfaceSeed {
@@ -20,4 +20,4 @@ struct SurfaceSeed {
 std::vector<SurfaceSeed> scatter_seeds(const RegionLabels& labels, const SmoothedLabels& smoothed,
                                        const SizeField& sizes);
 
-}  // namespace palpate
+}  // namespace palpate::meshing

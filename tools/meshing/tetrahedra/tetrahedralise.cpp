@@ -15,7 +15,7 @@
 #include "tools/meshing/tetrahedra/surface_fit.hpp"
 #include "tools/meshing/tetrahedra/surface_seeds.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 void require(bool sound, const char* field, double found, const char* expected) {
@@ -223,4 +223,4 @@ TetMesh tetrahedralise(const MeshDomain& domain, const LabelMap& map, const Mesh
     return mesh;
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing

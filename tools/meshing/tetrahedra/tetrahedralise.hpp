@@ -11,7 +11,7 @@
 #include "formats/model/tet_mesh.hpp"
 #include "tools/meshing/labels/smoothed_labels.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 
 /// Sizes of one region that differ from those of the body.
 struct RegionSize {
@@ -73,4 +73,4 @@ TetMesh tetrahedralise(const LabelMap& map, std::span<const std::int32_t> region
 TetMesh tetrahedralise(const MeshDomain& domain, const LabelMap& map, const MeshSizing& sizing,
                        const ProgressCallback& progress = {});
 
-}  // namespace palpate
+}  // namespace palpate::meshing

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <vector>
 
-namespace palpate {
+namespace palpate::report {
 namespace {
 
 constexpr std::array<std::array<int, 3>, 9> stops{{{255, 255, 204},
@@ -65,4 +65,4 @@ std::string scale_svg(const ColourScale& scale, const std::string& unit) {
     return svg + "</svg>";
 }
 
-}  // namespace palpate
+}  // namespace palpate::report

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-namespace palpate {
+namespace palpate::report {
 
 /// Colours for 0 ... top, pale yellow to dark red, which colour-blind eyes tell apart too; greater values
 /// have the colour of `top`. Source: YlOrRd of ColorBrewer (Harrower, Brewer 2003).
@@ -22,4 +22,4 @@ ColourScale scale_for(std::span<const double> values);
 /// Draws the scale as a bar with its numbers, inline SVG.
 std::string scale_svg(const ColourScale& scale, const std::string& unit);
 
-}  // namespace palpate
+}  // namespace palpate::report

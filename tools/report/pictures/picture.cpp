@@ -7,7 +7,7 @@
 #include <vtkPNGWriter.h>
 #include <vtkUnsignedCharArray.h>
 
-namespace palpate {
+namespace palpate::report {
 
 std::string png_bytes(const Picture& picture) {
     vtkNew<vtkImageData> image;
@@ -26,4 +26,4 @@ std::string png_bytes(const Picture& picture) {
             static_cast<std::size_t>(bytes->GetNumberOfTuples())};
 }
 
-}  // namespace palpate
+}  // namespace palpate::report

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace palpate {
+namespace palpate::report {
 
 /// An RGB raster, rows from the top, three bytes a pixel.
 struct Picture {
@@ -22,4 +22,4 @@ struct Picture {
 /// Encodes a picture as PNG and returns the file's bytes.
 std::string png_bytes(const Picture& picture);
 
-}  // namespace palpate
+}  // namespace palpate::report

@@ -23,7 +23,7 @@
 #include <vtkUnsignedCharArray.h>
 #include <vtkWindowToImageFilter.h>
 
-namespace palpate {
+namespace palpate::report {
 namespace {
 
 using Colour = std::array<float, 3>;
@@ -275,4 +275,4 @@ std::vector<SceneView> coloured_pictures(const TriangleMesh& surface,
     return draw(renderer, directions, {marked});
 }
 
-}  // namespace palpate
+}  // namespace palpate::report

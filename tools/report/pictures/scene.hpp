@@ -7,7 +7,7 @@
 #include "tools/report/pictures/colour_scale.hpp"
 #include "tools/report/pictures/picture.hpp"
 
-namespace palpate {
+namespace palpate::report {
 
 /// A direction from the scene to the eye, in P; the patient's head is up.
 using ViewDirection = Eigen::Vector3d;
@@ -39,4 +39,4 @@ std::vector<SceneView> coloured_pictures(const TriangleMesh& surface,
                                          const Eigen::Vector3d& marked,
                                          const std::vector<ViewDirection>& directions);
 
-}  // namespace palpate
+}  // namespace palpate::report

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-namespace palpate {
+namespace palpate::report {
 namespace {
 
 struct Neighbour {
@@ -163,4 +163,4 @@ std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> slice_outline(const Sli
     return segments;
 }
 
-}  // namespace palpate
+}  // namespace palpate::report

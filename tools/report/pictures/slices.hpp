@@ -9,7 +9,7 @@
 #include "formats/model/triangle_mesh.hpp"
 #include "tools/report/pictures/picture.hpp"
 
-namespace palpate {
+namespace palpate::report {
 
 enum class Plane { axial, coronal, sagittal };
 
@@ -46,4 +46,4 @@ Picture slice_picture(const SliceWindow& window, const Volume* volume, const Lab
 std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> slice_outline(const SliceWindow& window,
                                                                        const TriangleMesh& surface);
 
-}  // namespace palpate
+}  // namespace palpate::report

@@ -14,7 +14,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::report {
 namespace {
 
 [[noreturn]] void become_server(int display_fd, pid_t parent) {
@@ -87,4 +87,4 @@ VirtualDisplay::~VirtualDisplay() {
         setenv("DISPLAY", former_.c_str(), 1);
 }
 
-}  // namespace palpate
+}  // namespace palpate::report

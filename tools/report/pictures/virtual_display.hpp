@@ -3,7 +3,7 @@
 #include <string>
 #include <sys/types.h>
 
-namespace palpate {
+namespace palpate::report {
 
 /// An X display to draw pictures on: the one DISPLAY names or, where none answers, an Xvfb of our own that
 /// DISPLAY then names. The Xvfb ends with this object, and with this process however that ends.
@@ -25,4 +25,4 @@ class VirtualDisplay {
     std::string former_;
 };
 
-}  // namespace palpate
+}  // namespace palpate::report

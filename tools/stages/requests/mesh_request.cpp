@@ -99,7 +99,7 @@ void from_json(const Json& json, RegionNaming& naming) {
 }
 
 void declare(cli::Command& command, MeshRequest& request) {
-    MeshSizing& sizing = request.sizing;
+    meshing::MeshSizing& sizing = request.sizing;
     command.input(
         "--labels", request.labels,
         "label map (.seg.nrrd, NIfTI, NRRD); with --mesh-file the one that the mesh is checked against");

@@ -49,7 +49,7 @@ struct MeshRequest {
     std::filesystem::path mesh_file;   ///< imported; labels are then what it is checked against
     std::string unit = "mm", frame;    ///< of that file
     std::vector<RegionNaming> region_names;
-    MeshSizing sizing;  ///< its regions and places are those of the two lists
+    meshing::MeshSizing sizing;  ///< its regions and places are those of the two lists
     std::vector<LabelCellSize> region_cell_sizes;
     std::vector<NearPlace> near;
     bool allow_components = false;  ///< of several separate pieces

@@ -11,6 +11,8 @@
 namespace palpate::test {
 namespace {
 
+using namespace fem;
+
 // Adds a force per area to the nodes of the faces on which all corners satisfy `condition`.
 Eigen::VectorXd face_forces(const ElasticSystem& system, const Condition& condition,
                             const std::function<Eigen::Vector3d(const Eigen::Vector3d& area)>& force_on) {

@@ -20,9 +20,9 @@ using VectorField = std::function<Eigen::Vector3d(const Eigen::Vector3d&)>;
 /// All nodes of a body, middle nodes of edges among them, and the stiffness between them with nothing held.
 struct ElasticSystem {
     DeformableBody body;
-    Discretisation discretisation;
-    Points positions;       ///< of every node, mm
-    LowerSparse stiffness;  ///< 3n x 3n, N/mm
+    fem::Discretisation discretisation;
+    Points positions;            ///< of every node, mm
+    fem::LowerSparse stiffness;  ///< 3n x 3n, N/mm
 
     Eigen::Index dof_count() const { return static_cast<Eigen::Index>(3 * positions.size()); }
 };

@@ -32,7 +32,7 @@ DeformableBody held_half_space(ElementOrder order, int steps) {
 // them, and what the held far boundary suppresses added: it should move as under a point force of the forces'
 // sum.
 Eigen::MatrixXd condensed_normal_compliance(const DeformableBody& body) {
-    const Eigen::MatrixXd C = full(condense_by_trailing_block(body, no_progress));
+    const Eigen::MatrixXd C = full(fem::condense_by_trailing_block(body, no_progress));
     const auto m = static_cast<Eigen::Index>(body.contact_nodes.size());
     Eigen::MatrixXd A = C(Eigen::seqN(2, m, 3), Eigen::seqN(2, m, 3));
     const ElasticSystem system = elastic_system(body);

@@ -10,6 +10,8 @@
 namespace palpate {
 namespace {
 
+using namespace fem;
+
 const Material soft{.youngs_modulus = 6e-3, .poissons_ratio = 0.45};
 
 using test::no_progress;

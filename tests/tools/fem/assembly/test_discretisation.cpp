@@ -11,6 +11,8 @@
 namespace palpate {
 namespace {
 
+using namespace fem;
+
 const Material liver_like{.youngs_modulus = 6e-3, .poissons_ratio = 0.45};
 
 DeformableBody quadratic_block(std::array<int, 3> cells) {

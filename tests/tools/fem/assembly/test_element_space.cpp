@@ -13,6 +13,8 @@
 namespace palpate {
 namespace {
 
+using namespace fem;
+
 const Material soft_tissue{.youngs_modulus = 6e-3, .poissons_ratio = 0.45};
 
 // Dense solves of a few hundred unknowns whose stiffness has a condition of 1e3 or so.

@@ -9,6 +9,8 @@
 namespace palpate {
 namespace {
 
+using namespace fem;
+
 // The message of factorising the body's stiffness after the node's own stiffness along y was made negative.
 std::string refusal(const DeformableBody& body, std::size_t node, NodeOrder order, Elimination elimination) {
     FreeSystem system = assemble_free_system(body, order);

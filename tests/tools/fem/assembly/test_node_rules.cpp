@@ -10,6 +10,8 @@
 namespace palpate {
 namespace {
 
+using namespace fem;
+
 using Nodes = std::vector<std::int32_t>;
 
 // A block of 2 mm and 8 cells: node 13 is the only interior one. Region 2 is the cell at (1, 1, 1).

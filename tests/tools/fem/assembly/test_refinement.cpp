@@ -11,6 +11,8 @@
 namespace palpate {
 namespace {
 
+using namespace fem;
+
 TetMesh jittered_block() {
     TetMesh mesh = test::block_mesh({2, 3, 2}, {4, 5, 6});
     test::jitter_interior(mesh, 0.3, 1);

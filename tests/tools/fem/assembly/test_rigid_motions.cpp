@@ -18,7 +18,7 @@ using Nodes = std::vector<std::int32_t>;
 
 std::string motion_message(const TetMesh& mesh, const Nodes& fixed) {
     try {
-        require_no_rigid_motion(mesh, fixed);
+        fem::require_no_rigid_motion(mesh, fixed);
         return "";
     } catch (const InvalidInput& error) {
         return error.what();

@@ -31,7 +31,7 @@ Eigen::Vector3d direction(double in_plane, double out_of_plane) {
 
 ErrorDetail refusal(const TetMesh& mesh) {
     try {
-        discretise(mesh, ElementOrder::linear, {});
+        fem::discretise(mesh, ElementOrder::linear, {});
     } catch (const InvalidInput& error) {
         return error.detail();
     }
@@ -41,7 +41,7 @@ ErrorDetail refusal(const TetMesh& mesh) {
 TEST(SoundTetrahedra, quality_is_one_for_a_regular_tetrahedron_at_any_size) {
     for (const double size : {1e-3, 1.0, 1e3})
         EXPECT_NEAR(
-            element_quality(
+            fem::element_quality(
                 single({Eigen::Vector3d{0, 0, 0}, {size, size, 0}, {size, 0, size}, {0, size, size}}), 0),
             1, 1e-14);
 }

@@ -11,6 +11,8 @@
 namespace palpate {
 namespace {
 
+using namespace fem;
+
 const Material tissue{.youngs_modulus = 6e-3, .poissons_ratio = 0.45};
 const std::array<Eigen::Vector3d, 4> corner_points{
     Eigen::Vector3d{1, 2, 3}, {4, 2.5, 3}, {1.5, 5, 2.8}, {1.2, 2.1, 7}};

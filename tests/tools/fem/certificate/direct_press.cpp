@@ -8,6 +8,8 @@
 
 namespace palpate::test {
 
+using namespace fem;
+
 Eigen::MatrixXd direct_compliance(const DeformableBody& body, const std::vector<DirectContact>& contacts,
                                   double coupling_stiffness) {
     const Discretisation discretisation = discretise(body);

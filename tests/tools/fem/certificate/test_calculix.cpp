@@ -89,7 +89,7 @@ Judgement judge_sparse(const ElasticSystem& system, const Supports& supports, co
 
 // ccx against the condensed compliance: C_cc f = u_c, u_s = C_sc f.
 Judgement judge_condensed(const DeformableBody& body, const CalculixAnswer& answer) {
-    const Eigen::MatrixXd C = full(condense_by_trailing_block(body, no_progress));
+    const Eigen::MatrixXd C = full(fem::condense_by_trailing_block(body, no_progress));
     std::vector<Eigen::Index> pressed;
     for (const std::size_t k : pressed_contacts(body))
         for (Eigen::Index c = 0; c < 3; ++c) pressed.push_back(3 * static_cast<Eigen::Index>(k) + c);

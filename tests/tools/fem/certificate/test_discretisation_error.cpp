@@ -8,6 +8,8 @@
 namespace palpate {
 namespace {
 
+using namespace fem;
+
 constexpr ElementOrder element_orders[]{ElementOrder::linear, ElementOrder::quadratic};
 
 double error_of_cube(int cells, ElementOrder order) {

@@ -22,8 +22,8 @@ Case pressed_case() {
     DeformableBody body =
         test::held_block({8, 8, 5}, {40, 40, 25}, {.youngs_modulus = 6.3e-3, .poissons_ratio = 0.45});
     test::jitter_interior(body.mesh, 0.8, 5);
-    body = condensed_body(body, [](std::string_view, double) {});
-    body.obb_tree = build_obb_tree(body.boundary.surface);
+    body = fem::condensed_body(body, [](std::string_view, double) {});
+    body.obb_tree = obb::build_obb_tree(body.boundary.surface);
     patient.deformable_bodies.push_back(body);
     patient.haptics.tool_radius = 6;  // mm, wider than the mesh, so that several vertices carry
     return patient;
@@ -116,7 +116,7 @@ TEST(Press, a_stiffer_inclusion_raises_the_force_over_it) {
     body.mesh.region_names.push_back({2, "tumour", {1, 0, 0}});
     body.materials.push_back({2, {.youngs_modulus = 30e-3, .poissons_ratio = 0.45}});
     const ObbTree tree = body.obb_tree;
-    body = condensed_body(body, [](std::string_view, double) {});
+    body = fem::condensed_body(body, [](std::string_view, double) {});
     body.obb_tree = tree;
     HapticModel soft(plain), hard(with_tumour);
     const auto peak = [](const std::vector<TickResult>& results) {

@@ -12,6 +12,8 @@
 namespace palpate {
 namespace {
 
+using namespace fem;
+
 std::vector<Eigen::Vector3d> random_points(std::size_t count, const Eigen::Vector3d& size) {
     std::mt19937_64 random(4);
     std::uniform_real_distribution<double> uniform;

@@ -10,6 +10,8 @@
 namespace palpate {
 namespace {
 
+using namespace fem;
+
 constexpr double plenty = 0x1p40;  // bytes
 
 CondensationForecast forecast_of(const CondensationPlan& plan, CondensationMethod method) {

@@ -13,6 +13,7 @@
 namespace palpate {
 namespace {
 
+using namespace fem;
 using test::dofs_of;
 using test::no_progress;
 

@@ -8,6 +8,8 @@
 namespace palpate {
 namespace {
 
+using namespace fem;
+
 TEST(HierarchicalCondensation, is_certified_to_its_accuracy_and_as_large_as_forecast) {
     DeformableBody body = test::large_block();
     constexpr double accuracy = 1e-3;

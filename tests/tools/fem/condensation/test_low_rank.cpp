@@ -8,6 +8,7 @@
 namespace palpate {
 namespace {
 
+using namespace fem;
 using Eigen::Index;
 using Eigen::MatrixXd;
 
