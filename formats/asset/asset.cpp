@@ -11,7 +11,7 @@
 #include "formats/asset/vtk_grid.hpp"
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::asset {
 namespace {
 
 std::string rigid_path(std::size_t i) {
@@ -127,4 +127,4 @@ std::string asset_digest(const std::filesystem::path& path) {
     return file.text_attribute("/palpate", "manifest_sha256");
 }
 
-}  // namespace palpate
+}  // namespace palpate::asset

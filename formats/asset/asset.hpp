@@ -5,7 +5,7 @@
 
 #include "formats/model/body.hpp"
 
-namespace palpate {
+namespace palpate::asset {
 
 /// Whether a reader recomputes every SHA-256 (0.5 s per GB) or trusts the bytes.
 enum class Digests { check, skip };
@@ -29,4 +29,4 @@ Case load_asset(const std::filesystem::path& path);
 /// the file is no asset.
 std::string asset_digest(const std::filesystem::path& path);
 
-}  // namespace palpate
+}  // namespace palpate::asset

@@ -9,7 +9,7 @@
 #include "formats/asset/validate.hpp"
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::asset {
 namespace {
 
 constexpr std::int32_t schema = 2;
@@ -287,4 +287,4 @@ DeformableBody read_condensed_body(const Hdf5File& file, const std::string& path
     return body;
 }
 
-}  // namespace palpate
+}  // namespace palpate::asset

@@ -8,7 +8,7 @@
 #include "formats/model/body.hpp"
 #include "formats/records/field.hpp"
 
-namespace palpate {
+namespace palpate::asset {
 
 /// Groups of formats/asset/SPEC.md, written and read. Readers return values that validate.hpp has passed.
 
@@ -47,4 +47,4 @@ void read_fields(const Hdf5File& file, const std::string& path, const Table& tab
     });
 }
 
-}  // namespace palpate
+}  // namespace palpate::asset

@@ -5,7 +5,7 @@
 #include "formats/asset/hdf5/digest.hpp"
 #include "formats/asset/validate.hpp"
 
-namespace palpate {
+namespace palpate::asset {
 namespace {
 
 constexpr const char* tree_path = "/palpate/obb_tree";
@@ -44,4 +44,4 @@ DeformableBody read_body_part(const std::filesystem::path& path) {
     return read_condensed_body(file, body_path);
 }
 
-}  // namespace palpate
+}  // namespace palpate::asset

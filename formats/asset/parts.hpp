@@ -4,7 +4,7 @@
 
 #include "formats/model/body.hpp"
 
-namespace palpate {
+namespace palpate::asset {
 
 /// Intermediate results between commands, in the asset's own schema, each with its digests.
 
@@ -20,4 +20,4 @@ void write_body_part(const std::filesystem::path& path, const DeformableBody& bo
 /// Reads a condensed body; throws InvalidInput as read_asset() does.
 DeformableBody read_body_part(const std::filesystem::path& path);
 
-}  // namespace palpate
+}  // namespace palpate::asset

@@ -11,7 +11,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::asset {
 namespace {
 
 [[noreturn]] void refuse(const std::string& where, const std::string& found,
@@ -299,4 +299,4 @@ void check_body(const DeformableBody& body, const std::string& where) {
     check_certificate(body.certificate, where + "/certificate");
 }
 
-}  // namespace palpate
+}  // namespace palpate::asset

@@ -4,7 +4,7 @@
 
 #include "formats/model/body.hpp"
 
-namespace palpate {
+namespace palpate::asset {
 
 /// What must hold of values before they are written and after they were read: every index in range, every
 /// number finite, all parts of one another. Each function throws InvalidInput whose culprit starts with
@@ -32,4 +32,4 @@ void check_haptics(const HapticSettings& haptics, const std::string& where);
 /// A name that a person can read and a terminal can print: 1 to 255 bytes without control characters.
 void check_name(const std::string& name, const std::string& where);
 
-}  // namespace palpate
+}  // namespace palpate::asset

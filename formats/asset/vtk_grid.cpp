@@ -3,7 +3,7 @@
 
 #include <array>
 
-namespace palpate {
+namespace palpate::asset {
 namespace {
 
 constexpr std::uint8_t vtk_triangle = 5;
@@ -91,4 +91,4 @@ void write_vtk_grid(Hdf5Writer& writer, const Case& patient_case) {
     write_list(writer, "FieldData/region_bodies", region_bodies);
 }
 
-}  // namespace palpate
+}  // namespace palpate::asset

@@ -8,7 +8,7 @@
 
 #include "formats/recording/recording.hpp"
 
-namespace palpate {
+namespace palpate::recording {
 
 /// The file stores one array for each field of formats/records: device_limit_fields, tick_fields and
 /// contact_fields.
@@ -50,4 +50,4 @@ inline constexpr int recording_schema = 1;
 /// In a full ring of contacts, so many of the oldest may be being overwritten.
 inline constexpr std::int64_t contacts_in_transit = max_contacts;
 
-}  // namespace palpate
+}  // namespace palpate::recording

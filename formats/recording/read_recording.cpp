@@ -11,8 +11,10 @@
 #include "formats/recording/columns.hpp"
 #include "formats/recording/recording.hpp"
 
-namespace palpate {
+namespace palpate::recording {
 namespace {
+
+using namespace asset;
 
 template <typename Visited>
 std::vector<std::int64_t> shape_of(std::int64_t rows, Visited) {
@@ -150,4 +152,4 @@ Recording read_recording(const std::filesystem::path& path) {
     return recording;
 }
 
-}  // namespace palpate
+}  // namespace palpate::recording

@@ -11,7 +11,7 @@
 #include "formats/records/haptic_settings.hpp"
 #include "formats/records/tick_result.hpp"
 
-namespace palpate {
+namespace palpate::recording {
 
 /// Most tools of one run.
 inline constexpr std::int32_t most_recorded_tools = 64;
@@ -54,4 +54,4 @@ struct Recording {
 /// size.
 Recording read_recording(const std::filesystem::path& path);
 
-}  // namespace palpate
+}  // namespace palpate::recording

@@ -17,8 +17,10 @@
 #include "formats/asset/validate.hpp"
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::recording {
 namespace {
+
+using namespace asset;
 
 constexpr std::int64_t contacts_per_tick = 8;  // room for so many on average
 
@@ -186,4 +188,4 @@ void RecordingWriter::set_lost(std::int64_t rows) noexcept {
     *ticks_lost_ = rows;
 }
 
-}  // namespace palpate
+}  // namespace palpate::recording

@@ -10,7 +10,7 @@
 #include "formats/recording/columns.hpp"
 #include "formats/recording/recording.hpp"
 
-namespace palpate {
+namespace palpate::recording {
 
 /// Makes a recording (formats/recording/SPEC.md) without a tick: a ring of `ticks` rows (at least 2), and one
 /// of 8 contacts per row, with their space on the disk reserved. 0.8 kB per row. Throws InvalidInput if the
@@ -50,4 +50,4 @@ class RecordingWriter {
     std::int64_t rows_per_second_ = 1000;
 };
 
-}  // namespace palpate
+}  // namespace palpate::recording

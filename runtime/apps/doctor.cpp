@@ -18,8 +18,13 @@
 #include "runtime/session/statistics_json.hpp"
 #include "tools/cli/command.hpp"
 
-namespace palpate {
+namespace palpate::apps {
 namespace {
+
+using namespace devices;
+using namespace doctor;
+using namespace realtime;
+using namespace session;
 
 using Json = nlohmann::ordered_json;
 
@@ -90,7 +95,7 @@ Json examine(const Options& options, cli::Session& session) {
     if (asked && !can_be_examined(device.kind))
         throw UsageError({"--device", options.device, device_usages(can_be_examined, true), ""});
     std::optional<Case> patient_case;
-    if (!options.asset.empty()) patient_case = read_asset(options.asset);
+    if (!options.asset.empty()) patient_case = asset::read_asset(options.asset);
     const Purpose purpose = options.simulated ? Purpose::simulation : Purpose::device;
     const Machine machine = this_machine();
     Findings findings = realtime_findings(machine, purpose);
@@ -123,10 +128,11 @@ Json examine(const Options& options, cli::Session& session) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::apps
 
 int main(int argc, char** argv) {
     using namespace palpate;
+    using namespace palpate::apps;
     cli::Command command(
         {.name = "doctor",
          .summary = "Examines this machine: real-time permissions, timing, device library, surroundings",

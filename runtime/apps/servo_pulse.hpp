@@ -7,7 +7,7 @@
 #include "formats/model/errors.hpp"
 #include "tools/cli/staged_file.hpp"
 
-namespace palpate {
+namespace palpate::apps {
 
 /// Notices a servo that has stopped.
 class ServoPulse {
@@ -33,4 +33,4 @@ class ServoPulse {
     std::int64_t tick_ = -1;
 };
 
-}  // namespace palpate
+}  // namespace palpate::apps

@@ -4,17 +4,17 @@
 #include "runtime/session/session.hpp"
 #include "tools/cli/command.hpp"
 
-namespace palpate {
+namespace palpate::apps {
 
 /// Makes a command's recording of `run`, of its last `seconds`, and opens it. It has its final name from here
 /// on, so that it is kept however the run ends. Throws InvalidInput if there is such a file without --force.
-inline void start_recording(Session& run, const std::filesystem::path& path, double seconds,
+inline void start_recording(session::Session& run, const std::filesystem::path& path, double seconds,
                             const cli::Session& session) {
-    const std::int64_t rows = recording_rows(seconds, run.model().tool_count());
+    const std::int64_t rows = session::recording_rows(seconds, run.model().tool_count());
     cli::StagedFile empty = session.stage(path);
-    make_recording(empty.path(), run.recording_head(cli::version()), rows);
+    recording::make_recording(empty.path(), run.recording_head(cli::version()), rows);
     empty.commit();
     run.record_to(path);
 }
 
-}  // namespace palpate
+}  // namespace palpate::apps

@@ -18,8 +18,11 @@
 #include "runtime/session/statistics_json.hpp"
 #include "tools/cli/command.hpp"
 
-namespace palpate {
+namespace palpate::apps {
 namespace {
+
+using namespace haptics;
+using namespace session;
 
 using Json = nlohmann::ordered_json;
 
@@ -62,7 +65,7 @@ Json touch(const TouchOptions& options, cli::Session& session) {
     std::vector<RunRecord> records = outputs.records_of(model);
     const auto take = [&](const TickResult& result) { records[result.tool].add(result); };
     if (!options.virtual_clock) run.start();
-    const double ready_s = process_age();
+    const double ready_s = realtime::process_age();
     if (options.virtual_clock)
         run.run_virtual(plan.seconds, take);
     else
@@ -80,7 +83,7 @@ Json touch(const TouchOptions& options, cli::Session& session) {
                    patient_case.name + ": " + (device.kind.simulated ? script : options.device));
 
     const ServoStatistics statistics = run.statistics();
-    for (const SetupResult& setup : statistics.setup)
+    for (const realtime::SetupResult& setup : statistics.setup)
         if (!setup.ok) spdlog::warn("{}", setup.message);
     Json result{{"case", patient_case.name},
                 {"script", script},
@@ -104,10 +107,11 @@ Json touch(const TouchOptions& options, cli::Session& session) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::apps
 
 int main(int argc, char** argv) {
     using namespace palpate;
+    using namespace palpate::apps;
     cli::Command command(
         {.name = "touch",
          .summary = "Touches an asset at 1 kHz with a simulated or a real device, without a window",

@@ -4,7 +4,10 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-namespace palpate {
+namespace palpate::apps {
+
+using namespace haptics;
+using namespace session;
 
 using Json = nlohmann::ordered_json;
 
@@ -86,4 +89,4 @@ Json replay_json(const ReplayOutcome& outcome) {
     return json;
 }
 
-}  // namespace palpate
+}  // namespace palpate::apps

@@ -3,7 +3,7 @@
 
 #include "runtime/session/device_list.hpp"
 
-namespace palpate {
+namespace palpate::apps {
 
 TouchHandles declare(cli::Command& command, TouchOptions& options) {
     const cli::Option asset = command.input("asset", options.asset, "the case (.vtkhdf)").required();
@@ -22,8 +22,9 @@ TouchHandles declare(cli::Command& command, TouchOptions& options) {
         "x,y,z: touch the surface point nearest to it; the most compliant place in reach if not given", "mm");
     command.option("--second", options.second,
                    "what a second tool on the same bodies does: a file as for --script");
-    command.option("--scheme", options.scheme, "how contact is found: " + contact_method_names());
-    command.option("--device", options.device, device_usages([](const DeviceKind&) { return true; }, true));
+    command.option("--scheme", options.scheme, "how contact is found: " + haptics::contact_method_names());
+    command.option("--device", options.device,
+                   session::device_usages([](const devices::DeviceKind&) { return true; }, true));
     command.option(
         "--shaft", options.shaft,
         "x,y,z: direction from the tip along the shaft of both tools, for a case with one; straight out "
@@ -45,4 +46,4 @@ TouchHandles declare(cli::Command& command, TouchOptions& options) {
     return {asset, seconds, log, curve, replay};
 }
 
-}  // namespace palpate
+}  // namespace palpate::apps

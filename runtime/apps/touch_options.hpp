@@ -8,12 +8,13 @@
 #include "runtime/haptics/haptic_model.hpp"
 #include "tools/cli/command.hpp"
 
-namespace palpate {
+namespace palpate::apps {
 
 /// What the user asked of touch.
 struct TouchOptions {
     std::filesystem::path asset, log, curve, record, replay;
-    std::string script = "press", body, target, second, scheme{usual_contact_method}, device, shaft, stream;
+    std::string script = "press", body, target, second, scheme{haptics::usual_contact_method}, device, shaft,
+                stream;
     double seconds = 10, depth = 3, speed = 20, record_seconds = 300;
     std::uint64_t seed = 1;
     std::optional<std::size_t> column;
@@ -28,4 +29,4 @@ struct TouchHandles {
 /// Adds the options of touch to its command, set to what `options` holds.
 TouchHandles declare(cli::Command& command, TouchOptions& options);
 
-}  // namespace palpate
+}  // namespace palpate::apps

@@ -4,7 +4,9 @@
 #include "formats/model/errors.hpp"
 #include "runtime/session/force_curve.hpp"
 
-namespace palpate {
+namespace palpate::apps {
+
+using namespace session;
 
 TouchOutputs::TouchOutputs(std::filesystem::path log, const std::filesystem::path& curve,
                            const cli::Session& session)
@@ -16,7 +18,7 @@ TouchOutputs::TouchOutputs(std::filesystem::path log, const std::filesystem::pat
     if (!curve.empty()) curve_file_.emplace(curve, session.force);
 }
 
-std::vector<RunRecord> TouchOutputs::records_of(const HapticModel& model) {
+std::vector<RunRecord> TouchOutputs::records_of(const haptics::HapticModel& model) {
     return {model.tool_count(), RunRecord(model, log_file_ ? &log_ : nullptr)};
 }
 
@@ -32,4 +34,4 @@ void TouchOutputs::commit(const RunRecord& first, const std::string& title) {
     if (log_file_) log_file_->commit();
 }
 
-}  // namespace palpate
+}  // namespace palpate::apps

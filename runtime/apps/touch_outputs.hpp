@@ -9,7 +9,7 @@
 #include "runtime/session/run_record.hpp"
 #include "tools/cli/command.hpp"
 
-namespace palpate {
+namespace palpate::apps {
 
 /// The files that a run of touch leaves behind besides its recording: whole ones or none.
 class TouchOutputs {
@@ -18,10 +18,10 @@ class TouchOutputs {
     TouchOutputs(std::filesystem::path log, const std::filesystem::path& curve, const cli::Session& session);
 
     /// One for each tool, writing to the log if there is one.
-    std::vector<RunRecord> records_of(const HapticModel& model);
+    std::vector<session::RunRecord> records_of(const haptics::HapticModel& model);
 
     /// Writes the curve of the first tool and gives both files their names.
-    void commit(const RunRecord& first, const std::string& title);
+    void commit(const session::RunRecord& first, const std::string& title);
 
   private:
     std::filesystem::path log_path_;
@@ -29,4 +29,4 @@ class TouchOutputs {
     std::ofstream log_;
 };
 
-}  // namespace palpate
+}  // namespace palpate::apps

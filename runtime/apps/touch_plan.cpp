@@ -10,8 +10,12 @@
 #include "runtime/devices/simulation.hpp"
 #include "runtime/session/hand_script.hpp"
 
-namespace palpate {
+namespace palpate::apps {
 namespace {
+
+using namespace devices;
+using namespace haptics;
+using namespace session;
 
 std::optional<Eigen::Vector3d> point_of(const char* option, std::string text) {
     if (text.empty()) return std::nullopt;
@@ -117,4 +121,4 @@ void refuse_contradictions(const TouchOptions& options, const DeviceChoice& devi
              "'" + options.scheme + "' knows " + (most == 1 ? "one tool" : std::to_string(most) + " tools")});
 }
 
-}  // namespace palpate
+}  // namespace palpate::apps

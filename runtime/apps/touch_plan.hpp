@@ -11,12 +11,12 @@
 #include "runtime/session/touch_target.hpp"
 #include "tools/cli/command.hpp"
 
-namespace palpate {
+namespace palpate::apps {
 
 /// What the hand does, and where if that was chosen here.
 struct TouchPlan {
-    std::optional<HandPath> path;  ///< none where a person's hand moves
-    std::optional<TouchTarget> target;
+    std::optional<devices::HandPath> path;  ///< none where a person's hand moves
+    std::optional<session::TouchTarget> target;
     double seconds;
 };
 
@@ -25,17 +25,17 @@ struct TouchPlan {
 void refuse_idle_options(const cli::Command& command, const TouchOptions& options);
 
 /// Throws UsageError for options that contradict each other, or the device that options.device names.
-void refuse_contradictions(const TouchOptions& options, const DeviceChoice& device);
+void refuse_contradictions(const TouchOptions& options, const session::DeviceChoice& device);
 
 /// How many tools there are.
-std::size_t tools_of(const TouchOptions& options, const DeviceChoice& device);
+std::size_t tools_of(const TouchOptions& options, const session::DeviceChoice& device);
 
 /// Chooses place and path. Throws UsageError or InvalidInput where there is none.
-TouchPlan plan_of(const TouchOptions& options, const DeviceKind& device, const Case& patient_case,
-                  const HapticModel& model);
+TouchPlan plan_of(const TouchOptions& options, const devices::DeviceKind& device, const Case& patient_case,
+                  const haptics::HapticModel& model);
 
 /// What is asked of devices that follow the plan.
-DeviceRequest request_of(const TouchOptions& options, const DeviceKind& device, const TouchPlan& plan,
-                         const HapticModel& model);
+devices::DeviceRequest request_of(const TouchOptions& options, const devices::DeviceKind& device,
+                                  const TouchPlan& plan, const haptics::HapticModel& model);
 
-}  // namespace palpate
+}  // namespace palpate::apps

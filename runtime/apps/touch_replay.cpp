@@ -12,8 +12,10 @@
 #include "runtime/apps/touch_json.hpp"
 #include "runtime/session/replay.hpp"
 
-namespace palpate {
+namespace palpate::apps {
 namespace {
+
+using namespace session;
 
 std::string force_text(const std::array<double, 3>& f) {
     return fmt::format("({}, {}, {}) N", f[0], f[1], f[2]);
@@ -23,8 +25,8 @@ std::string force_text(const std::array<double, 3>& f) {
 
 nlohmann::ordered_json replay_recording(const std::filesystem::path& file, const std::filesystem::path& asset,
                                         TouchOutputs& outputs, cli::Session& session) {
-    const Recording recording = read_recording(file);
-    const Case patient_case = read_asset(asset);
+    const recording::Recording recording = recording::read_recording(file);
+    const Case patient_case = asset::read_asset(asset);
     const auto model = model_of(recording, file, asset, patient_case);
     std::vector<RunRecord> records = outputs.records_of(*model);
     const ReplayOutcome outcome =
@@ -68,4 +70,4 @@ void refuse_beside_replay(const cli::Command& command, std::initializer_list<cli
                               "a recording says itself what the run was like"});
 }
 
-}  // namespace palpate
+}  // namespace palpate::apps

@@ -7,7 +7,7 @@
 #include "runtime/apps/touch_outputs.hpp"
 #include "tools/cli/command.hpp"
 
-namespace palpate {
+namespace palpate::apps {
 
 /// Throws UsageError if the user gave any option but these, for a recording says itself what the run was
 /// like.
@@ -18,4 +18,4 @@ void refuse_beside_replay(const cli::Command& command, std::initializer_list<cli
 nlohmann::ordered_json replay_recording(const std::filesystem::path& file, const std::filesystem::path& asset,
                                         TouchOutputs& outputs, cli::Session& session);
 
-}  // namespace palpate
+}  // namespace palpate::apps

@@ -20,8 +20,13 @@
 #include "runtime/visual/train_window.hpp"
 #include "tools/cli/command.hpp"
 
-namespace palpate {
+namespace palpate::apps {
 namespace {
+
+using namespace devices;
+using namespace haptics;
+using namespace session;
+using namespace visual;
 
 using Clock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
@@ -115,7 +120,7 @@ void fill_frame(VisualFrame& frame, const TickResult& tick, const HapticModel& m
 }
 
 struct Shown {
-    Histogram frame_ns;
+    realtime::Histogram frame_ns;
     double seconds = 0;
 };
 
@@ -199,7 +204,7 @@ Json train(const Options& options, cli::Session& session) {
     }
 
     const ServoStatistics statistics = run.statistics();
-    for (const SetupResult& setup : statistics.setup)
+    for (const realtime::SetupResult& setup : statistics.setup)
         if (!setup.ok) spdlog::warn("{}", setup.message);
     Json result{{"case", patient_case.name},
                 {"device", run.device_name()},
@@ -220,10 +225,11 @@ Json train(const Options& options, cli::Session& session) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::apps
 
 int main(int argc, char** argv) {
     using namespace palpate;
+    using namespace palpate::apps;
     cli::Command command(
         {.name = "train",
          .summary = "Opens the trainer's window on an asset",

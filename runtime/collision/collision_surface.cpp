@@ -5,7 +5,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::collision {
 namespace {
 
 [[noreturn]] void refuse(const std::string& name, const std::string& found, const std::string& expected) {
@@ -90,4 +90,4 @@ void CollisionSurface::take_nodes(const ObbTree& tree, double scale, const std::
                std::to_string(triangles_.size()));
 }
 
-}  // namespace palpate
+}  // namespace palpate::collision

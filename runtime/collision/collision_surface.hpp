@@ -12,7 +12,7 @@
 #include "formats/model/triangle_mesh.hpp"
 #include "runtime/collision/triangle_queries.hpp"
 
-namespace palpate {
+namespace palpate::collision {
 
 /// The nearest surface point.
 struct ClosestPoint {
@@ -117,4 +117,4 @@ class CollisionSurface {
     std::vector<FlatTriangle> triangles_;
 };
 
-}  // namespace palpate
+}  // namespace palpate::collision

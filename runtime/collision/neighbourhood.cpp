@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace palpate {
+namespace palpate::collision {
 namespace {
 
 using Eigen::Vector3d;
@@ -200,4 +200,4 @@ std::optional<SweepContact> Neighbourhood::sweep_sphere(const CollisionSurface& 
     return surface.sweep_sphere(from, to, radius, hint_);
 }
 
-}  // namespace palpate
+}  // namespace palpate::collision

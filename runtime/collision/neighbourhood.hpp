@@ -8,7 +8,7 @@
 
 #include "runtime/collision/collision_surface.hpp"
 
-namespace palpate {
+namespace palpate::collision {
 
 /// The triangles around a slowly moving sphere, gathered from the tree once and then asked many times:
 /// between two ticks a tool moves by a tenth of a millimetre, so what was near it still is. Belongs to one
@@ -55,4 +55,4 @@ class Neighbourhood {
     std::array<std::int32_t, capacity> slots_;
 };
 
-}  // namespace palpate
+}  // namespace palpate::collision

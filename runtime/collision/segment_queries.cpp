@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace palpate {
+namespace palpate::collision {
 namespace {
 
 using Eigen::Index;
@@ -61,4 +61,4 @@ std::optional<SegmentTrianglePair> pierce(const Vector3d& a, const Vector3d& b,
     return pair;
 }
 
-}  // namespace palpate
+}  // namespace palpate::collision

@@ -6,7 +6,7 @@
 
 #include "runtime/collision/triangle_queries.hpp"
 
-namespace palpate {
+namespace palpate::collision {
 
 /// The points of two segments that are nearest to each other.
 struct SegmentPair {
@@ -34,4 +34,4 @@ struct SegmentTrianglePair {
 std::optional<SegmentTrianglePair> pierce(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                           const TriangleCorners& t) noexcept;
 
-}  // namespace palpate
+}  // namespace palpate::collision

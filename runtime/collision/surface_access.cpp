@@ -2,7 +2,7 @@
 // Apart from the constructor, which allocates and throws: the tick's objects do neither.
 #include "runtime/collision/collision_surface.hpp"
 
-namespace palpate {
+namespace palpate::collision {
 
 TriangleCorners CollisionSurface::corners(std::int32_t slot) const noexcept {
     const float* c = triangles_[slot].corners;
@@ -21,4 +21,4 @@ ObbNode CollisionSurface::node(std::int32_t index) const noexcept {
     return to;
 }
 
-}  // namespace palpate
+}  // namespace palpate::collision

@@ -8,7 +8,7 @@
 
 #include "runtime/collision/collision_surface.hpp"
 
-namespace palpate {
+namespace palpate::collision {
 namespace {
 
 using Eigen::Vector3d;
@@ -69,4 +69,4 @@ bool CollisionSurface::is_outside(const Vector3d& p) const noexcept {
     return nearest && is_outside(p, *nearest);
 }
 
-}  // namespace palpate
+}  // namespace palpate::collision

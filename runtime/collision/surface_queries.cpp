@@ -8,7 +8,7 @@
 
 #include "runtime/collision/collision_surface.hpp"
 
-namespace palpate {
+namespace palpate::collision {
 namespace {
 
 using Eigen::Vector3d;
@@ -186,4 +186,4 @@ std::size_t CollisionSurface::slots_near(const Vector3d& a, const Vector3d& b, d
     return found;
 }
 
-}  // namespace palpate
+}  // namespace palpate::collision

@@ -8,7 +8,7 @@
 
 #include "runtime/collision/segment_queries.hpp"
 
-namespace palpate {
+namespace palpate::collision {
 namespace {
 
 using Eigen::Index;
@@ -189,4 +189,4 @@ bool surfaces_touch(const CollisionSurface& a, const CollisionSurface& b, const 
     return touch;
 }
 
-}  // namespace palpate
+}  // namespace palpate::collision

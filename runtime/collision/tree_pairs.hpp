@@ -7,7 +7,7 @@
 
 #include "runtime/collision/collision_surface.hpp"
 
-namespace palpate {
+namespace palpate::collision {
 
 /// The points of two triangles that are nearest to each other.
 struct TrianglePair {
@@ -41,4 +41,4 @@ std::size_t pairs_near(const CollisionSurface& a, const CollisionSurface& b, con
 bool surfaces_touch(const CollisionSurface& a, const CollisionSurface& b, const Eigen::Isometry3d& X_AB,
                     double margin = 0) noexcept;
 
-}  // namespace palpate
+}  // namespace palpate::collision

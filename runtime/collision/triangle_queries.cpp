@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace palpate {
+namespace palpate::collision {
 namespace {
 
 using Eigen::Vector3d;
@@ -187,4 +187,4 @@ std::optional<TriangleContact> sweep_sphere_triangle(const Vector3d& from, const
     return found ? std::optional(best) : std::nullopt;
 }
 
-}  // namespace palpate
+}  // namespace palpate::collision

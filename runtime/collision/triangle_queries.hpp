@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace palpate {
+namespace palpate::collision {
 
 /// What of a triangle a point lies on.
 enum class Feature : std::uint8_t { face, edge, vertex };
@@ -44,4 +44,4 @@ std::optional<TriangleContact> sweep_sphere_triangle(const Eigen::Vector3d& from
                                                      double radius, double limit,
                                                      const TriangleCorners& t) noexcept;
 
-}  // namespace palpate
+}  // namespace palpate::collision

@@ -14,7 +14,7 @@
 #include "runtime/realtime/device.hpp"
 #include "runtime/realtime/servo.hpp"
 
-namespace palpate {
+namespace palpate::devices {
 
 /// How a device stands in the patient.
 struct DevicePlace {
@@ -39,8 +39,8 @@ struct DeviceRequest {
 /// Devices that are open, one for each tool.
 struct OpenDevices {
     std::shared_ptr<void> driver{};  ///< what they stand on; ends after them
-    std::vector<std::shared_ptr<Device>> devices;
-    Servo* servo = nullptr;  ///< the driver's own; null: any will do
+    std::vector<std::shared_ptr<realtime::Device>> devices;
+    realtime::Servo* servo = nullptr;  ///< the driver's own; null: any will do
     /// Says where mouse and keyboard want a guided hand (p_P, mm), from one thread; empty: nobody is guided.
     std::function<void(const Eigen::Vector3d&)> guide{};
 };
@@ -66,4 +66,4 @@ inline std::optional<std::size_t> one_tool_without_address(std::string_view addr
     return address.empty() ? std::optional<std::size_t>(1) : std::nullopt;
 }
 
-}  // namespace palpate
+}  // namespace palpate::devices

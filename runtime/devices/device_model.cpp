@@ -6,7 +6,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::devices {
 namespace {
 
 // Nobody publishes a device's damping. It is put where the stated stiffness is the most that sampling leaves
@@ -91,4 +91,4 @@ const DeviceModel& find_device_model(std::string_view name) {
     throw UsageError({"device model", std::string(name), names, ""});
 }
 
-}  // namespace palpate
+}  // namespace palpate::devices

@@ -7,7 +7,7 @@
 
 #include "runtime/realtime/device.hpp"
 
-namespace palpate {
+namespace palpate::devices {
 
 /// What a force-feedback device is, as the hand feels it: along each axis a mass on ideal motors.
 struct DeviceModel {
@@ -34,4 +34,4 @@ std::span<const DeviceModel> device_models();
 /// By name; throws UsageError listing the names.
 const DeviceModel& find_device_model(std::string_view name);
 
-}  // namespace palpate
+}  // namespace palpate::devices

@@ -9,7 +9,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::devices {
 namespace {
 
 using Eigen::Vector3d;
@@ -67,14 +67,14 @@ DynamicDevice::DynamicDevice(DeviceModel model, HandImpedance impedance, HandPat
                              const std::array<double, 3>& shaft)
     : DynamicDevice(std::move(model), impedance, std::make_shared<ScriptedHand>(std::move(path)), shaft) {}
 
-DeviceState DynamicDevice::read(double time) noexcept {
+realtime::DeviceState DynamicDevice::read(double time) noexcept {
     const std::int64_t last = std::llround(time / step_s);
     while (steps_ < last) {
         step(hand_->at(static_cast<double>(++steps_) * step_s));
         warm_up();
     }
 
-    DeviceState state;
+    realtime::DeviceState state;
     state.shaft = shaft_;
     state.time = time;
     state.faults = warm_ ? motors_warm : no_fault;
@@ -150,4 +150,4 @@ void DynamicDevice::write(const std::array<double, 3>& force) noexcept {
     heating_ = lasting > 0 ? force_.squaredNorm() / (lasting * lasting) : 0;
 }
 
-}  // namespace palpate
+}  // namespace palpate::devices

@@ -12,7 +12,7 @@
 #include "runtime/devices/hand.hpp"
 #include "runtime/realtime/device.hpp"
 
-namespace palpate {
+namespace palpate::devices {
 
 /// The hand that holds a simulated device: a spring and a damper towards where it wants to be. Both zero: no
 /// hand.
@@ -31,7 +31,7 @@ struct HandImpedance {
 /// obeys T' = (F² / F_c² - T) / tau, exactly, with the force F_c that they bear for ever: T = 1 is their
 /// limit. From there until they have cooled to cool_enough the state carries motors_warm; the motors
 /// themselves go on. Same calls, same bits.
-class DynamicDevice final : public Device {
+class DynamicDevice final : public realtime::Device {
   public:
     static constexpr double step_s = 1e-3 / 16;
     static constexpr double take_up_speed = 50;  ///< mm/s; a choice
@@ -51,7 +51,7 @@ class DynamicDevice final : public Device {
     /// Moves the tip to `time` (to the nearest step; never back) and reads its encoders: each coordinate
     /// rounded down to their resolution. Cost: 16 steps of 20 to 50 ns, by the length of the path, per ms of
     /// time gone.
-    DeviceState read(double time) noexcept override;
+    realtime::DeviceState read(double time) noexcept override;
     /// `force` must be finite (asserted); its direction stays where the motors saturate.
     void write(const std::array<double, 3>& force) noexcept override;
 
@@ -86,4 +86,4 @@ class DynamicDevice final : public Device {
     bool warm_ = false;
 };
 
-}  // namespace palpate
+}  // namespace palpate::devices

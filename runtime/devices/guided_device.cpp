@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/devices/guided_device.hpp"
 
-namespace palpate {
+namespace palpate::devices {
 
-DeviceState GuidedDevice::read(double time) noexcept {
+realtime::DeviceState GuidedDevice::read(double time) noexcept {
     const Eigen::Vector3d p = hand_.at(time).position;
-    DeviceState state;
+    realtime::DeviceState state;
     state.time = time;
     state.position = {p[0], p[1], p[2]};
     state.shaft = shaft_;
     return state;
 }
 
-}  // namespace palpate
+}  // namespace palpate::devices

@@ -6,10 +6,10 @@
 #include "runtime/devices/hand.hpp"
 #include "runtime/realtime/device.hpp"
 
-namespace palpate {
+namespace palpate::devices {
 
 /// A device in a guided hand of infinite stiffness: it is where GuidedHand is, whatever the force.
-class GuidedDevice final : public Device {
+class GuidedDevice final : public realtime::Device {
   public:
     /// `start`, `max_speed`: see GuidedHand. `shaft`: see DeviceState.
     GuidedDevice(const std::array<double, 3>& start, DeviceLimits limits,
@@ -21,7 +21,7 @@ class GuidedDevice final : public Device {
 
     std::string name() const override { return "simulated, " + hand_.name(); }
     DeviceLimits limits() const override { return limits_; }
-    DeviceState read(double time) noexcept override;
+    realtime::DeviceState read(double time) noexcept override;
     void write(const std::array<double, 3>&) noexcept override {}
 
   private:
@@ -30,4 +30,4 @@ class GuidedDevice final : public Device {
     DeviceLimits limits_;
 };
 
-}  // namespace palpate
+}  // namespace palpate::devices

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace palpate {
+namespace palpate::devices {
 
 HandWish GuidedHand::at(double time) noexcept {
     const Eigen::Vector3d way = Eigen::Map<const Eigen::Vector3d>(target_.read().data()) - position_;
@@ -14,4 +14,4 @@ HandWish GuidedHand::at(double time) noexcept {
     return {position_};
 }
 
-}  // namespace palpate
+}  // namespace palpate::devices

@@ -7,7 +7,7 @@
 #include "runtime/devices/hand_path.hpp"
 #include "runtime/realtime/triple_buffer.hpp"
 
-namespace palpate {
+namespace palpate::devices {
 
 /// What a hand wants at one moment.
 struct HandWish {
@@ -52,10 +52,10 @@ class GuidedHand final : public Hand {
     HandWish at(double time) noexcept override;
 
   private:
-    TripleBuffer<std::array<double, 3>> target_;
+    realtime::TripleBuffer<std::array<double, 3>> target_;
     Eigen::Vector3d position_;
     double last_time_ = 0;
     double max_speed_;
 };
 
-}  // namespace palpate
+}  // namespace palpate::devices

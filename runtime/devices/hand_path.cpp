@@ -11,7 +11,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::devices {
 namespace {
 
 using Eigen::Vector3d;
@@ -116,4 +116,4 @@ std::vector<double> read_column(const std::filesystem::path& file, std::size_t c
     return values;
 }
 
-}  // namespace palpate
+}  // namespace palpate::devices

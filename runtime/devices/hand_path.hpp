@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace palpate {
+namespace palpate::devices {
 
 /// Where a scripted hand is at each time: straight lines between keys, standing still before and after.
 class HandPath {
@@ -91,4 +91,4 @@ std::vector<double> read_column(const std::filesystem::path& file, std::size_t c
 /// between, '#' and '%' start comments. Throws InvalidInput naming file and line.
 HandPath read_hand_path(const std::filesystem::path& file);
 
-}  // namespace palpate
+}  // namespace palpate::devices

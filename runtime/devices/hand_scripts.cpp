@@ -9,7 +9,7 @@
 #include "formats/model/errors.hpp"
 #include "runtime/devices/hand_path.hpp"
 
-namespace palpate {
+namespace palpate::devices {
 namespace {
 
 using Eigen::Vector3d;
@@ -186,4 +186,4 @@ HandPath recorded_axis_path(const TouchPoint& target, const ScriptSettings& sett
     return HandPath(std::move(keys));
 }
 
-}  // namespace palpate
+}  // namespace palpate::devices

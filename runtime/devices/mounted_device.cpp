@@ -6,9 +6,10 @@
 
 #include "formats/model/arrays.hpp"
 
-namespace palpate {
+namespace palpate::devices {
 namespace {
 
+using namespace realtime;
 using Eigen::Vector3d;
 
 constexpr double rigid_tolerance = 1e-9;  // of products of rotations in double
@@ -74,4 +75,4 @@ Vector3d workspace_middle(const DeviceLimits& limits) {
     return 0.5 * (vector_of(limits.workspace_low) + vector_of(limits.workspace_high));
 }
 
-}  // namespace palpate
+}  // namespace palpate::devices

@@ -6,28 +6,28 @@
 
 #include "runtime/realtime/device.hpp"
 
-namespace palpate {
+namespace palpate::devices {
 
 /// A device at its place in the patient: maps positions and directions from its frame D to P, and forces
 /// back. Lengths and forces keep their size.
-class MountedDevice final : public Device {
+class MountedDevice final : public realtime::Device {
   public:
     /// `device` must outlive this. `X_PD`: a rigid motion (asserted), mm.
-    MountedDevice(Device& device, const Eigen::Isometry3d& X_PD);
+    MountedDevice(realtime::Device& device, const Eigen::Isometry3d& X_PD);
     /// The same, owning the device, which must not be null (asserted).
-    MountedDevice(std::unique_ptr<Device> device, const Eigen::Isometry3d& X_PD);
+    MountedDevice(std::unique_ptr<realtime::Device> device, const Eigen::Isometry3d& X_PD);
 
     std::string name() const override { return device_.name(); }
     /// The device's own, its workspace as the box in P around its corners.
     DeviceLimits limits() const override;
-    Calibration calibration() override { return device_.calibration(); }
+    realtime::Calibration calibration() override { return device_.calibration(); }
     void calibrate() override { device_.calibrate(); }
-    DeviceState read(double time) noexcept override;
+    realtime::DeviceState read(double time) noexcept override;
     void write(const std::array<double, 3>& force) noexcept override;
 
   private:
-    std::unique_ptr<Device> owned_;  // null: another's
-    Device& device_;
+    std::unique_ptr<realtime::Device> owned_;  // null: another's
+    realtime::Device& device_;
     Eigen::Isometry3d X_PD_;
 };
 
@@ -49,4 +49,4 @@ Eigen::Isometry3d mount_upright(const Eigen::Vector3d& p_D, const Eigen::Vector3
 /// The middle of a device's workspace, p_D, mm; the origin where the workspace is not known.
 Eigen::Vector3d workspace_middle(const DeviceLimits& limits);
 
-}  // namespace palpate
+}  // namespace palpate::devices

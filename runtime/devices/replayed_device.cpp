@@ -6,7 +6,9 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::devices {
+
+using namespace realtime;
 
 ReplayedDevice::ReplayedDevice(std::vector<DeviceState> states, DeviceLimits limits)
     : states_(std::move(states)), limits_(limits) {
@@ -21,4 +23,4 @@ DeviceState ReplayedDevice::read(double time) noexcept {
     return state;
 }
 
-}  // namespace palpate
+}  // namespace palpate::devices

@@ -5,24 +5,24 @@
 
 #include "runtime/realtime/device.hpp"
 
-namespace palpate {
+namespace palpate::devices {
 
 /// A device that repeats what another one said, one state per millisecond, whatever the force.
-class ReplayedDevice final : public Device {
+class ReplayedDevice final : public realtime::Device {
   public:
     /// `states`: of the ticks at 0, 1, 2 ... ms; their times are not looked at. Throws InvalidInput if there
     /// is none.
-    ReplayedDevice(std::vector<DeviceState> states, DeviceLimits limits);
+    ReplayedDevice(std::vector<realtime::DeviceState> states, DeviceLimits limits);
 
     std::string name() const override { return "replayed"; }
     DeviceLimits limits() const override { return limits_; }
     /// The state of the tick nearest to `time` (s); the first before all, the last after all.
-    DeviceState read(double time) noexcept override;
+    realtime::DeviceState read(double time) noexcept override;
     void write(const std::array<double, 3>&) noexcept override {}
 
   private:
-    std::vector<DeviceState> states_;
+    std::vector<realtime::DeviceState> states_;
     DeviceLimits limits_;
 };
 
-}  // namespace palpate
+}  // namespace palpate::devices

@@ -6,7 +6,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::devices {
 
 SimulatedDevice::SimulatedDevice(HandPath path, DeviceLimits limits, const std::array<double, 3>& shaft)
     : path_(std::move(path)), limits_(limits), shaft_(shaft) {
@@ -15,13 +15,13 @@ SimulatedDevice::SimulatedDevice(HandPath path, DeviceLimits limits, const std::
                           "simulate the device with --device"});
 }
 
-DeviceState SimulatedDevice::read(double time) noexcept {
+realtime::DeviceState SimulatedDevice::read(double time) noexcept {
     const Eigen::Vector3d p = path_.at(time);
-    DeviceState state;
+    realtime::DeviceState state;
     state.time = time;
     state.position = {p[0], p[1], p[2]};
     state.shaft = shaft_;
     return state;
 }
 
-}  // namespace palpate
+}  // namespace palpate::devices

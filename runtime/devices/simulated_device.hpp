@@ -6,10 +6,10 @@
 #include "runtime/devices/hand_path.hpp"
 #include "runtime/realtime/device.hpp"
 
-namespace palpate {
+namespace palpate::devices {
 
 /// A device in a hand of infinite stiffness: it is where its path says, whatever the force.
-class SimulatedDevice final : public Device {
+class SimulatedDevice final : public realtime::Device {
   public:
     /// `shaft`: see DeviceState. Throws UsageError if the path lets go: without a mass there is no telling
     /// where the device would go.
@@ -17,7 +17,7 @@ class SimulatedDevice final : public Device {
 
     std::string name() const override { return "simulated, scripted hand"; }
     DeviceLimits limits() const override { return limits_; }
-    DeviceState read(double time) noexcept override;
+    realtime::DeviceState read(double time) noexcept override;
     void write(const std::array<double, 3>&) noexcept override {}
 
   private:
@@ -26,4 +26,4 @@ class SimulatedDevice final : public Device {
     std::array<double, 3> shaft_;
 };
 
-}  // namespace palpate
+}  // namespace palpate::devices

@@ -10,7 +10,7 @@
 #include "runtime/devices/mounted_device.hpp"
 #include "runtime/devices/simulated_device.hpp"
 
-namespace palpate {
+namespace palpate::devices {
 namespace {
 
 using Eigen::Vector3d;
@@ -91,4 +91,4 @@ std::vector<DeviceKind> simulated_kinds() {
     return kinds;
 }
 
-}  // namespace palpate
+}  // namespace palpate::devices

@@ -8,7 +8,7 @@
 #include "runtime/devices/device_kind.hpp"
 #include "runtime/devices/device_model.hpp"
 
-namespace palpate {
+namespace palpate::devices {
 
 /// A tool whose hand follows `path` (frame P), at whose beginning the device is placed with its y axis along
 /// `up` (unit), as upright(). `shaft`: see DeviceState, frame P.
@@ -24,4 +24,4 @@ DeviceKind stiff_hand_kind();
 /// throws as DynamicDevice.
 std::vector<DeviceKind> simulated_kinds();
 
-}  // namespace palpate
+}  // namespace palpate::devices

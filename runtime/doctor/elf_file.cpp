@@ -12,7 +12,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::doctor {
 namespace {
 
 #if defined(__aarch64__)
@@ -148,4 +148,4 @@ ElfFile read_elf_file(const std::filesystem::path& path) {
     return result;
 }
 
-}  // namespace palpate
+}  // namespace palpate::doctor

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace palpate {
+namespace palpate::doctor {
 
 /// What a shared library says of itself.
 struct ElfFile {
@@ -18,4 +18,4 @@ struct ElfFile {
 /// the file's size. Throws InvalidInput if this is not a whole shared library. Source: elf(5).
 ElfFile read_elf_file(const std::filesystem::path& path);
 
-}  // namespace palpate
+}  // namespace palpate::doctor

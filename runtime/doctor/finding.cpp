@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace palpate {
+namespace palpate::doctor {
 
 const char* name_of(Level level) {
     return level == Level::ok ? "ok" : level == Level::warning ? "warning" : "problem";
@@ -13,4 +13,4 @@ std::size_t count(const Findings& findings, Level level) {
     return static_cast<std::size_t>(std::ranges::count(findings, level, &Finding::level));
 }
 
-}  // namespace palpate
+}  // namespace palpate::doctor

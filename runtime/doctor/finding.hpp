@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace palpate {
+namespace palpate::doctor {
 
 enum class Level {
     ok,       ///< as it should be, or only worth knowing
@@ -37,4 +37,4 @@ const char* name_of(Level level);
 /// How many of the findings are of a level.
 std::size_t count(const Findings& findings, Level level);
 
-}  // namespace palpate
+}  // namespace palpate::doctor

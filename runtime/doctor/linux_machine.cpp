@@ -13,8 +13,10 @@
 
 #include "runtime/doctor/machine.hpp"
 
-namespace palpate {
+namespace palpate::doctor {
 namespace {
+
+using namespace realtime;
 
 std::map<std::string, std::string> environment() {
     std::map<std::string, std::string> result;
@@ -88,4 +90,4 @@ Machine this_machine() {
     return machine;
 }
 
-}  // namespace palpate
+}  // namespace palpate::doctor

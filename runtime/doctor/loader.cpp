@@ -7,7 +7,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::doctor {
 namespace {
 
 #if defined(__aarch64__)
@@ -153,4 +153,4 @@ std::vector<std::string> run_folders_of(const LibraryPlace& library) {
     return folders;
 }
 
-}  // namespace palpate
+}  // namespace palpate::doctor

@@ -8,7 +8,7 @@
 #include "runtime/doctor/elf_file.hpp"
 #include "runtime/doctor/machine.hpp"
 
-namespace palpate {
+namespace palpate::doctor {
 
 /// Where a library is, as the machine's loader sees it.
 struct LibraryPlace {
@@ -37,4 +37,4 @@ std::optional<LibraryPlace> library_at(const Machine& machine, const std::filesy
 /// The folders in which a library wants its own needs looked for, "$ORIGIN" replaced by its own folder.
 std::vector<std::string> run_folders_of(const LibraryPlace& library);
 
-}  // namespace palpate
+}  // namespace palpate::doctor

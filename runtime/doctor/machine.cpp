@@ -3,7 +3,7 @@
 
 #include <fstream>
 
-namespace palpate {
+namespace palpate::doctor {
 
 std::filesystem::path in_root(const Machine& machine, const std::filesystem::path& path) {
     return machine.root / path.relative_path();
@@ -28,4 +28,4 @@ std::string variable(const Machine& machine, const std::string& name) {
     return found == machine.environment.end() ? "" : found->second;
 }
 
-}  // namespace palpate
+}  // namespace palpate::doctor

@@ -9,7 +9,7 @@
 
 #include "runtime/realtime/thread_setup.hpp"
 
-namespace palpate {
+namespace palpate::doctor {
 
 /// What the checks know of a machine beside its files.
 struct Machine {
@@ -23,9 +23,9 @@ struct Machine {
     bool superuser = false;
     std::map<std::string, std::string> environment;
     unsigned cores = 1;                    ///< that this process may use
-    SetupResult fifo;                      ///< SCHED_FIFO, tried on a thread
+    realtime::SetupResult fifo;            ///< SCHED_FIFO, tried on a thread
     std::uint64_t fifo_limit = 0;          ///< highest that an unprivileged process may ask
-    SetupResult locked_memory;             ///< all pages of this process, tried and let go
+    realtime::SetupResult locked_memory;   ///< all pages of this process, tried and let go
     std::uint64_t locked_bytes_limit = 0;  ///< that an unprivileged process may lock
     double clock_resolution_ns = 0;        ///< of the monotonic clock's timers
     char decimal_point = '.';              ///< of the user's locale
@@ -42,4 +42,4 @@ std::optional<std::string> text_of(const Machine& machine, const std::filesystem
 /// An environment variable; empty if it is not set.
 std::string variable(const Machine& machine, const std::string& name);
 
-}  // namespace palpate
+}  // namespace palpate::doctor

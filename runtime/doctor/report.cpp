@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-namespace palpate {
+namespace palpate::doctor {
 namespace {
 
 bool in_word(char c) {
@@ -72,4 +72,4 @@ nlohmann::ordered_json report_json(const Findings& findings, const Machine& mach
     return rows;
 }
 
-}  // namespace palpate
+}  // namespace palpate::doctor

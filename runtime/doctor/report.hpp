@@ -6,7 +6,7 @@
 #include "runtime/doctor/finding.hpp"
 #include "runtime/doctor/machine.hpp"
 
-namespace palpate {
+namespace palpate::doctor {
 
 /// The findings for a person: a heading for each group, a line for each finding, its fix below.
 std::string report_text(const Findings& findings);
@@ -18,4 +18,4 @@ nlohmann::ordered_json report_json(const Findings& findings, const Machine& mach
 /// stand as words of their own.
 std::string anonymous(std::string text, const Machine& machine);
 
-}  // namespace palpate
+}  // namespace palpate::doctor

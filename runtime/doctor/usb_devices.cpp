@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <unistd.h>
 
-namespace palpate {
+namespace palpate::doctor {
 namespace {
 
 // The name of the character device that the kernel made of a USB device's interfaces.
@@ -46,4 +46,4 @@ std::vector<UsbDevice> find_usb_devices(const Machine& machine) {
     return devices;
 }
 
-}  // namespace palpate
+}  // namespace palpate::doctor

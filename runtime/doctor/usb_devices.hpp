@@ -5,7 +5,7 @@
 
 #include "runtime/doctor/machine.hpp"
 
-namespace palpate {
+namespace palpate::doctor {
 
 /// A Phantom on a USB port.
 struct UsbDevice {
@@ -18,4 +18,4 @@ struct UsbDevice {
 /// 0301:2988, which has the two swapped (jhu-saw/sawSensablePhantom, README). In the order of their ports.
 std::vector<UsbDevice> find_usb_devices(const Machine& machine);
 
-}  // namespace palpate
+}  // namespace palpate::doctor

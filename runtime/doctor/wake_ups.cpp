@@ -9,8 +9,10 @@
 #include "runtime/realtime/periodic_clock.hpp"
 #include "runtime/realtime/servo.hpp"
 
-namespace palpate {
+namespace palpate::doctor {
 namespace {
+
+using namespace realtime;
 
 constexpr const char* measured_group = "measured";
 
@@ -91,4 +93,4 @@ Findings wake_up_findings(const WakeUps& servo, const WakeUps& without_priority,
     return findings;
 }
 
-}  // namespace palpate
+}  // namespace palpate::doctor

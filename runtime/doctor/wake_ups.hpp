@@ -5,13 +5,13 @@
 #include "runtime/doctor/finding.hpp"
 #include "runtime/realtime/histogram.hpp"
 
-namespace palpate {
+namespace palpate::doctor {
 
 /// How a thread that asks to be woken every millisecond was woken.
 struct WakeUps {
-    bool real_time = false;   ///< with SCHED_FIFO
-    Histogram late_ns;        ///< by how much, each deadline once, those slept through included
-    std::int64_t missed = 0;  ///< deadlines slept through
+    bool real_time = false;       ///< with SCHED_FIFO
+    realtime::Histogram late_ns;  ///< by how much, each deadline once, those slept through included
+    std::int64_t missed = 0;      ///< deadlines slept through
 
     /// Counts one wake-up; `missed_so_far` as in ServoTick::overruns. Realtime-safe.
     void add(std::int64_t late, std::int64_t missed_so_far) noexcept;
@@ -35,4 +35,4 @@ int rate_held(const WakeUps& wake_ups);
 /// What the two measurements say of this machine.
 Findings wake_up_findings(const WakeUps& servo, const WakeUps& without_priority, Purpose purpose);
 
-}  // namespace palpate
+}  // namespace palpate::doctor

@@ -3,11 +3,11 @@
 
 #include "runtime/realtime/periodic_clock.hpp"
 
-namespace palpate {
+namespace palpate::haptics {
 
 void CollisionLoop::start() {
     thread_ = std::thread([this] {
-        PeriodicClock clock(period_ns);
+        realtime::PeriodicClock clock(period_ns);
         while (!stop_requested_.load(std::memory_order_relaxed)) {
             clock.wait();
             detect_();
@@ -21,4 +21,4 @@ void CollisionLoop::stop() {
     thread_.join();
 }
 
-}  // namespace palpate
+}  // namespace palpate::haptics

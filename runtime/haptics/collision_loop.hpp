@@ -6,7 +6,7 @@
 #include <thread>
 #include <utility>
 
-namespace palpate {
+namespace palpate::haptics {
 
 /// The published collision loop: a thread that calls `detect` 30 times a second, with 30 as its fixed rate
 /// (§4.2 of the paper named in published_contact.hpp). A period that `detect` overruns is skipped.
@@ -32,4 +32,4 @@ class CollisionLoop {
     std::thread thread_;
 };
 
-}  // namespace palpate
+}  // namespace palpate::haptics

@@ -5,7 +5,7 @@
 
 #include "formats/records/tick_result.hpp"
 
-namespace palpate {
+namespace palpate::haptics {
 namespace {
 
 constexpr int gentle_ticks = 100;  // that a force takes at least to grow from zero to the largest one
@@ -52,4 +52,4 @@ Eigen::Vector3d ForceLimiter::ramp_to_zero() noexcept {
     return last_;
 }
 
-}  // namespace palpate
+}  // namespace palpate::haptics

@@ -6,7 +6,7 @@
 
 #include "formats/model/body.hpp"
 
-namespace palpate {
+namespace palpate::haptics {
 
 /// Keeps the commanded force within what device and hand may bear, and takes it away where something is
 /// wrong. Realtime-safe.
@@ -44,4 +44,4 @@ class ForceLimiter {
     int ticks_well_ = ramp_ticks + return_ticks;  // since the last fault; counted no further than this
 };
 
-}  // namespace palpate
+}  // namespace palpate::haptics

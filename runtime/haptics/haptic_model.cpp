@@ -7,7 +7,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::haptics {
 namespace {
 
 constexpr double period = 1e-3;  // s
@@ -80,4 +80,4 @@ void HapticModel::reset() noexcept {
     tick_ = 0;
 }
 
-}  // namespace palpate
+}  // namespace palpate::haptics

@@ -17,7 +17,7 @@
 #include "runtime/haptics/methods/contact_methods.hpp"
 #include "runtime/realtime/device.hpp"
 
-namespace palpate {
+namespace palpate::haptics {
 
 /// The stiffest virtual coupling that keeps a sampled spring passive on a device (N/mm): the least of what
 /// the case asks for, the device's stated maximum, and 2 b / T for a device of damping b read every T = 1 ms
@@ -53,10 +53,12 @@ class HapticModel {
     /// goes to zero, see ForceLimiter; contacts are followed as long as the position is trusted. A tool that
     /// is found again more than 5 mm away starts anew: it does not feel a body that it is in until it has
     /// been clear of it. One thread; realtime-safe: no allocation, lock or I/O.
-    void tick(std::span<const DeviceState> devices, std::span<TickResult> results,
+    void tick(std::span<const realtime::DeviceState> devices, std::span<TickResult> results,
               std::uint32_t faults = no_fault) noexcept;
     /// The same with one tool.
-    void tick(const DeviceState& device, TickResult& result) noexcept { tick({&device, 1}, {&result, 1}); }
+    void tick(const realtime::DeviceState& device, TickResult& result) noexcept {
+        tick({&device, 1}, {&result, 1});
+    }
 
     /// The collision loop of a method that needs detection, to be called 30 times a second from one thread,
     /// which may be another than tick()'s; nothing for others.
@@ -74,7 +76,7 @@ class HapticModel {
     std::size_t rigid_count() const noexcept { return bodies_.rigid_count(); }
     const std::string& body_name(std::size_t body) const { return bodies_.names[body]; }
     /// The rest surface of a body. Safe beside a running tick.
-    const CollisionSurface& surface(std::size_t body) const { return *bodies_.surfaces[body]; }
+    const collision::CollisionSurface& surface(std::size_t body) const { return *bodies_.surfaces[body]; }
 
     /// Writes the displacement (mm) of every surface vertex of deformable body `body` (>= rigid_count())
     /// under the contacts of a tick: u = -sum_k C (f_k n_k + friction_k), zero at fixed nodes.
@@ -90,7 +92,7 @@ class HapticModel {
         bool lost = false;                                   // the last position was not
     };
 
-    ContactPose begin(Tool& tool, const DeviceState& device, TickResult& result) noexcept;
+    ContactPose begin(Tool& tool, const realtime::DeviceState& device, TickResult& result) noexcept;
 
     HapticSettings settings_;
     const ContactMethodEntry& method_;
@@ -103,4 +105,4 @@ class HapticModel {
     std::int64_t tick_ = 0;
 };
 
-}  // namespace palpate
+}  // namespace palpate::haptics

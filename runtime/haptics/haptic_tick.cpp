@@ -5,7 +5,7 @@
 #include "formats/model/arrays.hpp"
 #include "runtime/haptics/haptic_model.hpp"
 
-namespace palpate {
+namespace palpate::haptics {
 namespace {
 
 using Eigen::Vector3d;
@@ -22,7 +22,7 @@ void HapticModel::detect_at(const std::array<double, 3>& device, std::int64_t ti
     contact_->detect_at(device, tick);
 }
 
-void HapticModel::tick(std::span<const DeviceState> devices, std::span<TickResult> results,
+void HapticModel::tick(std::span<const realtime::DeviceState> devices, std::span<TickResult> results,
                        std::uint32_t faults) noexcept {
     assert(devices.size() == tools_.size() && results.size() == tools_.size());
     for (std::size_t t = 0; t < tools_.size(); ++t) {
@@ -38,7 +38,7 @@ void HapticModel::tick(std::span<const DeviceState> devices, std::span<TickResul
             array_of(tools_[t].limiter.limit(forces_[t], results[t].faults, results[t].status));
 }
 
-ContactPose HapticModel::begin(Tool& tool, const DeviceState& device, TickResult& result) noexcept {
+ContactPose HapticModel::begin(Tool& tool, const realtime::DeviceState& device, TickResult& result) noexcept {
     result.tick = tick_;
     result.time = device.time;
     result.device_position = result.tool_position = device.position;
@@ -70,4 +70,4 @@ void HapticModel::surface_displacement(std::size_t body, const TickResult& resul
     bodies_.deformable[body - rigid_count()].surface_displacement(result.active_contacts(), displacements);
 }
 
-}  // namespace palpate
+}  // namespace palpate::haptics

@@ -9,7 +9,9 @@
 #include "formats/model/errors.hpp"
 #include "runtime/realtime/periodic_clock.hpp"
 
-namespace palpate {
+namespace palpate::haptics {
+
+using namespace realtime;
 
 ServoLoop::ServoLoop(HapticModel& model, std::span<Device* const> devices, Servo* servo,
                      std::size_t ring_capacity)
@@ -121,4 +123,4 @@ ServoStatistics ServoLoop::statistics() const {
     return statistics;
 }
 
-}  // namespace palpate
+}  // namespace palpate::haptics

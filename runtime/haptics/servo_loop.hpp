@@ -19,16 +19,16 @@
 #include "runtime/realtime/spsc_ring.hpp"
 #include "runtime/realtime/triple_buffer.hpp"
 
-namespace palpate {
+namespace palpate::haptics {
 
 /// What a finished loop measured.
 struct ServoStatistics {
     std::int64_t ticks = 0;
     std::int64_t overruns = 0;       ///< periods skipped
     std::uint64_t lost_records = 0;  ///< ticks that found the ring full
-    Histogram tick_ns;               ///< read, contact, force, write
-    Histogram wake_latency_ns;
-    std::vector<SetupResult> setup;  ///< priority and memory, as granted
+    realtime::Histogram tick_ns;     ///< read, contact, force, write
+    realtime::Histogram wake_latency_ns;
+    std::vector<realtime::SetupResult> setup;  ///< priority and memory, as granted
 };
 
 /// The haptic loop: at 1 kHz reads the devices, ticks the model, writes the forces, and publishes the results
@@ -37,7 +37,7 @@ struct ServoStatistics {
 /// while it runs.
 class ServoLoop {
   public:
-    static constexpr std::int64_t period_ns = Servo::period_ns;
+    static constexpr std::int64_t period_ns = realtime::Servo::period_ns;
     /// So many periods late, or skipped at once, are the fault tick_late.
     static constexpr std::int64_t late_periods = 10;
     /// So long after the last visual_beat() is the fault visual_stopped.
@@ -46,9 +46,9 @@ class ServoLoop {
     /// Takes one device for each of the model's tools and couples the model to what all of them bear. Ticks
     /// in `servo`, or if that is null in a PeriodicServo of its own. Throws InvalidInput if there are not as
     /// many devices.
-    ServoLoop(HapticModel& model, std::span<Device* const> devices, Servo* servo = nullptr,
-              std::size_t ring_capacity = 4096);
-    ServoLoop(HapticModel& model, Device& device, std::size_t ring_capacity = 4096)
+    ServoLoop(HapticModel& model, std::span<realtime::Device* const> devices,
+              realtime::Servo* servo = nullptr, std::size_t ring_capacity = 4096);
+    ServoLoop(HapticModel& model, realtime::Device& device, std::size_t ring_capacity = 4096)
         : ServoLoop(model, std::array{&device}, nullptr, ring_capacity) {}
     ServoLoop(const ServoLoop&) = delete;
     ServoLoop& operator=(const ServoLoop&) = delete;
@@ -65,9 +65,9 @@ class ServoLoop {
     /// ticks. `sink` gets each tool's result of each tick. Instead of start(): for tests and for runs that
     /// must not depend on the machine.
     void run_virtual(std::int64_t ticks, const std::function<void(const TickResult&)>& sink,
-                     const std::function<ServoTick(std::int64_t)>& wake = in_time);
+                     const std::function<realtime::ServoTick(std::int64_t)>& wake = in_time);
     /// A wake-up that is never late.
-    static ServoTick in_time(std::int64_t tick) noexcept {
+    static realtime::ServoTick in_time(std::int64_t tick) noexcept {
         return {1e-9 * static_cast<double>(tick * period_ns), 0, 0};
     }
 
@@ -76,30 +76,31 @@ class ServoLoop {
     /// The visual side, once a frame: says that it still draws. Watched from the first call on.
     void visual_beat() noexcept;
     /// Runs other threads' functions between two ticks.
-    ServoCallbacks& callbacks() noexcept { return callbacks_; }
+    realtime::ServoCallbacks& callbacks() noexcept { return callbacks_; }
 
     /// The latest result of one tool, for one reader.
-    TripleBuffer<TickResult>& latest(std::size_t tool = 0) noexcept { return *latest_[tool]; }
+    realtime::TripleBuffer<TickResult>& latest(std::size_t tool = 0) noexcept { return *latest_[tool]; }
     /// The results of all tools, for one consumer; may stay unread.
-    SpscRing<TickResult>& ring() noexcept { return ring_; }
+    realtime::SpscRing<TickResult>& ring() noexcept { return ring_; }
     /// Only while the loop is not running.
     ServoStatistics statistics() const;
 
   private:
-    void step(const ServoTick& wake) noexcept;
-    std::uint32_t faults_of(const ServoTick& wake, std::int64_t now_ns) noexcept;
+    void step(const realtime::ServoTick& wake) noexcept;
+    std::uint32_t faults_of(const realtime::ServoTick& wake, std::int64_t now_ns) noexcept;
     void count_stopping() noexcept;
 
     HapticModel& model_;
-    std::vector<Device*> devices_;
-    PeriodicServo own_servo_;
-    Servo& servo_;
-    std::vector<std::unique_ptr<TripleBuffer<TickResult>>> latest_;  // one per tool, as are the next two
-    std::vector<DeviceState> states_;
+    std::vector<realtime::Device*> devices_;
+    realtime::PeriodicServo own_servo_;
+    realtime::Servo& servo_;
+    // One per tool, as are the next two.
+    std::vector<std::unique_ptr<realtime::TripleBuffer<TickResult>>> latest_;
+    std::vector<realtime::DeviceState> states_;
     std::vector<TickResult> results_;
-    SpscRing<TickResult> ring_;
+    realtime::SpscRing<TickResult> ring_;
     CollisionLoop collision_;
-    ServoCallbacks callbacks_;
+    realtime::ServoCallbacks callbacks_;
     ServoStatistics statistics_;
     std::atomic<std::uint32_t> faults_{no_fault};  // that other threads have told of
     std::atomic<std::int64_t> visual_beat_ns_{0};  // 0: never
@@ -108,4 +109,4 @@ class ServoLoop {
     bool running_ = false;
 };
 
-}  // namespace palpate
+}  // namespace palpate::haptics

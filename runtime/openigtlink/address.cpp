@@ -6,7 +6,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::openigtlink {
 namespace {
 
 constexpr const char* tracker_example = "write HOST:PORT or HOST:PORT/NAME, as in 127.0.0.1:18944/Stylus";
@@ -53,4 +53,4 @@ TcpAddress parse_stream_address(std::string_view text) {
     return parse_address(text, text, stream_example);
 }
 
-}  // namespace palpate
+}  // namespace palpate::openigtlink

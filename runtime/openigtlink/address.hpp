@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace palpate {
+namespace palpate::openigtlink {
 
 /// A TCP end: an IPv4 address or a name that resolves to one, and a port.
 struct TcpAddress {
@@ -30,4 +30,4 @@ TrackerAddress parse_tracker_address(std::string_view text);
 /// UsageError as above.
 TcpAddress parse_stream_address(std::string_view text);
 
-}  // namespace palpate
+}  // namespace palpate::openigtlink

@@ -6,7 +6,7 @@
 
 #include "formats/records/tick_result.hpp"
 
-namespace palpate {
+namespace palpate::openigtlink {
 
 /// Computes where a contact is (p_P, mm): the weighted sum of its vertices. With a body's rest vertices it is
 /// the point at rest; with displaced ones (rest + HapticModel::surface_displacement) where it is now.
@@ -22,4 +22,4 @@ inline Eigen::Vector3d contact_point(const Contact& contact,
     return point;
 }
 
-}  // namespace palpate
+}  // namespace palpate::openigtlink

@@ -11,7 +11,7 @@
 #include <igtl_transform.h>
 #include <igtl_util.h>
 
-namespace palpate {
+namespace palpate::openigtlink {
 namespace {
 
 constexpr std::uint64_t largest_body = std::uint64_t{1} << 30;
@@ -131,4 +131,4 @@ std::optional<int> read_status_code(const MessageHead& head, std::span<const std
     return big_endian<std::uint16_t>(*content);
 }
 
-}  // namespace palpate
+}  // namespace palpate::openigtlink

@@ -8,7 +8,7 @@
 
 #include "runtime/openigtlink/tool_pose.hpp"
 
-namespace palpate {
+namespace palpate::openigtlink {
 
 /// What every OpenIGTLink message begins with.
 struct MessageHead {
@@ -46,4 +46,4 @@ PoseReading read_pose(const MessageHead& head, std::span<const std::byte> body);
 /// Reads a STATUS message's code, 1 where all is well; nullopt if the body is too short.
 std::optional<int> read_status_code(const MessageHead& head, std::span<const std::byte> body);
 
-}  // namespace palpate
+}  // namespace palpate::openigtlink

@@ -8,7 +8,7 @@
 #include "formats/model/errors.hpp"
 #include "runtime/openigtlink/tool_pose.hpp"
 
-namespace palpate {
+namespace palpate::openigtlink {
 namespace {
 
 using std::chrono::steady_clock;
@@ -67,7 +67,7 @@ void append_fault_status(MessageBytes& out, std::uint64_t time, std::uint32_t fa
 SessionStream::SessionStream(const StreamSettings& settings)
     : settings_(checked(settings)), listener_(listen_at(settings.address)), port_(port_of(listener_)) {
     for (std::size_t tool = 0; tool < settings_.tool_count; ++tool)
-        shown_.push_back(std::make_unique<TripleBuffer<Shown>>());
+        shown_.push_back(std::make_unique<realtime::TripleBuffer<Shown>>());
     thread_ = std::thread([this] { run(); });
 }
 
@@ -221,4 +221,4 @@ void SessionStream::flush(Client& client) {
     client.unsent.erase(client.unsent.begin(), client.unsent.begin() + static_cast<std::ptrdiff_t>(*count));
 }
 
-}  // namespace palpate
+}  // namespace palpate::openigtlink

@@ -19,7 +19,7 @@
 #include "runtime/openigtlink/write_message.hpp"
 #include "runtime/realtime/triple_buffer.hpp"
 
-namespace palpate {
+namespace palpate::openigtlink {
 
 /// Where and how a session is streamed.
 struct StreamSettings {
@@ -105,8 +105,8 @@ class SessionStream {
     StreamSettings settings_;
     TcpSocket listener_;
     std::uint16_t port_;
-    std::vector<std::unique_ptr<TripleBuffer<Shown>>> shown_;  // one per tool
-    std::atomic<std::uint32_t> faults_seen_{no_fault};         // since the last frame
+    std::vector<std::unique_ptr<realtime::TripleBuffer<Shown>>> shown_;  // one per tool
+    std::atomic<std::uint32_t> faults_seen_{no_fault};                   // since the last frame
 
     std::vector<Client> clients_;  // these are the thread's
     MessageBytes frame_;
@@ -119,4 +119,4 @@ class SessionStream {
     std::thread thread_;
 };
 
-}  // namespace palpate
+}  // namespace palpate::openigtlink

@@ -15,7 +15,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::openigtlink {
 namespace {
 
 std::string text_of(int error) {
@@ -145,4 +145,4 @@ TcpSocket accept_from(const TcpSocket& listener) {
     return socket;
 }
 
-}  // namespace palpate
+}  // namespace palpate::openigtlink

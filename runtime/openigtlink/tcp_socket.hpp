@@ -10,7 +10,7 @@
 
 #include "runtime/openigtlink/address.hpp"
 
-namespace palpate {
+namespace palpate::openigtlink {
 
 /// One end of a TCP connection, or a listening end; closed where it ends. Nothing here waits longer than it
 /// is told to or raises a signal. One thread at a time.
@@ -61,4 +61,4 @@ std::uint16_t port_of(const TcpSocket& listener);
 /// in the system to be sent to it, so that what it gets is not old.
 TcpSocket accept_from(const TcpSocket& listener);
 
-}  // namespace palpate
+}  // namespace palpate::openigtlink

@@ -2,7 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 
-namespace palpate {
+namespace palpate::openigtlink {
 
 /// A tool as a tracker tells of it, in LPS. OpenIGTLink's frame is RAS: converted on reading and writing,
 /// nowhere else.
@@ -21,4 +21,4 @@ inline Eigen::Vector3d flip_lps_ras(const Eigen::Vector3d& v) {
 /// `axis`: z, unit; zero gives the identity.
 Eigen::Matrix3d rotation_with_z(const Eigen::Vector3d& axis);
 
-}  // namespace palpate
+}  // namespace palpate::openigtlink

@@ -5,7 +5,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::openigtlink {
 namespace {
 
 using std::chrono::milliseconds;
@@ -64,9 +64,9 @@ std::string TrackedDevice::name() const {
     return "tracked tool '" + followed_ + "' from " + to_string(address_.server) + ", without force";
 }
 
-DeviceState TrackedDevice::read(double time) noexcept {
+realtime::DeviceState TrackedDevice::read(double time) noexcept {
     const Latest& latest = latest_.read();
-    DeviceState state;
+    realtime::DeviceState state;
     state.time = time;
     state.position = latest.position;
     state.shaft = latest.shaft;
@@ -228,4 +228,4 @@ std::string TrackedDevice::what_was_heard() const {
            (report_.last_problem.empty() ? "" : " (" + report_.last_problem + ")");
 }
 
-}  // namespace palpate
+}  // namespace palpate::openigtlink

@@ -16,7 +16,7 @@
 #include "runtime/realtime/device.hpp"
 #include "runtime/realtime/triple_buffer.hpp"
 
-namespace palpate {
+namespace palpate::openigtlink {
 
 /// How long a tracked device waits.
 struct TrackerPatience {
@@ -44,7 +44,7 @@ struct TrackerReport {
 /// invalid_position from a pose that read_pose() refuses, or a STATUS of the same name other than OK, until
 /// the next good pose. The last good position stays in the state. Messages with a wrong CRC count as not
 /// come. A message's size never decides how much memory is used.
-class TrackedDevice final : public Device {
+class TrackedDevice final : public realtime::Device {
   public:
     /// Returns when the first pose has come. Throws InvalidInput naming host, port and what was heard if the
     /// host is unknown or no pose comes in time.
@@ -56,7 +56,7 @@ class TrackedDevice final : public Device {
     std::string name() const override;
     DeviceLimits limits() const override { return {}; }
     /// Wait-free.
-    DeviceState read(double time) noexcept override;
+    realtime::DeviceState read(double time) noexcept override;
     void write(const std::array<double, 3>&) noexcept override {}
 
     /// Not from the servo's thread: it locks.
@@ -86,7 +86,7 @@ class TrackedDevice final : public Device {
     TrackerAddress address_;
     TrackerPatience patience_;
     ResolvedAddress server_;
-    TripleBuffer<Latest> latest_;
+    realtime::TripleBuffer<Latest> latest_;
     Latest pose_;                  // the receiver's
     std::vector<std::byte> body_;  // the receiver's, of fixed size
 
@@ -101,4 +101,4 @@ class TrackedDevice final : public Device {
     std::thread receiver_;
 };
 
-}  // namespace palpate
+}  // namespace palpate::openigtlink

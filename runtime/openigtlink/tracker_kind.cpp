@@ -4,7 +4,9 @@
 #include "runtime/openigtlink/address.hpp"
 #include "runtime/openigtlink/tracked_device.hpp"
 
-namespace palpate {
+namespace palpate::openigtlink {
+
+using namespace devices;
 
 DeviceKind tracker_kind() {
     return {.name = "igtl",
@@ -24,4 +26,4 @@ DeviceKind tracker_kind() {
                 }};
 }
 
-}  // namespace palpate
+}  // namespace palpate::openigtlink

@@ -2,10 +2,10 @@
 #pragma once
 #include "runtime/devices/device_kind.hpp"
 
-namespace palpate {
+namespace palpate::openigtlink {
 
 /// A tracker's tool, by the address of parse_tracker_address(); it tells of the patient's frame itself.
 /// Opening throws as TrackedDevice.
-DeviceKind tracker_kind();
+devices::DeviceKind tracker_kind();
 
-}  // namespace palpate
+}  // namespace palpate::openigtlink

@@ -12,7 +12,7 @@
 #include <igtl_unit.h>
 #include <igtl_util.h>
 
-namespace palpate {
+namespace palpate::openigtlink {
 namespace {
 
 constexpr std::uint16_t ascii = 3;  // MIBenum of US-ASCII, as STRING counts encodings
@@ -131,4 +131,4 @@ void append_status(MessageBytes& out, const MessageOrigin& origin, std::uint16_t
     });
 }
 
-}  // namespace palpate
+}  // namespace palpate::openigtlink

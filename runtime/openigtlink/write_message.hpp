@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace palpate {
+namespace palpate::openigtlink {
 
 /// Whole OpenIGTLink messages of version 1, one after the other.
 using MessageBytes = std::vector<std::byte>;
@@ -40,4 +40,4 @@ void append_points(MessageBytes& out, const MessageOrigin& origin, std::span<con
 void append_status(MessageBytes& out, const MessageOrigin& origin, std::uint16_t code, std::int64_t subcode,
                    std::string_view name, std::string_view text);
 
-}  // namespace palpate
+}  // namespace palpate::openigtlink

@@ -7,7 +7,7 @@
 #include "formats/records/device_limits.hpp"
 #include "formats/records/fault.hpp"
 
-namespace palpate {
+namespace palpate::realtime {
 
 /// What a device reports once per tick.
 struct DeviceState {
@@ -44,4 +44,4 @@ class Device {
     virtual void write(const std::array<double, 3>& force) noexcept = 0;
 };
 
-}  // namespace palpate
+}  // namespace palpate::realtime

@@ -6,7 +6,7 @@
 
 #include "runtime/realtime/periodic_clock.hpp"
 
-namespace palpate {
+namespace palpate::realtime {
 namespace {
 
 // What a file is known by; all zero where there is none.
@@ -39,4 +39,4 @@ FileWatch::~FileWatch() {
     thread_.join();
 }
 
-}  // namespace palpate
+}  // namespace palpate::realtime

@@ -6,7 +6,7 @@
 #include <functional>
 #include <thread>
 
-namespace palpate {
+namespace palpate::realtime {
 
 /// Watches from a thread of its own whether a file is still the one it was: the same inode, size and time of
 /// change under the same path.
@@ -31,4 +31,4 @@ class FileWatch {
     std::thread thread_;
 };
 
-}  // namespace palpate
+}  // namespace palpate::realtime

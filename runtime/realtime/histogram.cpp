@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 
-namespace palpate {
+namespace palpate::realtime {
 
 std::size_t Histogram::bucket_of(std::uint64_t value) noexcept {
     value = std::min(value, (std::uint64_t{1} << (linear_bits + octaves)) - 1);
@@ -38,4 +38,4 @@ std::uint64_t Histogram::percentile(double fraction) const noexcept {
     return max_;
 }
 
-}  // namespace palpate
+}  // namespace palpate::realtime

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace palpate {
+namespace palpate::realtime {
 
 /// Counts durations in log-linear buckets: exact below 64 ns, then 32 buckets per octave (3 % wide) up to
 /// 2^40 ns. record() is constant-time and never allocates. One thread at a time.
@@ -29,4 +29,4 @@ class Histogram {
     std::uint64_t max_ = 0;
 };
 
-}  // namespace palpate
+}  // namespace palpate::realtime

@@ -5,7 +5,7 @@
 #include <cerrno>
 #include <time.h>
 
-namespace palpate {
+namespace palpate::realtime {
 namespace {
 
 constexpr std::int64_t second_ns = 1'000'000'000;
@@ -33,4 +33,4 @@ PeriodicClock::Wake PeriodicClock::wait() noexcept {
     return {period_, deadline, std::max<std::int64_t>(0, monotonic_ns() - deadline)};
 }
 
-}  // namespace palpate
+}  // namespace palpate::realtime

@@ -2,7 +2,7 @@
 #pragma once
 #include <cstdint>
 
-namespace palpate {
+namespace palpate::realtime {
 
 /// Monotonic time in nanoseconds. Realtime-safe.
 std::int64_t monotonic_ns() noexcept;
@@ -31,4 +31,4 @@ class PeriodicClock {
     std::int64_t overruns_ = 0;
 };
 
-}  // namespace palpate
+}  // namespace palpate::realtime

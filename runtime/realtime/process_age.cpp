@@ -7,7 +7,7 @@
 #include <time.h>
 #include <unistd.h>
 
-namespace palpate {
+namespace palpate::realtime {
 
 double process_age() {
     // proc(5): field 22 of /proc/self/stat is the start in clock ticks since boot. Field 2, the name in
@@ -24,4 +24,4 @@ double process_age() {
            start_ticks / static_cast<double>(sysconf(_SC_CLK_TCK));
 }
 
-}  // namespace palpate
+}  // namespace palpate::realtime

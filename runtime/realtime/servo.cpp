@@ -3,7 +3,7 @@
 
 #include "runtime/realtime/periodic_clock.hpp"
 
-namespace palpate {
+namespace palpate::realtime {
 namespace {
 
 constexpr int fifo_priority = 80;  // above everything that is not the kernel's own
@@ -32,4 +32,4 @@ void PeriodicServo::run(const OnTick& on_tick) {
     }
 }
 
-}  // namespace palpate
+}  // namespace palpate::realtime

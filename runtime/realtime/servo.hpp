@@ -8,7 +8,7 @@
 
 #include "runtime/realtime/thread_setup.hpp"
 
-namespace palpate {
+namespace palpate::realtime {
 
 /// One wake-up of a servo.
 struct ServoTick {
@@ -58,4 +58,4 @@ class PeriodicServo final : public Servo {
     std::thread thread_;
 };
 
-}  // namespace palpate
+}  // namespace palpate::realtime

@@ -5,7 +5,7 @@
 #include <string>
 #include <thread>
 
-namespace palpate {
+namespace palpate::realtime {
 namespace {
 
 constexpr std::chrono::microseconds pause{100};
@@ -79,4 +79,4 @@ void ServoCallbacks::tick() noexcept {
     }
 }
 
-}  // namespace palpate
+}  // namespace palpate::realtime

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cstddef>
 
-namespace palpate {
+namespace palpate::realtime {
 
 /// Runs other threads' functions in the servo's thread, between two ticks, so that they see a state that
 /// nothing changes meanwhile: what HDAPI calls synchronous and asynchronous callbacks. The servo's side is
@@ -46,4 +46,4 @@ class ServoCallbacks {
     std::array<Slot, most> slots_;  // a handle is ended * most + slot
 };
 
-}  // namespace palpate
+}  // namespace palpate::realtime

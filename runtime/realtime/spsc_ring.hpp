@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace palpate {
+namespace palpate::realtime {
 
 /// A queue from one pushing to one popping thread; both sides are wait-free, memory is allocated once.
 template <typename T>
@@ -60,4 +60,4 @@ class SpscRing {
     std::size_t known_head_ = 0;                    // the consumer's last look at head_
 };
 
-}  // namespace palpate
+}  // namespace palpate::realtime

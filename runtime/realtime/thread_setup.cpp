@@ -7,7 +7,7 @@
 #include <sched.h>
 #include <sys/mman.h>
 
-namespace palpate {
+namespace palpate::realtime {
 namespace {
 
 SetupResult outcome(int error, const std::string& done, const std::string& remedy) {
@@ -30,4 +30,4 @@ SetupResult lock_memory() {
                    "allow it with 'memlock' in /etc/security/limits.conf");
 }
 
-}  // namespace palpate
+}  // namespace palpate::realtime

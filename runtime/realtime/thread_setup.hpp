@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-namespace palpate {
+namespace palpate::realtime {
 
 /// What became of a request to the operating system; a refused one is not fatal, only slower.
 struct SetupResult {
@@ -16,4 +16,4 @@ SetupResult request_fifo_priority(int priority);
 /// Locks all present and future pages of the process in memory, so that no tick waits for the disk.
 SetupResult lock_memory();
 
-}  // namespace palpate
+}  // namespace palpate::realtime

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <type_traits>
 
-namespace palpate {
+namespace palpate::realtime {
 
 /// Hands the latest value from one writing thread to one reading thread; both sides are wait-free and never
 /// allocate. Small trivially copyable values go through write() and read(); larger ones (preallocated
@@ -55,4 +55,4 @@ class TripleBuffer {
     alignas(64) std::uint8_t front_ = 2;  // the reader's
 };
 
-}  // namespace palpate
+}  // namespace palpate::realtime

@@ -9,14 +9,16 @@
 #include "runtime/devices/simulation.hpp"
 #include "runtime/openigtlink/tracker_kind.hpp"
 
-namespace palpate {
+namespace palpate::session {
 namespace {
+
+using namespace devices;
 
 std::vector<DeviceKind> all_kinds() {
     std::vector<DeviceKind> kinds{stiff_hand_kind()};
     for (DeviceKind& kind : simulated_kinds()) kinds.push_back(std::move(kind));
     kinds.push_back(openhaptics_kind());
-    kinds.push_back(tracker_kind());
+    kinds.push_back(openigtlink::tracker_kind());
     return kinds;
 }
 
@@ -72,4 +74,4 @@ std::string device_sentences() {
     return text;
 }
 
-}  // namespace palpate
+}  // namespace palpate::session

@@ -6,11 +6,11 @@
 
 #include "runtime/haptics/force_limiter.hpp"
 
-namespace palpate {
+namespace palpate::session {
 namespace {
 
 constexpr std::uint32_t of_one_device = distrusted_position | motors_warm | device_refused | invalid_force;
-constexpr double return_s = 1e-3 * (ForceLimiter::ramp_ticks + ForceLimiter::return_ticks);
+constexpr double return_s = 1e-3 * (haptics::ForceLimiter::ramp_ticks + haptics::ForceLimiter::return_ticks);
 
 }  // namespace
 
@@ -39,4 +39,4 @@ std::string fault_sentence(const FaultEvent& event) {
                        text->name, text->remedy);
 }
 
-}  // namespace palpate
+}  // namespace palpate::session

@@ -8,7 +8,7 @@
 
 #include "formats/records/tick_result.hpp"
 
-namespace palpate {
+namespace palpate::session {
 
 /// One fault, from its first to its last tick.
 struct FaultEvent {
@@ -38,4 +38,4 @@ class FaultLog {
 /// "12.345 s: the device no longer answers (device_lost); check power and cable"
 std::string fault_sentence(const FaultEvent& event);
 
-}  // namespace palpate
+}  // namespace palpate::session

@@ -3,7 +3,7 @@
 
 #include "formats/drawing/chart.hpp"
 
-namespace palpate {
+namespace palpate::session {
 
 std::string force_curve_svg(const std::vector<CurvePoint>& points, const std::string& title) {
     drawing::Series depth{.name = "depth", .right = true}, force{.name = "force"};
@@ -20,4 +20,4 @@ std::string force_curve_svg(const std::vector<CurvePoint>& points, const std::st
                                  .height = 420}});
 }
 
-}  // namespace palpate
+}  // namespace palpate::session

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace palpate {
+namespace palpate::session {
 
 /// One point of a force curve.
 struct CurvePoint {
@@ -16,4 +16,4 @@ struct CurvePoint {
 /// come in the order of time; columns with many are drawn by their extremes, so peaks stay.
 std::string force_curve_svg(const std::vector<CurvePoint>& points, const std::string& title);
 
-}  // namespace palpate
+}  // namespace palpate::session

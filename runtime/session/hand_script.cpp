@@ -8,8 +8,10 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::session {
 namespace {
+
+using namespace devices;
 
 constexpr std::array<std::string_view, 5> scripts{"press", "slide", "tremble", "let-go", "random"};
 
@@ -49,4 +51,4 @@ HandPath recorded_axis_path(const std::string& script, std::size_t column, const
     return recorded_axis_path(place, settings, read_column(script, column));
 }
 
-}  // namespace palpate
+}  // namespace palpate::session

@@ -5,23 +5,24 @@
 
 #include "runtime/devices/hand_path.hpp"
 
-namespace palpate {
+namespace palpate::session {
 
 /// Whether a script is one that is made to measure for a place on the surface ("press", "slide", "tremble",
 /// "let-go", "random") rather than a file.
 bool is_made_to_measure(const std::string& script);
 
 /// The path of such a script at a place; `seed` is of "random" and "tremble".
-HandPath made_to_measure_path(const std::string& script, const TouchPoint& place,
-                              const ScriptSettings& settings, std::uint64_t seed);
+devices::HandPath made_to_measure_path(const std::string& script, const devices::TouchPoint& place,
+                                       const devices::ScriptSettings& settings, std::uint64_t seed);
 
 /// The path in a file; throws InvalidInput if there is neither such a script nor such a file, or as
 /// read_hand_path().
-HandPath recorded_path(const std::string& script);
+devices::HandPath recorded_path(const std::string& script);
 
 /// The path that one recorded axis in a file makes at a place, as recorded_axis_path() and read_column().
 /// Throws UsageError if the script is made to measure, InvalidInput if there is no such file.
-HandPath recorded_axis_path(const std::string& script, std::size_t column, const TouchPoint& place,
-                            const ScriptSettings& settings);
+devices::HandPath recorded_axis_path(const std::string& script, std::size_t column,
+                                     const devices::TouchPoint& place,
+                                     const devices::ScriptSettings& settings);
 
-}  // namespace palpate
+}  // namespace palpate::session

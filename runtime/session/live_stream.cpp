@@ -5,10 +5,11 @@
 
 #include "runtime/openigtlink/contact_point.hpp"
 
-namespace palpate {
+namespace palpate::session {
 
 LiveStream::LiveStream(const std::string& address, const Case& patient_case, std::size_t tool_count)
-    : case_(patient_case), stream_({.address = parse_stream_address(address), .tool_count = tool_count}) {}
+    : case_(patient_case),
+      stream_({.address = openigtlink::parse_stream_address(address), .tool_count = tool_count}) {}
 
 void LiveStream::show(const TickResult& result) noexcept {
     std::array<Eigen::Vector3d, max_contacts> points;
@@ -18,9 +19,9 @@ void LiveStream::show(const TickResult& result) noexcept {
         const std::size_t rigid = case_.rigid_bodies.size();
         const auto& vertices = body < rigid ? case_.rigid_bodies[body].surface.vertices
                                             : case_.deformable_bodies[body - rigid].boundary.surface.vertices;
-        points[count++] = contact_point(contact, vertices);
+        points[count++] = openigtlink::contact_point(contact, vertices);
     }
     stream_.publish(result, std::span(points).first(count));
 }
 
-}  // namespace palpate
+}  // namespace palpate::session

@@ -6,7 +6,7 @@
 #include "formats/records/tick_result.hpp"
 #include "runtime/openigtlink/session_stream.hpp"
 
-namespace palpate {
+namespace palpate::session {
 
 /// A session shown live over OpenIGTLink, its contact points where they are on the surfaces at rest.
 class LiveStream {
@@ -19,7 +19,7 @@ class LiveStream {
 
   private:
     const Case& case_;
-    SessionStream stream_;
+    openigtlink::SessionStream stream_;
 };
 
-}  // namespace palpate
+}  // namespace palpate::session

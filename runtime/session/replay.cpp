@@ -13,8 +13,11 @@
 #include "formats/model/errors.hpp"
 #include "runtime/session/run_recorder.hpp"
 
-namespace palpate {
+namespace palpate::session {
 namespace {
+
+using namespace haptics;
+using namespace recording;
 
 constexpr int free_ticks_to_start = 3;
 
@@ -131,7 +134,7 @@ class Player {
     bool detects_;
     HapticModel& model_;
     const std::function<void(const TickResult&)>& sink_;
-    std::vector<DeviceState> states_;
+    std::vector<realtime::DeviceState> states_;
     std::vector<TickResult> results_;
     bool running_ = false;
     int free_ticks_ = 0;
@@ -143,7 +146,7 @@ class Player {
 std::unique_ptr<HapticModel> model_of(const Recording& recording, const std::filesystem::path& file,
                                       const std::filesystem::path& asset, const Case& patient_case) {
     const RecordingHead& head = recording.head;
-    const std::string digest = asset_digest(asset);
+    const std::string digest = asset::asset_digest(asset);
     if (digest != head.asset_digest)
         throw InvalidInput(
             {file.string(),
@@ -167,4 +170,4 @@ ReplayOutcome replay(const Recording& recording, HapticModel& model,
     return Player(recording, model, sink).play();
 }
 
-}  // namespace palpate
+}  // namespace palpate::session

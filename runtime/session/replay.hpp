@@ -11,7 +11,7 @@
 #include "formats/records/tick_result.hpp"
 #include "runtime/haptics/haptic_model.hpp"
 
-namespace palpate {
+namespace palpate::session {
 
 /// A force that a replay did not give again.
 struct ForceDifference {
@@ -34,8 +34,9 @@ struct ReplayOutcome {
 
 /// A model as the recorded run had it, fresh. `asset`: the file that `patient_case` is from. Throws
 /// InvalidInput naming both if the recording is of another asset, or if it couples differently.
-std::unique_ptr<HapticModel> model_of(const Recording& recording, const std::filesystem::path& file,
-                                      const std::filesystem::path& asset, const Case& patient_case);
+std::unique_ptr<haptics::HapticModel> model_of(const recording::Recording& recording,
+                                               const std::filesystem::path& file,
+                                               const std::filesystem::path& asset, const Case& patient_case);
 
 /// Feeds what the recorded devices said, and every fault of the run, to a fresh model and compares the
 /// forces; a method that needs detection detects what it detected in the run. `sink` gets each tool's result
@@ -43,7 +44,7 @@ std::unique_ptr<HapticModel> model_of(const Recording& recording, const std::fil
 /// the third tick in a row that is free: no contact, no force, no fault and none of its after-effects; a
 /// method that needs detection needs one in it besides. What went before such a tick has no influence on the
 /// forces after it.
-ReplayOutcome replay(const Recording& recording, HapticModel& model,
+ReplayOutcome replay(const recording::Recording& recording, haptics::HapticModel& model,
                      const std::function<void(const TickResult&)>& sink);
 
-}  // namespace palpate
+}  // namespace palpate::session

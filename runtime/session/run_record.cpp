@@ -10,7 +10,7 @@
 
 #include "formats/model/arrays.hpp"
 
-namespace palpate {
+namespace palpate::session {
 namespace {
 
 using Eigen::Vector3d;
@@ -56,7 +56,7 @@ double RunRecord::tool_depth_of(const TickResult& result) const {
     const Vector3d tool = vector_of(result.tool_position);
     double depth = result.residual;
     for (std::size_t body = 0; body < model_.rigid_count(); ++body) {
-        const CollisionSurface& surface = model_.surface(body);
+        const collision::CollisionSurface& surface = model_.surface(body);
         const bool outside = surface.is_outside(tool);
         const double far = std::numeric_limits<double>::max();
         if (const auto nearest = surface.closest_point(tool, outside ? radius : far))
@@ -81,4 +81,4 @@ void RunRecord::write_row(const TickResult& r) {
     log_->write(row.data(), static_cast<std::streamsize>(row.size()));
 }
 
-}  // namespace palpate
+}  // namespace palpate::session

@@ -10,7 +10,7 @@
 #include "runtime/haptics/haptic_model.hpp"
 #include "runtime/session/force_curve.hpp"
 
-namespace palpate {
+namespace palpate::session {
 
 /// Writes the first row of a log: the names of the columns that RunRecord writes.
 void write_log_head(std::ostream& log);
@@ -19,7 +19,7 @@ void write_log_head(std::ostream& log);
 class RunRecord {
   public:
     /// Writes one CSV row per tick to `log` if it is not null. Model and stream must outlive the record.
-    RunRecord(const HapticModel& model, std::ostream* log) : model_(model), log_(log) {}
+    RunRecord(const haptics::HapticModel& model, std::ostream* log) : model_(model), log_(log) {}
 
     void add(const TickResult& result);
 
@@ -38,7 +38,7 @@ class RunRecord {
     void write_row(const TickResult& result);
     double tool_depth_of(const TickResult& result) const;
 
-    const HapticModel& model_;
+    const haptics::HapticModel& model_;
     std::ostream* log_;
     std::vector<CurvePoint> curve_;
     TickResult peak_{};
@@ -50,4 +50,4 @@ class RunRecord {
     std::map<std::string, std::int64_t> statuses_;
 };
 
-}  // namespace palpate
+}  // namespace palpate::session

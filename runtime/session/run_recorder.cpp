@@ -6,18 +6,20 @@
 #include "formats/asset/asset.hpp"
 #include "formats/model/errors.hpp"
 
-namespace palpate {
-RecordingHead recording_head(const std::filesystem::path& asset, const Case& patient_case,
-                             const HapticModel& model, std::span<Device* const> devices,
-                             const std::string& clock, const std::string& version) {
-    RecordingHead head{.palpate_version = version,
-                       .case_name = patient_case.name,
-                       .asset_digest = asset_digest(asset),
-                       .scheme = std::string(model.method().name),
-                       .clock = clock,
-                       .coupling_stiffness = model.coupling(),
-                       .haptics = model.settings(),
-                       .devices = {}};
+namespace palpate::session {
+
+using namespace realtime;
+recording::RecordingHead recording_head(const std::filesystem::path& asset, const Case& patient_case,
+                                        const haptics::HapticModel& model, std::span<Device* const> devices,
+                                        const std::string& clock, const std::string& version) {
+    recording::RecordingHead head{.palpate_version = version,
+                                  .case_name = patient_case.name,
+                                  .asset_digest = asset::asset_digest(asset),
+                                  .scheme = std::string(model.method().name),
+                                  .clock = clock,
+                                  .coupling_stiffness = model.coupling(),
+                                  .haptics = model.settings(),
+                                  .devices = {}};
     for (const Device* device : devices) head.devices.push_back({device->name(), device->limits()});
     return head;
 }
@@ -46,4 +48,4 @@ void RunRecorder::set_lost(std::uint64_t results) noexcept {
     writer_.set_lost(static_cast<std::int64_t>(results));
 }
 
-}  // namespace palpate
+}  // namespace palpate::session

@@ -11,17 +11,18 @@
 #include "runtime/haptics/haptic_model.hpp"
 #include "runtime/realtime/device.hpp"
 
-namespace palpate {
+namespace palpate::session {
 
 /// What a recording says of a run of `model` with one of `devices` for each tool, once it is coupled to them.
 /// `asset`: the file that `patient_case` is from; its digest is read. `clock`: "real" or "virtual". Throws
 /// InvalidInput if it is no asset.
-RecordingHead recording_head(const std::filesystem::path& asset, const Case& patient_case,
-                             const HapticModel& model, std::span<Device* const> devices,
-                             const std::string& clock, const std::string& version);
+recording::RecordingHead recording_head(const std::filesystem::path& asset, const Case& patient_case,
+                                        const haptics::HapticModel& model,
+                                        std::span<realtime::Device* const> devices, const std::string& clock,
+                                        const std::string& version);
 
 /// What a device said in a recorded tick, with every fault of that tick, whoever told of it.
-DeviceState state_of(const Tick& tick);
+realtime::DeviceState state_of(const Tick& tick);
 
 /// How many rows a recording of `seconds` of a run with `tools` tools has. Throws UsageError if that is
 /// less than 0.01 s or more than 12 days.
@@ -39,8 +40,8 @@ class RunRecorder {
     std::int64_t rows() const noexcept { return rows_; }  ///< added so far
 
   private:
-    RecordingWriter writer_;
+    recording::RecordingWriter writer_;
     std::int64_t rows_ = 0;
 };
 
-}  // namespace palpate
+}  // namespace palpate::session

@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-namespace palpate {
+namespace palpate::session {
 
-RunWatch::RunWatch(const std::filesystem::path& asset, ServoLoop& loop,
+RunWatch::RunWatch(const std::filesystem::path& asset, haptics::ServoLoop& loop,
                    std::function<void(const std::string&)> tell)
     : log_([tell = std::move(tell)](const FaultEvent& event) { tell(fault_sentence(event)); }) {
     if (!asset.empty()) asset_.emplace(asset, [&loop](bool gone) { loop.set_fault(asset_removed, gone); });
@@ -32,4 +32,4 @@ nlohmann::ordered_json RunWatch::faults_json() const {
     return faults;
 }
 
-}  // namespace palpate
+}  // namespace palpate::session

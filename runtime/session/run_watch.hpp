@@ -10,7 +10,7 @@
 #include "runtime/realtime/file_watch.hpp"
 #include "runtime/session/fault_log.hpp"
 
-namespace palpate {
+namespace palpate::session {
 
 /// What stands beside a loop that runs against the clock: tells it when the asset's file is gone, and the
 /// user of each fault once.
@@ -18,7 +18,7 @@ class RunWatch {
   public:
     /// `tell` gets a sentence for each fault when it begins. `loop` must outlive this. `asset` empty: not
     /// watched, for a loop that runs against no clock.
-    RunWatch(const std::filesystem::path& asset, ServoLoop& loop,
+    RunWatch(const std::filesystem::path& asset, haptics::ServoLoop& loop,
              std::function<void(const std::string&)> tell);
 
     /// Takes every result that the loop's ring gives.
@@ -31,7 +31,7 @@ class RunWatch {
 
   private:
     FaultLog log_;
-    std::optional<FileWatch> asset_;
+    std::optional<realtime::FileWatch> asset_;
 };
 
-}  // namespace palpate
+}  // namespace palpate::session

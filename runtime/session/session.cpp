@@ -6,19 +6,19 @@
 
 #include "formats/asset/asset.hpp"
 
-namespace palpate {
+namespace palpate::session {
 
 Session::Session(SessionRequest request, std::function<void(const std::string&)> tell)
     : request_(std::move(request)),
       tell_(std::move(tell)),
-      case_(load_asset(request_.asset)),
+      case_(asset::load_asset(request_.asset)),
       model_(case_, request_.method, request_.tool_count) {}
 
 Session::~Session() {
     stop();
 }
 
-void Session::hold(OpenDevices devices) {
+void Session::hold(devices::OpenDevices devices) {
     devices_.driver = std::move(devices.driver);
     devices_.devices = std::move(devices.devices);
     devices_.servo = devices.servo;
@@ -36,9 +36,9 @@ void Session::guide(const Eigen::Vector3d& place) {
     if (devices_.guide) devices_.guide(place);
 }
 
-RecordingHead Session::recording_head(const std::string& version) const {
-    return palpate::recording_head(request_.asset, case_, model_, held(),
-                                   request_.virtual_clock ? "virtual" : "real", version);
+recording::RecordingHead Session::recording_head(const std::string& version) const {
+    return palpate::session::recording_head(request_.asset, case_, model_, held(),
+                                            request_.virtual_clock ? "virtual" : "real", version);
 }
 
 void Session::record_to(const std::filesystem::path& recording) {
@@ -86,17 +86,17 @@ std::optional<std::int64_t> Session::recorded_rows() const {
     return recorder_ ? std::optional(recorder_->rows()) : std::nullopt;
 }
 
-ServoStatistics Session::statistics() const {
-    ServoStatistics statistics = loop_->statistics();
+haptics::ServoStatistics Session::statistics() const {
+    haptics::ServoStatistics statistics = loop_->statistics();
     if (request_.virtual_clock)
         statistics.lost_records = 0;  // the sink got them all, and nobody reads the ring
     return statistics;
 }
 
-std::vector<Device*> Session::held() const {
-    std::vector<Device*> held;
+std::vector<realtime::Device*> Session::held() const {
+    std::vector<realtime::Device*> held;
     for (const auto& device : devices_.devices) held.push_back(device.get());
     return held;
 }
 
-}  // namespace palpate
+}  // namespace palpate::session

@@ -18,12 +18,12 @@
 #include "runtime/session/run_recorder.hpp"
 #include "runtime/session/run_watch.hpp"
 
-namespace palpate {
+namespace palpate::session {
 
 /// What a session is to be.
 struct SessionRequest {
-    std::filesystem::path asset;               ///< read, and watched while the session runs against the clock
-    std::string method{usual_contact_method};  ///< a name of contact_methods()
+    std::filesystem::path asset;  ///< read, and watched while the session runs against the clock
+    std::string method{haptics::usual_contact_method};  ///< a name of contact_methods()
     std::size_t tool_count = 1;
     bool virtual_clock = false;  ///< ticks as fast as possible; forces do not depend on the machine
     std::string stream{};        ///< "PORT" or "ADDRESS:PORT" of a live stream; empty: none
@@ -45,18 +45,18 @@ class Session {
     ~Session();  ///< stops
 
     const Case& patient_case() const noexcept { return case_; }
-    const HapticModel& model() const noexcept { return model_; }
+    const haptics::HapticModel& model() const noexcept { return model_; }
 
     /// Takes devices, one for each tool, couples the model to what they bear and begins to listen for viewers
     /// of the stream. Once, before what follows. Throws as ServoLoop and LiveStream.
-    void hold(OpenDevices devices);
+    void hold(devices::OpenDevices devices);
     /// Of the first device.
     std::string device_name() const { return devices_.devices.front()->name(); }
     /// Says where mouse and keyboard want a guided hand (p_P, mm); nothing where no hand is guided.
     void guide(const Eigen::Vector3d& place);
 
     /// What a recording of this session says of it. Throws as recording_head().
-    RecordingHead recording_head(const std::string& version) const;
+    recording::RecordingHead recording_head(const std::string& version) const;
     /// Puts every tick into what make_recording() made with that head. Throws as RunRecorder.
     void record_to(const std::filesystem::path& recording);
 
@@ -81,22 +81,22 @@ class Session {
     /// Rows recorded so far; nothing without a recording.
     std::optional<std::int64_t> recorded_rows() const;
     /// Not while it runs.
-    ServoStatistics statistics() const;
+    haptics::ServoStatistics statistics() const;
 
   private:
     void take(const TickResult& result, const Sink& sink);
-    std::vector<Device*> held() const;
+    std::vector<realtime::Device*> held() const;
 
     SessionRequest request_;
     std::function<void(const std::string&)> tell_;
     Case case_;
-    HapticModel model_;
-    OpenDevices devices_;
-    std::optional<ServoLoop> loop_;
+    haptics::HapticModel model_;
+    devices::OpenDevices devices_;
+    std::optional<haptics::ServoLoop> loop_;
     std::optional<RunWatch> watch_;
     std::optional<LiveStream> stream_;
     std::optional<RunRecorder> recorder_;
     std::filesystem::path recording_;
 };
 
-}  // namespace palpate
+}  // namespace palpate::session

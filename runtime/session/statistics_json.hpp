@@ -4,10 +4,10 @@
 
 #include "runtime/realtime/histogram.hpp"
 
-namespace palpate {
+namespace palpate::session {
 
 /// p50, p99, p99_9 and max of a histogram of nanoseconds, in units of `unit_ns`.
-inline nlohmann::ordered_json percentiles_json(const Histogram& histogram, double unit_ns) {
+inline nlohmann::ordered_json percentiles_json(const realtime::Histogram& histogram, double unit_ns) {
     const auto in_unit = [&](std::uint64_t ns) { return static_cast<double>(ns) / unit_ns; };
     return {{"p50", in_unit(histogram.percentile(0.5))},
             {"p99", in_unit(histogram.percentile(0.99))},
@@ -15,4 +15,4 @@ inline nlohmann::ordered_json percentiles_json(const Histogram& histogram, doubl
             {"max", in_unit(histogram.max())}};
 }
 
-}  // namespace palpate
+}  // namespace palpate::session

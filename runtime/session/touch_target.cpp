@@ -10,9 +10,11 @@
 #include "formats/model/errors.hpp"
 #include "formats/model/label_map.hpp"
 
-namespace palpate {
+namespace palpate::session {
 namespace {
 
+using namespace collision;
+using namespace haptics;
 using Eigen::Vector3d;
 
 constexpr double full_clearance = 5;  // mm
@@ -151,4 +153,4 @@ TouchTarget choose_touch_target(const Case& patient_case, const HapticModel& mod
     return *best;
 }
 
-}  // namespace palpate
+}  // namespace palpate::session

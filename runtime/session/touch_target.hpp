@@ -9,13 +9,13 @@
 #include "runtime/devices/hand_path.hpp"
 #include "runtime/haptics/haptic_model.hpp"
 
-namespace palpate {
+namespace palpate::session {
 
 /// A place on a body that the tool can reach.
 struct TouchTarget {
     std::size_t body = 0;       ///< as in HapticModel
     std::int32_t triangle = 0;  ///< of its surface
-    TouchPoint place;
+    devices::TouchPoint place;
 };
 
 /// Chooses where a script touches. `body_name` empty: the first deformable body, else the first rigid one.
@@ -23,12 +23,12 @@ struct TouchTarget {
 /// cavity, as far as any allows), the one farthest from the fixed nodes, where the body gives way most; on a
 /// rigid body, the one farthest from the surface's centroid. With `near` (p_P, mm): the surface point nearest
 /// to it. Throws UsageError for an unknown name, InvalidInput if the tool reaches no triangle.
-TouchTarget choose_touch_target(const Case& patient_case, const HapticModel& model,
+TouchTarget choose_touch_target(const Case& patient_case, const haptics::HapticModel& model,
                                 const std::string& body_name, const std::optional<Eigen::Vector3d>& near);
 
 /// Where the centre of a tool of that radius (mm) starts: 5 mm clear of the place, or as far as it is free.
-inline Eigen::Vector3d start_outside(const TouchPoint& place, double tool_radius) {
+inline Eigen::Vector3d start_outside(const devices::TouchPoint& place, double tool_radius) {
     return place.point + place.normal * (tool_radius + std::min(5.0, place.clearance));
 }
 
-}  // namespace palpate
+}  // namespace palpate::session

@@ -12,7 +12,7 @@
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 
-namespace palpate {
+namespace palpate::visual {
 namespace {
 
 using Eigen::Vector3d;
@@ -104,4 +104,4 @@ void place_along(vtkActor* actor, const Eigen::Vector3d& origin, const Eigen::Ve
     actor->SetUserMatrix(matrix);
 }
 
-}  // namespace palpate
+}  // namespace palpate::visual

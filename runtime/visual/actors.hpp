@@ -9,7 +9,7 @@
 
 #include "formats/model/triangle_mesh.hpp"
 
-namespace palpate {
+namespace palpate::visual {
 
 /// A colour as three channels of 0 ... 255.
 using Rgb = Eigen::Vector3f;
@@ -33,4 +33,4 @@ void set_colour(vtkActor* actor, const Rgb& colour);
 /// Places what was modelled along the x axis: turned to `way` (unit), scaled, its origin at `origin`.
 void place_along(vtkActor* actor, const Eigen::Vector3d& origin, const Eigen::Vector3d& way, double scale);
 
-}  // namespace palpate
+}  // namespace palpate::visual

@@ -7,7 +7,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::visual {
 namespace {
 
 // The cell of a vertex at a distance from the focus: edges are powers of two (mm), so that cells nest and far
@@ -70,4 +70,4 @@ TriangleMesh display_copy(const TriangleMesh& surface, std::int64_t budget, cons
     return copy;
 }
 
-}  // namespace palpate
+}  // namespace palpate::visual

@@ -5,7 +5,7 @@
 
 #include "formats/model/triangle_mesh.hpp"
 
-namespace palpate {
+namespace palpate::visual {
 
 /// Reduces a surface to at most `budget` triangles, for the eye only: the haptic side keeps the whole
 /// surface. Detail is spent where the eye will be: vertices are merged within cells whose edge grows with the
@@ -16,4 +16,4 @@ namespace palpate {
 TriangleMesh display_copy(const TriangleMesh& surface, std::int64_t budget, const Eigen::Vector3d& focus,
                           double near);
 
-}  // namespace palpate
+}  // namespace palpate::visual

@@ -15,7 +15,7 @@
 
 #include "formats/records/fault.hpp"
 
-namespace palpate {
+namespace palpate::visual {
 namespace {
 
 constexpr double bar_width = 240, bar_height = 10;
@@ -116,4 +116,4 @@ void Overlay::show_help(bool on) {
     help_->SetVisibility(on);
 }
 
-}  // namespace palpate
+}  // namespace palpate::visual

@@ -10,7 +10,7 @@
 
 #include "runtime/visual/visual_frame.hpp"
 
-namespace palpate {
+namespace palpate::visual {
 
 /// The figures and key hints that lie over the scene. Texts are set anew five times a second: often enough to
 /// read, seldom enough to cost nothing.
@@ -29,4 +29,4 @@ class Overlay {
     vtkNew<vtkActor2D> bar_, bar_frame_;
 };
 
-}  // namespace palpate
+}  // namespace palpate::visual

@@ -14,7 +14,7 @@
 #include "runtime/visual/actors.hpp"
 #include "runtime/visual/display_copy.hpp"
 
-namespace palpate {
+namespace palpate::visual {
 namespace {
 
 using Eigen::Vector3d;
@@ -123,4 +123,4 @@ void Scene::show_inside(bool on) {
     for (const SoftSurface& body : soft_) body.actor()->GetProperty()->SetBackfaceCulling(!on);
 }
 
-}  // namespace palpate
+}  // namespace palpate::visual

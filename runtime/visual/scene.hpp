@@ -11,7 +11,7 @@
 #include "runtime/visual/soft_surface.hpp"
 #include "runtime/visual/visual_frame.hpp"
 
-namespace palpate {
+namespace palpate::visual {
 
 /// The patient's bodies, the tool and the force, in frame P.
 class Scene {
@@ -40,4 +40,4 @@ class Scene {
     vtkSmartPointer<vtkActor> tool_, shaft_, device_, arrow_;
 };
 
-}  // namespace palpate
+}  // namespace palpate::visual

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace palpate {
+namespace palpate::visual {
 namespace {
 
 // Moller, Trumbore 1997: does the segment from a along `way` cross the triangle?
@@ -71,4 +71,4 @@ Sight choose_sight(const Case& patient_case, const Eigen::Vector3d& point, const
     return sight;
 }
 
-}  // namespace palpate
+}  // namespace palpate::visual

@@ -4,7 +4,7 @@
 
 #include "formats/model/body.hpp"
 
-namespace palpate {
+namespace palpate::visual {
 
 /// From where a target is looked at first.
 struct Sight {
@@ -25,4 +25,4 @@ struct Sight {
 /// deformable body, at most 260 mm. Linear in all triangles.
 Sight choose_sight(const Case& patient_case, const Eigen::Vector3d& point, const Eigen::Vector3d& normal);
 
-}  // namespace palpate
+}  // namespace palpate::visual

@@ -8,7 +8,7 @@
 #include <vtkPointData.h>
 #include <vtkProperty.h>
 
-namespace palpate {
+namespace palpate::visual {
 namespace {
 
 using Eigen::Vector3d;
@@ -104,4 +104,4 @@ void SoftSurface::deform(const std::vector<Vector3f>& displacements) {
     colours_->Modified();
 }
 
-}  // namespace palpate
+}  // namespace palpate::visual

@@ -11,7 +11,7 @@
 #include "formats/model/body.hpp"
 #include "runtime/visual/actors.hpp"
 
-namespace palpate {
+namespace palpate::visual {
 
 /// A deformable body as the eye sees it: its surface moves with the displacements and warms up where they
 /// are large; what lies over an enclosed region is tinted with that region's colour.
@@ -35,4 +35,4 @@ class SoftSurface {
     vtkSmartPointer<vtkActor> actor_;
 };
 
-}  // namespace palpate
+}  // namespace palpate::visual

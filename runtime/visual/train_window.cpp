@@ -23,7 +23,7 @@
 #include "runtime/visual/overlay.hpp"
 #include "runtime/visual/scene.hpp"
 
-namespace palpate {
+namespace palpate::visual {
 namespace {
 
 using Eigen::Vector3d;
@@ -269,4 +269,4 @@ void TrainWindow::save_picture(const std::filesystem::path& path) {
             {path.string(), "the picture could not be written", "", "check free space and permissions"});
 }
 
-}  // namespace palpate
+}  // namespace palpate::visual

@@ -7,7 +7,7 @@
 #include "runtime/visual/sight.hpp"
 #include "runtime/visual/visual_frame.hpp"
 
-namespace palpate {
+namespace palpate::visual {
 
 struct WindowSettings {
     int width = 1280;                                 ///< pixels
@@ -43,4 +43,4 @@ class TrainWindow {
     std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace palpate
+}  // namespace palpate::visual

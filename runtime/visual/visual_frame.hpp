@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace palpate {
+namespace palpate::visual {
 
 /// What the window shows at one moment, taken from the haptic thread's latest tick.
 struct VisualFrame {
@@ -19,4 +19,4 @@ struct VisualFrame {
     std::vector<std::vector<Eigen::Vector3f>> displacements;
 };
 
-}  // namespace palpate
+}  // namespace palpate::visual

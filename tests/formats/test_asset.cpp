@@ -28,6 +28,7 @@ extern "C" const char* __lsan_default_suppressions() {
 namespace palpate {
 namespace {
 
+using namespace asset;
 using sample::refusal;
 using sample::Scratch;
 using ::testing::HasSubstr;

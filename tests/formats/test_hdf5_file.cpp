@@ -16,6 +16,7 @@
 namespace palpate {
 namespace {
 
+using namespace asset;
 using sample::refusal;
 using sample::Scratch;
 using ::testing::ElementsAre;

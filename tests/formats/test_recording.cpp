@@ -15,6 +15,8 @@
 namespace palpate {
 namespace {
 
+using namespace asset;
+using namespace recording;
 using sample::refusal;
 using sample::Scratch;
 using testing::HasSubstr;

@@ -18,6 +18,7 @@
 namespace palpate {
 namespace {
 
+using namespace asset;
 using sample::Scratch;
 
 // A record whose default has moved since a file without the field was written.

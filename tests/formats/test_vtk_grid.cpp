@@ -20,7 +20,7 @@ class VtkReader : public ::testing::Test {
   protected:
     VtkReader() {
         const auto path = scratch_ / "case.vtkhdf";
-        write_asset(path, patient_case_);
+        asset::write_asset(path, patient_case_);
         reader_->SetFileName(path.c_str());
         reader_->Update();
         grid_ = vtkUnstructuredGrid::SafeDownCast(reader_->GetOutputDataObject(0));

@@ -15,6 +15,6 @@ int main(int argc, char** argv) {
         palpate::DeformableBody& wall = patient_case.deformable_bodies[0];
         wall = palpate::sample::with_hierarchical_compliance(wall, 3, accuracy);
     }
-    palpate::write_asset(argv[1], patient_case);
+    palpate::asset::write_asset(argv[1], patient_case);
     return 0;
 }

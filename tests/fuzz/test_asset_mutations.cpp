@@ -18,6 +18,8 @@
 namespace palpate {
 namespace {
 
+using namespace asset;
+
 using Bytes = std::vector<char>;
 
 // How the body's compliance is stored.

@@ -16,6 +16,8 @@
 namespace palpate {
 namespace {
 
+using namespace devices;
+
 #ifdef NDEBUG
 #define EXPECT_ASSERTED(statement) \
     if (false) {                   \
@@ -68,17 +70,17 @@ TEST(Preconditions, a_device_is_mounted_by_a_rigid_motion) {
 }
 
 TEST(Preconditions, a_mounted_device_is_there) {
-    EXPECT_ASSERTED(MountedDevice(std::unique_ptr<Device>(), Eigen::Isometry3d::Identity()));
+    EXPECT_ASSERTED(MountedDevice(std::unique_ptr<realtime::Device>(), Eigen::Isometry3d::Identity()));
 }
 
 TEST(Preconditions, a_tick_has_as_many_devices_and_results_as_tools) {
-    HapticModel model(plate());
+    haptics::HapticModel model(plate());
     TickResult result;
-    EXPECT_ASSERTED(model.tick(std::span<const DeviceState>(), {&result, 1}));
+    EXPECT_ASSERTED(model.tick(std::span<const realtime::DeviceState>(), {&result, 1}));
 }
 
 TEST(Preconditions, a_solver_takes_no_more_contacts_than_it_has_rows) {
-    const auto solver = std::make_unique<ContactSolver>();
+    const auto solver = std::make_unique<haptics::ContactSolver>();
     std::vector<Contact> contacts(max_contacts + 1);
     EXPECT_ASSERTED(solver->add(contacts, nullptr, 0));
 }
@@ -86,7 +88,7 @@ TEST(Preconditions, a_solver_takes_no_more_contacts_than_it_has_rows) {
 TEST(Preconditions, a_contacts_vertices_are_the_bodys) {
     Contact contact{};
     contact.vertices = {5, -1, -1};
-    EXPECT_ASSERTED(contact_point(contact, {}));
+    EXPECT_ASSERTED(openigtlink::contact_point(contact, {}));
 }
 
 }  // namespace

@@ -13,6 +13,6 @@ int main(int argc, char** argv) {
     }
     palpate::Case patient_case = palpate::sample::sample_case();
     patient_case.deformable_bodies = {palpate::sample::true_elastic_cube(5)};
-    palpate::write_asset(argv[1], patient_case);
+    palpate::asset::write_asset(argv[1], patient_case);
     return 0;
 }

@@ -53,7 +53,7 @@ Json provenance(const CaseFile& case_file, std::span<const Stage> before) {
     }
     Json structures = Json::array();
     for (const StructureSpec& structure : case_file.structures)
-        structures.push_back(structure_request(structure, "_sha256", sha256_file));
+        structures.push_back(structure_request(structure, "_sha256", asset::sha256_file));
     return {{"inputs", inputs}, {"structures", structures}, {"steps", steps}};
 }
 

@@ -14,6 +14,8 @@
 namespace palpate::case_builder {
 namespace {
 
+using namespace asset;
+
 std::string digest_of_text(const std::string& text) {
     return sha256(std::as_bytes(std::span(text)));
 }

@@ -57,7 +57,7 @@ int main(int argc, char** argv) {
                 session.progress.finish();
                 if (!session.quiet) say_plan(plan);
             });
-        write_body_part(staged.path(), made.body);
+        asset::write_body_part(staged.path(), made.body);
         staged.commit();
         return stages::to_json(made.body, made.plan);
     });

@@ -78,7 +78,7 @@ int main(int argc, char** argv) {
     std::filesystem::path asset;
     command.input("asset", asset, "asset (.vtkhdf)").required();
     return command.run(argc, argv, [&](cli::Session&) {
-        const Case patient_case = read_asset(asset);
+        const Case patient_case = asset::read_asset(asset);
         Json bodies = Json::array(), regions = Json::array(), certificates = Json::array();
         for (const RigidBody& body : patient_case.rigid_bodies) bodies.push_back(row_of(body));
         for (const DeformableBody& body : patient_case.deformable_bodies) {

@@ -34,7 +34,7 @@ int main(int argc, char** argv) {
                                          : boundary_surface(meshing::read_tetrahedra(input)).surface;
         session.progress.step("build", 0.5);
         const ObbTree tree = obb::build_obb_tree(surface, options);
-        write_obb_part(staged.path(), tree, surface);
+        asset::write_obb_part(staged.path(), tree, surface);
         staged.commit();
         const auto leaves =
             std::ranges::count_if(tree.nodes, [](const ObbNode& node) { return node.count > 0; });

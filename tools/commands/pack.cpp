@@ -26,8 +26,8 @@ int main(int argc, char** argv) {
         const Case patient_case = make_case(
             request, [&](std::string_view what, double done) { session.progress.step(what, done); });
         session.progress.step("write the asset", 0.5);
-        write_asset(staged.path(), patient_case);
-        const std::string digest = sha256_file(staged.path());
+        asset::write_asset(staged.path(), patient_case);
+        const std::string digest = asset::sha256_file(staged.path());
         const auto size = std::filesystem::file_size(staged.path());
         staged.commit();
         return nlohmann::ordered_json{{"asset", request.output.filename().string()},

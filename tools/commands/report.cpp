@@ -103,7 +103,7 @@ std::vector<SurfaceComparison> comparisons_of(const stages::ReportRequest& reque
 }
 
 std::string page_of(const stages::ReportRequest& request, cli::Session& session) {
-    const Case patient_case = read_asset(request.asset);
+    const Case patient_case = asset::read_asset(request.asset);
     std::optional<Volume> volume;
     std::optional<LabelMap> labels;
     if (!request.volume.empty()) volume = read_volume(request.volume);

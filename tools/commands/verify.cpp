@@ -102,7 +102,7 @@ Json verify(const std::filesystem::path& asset, std::int32_t columns, std::int32
             cli::Session& session) {
     set_linear_algebra_threads(session.threads);
     session.progress.step("read and check digests", 0);
-    const Case patient_case = read_asset(asset);
+    const Case patient_case = asset::read_asset(asset);
     Checks checks;
     checks.add("asset", "every digest and the manifest", true, std::filesystem::file_size(asset), "bytes");
     checks.add("asset", "every index in range, every number finite", true, "", "");

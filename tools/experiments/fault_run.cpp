@@ -12,6 +12,10 @@
 namespace palpate::experiments {
 namespace {
 
+using namespace devices;
+using namespace haptics;
+using namespace realtime;
+using namespace session;
 using Eigen::Vector3d;
 
 constexpr double limit_rounding = 1e-12;  // relative

@@ -42,8 +42,8 @@ struct FaultRun {
 /// place and by a path drawn from `random`, while `injections` happen. A device that is lost stays where it
 /// was, one without calibration is off by 50 mm, a position that is not a number has one NaN; all as a device
 /// tells them. The window's and the asset's faults are told as their watchers do.
-FaultRun run_with_faults(const Case& patient_case, std::string_view method, const DeviceModel& device,
-                         const std::vector<Injection>& injections, std::int64_t ticks,
-                         std::mt19937_64& random);
+FaultRun run_with_faults(const Case& patient_case, std::string_view method,
+                         const devices::DeviceModel& device, const std::vector<Injection>& injections,
+                         std::int64_t ticks, std::mt19937_64& random);
 
 }  // namespace palpate::experiments

@@ -62,14 +62,14 @@ Findings faults(const Options& options, cli::Session& session) {
     if (options.cases.empty()) throw UsageError({"--case", "none is given", "one asset or more", ""});
     const double seconds = options.seconds > 0 ? options.seconds : 86'400;
     const auto share = static_cast<std::int64_t>(1000 * seconds / static_cast<double>(options.cases.size()));
-    DeviceModel device = find_device_model("touch");
+    devices::DeviceModel device = devices::find_device_model("touch");
     device.max_continuous_force = 0;  // never warm by itself: what is reported is what was made to happen
     Findings findings;
     Json runs = Json::array();
     std::string rows;
     std::mt19937_64 random(options.seed);
     for (const auto& file : options.cases) {
-        const Case patient_case = read_asset(file);
+        const Case patient_case = asset::read_asset(file);
         FaultRun whole;
         for (int visit = 0; whole.ticks < share; ++visit) {
             session.progress.step(patient_case.name,

@@ -80,11 +80,12 @@ double ForceQuality::pull_of(const Contact& contact, const TickResult& result) c
     const Vector3d force = static_cast<double>(contact.force) * normal_of(contact);
     double least = -force.dot(normals_.normal(static_cast<std::size_t>(contact.body), contact.triangle));
     for (std::size_t body = 0; body < model_.body_count(); ++body) {
-        const CollisionSurface& surface = model_.surface(body);
+        const collision::CollisionSurface& surface = model_.surface(body);
         std::vector<std::int32_t> slots(surface.slots_near(tool, tool, reach, {}));
         surface.slots_near(tool, tool, reach, slots);
         for (const std::int32_t slot : slots)
-            if (closest_point_on_triangle(tool, surface.corners(slot)).squared_distance <= reach * reach)
+            if (collision::closest_point_on_triangle(tool, surface.corners(slot)).squared_distance <=
+                reach * reach)
                 least = std::min(least, -force.dot(normals_.normal(body, surface.mesh_triangle(slot))));
     }
     return std::max(0.0, least);

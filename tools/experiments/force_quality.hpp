@@ -77,7 +77,7 @@ class ForceQuality {
     };
 
     /// `normals` and `model`, whose ticks these are, must outlive this.
-    ForceQuality(const RestNormals& normals, const HapticModel& model, const Passivity& passivity)
+    ForceQuality(const RestNormals& normals, const haptics::HapticModel& model, const Passivity& passivity)
         : normals_(normals), model_(model), passivity_(passivity) {}
 
     /// Starts another run, whose first tick follows nothing.
@@ -92,7 +92,7 @@ class ForceQuality {
     void count_energy(const Eigen::Vector3d& force, const Eigen::Vector3d& tip);
 
     const RestNormals& normals_;
-    const HapticModel& model_;
+    const haptics::HapticModel& model_;
     Passivity passivity_;
     ForceFigures figures_;
     bool first_ = true, in_episode_ = false, over_ = false;

@@ -22,6 +22,10 @@
 namespace palpate::experiments {
 namespace {
 
+using namespace devices;
+using namespace realtime;
+using namespace session;
+
 using Json = nlohmann::ordered_json;
 
 constexpr int hog_count = 4;
@@ -58,7 +62,7 @@ class Hogs {
 };
 
 struct RealtimeRun {
-    ServoStatistics statistics;
+    haptics::ServoStatistics statistics;
     std::int64_t recorded = 0;
     FaultLog faults;
     bool fifo = false;
@@ -79,7 +83,8 @@ RealtimeRun run_against_the_clock(const std::filesystem::path& asset, PeriodicSe
                                                               std::move(path))},
                   .servo = &servo});
     std::filesystem::remove(recording);
-    make_recording(recording, session.recording_head(cli::version()), recording_rows(seconds + 1, 1));
+    recording::make_recording(recording, session.recording_head(cli::version()),
+                              recording_rows(seconds + 1, 1));
     session.record_to(recording);
     RealtimeRun run;
     double time = 0;
@@ -120,12 +125,12 @@ Findings realtime(const Options& options, cli::Session& session) {
     Json runs = Json::array();
     const Hogs hogs;
     for (const auto& file : options.cases) {
-        const Case patient_case = load_asset(file);
+        const Case patient_case = asset::load_asset(file);
         for (const auto priority : {PeriodicServo::Priority::fifo, PeriodicServo::Priority::none}) {
             session.progress.step(patient_case.name, priority == PeriodicServo::Priority::fifo ? 0 : 0.5);
             const RealtimeRun run =
                 run_against_the_clock(file, priority, seconds, options.seed, options.output / "realtime.h5");
-            const ServoStatistics& s = run.statistics;
+            const haptics::ServoStatistics& s = run.statistics;
             const std::string name = run.fifo                                    ? "SCHED_FIFO"
                                      : priority == PeriodicServo::Priority::none ? "none"
                                                                                  : "refused";

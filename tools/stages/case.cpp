@@ -56,7 +56,7 @@ Json read_mesh_results(const std::vector<NamedFile>& files) {
 }
 
 ObbTree tree_of(const BodyFiles& files, const TriangleMesh& surface) {
-    return files.tree.empty() ? obb::build_obb_tree(surface) : read_obb_part(files.tree, surface);
+    return files.tree.empty() ? obb::build_obb_tree(surface) : asset::read_obb_part(files.tree, surface);
 }
 
 RigidBody read_rigid(const BodyFiles& files) {
@@ -66,7 +66,7 @@ RigidBody read_rigid(const BodyFiles& files) {
 }
 
 DeformableBody read_deformable(const BodyFiles& files) {
-    DeformableBody body = read_body_part(files.body);
+    DeformableBody body = asset::read_body_part(files.body);
     body.name = files.name;
     body.obb_tree = tree_of(files, body.boundary.surface);
     return body;

@@ -7,7 +7,7 @@
 #include <span>
 #include <stdexcept>
 
-namespace palpate {
+namespace palpate::asset {
 
 /// Thrown by ByteCursor where bytes end too early; the parser turns it into an InvalidInput.
 class EndOfBytes : public std::runtime_error {
@@ -57,4 +57,4 @@ class ByteCursor {
 /// Jenkins' lookup3 hash with which HDF5 closes its headers (Jenkins 2006, hashlittle).
 std::uint32_t lookup3(std::span<const std::byte> bytes);
 
-}  // namespace palpate
+}  // namespace palpate::asset

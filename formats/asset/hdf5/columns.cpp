@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/asset/hdf5/columns.hpp"
 
-namespace palpate {
+namespace palpate::asset {
 
 MaterialColumns columns_of(const std::vector<RegionMaterial>& materials) {
     MaterialColumns columns;
@@ -46,4 +46,4 @@ BlockColumns columns_of(const std::vector<ComplianceBlock>& blocks) {
     return columns;
 }
 
-}  // namespace palpate
+}  // namespace palpate::asset

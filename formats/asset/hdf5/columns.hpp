@@ -7,7 +7,7 @@
 
 #include "formats/model/body.hpp"
 
-namespace palpate {
+namespace palpate::asset {
 
 /// The asset stores one array per field, not records; these are the two forms of the same values.
 
@@ -39,4 +39,4 @@ struct BlockColumns {
 };
 BlockColumns columns_of(const std::vector<ComplianceBlock>& blocks);
 
-}  // namespace palpate
+}  // namespace palpate::asset

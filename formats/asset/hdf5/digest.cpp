@@ -10,7 +10,7 @@
 #include "formats/asset/hdf5/columns.hpp"
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::asset {
 namespace {
 
 // Digests are of values as the asset stores them, and the asset is little-endian.
@@ -90,4 +90,4 @@ std::string mechanics_digest(const DeformableBody& body) {
                   "element_order " + std::to_string(static_cast<std::int32_t>(body.element_order)) + '\n');
 }
 
-}  // namespace palpate
+}  // namespace palpate::asset

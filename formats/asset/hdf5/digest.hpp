@@ -8,7 +8,7 @@
 
 #include "formats/model/body.hpp"
 
-namespace palpate {
+namespace palpate::asset {
 
 /// SHA-256 as 64 lower-case hexadecimal digits. About 2 GB/s where the CPU has SHA instructions.
 std::string sha256(std::span<const std::byte> bytes);
@@ -24,4 +24,4 @@ std::string surface_digest(const TriangleMesh& surface);
 /// element order.
 std::string mechanics_digest(const DeformableBody& body);
 
-}  // namespace palpate
+}  // namespace palpate::asset

@@ -5,7 +5,7 @@
 #include "formats/asset/hdf5/hdf5_parser.hpp"
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::asset {
 namespace {
 
 std::string name_of(ScalarType type) {
@@ -122,4 +122,4 @@ void Hdf5File::check_digests(const std::string& manifest_path) const {
         refuse(manifest_path, "the manifest does not match its SHA-256");
 }
 
-}  // namespace palpate
+}  // namespace palpate::asset

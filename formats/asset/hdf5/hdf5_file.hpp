@@ -12,7 +12,7 @@
 #include "formats/asset/hdf5/hdf5_types.hpp"
 #include "formats/asset/hdf5/mapped_file.hpp"
 
-namespace palpate {
+namespace palpate::asset {
 
 /// The values of a dataset or an attribute, where they lie in the mapped file.
 struct Hdf5Array {
@@ -84,4 +84,4 @@ class Hdf5File {
     std::map<std::string, Hdf5Object> objects_;
 };
 
-}  // namespace palpate
+}  // namespace palpate::asset

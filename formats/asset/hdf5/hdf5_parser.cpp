@@ -10,7 +10,7 @@
 #include "formats/asset/hdf5/byte_cursor.hpp"
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::asset {
 namespace {
 
 using Bytes = std::span<const std::byte>;
@@ -371,4 +371,4 @@ std::map<std::string, Hdf5Object> parse_hdf5(std::span<const std::byte> bytes, c
     }
 }
 
-}  // namespace palpate
+}  // namespace palpate::asset

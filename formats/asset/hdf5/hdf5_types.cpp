@@ -3,7 +3,7 @@
 
 #include "formats/asset/hdf5/digest.hpp"
 
-namespace palpate {
+namespace palpate::asset {
 
 std::string manifest_digest(const std::map<std::string, std::string>& manifest) {
     std::string lines;
@@ -15,4 +15,4 @@ bool in_manifest(std::string_view attribute) {
     return attribute != "sha256" && attribute != "manifest_sha256";
 }
 
-}  // namespace palpate
+}  // namespace palpate::asset

@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace palpate {
+namespace palpate::asset {
 
 /// The element types that an asset may use; all little-endian. `text` is of fixed length; `variable_text`
 /// occurs below /VTKHDF/FieldData alone, for VTK 9.1, which reads no other: it is neither read nor part of
@@ -40,4 +40,4 @@ std::string manifest_digest(const std::map<std::string, std::string>& manifest);
 /// Whether an attribute is part of the manifest: all are, but those that hold the digests.
 bool in_manifest(std::string_view attribute);
 
-}  // namespace palpate
+}  // namespace palpate::asset

@@ -8,7 +8,7 @@
 #include "formats/asset/hdf5/digest.hpp"
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::asset {
 namespace {
 
 static_assert(sizeof(hid_t) == sizeof(std::int64_t));
@@ -219,4 +219,4 @@ void Hdf5Writer::close() {
     file_ = -1;
 }
 
-}  // namespace palpate
+}  // namespace palpate::asset

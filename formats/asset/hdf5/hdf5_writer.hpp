@@ -10,7 +10,7 @@
 
 #include "formats/asset/hdf5/hdf5_types.hpp"
 
-namespace palpate {
+namespace palpate::asset {
 
 /// Writes an HDF5 file of the plain kind that Hdf5File reads: hard links, contiguous datasets on 64-byte
 /// boundaries, checksummed headers, no times; equal calls give equal bytes. Every dataset gets its digest as
@@ -73,4 +73,4 @@ class Hdf5Writer {
     std::map<std::string, std::string> manifest_;  // path or path@attribute -> sha256
 };
 
-}  // namespace palpate
+}  // namespace palpate::asset

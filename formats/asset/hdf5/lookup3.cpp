@@ -4,7 +4,7 @@
 
 #include "formats/asset/hdf5/byte_cursor.hpp"
 
-namespace palpate {
+namespace palpate::asset {
 namespace {
 
 struct State {
@@ -54,4 +54,4 @@ std::uint32_t lookup3(std::span<const std::byte> bytes) {
     return state.c;
 }
 
-}  // namespace palpate
+}  // namespace palpate::asset

@@ -11,7 +11,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::asset {
 
 MappedFile::MappedFile(const std::filesystem::path& path) {
     const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
@@ -38,4 +38,4 @@ MappedFile::MappedFile(const std::filesystem::path& path) {
         [size = size_](const std::byte* mapped) { munmap(const_cast<std::byte*>(mapped), size); });
 }
 
-}  // namespace palpate
+}  // namespace palpate::asset

@@ -5,7 +5,7 @@
 #include <memory>
 #include <span>
 
-namespace palpate {
+namespace palpate::asset {
 
 /// A file's bytes, read-only in memory for as long as a copy of this value lives. The file must not be
 /// shortened meanwhile; replacing it by renaming another over it is safe.
@@ -22,4 +22,4 @@ class MappedFile {
     std::size_t size_ = 0;
 };
 
-}  // namespace palpate
+}  // namespace palpate::asset

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-namespace palpate {
+namespace palpate::devices {
 
 /// One entry of HDAPI's error stack; returned by value.
 struct HdErrorInfo {
@@ -102,4 +102,4 @@ enum CalibrationState : unsigned {
 enum CalibrationStyle : unsigned { encoder_reset = 1, automatic = 2, inkwell = 4 };
 
 }  // namespace hdapi
-}  // namespace palpate
+}  // namespace palpate::devices

@@ -5,9 +5,10 @@
 #include <cmath>
 #include <limits>
 
-namespace palpate {
+namespace palpate::devices {
 namespace {
 
+using namespace realtime;
 using namespace hdapi;
 
 // The pose that all joint angles zero give: the workspace's offset in the Touch's published configuration.
@@ -222,4 +223,4 @@ bool HdDevice::frozen(const std::array<double, 3>& position) noexcept {
     return ticks_frozen_ > frozen_ticks;
 }
 
-}  // namespace palpate
+}  // namespace palpate::devices

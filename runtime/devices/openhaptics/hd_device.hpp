@@ -9,7 +9,7 @@
 #include "runtime/devices/openhaptics/hd_error.hpp"
 #include "runtime/realtime/device.hpp"
 
-namespace palpate {
+namespace palpate::devices {
 
 /// A device of an HDAPI library, open from construction to destruction, its force output enabled. Frame D as
 /// HDAPI has it: +x right, +y up, +z towards the user, mm. read() begins a frame and write() ends it, so that
@@ -20,7 +20,7 @@ namespace palpate {
 /// pose_frozen while the pose is the one of encoders without data; not_calibrated while somebody has to move
 /// the stylus for it, and where an update has not helped; the errors of the driver as hd_error_texts() has
 /// them, for as long as they come.
-class HdDevice final : public Device {
+class HdDevice final : public realtime::Device {
   public:
     static constexpr int look_ticks = 100;    ///< between two looks at temperature and calibration
     static constexpr int frozen_ticks = 100;  ///< that a pose without data must last to be a fault
@@ -40,7 +40,7 @@ class HdDevice final : public Device {
     /// As the driver tells; its own damping is not known.
     DeviceLimits limits() const override { return limits_; }
     /// As of the last look: in the first tick and then every look_ticks.
-    Calibration calibration() override { return calibration_.load(); }
+    realtime::Calibration calibration() override { return calibration_.load(); }
     /// Brings an automatic or inkwell calibration up to date; the next tick looks again. Other styles need
     /// somebody's hand: nothing happens. Not beside ticks of several devices.
     void calibrate() override;
@@ -53,7 +53,7 @@ class HdDevice final : public Device {
     /// ticks.
     void ask_rate();
 
-    DeviceState read(double time) noexcept override;
+    realtime::DeviceState read(double time) noexcept override;
     void write(const std::array<double, 3>& force) noexcept override;
 
   private:
@@ -62,7 +62,7 @@ class HdDevice final : public Device {
     void describe(const std::string& name);
     double nominal(unsigned parameter) const;
     void look() noexcept;
-    Calibration ask_calibration() noexcept;
+    realtime::Calibration ask_calibration() noexcept;
     bool frozen(const std::array<double, 3>& position) noexcept;
 
     const HdApi& api_;
@@ -72,7 +72,7 @@ class HdDevice final : public Device {
     DeviceLimits limits_;
     unsigned calibration_styles_ = 0;
     bool opened_instead_ = false;
-    std::atomic<Calibration> calibration_{Calibration::ok};
+    std::atomic<realtime::Calibration> calibration_{realtime::Calibration::ok};
     std::atomic<bool> look_now_{true};
     bool in_frame_ = false;  // the scheduler's thread's, as are the next
     bool warm_ = false, misplaced_ = false;
@@ -82,4 +82,4 @@ class HdDevice final : public Device {
     bool placed_ = false;                      // there has been one
 };
 
-}  // namespace palpate
+}  // namespace palpate::devices

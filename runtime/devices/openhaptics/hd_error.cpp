@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <utility>
 
-namespace palpate {
+namespace palpate::devices {
 namespace {
 
 using namespace hdapi;
@@ -124,4 +124,4 @@ std::uint32_t HdErrorSorter::take(HdHandle device) noexcept {
     return no_fault;
 }
 
-}  // namespace palpate
+}  // namespace palpate::devices

@@ -10,7 +10,7 @@
 #include "formats/records/fault.hpp"
 #include "runtime/devices/openhaptics/hd_api.hpp"
 
-namespace palpate {
+namespace palpate::devices {
 
 /// What is said of an HDAPI error code.
 struct HdErrorText {
@@ -61,4 +61,4 @@ class HdErrorSorter {
     std::size_t count_ = 0;
 };
 
-}  // namespace palpate
+}  // namespace palpate::devices

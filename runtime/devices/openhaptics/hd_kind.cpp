@@ -7,7 +7,7 @@
 #include "runtime/devices/mounted_device.hpp"
 #include "runtime/devices/openhaptics/hd_session.hpp"
 
-namespace palpate {
+namespace palpate::devices {
 namespace {
 
 std::vector<std::string> names_in(std::string_view address) {
@@ -26,7 +26,7 @@ OpenDevices open_driver(std::string_view address, const DeviceRequest& request) 
     const auto session = std::make_shared<HdSession>(HdSettings{{}, names_in(address)});
     OpenDevices open{.driver = session, .devices = {}, .servo = &session->servo()};
     for (std::size_t t = 0; t < request.tools.size(); ++t) {
-        Device* device = session->devices()[t];
+        realtime::Device* device = session->devices()[t];
         if (const auto& place = request.tools[t].place)
             open.devices.push_back(std::make_shared<MountedDevice>(
                 *device, mount(place->R_PD, workspace_middle(device->limits()), place->start)));
@@ -49,4 +49,4 @@ DeviceKind openhaptics_kind() {
             .open = open_driver};
 }
 
-}  // namespace palpate
+}  // namespace palpate::devices

@@ -8,7 +8,7 @@
 #include <mutex>
 #include <optional>
 
-namespace palpate {
+namespace palpate::devices {
 namespace {
 
 // OpenHaptics 3.4 and later, any with its development link, 3.0.
@@ -142,4 +142,4 @@ const HdApi& load_hd_library(const std::filesystem::path& user_path) {
         {"OpenHaptics", "its library is not found", "libHD.so.3.4, libHD.so or libHD.so.3.0", get_driver});
 }
 
-}  // namespace palpate
+}  // namespace palpate::devices

@@ -7,7 +7,7 @@
 #include "formats/model/errors.hpp"
 #include "runtime/devices/openhaptics/hd_api.hpp"
 
-namespace palpate {
+namespace palpate::devices {
 
 /// Names the environment variable that holds the path of a driver's HDAPI library.
 inline constexpr const char* hd_library_variable = "PALPATE_HD_LIBRARY";
@@ -25,4 +25,4 @@ ErrorDetail explain_load_error(const std::string& library, const std::string& me
 /// used and SystemFailure where none of the known names can, with cause and fix. Any thread.
 const HdApi& load_hd_library(const std::filesystem::path& user_path);
 
-}  // namespace palpate
+}  // namespace palpate::devices

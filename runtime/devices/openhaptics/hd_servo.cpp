@@ -14,9 +14,10 @@
 #include "runtime/devices/openhaptics/hd_error.hpp"
 #include "runtime/realtime/periodic_clock.hpp"
 
-namespace palpate {
+namespace palpate::devices {
 namespace {
 
+using namespace realtime;
 using namespace hdapi;
 using std::chrono::milliseconds;
 
@@ -150,4 +151,4 @@ void HdServo::release() noexcept {
     for (HdDevice* device : devices_) device->write({0, 0, 0});
 }
 
-}  // namespace palpate
+}  // namespace palpate::devices

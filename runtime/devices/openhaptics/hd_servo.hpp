@@ -8,16 +8,16 @@
 #include "runtime/devices/openhaptics/hd_device.hpp"
 #include "runtime/realtime/servo.hpp"
 
-namespace palpate {
+namespace palpate::devices {
 
 /// The scheduler of an HDAPI library as a servo: one callback for all devices, in the driver's thread. Time
 /// is the number of ticks times a period. Two ticks that are n >= 2 periods apart, to the nearest whole, are
 /// n - 1 overruns. May be started again after stop().
-class HdServo final : public Servo {
+class HdServo final : public realtime::Servo {
   public:
     /// `api` and `devices`, all that are open, must outlive this. `notes`: what setup() tells beside the
     /// rate.
-    HdServo(const HdApi& api, std::vector<HdDevice*> devices, std::vector<SetupResult> notes);
+    HdServo(const HdApi& api, std::vector<HdDevice*> devices, std::vector<realtime::SetupResult> notes);
     HdServo(const HdServo&) = delete;
     HdServo& operator=(const HdServo&) = delete;
     ~HdServo() override { stop(); }
@@ -30,7 +30,7 @@ class HdServo final : public Servo {
     /// Ends the ticks, then the scheduler.
     void stop() override;
     /// The rate that the driver tells, then the notes.
-    std::vector<SetupResult> setup() const override;
+    std::vector<realtime::SetupResult> setup() const override;
 
   private:
     static unsigned callback(void* servo) noexcept;
@@ -43,15 +43,15 @@ class HdServo final : public Servo {
 
     const HdApi& api_;
     std::vector<HdDevice*> devices_;
-    std::vector<SetupResult> notes_;
+    std::vector<realtime::SetupResult> notes_;
     OnTick on_tick_;
     HdOperation operation_ = 0;
     bool scheduler_runs_ = false, scheduled_ = false;
     std::atomic<bool> ending_{false}, released_{false}, inside_{false};
     std::atomic<bool> ticked_{false};
-    ServoTick tick_;  // the scheduler's thread's, as are the next three
+    realtime::ServoTick tick_;  // the scheduler's thread's, as are the next three
     std::int64_t ticks_ = 0, most_ticks_ = 0;
     std::int64_t last_ns_ = 0;  // when the last tick began
 };
 
-}  // namespace palpate
+}  // namespace palpate::devices

@@ -13,8 +13,10 @@
 #include "runtime/devices/openhaptics/hd_library.hpp"
 #include "runtime/devices/openhaptics/hd_servo.hpp"
 
-namespace palpate {
+namespace palpate::devices {
 namespace {
+
+using namespace realtime;
 
 constexpr int calibration_attempts = 10;
 constexpr std::chrono::milliseconds between_attempts{100};
@@ -125,4 +127,4 @@ Servo& HdSession::servo() {
     return *opened_->servo;
 }
 
-}  // namespace palpate
+}  // namespace palpate::devices

@@ -9,7 +9,7 @@
 #include "runtime/realtime/device.hpp"
 #include "runtime/realtime/servo.hpp"
 
-namespace palpate {
+namespace palpate::devices {
 
 struct HdSettings {
     std::filesystem::path library;     ///< of the driver; empty: PALPATE_HD_LIBRARY, then the known names
@@ -37,12 +37,12 @@ class HdSession {
     ~HdSession();
 
     /// In the order of HdSettings::devices.
-    std::span<Device* const> devices();
-    Servo& servo();
+    std::span<realtime::Device* const> devices();
+    realtime::Servo& servo();
 
   private:
     struct Opened;
     std::unique_ptr<Opened> opened_;
 };
 
-}  // namespace palpate
+}  // namespace palpate::devices

@@ -10,8 +10,10 @@
 #include "runtime/devices/device_model.hpp"
 #include "runtime/haptics/haptic_model.hpp"
 
-namespace palpate {
+namespace palpate::doctor {
 namespace {
+
+using namespace devices;
 
 constexpr const char* case_group = "case";
 using Edges = std::array<double, 3>;  // of a box, mm, longest first
@@ -71,7 +73,7 @@ Finding workspace(const Case& patient_case, const DeviceModel& model) {
 Finding rendering(const HapticSettings& asked, const DeviceModel& model) {
     const DeviceLimits limits{
         .max_force = model.max_force, .max_stiffness = model.max_stiffness, .damping = model.damping};
-    const double stiffness = coupling_stiffness(asked, limits);
+    const double stiffness = haptics::coupling_stiffness(asked, limits);
     const double force = std::min(asked.max_force, model.max_force);
     Finding finding{
         "rendering." + model.name, case_group, Level::ok,
@@ -99,4 +101,4 @@ Findings case_findings(const Case& patient_case) {
     return findings;
 }
 
-}  // namespace palpate
+}  // namespace palpate::doctor

@@ -3,7 +3,7 @@
 #include "formats/model/body.hpp"
 #include "runtime/doctor/finding.hpp"
 
-namespace palpate {
+namespace palpate::doctor {
 
 /// Holds a case against each device model: whether what can be touched fits its workspace, axis by axis in
 /// the best order of axes, and whether the device renders the stiffness and the force that the case asks for
@@ -11,4 +11,4 @@ namespace palpate {
 /// Throws InvalidInput as coupling_stiffness() does.
 Findings case_findings(const Case& patient_case);
 
-}  // namespace palpate
+}  // namespace palpate::doctor

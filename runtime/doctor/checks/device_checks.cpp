@@ -6,8 +6,10 @@
 #include <cmath>
 #include <fmt/format.h>
 
-namespace palpate {
+namespace palpate::doctor {
 namespace {
+
+using namespace realtime;
 
 constexpr const char* device_group = "device";
 
@@ -95,4 +97,4 @@ Findings device_findings(const OpenedDevice& device) {
             workspace(device.limits)};
 }
 
-}  // namespace palpate
+}  // namespace palpate::doctor

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-namespace palpate {
+namespace palpate::doctor {
 namespace {
 
 constexpr const char* environment_group = "environment";
@@ -121,4 +121,4 @@ Findings usb_findings(const Machine& machine, const std::vector<UsbDevice>& devi
     return findings;
 }
 
-}  // namespace palpate
+}  // namespace palpate::doctor

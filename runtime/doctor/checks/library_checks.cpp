@@ -8,8 +8,10 @@
 #include "runtime/devices/openhaptics/hd_library.hpp"
 #include "runtime/doctor/loader.hpp"
 
-namespace palpate {
+namespace palpate::doctor {
 namespace {
+
+using namespace devices;
 
 using Standing = LibraryPlace::Standing;
 constexpr const char* library_group = "device library";
@@ -151,4 +153,4 @@ Findings library_findings(const Machine& machine) {
     return findings;
 }
 
-}  // namespace palpate
+}  // namespace palpate::doctor

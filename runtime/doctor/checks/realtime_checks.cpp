@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <set>
 
-namespace palpate {
+namespace palpate::doctor {
 namespace {
 
 constexpr const char* realtime_group = "real time";
@@ -209,4 +209,4 @@ Findings realtime_findings(const Machine& machine, Purpose purpose) {
             real_time_share(machine), load(machine)};
 }
 
-}  // namespace palpate
+}  // namespace palpate::doctor

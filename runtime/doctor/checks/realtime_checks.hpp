@@ -3,7 +3,7 @@
 #include "runtime/doctor/finding.hpp"
 #include "runtime/doctor/machine.hpp"
 
-namespace palpate {
+namespace palpate::doctor {
 
 /// Checks what a loop at 1 kHz needs of the operating system: SCHED_FIFO, locked memory, timers, the clock's
 /// source, the CPU governor, the share of real-time threads, load; and tells what the machine is.
@@ -11,4 +11,4 @@ namespace palpate {
 /// clocksource.
 Findings realtime_findings(const Machine& machine, Purpose purpose);
 
-}  // namespace palpate
+}  // namespace palpate::doctor

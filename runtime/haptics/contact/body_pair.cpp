@@ -13,7 +13,7 @@
 #include "runtime/haptics/contact/compliance_blocks.hpp"
 #include "runtime/haptics/contact/contact_lcp.hpp"
 
-namespace palpate {
+namespace palpate::haptics {
 namespace {
 
 using Eigen::Index;
@@ -195,4 +195,4 @@ PairSolution solve_exactly(const BodyPair& bodies, std::span<const PairContact> 
     return solution_under(bodies, contacts, std::move(forces));
 }
 
-}  // namespace palpate
+}  // namespace palpate::haptics

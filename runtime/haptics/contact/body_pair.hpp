@@ -12,7 +12,7 @@
 // Contact between two deformable bodies, A (0) and B (1), on their condensed compliances, linear about the
 // rest configuration. The functions allocate; none belongs into the tick.
 
-namespace palpate {
+namespace palpate::haptics {
 
 /// The surface of a deformable body at rest, with its compliance by surface vertices.
 class ElasticSurface {
@@ -23,7 +23,7 @@ class ElasticSurface {
 
     const std::vector<Eigen::Vector3d>& vertices() const noexcept { return surface_.vertices; }  ///< p_P, mm
     const std::vector<Triangle>& triangles() const noexcept { return surface_.triangles; }
-    const CollisionSurface& collision() const noexcept { return collision_; }
+    const collision::CollisionSurface& collision() const noexcept { return collision_; }
 
     /// Tells whether a vertex is a contact node; others are fixed or left out, and count as fixed.
     bool is_free(std::int32_t vertex) const noexcept { return blocks_[vertex] >= 0; }
@@ -36,7 +36,7 @@ class ElasticSurface {
 
   private:
     TriangleMesh surface_;
-    CollisionSurface collision_;
+    collision::CollisionSurface collision_;
     SurfaceCompliance compliance_;
     std::vector<std::int32_t>
         blocks_;  // compliance block of each surface vertex, -1 for one that is not free
@@ -100,4 +100,4 @@ PairSolution solve_exactly(const BodyPair& bodies, std::span<const PairContact> 
 /// counterpart goes all the way. Forces need not balance, and may pull. Cost: four Cholesky factors of C_cc.
 PairSolution split_by_force_ratio(const BodyPair& bodies, std::span<const PairContact> contacts);
 
-}  // namespace palpate
+}  // namespace palpate::haptics

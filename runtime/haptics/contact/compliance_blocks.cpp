@@ -6,7 +6,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate {
+namespace palpate::haptics {
 
 std::vector<std::int32_t> compliance_blocks(const DeformableBody& body) {
     const std::int32_t nodes = node_count(body.compliance);
@@ -24,4 +24,4 @@ std::vector<std::int32_t> compliance_blocks(const DeformableBody& body) {
     return blocks;
 }
 
-}  // namespace palpate
+}  // namespace palpate::haptics

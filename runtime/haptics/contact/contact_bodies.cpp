@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/haptics/contact/contact_bodies.hpp"
 
-namespace palpate {
+namespace palpate::haptics {
+
+using namespace collision;
 
 ContactBodies::ContactBodies(const Case& patient_case) {
     for (const RigidBody& body : patient_case.rigid_bodies) {
@@ -19,4 +21,4 @@ ContactBodies::ContactBodies(const Case& patient_case) {
     }
 }
 
-}  // namespace palpate
+}  // namespace palpate::haptics

@@ -9,7 +9,7 @@
 #include "runtime/collision/collision_surface.hpp"
 #include "runtime/haptics/contact/deformable_contact.hpp"
 
-namespace palpate {
+namespace palpate::haptics {
 
 /// The bodies of a case as every contact method finds them: rigid ones first, then deformable ones.
 struct ContactBodies {
@@ -20,9 +20,9 @@ struct ContactBodies {
     std::size_t rigid_count() const noexcept { return surfaces.size() - deformable.size(); }
 
     std::vector<std::string> names;
-    std::vector<std::unique_ptr<CollisionSurface>> surfaces;  ///< at rest
-    std::vector<std::vector<Triangle>> triangles;             ///< surface vertices
-    std::vector<DeformableContact> deformable;                ///< of the deformable bodies, in their order
+    std::vector<std::unique_ptr<collision::CollisionSurface>> surfaces;  ///< at rest
+    std::vector<std::vector<Triangle>> triangles;                        ///< surface vertices
+    std::vector<DeformableContact> deformable;  ///< of the deformable bodies, in their order
 };
 
-}  // namespace palpate
+}  // namespace palpate::haptics

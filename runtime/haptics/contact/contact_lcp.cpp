@@ -5,7 +5,7 @@
 #include <bitset>
 #include <cmath>
 
-namespace palpate {
+namespace palpate::haptics {
 namespace {
 
 using Eigen::Index;
@@ -157,4 +157,4 @@ double ContactLcp::solve(std::size_t rows, std::span<const std::size_t> active) 
     return worst;
 }
 
-}  // namespace palpate
+}  // namespace palpate::haptics

@@ -7,7 +7,7 @@
 
 #include "formats/records/tick_result.hpp"
 
-namespace palpate {
+namespace palpate::haptics {
 
 /// Solves unilateral contact: f >= 0, w = A f - delta >= 0, f . w = 0, for a symmetric positive definite A of
 /// at most max_contacts rows (mm/N). That is the minimum of f.Af/2 - delta.f over f >= 0, found by the
@@ -41,4 +41,4 @@ class ContactLcp {
     std::size_t count_ = 0;
 };
 
-}  // namespace palpate
+}  // namespace palpate::haptics

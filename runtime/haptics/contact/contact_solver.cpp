@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cassert>
 
-namespace palpate {
+namespace palpate::haptics {
 
 using Eigen::Index;
 using Eigen::Vector3d;
@@ -55,4 +55,4 @@ double ContactSolver::solve(double coupling) noexcept {
     return residual;
 }
 
-}  // namespace palpate
+}  // namespace palpate::haptics

@@ -9,7 +9,7 @@
 #include "runtime/haptics/contact/contact_lcp.hpp"
 #include "runtime/haptics/contact/deformable_contact.hpp"
 
-namespace palpate {
+namespace palpate::haptics {
 
 /// Gathers the contact points of all tools on all bodies and solves them as one problem, warm-started from
 /// the tick before: points of one body give way together, points of one tool share its virtual coupling. The
@@ -45,4 +45,4 @@ class ContactSolver {
     std::size_t last_active_count_ = 0;
 };
 
-}  // namespace palpate
+}  // namespace palpate::haptics

@@ -37,9 +37,10 @@
 // compliance C_kk (1 / (2 cos) - 1) in series, which is 0 at cos = 1/2 and grows without bound towards the
 // rim. Forces so change continuously while the tool slides over the mesh.
 
-namespace palpate {
+namespace palpate::haptics {
 namespace {
 
+using namespace collision;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
@@ -184,4 +185,4 @@ void DeformableContact::surface_displacement(std::span<const Contact> contacts,
         displacements[v] = blocks_[v] >= 0 ? displacements[blocks_[v]] : Vector3f::Zero();
 }
 
-}  // namespace palpate
+}  // namespace palpate::haptics

@@ -10,7 +10,7 @@
 #include "runtime/collision/collision_surface.hpp"
 #include "runtime/haptics/contact/god_object.hpp"
 
-namespace palpate {
+namespace palpate::haptics {
 
 /// A deformable body's side of contact: which of its points are in a tool's way, and how they give way on its
 /// condensed compliance. The derivation stands above the code, in deformable_contact.cpp.
@@ -24,7 +24,7 @@ class DeformableContact {
     /// left out if they are too many (contacts_cut). The god-object lies on the rest surface and was last
     /// moved to `goal`; `device` is where the coupling pulls the tool, which may differ from the goal by how
     /// far other contacts have moved the surface; all mm. Realtime-safe.
-    std::size_t collect(const CollisionSurface& surface, const GodObject& god_object,
+    std::size_t collect(const collision::CollisionSurface& surface, const GodObject& god_object,
                         const Eigen::Vector3d& goal, const Eigen::Vector3d& device, std::span<Contact> points,
                         std::uint32_t& status) const noexcept;
 
@@ -41,7 +41,7 @@ class DeformableContact {
                               std::span<Eigen::Vector3f> displacements) const noexcept;
 
     /// A surface point as a contact without force: vertices and weights.
-    Contact point_on(const ClosestPoint& foot) const noexcept;
+    Contact point_on(const collision::ClosestPoint& foot) const noexcept;
 
     std::int32_t body_index() const noexcept { return body_index_; }
 
@@ -57,4 +57,4 @@ class DeformableContact {
     std::vector<Eigen::Vector3f> vertex_normals_;  // area-weighted
 };
 
-}  // namespace palpate
+}  // namespace palpate::haptics

@@ -5,7 +5,7 @@
 #include "runtime/haptics/contact/compliance_blocks.hpp"
 #include "runtime/haptics/contact/deformable_contact.hpp"
 
-namespace palpate {
+namespace palpate::haptics {
 
 using Eigen::Vector3f;
 
@@ -23,4 +23,4 @@ DeformableContact::DeformableContact(const DeformableBody& body, std::int32_t bo
     }
 }
 
-}  // namespace palpate
+}  // namespace palpate::haptics

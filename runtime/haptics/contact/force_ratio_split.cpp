@@ -6,7 +6,7 @@
 
 #include "runtime/haptics/contact/body_pair.hpp"
 
-namespace palpate {
+namespace palpate::haptics {
 namespace {
 
 using Eigen::Index;
@@ -116,4 +116,4 @@ PairSolution split_by_force_ratio(const BodyPair& bodies, std::span<const PairCo
     return solution_under(bodies, contacts, std::move(forces));
 }
 
-}  // namespace palpate
+}  // namespace palpate::haptics

@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpate {
+namespace palpate::haptics {
 namespace {
 
+using namespace collision;
 using Eigen::Vector3d;
 
 constexpr double tiny = 1e-7;          // mm: shorter moves are none
@@ -233,4 +234,4 @@ void GodObject::find_touches(Surfaces surfaces, const Vector3d& device) noexcept
     std::ranges::sort(touches_.begin(), end, {}, [](const Touch& touch) { return touch.foot.distance; });
 }
 
-}  // namespace palpate
+}  // namespace palpate::haptics

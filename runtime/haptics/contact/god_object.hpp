@@ -10,7 +10,7 @@
 #include "runtime/collision/collision_surface.hpp"
 #include "runtime/collision/neighbourhood.hpp"
 
-namespace palpate {
+namespace palpate::haptics {
 
 /// Coulomb's law: a tool at rest stays until the tangential force is `at_rest` times the normal one, and then
 /// drags with `sliding` times it. 0 <= sliding <= at_rest.
@@ -33,7 +33,7 @@ class GodObject {
 
     /// One place where the sphere rests on a surface.
     struct Touch {
-        ClosestPoint foot;
+        collision::ClosestPoint foot;
         Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, from the foot to the centre
         std::size_t surface = 0;                           ///< index in what move() was given
     };
@@ -47,12 +47,12 @@ class GodObject {
 
     /// Moves towards `device` (mm). Returns false while there are surfaces that the tool has not been clear
     /// of yet; these are not felt.
-    bool move(std::span<const CollisionSurface* const> surfaces, const Eigen::Vector3d& device,
+    bool move(std::span<const collision::CollisionSurface* const> surfaces, const Eigen::Vector3d& device,
               const Friction& friction = {}) noexcept;
 
     /// Where the sphere, on a straight way from its position to `to` (mm), would first touch a surface; it
     /// stays where it is.
-    std::optional<Touch> touch_on_the_way(std::span<const CollisionSurface* const> surfaces,
+    std::optional<Touch> touch_on_the_way(std::span<const collision::CollisionSurface* const> surfaces,
                                           const Eigen::Vector3d& to) noexcept;
 
     const Eigen::Vector3d& position() const noexcept { return position_; }
@@ -65,7 +65,7 @@ class GodObject {
 
   private:
     struct Obstacle {
-        Neighbourhood near;
+        collision::Neighbourhood near;
         bool followed = false;  // the tool has been clear of it once
     };
     struct HalfSpace {
@@ -75,10 +75,10 @@ class GodObject {
         std::size_t surface = 0;
     };
     struct Hit {
-        SweepContact contact;
+        collision::SweepContact contact;
         std::size_t surface = 0;
     };
-    using Surfaces = std::span<const CollisionSurface* const>;
+    using Surfaces = std::span<const collision::CollisionSurface* const>;
 
     void let_go() noexcept;
     void slide(Surfaces surfaces, const Eigen::Vector3d& device, const Friction& friction) noexcept;
@@ -103,4 +103,4 @@ class GodObject {
     std::size_t touch_count_ = 0;
 };
 
-}  // namespace palpate
+}  // namespace palpate::haptics

@@ -8,7 +8,7 @@
 
 #include "formats/records/tick_result.hpp"
 
-namespace palpate {
+namespace palpate::haptics {
 
 /// Where a tool is in one tick.
 struct ContactPose {
@@ -46,4 +46,4 @@ class ContactMethod {
     virtual void detect_at(const std::array<double, 3>& /*device*/, std::int64_t /*tick*/) noexcept {}
 };
 
-}  // namespace palpate
+}  // namespace palpate::haptics

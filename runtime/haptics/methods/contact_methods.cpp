@@ -9,7 +9,7 @@
 #include "runtime/haptics/methods/continuous_contact.hpp"
 #include "runtime/haptics/methods/published_contact.hpp"
 
-namespace palpate {
+namespace palpate::haptics {
 namespace {
 
 constexpr ContactCapabilities of_published{.needs_detection = true, .most_tools = 1};
@@ -55,4 +55,4 @@ std::string contact_method_sentences() {
     return text;
 }
 
-}  // namespace palpate
+}  // namespace palpate::haptics

@@ -11,7 +11,7 @@
 #include "runtime/haptics/contact/contact_bodies.hpp"
 #include "runtime/haptics/methods/contact_method.hpp"
 
-namespace palpate {
+namespace palpate::haptics {
 
 /// What a contact method knows and needs.
 struct ContactCapabilities {
@@ -46,4 +46,4 @@ std::string contact_method_names(std::size_t tool_count = 1);
 /// "'single' is published: ...; 'twice' ...": the whole table in words.
 std::string contact_method_sentences();
 
-}  // namespace palpate
+}  // namespace palpate::haptics

@@ -13,7 +13,7 @@
 #include "runtime/haptics/contact/god_object.hpp"
 #include "runtime/haptics/methods/contact_method.hpp"
 
-namespace palpate {
+namespace palpate::haptics {
 
 /// Contact found in every tick: a tool is a sphere, or a row of spheres where it has a shaft. Each holds a
 /// god-object on the rigid bodies and one on each deformable body; where only the tip touches, and only rigid
@@ -79,7 +79,7 @@ class ContinuousContact final : public ContactMethod {
     const ContactBodies& bodies_;
     Friction friction_;
     double coupling_ = 0;  // of this tick, N/mm
-    std::vector<const CollisionSurface*> rigid_surfaces_, all_surfaces_;
+    std::vector<const collision::CollisionSurface*> rigid_surfaces_, all_surfaces_;
     std::vector<Tool> tools_;
     ContactSolver solver_;
 };
@@ -88,4 +88,4 @@ class ContinuousContact final : public ContactMethod {
 std::unique_ptr<ContactMethod> make_continuous(const Case& patient_case, const ContactBodies& bodies,
                                                std::size_t tool_count);
 
-}  // namespace palpate
+}  // namespace palpate::haptics

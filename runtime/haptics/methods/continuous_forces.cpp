@@ -5,7 +5,7 @@
 
 #include "runtime/haptics/methods/continuous_contact.hpp"
 
-namespace palpate {
+namespace palpate::haptics {
 namespace {
 
 using Eigen::Vector3d;
@@ -166,4 +166,4 @@ Vector3d ContinuousContact::friction_of(SoftTouch& touch, const DeformableContac
     return -drag * along;
 }
 
-}  // namespace palpate
+}  // namespace palpate::haptics

@@ -5,7 +5,7 @@
 
 #include "runtime/haptics/methods/continuous_contact.hpp"
 
-namespace palpate {
+namespace palpate::haptics {
 namespace {
 
 // Where the spheres of a tool are behind its tip, mm: a radius apart, the surface of the row dips by an
@@ -51,4 +51,4 @@ std::unique_ptr<ContactMethod> make_continuous(const Case& patient_case, const C
     return std::make_unique<ContinuousContact>(bodies, patient_case.haptics, tool_count);
 }
 
-}  // namespace palpate
+}  // namespace palpate::haptics

@@ -6,9 +6,10 @@
 #include "formats/model/arrays.hpp"
 #include "runtime/haptics/methods/continuous_contact.hpp"
 
-namespace palpate {
+namespace palpate::haptics {
 namespace {
 
+using namespace collision;
 using Eigen::Vector3d;
 
 constexpr double unsolved = 1e-3;      // mm of residual that is reported
@@ -166,4 +167,4 @@ Vector3d ContinuousContact::moved_by_others(std::size_t t, std::size_t p, std::s
     return moved;
 }
 
-}  // namespace palpate
+}  // namespace palpate::haptics

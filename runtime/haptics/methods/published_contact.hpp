@@ -14,7 +14,7 @@
 #include "runtime/haptics/methods/contact_method.hpp"
 #include "runtime/realtime/triple_buffer.hpp"
 
-namespace palpate {
+namespace palpate::haptics {
 
 /// Computes the nodal forces f_c (N) that displace the vertices of one polygon by `displacement` (mm) each:
 /// C_cc f_c = u_c (Hirota, Kaneko 2001). `blocks`: the compliance block of each vertex, -1 for a fixed one,
@@ -120,9 +120,9 @@ class PublishedContact final : public ContactMethod {
 
     const ContactBodies& bodies_;
     bool twice_;
-    std::vector<Elastic> elastic_;                 // of the deformable bodies, the last ones
-    TripleBuffer<std::optional<Asked>> device_{};  // servo to collision loop
-    TripleBuffer<Answered> detections_;
+    std::vector<Elastic> elastic_;                           // of the deformable bodies, the last ones
+    realtime::TripleBuffer<std::optional<Asked>> device_{};  // servo to collision loop
+    realtime::TripleBuffer<Answered> detections_;
     std::vector<Contacted> contacted_;            // the servo's
     std::optional<Eigen::Vector3d> last_device_;  // the servo's
     bool detected_ = false;                       // since the device was last lost
@@ -135,4 +135,4 @@ std::unique_ptr<ContactMethod> make_single(const Case& patient_case, const Conta
 std::unique_ptr<ContactMethod> make_twice(const Case& patient_case, const ContactBodies& bodies,
                                           std::size_t tool_count);
 
-}  // namespace palpate
+}  // namespace palpate::haptics

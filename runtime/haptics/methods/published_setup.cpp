@@ -5,7 +5,7 @@
 #include "runtime/haptics/contact/compliance_blocks.hpp"
 #include "runtime/haptics/methods/published_contact.hpp"
 
-namespace palpate {
+namespace palpate::haptics {
 
 PublishedContact::PublishedContact(const Case& patient_case, const ContactBodies& bodies, Tested tested)
     : bodies_(bodies),
@@ -37,4 +37,4 @@ std::unique_ptr<ContactMethod> make_twice(const Case& patient_case, const Contac
     return std::make_unique<PublishedContact>(patient_case, bodies, PublishedContact::Tested::twice);
 }
 
-}  // namespace palpate
+}  // namespace palpate::haptics

@@ -6,8 +6,9 @@
 
 #include "runtime/haptics/methods/published_contact.hpp"
 
-namespace palpate {
+namespace palpate::haptics {
 
+using namespace collision;
 using Eigen::Index;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
@@ -175,4 +176,4 @@ Vector3d PublishedContact::tick(const Vector3d& device, double coupling_stiffnes
     return sum;
 }
 
-}  // namespace palpate
+}  // namespace palpate::haptics

@@ -7,7 +7,7 @@
 
 int main() {
     try {
-        const palpate::HapticModel model(palpate::read_asset("absent.vtkhdf"));
+        const palpate::haptics::HapticModel model(palpate::asset::read_asset("absent.vtkhdf"));
     } catch (const palpate::InvalidInput& error) {
         std::cout << error.detail().culprit << '\n';
         return error.detail().culprit == "absent.vtkhdf" ? 0 : 1;

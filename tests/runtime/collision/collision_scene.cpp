@@ -9,6 +9,7 @@
 
 namespace palpate {
 
+using namespace collision;
 using Eigen::Vector3d;
 
 namespace {

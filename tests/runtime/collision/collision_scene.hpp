@@ -22,12 +22,12 @@ struct Scene {
     /// Anywhere in a cube of edge 40 mm about the middle.
     Eigen::Vector3d point();
     /// Any of: a point, one far away, a corner, a point on an edge or a face, or one just above an edge.
-    Eigen::Vector3d awkward_point(const TriangleCorners& t);
+    Eigen::Vector3d awkward_point(const collision::TriangleCorners& t);
 };
 
 /// A triangle with corners within 2 mm of `about`: any, a needle, a segment, a point, or one on a grid, so
 /// that corners and edges of several meet.
-TriangleCorners awkward_triangle(const Eigen::Vector3d& about, std::mt19937& generator);
+collision::TriangleCorners awkward_triangle(const Eigen::Vector3d& about, std::mt19937& generator);
 
 /// A closed surface that is star-shaped about the origin, with spikes up to eight times as far out as the
 /// bottoms between them: acute corners and edges, outward and inward.

@@ -12,6 +12,7 @@
 namespace palpate {
 namespace {
 
+using namespace collision;
 using Eigen::Vector3d;
 
 // The tree stores boxes, the surface vertices in float32; queries compute in double on those vertices.

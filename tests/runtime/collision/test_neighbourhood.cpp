@@ -13,6 +13,7 @@
 namespace palpate {
 namespace {
 
+using namespace collision;
 using Eigen::Vector3d;
 
 constexpr double of_the_way = 1e-9;     // both compute in double; only the order of the pieces differs

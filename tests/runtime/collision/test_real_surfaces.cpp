@@ -24,6 +24,7 @@
 namespace palpate {
 namespace {
 
+using namespace collision;
 using namespace meshing;
 using Eigen::Vector3d;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;

@@ -11,6 +11,7 @@
 namespace palpate {
 namespace {
 
+using namespace collision;
 using Eigen::Vector3d;
 
 constexpr double segment_tolerance = 1e-9;  // mm: queries compute in double

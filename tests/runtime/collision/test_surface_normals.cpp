@@ -12,6 +12,7 @@
 namespace palpate {
 namespace {
 
+using namespace collision;
 using Eigen::Vector3d;
 
 constexpr double normal_tolerance = 1e-9;  // mm, and radians: queries compute in double

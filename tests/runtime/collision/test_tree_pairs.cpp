@@ -13,6 +13,7 @@
 namespace palpate {
 namespace {
 
+using namespace collision;
 using Eigen::Vector3d;
 
 constexpr double pair_tolerance = 1e-9;  // mm: queries compute in double

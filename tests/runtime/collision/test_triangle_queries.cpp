@@ -9,6 +9,7 @@
 namespace palpate {
 namespace {
 
+using namespace collision;
 using Eigen::Vector3d;
 
 constexpr double triangle_tolerance = 1e-9;  // mm: coordinates of a few mm, squared, in double

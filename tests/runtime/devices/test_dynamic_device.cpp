@@ -14,6 +14,7 @@
 namespace palpate {
 namespace {
 
+using namespace devices;
 using Eigen::Vector3d;
 
 constexpr double stepping_error = 1e-11;  // relative, of some thousand exact steps
@@ -35,7 +36,7 @@ HandPath letting_go() {
 }
 
 Vector3d position_read(DynamicDevice& device, int tick) {
-    const DeviceState state = device.read(1e-3 * tick);
+    const realtime::DeviceState state = device.read(1e-3 * tick);
     return Eigen::Map<const Vector3d>(state.position.data());
 }
 

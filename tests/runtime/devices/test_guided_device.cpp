@@ -7,6 +7,8 @@
 namespace palpate {
 namespace {
 
+using namespace devices;
+
 TEST(GuidedDevice, follows_its_target_no_faster_than_allowed) {
     GuidedDevice device({0, 0, 0}, {.max_force = 3, .max_stiffness = 0.5}, 200);
     device.set_target({1, 0, 0});

@@ -11,6 +11,7 @@
 namespace palpate {
 namespace {
 
+using namespace devices;
 using Eigen::Vector3d;
 
 std::filesystem::path text_file(const std::string& text) {
@@ -113,7 +114,7 @@ TEST(SimulatedDevice, refuses_a_hand_that_lets_go) {
 TEST(SimulatedDevice, is_where_its_path_says) {
     SimulatedDevice device(HandPath({{0, {0, 0, 0}}, {1, {1, 2, 3}}}),
                            {.max_force = 3, .max_stiffness = 0.5});
-    const DeviceState state = device.read(0.5);
+    const realtime::DeviceState state = device.read(0.5);
     EXPECT_EQ(state.position, (std::array<double, 3>{0.5, 1, 1.5}));
     EXPECT_EQ(state.faults, no_fault);
     EXPECT_EQ(device.limits().max_force, 3);

@@ -11,6 +11,7 @@
 namespace palpate {
 namespace {
 
+using namespace devices;
 using Eigen::Vector3d;
 
 const TouchPoint target{.point = {1, 2, 3}, .normal = {0, 0, 1}, .tangent = {1, 0, 0}, .clearance = 2};

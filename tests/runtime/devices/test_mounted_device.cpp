@@ -10,6 +10,8 @@
 namespace palpate {
 namespace {
 
+using namespace devices;
+using namespace realtime;
 using Eigen::Vector3d;
 
 constexpr double mounting_error = 1e-12;  // of a few products of numbers around 100

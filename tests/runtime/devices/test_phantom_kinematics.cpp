@@ -23,7 +23,7 @@ TEST(PhantomKinematics, all_joints_at_zero_are_the_pose_of_an_arm_without_data) 
 }
 
 TEST(PhantomKinematics, positions_go_to_joints_and_back_all_over_the_workspace) {
-    const DeviceModel& model = find_device_model("touch");
+    const devices::DeviceModel& model = devices::find_device_model("touch");
     constexpr double rounding = 1e-9;  // mm
     for (int i = 0; i <= 16; ++i)
         for (int j = 0; j <= 16; ++j)

@@ -7,6 +7,9 @@
 namespace palpate {
 namespace {
 
+using namespace devices;
+using namespace realtime;
+
 std::vector<DeviceState> three_states() {
     std::vector<DeviceState> states(3);
     for (std::size_t i = 0; i < 3; ++i) {

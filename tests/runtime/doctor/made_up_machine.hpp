@@ -12,7 +12,7 @@
 namespace palpate::sample {
 
 /// A machine whose files lie in a scratch folder, with a user who lacks nothing.
-struct MadeUpMachine : Machine {
+struct MadeUpMachine : doctor::Machine {
     MadeUpMachine() {
         root = folder / "";
         user = "ada";
@@ -28,24 +28,24 @@ struct MadeUpMachine : Machine {
 
     void write(const std::string& path, const std::string& text) const {
         make_room(path);
-        std::ofstream(in_root(*this, path), std::ios::binary) << text;
+        std::ofstream(doctor::in_root(*this, path), std::ios::binary) << text;
     }
     void copy(const std::filesystem::path& file, const std::string& path) const {
         make_room(path);
-        std::filesystem::copy_file(file, in_root(*this, path));
+        std::filesystem::copy_file(file, doctor::in_root(*this, path));
     }
 
   private:
     Scratch folder;
     void make_room(const std::string& path) const {
-        std::filesystem::create_directories(in_root(*this, path).parent_path());
+        std::filesystem::create_directories(doctor::in_root(*this, path).parent_path());
     }
 };
 
 /// The finding of an id; one with an empty id where there is none.
-inline Finding find(const Findings& findings, const std::string& id) {
-    const auto found = std::ranges::find(findings, id, &Finding::id);
-    return found == findings.end() ? Finding{} : *found;
+inline doctor::Finding find(const doctor::Findings& findings, const std::string& id) {
+    const auto found = std::ranges::find(findings, id, &doctor::Finding::id);
+    return found == findings.end() ? doctor::Finding{} : *found;
 }
 
 }  // namespace palpate::sample

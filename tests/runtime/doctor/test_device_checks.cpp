@@ -8,6 +8,8 @@
 namespace palpate {
 namespace {
 
+using namespace doctor;
+using namespace realtime;
 using sample::find;
 using ::testing::HasSubstr;
 

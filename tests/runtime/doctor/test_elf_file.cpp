@@ -12,6 +12,7 @@
 namespace palpate {
 namespace {
 
+using namespace doctor;
 using sample::refusal;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;

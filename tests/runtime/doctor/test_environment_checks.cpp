@@ -8,6 +8,7 @@
 namespace palpate {
 namespace {
 
+using namespace doctor;
 using sample::find;
 using ::testing::HasSubstr;
 

@@ -9,6 +9,7 @@
 namespace palpate {
 namespace {
 
+using namespace doctor;
 using sample::find;
 using ::testing::HasSubstr;
 

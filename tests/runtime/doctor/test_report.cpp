@@ -8,6 +8,8 @@
 namespace palpate {
 namespace {
 
+using namespace doctor;
+
 TEST(Report, groups_findings_under_headings_with_fixes_below) {
     const Findings findings{{"fifo", "real time", Level::problem, "refused", "sudo this\n# then that"},
                             {"load", "real time", Level::ok, "none", ""},

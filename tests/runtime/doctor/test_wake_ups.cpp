@@ -7,6 +7,8 @@
 namespace palpate {
 namespace {
 
+using namespace doctor;
+
 // 1000 wake-ups, of which `late` are late by `late_ns` and the others by 50 us.
 WakeUps some(std::int64_t late_ns, int late, bool real_time = true) {
     WakeUps result;

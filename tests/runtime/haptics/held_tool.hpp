@@ -10,8 +10,9 @@
 namespace palpate {
 
 /// A device whose tool's tip is at `p` (mm), its shaft along `shaft` (unit, or zero).
-inline DeviceState held_at(const Eigen::Vector3d& p, const Eigen::Vector3d& shaft = Eigen::Vector3d::Zero()) {
-    DeviceState state;
+inline realtime::DeviceState held_at(const Eigen::Vector3d& p,
+                                     const Eigen::Vector3d& shaft = Eigen::Vector3d::Zero()) {
+    realtime::DeviceState state;
     state.position = {p[0], p[1], p[2]};
     state.shaft = {shaft[0], shaft[1], shaft[2]};
     return state;

@@ -17,6 +17,7 @@
 namespace palpate {
 namespace {
 
+using namespace haptics;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;

@@ -19,6 +19,7 @@
 namespace palpate {
 namespace {
 
+using namespace haptics;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
@@ -43,7 +44,7 @@ DeformableBody by_scattered_blocks(DeformableBody body, double accuracy) {
 }
 
 void go(HapticModel& model, TickResult& result, const Vector3d& p) {
-    DeviceState state;
+    realtime::DeviceState state;
     state.position = {p[0], p[1], p[2]};
     model.tick(state, result);
 }

@@ -10,6 +10,7 @@
 namespace palpate {
 namespace {
 
+using namespace haptics;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;

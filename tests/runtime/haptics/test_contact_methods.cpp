@@ -11,6 +11,8 @@
 namespace palpate {
 namespace {
 
+using namespace haptics;
+
 Case plate_and_cube() {
     Case c = soft_cube(2);
     c.rigid_bodies.push_back(rigid("plate", box({-40, -20, -10}, {-10, 20, 0})));
@@ -48,7 +50,7 @@ TEST_P(EveryMethod, feels_bodies_and_nothing_while_the_device_is_lost_and_alloca
         const double top = x < 0 ? 0 : 20;
         for (int tick = 0; tick < 1500; ++tick) {
             const double depth = tick < 100 || tick > 1400 ? -3 : 1;
-            DeviceState state = held_at({x, 9, top - depth});
+            realtime::DeviceState state = held_at({x, 9, top - depth});
             const bool lost = tick > 300 && tick < 400;
             if (lost) state.faults = device_lost;
             const AllocationTrap trap;

@@ -11,6 +11,8 @@
 namespace palpate {
 namespace {
 
+using namespace haptics;
+using namespace realtime;
 using Eigen::Vector3d;
 
 constexpr double clearance = 2e-4;  // mm: the god-object's clearance, and as much again for float32 records
@@ -84,7 +86,7 @@ TEST(HapticModel, no_body_is_felt_stiffer_than_the_coupling) {
     Case c = soft_cube(5);
     c.rigid_bodies.push_back(rigid("skull", sample::sphere_surface({38, 10, 10}, 15, 3)));
     HapticModel model(c);
-    const std::array<const CollisionSurface*, 2> surfaces{&model.surface(0), &model.surface(1)};
+    const std::array<const collision::CollisionSurface*, 2> surfaces{&model.surface(0), &model.surface(1)};
     GodObject undeformed(c.haptics.tool_radius, 2);
     TickResult result{};
     int solved = 0;

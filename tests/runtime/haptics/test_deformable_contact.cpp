@@ -12,6 +12,7 @@
 namespace palpate {
 namespace {
 
+using namespace haptics;
 using Eigen::Vector3d;
 
 // A press on the true elastic cube (20 mm, held below, 5 kPa), with limits wide enough not to show.
@@ -31,7 +32,7 @@ class DeformableContactTest : public ::testing::Test {
 
     // The tool's centre goes to `p`.
     const TickResult& go(const Vector3d& p) {
-        DeviceState state;
+        realtime::DeviceState state;
         state.position = {p[0], p[1], p[2]};
         model_.tick(state, result_);
         return result_;
@@ -181,7 +182,7 @@ class PartialContactSurface : public ::testing::Test {
     }
 
     static Vector3d go(HapticModel& model, TickResult& result, const Vector3d& p) {
-        DeviceState state;
+        realtime::DeviceState state;
         state.position = {p[0], p[1], p[2]};
         model.tick(state, result);
         return Eigen::Map<const Vector3d>(result.force.data());

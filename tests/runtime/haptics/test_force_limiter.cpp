@@ -8,6 +8,7 @@
 namespace palpate {
 namespace {
 
+using namespace haptics;
 using Eigen::Vector3d;
 
 const HapticSettings settings{

@@ -9,6 +9,7 @@
 namespace palpate {
 namespace {
 
+using namespace realtime;
 using Eigen::Vector3d;
 
 Case soft_and_hard() {
@@ -39,7 +40,7 @@ std::vector<DeviceState> push(std::mt19937& random) {
 }
 
 TEST(FreshContact, has_the_force_that_it_would_have_had_without_the_ones_before) {
-    HapticModel experienced(soft_and_hard()), fresh(soft_and_hard());
+    haptics::HapticModel experienced(soft_and_hard()), fresh(soft_and_hard());
     std::mt19937 random(11);
     std::size_t most_contacts = 0, pressed = 0;
     for (int contact = 0; contact < 400; ++contact) {

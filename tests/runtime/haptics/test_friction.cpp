@@ -10,6 +10,7 @@
 namespace palpate {
 namespace {
 
+using namespace haptics;
 using Eigen::Vector3d;
 
 constexpr Friction dry{.at_rest = 0.6, .sliding = 0.4};
@@ -30,7 +31,7 @@ class OnPlate : public ::testing::Test {
     OnPlate() : model_(plate()), tool_(1, 1) {}
 
     const Vector3d& move(double x, double depth, const Friction& friction = dry) {
-        const std::array<const CollisionSurface*, 1> surfaces{&model_.surface(0)};
+        const std::array<const collision::CollisionSurface*, 1> surfaces{&model_.surface(0)};
         tool_.move(surfaces, {x, 0.1, 1 - depth}, friction);
         return tool_.position();
     }

@@ -11,6 +11,8 @@
 namespace palpate {
 namespace {
 
+using namespace collision;
+using namespace haptics;
 using Eigen::Vector3d;
 
 CollisionSurface collision_surface(const TriangleMesh& mesh) {

@@ -16,6 +16,8 @@
 namespace palpate {
 namespace {
 
+using namespace haptics;
+using namespace realtime;
 using Eigen::Vector3d;
 
 DeviceState at(const Vector3d& p) {

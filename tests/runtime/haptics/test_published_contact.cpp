@@ -17,6 +17,7 @@
 namespace palpate {
 namespace {
 
+using namespace haptics;
 using Eigen::Vector3d;
 
 constexpr double stiffness = 0.4;       // N/mm, of the sample's coupling

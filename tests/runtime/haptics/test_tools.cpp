@@ -14,6 +14,8 @@
 namespace palpate {
 namespace {
 
+using namespace haptics;
+using namespace realtime;
 using Eigen::Vector3d;
 
 constexpr double tool_skins = 2 * GodObject::skin;

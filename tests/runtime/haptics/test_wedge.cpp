@@ -10,6 +10,7 @@
 namespace palpate {
 namespace {
 
+using namespace haptics;
 using Eigen::Vector3d;
 
 // mm: the residual that counts as solved, and the god-object's skin
@@ -20,7 +21,7 @@ constexpr double solved = 1e-3 + 2 * GodObject::skin;
 // Where a rigid body bounds the gap, the tool stays out of it. Returns how many ticks touched.
 int push_into(const Case& c, const Vector3d& entrance, double spread) {
     HapticModel model(c);
-    std::vector<const CollisionSurface*> surfaces;
+    std::vector<const collision::CollisionSurface*> surfaces;
     for (std::size_t body = 0; body < model.body_count(); ++body) surfaces.push_back(&model.surface(body));
     GodObject undeformed(c.haptics.tool_radius, surfaces.size());
     std::mt19937 generator(5);

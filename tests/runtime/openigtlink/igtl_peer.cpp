@@ -13,6 +13,8 @@
 namespace palpate {
 namespace {
 
+using namespace openigtlink;
+
 // The library's sockets raise it where the other end has gone.
 const auto sigpipe_ignored = std::signal(SIGPIPE, SIG_IGN);
 

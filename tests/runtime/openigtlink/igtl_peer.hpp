@@ -47,14 +47,14 @@ Bytes message(const std::string& type, const std::string& device, const Bytes& b
 class TrackerPeer {
   public:
     TrackerPeer();
-    TrackerAddress address(const std::string& tool) const;
+    openigtlink::TrackerAddress address(const std::string& tool) const;
     /// Waits for the next connection; false if none comes.
     bool accept();
     void send(std::span<const std::byte> bytes);
     void close_connection();
     /// A device that has just received `first`.
-    std::unique_ptr<TrackedDevice> device(const std::string& tool, const Bytes& first,
-                                          std::chrono::milliseconds pose_patience = long_enough);
+    std::unique_ptr<openigtlink::TrackedDevice> device(const std::string& tool, const Bytes& first,
+                                                       std::chrono::milliseconds pose_patience = long_enough);
 
   private:
     igtl::ServerSocket::Pointer server_;

@@ -7,6 +7,8 @@
 namespace palpate {
 namespace {
 
+using namespace openigtlink;
+
 TEST(TrackerAddress, reads_host_port_and_name) {
     const TrackerAddress whole = parse_tracker_address("tracker.lab:18944/StylusTipToReference");
     EXPECT_EQ(to_string(whole.server), "tracker.lab:18944");

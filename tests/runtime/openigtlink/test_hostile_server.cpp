@@ -14,7 +14,7 @@ constexpr Rows at(float x) {
 }
 
 // The device gives up the connection by itself, comes back and takes the next pose.
-void expect_recovery(TrackerPeer& peer, TrackedDevice& device, float x) {
+void expect_recovery(TrackerPeer& peer, openigtlink::TrackedDevice& device, float x) {
     EXPECT_TRUE(eventually([&] { return device.read(0).faults == device_lost; }));
     ASSERT_TRUE(peer.accept());
     peer.send(transform_message("Stylus", at(x)));

@@ -11,6 +11,8 @@
 namespace palpate {
 namespace {
 
+using namespace openigtlink;
+
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr float infinite = std::numeric_limits<float>::infinity();
 // What a float32 of a few hundred millimetres, or of a rotation, may be off by.

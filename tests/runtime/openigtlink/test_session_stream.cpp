@@ -15,6 +15,8 @@
 namespace palpate {
 namespace {
 
+using namespace openigtlink;
+
 // A tool 3 mm beside its device, pushed by 2.5 N; its shaft goes to the patient's back (+y in LPS).
 TickResult sample() {
     TickResult result;
@@ -203,7 +205,7 @@ TEST(SessionStream, can_be_followed_as_a_tracker) {
     result.shaft = {0.48, -0.6, 0.64};
     stream.publish(result, {});
     TrackedDevice device({{"127.0.0.1", stream.port()}, "PalpateTool"}, {long_enough, long_enough});
-    const DeviceState state = device.read(0);
+    const realtime::DeviceState state = device.read(0);
     for (std::size_t i = 0; i < 3; ++i) {
         EXPECT_NEAR(state.position[i], result.tool_position[i], 1e-6);
         EXPECT_NEAR(state.shaft[i], result.shaft[i], 1e-6);

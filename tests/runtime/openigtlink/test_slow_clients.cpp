@@ -11,6 +11,8 @@
 namespace palpate {
 namespace {
 
+using namespace openigtlink;
+
 const StreamSettings fast{{"127.0.0.1", 0}, 1000, 1, false};
 
 // Publishes a tick with the most contacts there are, over and over, and counts them in the tool's x.

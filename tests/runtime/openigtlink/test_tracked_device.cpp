@@ -9,6 +9,7 @@
 namespace palpate {
 namespace {
 
+using namespace openigtlink;
 using std::chrono::milliseconds;
 
 constexpr Rows at(float x, float y, float z) {
@@ -18,7 +19,7 @@ constexpr Rows at(float x, float y, float z) {
 TEST(TrackedDevice, gives_the_pose_in_lps_and_no_limits) {
     TrackerPeer peer;
     const auto device = peer.device("Stylus", transform_message("Stylus", at(10, 20, 30)));
-    const DeviceState state = device->read(0.25);
+    const realtime::DeviceState state = device->read(0.25);
     EXPECT_EQ(state.time, 0.25);
     EXPECT_EQ(state.position, (std::array{-10.0, -20.0, 30.0}));
     EXPECT_EQ(state.shaft, (std::array{0.0, 0.0, -1.0}));

@@ -12,6 +12,8 @@
 namespace palpate {
 namespace {
 
+using namespace realtime;
+
 class Watched : public ::testing::Test {
   protected:
     void SetUp() override { std::ofstream(file_) << "an asset"; }

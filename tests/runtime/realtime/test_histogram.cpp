@@ -10,6 +10,8 @@
 namespace palpate {
 namespace {
 
+using namespace realtime;
+
 TEST(Histogram, is_exact_for_small_values) {
     Histogram histogram;
     for (std::uint64_t i = 1; i <= 60; ++i) histogram.record(i);

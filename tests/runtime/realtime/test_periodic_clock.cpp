@@ -9,6 +9,8 @@
 namespace palpate {
 namespace {
 
+using namespace realtime;
+
 TEST(PeriodicClock, deadlines_are_whole_periods_apart_and_never_early) {
     PeriodicClock clock(1'000'000);
     PeriodicClock::Wake last = clock.wait();

@@ -10,6 +10,8 @@
 namespace palpate {
 namespace {
 
+using namespace realtime;
+
 using Then = ServoCallbacks::Then;
 
 struct Counter {

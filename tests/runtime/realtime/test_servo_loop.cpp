@@ -11,6 +11,9 @@
 namespace palpate {
 namespace {
 
+using namespace haptics;
+using namespace realtime;
+
 // Remembers the last force it was given.
 class RecordingDevice final : public Device {
   public:
@@ -27,7 +30,7 @@ class RecordingDevice final : public Device {
 
 TEST(ServoLoop, every_tick_reaches_the_logger_and_the_latest_the_screen) {
     HapticModel model(sample::sample_case());
-    GuidedDevice device({40, 10, 32}, {}, 200);
+    devices::GuidedDevice device({40, 10, 32}, {}, 200);
     ServoLoop loop(model, device, 1024);
     loop.start();
     device.set_target({40, 10, 25});
@@ -73,7 +76,7 @@ TEST(ServoLoop, published_schemes_detect_beside_the_ticks) {
 TEST(ServoLoop, each_tool_has_its_device_and_its_results) {
     HapticModel model(sample::sample_case(), "continuous", 2);
     RecordingDevice pressing;
-    GuidedDevice away({0, 0, 60}, {}, 200);
+    devices::GuidedDevice away({0, 0, 60}, {}, 200);
     const std::array<Device*, 2> devices{&pressing, &away};
     ServoLoop loop(model, devices);
     std::array<double, 2> strongest{0, 0};

@@ -9,6 +9,8 @@
 namespace palpate {
 namespace {
 
+using namespace realtime;
+
 TEST(SpscRing, keeps_order_and_counts_what_it_drops) {
     SpscRing<int> ring(3);
     EXPECT_EQ(ring.capacity(), 4U);

@@ -11,6 +11,8 @@
 namespace palpate {
 namespace {
 
+using namespace realtime;
+
 // Longer than a cache line; every word follows from the first.
 struct Payload {
     std::array<std::uint64_t, 40> words;

@@ -11,6 +11,8 @@
 namespace palpate {
 namespace {
 
+using namespace devices;
+using namespace session;
 using Eigen::Vector3d;
 
 constexpr double tolerance = 1e-9;  // mm, of a rigid motion and back
@@ -90,7 +92,7 @@ TEST(DeviceList, every_simulated_device_starts_where_its_script_does_and_says_so
         EXPECT_FALSE(open.guide);
         EXPECT_EQ(open.servo, nullptr);
         for (const auto& device : open.devices) {
-            const DeviceState state = device->read(0);
+            const realtime::DeviceState state = device->read(0);
             // Encoders round each coordinate down in the device's frame.
             EXPECT_NEAR((vector_of(state.position) - start).norm(), 0, 0.1) << kind.name;
             EXPECT_NEAR((vector_of(state.shaft) - up).norm(), 0, tolerance);
@@ -107,7 +109,7 @@ TEST(DeviceList, every_simulated_device_without_a_script_goes_where_it_is_guided
         ASSERT_TRUE(open.guide) << kind.name;
         const Vector3d there = start + Vector3d(3, -2, 4);
         open.guide(there);
-        DeviceState state;
+        realtime::DeviceState state;
         for (int tick = 0; tick < 3000; ++tick) state = open.devices[0]->read(1e-3 * tick);
         EXPECT_NEAR((vector_of(state.position) - there).norm(), 0, 1.2) << kind.name;  // backdrive friction
         EXPECT_GT((vector_of(state.position) - start).norm(), 4) << kind.name;

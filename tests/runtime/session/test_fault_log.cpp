@@ -6,6 +6,8 @@
 namespace palpate {
 namespace {
 
+using namespace session;
+
 // Ticks of two tools, the first of which has `first`, the second `second` as faults.
 void add(FaultLog& log, int ticks, std::int64_t& tick, std::uint32_t first, std::uint32_t second) {
     for (int i = 0; i < ticks; ++i, ++tick)

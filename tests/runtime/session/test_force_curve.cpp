@@ -9,6 +9,8 @@
 namespace palpate {
 namespace {
 
+using namespace session;
+
 std::vector<CurvePoint> one_press() {
     std::vector<CurvePoint> points;
     for (int i = 0; i < 10000; ++i) {

@@ -15,6 +15,11 @@
 namespace palpate {
 namespace {
 
+using namespace devices;
+using namespace haptics;
+using namespace realtime;
+using namespace recording;
+using namespace session;
 using Eigen::Vector3d;
 
 // A ball beside an elastic cube, of which both have edges and corners right under the hand's way, with

@@ -23,11 +23,15 @@
 namespace palpate {
 namespace {
 
+using namespace devices;
+using namespace recording;
+using namespace session;
+
 std::filesystem::path sample_asset(const sample::Scratch& scratch) {
     Case patient_case = sample::sample_case();
     patient_case.deformable_bodies = {sample::true_elastic_cube(3)};
     const auto path = scratch / "sample.vtkhdf";
-    write_asset(path, patient_case);
+    asset::write_asset(path, patient_case);
     return path;
 }
 
@@ -45,7 +49,7 @@ void record(Session& session, const std::filesystem::path& file) {
 }
 
 TEST(Session, ticks_records_and_counts_in_virtual_time_and_replays_bit_for_bit) {
-    for (const ContactMethodEntry& method : contact_methods()) {
+    for (const haptics::ContactMethodEntry& method : haptics::contact_methods()) {
         const sample::Scratch scratch;
         const auto asset = sample_asset(scratch), file = scratch / "run.h5";
         std::int64_t felt = 0, seen = 0;
@@ -68,7 +72,7 @@ TEST(Session, ticks_records_and_counts_in_virtual_time_and_replays_bit_for_bit) 
         const Recording recording = read_recording(file);
         EXPECT_EQ(recording.head.clock, "virtual");
         EXPECT_EQ(recording.head.scheme, method.name);
-        const Case patient_case = read_asset(asset);
+        const Case patient_case = asset::read_asset(asset);
         const auto model = model_of(recording, file, asset, patient_case);
         const ReplayOutcome outcome = replay(recording, *model, [](const TickResult&) {});
         EXPECT_EQ(outcome.ticks, 2000);
@@ -118,7 +122,7 @@ TEST(Session, tells_of_a_fault_once) {
 }
 
 // A driver whose scheduler does not start.
-class DeadServo final : public Servo {
+class DeadServo final : public realtime::Servo {
   public:
     void start(OnTick) override { throw SystemFailure({"servo", "does not start", "", ""}); }
     void stop() override {}

@@ -8,13 +8,14 @@
 namespace palpate {
 namespace {
 
+using namespace session;
 using Eigen::Vector3d;
 
 // The skull's sphere of 15 mm about (40, 10, 10); the wall's cube [0, 20]³, held at z = 0. Tool of 1.5 mm.
 class TouchTargetTest : public ::testing::Test {
   protected:
     const Case patient_case_ = sample::sample_case(4);
-    const HapticModel model_{patient_case_};
+    const haptics::HapticModel model_{patient_case_};
     TouchTarget choose(const std::string& body = "", std::optional<Vector3d> near = std::nullopt) const {
         return choose_touch_target(patient_case_, model_, body, near);
     }
@@ -46,7 +47,7 @@ TEST_F(TouchTargetTest, refuses_names_and_places_that_are_none) {
     EXPECT_THROW(choose("wal"), UsageError);
     Case narrow = patient_case_;
     narrow.haptics.tool_radius = 2.6;
-    const HapticModel model(narrow);
+    const haptics::HapticModel model(narrow);
     EXPECT_THROW(choose_touch_target(narrow, model, "wall", Vector3d(20.5, 10.2, 10.1)), InvalidInput);
 }
 

@@ -11,6 +11,8 @@
 namespace palpate {
 namespace {
 
+using namespace visual;
+
 const Eigen::Vector3d center(10, -200, 700);
 constexpr double radius = 80;  // mm: a head
 const Eigen::Vector3d focus = center + Eigen::Vector3d(0, 0, radius);

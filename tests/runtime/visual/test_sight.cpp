@@ -10,6 +10,8 @@
 namespace palpate {
 namespace {
 
+using namespace visual;
+
 // The sample's elastic cube fills [0, 20]³ mm.
 const Eigen::Vector3d on_top(10, 10, 20), upwards(0, 0, 1);
 

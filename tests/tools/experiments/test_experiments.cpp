@@ -14,6 +14,7 @@
 namespace palpate::experiments {
 namespace {
 
+using namespace devices;
 using namespace experiments;
 using Eigen::Vector3d;
 
@@ -105,7 +106,7 @@ TEST(DrawPlaces, takes_the_outer_side_and_finds_the_thickness) {
     constexpr double radius = 40, thickness = 4, facets = 0.15;  // mm: sag of a facet
     const Case c = rigid_case("shell", shell(radius, thickness), {});
     const RigidBody& body = c.rigid_bodies[0];
-    const CollisionSurface surface(body.surface, body.obb_tree, body.name);
+    const collision::CollisionSurface surface(body.surface, body.obb_tree, body.name);
     std::mt19937_64 random(3);
     for (const Place& place : draw_places(body.surface, surface, 0.5, 50, random)) {
         EXPECT_NEAR(place.entry.norm(), radius, facets);
@@ -121,7 +122,7 @@ TEST(RunApproach, a_wall_thicker_than_the_way_between_detections_holds_with_ever
     constexpr double radius = 40, thickness = 15;
     const Case c = rigid_case("shell", shell(radius, thickness), settings);
     for (const std::string_view scheme : {"single", "twice", "continuous"}) {
-        HapticModel model(c, scheme);
+        haptics::HapticModel model(c, scheme);
         const Outcome outcome =
             run_approach(model, find_device_model("desktop"), onto_shell(radius, thickness, 145), false);
         EXPECT_FALSE(is_puncture(outcome, 1)) << scheme;
@@ -136,7 +137,7 @@ TEST(RunApproach, continuous_contact_holds_on_a_thin_wall_and_single_detection_d
     constexpr double radius = 40, thickness = 1;
     const Case c = rigid_case("shell", shell(radius, thickness), settings);
     const DeviceModel& device = find_device_model("desktop");
-    HapticModel continuous(c), single(c, "single");
+    haptics::HapticModel continuous(c), single(c, "single");
     for (const double speed : {100.0, 700.0}) {
         const Approach approach = onto_shell(radius, thickness, speed);
         const Outcome held = run_approach(continuous, device, approach, true);

@@ -56,7 +56,7 @@ bool on_top_edge(const Vector3d& p) {
 struct Setting {
     Case patient_case = cube();
     RestNormals normals{patient_case};
-    HapticModel model{patient_case};
+    haptics::HapticModel model{patient_case};
     ForceQuality quality(double grain = 0) const { return {normals, model, {stiffness, grain}}; }
 };
 

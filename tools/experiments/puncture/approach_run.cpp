@@ -9,6 +9,7 @@
 namespace palpate::experiments {
 namespace {
 
+using namespace devices;
 using Eigen::Vector3d;
 
 constexpr double approach_tick_s = 1e-3;
@@ -21,7 +22,7 @@ bool detects_at(double time, double phase) {
 }
 
 // Whether the tool overlaps the surface or has crossed it since the last tick.
-bool passes_surface(const CollisionSurface& surface, const Vector3d& before, const Vector3d& now,
+bool passes_surface(const collision::CollisionSurface& surface, const Vector3d& before, const Vector3d& now,
                     double radius) {
     constexpr double rounding = 1e-6;  // mm
     return surface.closest_point(now, radius - rounding).has_value() ||
@@ -30,7 +31,7 @@ bool passes_surface(const CollisionSurface& surface, const Vector3d& before, con
 
 }  // namespace
 
-Outcome run_approach(HapticModel& model, const DeviceModel& device_model, const Approach& approach,
+Outcome run_approach(haptics::HapticModel& model, const DeviceModel& device_model, const Approach& approach,
                      bool watch_tool, const std::function<void(const ApproachTick&)>& sink) {
     const auto& [entry, direction, thickness] = approach.place;
     const double arrival = (Approach::run_up + Approach::stroke) / approach.speed;
@@ -46,7 +47,7 @@ Outcome run_approach(HapticModel& model, const DeviceModel& device_model, const 
     int judged = 0;
     for (int tick = 0; approach_tick_s * tick <= end; ++tick) {
         const double time = approach_tick_s * tick;
-        DeviceState state = device.read(time);
+        realtime::DeviceState state = device.read(time);
         model.tick(state, result);
         device.write(result.force);
         if (detects_at(time, approach.phase)) model.detect();

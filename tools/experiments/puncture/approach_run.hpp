@@ -39,7 +39,8 @@ struct ApproachTick {
 
 /// Runs an approach on virtual time: each ms read, tick, write; then, where the detection loop's time has
 /// come, detect(). The model forgets what was before. `watch_tool`: also checks the tool itself every tick.
-Outcome run_approach(HapticModel& model, const DeviceModel& device, const Approach& approach, bool watch_tool,
+Outcome run_approach(haptics::HapticModel& model, const devices::DeviceModel& device,
+                     const Approach& approach, bool watch_tool,
                      const std::function<void(const ApproachTick&)>& sink = {});
 
 /// The force that an unbroken wall would hold the hand back with at the stroke's end: coupling and hand in

@@ -12,6 +12,7 @@
 namespace palpate::experiments {
 namespace {
 
+using namespace collision;
 using Eigen::Vector3d;
 
 constexpr double out_of_the_head = 500;  // mm

@@ -25,7 +25,7 @@ struct Place {
 ///     3 and 6 mm away, meet bone no more than 2 and 4 mm before or behind the entry (a slope of 34 degrees).
 /// Nothing else is asked of the bone, its thickness in particular. Throws InvalidInput if 100 000 draws in a
 /// row find no place.
-std::vector<Place> draw_places(const TriangleMesh& mesh, const CollisionSurface& surface, double tool_radius,
-                               std::size_t count, std::mt19937_64& random);
+std::vector<Place> draw_places(const TriangleMesh& mesh, const collision::CollisionSurface& surface,
+                               double tool_radius, std::size_t count, std::mt19937_64& random);
 
 }  // namespace palpate::experiments

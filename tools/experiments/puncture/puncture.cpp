@@ -20,6 +20,8 @@
 namespace palpate::experiments {
 namespace {
 
+using namespace devices;
+using namespace haptics;
 using drawing::Chart;
 using drawing::Series;
 

@@ -15,6 +15,7 @@
 namespace palpate::experiments {
 namespace {
 
+using namespace devices;
 using drawing::Chart;
 using drawing::Series;
 
@@ -52,15 +53,15 @@ Wall contact_wall(double stiffness) {
                                   .coupling_stiffness = stiffness,
                                   .max_force = unlimited,
                                   .max_force_rate = unlimited};
-    const auto model = std::make_shared<HapticModel>(rigid_case("plate", plate_surface(), settings));
+    const auto model = std::make_shared<haptics::HapticModel>(rigid_case("plate", plate_surface(), settings));
     const auto result = std::make_shared<TickResult>();
     const auto force_at = [=](double height) {
-        DeviceState state;
+        realtime::DeviceState state;
         state.position = {7, 3, height};
         model->tick(state, *result);
         return result->force[2];
     };
-    const double touching = settings.tool_radius + GodObject::skin;
+    const double touching = settings.tool_radius + haptics::GodObject::skin;
     force_at(touching + 10);  // the contact begins outside
     return [=](double depth) { return force_at(touching - depth); };
 }

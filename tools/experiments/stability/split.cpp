@@ -17,6 +17,7 @@
 namespace palpate::experiments {
 namespace {
 
+using namespace haptics;
 using drawing::Chart;
 using drawing::Series;
 

@@ -19,6 +19,9 @@
 namespace palpate::experiments {
 namespace {
 
+using namespace devices;
+using namespace haptics;
+using namespace session;
 using drawing::Chart;
 using drawing::Series;
 
@@ -191,10 +194,10 @@ TouchTarget random_place(const Case& patient_case, const HapticModel& model, std
     constexpr int attempts = 1000;
     for (int attempt = 1;; ++attempt) {
         const std::size_t body = random() % model.body_count();
-        const CollisionSurface& surface = model.surface(body);
+        const collision::CollisionSurface& surface = model.surface(body);
         const auto slot =
             static_cast<std::int32_t>(random() % static_cast<std::uint64_t>(surface.triangle_count()));
-        const TriangleCorners t = surface.corners(slot);
+        const collision::TriangleCorners t = surface.corners(slot);
         try {
             return choose_touch_target(patient_case, model, model.body_name(body), (t[0] + t[1] + t[2]) / 3);
         } catch (const InvalidInput&) {
@@ -274,7 +277,7 @@ Findings stability(const Options& options, cli::Session& session) {
     Json curves = Json::array(), long_runs = Json::array();
     std::string curve_rows, long_rows;
     for (const auto& file : options.cases) {
-        const Case patient_case = read_asset(file);
+        const Case patient_case = asset::read_asset(file);
         const RestNormals normals(patient_case);
         Comparison comparison = compare_schemes(patient_case, normals);
         curves.insert(curves.end(), comparison.json.begin(), comparison.json.end());

@@ -48,12 +48,12 @@ StabilityTrial try_wall(const WallLoop& loop, double stiffness, const Wall& wall
     constexpr double rest = StabilityTrial::rest_depth, start = rest + StabilityTrial::start_deviation;
     // The hand's spring rests at the start, so its force at the rest depth is part of the load's task.
     const double load = stiffness * rest + loop.hand.stiffness * (rest - start);
-    DynamicDevice device(loop.model, loop.hand, HandPath({{0, {0, 0, -start}}}));
+    devices::DynamicDevice device(loop.model, loop.hand, devices::HandPath({{0, {0, 0, -start}}}));
     const int ticks = refreshes * loop.refresh_ticks;
     constexpr double never = std::numeric_limits<double>::infinity();
     double force = 0, shallowest = never, deepest = -never;
     for (int tick = 0; tick < ticks; ++tick) {
-        const DeviceState state = device.read(wall_tick_s * tick);
+        const realtime::DeviceState state = device.read(wall_tick_s * tick);
         if (tick % loop.refresh_ticks == 0) {
             force = wall(-state.position[2]) - load;
             const double depth = -device.position().z();

@@ -8,8 +8,8 @@ namespace palpate::experiments {
 
 /// A device in front of a virtual wall whose force is computed every `refresh_ticks` ms and held between.
 struct WallLoop {
-    DeviceModel model;
-    HandImpedance hand;
+    devices::DeviceModel model;
+    devices::HandImpedance hand;
     int refresh_ticks = 1;
 };
 

@@ -11,7 +11,7 @@ namespace palpate::experiments {
 /// What CGAL's AABB tree takes for the two queries that a tick is made of.
 struct PeerTimes {
     double build_s = 0;
-    Histogram closest, segment;  ///< ns
+    realtime::Histogram closest, segment;  ///< ns
 };
 
 /// Builds the tree over a surface and, along a path (mm), asks for the point nearest to each position,

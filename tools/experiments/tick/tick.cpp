@@ -16,6 +16,9 @@
 namespace palpate::experiments {
 namespace {
 
+using namespace devices;
+using namespace haptics;
+using namespace realtime;
 using drawing::Chart;
 using drawing::Series;
 
@@ -198,7 +201,7 @@ Findings tick(const Options& options, cli::Session& session) {
                       2, 15);
     }
     SoftTicks soft = soft_ticks(session);
-    for (const auto& file : options.cases) soft.rows.push_back(case_ticks(read_asset(file)));
+    for (const auto& file : options.cases) soft.rows.push_back(case_ticks(asset::read_asset(file)));
     add_table(findings, "Soft bodies", soft.rows);
     charts.push_back(contacts_chart(soft.without_friction));
     session.progress.step("soft body, every 1 ms", 0.7);

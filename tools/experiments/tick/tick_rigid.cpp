@@ -13,6 +13,7 @@
 namespace palpate::experiments {
 namespace {
 
+using namespace devices;
 using Eigen::Vector3d;
 
 struct Tool {
@@ -31,7 +32,7 @@ std::vector<Vector3d> positions_of(const HandPath& path) {
 void add_queries(RigidTicks& found, const TriangleMesh& bone, const HandPath& path) {
     ObbTree tree;
     found.tree_s = 1e-9 * static_cast<double>(nanoseconds_of([&] { tree = obb::build_obb_tree(bone); }));
-    std::optional<CollisionSurface> surface;
+    std::optional<collision::CollisionSurface> surface;
     found.surface_s =
         1e-9 * static_cast<double>(nanoseconds_of([&] { surface.emplace(bone, tree, "bone"); }));
     const std::vector<Vector3d> positions = positions_of(path);
@@ -50,7 +51,7 @@ void add_queries(RigidTicks& found, const TriangleMesh& bone, const HandPath& pa
         }
     const PeerTimes peer = time_cgal(bone, positions);
     found.cgal_tree_s = peer.build_s;
-    const auto add = [&](const char* name, const Histogram& times) {
+    const auto add = [&](const char* name, const realtime::Histogram& times) {
         found.rows.push_back({.group = "query", .name = name, .times = times, .run = {}});
     };
     add("closest point", closest.histogram());
@@ -80,7 +81,7 @@ RigidTicks rigid_ticks(const TriangleMesh& bone, const HandPath& path) {
     add_queries(found, bone, path);
     const std::span one(&path, 1);
     for (const std::string name : {"single", "twice"}) {
-        HapticModel model(bone_case(bone, tools[0].radius, false), name);
+        haptics::HapticModel model(bone_case(bone, tools[0].radius, false), name);
         const TickRun run = time_ticks(model, one, Counted::all);
         found.rows.push_back({.group = "rigid", .name = name + ", point", .times = run.tick, .run = run});
         found.rows.push_back(
@@ -88,7 +89,7 @@ RigidTicks rigid_ticks(const TriangleMesh& bone, const HandPath& path) {
     }
     for (const Tool& tool : tools)
         for (const bool friction : {false, true}) {
-            HapticModel model(bone_case(bone, tool.radius, friction));
+            haptics::HapticModel model(bone_case(bone, tool.radius, friction));
             found.below += ticks_below(model, path);
             const TickRun run = time_ticks(model, one, Counted::all);
             found.rows.push_back(

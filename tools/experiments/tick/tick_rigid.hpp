@@ -14,7 +14,7 @@ struct RigidTicks {
     double tree_s = 0, surface_s = 0, cgal_tree_s = 0;  ///< to build the OBB tree, the rest, CGAL's tree
     std::int64_t below = 0;                             ///< ticks_below() of all runs with `continuous`
 };
-RigidTicks rigid_ticks(const TriangleMesh& bone, const HandPath& path);
+RigidTicks rigid_ticks(const TriangleMesh& bone, const devices::HandPath& path);
 
 /// A 1 mm sphere, or a point of 0.01 mm, on a bone.
 Case bone_case(const TriangleMesh& bone, double tool_radius, bool friction);

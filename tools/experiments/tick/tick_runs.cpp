@@ -9,6 +9,10 @@
 namespace palpate::experiments {
 namespace {
 
+using namespace devices;
+using namespace haptics;
+using namespace realtime;
+
 constexpr std::int64_t period_ns = 1'000'000;
 constexpr std::uint64_t unrecorded = std::numeric_limits<std::uint64_t>::max();
 

@@ -16,9 +16,9 @@ namespace palpate::experiments {
 /// How long `work` takes, the clock's own time included, ns.
 template <typename Work>
 std::uint64_t nanoseconds_of(Work work) {
-    const std::int64_t begin = monotonic_ns();
+    const std::int64_t begin = realtime::monotonic_ns();
     work();
-    return static_cast<std::uint64_t>(monotonic_ns() - begin);
+    return static_cast<std::uint64_t>(realtime::monotonic_ns() - begin);
 }
 
 /// Makes the compiler compute a value that nobody reads.
@@ -33,7 +33,7 @@ class Shortest {
   public:
     static constexpr int passes = 3;
     void record(std::size_t step, std::uint64_t nanoseconds);
-    Histogram histogram() const;  ///< of the steps that were recorded
+    realtime::Histogram histogram() const;  ///< of the steps that were recorded
 
   private:
     std::vector<std::uint64_t> times_;
@@ -41,8 +41,8 @@ class Shortest {
 
 /// What the ticks along a path took.
 struct TickRun {
-    Histogram tick;    ///< HapticModel::tick(), ns
-    Histogram detect;  ///< HapticModel::detect(), ns: of what needs detection, 30 in a virtual second
+    realtime::Histogram tick;    ///< HapticModel::tick(), ns
+    realtime::Histogram detect;  ///< HapticModel::detect(), ns: of what needs it, 30 in a virtual second
     std::int64_t ticks = 0, touching = 0;
     std::int64_t cut = 0, unsolved = 0;  ///< with TickStatus contacts_cut, contact_unsolved
     double rows = 0, pressed = 0;        ///< mean contact points of touching ticks, and those with force
@@ -52,17 +52,18 @@ enum class Counted { all, touching };  ///< which ticks the histogram holds
 
 /// Moves one tool along each path, from a reset on, back to back; of each tick the shortest of several
 /// passes counts.
-TickRun time_ticks(HapticModel& model, std::span<const HandPath> paths, Counted counted);
+TickRun time_ticks(haptics::HapticModel& model, std::span<const devices::HandPath> paths, Counted counted);
 
 /// The same once, a tick every 1 ms, as a servo loop has it.
-TickRun time_paced_ticks(HapticModel& model, std::span<const HandPath> paths, Counted counted);
+TickRun time_paced_ticks(haptics::HapticModel& model, std::span<const devices::HandPath> paths,
+                         Counted counted);
 
 /// Of the ticks after the tool was first clear, those with its surface more than 1e-6 mm below the one rigid
 /// body's. `continuous` only.
-std::int64_t ticks_below(HapticModel& model, const HandPath& path);
+std::int64_t ticks_below(haptics::HapticModel& model, const devices::HandPath& path);
 
 /// What reading the clock twice costs, ns.
-Histogram clock_cost();
+realtime::Histogram clock_cost();
 
 /// Threads that do nothing but keep cores busy, until destroyed.
 class BusyThreads {
@@ -76,7 +77,7 @@ class BusyThreads {
 /// A row of the table and of the JSON.
 struct TickRow {
     std::string group, name;
-    Histogram times;                       ///< ns
+    realtime::Histogram times;             ///< ns
     TickRun run;                           ///< ticks 0: a query or a loop, not a run of ticks
     double limit_p50 = 0, limit_p999 = 0;  ///< us; 0: none
 };

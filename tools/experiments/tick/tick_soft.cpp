@@ -13,6 +13,8 @@
 namespace palpate::experiments {
 namespace {
 
+using namespace devices;
+using namespace haptics;
 using Eigen::Vector3d;
 
 const Vector3d semi_axes(30, 30, 20);           // mm
@@ -124,7 +126,7 @@ SoftTicks soft_ticks(cli::Session& session) {
 
 TickRow case_ticks(const Case& patient_case) {
     HapticModel model(patient_case);
-    const TouchTarget target = choose_touch_target(patient_case, model, "", std::nullopt);
+    const session::TouchTarget target = session::choose_touch_target(patient_case, model, "", std::nullopt);
     const HandPath path =
         slide_path(target.place, {.tool_radius = model.settings().tool_radius, .depth = 3, .speed = 10});
     return row_of("continuous, " + patient_case.name + ", " + model.body_name(target.body),

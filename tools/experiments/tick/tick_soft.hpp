@@ -12,7 +12,7 @@ namespace palpate::experiments {
 struct SoftTouchCase {
     Case patient_case;
     int contacts = 0;
-    HandPath path;
+    devices::HandPath path;
 };
 
 /// Ticks that touch soft ellipsoids of about 500, 1000 and 2000 contact nodes with tools of several sizes.

@@ -21,6 +21,9 @@
 namespace palpate::conformance {
 namespace {
 
+using namespace devices;
+using namespace haptics;
+using namespace realtime;
 using nlohmann::json;
 
 std::string library_path() {

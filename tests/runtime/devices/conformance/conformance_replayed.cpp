@@ -10,6 +10,8 @@
 namespace palpate::conformance {
 namespace {
 
+using namespace realtime;
+
 constexpr int recorded_ticks = 4000;
 
 // A record in which the wish has come true.
@@ -32,7 +34,7 @@ std::vector<DeviceState> record_of(const DeviceWish& wish) {
 std::unique_ptr<OpenDevices> open_replayed(const std::vector<DeviceWish>& wishes) {
     std::vector<std::unique_ptr<Device>> devices;
     for (const DeviceWish& wish : wishes)
-        devices.push_back(std::make_unique<ReplayedDevice>(
+        devices.push_back(std::make_unique<devices::ReplayedDevice>(
             record_of(wish), DeviceLimits{.max_force = 3.3, .max_stiffness = 0.5}));
     return with_periodic_servo(std::move(devices));
 }

@@ -8,8 +8,10 @@
 namespace palpate::conformance {
 namespace {
 
+using namespace devices;
+
 std::unique_ptr<OpenDevices> open_simulated(const std::vector<DeviceWish>& wishes) {
-    std::vector<std::unique_ptr<Device>> devices;
+    std::vector<std::unique_ptr<realtime::Device>> devices;
     for (const DeviceWish& wish : wishes)
         devices.push_back(std::make_unique<SimulatedDevice>(
             wish.path, DeviceLimits{.max_force = 3.3, .max_stiffness = 0.5}));
@@ -17,7 +19,7 @@ std::unique_ptr<OpenDevices> open_simulated(const std::vector<DeviceWish>& wishe
 }
 
 std::unique_ptr<OpenDevices> open_dynamic(const std::vector<DeviceWish>& wishes) {
-    std::vector<std::unique_ptr<Device>> devices;
+    std::vector<std::unique_ptr<realtime::Device>> devices;
     for (const DeviceWish& wish : wishes)
         devices.push_back(
             std::make_unique<DynamicDevice>(find_device_model("touch"), HandImpedance{}, wish.path));

@@ -15,6 +15,9 @@
 namespace palpate::conformance {
 namespace {
 
+using namespace devices;
+using namespace haptics;
+using namespace realtime;
 using Eigen::Vector3d;
 
 // A hand of 0.3 N/mm lags its path by a Touch's friction, 0.26 N, by what damping takes, and by a grain of

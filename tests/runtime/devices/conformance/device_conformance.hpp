@@ -31,7 +31,7 @@ struct Mishap {
 
 /// What a device is to live through.
 struct DeviceWish {
-    HandPath path;  ///< of the hand, frame D
+    devices::HandPath path;  ///< of the hand, frame D
     std::vector<Press> presses{};
     std::vector<Mishap> mishaps{};
 };
@@ -40,10 +40,10 @@ struct DeviceWish {
 class OpenDevices {
   public:
     virtual ~OpenDevices() = default;
-    virtual std::span<Device* const> devices() = 0;
-    virtual Servo& servo() = 0;
+    virtual std::span<realtime::Device* const> devices() = 0;
+    virtual realtime::Servo& servo() = 0;
     /// The devices' own time in a tick of the servo, s.
-    virtual double time(const ServoTick& wake) { return wake.time; }
+    virtual double time(const realtime::ServoTick& wake) { return wake.time; }
     /// The force that stands at the hardware, N; not beside a running servo.
     virtual std::array<double, 3> force(std::size_t device) = 0;
 };
@@ -85,6 +85,6 @@ inline std::string fault_case_name(const testing::TestParamInfo<FaultCase>& info
 }
 
 /// Opens devices of this process in a PeriodicServo.
-std::unique_ptr<OpenDevices> with_periodic_servo(std::vector<std::unique_ptr<Device>> devices);
+std::unique_ptr<OpenDevices> with_periodic_servo(std::vector<std::unique_ptr<realtime::Device>> devices);
 
 }  // namespace palpate::conformance

@@ -10,6 +10,7 @@
 namespace palpate {
 namespace {
 
+using namespace devices;
 using namespace hdapi;
 
 std::unique_ptr<FakeHdDriver> driver;

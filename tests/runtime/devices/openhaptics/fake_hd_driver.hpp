@@ -16,9 +16,9 @@ struct FakeHdDevice {
     std::array<double, 3> stylus{0, 0, 1};  ///< the transform's third column
     int buttons = 0, frames = 0;
     double temperature = 0;
-    unsigned calibration = hdapi::calibration_ok;
+    unsigned calibration = devices::hdapi::calibration_ok;
     bool silent = false;  ///< gives no position, and no error
-    int styles = hdapi::automatic;
+    int styles = devices::hdapi::automatic;
     int updates = 0;  ///< of its calibration
 };
 
@@ -27,18 +27,19 @@ struct FakeHdDevice {
 struct FakeHdDriver {
     std::vector<const char*> names{nullptr};  ///< that open; nullptr is the default device
     std::vector<FakeHdDevice> devices;
-    std::vector<HdErrorInfo> errors;  ///< the latest last
-    std::vector<std::string> asked;   ///< names that were asked for, "NULL" for the null pointer
-    unsigned unknown_name = hdapi::comm_config_error;
-    unsigned rate_error = hdapi::success, start_error = hdapi::success, enable_error = hdapi::success;
+    std::vector<devices::HdErrorInfo> errors;  ///< the latest last
+    std::vector<std::string> asked;            ///< names that were asked for, "NULL" for the null pointer
+    unsigned unknown_name = devices::hdapi::comm_config_error;
+    unsigned rate_error = devices::hdapi::success, start_error = devices::hdapi::success,
+             enable_error = devices::hdapi::success;
     bool ticks = true;
     int gap_after_tick = 0, gap_ms = 0;  ///< the scheduler stands still after so many ticks, for so long
     std::atomic<bool> runs{false};
-    HdHandle current = hdapi::invalid_handle;
+    devices::HdHandle current = devices::hdapi::invalid_handle;
 };
 
 FakeHdDriver& fake_hd_driver();
 void reset_fake_hd_driver(std::vector<const char*> names = {nullptr});
-const HdApi& fake_hd_api();
+const devices::HdApi& fake_hd_api();
 
 }  // namespace palpate

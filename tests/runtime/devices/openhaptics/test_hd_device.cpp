@@ -12,6 +12,8 @@
 namespace palpate {
 namespace {
 
+using namespace devices;
+using namespace realtime;
 using namespace hdapi;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;

@@ -10,6 +10,7 @@
 namespace palpate {
 namespace {
 
+using namespace devices;
 using namespace hdapi;
 using ::testing::HasSubstr;
 

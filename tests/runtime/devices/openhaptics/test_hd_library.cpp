@@ -13,6 +13,7 @@
 namespace palpate {
 namespace {
 
+using namespace devices;
 using ::testing::HasSubstr;
 
 template <class Wanted, class Function>

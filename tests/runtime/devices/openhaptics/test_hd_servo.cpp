@@ -10,6 +10,8 @@
 namespace palpate {
 namespace {
 
+using namespace devices;
+using namespace realtime;
 using namespace hdapi;
 
 class HdServoTest : public testing::Test {

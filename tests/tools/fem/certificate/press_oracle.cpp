@@ -11,7 +11,7 @@
 
 int main(int, char** argv) {
     using namespace palpate;
-    const Case patient = read_asset(argv[1]);
+    const Case patient = asset::read_asset(argv[1]);
     std::ifstream stream(argv[2]);
     const auto peak = nlohmann::json::parse(stream).at("peak");
     const DeformableBody& body = patient.deformable_bodies.at(0);

@@ -12,6 +12,8 @@
 namespace palpate {
 namespace {
 
+using namespace haptics;
+
 // Stored compliances are float32 and contacts carry float32 weights and normals: 1e-6 relative each, a few of
 // them.
 constexpr double float_tolerance = 1e-5;
@@ -34,7 +36,7 @@ std::vector<TickResult> press(HapticModel& model, double x, double y, double dep
     const double top = 25, radius = model.settings().tool_radius, start = 1, step = 0.02;
     std::vector<TickResult> results;
     const auto move_to = [&](double lowest_point) {
-        DeviceState device;
+        realtime::DeviceState device;
         device.position = {x, y, top + radius + lowest_point};
         TickResult result;
         model.tick(device, result);

@@ -17,10 +17,11 @@ using Eigen::Vector3d;
 const Vector3d no_encoder_data(0, -110, -35);  // mm: where the driver puts a tip whose angles are all zero
 constexpr double velocity_smoothing = 0.1;     // of each new difference
 
-std::unique_ptr<Device> device_of(const DeviceScript& script) {
+std::unique_ptr<realtime::Device> device_of(const DeviceScript& script) {
     if (script.hand)
-        return std::make_unique<DynamicDevice>(script.model, *script.hand, script.path, script.shaft);
-    return std::make_unique<SimulatedDevice>(script.path, DeviceLimits{}, script.shaft);
+        return std::make_unique<devices::DynamicDevice>(script.model, *script.hand, script.path,
+                                                        script.shaft);
+    return std::make_unique<devices::SimulatedDevice>(script.path, DeviceLimits{}, script.shaft);
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ class HdDevice {
 
     DeviceScript script_;
     double period_, time_ = 0;
-    std::unique_ptr<Device> device_;
+    std::unique_ptr<realtime::Device> device_;
     Eigen::Matrix3d rotation_;
     Snapshot reading_, current_, last_;  // of this tick, of this frame, of the frame before
     Eigen::Vector3d tip_, velocity_ = Eigen::Vector3d::Zero(), wanted_ = Eigen::Vector3d::Zero(),

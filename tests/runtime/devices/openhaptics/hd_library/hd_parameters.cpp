@@ -11,6 +11,7 @@
 namespace palpate::hd {
 namespace {
 
+using namespace devices;
 using Eigen::Vector3d;
 
 enum Type : unsigned { boolean = 1, integer = 2, real = 4, number = integer | real };

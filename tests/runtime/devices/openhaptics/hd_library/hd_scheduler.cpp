@@ -10,6 +10,8 @@
 
 namespace palpate::hd {
 
+using namespace realtime;
+
 void Scheduler::configure(bool virtual_clock, std::int64_t pause_after_ticks, TickHooks hooks) {
     slots_ = {};
     hooks_ = std::move(hooks);

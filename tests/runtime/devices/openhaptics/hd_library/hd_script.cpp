@@ -12,6 +12,7 @@
 namespace palpate::hd {
 namespace {
 
+using namespace devices;
 using nlohmann::json;
 
 template <class Value>

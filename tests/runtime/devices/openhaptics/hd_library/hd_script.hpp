@@ -49,9 +49,9 @@ struct ButtonSpan {
 
 struct DeviceScript {
     std::string name = "Default Device";
-    DeviceModel model = find_device_model("touch");
-    std::optional<HandImpedance> hand = HandImpedance{};  ///< none: a rigid one
-    HandPath path = HandPath({{0, Eigen::Vector3d::Zero()}});
+    devices::DeviceModel model = devices::find_device_model("touch");
+    std::optional<devices::HandImpedance> hand = devices::HandImpedance{};  ///< none: a rigid one
+    devices::HandPath path = devices::HandPath({{0, Eigen::Vector3d::Zero()}});
     std::array<double, 3> shaft{0, 0, 1};  ///< unit, frame D
     std::vector<ButtonSpan> buttons{};
     bool in_inkwell = false;
