@@ -1,2 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+
+namespace palpate {
+struct Digest;
+}  // namespace palpate
