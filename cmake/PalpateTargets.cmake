@@ -60,7 +60,7 @@ if(PALPATE_SANITIZERS)
 endif()
 
 # palpate_precompiled(<set> LINKS ... HEADERS ...): headers that are compiled once; a target takes a set with
-# PRECOMPILED <set>. Every file still includes what it uses: preset tidy compiles without them.
+# PRECOMPILED <set>. Every file still includes what it uses: preset tidy reads it without them.
 function(palpate_precompiled set)
     cmake_parse_arguments(arg "" "" "LINKS;HEADERS" ${ARGN})
     add_library(palpate_precompiled_${set} OBJECT ${PROJECT_SOURCE_DIR}/cmake/precompiled.cpp)

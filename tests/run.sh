@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs what is missing, builds the release and both sanitizer presets, and runs all tests but the slow ones.
+# Installs what is missing, builds the release and both sanitizer presets, runs all tests but the slow ones, and
+# clang-tidy over formats and runtime.
 # Closes with ctest's own summary; skipped tests are printed with their reason.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../pipelines/set_up.sh"
@@ -18,10 +19,14 @@ run_preset() { # preset
 run_preset asan
 run_preset tsan
 run_preset release
+echo; echo "== clang-tidy"
+tidied=$(tests/house/tidy.sh formats runtime) || status=1
+echo "$tidied"
 # The skip reasons stand between ctest's summary and the end; say the summary of all three last.
 echo
 for preset in asan tsan release; do
     echo "$preset:"
     grep -E '^[0-9]+% tests passed|^No tests were found' "build/$preset/tests.log"
 done
+tail -n 1 <<<"$tidied"
 exit $status

@@ -19,9 +19,13 @@ constexpr auto any = Hdf5File::any;
 static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double));
 
 template <typename Scalar, typename Row>
+// NOLINTNEXTLINE(bugprone-sizeof-expression): a row may be one scalar
+constexpr std::size_t width_of = sizeof(Row) / sizeof(Scalar);
+
+template <typename Scalar, typename Row>
 void write_rows(Hdf5Writer& writer, const std::string& path, const std::vector<Row>& rows,
                 std::string_view unit = "") {
-    constexpr std::size_t width = sizeof(Row) / sizeof(Scalar);
+    constexpr std::size_t width = width_of<Scalar, Row>;
     const std::span<const Scalar> values(reinterpret_cast<const Scalar*>(rows.data()), rows.size() * width);
     if constexpr (width == 1)
         writer.dataset(path, values, {rows.size()}, unit);
@@ -32,7 +36,7 @@ void write_rows(Hdf5Writer& writer, const std::string& path, const std::vector<R
 // Reads `count` rows, or as many as there are.
 template <typename Scalar, typename Row>
 std::vector<Row> read_rows(const Hdf5File& file, const std::string& path, std::int64_t count = any) {
-    constexpr std::int64_t width = sizeof(Row) / sizeof(Scalar);
+    constexpr std::int64_t width = width_of<Scalar, Row>;
     std::vector<std::int64_t> shape{count};
     if (width > 1) shape.push_back(width);
     const std::span<const Scalar> values = file.dataset<Scalar>(path, shape);

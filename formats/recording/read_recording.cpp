@@ -47,12 +47,13 @@ RecordingHead read_head(const Hdf5File& file) {
             for (RecordedDevice& device : head.devices) device.limits.*field.member = *field.absent;
             return;
         }
-        const auto values = file.dataset<double>(path, shape_of(tools, numbers_of(field)));
+        using Stored = decltype(numbers_of(field));
+        const auto values = file.dataset<double>(path, shape_of(tools, Stored{}));
         if (!std::ranges::all_of(values, [](double v) { return std::isfinite(v); }))
             file.refuse(path, "is not finite");
         for (std::size_t i = 0; i < head.devices.size(); ++i) {
             auto& value = head.devices[i].limits.*field.member;
-            std::memcpy(&value, values.data() + i * (sizeof(value) / sizeof(double)), sizeof(value));
+            std::memcpy(&value, values.data() + i * Stored::width, sizeof(value));
         }
     });
     return head;

@@ -8,6 +8,7 @@
 #include <fcntl.h>
 #include <string>
 #include <sys/mman.h>
+#include <system_error>
 #include <type_traits>
 #include <unistd.h>
 
@@ -72,10 +73,10 @@ void reserve_space(const std::filesystem::path& path) {
         if (file >= 0) close(file);
     }
     if (error != 0)
-        throw SystemFailure(
-            {path.string(),
-             "no room for " + std::to_string(size / 1'000'000 + 1) + " MB: " + std::strerror(error), "",
-             "free disk space or record fewer seconds"});
+        throw SystemFailure({path.string(),
+                             "no room for " + std::to_string(size / 1'000'000 + 1) +
+                                 " MB: " + std::generic_category().message(error),
+                             "", "free disk space or record fewer seconds"});
 }
 
 }  // namespace
@@ -124,7 +125,7 @@ RecordingWriter::RecordingWriter(const std::filesystem::path& path) : open_(new 
                       ? MAP_FAILED
                       : mmap(nullptr, open_->size, PROT_READ | PROT_WRITE, MAP_SHARED, open_->file, 0);
     if (start == MAP_FAILED)
-        throw SystemFailure({path.string(), std::string("cannot be mapped: ") + std::strerror(errno), "",
+        throw SystemFailure({path.string(), "cannot be mapped: " + std::generic_category().message(errno), "",
                              "check its permissions"});
     open_->start = static_cast<std::byte*>(start);
     const auto place = [&]<typename T>(std::span<const T> values) {
@@ -154,7 +155,7 @@ RecordingWriter::RecordingWriter(const std::filesystem::path& path) : open_(new 
         contact_columns_[at++] =
             column(column_path("/contacts/", field.name), contact_capacity_, numbers_of(field));
     });
-    rows_per_second_ = 1000 * file.attribute<std::int32_t>("/", "tools");
+    rows_per_second_ = std::int64_t{1000} * file.attribute<std::int32_t>("/", "tools");
 }
 
 void RecordingWriter::add(Tick tick, std::span<const Contact> contacts) noexcept {

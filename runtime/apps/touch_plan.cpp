@@ -17,7 +17,7 @@ using namespace devices;
 using namespace haptics;
 using namespace session;
 
-std::optional<Eigen::Vector3d> point_of(const char* option, std::string text) {
+std::optional<Eigen::Vector3d> point_of(const char* option, const std::string& text) {
     if (text.empty()) return std::nullopt;
     std::istringstream stream(text);
     Eigen::Vector3d p;

@@ -68,6 +68,7 @@ Machine this_machine() {
     machine.environment = environment();
     machine.superuser = geteuid() == 0;
     const std::string sudo_user = machine.superuser ? variable(machine, "SUDO_USER") : "";
+    // NOLINTNEXTLINE(concurrency-mt-unsafe): before the doctor starts a thread
     const passwd* account = sudo_user.empty() ? getpwuid(geteuid()) : getpwnam(sudo_user.c_str());
     if (account != nullptr) {
         machine.user = account->pw_name;

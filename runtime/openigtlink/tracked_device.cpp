@@ -15,7 +15,7 @@ constexpr milliseconds connect_patience{900};
 constexpr milliseconds pause_before_reconnecting{500};
 constexpr milliseconds slice{50};               // after which a stop is noticed
 constexpr milliseconds message_patience{2000};  // for the rest of a message that has begun
-constexpr std::size_t body_room = 64 * 1024;    // bytes; larger bodies carry no pose
+constexpr std::size_t body_room = 65'536;       // bytes; larger bodies carry no pose
 constexpr std::size_t most_heard = 16;          // kinds of messages remembered
 
 std::int64_t now_ns() noexcept {

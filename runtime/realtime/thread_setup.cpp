@@ -2,17 +2,17 @@
 #include "runtime/realtime/thread_setup.hpp"
 
 #include <cerrno>
-#include <cstring>
 #include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
+#include <system_error>
 
 namespace palpate::realtime {
 namespace {
 
 SetupResult outcome(int error, const std::string& done, const std::string& remedy) {
     if (error == 0) return {true, done};
-    return {false, done + " was refused: " + std::strerror(error) + "; " + remedy};
+    return {false, done + " was refused: " + std::generic_category().message(error) + "; " + remedy};
 }
 
 }  // namespace

@@ -3,8 +3,10 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,6 +21,7 @@ namespace {
 using namespace haptics;
 using namespace recording;
 
+using Bits = std::array<std::uint64_t, 3>;  // of a force
 constexpr int free_ticks_to_start = 3;
 
 using Rows = std::span<const Tick>;  // of one tick, one for each tool
@@ -117,7 +120,7 @@ class Player {
             result.wake_latency_ns = row.wake_latency_ns;
             result.overruns = row.overruns;
             sink_(result);
-            if (std::memcmp(result.force.data(), row.force.data(), sizeof(row.force)) == 0) continue;
+            if (std::bit_cast<Bits>(result.force) == std::bit_cast<Bits>(row.force)) continue;
             different = true;
             if (!outcome_.first_difference)
                 outcome_.first_difference = {row.tick, row.tool, row.force, result.force};

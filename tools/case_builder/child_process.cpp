@@ -4,11 +4,11 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
-#include <cstring>
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
+#include <system_error>
 
 #include "formats/model/errors.hpp"
 #include "tools/cli/staged_file.hpp"
@@ -29,8 +29,8 @@ pid_t spawn(const std::filesystem::path& program, const std::vector<std::string>
     const int error = posix_spawn(&child, program.c_str(), &actions, nullptr, argv.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
     if (error != 0)
-        throw SystemFailure({program.string(), std::string("cannot be started: ") + std::strerror(error), "",
-                             "build or install all of Palpate"});
+        throw SystemFailure({program.string(), "cannot be started: " + std::generic_category().message(error),
+                             "", "build or install all of Palpate"});
     return child;
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string hint_for(const std::string& key, std::vector<std::string> known) {
+std::string hint_for(const std::string& key, const std::vector<std::string>& known) {
     std::string hint;
     for (const std::string& near : nearest_names(key, known))
         hint += (hint.empty() ? "did you mean " : ", ") + near;

@@ -11,6 +11,7 @@
 #include <fcntl.h>
 #include <fstream>
 #include <sys/wait.h>
+#include <system_error>
 #include <thread>
 #include <unistd.h>
 
@@ -68,7 +69,7 @@ void flush_to_disk(const std::filesystem::path& path, const std::filesystem::pat
     if (file >= 0) close(file);
     if (!flushed)
         throw SystemFailure({.culprit = target.string(),
-                             .found = std::string("could not be written: ") + std::strerror(error),
+                             .found = "could not be written: " + std::generic_category().message(error),
                              .expected = "",
                              .next_step = "check free space and permissions of its folder"});
 }

@@ -59,7 +59,7 @@ double worst_escape(const ObbTree& tree, const TriangleMesh& surface) {
     };
     for (std::size_t leaf = 0; leaf < tree.nodes.size(); ++leaf)
         for (std::int32_t k = 0; k < tree.nodes[leaf].count; ++k) {
-            const auto entry = static_cast<std::size_t>(tree.nodes[leaf].first + k);
+            const std::int32_t entry = tree.nodes[leaf].first + k;
             const Triangle& triangle = surface.triangles[tree.triangle_order[entry]];
             for (auto i = static_cast<std::int32_t>(leaf); i >= 0; i = parent[i])
                 check_box(tree.nodes[i], triangle);

@@ -22,7 +22,7 @@ struct Options {
 };
 
 /// What an experiment found: `result` is its JSON, `table` GitHub Markdown, `pictures` SVG by name.
-struct Findings {
+struct Findings {  // NOLINT(bugprone-exception-escape): to move its JSON throws nothing
     nlohmann::ordered_json result;
     std::string table;
     std::vector<std::pair<std::string, std::string>> pictures;

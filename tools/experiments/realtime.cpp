@@ -44,11 +44,12 @@ constexpr std::string_view realtime_explanation =
 class Hogs {
   public:
     Hogs() {
-        for (pid_t& hog : hogs_)
-            if ((hog = fork()) == 0) {
-                prctl(PR_SET_PDEATHSIG, SIGKILL);
-                for (std::atomic<std::uint64_t> count = 0;;) ++count;
-            }
+        for (pid_t& hog : hogs_) {
+            hog = fork();
+            if (hog != 0) continue;
+            prctl(PR_SET_PDEATHSIG, SIGKILL);
+            for (std::atomic<std::uint64_t> count = 0;;) ++count;
+        }
     }
     Hogs(const Hogs&) = delete;
     Hogs& operator=(const Hogs&) = delete;

@@ -102,8 +102,9 @@ void Legend::place(const Layout& layout, const Eigen::Vector2d& window_size) {
     // Structures first, the background last.
     for (std::size_t n = 0; n < rows_.size(); ++n) {
         const Row& row = rows_[(n + 1) % rows_.size()];
-        const double x = edge + static_cast<double>(n / lines) * size[0] / 2,
-                     y = top - static_cast<double>(n % lines) * row_height;
+        const std::size_t column = n / lines, line = n % lines;
+        const double x = edge + static_cast<double>(column) * size[0] / 2,
+                     y = top - static_cast<double>(line) * row_height;
         row.key->SetPosition(x, y);
         row.text->SetPosition(x + 34, y);
     }

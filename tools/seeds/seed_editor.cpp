@@ -117,9 +117,7 @@ void SeedEditor::key(const std::string& name) {
         zoom_ = zoom_ < largest_zoom ? 2 * zoom_ : 1;
     else if (name == "s")
         save();
-    else if ((name == "x" || name == "delete") && remove_last(state_))
-        grow();
-    else if (name == "u" && undo(state_))
+    else if (((name == "x" || name == "delete") && remove_last(state_)) || (name == "u" && undo(state_)))
         grow();
 }
 

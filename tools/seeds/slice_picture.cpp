@@ -27,7 +27,8 @@ void each_pixel(const ImageGrid& grid, const SliceView& view, std::int32_t slice
 }
 
 // Mean over 2 * radius + 1 neighbours along one axis; beyond the ends the last value goes on.
-void blur(std::vector<float>& values, int count, int stride, int lines, int line_stride, int radius) {
+void blur(std::vector<float>& values, int count, std::ptrdiff_t stride, int lines, int line_stride,
+          int radius) {
     if (radius <= 0) return;
     std::vector<float> line(static_cast<std::size_t>(count));
     for (int n = 0; n < lines; ++n) {

@@ -16,7 +16,7 @@ namespace {
 using namespace imaging;
 using namespace meshing;
 
-struct Body {
+struct Body {  // NOLINT(bugprone-exception-escape): to move a Json throws nothing
     TetMesh mesh;
     std::int64_t pieces = 0;
     std::vector<ContractCheck> checks;

@@ -2,11 +2,11 @@
 #include "formats/asset/hdf5/mapped_file.hpp"
 
 #include <cerrno>
-#include <cstring>
 #include <fcntl.h>
 #include <string>
 #include <sys/mman.h>
 #include <sys/stat.h>
+#include <system_error>
 #include <unistd.h>
 
 #include "formats/model/errors.hpp"
@@ -26,11 +26,11 @@ MappedFile::MappedFile(const std::filesystem::path& path) {
     const int error = errno;
     if (file >= 0) close(file);
     if (start == MAP_FAILED) {
-        const std::string found = !opened    ? std::string("cannot be read: ") + std::strerror(error)
+        const std::string found = !opened    ? "cannot be read: " + std::generic_category().message(error)
                                   : !regular ? "is not a file"
                                   : status.st_size == 0
                                       ? "is empty"
-                                      : std::string("cannot be mapped: ") + std::strerror(error);
+                                      : "cannot be mapped: " + std::generic_category().message(error);
         throw InvalidInput({path.string(), found, "", "check the path and its permissions"});
     }
     start_ = std::shared_ptr<const std::byte>(

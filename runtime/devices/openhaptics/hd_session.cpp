@@ -25,10 +25,12 @@ constexpr std::chrono::milliseconds between_updates{50};
 /// The process's numbers in the C locale, until it ends.
 class NumbersInC {
   public:
+    // NOLINTBEGIN(concurrency-mt-unsafe): the whole process is meant, the driver's own threads too
     NumbersInC() : before_(std::setlocale(LC_NUMERIC, nullptr)) { std::setlocale(LC_NUMERIC, "C"); }
     NumbersInC(const NumbersInC&) = delete;
     NumbersInC& operator=(const NumbersInC&) = delete;
     ~NumbersInC() { std::setlocale(LC_NUMERIC, before_.c_str()); }
+    // NOLINTEND(concurrency-mt-unsafe)
 
   private:
     std::string before_;

@@ -2,6 +2,7 @@
 // What is asked for as JSON is what arrives: every request, written and read again by its command's options.
 #include <fstream>
 #include <gtest/gtest.h>
+#include <limits>
 
 #include "tests/tools/imaging/hand_written_images.hpp"
 #include "tools/cli/items.hpp"
@@ -92,6 +93,16 @@ TEST(Request, of_segment_survives_json_with_parameters_in_their_order) {
     expect_round_trip(request, 5);
     const auto read_again = read_json<SegmentRequest>(cli::to_request(request)).request;
     EXPECT_EQ(read_again.structures.at(0).parameters.dump(), request.structures[0].parameters.dump());
+}
+
+TEST(Request, of_segment_keeps_a_bound_that_is_none) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    SegmentRequest request;
+    request.structures.push_back({.words = "", .name = "all", .recipe = "threshold"});
+    request.structures.back().parameters = {{"lower_hu", -infinity}, {"upper_hu", infinity}};
+    request.output = "out.seg.nrrd";
+    const auto read_again = read_json<SegmentRequest>(cli::to_request(request)).request;
+    EXPECT_EQ(read_again.structures.at(0).parameters, request.structures[0].parameters);
 }
 
 TEST(Request, of_surface_survives_json) {

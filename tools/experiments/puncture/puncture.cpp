@@ -150,7 +150,7 @@ std::array<Chart, 2> curves(Bench& bench, const Approach& approach) {
                                       .x_label = "time since the hand passed the surface [s]",
                                       .y_label = "mm"}};
     for (const std::string_view name : schemes) {
-        Series force{.name = std::string(name)}, depth = force;
+        Series force{.name = std::string(name)}, depth{.name = std::string(name)};
         const std::size_t scheme = charts[0].series.size();
         run_approach(bench.model(scheme), bench.device, approach, false, [&](const ApproachTick& tick) {
             if (tick.depth < -5) return;

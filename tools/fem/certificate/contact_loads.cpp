@@ -48,7 +48,7 @@ std::vector<ContactLoad> random_contact_loads(const DeformableBody& body, std::i
                               return x < y || (x == y && a < b);
                           });
         for (std::size_t k = 0; k < size; ++k) {
-            const Eigen::Vector3d normal = normals[nearest[k]];
+            const Eigen::Vector3d& normal = normals[nearest[k]];
             Eigen::Vector3d across(unit() - 0.5, unit() - 0.5, unit() - 0.5);
             across -= across.dot(normal) * normal;
             const double pressure = unit();
@@ -71,7 +71,7 @@ Eigen::VectorXd displacements_of(const SurfaceCompliance& compliance, const Cont
             for (Eigen::Index axis = 0; axis < 3; ++axis)
                 u += double{force.force[axis]} *
                      Eigen::Map<const Eigen::VectorXf>(
-                         dense->row(static_cast<std::size_t>(3 * force.node + axis)), size)
+                         dense->row(static_cast<std::size_t>(3 * Eigen::Index{force.node} + axis)), size)
                          .cast<double>();
         return u;
     }

@@ -67,10 +67,10 @@ class Compressor {
             const std::int32_t begin = result_.begin(level, i), end = result_.begin(level, i + 1);
             MatrixXd block(3 * (end - begin), 3 * count);
             for (std::int32_t p = begin; p < end; ++p)
-                block.middleRows<3>(3 * (p - begin)) =
+                block.middleRows<3>(3 * Index{p - begin}) =
                     inverse_scales_[p] * rows.middleCols<3>(3 * Index{result_.order[p]}).transpose();
             for (std::int32_t p = first; p < first + count; ++p)
-                block.middleCols<3>(3 * (p - first)) *= inverse_scales_[p];
+                block.middleCols<3>(3 * Index{p - first}) *= inverse_scales_[p];
             Part part;
             if (i == j)
                 block = MatrixXd(block + block.transpose()) / 2;
@@ -119,7 +119,7 @@ class Compressor {
     void estimate_scales() {
         std::vector<std::int32_t> sample = result_.order;
         std::shuffle(sample.begin(), sample.end(), std::mt19937_64(1));
-        sample.resize(std::min<std::size_t>(sample.size(), 2 * largest_leaf));
+        sample.resize(std::min<std::size_t>(sample.size(), std::size_t{2} * largest_leaf));
         const MatrixXd rows = rows_(sample);
         double sum = 0;
         for (const std::int32_t node : result_.order) {

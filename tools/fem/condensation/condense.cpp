@@ -77,7 +77,7 @@ struct SurfaceSolver {
         for (std::size_t k = 0; k < loads.size(); ++k)
             for (const NodeForce& force : loads[k])
                 for (Index axis = 0; axis < 3; ++axis)
-                    entries.push_back({contact_rows[3 * force.node + axis], static_cast<Index>(k),
+                    entries.push_back({contact_rows[3 * Index{force.node} + axis], static_cast<Index>(k),
                                        double{force.force[axis]}});
         return panels.solve(entries, static_cast<Index>(loads.size()));
     }

@@ -24,6 +24,7 @@ void restart_with_fitting_kernels(char** argv) {
                         __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
     const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
     if (!avx2) return;
+    // NOLINTNEXTLINE(concurrency-mt-unsafe): before there is a second thread
     setenv(variable, avx512 ? "SkylakeX" : "Haswell", 1);
     execv("/proc/self/exe", argv);  // returns only if that failed: then it is slow, but right
 #else

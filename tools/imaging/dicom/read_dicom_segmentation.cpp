@@ -38,7 +38,7 @@ class Source {
         OFString modality;
         file_.getDataset()->findAndGetOFString(DCM_Modality, modality);
         if (modality != "SEG")
-            throw InvalidInput(
+            throw InvalidInput(  // NOLINTNEXTLINE(readability-redundant-string-cstr): as below
                 {path.string(), "is DICOM of modality '" + modality_code(modality.c_str()) + "'",
                  "a segmentation object (SEG) as a label map", "leave --labels out to read an image"});
         if (file_.getDataset()->convertToUTF8().bad()) {
@@ -109,6 +109,7 @@ void Source::read_segments() {
         label.value = static_cast<std::int32_t>(number);
         OFString name;
         segment->getSegmentLabel(name);
+        // NOLINTNEXTLINE(readability-redundant-string-cstr): another DCMTK's OFString is no std::string
         label.name = name.empty() ? fmt::format("label_{}", number) : as_utf8(name.c_str());
         label.colour = default_label_colour(label.value);
         Uint16 l = 0, a = 0, b = 0;

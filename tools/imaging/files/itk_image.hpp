@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // For this folder only: the two image types that ITK filters see here, and the way to and from plain values.
 #pragma once
+#include <Eigen/Dense>
 #include <itkImage.h>
 #include <span>
 #include <string>

@@ -187,7 +187,10 @@ LabelTable read_label_table(const std::filesystem::path& path) {
     for (std::string line; std::getline(stream, line);) {
         ++number;
         if (trimmed(line).empty() || trimmed(line)[0] == '#') continue;
-        if (table.empty() && !columns && (columns = columns_of(line))) continue;
+        if (table.empty() && !columns) {
+            columns = columns_of(line);
+            if (columns) continue;
+        }
         if (columns ? add_row(table, line, *columns) : add_line(table, line)) continue;
         throw InvalidInput(
             {fmt::format("{}:{}", path.string(), number), "'" + trimmed(line).substr(0, 60) + "'",

@@ -42,7 +42,7 @@ NiftiHeader parse(const std::string& bytes, bool swapped, std::size_t dim, std::
     header.datatype = field<std::int16_t>(bytes, datatype, swapped);
     header.slope = real(slope);
     header.intercept = real(slope + sizeof(Real));
-    header.units = bytes[units];
+    header.units = static_cast<unsigned char>(bytes[units]);
     header.qform_code = static_cast<int>(field<Code>(bytes, codes, swapped));
     header.sform_code = static_cast<int>(field<Code>(bytes, codes + sizeof(Code), swapped));
     const std::size_t quaternion = codes + 2 * sizeof(Code);

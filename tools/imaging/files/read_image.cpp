@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/imaging/files/read_image.hpp"
 
-#include <Eigen/Geometry>
-#include <Eigen/SVD>
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // NRRD and MetaImage, through ITK.
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <charconv>

@@ -149,7 +149,7 @@ StoredImage read_vtk_image(const std::filesystem::path& path, const NoteSink& no
     for (int axis = 0; axis < 3; ++axis) {
         const auto* extent = data->GetExtent();
         image.grid.size[axis] = data->GetDimensions()[axis];
-        first[axis] = extent[2 * axis];
+        first[axis] = extent[std::ptrdiff_t{2} * axis];
         image.grid.origin[axis] = data->GetOrigin()[axis];
         for (int row = 0; row < 3; ++row)
             axes(row, axis) = data->GetDirectionMatrix()->GetElement(row, axis) * data->GetSpacing()[axis];

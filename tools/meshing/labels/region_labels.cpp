@@ -147,10 +147,9 @@ LabelComponents find_components(const RegionLabels& labels) {
             result.components.push_back({.region = run.region});
             index_sums.push_back(Eigen::Vector3d::Zero());
         }
-        const std::size_t row = run.begin / nx;
-        index_sums[id] +=
-            run.length * Eigen::Vector3d(run.first + 0.5 * (run.length - 1), static_cast<double>(row % ny),
-                                         static_cast<double>(row / ny));
+        const std::size_t row = run.begin / nx, y = row % ny, z = row / ny;
+        index_sums[id] += run.length * Eigen::Vector3d(run.first + 0.5 * (run.length - 1),
+                                                       static_cast<double>(y), static_cast<double>(z));
         result.components[id].voxels += run.length;
         std::fill_n(result.component_of.begin() + static_cast<std::ptrdiff_t>(run.begin), run.length, id);
     }

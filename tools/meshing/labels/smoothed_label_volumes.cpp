@@ -97,11 +97,10 @@ void SmoothedLabels::keep_volumes_locally(const RegionLabels& labels) {
         for_each_voxel(score.box, [&](const Index3& v, std::size_t) {
             const std::size_t voxel = grid_.offset(v[0], v[1], v[2]);
             const bool labelled = labels.regions[voxel] == region + 1, won = winners[voxel] == region + 1;
-            const auto block =
-                static_cast<std::size_t>(((v[2] - score.box.low[2]) / block_edge * missing.size[1] +
-                                          (v[1] - score.box.low[1]) / block_edge) *
-                                             missing.size[0] +
-                                         (v[0] - score.box.low[0]) / block_edge);
+            const std::int32_t block = ((v[2] - score.box.low[2]) / block_edge * missing.size[1] +
+                                        (v[1] - score.box.low[1]) / block_edge) *
+                                           missing.size[0] +
+                                       (v[0] - score.box.low[0]) / block_edge;
             const auto volume = static_cast<float>(grid_.voxel_volume());
             if (labelled != won) missing.values[block] += labelled ? volume : -volume;
             if (!won) return;

@@ -113,8 +113,8 @@ void SmoothedLabels::list_candidates() {
 }
 
 std::span<const std::uint8_t> SmoothedLabels::candidates_at(const Index3& voxel) const {
-    const auto block = static_cast<std::size_t>(
-        (voxel[2] / block_edge * blocks_[1] + voxel[1] / block_edge) * blocks_[0] + voxel[0] / block_edge);
+    const std::int32_t block =
+        (voxel[2] / block_edge * blocks_[1] + voxel[1] / block_edge) * blocks_[0] + voxel[0] / block_edge;
     return std::span(candidates_)
         .subspan(candidates_start_[block], candidates_start_[block + 1] - candidates_start_[block]);
 }

@@ -21,7 +21,7 @@ vtkNew<vtkPolyData> to_vtk(const TriangleMesh& surface) {
         points->SetPoint(static_cast<vtkIdType>(v), surface.vertices[v].data());
     vtkNew<vtkCellArray> triangles;
     triangles->AllocateExact(static_cast<vtkIdType>(surface.triangles.size()),
-                             static_cast<vtkIdType>(3 * surface.triangles.size()));
+                             3 * static_cast<vtkIdType>(surface.triangles.size()));
     for (const Triangle& t : surface.triangles) triangles->InsertNextCell({t[0], t[1], t[2]});
     vtkNew<vtkPolyData> data;
     data->SetPoints(points);

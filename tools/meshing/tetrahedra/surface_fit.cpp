@@ -97,7 +97,7 @@ Eigen::MatrixXd push_directions(const TetMesh& mesh, const std::vector<Interface
     for (const InterfaceFace& face : faces) {
         // A third of the face's area vector: the share of each of its nodes, to first order.
         const Eigen::Vector3d third = area_vector(mesh, face) / 3;
-        for (const std::int32_t node : face.nodes) {
+        for (const Eigen::Index node : face.nodes) {
             gradients.block<3, 1>(3 * node, face.inner - 1) += third;
             if (face.outer > 0) gradients.block<3, 1>(3 * node, face.outer - 1) -= third;
             area[node] += third.norm();

@@ -36,9 +36,8 @@ std::vector<VoxelFace> faces_between_regions(const RegionLabels& labels) {
 std::optional<SurfaceSeed> project(const VoxelFace& face, const SmoothedLabels& smoothed) {
     const ImageGrid& grid = smoothed.grid();
     const std::size_t nx = static_cast<std::size_t>(grid.size[0]), slice = grid.offset(0, 0, 1);
-    const Eigen::Vector3d index(static_cast<double>(face.voxel % nx),
-                                static_cast<double>(face.voxel % slice / nx),
-                                static_cast<double>(face.voxel / slice));
+    const std::size_t x = face.voxel % nx, y = face.voxel % slice / nx, z = face.voxel / slice;
+    const Eigen::Vector3d index(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
     const auto at = [&](double step) {
         return grid.point_of(index + step * Eigen::Vector3d::Unit(face.axis));
     };

@@ -73,6 +73,7 @@ VirtualDisplay::VirtualDisplay() {
                              .next_step = missing ? "install the package 'xvfb' or set DISPLAY"
                                                   : "run 'Xvfb :99' by hand to see why, or set DISPLAY"});
     }
+    // NOLINTNEXTLINE(concurrency-mt-unsafe): where VTK looks; made before it starts a thread
     setenv("DISPLAY", (":" + number).c_str(), 1);
 }
 
@@ -81,10 +82,12 @@ VirtualDisplay::~VirtualDisplay() {
     if (server_ <= 0) return;
     kill(server_, SIGTERM);
     waitpid(server_, nullptr, 0);
+    // NOLINTBEGIN(concurrency-mt-unsafe): VTK's threads have ended
     if (former_.empty())
         unsetenv("DISPLAY");
     else
         setenv("DISPLAY", former_.c_str(), 1);
+    // NOLINTEND(concurrency-mt-unsafe)
 }
 
 }  // namespace palpate::report

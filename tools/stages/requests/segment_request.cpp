@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/stages/requests/segment_request.hpp"
 
+#include <array>
+#include <limits>
+#include <utility>
+
 #include "tools/cli/items.hpp"
 
 namespace palpate::stages {
@@ -10,16 +14,26 @@ StructureRequest structure_from(const std::string& words) {
     return {.words = words, .name = "", .recipe = ""};
 }
 
+// JSON has no infinite number, and a bound may be one: requests write it as the command line does.
+constexpr std::array<std::pair<const char*, double>, 2> unbounded{
+    {{"-inf", -std::numeric_limits<double>::infinity()}, {"inf", std::numeric_limits<double>::infinity()}}};
+
 }  // namespace
 
 void to_json(nlohmann::ordered_json& json, const StructureRequest& structure) {
     json = {{"name", structure.name}, {"recipe", structure.recipe}, {"parameters", structure.parameters}};
+    for (auto& value : json["parameters"])
+        for (const auto& [word, number] : unbounded)
+            if (value == number) value = word;
 }
 
 void from_json(const nlohmann::ordered_json& json, StructureRequest& structure) {
     cli::refuse_other_keys(json, {"name", "recipe", "parameters"});
     structure = {.words = "", .name = json.at("name"), .recipe = json.at("recipe")};
     structure.parameters = json.value("parameters", nlohmann::ordered_json::object());
+    for (auto& value : structure.parameters)
+        for (const auto& [word, number] : unbounded)
+            if (value == word) value = number;
 }
 
 void declare(cli::Command& command, SegmentRequest& request) {

@@ -1,0 +1,11 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# What is too long for every run of tests/run.sh: the whole tree by Clang with its tests, clang-tidy over the tools, the
+# slow tests.
+set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/../pipelines/set_up.sh"
+set_up clang release
+cd "$root"
+tests/house/tidy.sh tools
+ctest --preset clang -j "$(nproc)"
+ctest --preset slow
