@@ -55,7 +55,7 @@ inline constexpr std::tuple contact_fields{
     Field("force", &Contact::force, "N",
           "f >= 0: the tool pushes the tissue by -n f, the tissue the tool by n f"),
     Field("series_compliance", &Contact::series_compliance, "mm/N",
-          "c, in series with the body's own at this point"),
+          "c, in series with the body's own at this point: what the tool sinks in locally"),
     Field("friction", &Contact::friction, "N", "on the tool; the opposite on the tissue")};
 
 /// The contact's unit normal, from tissue to tool.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/session/touch_target.hpp"
+#include "runtime/haptics/contact/god_object.hpp"
+#include "runtime//session/touch_target.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -63,8 +63,8 @@ class DemoCases(unittest.TestCase):
         deepest = depth.index(max(depth))
         self.assertAlmostEqual(max(depth), 3.0, delta=0.02)
         pressing = magnitude[:deepest + 1]
-        # Sliding feet may trade a thousandth of the peak between ticks.
-        self.assertTrue(all(b >= a - 1e-3 * max(pressing) for a, b in zip(pressing, pressing[1:])), "force fell while pressing")
+        # A tool deeper than its own radius rolls over edges of the mesh: half a hundredth of the peak at most.
+        self.assertTrue(all(b >= a - 5e-3 * max(pressing) for a, b in zip(pressing, pressing[1:])), "force fell while pressing")
         released = next(index for index in range(deepest, len(depth)) if depth[index] == 0)
         self.assertEqual(magnitude[released + 25], 0, "a force stayed after release")
 

@@ -215,11 +215,11 @@ class Touch(SampleAsset):
         scale = (clearance + 3) / (max(angle) - min(angle))
         for i, d in enumerate(depth):  # the first row is at time 0, before the first tick
             self.assertAlmostEqual(d, max(0, (angle[i + 1] - min(angle)) * scale - clearance), delta=1e-3)
-        # The tissue is linear: the force follows the depth.
-        stiffness = max(force) / max(depth)
-        self.assertGreater(stiffness, 0)
-        for d, f in zip(depth, force):
-            self.assertAlmostEqual(f, stiffness * d, delta=0.05 * max(force))
+        # The force follows the depth, whichever way it is reached.
+        self.assertGreater(max(force), 0)
+        by_depth = sorted(zip(depth, force))
+        for (_, f), (_, deeper) in zip(by_depth, by_depth[1:]):
+            self.assertGreater(deeper, f - 0.02 * max(force))
         simulated = self.result("--virtual-clock", "--script", recording, "--column", 2, "--device", "desktop")
         self.assertGreater(simulated["force_peak_n"], 0.8 * max(force))
 

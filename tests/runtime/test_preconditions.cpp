@@ -7,7 +7,6 @@
 #include "formats/model/image_grid.hpp"
 #include "runtime/devices/dynamic_device.hpp"
 #include "runtime/devices/mounted_device.hpp"
-#include "runtime/haptics/contact/contact_solver.hpp"
 #include "runtime/haptics/haptic_model.hpp"
 #include "runtime/haptics/methods/published_contact.hpp"
 #include "runtime/openigtlink/contact_point.hpp"
@@ -77,12 +76,6 @@ TEST(Preconditions, a_tick_has_as_many_devices_and_results_as_tools) {
     haptics::HapticModel model(plate());
     TickResult result;
     EXPECT_ASSERTED(model.tick(std::span<const realtime::DeviceState>(), {&result, 1}));
-}
-
-TEST(Preconditions, a_solver_takes_no_more_contacts_than_it_has_rows) {
-    const auto solver = std::make_unique<haptics::ContactSolver>();
-    std::vector<Contact> contacts(max_contacts + 1);
-    EXPECT_ASSERTED(solver->add(contacts, nullptr, 0));
 }
 
 TEST(Preconditions, a_contacts_vertices_are_the_bodys) {

@@ -5,7 +5,7 @@ namespace palpate::haptics {
 
 using namespace collision;
 
-ContactBodies::ContactBodies(const Case& patient_case) {
+ContactBodies::ContactBodies(const Case& patient_case, bool spreads_loads) {
     for (const RigidBody& body : patient_case.rigid_bodies) {
         names.push_back(body.name);
         surfaces.push_back(std::make_unique<CollisionSurface>(body.surface, body.obb_tree, body.name));
@@ -17,7 +17,7 @@ ContactBodies::ContactBodies(const Case& patient_case) {
         surfaces.push_back(
             std::make_unique<CollisionSurface>(body.boundary.surface, body.obb_tree, body.name));
         triangles.push_back(body.boundary.surface.triangles);
-        deformable.emplace_back(body, index);
+        deformable.emplace_back(body, index, spreads_loads);
     }
 }
 

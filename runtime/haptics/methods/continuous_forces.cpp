@@ -12,14 +12,6 @@ using Eigen::Vector3d;
 
 constexpr double room_for_rounding = 1e-3;  // mm
 
-// What contacts press the tool with, friction left out, N.
-Vector3d pressed(const TickResult& result) noexcept {
-    Vector3d force = Vector3d::Zero();
-    for (const Contact& contact : result.active_contacts())
-        force += static_cast<double>(contact.force) * normal_of(contact);
-    return force;
-}
-
 }  // namespace
 
 Contact ContinuousContact::rigid_contact(const GodObject::Touch& touch, const Vector3d& normal,
@@ -57,14 +49,14 @@ bool ContinuousContact::hold_off_rigid(std::span<TickResult> results) noexcept {
     bool met = false;
     for (std::size_t t = 0; t < tools_.size(); ++t) {
         TickResult& result = results[t];
-        if (tools_[t].parts_felt == 0 || result.contact_count == 0) continue;
-        const Vector3d push = pressed(result) / coupling_;
+        if (!equilibrium_.touches_tissue(t)) continue;
+        const Vector3d push = equilibrium_.press(t) / coupling_;
         for (std::size_t p = 0; p < tools_[t].parts_felt; ++p) {
             Part& part = tools_[t].parts[p];
             const auto touch = part.on_rigid.touch_on_the_way(rigid_surfaces_, part.device + push);
             if (!touch) continue;
             const auto at = static_cast<std::size_t>(result.contact_count);
-            if (solver_.size() == max_contacts || at == max_contacts) {
+            if (at == max_contacts) {
                 result.status |= contacts_cut;
                 continue;
             }
@@ -72,8 +64,11 @@ bool ContinuousContact::hold_off_rigid(std::span<TickResult> results) noexcept {
             Contact& contact = result.contacts[at];
             contact = rigid_contact(*touch, touch->normal, gap);
             contact.part = static_cast<std::int32_t>(p);
+            if (!equilibrium_.add_wall(t, contact)) {
+                result.status |= contacts_cut;
+                continue;
+            }
             ++result.contact_count;
-            solver_.add({&contact, 1}, nullptr, static_cast<std::int32_t>(t));
             met = true;
         }
     }
@@ -89,39 +84,33 @@ void ContinuousContact::add_rigid_contacts(std::size_t t, TickResult& result) no
         const Vector3d lifted = part.on_rigid.position() + part.on_rigid.held_back() - part.device;
         std::size_t count = 0;
         for (const GodObject::Touch& touch : part.on_rigid.touches()) {
-            if (solver_.size() + count == max_contacts || first + count == max_contacts) {
+            if (first + count == max_contacts) {
                 result.status |= contacts_cut;
                 break;
             }
-            Contact& contact = result.contacts[first + count++];
+            Contact& contact = result.contacts[first + count];
             contact = rigid_contact(touch, touch.normal, touch.normal.dot(lifted));
             contact.part = static_cast<std::int32_t>(p);
+            if (equilibrium_.add_wall(t, contact))
+                ++count;
+            else
+                result.status |= contacts_cut;
         }
         result.contact_count += static_cast<std::int32_t>(count);
         part.rigid_contacts = std::span(result.contacts).subspan(first, count);
-        solver_.add(part.rigid_contacts, nullptr, static_cast<std::int32_t>(t));
     }
 }
 
 // What is in equilibrium is no farther from the device than a tool would be if nothing gave way, for there
-// its energy is higher. In a narrow wedge, where the planes of contact push far beyond the surfaces that they
-// stand for, a solution may be.
-bool ContinuousContact::within_reach(const Tool& tool, const TickResult& result) const noexcept {
-    double reach = room_for_rounding;
+// its energy is higher; and what friction holds is no farther than it was. In a narrow wedge, where the
+// planes of contact push far beyond the surfaces that they stand for, a solution may be.
+bool ContinuousContact::within_reach(std::size_t t, const Vector3d& force) const noexcept {
+    const Tool& tool = tools_[t];
+    double reach = 0;
     for (const Part& part : std::span(tool.parts).first(tool.parts_felt))
-        reach += (part.on_all.position() - part.device).norm() + part.moved;
-    return pressed(result).norm() <= coupling_ * reach;
-}
-
-Vector3d ContinuousContact::solved_force(Tool& tool, const TickResult& result) const noexcept {
-    Vector3d force = pressed(result);
-    if (!(friction_.at_rest > 0)) return force;
-    for (Part& part : std::span(tool.parts).first(tool.parts_felt)) {
-        for (std::size_t soft = 0; soft < part.on_soft.size(); ++soft)
-            force += friction_of(part.on_soft[soft], bodies_.deformable[soft]);
-        force += friction_of(part);
-    }
-    return force;
+        reach += (part.on_all.position() - part.device).norm();
+    if (friction_.at_rest > 0) reach = std::max(reach, equilibrium_.held_reach(t));
+    return force.norm() <= coupling_ * (reach + room_for_rounding);
 }
 
 Vector3d ContinuousContact::friction_of(const Part& part) const noexcept {
@@ -135,35 +124,6 @@ Vector3d ContinuousContact::friction_of(const Part& part) const noexcept {
         Eigen::Map<Eigen::Vector3f>(contact.friction.data()) =
             (static_cast<double>(contact.force) / press * drag).cast<float>();
     return drag;
-}
-
-// Friction drags the points in proportion to how they are pressed, by as much as it takes to move them,
-// together and along with the virtual coupling, as far as the god-object is held back; by Coulomb's law at
-// most. The grip that makes Coulomb's law in forces one in mm for the god-object is that of this tick, in the
-// next one.
-Vector3d ContinuousContact::friction_of(SoftTouch& touch, const DeformableContact& body) const noexcept {
-    double press = 0, work = 0;
-    for (const Contact& contact : touch.contacts) {
-        press += static_cast<double>(contact.force);
-        work += static_cast<double>(contact.force * contact.gap);
-    }
-    const Vector3d& held = touch.god_object.held_back();
-    const double way = held.norm();
-    if (!(work > 0) || !(way > 0)) return Vector3d::Zero();
-    const Vector3d along = held / way;
-    double compliance = 1 / coupling_;
-    for (const Contact& a : touch.contacts)
-        for (const Contact& b : touch.contacts)
-            if (a.force > 0 && b.force > 0)
-                compliance += static_cast<double>(a.force * b.force) / (press * press) *
-                              body.compliance_between(a, along, b, along);
-    touch.grip = compliance * press * press / work;
-    const double drag = std::min(way / compliance, friction_.at_rest * press);
-    for (Contact& contact : touch.contacts) {
-        const double share = static_cast<double>(contact.force) / press;
-        Eigen::Map<Eigen::Vector3f>(contact.friction.data()) = (-share * drag * along).cast<float>();
-    }
-    return -drag * along;
 }
 
 }  // namespace palpate::haptics

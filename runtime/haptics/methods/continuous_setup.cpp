@@ -10,8 +10,8 @@ namespace {
 
 // Where the spheres of a tool are behind its tip, mm: a radius apart, the surface of the row dips by an
 // eighth of it; a long thin shaft gets fewer.
-std::vector<double> spheres_of(const HapticSettings& settings) {
-    constexpr double most = 48;
+std::vector<double> spheres_of(const HapticSettings& settings, std::size_t most_spheres) {
+    const auto most = static_cast<double>(most_spheres - 1);
     const double spheres = std::min(most, std::ceil(settings.shaft_length / settings.tool_radius));
     std::vector<double> places{0};
     for (double k = 1; k <= spheres; ++k) places.push_back(settings.shaft_length * k / spheres);
@@ -22,28 +22,28 @@ std::vector<double> spheres_of(const HapticSettings& settings) {
 
 ContinuousContact::ContinuousContact(const ContactBodies& bodies, const HapticSettings& settings,
                                      std::size_t tool_count)
-    : bodies_(bodies), friction_{settings.friction_at_rest, settings.friction_sliding} {
+    : bodies_(bodies),
+      friction_{settings.friction_at_rest, settings.friction_sliding},
+      equilibrium_(bodies, settings.tool_radius, friction_, tool_count,
+                   spheres_of(settings, most_spheres).size()) {
     for (const auto& surface : bodies.surfaces) {
         if (all_surfaces_.size() < bodies.rigid_count()) rigid_surfaces_.push_back(surface.get());
         all_surfaces_.push_back(surface.get());
     }
     const double radius = settings.tool_radius;
     for (std::size_t t = 0; t < tool_count; ++t) {
-        Tool& tool = tools_.emplace_back(std::vector<Part>{}, std::vector<Contact>(max_contacts));
-        for (const double behind_tip : spheres_of(settings)) {
-            Part& part = tool.parts.emplace_back(behind_tip, GodObject(radius, rigid_surfaces_.size()),
-                                                 GodObject(radius, all_surfaces_.size()));
-            for (std::size_t soft = 0; soft < bodies.deformable.size(); ++soft)
-                part.on_soft.push_back({GodObject(radius, 1)});
-        }
+        Tool& tool = tools_.emplace_back(std::vector<Part>{});
+        for (const double behind_tip : spheres_of(settings, most_spheres))
+            tool.parts.emplace_back(behind_tip, GodObject(radius, rigid_surfaces_.size()),
+                                    GodObject(radius, all_surfaces_.size()));
     }
 }
 
 ContinuousContact::~ContinuousContact() = default;
 
 void ContinuousContact::reset() noexcept {
-    for (Tool& tool : tools_) forget(tool);
-    solver_.reset();
+    for (std::size_t t = 0; t < tools_.size(); ++t) forget(t);
+    equilibrium_.reset();
 }
 
 std::unique_ptr<ContactMethod> make_continuous(const Case& patient_case, const ContactBodies& bodies,

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "formats/model/body.hpp"
+#include "runtime/haptics/contact/god_object.hpp"
 #include "runtime/haptics/haptic_model.hpp"
 #include "tests/formats/sample_case.hpp"
 #include "tests/runtime/elastic_cube.hpp"

@@ -10,6 +10,8 @@
 #include <variant>
 #include <vector>
 
+#include "runtime/haptics/contact/compliance_blocks.hpp"
+#include "runtime/haptics/contact/load_spread.hpp"
 #include "runtime/haptics/haptic_model.hpp"
 #include "tests/formats/sample_case.hpp"
 #include "tests/runtime/allocation_trap.hpp"
@@ -76,7 +78,7 @@ TEST(ComplianceByBlocks, gives_the_forces_and_displacements_of_the_dense_one_wit
                 go(*m, *r, press + Vector3d(0, 0, 5));
                 go(*m, *r, press);
             }
-            ASSERT_GT(result.contact_count, 1);
+            ASSERT_GT(result.contact_count, 0);
             const double difference = (force_of(result) - force_of(exact_result)).norm();
             EXPECT_LE(difference, tolerance * force_of(exact_result).norm()) << press.transpose();
             largest_difference = std::max(largest_difference, difference);
@@ -106,7 +108,7 @@ TEST(ComplianceByBlocks, neither_ticks_nor_displacements_allocate) {
             go(*model, result,
                {10 + 9 * std::sin(1.1 * t), 10 + 9 * std::sin(2.3 * t), 22 + 2 * std::cos(5.1 * t)});
             model->surface_displacement(0, result, u);
-            touching += result.contact_count > 1;
+            touching += result.contact_count > 0;
         }
         allocated = trap.count();
     }
@@ -133,6 +135,7 @@ INSTANTIATE_TEST_SUITE_P(Each, SurfaceWithGaps, ::testing::Bool(),
 
 TEST_P(SurfaceWithGaps, moves_each_vertex_as_its_contact_node_and_no_other) {
     HapticModel model(holding(body_));
+    const LoadSpread spread(body_, compliance_blocks(body_));
     TickResult result{};
     const auto contact_node = [&](std::int32_t vertex) {
         const std::int32_t node = body_.boundary.nodes[static_cast<std::size_t>(vertex)];
@@ -152,11 +155,10 @@ TEST_P(SurfaceWithGaps, moves_each_vertex_as_its_contact_node_and_no_other) {
             const std::int32_t own = contact_node(static_cast<std::int32_t>(v));
             Vector3f expected = Vector3f::Zero();
             for (const Contact& contact : result.active_contacts())
-                for (std::size_t i = 0; i < 3 && contact.vertices[i] >= 0; ++i)
-                    if (const std::int32_t pushed = contact_node(contact.vertices[i]);
-                        own >= 0 && pushed >= 0)
-                        expected -= contact.weights[i] * contact.force *
-                                    (compliance_block(body_.compliance, own, pushed) *
+                for (std::size_t i = 0; i < 3 && own >= 0; ++i)
+                    for (const LoadSpread::Share& share : spread.shares(contact.vertices[i]))
+                        expected -= contact.weights[i] * share.weight * contact.force *
+                                    (compliance_block(body_.compliance, own, contact_node(share.vertex)) *
                                      Eigen::Map<const Vector3f>(contact.normal.data()));
             if (own < 0) {
                 EXPECT_EQ(u[v], Vector3f::Zero()) << "vertex " << v;

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <Eigen/LU>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <memory>
 
 #include "formats/model/errors.hpp"
+#include "runtime/haptics/contact/god_object.hpp"
 #include "runtime/haptics/haptic_model.hpp"
 #include "tests/formats/sample_case.hpp"
 #include "tests/runtime/elastic_cube.hpp"
+#include "tests/runtime/haptics/equilibrium_oracle.hpp"
 
 namespace palpate {
 namespace {
@@ -43,43 +44,6 @@ class DeformableContactTest : public ::testing::Test {
     TickResult result_{};
 };
 
-// Solves K u = load with the recorded contacts as constraints, on the whole stiffness matrix and behind a
-// virtual coupling (N/mm): an independent way to the contact forces.
-Eigen::VectorXd direct_forces(const DeformableBody& body, std::span<const Contact> contacts,
-                              double coupling) {
-    const Eigen::MatrixXd K = sample::dense_stiffness(body.mesh, sample::soft_tissue());
-    std::vector<const Contact*> active;
-    for (const Contact& contact : contacts)
-        if (contact.force > 0) active.push_back(&contact);
-    const Eigen::Index n = K.rows(), m = static_cast<Eigen::Index>(active.size());
-    Eigen::MatrixXd system = Eigen::MatrixXd::Zero(n + m, n + m);
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(n + m);
-    system.topLeftCorner(n, n) = K;
-    for (Eigen::Index k = 0; k < m; ++k) {
-        const Contact& contact = *active[static_cast<std::size_t>(k)];
-        for (std::size_t i = 0; i < 3 && contact.vertices[i] >= 0; ++i)
-            for (Eigen::Index axis = 0; axis < 3; ++axis) {
-                const Eigen::Index dof =
-                    3 * body.boundary.nodes[static_cast<std::size_t>(contact.vertices[i])] + axis;
-                const double entry = static_cast<double>(contact.weights[i]) *
-                                     static_cast<double>(contact.normal[static_cast<std::size_t>(axis)]);
-                system(dof, n + k) += entry;  // K u + n f = 0
-                system(n + k, dof) -= entry;  // -n . u + c f = delta
-            }
-        for (Eigen::Index l = 0; l < m; ++l)
-            system(n + k, n + l) =
-                normal_of(contact).dot(normal_of(*active[static_cast<std::size_t>(l)])) / coupling;
-        system(n + k, n + k) += static_cast<double>(contact.series_compliance);
-        right[n + k] = static_cast<double>(contact.gap);
-    }
-    for (const std::int32_t node : body.fixed_nodes)
-        for (Eigen::Index dof = 3 * node; dof < 3 * node + 3; ++dof) {
-            system.row(dof).setZero();
-            system(dof, dof) = 1;
-        }
-    return system.partialPivLu().solve(right).tail(m);
-}
-
 TEST_F(DeformableContactTest, a_press_grows_with_depth_and_ends_with_release) {
     go({10.3, 9.4, 26});
     double last = 0;
@@ -100,47 +64,51 @@ TEST_F(DeformableContactTest, a_press_grows_with_depth_and_ends_with_release) {
     EXPECT_EQ(result_.contact_count, 0);
 }
 
-TEST_F(DeformableContactTest, forces_are_those_of_a_direct_solve_on_the_whole_stiffness) {
+TEST_F(DeformableContactTest, forces_hold_the_tool_on_the_surface_that_the_whole_stiffness_displaces) {
+    const EquilibriumOracle oracle(body());
     for (const Vector3d& place : {Vector3d(10.3, 9.4, 23), Vector3d(8.1, 8.2, 23), Vector3d(14, 5, 23)})
         for (const double depth : {0.5, 1.5, 3.0}) {
             model_.reset();
             go(place + Vector3d(0, 0, 3));
-            go(place - Vector3d(0, 0, depth));
-            const Eigen::VectorXd expected =
-                direct_forces(body(), result_.active_contacts(), model_.coupling());
-            ASSERT_GT(expected.size(), 0);
-            double sum = 0;
-            for (const Contact& contact : result_.active_contacts())
-                sum += static_cast<double>(contact.force);
-            EXPECT_NEAR(sum, expected.sum(), 1e-4 * expected.sum()) << place.transpose() << " " << depth;
+            for (int tick = 0; tick < 5; ++tick) go(place - Vector3d(0, 0, depth));
+            ASSERT_GT(press_of(result_), 0.001) << place.transpose() << " " << depth;
+            EXPECT_EQ(result_.status, tick_ok);
+            oracle.expect_equilibrium({&result_, 1}, 3, model_.coupling(), 2e-3);
             EXPECT_LE(result_.residual, 1e-6);
         }
 }
 
-TEST_F(DeformableContactTest, the_displaced_surface_leaves_the_tool_and_no_contact_pulls) {
-    go({8.1, 8.2, 26});
-    go({8.1, 8.2, 21});
-    std::vector<Eigen::Vector3f> u(body().boundary.nodes.size());
-    model_.surface_displacement(0, result_, u);
-    ASSERT_GT(result_.contact_count, 1);
-    const Eigen::Vector3f backed = (force() / model_.coupling()).cast<float>();  // the tool, on its coupling
-    for (const Contact& contact : result_.active_contacts()) {
-        EXPECT_GE(contact.force, 0);
-        Eigen::Vector3f moved = Eigen::Vector3f::Zero();
-        for (std::size_t i = 0; i < 3 && contact.vertices[i] >= 0; ++i)
-            moved += contact.weights[i] * u[static_cast<std::size_t>(contact.vertices[i])];
-        moved -= backed;
-        const float given = -moved.dot(Eigen::Map<const Eigen::Vector3f>(contact.normal.data())) +
-                            contact.series_compliance * contact.force;
-        EXPECT_GE(given, contact.gap - 1e-4F);  // float32 displacements of a few mm
-        if (contact.force > 0) {
-            EXPECT_NEAR(given, contact.gap, 1e-4F);
+// The work of a hand that goes in and along, and the energy that the whole stiffness then holds.
+TEST_F(DeformableContactTest, the_hands_work_is_what_tissue_sinking_in_and_coupling_hold) {
+    const EquilibriumOracle oracle(body());
+    go({9, 8, 26});
+    Vector3d last_device(9, 8, 23.001), last_force = Vector3d::Zero();
+    double work = 0, most = 0;
+    const auto walk = [&](const Vector3d& to) {
+        const Vector3d from = last_device;
+        const int steps = static_cast<int>(std::ceil((to - from).norm() / 0.01));
+        for (int step = 1; step <= steps; ++step) {
+            const Vector3d device = from + (to - from) * step / steps;
+            go(device);
+            work -= 0.5 * (force() + last_force).dot(device - last_device);
+            last_device = device;
+            last_force = force();
+            most = std::max(most, work);
+            if (step % 50 == 0) {
+                EXPECT_NEAR(work, oracle.energy(result_, 3, model_.coupling()), 0.01 * most)
+                    << device.transpose();
+            }
         }
-    }
-    for (std::size_t v = 0; v < u.size(); ++v)
-        if (body().boundary.surface.vertices[v].z() == 0) {
-            EXPECT_EQ(u[v].norm(), 0) << "fixed vertex " << v;
-        }
+    };
+    for (const Vector3d& corner : {Vector3d(9, 8, 21), Vector3d(12, 8, 21), Vector3d(12, 11, 20.5),
+                                   Vector3d(8, 12, 21), Vector3d(9, 8, 21)})
+        walk(corner);
+    const double there = work;
+    // Round a closed way and back to where it began.
+    for (const Vector3d& corner :
+         {Vector3d(12, 8, 21), Vector3d(12, 11, 20.5), Vector3d(8, 12, 21), Vector3d(9, 8, 21)})
+        walk(corner);
+    EXPECT_NEAR(work, there, 0.01 * most);
 }
 
 TEST_F(DeformableContactTest, sliding_at_50_mm_per_s_changes_the_force_without_jumps) {
@@ -196,7 +164,9 @@ TEST_F(PartialContactSurface, feels_like_the_whole_one_within_it_and_rigid_beyon
     HapticModel whole(whole_), part(part_);
     const Vector3d within(4, 9.7, 22), beyond(18.5, 9.7, 22);  // 1 mm deep
     for (HapticModel* model : {&whole, &part}) go(*model, result_, within + Vector3d(0, 0, 4));
-    EXPECT_EQ(go(part, result_, within), go(whole, result_, within));
+    // Loads spread no farther than the rim, which is two elements off.
+    const Vector3d felt = go(whole, result_, within);
+    EXPECT_NEAR((go(part, result_, within) - felt).norm(), 0, 0.01 * felt.norm());
 
     part.reset();
     go(part, result_, beyond + Vector3d(0, 0, 4));
@@ -233,6 +203,7 @@ TEST_F(PartialContactSurface, is_left_and_entered_without_a_jump_of_the_force) {
     const Vector3d start(10, 9.7, 21.5);  // 1.5 mm deep
     constexpr double way = 7;             // mm, to x = 17 mm, in a triangle that C leaves out wholly
     HapticModel part(part_);
+    double stiffest = 0;
     const auto largest_change = [&](int steps) {
         part.reset();
         go(part, result_, start + Vector3d(0, 0, 5));
@@ -248,12 +219,15 @@ TEST_F(PartialContactSurface, is_left_and_entered_without_a_jump_of_the_force) {
             last = force;
         }
         EXPECT_GT(stiff, 2 * soft.z());
+        stiffest = std::max(stiffest, stiff);
         // A solved contact does not remember the way.
         EXPECT_NEAR((last - soft).norm(), 0, 1e-4 * soft.norm());
         return largest;
     };
     const double coarse = largest_change(350);  // 0.02 mm, 20 mm/s at 1 kHz
-    EXPECT_LE(largest_change(3500), slack * coarse / refinement);
+    // Half a per cent is what the search for the equilibrium may leave for the next tick.
+    const double fine = largest_change(3500);
+    EXPECT_LE(fine, slack * coarse / refinement + 0.005 * stiffest);
 }
 
 TEST_F(DeformableContactTest, refuses_a_compliance_of_another_body) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "tests/runtime/allocation_trap.hpp"
+#include "tests/runtime/haptics/equilibrium_oracle.hpp"
 #include "tests/runtime/haptics/held_tool.hpp"
 
 namespace palpate {
@@ -39,64 +39,17 @@ std::vector<TickResult> press(const Case& c, const std::vector<DeviceState>& dev
     return results;
 }
 
-// K u = load on the whole stiffness matrix with the pressed points of all tools as constraints, each tool
-// behind its own coupling (N/mm): the sum of each tool's forces, N.
-std::vector<Vector3d> direct_forces(const DeformableBody& body, std::span<const TickResult> results,
-                                    double coupling) {
-    const Eigen::MatrixXd K = sample::dense_stiffness(body.mesh, sample::soft_tissue());
-    struct Point {
-        const Contact* contact;
-        std::size_t tool;
-    };
-    std::vector<Point> points;
-    for (std::size_t t = 0; t < results.size(); ++t)
-        for (const Contact& contact : results[t].active_contacts())
-            if (contact.force > 0) points.push_back({&contact, t});
-    const Eigen::Index n = K.rows(), m = static_cast<Eigen::Index>(points.size());
-    Eigen::MatrixXd system = Eigen::MatrixXd::Zero(n + m, n + m);
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(n + m);
-    system.topLeftCorner(n, n) = K;
-    for (Eigen::Index k = 0; k < m; ++k) {
-        const auto& [contact, tool] = points[static_cast<std::size_t>(k)];
-        const Vector3d normal = normal_of(*contact);
-        for (std::size_t i = 0; i < 3 && contact->vertices[i] >= 0; ++i) {
-            const Eigen::Index dof = 3 * body.boundary.nodes[static_cast<std::size_t>(contact->vertices[i])];
-            const Vector3d entry = static_cast<double>(contact->weights[i]) * normal;
-            system.block<3, 1>(dof, n + k) += entry;              // K u + n f = 0
-            system.block<1, 3>(n + k, dof) -= entry.transpose();  // -n . u + c f = delta
-        }
-        for (Eigen::Index l = 0; l < m; ++l)
-            if (const Point& other = points[static_cast<std::size_t>(l)]; other.tool == tool)
-                system(n + k, n + l) = normal.dot(normal_of(*other.contact)) / coupling;
-        system(n + k, n + k) += static_cast<double>(contact->series_compliance);
-        right[n + k] = static_cast<double>(contact->gap);
-    }
-    for (const std::int32_t node : body.fixed_nodes)
-        for (Eigen::Index dof = 3 * node; dof < 3 * node + 3; ++dof) {
-            system.row(dof).setZero();
-            system(dof, dof) = 1;
-        }
-    const Eigen::VectorXd forces = system.partialPivLu().solve(right).tail(m);
-    std::vector<Vector3d> sums(results.size(), Vector3d::Zero());
-    for (Eigen::Index k = 0; k < m; ++k) {
-        const auto& [contact, tool] = points[static_cast<std::size_t>(k)];
-        sums[tool] += forces[k] * normal_of(*contact);
-    }
-    return sums;
-}
-
-TEST(TwoTools, forces_are_those_of_a_direct_solve_on_the_whole_stiffness) {
+TEST(TwoTools, rest_together_on_the_surface_that_the_whole_stiffness_displaces) {
     const Case c = cube_for_tools(5, 3);
-    for (const Vector3d& second : {Vector3d(16, 15, 22), Vector3d(12, 10.5, 21), Vector3d(21.5, 10, 10)}) {
+    const EquilibriumOracle oracle(c.deformable_bodies[0]);
+    for (const Vector3d& second : {Vector3d(16, 15, 22), Vector3d(13.5, 11.5, 21), Vector3d(21.5, 10, 10)}) {
         const auto results = press(c, {held_at({6.3, 7.4, 21}), held_at(second)}, 15);
-        const auto expected = direct_forces(c.deformable_bodies[0], results, c.haptics.coupling_stiffness);
         for (std::size_t t = 0; t < 2; ++t) {
             EXPECT_EQ(results[t].tool, static_cast<int>(t));
             EXPECT_EQ(results[t].status, tick_ok);
-            ASSERT_GT(expected[t].norm(), 0.01) << second.transpose();
-            EXPECT_NEAR((force_of(results[t]) - expected[t]).norm(), 0, 10 * single * expected[t].norm())
-                << t << " " << second.transpose();
+            ASSERT_GT(press_of(results[t]), 0.003) << second.transpose();
         }
+        oracle.expect_equilibrium(results, 3, c.haptics.coupling_stiffness, 2e-3);
     }
 }
 
@@ -138,7 +91,8 @@ TEST(TwoTools, that_touch_different_bodies_feel_what_each_feels_alone) {
     const std::array alone{press(c, {first})[0], press(c, {second})[0], press(c, {third})[0]};
     for (std::size_t t = 0; t < 3; ++t) {
         ASSERT_GT(force_of(alone[t]).norm(), 0.01);
-        EXPECT_NEAR((force_of(both[t]) - force_of(alone[t])).norm(), 0, single * force_of(alone[t]).norm());
+        EXPECT_NEAR((force_of(both[t]) - force_of(alone[t])).norm(), 0,
+                    10 * single * force_of(alone[t]).norm());
         EXPECT_EQ(both[t].body, alone[t].body);
     }
 }
@@ -263,6 +217,29 @@ TEST(Shaft, away_from_the_body_changes_nothing) {
         }
         EXPECT_GT(touched, 500);
     }
+}
+
+// A long thin shaft lies on tissue in more places than can be solved at once; that takes neither the wall
+// beside it nor the other tool their share.
+TEST(TwoTools, keep_their_walls_and_their_share_where_contacts_are_too_many) {
+    Case c = with_shaft(cube_for_tools(6, 0.4), 18);
+    c.rigid_bodies.push_back(rigid("wall", box({-5, 12, 10}, {25, 16, 40})));
+    const DeviceState beside = held_at({10.3, 4.4, 19.4});
+    const double alone = force_of(press(c, {beside})[0]).z();
+    HapticModel model(c, "continuous", 2);
+    std::array<TickResult, 2> both{};
+    const auto go = [&](double y, double z) {
+        model.tick(std::array{held_at({1, y, z}, {1, 0, 0}), held_at({10.3, 4.4, z})}, both);
+    };
+    for (double z = 24; z > 19.4; z -= 0.1) go(9, z);
+    for (double y = 9; y < 11.9; y += 0.1) go(y, 19.4);
+    for (int tick = 0; tick < settling; ++tick) go(11.9, 19.4);
+    ASSERT_GT(both[0].contact_count + both[1].contact_count, 30);
+    // 11.9 mm + 0.4 mm of radius is 0.3 mm beyond the wall's face.
+    EXPECT_NEAR(force_of(both[0]).y(), -0.3 * c.haptics.coupling_stiffness, 0.01);
+    EXPECT_GT(force_of(both[0]).z(), 0.01);
+    ASSERT_GT(alone, 0.001);
+    EXPECT_GT(force_of(both[1]).z(), 0.5 * alone);
 }
 
 // Two tools that wander over, into and beside a soft cube and a plate beneath, their shafts turning.

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "formats/drawing/chart.hpp"
+#include "runtime/haptics/contact/god_object.hpp"
 #include "runtime/haptics/haptic_model.hpp"
 #include "tools/experiments/rigid_case.hpp"
 #include "tools/experiments/stability/wall_stability.hpp"

@@ -2,6 +2,7 @@
 #include "tests/tools/fem/certificate/direct_press.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 
 #include "tools/fem/assembly/stiffness.hpp"
 #include "tools/fem/solvers/sparse_cholesky.hpp"
@@ -9,6 +10,20 @@
 namespace palpate::test {
 
 using namespace fem;
+
+DirectContact spread_over(const DeformableBody& body, const haptics::LoadSpread& spread,
+                          const DirectContact& contact) {
+    DirectContact result{{}, {}, contact.normal, contact.series_compliance};
+    for (std::size_t i = 0; i < contact.nodes.size(); ++i) {
+        const auto at = std::ranges::lower_bound(body.boundary.nodes, contact.nodes[i]);
+        for (const auto& [vertex, weight] :
+             spread.shares(static_cast<std::int32_t>(at - body.boundary.nodes.begin()))) {
+            result.nodes.push_back(body.boundary.nodes[static_cast<std::size_t>(vertex)]);
+            result.weights.push_back(contact.weights[i] * static_cast<double>(weight));
+        }
+    }
+    return result;
+}
 
 Eigen::MatrixXd direct_compliance(const DeformableBody& body, const std::vector<DirectContact>& contacts,
                                   double coupling_stiffness) {

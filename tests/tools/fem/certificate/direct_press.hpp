@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "formats/model/body.hpp"
+#include "runtime/haptics/contact/load_spread.hpp"
 
 namespace palpate::test {
 
@@ -15,6 +16,10 @@ struct DirectContact {
     Eigen::Vector3d normal;
     double series_compliance;  // mm/N
 };
+
+/// The same contact with its load spread over the mesh as the tick spreads it.
+DirectContact spread_over(const DeformableBody& body, const haptics::LoadSpread& spread,
+                          const DirectContact& contact);
 
 /// A_kl of one tool's contact points from the full sparse stiffness, without the condensed compliance, behind
 /// a virtual coupling of `coupling_stiffness` (N/mm): mm/N.

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "formats/asset/asset.hpp"
+#include "runtime/haptics/contact/compliance_blocks.hpp"
 #include "tests/tools/fem/certificate/direct_press.hpp"
 
 int main(int, char** argv) {
@@ -16,16 +17,18 @@ int main(int, char** argv) {
     const auto peak = nlohmann::json::parse(stream).at("peak");
     const DeformableBody& body = patient.deformable_bodies.at(0);
 
+    const haptics::LoadSpread spread(body, haptics::compliance_blocks(body));
     std::vector<test::DirectContact> contacts;
     std::vector<bool> active;
     Eigen::VectorXd felt(peak["contacts"].size()), delta(felt.size());
     for (const auto& contact : peak["contacts"]) {
         const auto k = static_cast<Eigen::Index>(contacts.size());
         const std::vector<double> normal = contact["normal"];
-        contacts.push_back({contact["nodes"],
-                            contact["weights"],
-                            {normal[0], normal[1], normal[2]},
-                            contact["series_compliance_mm_per_n"]});
+        contacts.push_back(test::spread_over(body, spread,
+                                             {contact["nodes"],
+                                              contact["weights"],
+                                              {normal[0], normal[1], normal[2]},
+                                              contact["series_compliance_mm_per_n"]}));
         felt[k] = contact["force_n"];
         delta[k] = contact["gap_mm"];
         active.push_back(felt[k] > 0);

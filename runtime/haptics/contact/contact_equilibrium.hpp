@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "formats/records/tick_result.hpp"
+#include "runtime/haptics/contact/contact_bodies.hpp"
+#include "runtime/haptics/contact/contact_lcp.hpp"
+#include "runtime/haptics/contact/deformed_patch.hpp"
+#include "runtime/haptics/contact/fixed_list.hpp"
+#include "runtime/haptics/contact/god_object.hpp"
+
+namespace palpate::haptics {
+
+/// Finds where tools and tissue come to rest together: tools made of spheres, each pulled by its virtual
+/// coupling, on deformable bodies as they are displaced and on half-spaces that rigid bodies allow. The
+/// equations stand in contact_equilibrium.cpp. What was found in one tick is where the next one starts. One
+/// thread; realtime-safe: everything is allocated on construction.
+class ContactEquilibrium {
+  public:
+    /// A sphere of a tool in one tick.
+    struct Sphere {
+        Eigen::Vector3d device = Eigen::Vector3d::Zero();  ///< where the coupling pulls its centre, p_P, mm
+        const GodObject* if_rigid = nullptr;  ///< where it rests if nothing gives way; rigid bodies first
+    };
+
+    /// `bodies` must outlive this. Tools of `spheres` spheres at most, the first at the tip.
+    ContactEquilibrium(const ContactBodies& bodies, double radius, const Friction& friction,
+                       std::size_t tool_count, std::size_t spheres);
+
+    ~ContactEquilibrium();
+
+    /// Forgets all contact, of all tools or of one.
+    void reset() noexcept;
+    void forget(std::size_t tool) noexcept;
+
+    /// Starts a tick behind virtual couplings of `stiffness` (N/mm), without tools or walls.
+    void begin_tick(double stiffness) noexcept;
+    /// Places a tool: its spheres that are felt, the tip first.
+    void pull(std::size_t tool, std::span<const Sphere> spheres) noexcept;
+    /// Adds a half-space of a rigid body that holds part contact.part of a tool: contact.gap says how far the
+    /// device is beyond it along -normal. The contact must outlive solve(). False where there is no more
+    /// room.
+    bool add_wall(std::size_t tool, Contact& contact) noexcept;
+    /// Whether any tool touches a deformable body, or is about to.
+    bool is_needed() const noexcept;
+    bool touches_tissue(std::size_t tool) const noexcept {
+        return tools_[tool].felt > 0 && tools_[tool].touching;
+    }
+
+    /// Solves from where the last tick or call ended.
+    void solve() noexcept;
+
+    /// Whether a tool's equilibrium was found; if not, what the other members say of it is what the surface
+    /// at rest answers.
+    bool solved(std::size_t tool) const noexcept { return !tools_[tool].at_rest; }
+    /// What presses the tool, and what friction on tissue adds, N.
+    const Eigen::Vector3d& press(std::size_t tool) const noexcept { return tools_[tool].press; }
+    const Eigen::Vector3d& drag(std::size_t tool) const noexcept { return tools_[tool].drag; }
+    /// How far the tool was off its device before this tick, plus how far the device went since, mm: contact
+    /// that friction holds goes no farther off.
+    double held_reach(std::size_t tool) const noexcept { return tools_[tool].held_reach; }
+    /// Whether it touches more than could be solved, and part of it was left out.
+    bool was_cut(std::size_t tool) const noexcept { return tools_[tool].cut; }
+    /// Worst violation of the contact conditions, mm.
+    double residual() const noexcept { return residual_; }
+    /// How far the tool's tip has sunk into tissue beyond what the surface gives way, mm.
+    Eigen::Vector3d sunk(std::size_t tool) const noexcept;
+    /// Appends the contacts with deformable bodies that press the tool.
+    void write_contacts(std::size_t tool, TickResult& result) const noexcept;
+    /// Ends the tick: what this one found is the start of the next.
+    void end_tick() noexcept;
+
+  private:
+    static constexpr std::size_t most_rows = 512;  // before they are cut
+
+    using Weights = std::array<double, DeformedPatch::iterates>;
+    using Offsets = std::array<Eigen::Vector3d, DeformedPatch::iterates>;
+    static Offsets no_offsets() noexcept {
+        Offsets offsets;
+        offsets.fill(Eigen::Vector3d::Zero());
+        return offsets;
+    }
+    struct Row {
+        std::int32_t tool = 0, part = 0;
+        std::int32_t patch = -1;  // -1: of a rigid body
+        std::int32_t triangle = -1;
+        std::array<std::int32_t, 3> slots{};
+        Eigen::Vector3d weights = Eigen::Vector3d::Zero();
+        Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+        Eigen::Vector3d point = Eigen::Vector3d::Zero();
+        double distance = 0;               // of the sphere's surface, mm
+        double gap = 0;                    // that forces must open, mm
+        double force = 0;                  // N
+        std::int32_t place = 0, rank = 0;  // among all rows, and by distance among its tool's
+        Contact* wall = nullptr;
+    };
+    struct Surrounding {
+        std::int32_t triangle = 0;
+        double due = 0;  // mm of the way
+    };
+    // One sphere of a tool on one body.
+    struct Touch {
+        std::array<std::int32_t, max_contacts> triangles{};  // that pressed it last
+        std::size_t count = 0;
+        // How far the sphere sinks into the tissue beyond what the surface gives way, against the press; and
+        // the press (N) about which that is linearised: sunk_free + sinking * press.
+        Eigen::Vector3d sunk = Eigen::Vector3d::Zero(), push = Eigen::Vector3d::Zero();
+        Offsets next_sunk = no_offsets(), sunk_difference = no_offsets();
+        Eigen::Vector3d sunk_free = Eigen::Vector3d::Zero();
+        Eigen::Matrix3d sinking = Eigen::Matrix3d::Zero();
+        double freedom = 1;  // of the tissue that bears it
+        // Friction. It holds until more than it can is asked for, and what could not be held in one tick is
+        // made good in the next.
+        Eigen::Vector3d drag = Eigen::Vector3d::Zero();      // on the tool, N
+        Eigen::Vector3d slip = Eigen::Vector3d::Zero();      // mm, to be made good
+        bool slides = false, slid = false, pressed = false;  // in this tick; in the last one
+        double press = 0;                                    // N, all rows together
+        Eigen::Vector3d axis = Eigen::Vector3d::Zero();      // of the press
+        // What else is around, looked at again once the ways that sphere and tissue went could make it near.
+        FixedList<Surrounding, most_rows> around;
+        Eigen::Vector3d looked_from = Eigen::Vector3d::Zero(), looked_to = Eigen::Vector3d::Zero();
+        Eigen::Vector3d rubbed_centre = Eigen::Vector3d::Zero();
+        double way = -1;  // mm, that sphere and tissue went since; negative: nothing was looked at
+        Eigen::Vector3d last_centre = Eigen::Vector3d::Zero();
+    };
+    struct Part {
+        Sphere sphere;
+        Eigen::Vector3d last_device = Eigen::Vector3d::Zero();
+        std::vector<Touch> touches;  // by deformable body
+    };
+    struct Tool {
+        std::vector<Part> parts;
+        std::size_t felt = 0;  // of the parts, in this tick
+        Eigen::Vector3d off = Eigen::Vector3d::Zero();
+        Offsets next_off = no_offsets(), difference = no_offsets();  // of the answers to `off`
+        Eigen::Vector3d last_tip = Eigen::Vector3d::Zero();
+        Eigen::Vector3d press = Eigen::Vector3d::Zero(), drag = Eigen::Vector3d::Zero();  // N
+        double held_reach = 0;
+        bool touching = false;  // tissue, at the end of the last tick
+        bool cold = false;      // starts from what its god-objects say
+        bool outside = true;    // of the tissue
+        bool at_rest = false;   // no equilibrium was found
+        bool cut = false;
+        double reach = 0;  // mm: triangles nearer than this to a sphere count
+    };
+
+    static std::int64_t key_of(const Row& row) noexcept;
+    std::size_t wall_count() const noexcept;
+    void gather_at_rest(std::size_t tool, std::size_t part) noexcept;
+    void linearise(Touch& touch, const DeformedPatch& patch) const noexcept;
+    Eigen::Vector3d centre_of(const Tool& tool, const Part& part, const Touch& touch) const noexcept {
+        return part.sphere.device + tool.off + touch.sunk;
+    }
+    void look_around(std::size_t tool, std::size_t part, std::size_t soft) noexcept;
+    bool gather(std::size_t tool, std::size_t part, std::size_t soft) noexcept;
+    bool found(std::size_t tool) const noexcept;
+    bool start_anew() noexcept;
+    void iterate(int most) noexcept;
+    void cut_rows() noexcept;
+    void solve_rows() noexcept;
+    const Touch& touch_of(const Row& row) const noexcept {
+        return tools_[static_cast<std::size_t>(row.tool)]
+            .parts[static_cast<std::size_t>(row.part)]
+            .touches[static_cast<std::size_t>(row.patch)];
+    }
+    double sink(std::size_t iterate) noexcept;
+    double answer(std::size_t iterate) noexcept;
+    void rub() noexcept;
+    template <typename Take>
+    void for_each_touch(const Take& take) noexcept;
+    template <typename Take>
+    static void for_each_bearing(std::span<const Row> rows, double press, const Take& take);
+    static Eigen::Vector3d slip_of(const Tool& tool, const Part& part, const Touch& touch,
+                                   std::span<const Row> rows, const DeformedPatch& patch) noexcept;
+    Weights mix(std::size_t iterate, std::size_t known) const noexcept;
+    void relax_to(const Weights& weights, double longest) noexcept;
+
+    const ContactBodies& bodies_;
+    double radius_;
+    Friction friction_;
+    double coupling_ = 0;
+    std::vector<DeformedPatch> patches_;
+    std::vector<Tool> tools_;
+    FixedList<Row, most_rows> rows_;                   // of this iteration, walls first
+    std::vector<std::vector<std::uint32_t>> visited_;  // by patch and triangle: the search that saw it last
+    std::uint32_t search_ = 0;
+    FixedList<std::int32_t, most_rows> queue_;
+    std::array<std::int64_t, max_contacts> active_{};  // keys of rows that pressed in the last solution
+    std::size_t active_count_ = 0;
+    ContactLcp lcp_;
+    double residual_ = 0;
+    double last_motion_ = 0;  // mm, of tissue, in the tick before
+};
+
+}  // namespace palpate::haptics

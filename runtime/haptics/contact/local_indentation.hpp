@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace palpate::haptics {
+
+/// What a sphere sinks into tissue beyond what the spread load lets the surface give way: see
+/// load_spread.cpp.
+struct LocalIndentation {
+    double depth = 0;  ///< mm
+    double slope = 0;  ///< of the depth by the force, mm/N
+};
+/// For a sphere of `radius` (mm) pressed with `force` (N).
+LocalIndentation local_indentation(double force, double radius, double contact_modulus,
+                                   double spread_radius) noexcept;
+
+}  // namespace palpate::haptics

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+#include <limits>
+#include <span>
+
+#include "runtime/collision/triangle_queries.hpp"
+#include "runtime/haptics/contact/compliance_blocks.hpp"
+#include "runtime/haptics/contact/load_spread.hpp"
+#include "runtime/haptics/contact/local_indentation.hpp"
+#include "tests/runtime/haptics/held_tool.hpp"
+
+namespace palpate {
+
+/// Takes the recorded forces of a frictionless tick to the whole stiffness matrix and looks where the surface
+/// and the tools then are: an independent way to the equilibrium.
+class EquilibriumOracle {
+  public:
+    explicit EquilibriumOracle(const DeformableBody& body)
+        : body_(body), spread_(body, haptics::compliance_blocks(body)), compliance_(inverse(body)) {}
+
+    /// Displacement of each surface vertex under the contacts of all tools, mm.
+    std::vector<Eigen::Vector3d> displacements(std::span<const TickResult> results) const {
+        Eigen::VectorXd load = Eigen::VectorXd::Zero(compliance_.rows());
+        for (const TickResult& result : results)
+            for (const Contact& contact : result.active_contacts())
+                for (std::size_t i = 0; i < 3; ++i)
+                    for (const haptics::LoadSpread::Share& share : spread_.shares(contact.vertices[i]))
+                        load.segment<3>(dof(share.vertex)) -=
+                            static_cast<double>(contact.weights[i] * share.weight * contact.force) *
+                            normal_of(contact);
+        const Eigen::VectorXd u = compliance_ * load;
+        std::vector<Eigen::Vector3d> moved;
+        for (std::size_t v = 0; v < body_.boundary.nodes.size(); ++v) {
+            Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+            for (const haptics::LoadSpread::Share& share : spread_.shares(static_cast<std::int32_t>(v)))
+                mean += static_cast<double>(share.weight) * u.segment<3>(dof(share.vertex));
+            moved.push_back(mean);
+        }
+        return moved;
+    }
+
+    /// Where a tool of `radius` rests against the surface: its centre, sunk in as Hertz has it.
+    Eigen::Vector3d centre(const TickResult& result, double radius, double coupling) const {
+        const Eigen::Vector3d force = force_of(result);
+        const Eigen::Vector3d device = Eigen::Map<const Eigen::Vector3d>(result.device_position.data());
+        double freedom = 0;
+        for (const Contact& contact : result.active_contacts())
+            for (std::size_t i = 0; i < 3; ++i)
+                freedom += static_cast<double>(contact.force * contact.weights[i]) *
+                           spread_.freedom(contact.vertices[i]) / press_of(result);
+        const double sunk = freedom * haptics::local_indentation(force.norm(), radius,
+                                                                 spread_.contact_modulus(), spread_.radius())
+                                          .depth;
+        return device + force / coupling + sunk * force.normalized();
+    }
+
+    /// Expects that the tools touch the surface where it is displaced to, and are nowhere inside.
+    void expect_equilibrium(std::span<const TickResult> results, double radius, double coupling,
+                            double tolerance) const {
+        const std::vector<Eigen::Vector3d> moved = displacements(results);
+        const TriangleMesh& rest = body_.boundary.surface;
+        for (const TickResult& result : results) {
+            if (!(press_of(result) > 0)) continue;
+            const Eigen::Vector3d tool = centre(result, radius, coupling);
+            double nearest = std::numeric_limits<double>::infinity();
+            for (const Triangle& t : rest.triangles) {
+                collision::TriangleCorners corners;
+                for (std::size_t i = 0; i < 3; ++i)
+                    corners[i] =
+                        rest.vertices[static_cast<std::size_t>(t[i])] + moved[static_cast<std::size_t>(t[i])];
+                nearest = std::min(
+                    nearest, std::sqrt(collision::closest_point_on_triangle(tool, corners).squared_distance));
+            }
+            EXPECT_NEAR(nearest, radius, tolerance);
+            for (const Contact& contact : result.active_contacts()) {
+                EXPECT_GE(contact.force, 0);
+                Eigen::Vector3d point = Eigen::Vector3d::Zero();
+                for (std::size_t i = 0; i < 3; ++i) {
+                    const auto v = static_cast<std::size_t>(contact.vertices[i]);
+                    point += static_cast<double>(contact.weights[i]) * (rest.vertices[v] + moved[v]);
+                }
+                if (contact.force > 0) {
+                    EXPECT_NEAR((tool - point).norm(), radius, tolerance);
+                    EXPECT_NEAR(((tool - point).normalized() - normal_of(contact)).norm(), 0, tolerance);
+                }
+            }
+        }
+    }
+
+    const haptics::LoadSpread& spread() const { return spread_; }
+
+    /// Elastic energy of the surface under its contacts, and of a tool's sinking in and coupling, N mm.
+    double energy(const TickResult& result, double radius, double coupling) const {
+        const std::vector<Eigen::Vector3d> moved = displacements({&result, 1});
+        double energy = 0;
+        for (const Contact& contact : result.active_contacts())
+            for (std::size_t i = 0; i < 3; ++i)
+                energy -= 0.5 * static_cast<double>(contact.force * contact.weights[i]) *
+                          normal_of(contact).dot(moved[static_cast<std::size_t>(contact.vertices[i])]);
+        // The work of sinking in is the integral of F ds, by steps.
+        const double press = force_of(result).norm();
+        constexpr int steps = 2000;
+        double last = 0;
+        for (int k = 1; k <= steps; ++k) {
+            const double f = press * k / steps;
+            const double depth =
+                haptics::local_indentation(f, radius, spread_.contact_modulus(), spread_.radius()).depth;
+            energy += (f - 0.5 * press / steps) * (depth - last);
+            last = depth;
+        }
+        return energy + press * press / (2 * coupling);
+    }
+
+  private:
+    Eigen::Index dof(std::int32_t vertex) const {
+        return 3 * body_.boundary.nodes[static_cast<std::size_t>(vertex)];
+    }
+
+    static Eigen::MatrixXd inverse(const DeformableBody& body) {
+        Eigen::MatrixXd K = sample::dense_stiffness(body.mesh, sample::soft_tissue());
+        for (const std::int32_t node : body.fixed_nodes)
+            for (Eigen::Index k = 3 * node; k < 3 * node + 3; ++k) {
+                K.row(k).setZero();
+                K.col(k).setZero();
+                K(k, k) = 1;
+            }
+        Eigen::MatrixXd C = K.inverse();
+        for (const std::int32_t node : body.fixed_nodes)
+            for (Eigen::Index k = 3 * node; k < 3 * node + 3; ++k) C(k, k) = 0;
+        return C;
+    }
+
+    const DeformableBody& body_;
+    haptics::LoadSpread spread_;
+    Eigen::MatrixXd compliance_;
+};
+
+}  // namespace palpate
