@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/haptics/contact/god_object.hpp"
 #include "runtime//session/touch_target.hpp"
 
 #include <Eigen/Geometry>
@@ -10,6 +9,7 @@
 
 #include "formats/model/errors.hpp"
 #include "formats/model/label_map.hpp"
+#include "runtime/haptics/contact/god_object.hpp"
 
 namespace palpate::session {
 namespace {
