@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime//session/touch_target.hpp"
+#include "runtime/session/touch_target.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
