@@ -22,7 +22,8 @@ bool on_edge(const Vector3d& q, const Vector3d& a, const Vector3d& b) noexcept {
     return (a + s * edge - q).norm() <= touching;
 }
 
-// The angle of the part of `t` about its point q, for a triangle with area.
+}  // namespace
+
 double angle_about(const Vector3d& q, const TriangleCorners& t) noexcept {
     for (std::size_t i = 0; i < 3; ++i) {
         if ((q - t[i]).norm() > touching) continue;
@@ -33,8 +34,6 @@ double angle_about(const Vector3d& q, const TriangleCorners& t) noexcept {
         if (on_edge(q, t[i], t[(i + 1) % 3])) return std::numbers::pi;
     return 2 * std::numbers::pi;
 }
-
-}  // namespace
 
 Vector3d CollisionSurface::pseudonormal(const Vector3d& q) const noexcept {
     Vector3d sum = Vector3d::Zero();

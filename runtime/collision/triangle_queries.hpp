@@ -16,6 +16,11 @@ using TriangleCorners = std::array<Eigen::Vector3d, 3>;  ///< mm
 /// Realtime-safe.
 Eigen::Vector3d unit_normal(const TriangleCorners& t) noexcept;
 
+/// The angle of the part of `t` about its point q, both mm, for a triangle with area: 2 pi on its face, pi on
+/// an edge, the corner's angle at a corner. The weight of its normal in the angle-weighted normal at q
+/// (Baerentzen, Aanaes 2005). Realtime-safe.
+double angle_about(const Eigen::Vector3d& q, const TriangleCorners& t) noexcept;
+
 /// The point of a triangle nearest to a query point.
 struct TrianglePoint {
     Eigen::Vector3d point = Eigen::Vector3d::Zero();        ///< mm

@@ -56,7 +56,7 @@ HapticModel::HapticModel(const Case& patient_case, std::string_view method, std:
     : settings_(checked(patient_case)),
       method_(checked(find_contact_method(method), tool_count, patient_case.name)),
       coupling_(settings_.coupling_stiffness),
-      bodies_(patient_case, method_.can.has_radius),
+      bodies_(patient_case, method_.can.spreads_loads),
       tools_(tool_count, Tool{ForceLimiter(settings_)}),
       poses_(tool_count),
       forces_(tool_count),

@@ -15,7 +15,7 @@ namespace palpate::haptics {
 struct ContactBodies {
     /// Copies what it needs of the case; compliances are shared. Throws InvalidInput if surface, tree and
     /// compliance of a body do not belong together. Linear in the surfaces.
-    explicit ContactBodies(const Case& patient_case, bool spreads_loads = false);
+    explicit ContactBodies(const Case& patient_case, bool spreads_loads);
 
     std::size_t rigid_count() const noexcept { return surfaces.size() - deformable.size(); }
 

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/haptics/contact/deformable_contact.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
+#include <array>
 
 namespace palpate::haptics {
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 constexpr std::size_t most_loaded = 2048;  // nodes of all contacts
@@ -18,7 +15,7 @@ constexpr std::size_t most_loaded = 2048;  // nodes of all contacts
 
 Eigen::Matrix3f DeformableContact::compliance_between(std::int32_t a, std::int32_t b) const noexcept {
     if (spread_)
-        if (const Eigen::Matrix3f* near = spread_->near_compliance(a, b)) return *near;
+        if (const auto near = spread_->near_compliance(a, b)) return *near;
     if (blocks_[a] < 0 || blocks_[b] < 0) return Eigen::Matrix3f::Zero();
     return compliance_block(compliance_, blocks_[a], blocks_[b]);
 }

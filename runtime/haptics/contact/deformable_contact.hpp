@@ -18,7 +18,7 @@ class DeformableContact {
   public:
     /// `body_index` goes into the contacts. Throws InvalidInput if compliance and surface do not belong
     /// together.
-    DeformableContact(const DeformableBody& body, std::int32_t body_index, bool spreads_load = false);
+    DeformableContact(const DeformableBody& body, std::int32_t body_index, bool spreads_load);
 
     /// See HapticModel::surface_displacement(); contacts of other bodies are ignored. Thread-safe.
     void surface_displacement(std::span<const Contact> contacts,

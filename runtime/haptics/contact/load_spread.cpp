@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <utility>
 
 // A point force on a mesh of tetrahedra meets the mesh's compliance, which grows as 1 / h and changes with
@@ -55,27 +54,67 @@ Edges edges_of(const TriangleMesh& mesh) {
 // E / (1 - nu²) of the tetrahedra that have a contact node: the mean of their compliances; 0 if no material
 // is known.
 double modulus_at_surface(const DeformableBody& body) {
-    const std::set<std::int32_t> contact_nodes(body.contact_nodes.begin(), body.contact_nodes.end());
+    const auto at_surface = [&](std::int32_t node) {
+        return std::ranges::binary_search(body.contact_nodes, node);
+    };
     double compliance = 0;
     std::size_t count = 0;
     for (std::size_t t = 0; t < body.mesh.tetrahedra.size(); ++t) {
-        const auto material =
-            std::ranges::find(body.materials, body.mesh.regions[t], &RegionMaterial::region);
-        const bool at_surface = std::ranges::any_of(
-            body.mesh.tetrahedra[t], [&](std::int32_t node) { return contact_nodes.contains(node); });
-        if (!at_surface || material == body.materials.end()) continue;
-        const auto [youngs_modulus, poissons_ratio] = material->material;
+        if (std::ranges::none_of(body.mesh.tetrahedra[t], at_surface)) continue;
+        const auto found = std::ranges::find(body.materials, body.mesh.regions[t], &RegionMaterial::region);
+        if (found == body.materials.end()) continue;
+        const auto [youngs_modulus, poissons_ratio] = found->material;
         compliance += (1 - poissons_ratio * poissons_ratio) / youngs_modulus;
         ++count;
     }
     return count > 0 ? static_cast<double>(count) / compliance : 0;
 }
 
+// The length that a quarter of the edges between vertices with a block are shorter than, mm; 0 if there are
+// none.
+double short_edge(const TriangleMesh& mesh, std::span<const std::int32_t> blocks) {
+    std::vector<double> lengths;
+    for (const Triangle& t : mesh.triangles)
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            const auto a = static_cast<std::size_t>(t[corner]),
+                       b = static_cast<std::size_t>(t[(corner + 1) % 3]);
+            if (blocks[a] >= 0 && blocks[b] >= 0)
+                lengths.push_back((mesh.vertices[a] - mesh.vertices[b]).norm());
+        }
+    if (lengths.empty()) return 0;
+    const auto quarter = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 4);
+    std::ranges::nth_element(lengths, quarter);
+    return *quarter;
+}
+
+// Of each vertex: a third of the area of its triangles, mm², and their mean normal, unit.
+struct VertexShapes {
+    std::vector<double> areas;
+    std::vector<Vector3d> normals;
+};
+
+VertexShapes vertex_shapes(const TriangleMesh& mesh) {
+    VertexShapes shapes{std::vector<double>(mesh.vertices.size(), 0),
+                        std::vector<Vector3d>(mesh.vertices.size(), Vector3d::Zero())};
+    for (const Triangle& t : mesh.triangles) {
+        const auto at = [&](std::size_t corner) {
+            return mesh.vertices[static_cast<std::size_t>(t[corner])];
+        };
+        const Vector3d third = (at(1) - at(0)).cross(at(2) - at(0)) / 6;
+        for (const std::int32_t v : t) {
+            shapes.areas[static_cast<std::size_t>(v)] += third.norm();
+            shapes.normals[static_cast<std::size_t>(v)] += third;
+        }
+    }
+    for (Vector3d& normal : shapes.normals) normal.normalize();
+    return shapes;
+}
+
 // The vertices that a walk over the surface reaches within a ball about the first, which comes first.
 class Walk {
   public:
-    Walk(const TriangleMesh& mesh, const Edges& edges)
-        : mesh_(mesh), edges_(edges), seen_(mesh.vertices.size(), 0) {}
+    explicit Walk(const TriangleMesh& mesh)
+        : mesh_(mesh), edges_(edges_of(mesh)), seen_(mesh.vertices.size(), 0) {}
 
     template <typename Take>
     const std::vector<std::int32_t>& within(std::int32_t from, double radius, const Take& takes) {
@@ -100,7 +139,7 @@ class Walk {
 
   private:
     const TriangleMesh& mesh_;
-    const Edges& edges_;
+    Edges edges_;
     std::vector<std::int32_t> seen_, found_;
     std::int32_t walk_ = 0;
 };
@@ -108,95 +147,71 @@ class Walk {
 }  // namespace
 
 LoadSpread::LoadSpread(const DeformableBody& body, std::span<const std::int32_t> blocks) {
-    const TriangleMesh& mesh = body.boundary.surface;
-    const std::size_t count = mesh.vertices.size();
-    std::vector<double> areas(count, 0);
-    std::vector<Vector3d> normals(count, Vector3d::Zero());
-    std::vector<double> lengths;
-    for (const Triangle& t : mesh.triangles) {
-        const auto at = [&](std::size_t corner) {
-            return mesh.vertices[static_cast<std::size_t>(t[corner])];
-        };
-        const Vector3d area = (at(1) - at(0)).cross(at(2) - at(0)) / 2;
-        bool touchable = true;
-        for (std::size_t corner = 0; corner < 3; ++corner) {
-            const auto v = static_cast<std::size_t>(t[corner]);
-            areas[v] += area.norm() / 3;
-            normals[v] += area;
-            touchable = touchable && blocks[v] >= 0;
-        }
-        for (std::size_t corner = 0; touchable && corner < 3; ++corner)
-            lengths.push_back((at(corner) - at((corner + 1) % 3)).norm());
-    }
-    for (Vector3d& normal : normals) normal.normalize();
-    double length = 0;
-    if (!lengths.empty()) {
-        const auto quarter = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 4);
-        std::ranges::nth_element(lengths, quarter);
-        length = *quarter;
-    }
-    const double reach = elements_in_radius * length;
+    const double edge = short_edge(body.boundary.surface, blocks), reach = elements_in_radius * edge;
     // Between vertices, displacements are linear, which spreads them a little more.
-    radius_ = std::hypot(reach, length);
+    radius_ = std::hypot(reach, edge);
     contact_modulus_ = modulus_at_surface(body);
+    add_shares(body, blocks, reach);
+    add_near(body, blocks, reach);
+}
 
-    const std::set<std::int32_t> fixed_nodes(body.fixed_nodes.begin(), body.fixed_nodes.end());
-    const Edges edges = edges_of(mesh);
-    Walk walk(mesh, edges);
+void LoadSpread::add_shares(const DeformableBody& body, std::span<const std::int32_t> blocks, double reach) {
+    const TriangleMesh& mesh = body.boundary.surface;
+    const auto [areas, normals] = vertex_shapes(mesh);
+    Walk walk(mesh);
     first_share_.push_back(0);
-    for (std::size_t v = 0; v < count; ++v) {
-        if (blocks[v] < 0) {  // what does not give way does not spread either
-            freedom_.push_back(0);
-            first_share_.push_back(shares_.size());
-            continue;
-        }
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
         const auto same = [&](std::int32_t other) {
             return normals[static_cast<std::size_t>(other)].dot(normals[v]) > same_side;
         };
         double sum = 0, free = 0;
         const std::size_t first = shares_.size();
-        for (const std::int32_t other : walk.within(static_cast<std::int32_t>(v), reach, same)) {
-            const auto j = static_cast<std::size_t>(other);
-            const double rho = (mesh.vertices[j] - mesh.vertices[v]).norm() / std::max(reach, 1e-12);
-            const double weight = areas[j] * std::pow(1 - rho * rho, 2);
-            const bool gives_way = blocks[j] >= 0;
-            if (gives_way || fixed_nodes.contains(body.boundary.nodes[j])) sum += weight;
-            if (!gives_way) continue;
-            free += weight;
-            shares_.push_back({other, static_cast<float>(weight)});
-        }
+        // What does not give way does not spread either.
+        if (blocks[v] >= 0)
+            for (const std::int32_t other : walk.within(static_cast<std::int32_t>(v), reach, same)) {
+                const auto j = static_cast<std::size_t>(other);
+                const double squared = (mesh.vertices[j] - mesh.vertices[v]).squaredNorm();
+                const double inside = squared > 0 ? 1 - squared / (reach * reach) : 1;
+                const double weight = areas[j] * inside * inside;
+                const bool gives_way = blocks[j] >= 0;
+                if (gives_way || std::ranges::binary_search(body.fixed_nodes, body.boundary.nodes[j]))
+                    sum += weight;
+                if (!gives_way) continue;
+                free += weight;
+                shares_.push_back({other, static_cast<float>(weight)});
+            }
         for (std::size_t k = first; k < shares_.size(); ++k) shares_[k].weight /= static_cast<float>(sum);
-        freedom_.push_back(static_cast<float>(free / sum));
+        freedom_.push_back(sum > 0 ? static_cast<float>(free / sum) : 0);
         first_share_.push_back(shares_.size());
     }
+}
 
-    std::vector<Matrix3f> moved(count);
-    std::vector<std::int32_t> computed(count, -1);
+void LoadSpread::add_near(const DeformableBody& body, std::span<const std::int32_t> blocks, double reach) {
+    const auto count = static_cast<std::int32_t>(body.boundary.surface.vertices.size());
+    const auto block_of = [&](std::int32_t vertex) { return blocks[static_cast<std::size_t>(vertex)]; };
+    Walk walk(body.boundary.surface);
+    std::vector<Matrix3f> moved(blocks.size());  // by vertex: S C of vertex a, where it is computed
+    std::vector<std::int32_t> computed(blocks.size(), -1);
     first_near_.push_back(0);
-    std::vector<std::pair<std::int32_t, Matrix3f>> row;
-    for (std::size_t a = 0; a < count; ++a) {
-        row.clear();
-        for (const std::int32_t b : walk.within(static_cast<std::int32_t>(a), near_in_radii * reach)) {
+    for (std::int32_t a = 0; a < count; ++a) {
+        std::vector<std::int32_t> near = walk.within(a, near_in_radii * reach);
+        std::erase_if(near, [&](std::int32_t b) { return b < a; });
+        std::ranges::sort(near);
+        for (const std::int32_t b : near) {
             Matrix3f sum = Matrix3f::Zero();
             for (const Share& there : shares(b)) {
                 const auto j = static_cast<std::size_t>(there.vertex);
-                if (computed[j] != static_cast<std::int32_t>(a)) {
-                    computed[j] = static_cast<std::int32_t>(a);
+                if (computed[j] != a) {
+                    computed[j] = a;
                     moved[j].setZero();
-                    for (const Share& here : shares(static_cast<std::int32_t>(a)))
-                        moved[j] +=
-                            here.weight * compliance_block(body.compliance,
-                                                           blocks[static_cast<std::size_t>(here.vertex)],
-                                                           blocks[j]);
+                    for (const Share& here : shares(a))
+                        moved[j] += here.weight * compliance_block(body.compliance, block_of(here.vertex),
+                                                                   block_of(there.vertex));
                 }
                 sum += there.weight * moved[j];
             }
-            row.emplace_back(b, sum);
-        }
-        std::ranges::sort(row, {}, [](const auto& entry) { return entry.first; });
-        for (const auto& [b, block] : row) {
             near_.push_back(b);
-            near_blocks_.push_back(block);
+            near_blocks_.push_back(sum);
         }
         first_near_.push_back(near_.size());
     }

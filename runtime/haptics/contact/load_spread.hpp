@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,37 +21,45 @@ class LoadSpread {
         float weight = 0;
     };
 
-    /// `blocks`: the compliance block of each surface vertex, -1 for one fixed or left out. Reads some ten
-    /// thousand blocks of C for each vertex: about a second for 2 000.
+    /// `blocks`: the compliance block of each surface vertex, -1 for one fixed or left out. Reads some
+    /// thousands of blocks of C for each vertex.
     LoadSpread(const DeformableBody& body, std::span<const std::int32_t> blocks);
 
-    /// Where a force on a vertex goes, and how much of each displacement counts there; weights sum to 1, of
-    /// which `freedom` is on vertices that give way.
+    /// Where a force on a vertex goes, and how much of each displacement counts there. Weights sum to
+    /// freedom(): the part on vertices that give way.
     std::span<const Share> shares(std::int32_t vertex) const noexcept {
         return std::span(shares_).subspan(first_share_[vertex],
                                           first_share_[vertex + 1] - first_share_[vertex]);
     }
     double freedom(std::int32_t vertex) const noexcept { return freedom_[vertex]; }
 
-    /// How far vertex a gives way per force on vertex b, both spread, if they are near; null if they are so
-    /// far apart that spreading changes nothing.
-    const Eigen::Matrix3f* near_compliance(std::int32_t a, std::int32_t b) const noexcept {
-        const std::int32_t* const first = near_.data() + first_near_[a];
-        const std::int32_t* const last = near_.data() + first_near_[a + 1];
-        const std::int32_t* const found = std::lower_bound(first, last, b);
-        return found != last && *found == b ? near_blocks_.data() + (found - near_.data()) : nullptr;
+    /// How far vertex a gives way per force on vertex b, both spread, if they are near; nothing if they are
+    /// so far apart that spreading changes nothing.
+    std::optional<Eigen::Matrix3f> near_compliance(std::int32_t a, std::int32_t b) const noexcept {
+        const auto [low, high] = std::minmax(a, b);
+        const std::int32_t* const first = near_.data() + first_near_[low];
+        const std::int32_t* const last = near_.data() + first_near_[low + 1];
+        const std::int32_t* const found = std::lower_bound(first, last, high);
+        if (found == last || *found != high) return std::nullopt;
+        const Eigen::Matrix3f& block = near_blocks_[static_cast<std::size_t>(found - near_.data())];
+        return a == low ? block : Eigen::Matrix3f(block.transpose());
     }
 
-    /// mm: beyond it, a vertex has no share.
+    /// R of the density that loads are spread with on the mean, mm; with what linear displacements between
+    /// vertices add.
     double radius() const noexcept { return radius_; }
     /// E / (1 - nu²) of the tissue at the surface, N/mm².
     double contact_modulus() const noexcept { return contact_modulus_; }
 
   private:
+    void add_shares(const DeformableBody& body, std::span<const std::int32_t> blocks, double reach);
+    void add_near(const DeformableBody& body, std::span<const std::int32_t> blocks, double reach);
+
     double radius_ = 0, contact_modulus_ = 0;
     std::vector<std::size_t> first_share_, first_near_;
     std::vector<Share> shares_;
     std::vector<float> freedom_;
+    // By first vertex: those from it on that are near, ascending, and how it gives way to them.
     std::vector<std::int32_t> near_;
     std::vector<Eigen::Matrix3f> near_blocks_;
 };

@@ -22,7 +22,7 @@ constexpr std::array table{
         of_published, make_twice},
     ContactMethodEntry{"continuous",
                        "is ours: every tick sweeps the tool from the last to the present position",
-                       {.has_radius = true, .sums_rigid_walls = true},
+                       {.has_radius = true, .spreads_loads = true, .sums_rigid_walls = true},
                        make_continuous},
 };
 

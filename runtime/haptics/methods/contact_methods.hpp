@@ -16,6 +16,7 @@ namespace palpate::haptics {
 /// What a contact method knows and needs.
 struct ContactCapabilities {
     bool has_radius = false;        ///< a tool is a sphere of its radius; otherwise a point
+    bool spreads_loads = false;     ///< on tissue, so that it does not feel the mesh: LoadSpread
     bool needs_detection = false;   ///< ContactMethod::detect() must be called 30 times a second
     bool sums_rigid_walls = false;  ///< where only rigid walls hold the tip, one contact is their resultant
     std::size_t most_tools = std::numeric_limits<std::size_t>::max();

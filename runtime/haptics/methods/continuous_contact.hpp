@@ -9,18 +9,18 @@
 #include "formats/model/body.hpp"
 #include "runtime/collision/collision_surface.hpp"
 #include "runtime/haptics/contact/contact_bodies.hpp"
-#include "runtime/haptics/contact/contact_equilibrium.hpp"
+#include "runtime/haptics/contact/equilibrium/contact_equilibrium.hpp"
 #include "runtime/haptics/contact/god_object.hpp"
 #include "runtime/haptics/methods/contact_method.hpp"
 
 namespace palpate::haptics {
 
 /// Contact found in every tick: a tool is a sphere, or a row of spheres where it has a shaft. Each holds a
-/// god-object on the rigid bodies and one on each deformable body; where only the tip touches, and only rigid
-/// bodies, the force is that of the virtual coupling, stiffness * (proxy - device), otherwise all contact
-/// points are solved together (ContactEquilibrium). The shaft turns as the device says; the torque that would
-/// turn it back is not rendered. A tool that jumped does not feel a body that it is in until it has been
-/// clear of it.
+/// god-object on the rigid bodies and one on all bodies as if they were rigid; where only the tip touches,
+/// and only rigid bodies, the force is that of the virtual coupling, stiffness * (proxy - device), otherwise
+/// tools and tissue are brought to rest together (ContactEquilibrium). The shaft turns as the device says;
+/// the torque that would turn it back is not rendered. A tool that jumped does not feel a body that it is in
+/// until it has been clear of it.
 class ContinuousContact final : public ContactMethod {
   public:
     /// `bodies` must outlive this. Of the settings it reads radius, shaft and friction.
@@ -38,7 +38,8 @@ class ContinuousContact final : public ContactMethod {
     struct Part {
         double behind_tip = 0;  // mm, along the shaft
         GodObject on_rigid;
-        GodObject on_all;  // as if nothing gave way: no equilibrium is farther from the device
+        GodObject
+            on_all;  // as if nothing gave way: without friction, no equilibrium is farther from the device
         std::span<Contact> rigid_contacts{};               // of this tick, where they are solved
         Eigen::Vector3d device = Eigen::Vector3d::Zero();  // where the coupling pulls it, mm
     };

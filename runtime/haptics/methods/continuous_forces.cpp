@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the continuous contact's points are and what they do to the tool; part of its tick.
 #include <algorithm>
-#include <cmath>
 
 #include "runtime/haptics/methods/continuous_contact.hpp"
 

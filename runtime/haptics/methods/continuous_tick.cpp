@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One tick of the continuous contact: nothing here allocates, locks, waits or throws.
 #include <algorithm>
-#include <cmath>
 
 #include "formats/model/arrays.hpp"
 #include "runtime/haptics/methods/continuous_contact.hpp"
@@ -9,7 +8,6 @@
 namespace palpate::haptics {
 namespace {
 
-using namespace collision;
 using Eigen::Vector3d;
 
 constexpr double unsolved = 1e-3;  // mm of residual that is reported
@@ -23,9 +21,13 @@ void ContinuousContact::tick(std::span<const ContactPose> poses, double coupling
     equilibrium_.begin_tick(coupling);
     for (std::size_t t = 0; t < tools_.size(); ++t) place(t, poses[t]);
     for (std::size_t t = 0; t < tools_.size(); ++t) follow(t, results[t]);
-    if (equilibrium_.is_needed() || std::ranges::any_of(tools_, &Tool::held_by_shaft)) {
-        for (std::size_t t = 0; t < tools_.size(); ++t)
-            if (tools_[t].held_by_shaft || equilibrium_.touches_tissue(t)) add_rigid_contacts(t, results[t]);
+    bool solve = false;
+    for (std::size_t t = 0; t < tools_.size(); ++t) {
+        if (!tools_[t].held_by_shaft && !equilibrium_.touches_tissue(t)) continue;
+        add_rigid_contacts(t, results[t]);
+        solve = true;
+    }
+    if (solve) {
         equilibrium_.solve();
         int round = 0;
         for (; round < most_rounds && hold_off_rigid(results); ++round) equilibrium_.solve();

@@ -66,10 +66,11 @@ TEST(LoadSpread, compliance_is_that_of_the_shares) {
                         compliance_block(cube().compliance, blocks[static_cast<std::size_t>(here.vertex)],
                                          blocks[static_cast<std::size_t>(there.vertex)])
                             .cast<double>();
-    const Eigen::Matrix3f* found = spread().near_compliance(a, b);
-    ASSERT_NE(found, nullptr);
+    const auto found = spread().near_compliance(a, b);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(*spread().near_compliance(b, a), found->transpose());
     EXPECT_NEAR((found->cast<double>() - expected).norm(), 0, 1e-5 * expected.norm());
-    EXPECT_EQ(spread().near_compliance(a, far), nullptr);
+    EXPECT_FALSE(spread().near_compliance(a, far));
 }
 
 TEST(LocalIndentation, with_what_the_spread_load_gives_makes_hertz_of_a_light_press) {

@@ -29,7 +29,7 @@ class Published {
   public:
     Published(Case patient_case, std::string_view scheme)
         : case_(std::move(patient_case)),
-          bodies_(case_),
+          bodies_(case_, false),
           contact_(case_, bodies_,
                    scheme == "twice" ? PublishedContact::Tested::twice : PublishedContact::Tested::single) {}
 

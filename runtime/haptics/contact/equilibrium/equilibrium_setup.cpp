@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the search for an equilibrium allocates before the first tick.
-#include "runtime/haptics/contact/contact_equilibrium.hpp"
+#include "runtime/haptics/contact/equilibrium/contact_equilibrium.hpp"
 
 namespace palpate::haptics {
 

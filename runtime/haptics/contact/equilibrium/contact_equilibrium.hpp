@@ -5,12 +5,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "formats/records/tick_result.hpp"
 #include "runtime/haptics/contact/contact_bodies.hpp"
 #include "runtime/haptics/contact/contact_lcp.hpp"
-#include "runtime/haptics/contact/deformed_patch.hpp"
+#include "runtime/haptics/contact/equilibrium/deformed_patch.hpp"
 #include "runtime/haptics/contact/fixed_list.hpp"
 #include "runtime/haptics/contact/god_object.hpp"
 
@@ -46,8 +47,7 @@ class ContactEquilibrium {
     /// device is beyond it along -normal. The contact must outlive solve(). False where there is no more
     /// room.
     bool add_wall(std::size_t tool, Contact& contact) noexcept;
-    /// Whether any tool touches a deformable body, or is about to.
-    bool is_needed() const noexcept;
+    /// Whether a tool touches a deformable body, or is about to.
     bool touches_tissue(std::size_t tool) const noexcept {
         return tools_[tool].felt > 0 && tools_[tool].touching;
     }
@@ -68,8 +68,6 @@ class ContactEquilibrium {
     bool was_cut(std::size_t tool) const noexcept { return tools_[tool].cut; }
     /// Worst violation of the contact conditions, mm.
     double residual() const noexcept { return residual_; }
-    /// How far the tool's tip has sunk into tissue beyond what the surface gives way, mm.
-    Eigen::Vector3d sunk(std::size_t tool) const noexcept;
     /// Appends the contacts with deformable bodies that press the tool.
     void write_contacts(std::size_t tool, TickResult& result) const noexcept;
     /// Ends the tick: what this one found is the start of the next.
@@ -77,6 +75,9 @@ class ContactEquilibrium {
 
   private:
     static constexpr std::size_t most_rows = 512;  // before they are cut
+    static constexpr double settled = 1e-4;        // mm: changes smaller than this end the search
+    // mm beyond a sphere within which triangles count: of a tool at rest, and where contact starts.
+    static constexpr double first_reach = 0.1, cold_reach = 0.5;
 
     using Weights = std::array<double, DeformedPatch::iterates>;
     using Offsets = std::array<Eigen::Vector3d, DeformedPatch::iterates>;
@@ -99,6 +100,16 @@ class ContactEquilibrium {
         std::int32_t place = 0, rank = 0;  // among all rows, and by distance among its tool's
         Contact* wall = nullptr;
     };
+    // The rows of one sphere on one body: rows_[first] ... rows_[end - 1].
+    struct Group {
+        std::int32_t tool = 0, part = 0, patch = 0;
+        std::size_t first = 0, end = 0;
+    };
+    struct Bearing {
+        std::int32_t slot = 0;
+        double share = 0;  // of the press
+    };
+    using Bearings = FixedList<Bearing, 3 * max_contacts>;
     struct Surrounding {
         std::int32_t triangle = 0;
         double due = 0;  // mm of the way
@@ -160,23 +171,31 @@ class ContactEquilibrium {
     bool gather(std::size_t tool, std::size_t part, std::size_t soft) noexcept;
     bool found(std::size_t tool) const noexcept;
     bool start_anew() noexcept;
+    void forget_tissue() noexcept;
     void iterate(int most) noexcept;
     void cut_rows() noexcept;
+    void group_rows() noexcept;
     void solve_rows() noexcept;
-    const Touch& touch_of(const Row& row) const noexcept {
-        return tools_[static_cast<std::size_t>(row.tool)]
-            .parts[static_cast<std::size_t>(row.part)]
-            .touches[static_cast<std::size_t>(row.patch)];
+    // Of a row or a group of rows.
+    const Touch& touch_of(const auto& of) const noexcept {
+        return tools_[static_cast<std::size_t>(of.tool)]
+            .parts[static_cast<std::size_t>(of.part)]
+            .touches[static_cast<std::size_t>(of.patch)];
+    }
+    Touch& touch_of(const auto& of) noexcept { return const_cast<Touch&>(std::as_const(*this).touch_of(of)); }
+    const DeformedPatch& patch_of(const auto& of) const noexcept {
+        return patches_[static_cast<std::size_t>(of.patch)];
+    }
+    DeformedPatch& patch_of(const auto& of) noexcept { return patches_[static_cast<std::size_t>(of.patch)]; }
+    std::span<const Row> rows_of(const Group& group) const noexcept {
+        return {rows_.data() + group.first, group.end - group.first};
     }
     double sink(std::size_t iterate) noexcept;
     double answer(std::size_t iterate) noexcept;
     void rub() noexcept;
-    template <typename Take>
-    void for_each_touch(const Take& take) noexcept;
-    template <typename Take>
-    static void for_each_bearing(std::span<const Row> rows, double press, const Take& take);
-    static Eigen::Vector3d slip_of(const Tool& tool, const Part& part, const Touch& touch,
-                                   std::span<const Row> rows, const DeformedPatch& patch) noexcept;
+    void keep_hold() noexcept;
+    Bearings bearings_of(const Group& group, double press) const noexcept;
+    Eigen::Vector3d slip_of(const Group& group, const Bearings& bearings) const noexcept;
     Weights mix(std::size_t iterate, std::size_t known) const noexcept;
     void relax_to(const Weights& weights, double longest) noexcept;
 
@@ -187,6 +206,7 @@ class ContactEquilibrium {
     std::vector<DeformedPatch> patches_;
     std::vector<Tool> tools_;
     FixedList<Row, most_rows> rows_;                   // of this iteration, walls first
+    FixedList<Group, max_contacts> groups_;            // of those on tissue
     std::vector<std::vector<std::uint32_t>> visited_;  // by patch and triangle: the search that saw it last
     std::uint32_t search_ = 0;
     FixedList<std::int32_t, most_rows> queue_;

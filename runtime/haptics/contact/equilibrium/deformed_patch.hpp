@@ -19,7 +19,6 @@ namespace palpate::haptics {
 class DeformedPatch {
   public:
     static constexpr std::int32_t most_vertices = 256;
-    static constexpr std::int32_t no_slot = -1;
     static constexpr std::size_t iterates = 3;
 
     /// `body` must outlive this.
@@ -33,14 +32,14 @@ class DeformedPatch {
     /// in the last tick nor bear force go when room is needed.
     void begin_tick() noexcept;
 
-    /// The slot of a surface vertex, which comes in if it is new; no_slot where there is no room left.
-    std::int32_t slot_of(std::int32_t vertex) noexcept;
-    /// The slots of a triangle's corners; false where there is no room left.
+    /// The slots of a triangle's corners, which come in if they are new; false where there is no room left.
     bool slots_of(std::int32_t triangle, std::array<std::int32_t, 3>& slots) noexcept;
     /// Where a triangle's corners are, p_P, mm, whether its vertices are in or not: for a look from time to
     /// time.
     collision::TriangleCorners look_at(std::int32_t triangle) const noexcept;
     bool bears_force() const noexcept { return !forces_.loaded.empty(); }
+    /// Whether nothing is known of it but its rest.
+    bool is_at_rest() const noexcept { return size_ == 0; }
     /// The most that any vertex looked at in this tick has moved since it began, mm.
     double motion() const noexcept;
 
@@ -76,6 +75,8 @@ class DeformedPatch {
     Eigen::Vector3d held_displacement(std::int32_t slot) const noexcept;
 
   private:
+    static constexpr std::int32_t no_slot = -1;
+
     // A sparse field of forces on vertices.
     struct Forces {
         std::vector<Eigen::Vector3d> at;  // by slot
@@ -92,6 +93,7 @@ class DeformedPatch {
     }
     Eigen::Vector3d displacement_under(const Forces& forces, std::int32_t slot) const noexcept;
     std::int32_t free_slot() noexcept;
+    std::int32_t slot_of(std::int32_t vertex) noexcept;
 
     const DeformableContact* body_;
     std::vector<std::int32_t> slots_;  // of each surface vertex

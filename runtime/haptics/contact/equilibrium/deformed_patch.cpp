@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/haptics/contact/deformed_patch.hpp"
+#include "runtime/haptics/contact/equilibrium/deformed_patch.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -52,6 +52,7 @@ std::int32_t DeformedPatch::free_slot() noexcept {
     return no_slot;
 }
 
+// no_slot where there is no room left.
 std::int32_t DeformedPatch::slot_of(std::int32_t vertex) noexcept {
     std::int32_t slot = slots_[vertex];
     const bool slot_is_new = slot == no_slot;

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/haptics/contact/equilibrium/contact_equilibrium.hpp"
+
+#include <algorithm>
+#include <limits>
+
+// Contact that keeps energy. A tool of spheres of radius r hangs on its virtual coupling of stiffness K from
+// the device at d; x is where it is, u the displacements of the bodies' surfaces, C their compliance against
+// loads spread over the surface (load_spread.cpp). A sphere pressed into tissue sinks in by s besides,
+// against a potential U of the press alone (local_indentation.cpp), so that y = x + s is what meets the
+// surface. All come to rest where
+//     V = 1/2 K |x - d|² + 1/2 u . C^-1 u + U(s)    is least under    g_t = |y - q_t(u)| - r >= 0
+// for every sphere and every triangle t of the surface as it is *displaced*, q_t(u) its point closest to y.
+// The force on the device is -dV/dd = K (x - d): its work round a closed loop is zero. Rest positions,
+// anchors and smoothed normals have no part in it.
+//
+// g_t is differentiable wherever y is off the triangle: its gradient by y is n = (y - q_t) / |y - q_t|, and
+// -w_i n by u_i, w the barycentric weights of q_t. Linearised at the present state, with s = s_0 + S F about
+// the present press F, the conditions for the forces f >= 0 that the triangles press with are
+//     A f - delta >= 0,    f >= 0,    f . (A f - delta) = 0,
+//     A_kl = n_k . n_l / K + sum_ij w_ki w_lj n_k . C_ij n_l + n_k . S n_l,
+//     delta_k = n_k . (x - d + s - s_0) - sum_i w_ki n_k . u_i - g_k.
+// The first term of A is there where k and l are of one tool, the second where they lie on one body, the
+// third where they press one sphere; a rigid body has the first alone. The forces answer with the next x = d
+// + sum f n / K, u = -C sum w n f and s, and so on until nothing changes. Answers are combined as Anderson
+// (1965) has it, for two sets of contacts would take turns for ever.
+
+namespace palpate::haptics {
+namespace {
+
+using namespace collision;
+using Eigen::Index;
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+constexpr int warm_iterations = 24, cold_iterations = 60;
+constexpr double far_off = 10;          // times the change before it
+constexpr std::size_t most_walls = 48;  // leaves room for tissue
+
+}  // namespace
+
+void ContactEquilibrium::reset() noexcept {
+    for (std::size_t t = 0; t < tools_.size(); ++t) forget(t);
+    forget_tissue();
+}
+
+void ContactEquilibrium::forget(std::size_t t) noexcept {
+    Tool& tool = tools_[t];
+    tool.touching = tool.at_rest = false;
+    tool.off.setZero();
+    tool.press.setZero();
+    tool.drag.setZero();
+    for (Part& part : tool.parts)
+        for (Touch& touch : part.touches) {
+            touch.count = 0;
+            touch.freedom = 1;
+            touch.sunk.setZero();
+            touch.push.setZero();
+            touch.drag.setZero();
+            touch.slip.setZero();
+            touch.slid = touch.pressed = false;
+        }
+}
+
+void ContactEquilibrium::begin_tick(double stiffness) noexcept {
+    coupling_ = stiffness;
+    rows_.clear();
+    residual_ = 0;
+    for (Tool& tool : tools_) {
+        tool.felt = 0;
+        tool.outside = true;
+        tool.at_rest = false;
+    }
+    for (DeformedPatch& patch : patches_) patch.begin_tick();
+}
+
+void ContactEquilibrium::pull(std::size_t t, std::span<const Sphere> spheres) noexcept {
+    Tool& tool = tools_[t];
+    double moved = 0;
+    bool meets = false;
+    for (std::size_t p = 0; p < spheres.size(); ++p) {
+        Part& part = tool.parts[p];
+        part.last_device = part.sphere.device;
+        moved = std::max(moved, (spheres[p].device - part.last_device).norm());
+        part.sphere = spheres[p];
+        for (const GodObject::Touch& touch : spheres[p].if_rigid->touches())
+            meets = meets || touch.surface >= bodies_.rigid_count();
+    }
+    tool.felt = spheres.size();
+    tool.cold = !tool.touching;
+    tool.touching = tool.touching || meets;
+    tool.reach = tool.cold ? cold_reach : first_reach + 2 * moved;
+    tool.held_reach = tool.cold ? 0 : (tool.last_tip - tool.parts[0].last_device).norm() + moved;
+    tool.off = tool.cold ? Vector3d::Zero() : Vector3d(tool.last_tip - spheres[0].device);
+}
+
+bool ContactEquilibrium::add_wall(std::size_t tool, Contact& contact) noexcept {
+    const std::size_t walls = wall_count();
+    if (walls == most_walls) return false;
+    Row row;
+    row.tool = static_cast<std::int32_t>(tool);
+    row.part = contact.part;
+    row.triangle = contact.triangle;
+    row.normal = normal_of(contact);
+    row.gap = static_cast<double>(contact.gap);
+    row.wall = &contact;
+    rows_.cut(walls);
+    rows_.push_back(row);
+    return true;
+}
+
+std::size_t ContactEquilibrium::wall_count() const noexcept {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(rows_, [](const Row& row) { return row.wall != nullptr; }));
+}
+
+void ContactEquilibrium::solve() noexcept {
+    const auto starts = [](const Tool& tool) { return tool.felt > 0 && tool.touching && tool.cold; };
+    iterate(std::ranges::any_of(tools_, starts) ? cold_iterations : warm_iterations);
+    // What was found from the last tick on may have led astray: then contact starts anew. And where that does
+    // not lead to an equilibrium either, the surface at rest has to do.
+    if (start_anew()) iterate(cold_iterations);
+    if (start_anew()) {
+        for (std::size_t t = 0; t < tools_.size(); ++t) tools_[t].at_rest = tools_[t].cold && !found(t);
+        iterate(warm_iterations);
+    }
+}
+
+// Lets the tools start anew that are not in equilibrium; false if there are none.
+bool ContactEquilibrium::start_anew() noexcept {
+    bool any = false;
+    for (std::size_t t = 0; t < tools_.size(); ++t) {
+        Tool& tool = tools_[t];
+        if (tool.felt == 0 || !tool.touching || found(t)) continue;
+        any = true;
+        const bool at_rest = tool.at_rest;
+        forget(t);
+        tool.touching = tool.cold = true;
+        tool.at_rest = at_rest;
+    }
+    return any;
+}
+
+void ContactEquilibrium::iterate(int most) noexcept {
+    std::size_t known = 0;
+    double before = std::numeric_limits<double>::infinity();
+    for (int iteration = 0; iteration < most; ++iteration) {
+        rows_.cut(wall_count());
+        double longest = cold_reach;
+        bool predicts = false;
+        for (std::size_t t = 0; t < tools_.size(); ++t) {
+            Tool& tool = tools_[t];
+            if (tool.felt == 0) continue;
+            tool.outside = true;
+            tool.cut = false;
+            const bool starts = tool.touching && tool.cold && (iteration == 0 || tool.at_rest);
+            for (std::size_t p = 0; p < tool.felt; ++p) {
+                if (starts) gather_at_rest(t, p);
+                for (std::size_t soft = 0; !starts && soft < patches_.size(); ++soft) {
+                    if (!tool.touching && !patches_[soft].bears_force()) continue;
+                    if (iteration == (tool.touching && tool.cold ? 1 : 0)) look_around(t, p, soft);
+                    tool.outside = gather(t, p, soft) && tool.outside;
+                }
+            }
+            predicts = predicts || starts;
+            longest = std::min(longest, tool.reach);
+        }
+        cut_rows();
+        group_rows();
+        solve_rows();
+        const std::size_t newest = static_cast<std::size_t>(iteration) % DeformedPatch::iterates;
+        if (friction_.at_rest > 0) rub();
+        const double change = answer(newest);
+        // An answer from far off says little about the next one, and one to surfaces at rest nothing.
+        known = change > far_off * before ? 1 : std::min(known + 1, DeformedPatch::iterates);
+        if (predicts) known = 0;
+        before = change;
+        relax_to(mix(newest, change < settled ? 1 : known),
+                 predicts ? std::numeric_limits<double>::infinity() : longest);
+        if (change < settled) break;
+    }
+}
+
+// A tool that nothing presses is clear of the tissue on which it would rest if nothing gave way, or other
+// tools have moved that out of its way. Otherwise it has gone through.
+bool ContactEquilibrium::found(std::size_t t) const noexcept {
+    const Tool& tool = tools_[t];
+    if (!tool.outside || tool.press != Vector3d::Zero()) return tool.outside;
+    for (const Part& part : std::span(tool.parts).first(tool.felt))
+        for (const GodObject::Touch& touch : part.sphere.if_rigid->touches()) {
+            if (touch.surface < bodies_.rigid_count()) continue;
+            const TriangleCorners corners =
+                patches_[touch.surface - bodies_.rigid_count()].look_at(touch.foot.triangle);
+            Vector3d foot = Vector3d::Zero();
+            for (std::size_t i = 0; i < 3; ++i)
+                foot += touch.foot.barycentric[static_cast<Index>(i)] * corners[i];
+            if (touch.normal.dot(foot - part.sphere.device) + radius_ > first_reach) return false;
+        }
+    return true;
+}
+
+void ContactEquilibrium::write_contacts(std::size_t t, TickResult& result) const noexcept {
+    for (const Row& row : rows_) {
+        if (row.wall) {
+            row.wall->force = static_cast<float>(row.force);
+            continue;
+        }
+        const auto used = static_cast<std::size_t>(result.contact_count);
+        if (row.tool != static_cast<std::int32_t>(t) || !(row.force > 0) || used == max_contacts) continue;
+        const DeformableContact& body = patch_of(row).body();
+        Contact contact;
+        contact.body = body.body_index();
+        contact.part = row.part;
+        contact.triangle = row.triangle;
+        contact.vertices = body.triangle(row.triangle);
+        Eigen::Map<Vector3f>(contact.weights.data()) = row.weights.cast<float>();
+        Eigen::Map<Vector3f>(contact.normal.data()) = row.normal.cast<float>();
+        const Touch& touch = touch_of(row);
+        const double sunk = row.normal.dot(touch.sunk_free + touch.sinking * touch.push);
+        contact.gap = static_cast<float>(row.gap + row.normal.dot(touch.sunk_free));
+        contact.force = static_cast<float>(row.force);
+        contact.series_compliance = static_cast<float>(sunk / row.force);
+        if (touch.press > 0)
+            Eigen::Map<Vector3f>(contact.friction.data()) =
+                (row.force / touch.press * touch.drag).cast<float>();
+        result.contacts[used] = contact;
+        ++result.contact_count;
+    }
+}
+
+void ContactEquilibrium::end_tick() noexcept {
+    bool any = false;
+    last_motion_ = 0;
+    for (const DeformedPatch& patch : patches_) last_motion_ = std::max(last_motion_, patch.motion());
+    for (std::size_t t = 0; t < tools_.size(); ++t) {
+        Tool& tool = tools_[t];
+        const bool pressed = std::ranges::any_of(rows_, [&](const Row& row) {
+            return row.tool == static_cast<std::int32_t>(t) && row.patch >= 0 && row.force > 0;
+        });
+        if (pressed && tool.felt > 0 && !tool.at_rest && found(t)) {
+            any = tool.touching = true;
+            tool.last_tip = tool.parts[0].sphere.device + tool.off;
+        } else if (tool.touching) {
+            forget(t);
+        }
+    }
+    if (any) {
+        if (friction_.at_rest > 0) keep_hold();
+    } else {
+        forget_tissue();
+    }
+}
+
+// Where nothing is touched, nothing that was leaves a trace in what will be.
+void ContactEquilibrium::forget_tissue() noexcept {
+    for (DeformedPatch& patch : patches_) {
+        if (patch.is_at_rest()) continue;
+        patch.reset();
+        for (Tool& tool : tools_)
+            for (Part& part : tool.parts)
+                for (Touch& touch : part.touches) touch.way = -1;
+    }
+    active_count_ = 0;
+    last_motion_ = 0;
+}
+
+}  // namespace palpate::haptics

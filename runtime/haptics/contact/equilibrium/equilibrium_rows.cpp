@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which triangles may press a tool in a tick, and their complementarity problem; part of the tick.
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "runtime/haptics/contact/equilibrium/contact_equilibrium.hpp"
+#include "runtime/haptics/contact/local_indentation.hpp"
+
+namespace palpate::haptics {
+namespace {
+
+using namespace collision;
+using Eigen::Index;
+using Eigen::Vector3d;
+
+constexpr double same_place = 1e-6;  // mm: closest points nearer than this are one
+constexpr double look_margin = 1;    // mm: how much farther around is looked
+// E* r²: about which sinking in is linearised where nothing is known yet.
+constexpr double slight_press = 1e-3;
+
+}  // namespace
+
+// How a sphere sinks in, about the press that was found last; before any, about a slight one.
+void ContactEquilibrium::linearise(Touch& touch, const DeformedPatch& patch) const noexcept {
+    touch.sunk_free.setZero();
+    touch.sinking.setZero();
+    const LoadSpread* spread = patch.body().spread();
+    if (!spread) return;
+    const double known = touch.push.norm(),
+                 press = std::max(known, slight_press * spread->contact_modulus() * radius_ * radius_);
+    const LocalIndentation local =
+        local_indentation(press, radius_, spread->contact_modulus(), spread->radius());
+    if (!(press > 0)) return;
+    touch.sinking = touch.freedom * local.depth / press * Eigen::Matrix3d::Identity();
+    if (known < press) return;
+    const Vector3d axis = touch.push / known;
+    touch.sinking += touch.freedom * (local.slope - local.depth / press) * axis * axis.transpose();
+    touch.sunk_free = touch.freedom * (local.depth - local.slope * press) * axis;
+}
+
+// The feet on which a sphere rests if nothing gives way, with the surface at rest: where contact starts.
+void ContactEquilibrium::gather_at_rest(std::size_t t, std::size_t p) noexcept {
+    Part& part = tools_[t].parts[p];
+    for (std::size_t soft = 0; soft < patches_.size(); ++soft) linearise(part.touches[soft], patches_[soft]);
+    for (const GodObject::Touch& touch : part.sphere.if_rigid->touches()) {
+        if (touch.surface < bodies_.rigid_count()) continue;
+        const std::size_t soft = touch.surface - bodies_.rigid_count();
+        DeformedPatch& patch = patches_[soft];
+        Row row;
+        if (!patch.slots_of(touch.foot.triangle, row.slots)) continue;
+        row.tool = static_cast<std::int32_t>(t);
+        row.part = static_cast<std::int32_t>(p);
+        row.patch = static_cast<std::int32_t>(soft);
+        row.triangle = touch.foot.triangle;
+        row.weights = touch.foot.barycentric;
+        row.normal = touch.normal;
+        row.gap = touch.normal.dot(part.sphere.if_rigid->position() - part.sphere.device -
+                                   tools_[t].drag / coupling_ - part.touches[soft].sunk_free);
+        for (Index i = 0; i < 3; ++i)
+            row.gap += row.weights[i] *
+                       row.normal.dot(patch.held_displacement(row.slots[static_cast<std::size_t>(i)]));
+        rows_.push_back(row);
+    }
+}
+
+// Triangles that no walk over the surface from those pressed would find in time: of another fold, or where
+// other tools make tissue bulge.
+void ContactEquilibrium::look_around(std::size_t t, std::size_t p, std::size_t soft) noexcept {
+    const Tool& tool = tools_[t];
+    Part& part = tools_[t].parts[p];
+    Touch& touch = part.touches[soft];
+    const DeformedPatch& patch = patches_[soft];
+    const Vector3d centre = centre_of(tool, part, touch), from = part.sphere.if_rigid->position();
+    const double limit = radius_ + tool.reach;
+    touch.way += (centre - touch.last_centre).norm() + last_motion_;
+    touch.last_centre = centre;
+    if (touch.way < 0 || (centre - touch.looked_to).norm() > look_margin / 2 ||
+        (from - touch.looked_from).norm() > look_margin / 2) {
+        const CollisionSurface& surface = *bodies_.surfaces[bodies_.rigid_count() + soft];
+        std::array<std::int32_t, most_rows> slots;
+        const std::size_t found = surface.slots_near(from, centre, limit + look_margin, slots);
+        touch.around.clear();
+        for (std::size_t i = 0; i < std::min(found, slots.size()); ++i)
+            touch.around.push_back({surface.mesh_triangle(slots[i]), 0});
+        touch.looked_from = from;
+        touch.looked_to = centre;
+        touch.way = 0;
+    }
+    for (Surrounding& near : touch.around) {
+        if (near.due > touch.way || touch.count == touch.triangles.size()) continue;
+        const TrianglePoint closest = closest_point_on_triangle(centre, patch.look_at(near.triangle));
+        const double distance = std::sqrt(closest.squared_distance);
+        if (distance < limit) touch.triangles[touch.count++] = near.triangle;
+        near.due = touch.way + std::max(0.0, distance - limit);
+    }
+}
+
+// The triangles near a sphere, walked to over the displaced surface from those that were near it last and
+// from those on which it would rest. Tells whether the centre is outside.
+bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft) noexcept {
+    const Tool& tool = tools_[t];
+    Part& part = tools_[t].parts[p];
+    Touch& touch = part.touches[soft];
+    DeformedPatch& patch = patches_[soft];
+    const DeformableContact& body = patch.body();
+    linearise(touch, patch);
+    const Vector3d centre = centre_of(tool, part, touch);
+    const double limit = radius_ + tool.reach;
+    std::vector<std::uint32_t>& visited = visited_[soft];
+    ++search_;
+    queue_.clear();
+    const auto visit = [&](std::int32_t triangle) {
+        if (visited[triangle] == search_ || queue_.full()) return;
+        visited[triangle] = search_;
+        queue_.push_back(triangle);
+    };
+    for (std::size_t i = 0; i < touch.count; ++i) visit(touch.triangles[i]);
+    for (const GodObject::Touch& rests : part.sphere.if_rigid->touches())
+        if (rests.surface == bodies_.rigid_count() + soft) visit(rests.foot.triangle);
+    const std::size_t seeds = queue_.size(), first = rows_.size();
+    double nearest = limit;
+    Vector3d nearest_away = Vector3d::Zero(), nearest_normal = Vector3d::Zero();
+    for (std::size_t next = 0; next < queue_.size(); ++next) {
+        const std::int32_t triangle = queue_[next];
+        Row row;
+        if (!patch.slots_of(triangle, row.slots)) break;
+        const TriangleCorners corners = patch.corners(row.slots);
+        const TrianglePoint closest = closest_point_on_triangle(centre, corners);
+        const double distance = std::sqrt(closest.squared_distance);
+        const bool near = distance < limit;
+        if (near || next < seeds)
+            for (const std::int32_t neighbour : body.neighbours(triangle)) visit(neighbour);
+        if (!near || !(distance > 0)) continue;
+        row.normal = (centre - closest.point) / distance;
+        if (distance < nearest + same_place) {
+            if (distance < nearest - same_place) nearest_normal.setZero();
+            nearest = std::min(nearest, distance);
+            nearest_away = row.normal;
+            nearest_normal += angle_about(closest.point, corners) * unit_normal(corners);
+        }
+        const auto same = [&](const Row& other) {
+            return (other.point - closest.point).squaredNorm() < same_place * same_place;
+        };
+        if (rows_.full() ||
+            std::any_of(rows_.begin() + static_cast<std::ptrdiff_t>(first), rows_.end(), same))
+            continue;
+        row.tool = static_cast<std::int32_t>(t);
+        row.part = static_cast<std::int32_t>(p);
+        row.patch = static_cast<std::int32_t>(soft);
+        row.triangle = triangle;
+        row.weights = closest.barycentric;
+        row.point = closest.point;
+        row.distance = distance - radius_;
+        row.gap =
+            row.normal.dot(tool.off - tool.drag / coupling_ + touch.sunk - touch.sunk_free) - row.distance;
+        for (Index i = 0; i < 3; ++i) {
+            const std::int32_t slot = row.slots[static_cast<std::size_t>(i)];
+            row.gap -=
+                row.weights[i] * row.normal.dot(patch.displacement(slot) - patch.held_displacement(slot));
+        }
+        rows_.push_back(row);
+    }
+    touch.count = 0;
+    for (std::size_t i = first; i < rows_.size() && touch.count < touch.triangles.size(); ++i)
+        touch.triangles[touch.count++] = rows_[i].triangle;
+    return nearest_normal.dot(nearest_away) >= 0;
+}
+
+// Leaves as many rows as can be solved: each tool its nearest, in turn.
+void ContactEquilibrium::cut_rows() noexcept {
+    if (rows_.size() <= max_contacts) return;
+    const auto soft = rows_.begin() + static_cast<std::ptrdiff_t>(wall_count());
+    for (auto row = soft; row != rows_.end(); ++row) row->place = static_cast<std::int32_t>(row - soft);
+    std::sort(soft, rows_.end(), [](const Row& a, const Row& b) {
+        return std::tie(a.tool, a.distance, a.place) < std::tie(b.tool, b.distance, b.place);
+    });
+    for (auto row = soft; row != rows_.end(); ++row)
+        row->rank = row != soft && std::prev(row)->tool == row->tool ? std::prev(row)->rank + 1 : 0;
+    std::sort(soft, rows_.end(),
+              [](const Row& a, const Row& b) { return std::tie(a.rank, a.tool) < std::tie(b.rank, b.tool); });
+    for (std::size_t k = max_contacts; k < rows_.size(); ++k)
+        if (rows_[k].distance < -settled) tools_[static_cast<std::size_t>(rows_[k].tool)].cut = true;
+    rows_.cut(max_contacts);
+    std::sort(soft, rows_.end(), [](const Row& a, const Row& b) { return a.place < b.place; });
+}
+
+// Those of one sphere on one body lie together.
+void ContactEquilibrium::group_rows() noexcept {
+    groups_.clear();
+    for (std::size_t first = wall_count(), end = first; first < rows_.size(); first = end) {
+        const Row& row = rows_[first];
+        const auto together = [&](const Row& other) {
+            return std::tie(row.tool, row.part, row.patch) == std::tie(other.tool, other.part, other.patch);
+        };
+        while (end < rows_.size() && together(rows_[end])) ++end;
+        groups_.push_back({row.tool, row.part, row.patch, first, end});
+    }
+}
+
+std::int64_t ContactEquilibrium::key_of(const Row& row) noexcept {
+    const std::int64_t side = (std::int64_t{row.tool} << 16) + (std::int64_t{row.part} << 8) + row.patch + 1;
+    return (side << 32) + row.triangle;
+}
+
+void ContactEquilibrium::solve_rows() noexcept {
+    const std::size_t n = rows_.size();
+    std::array<std::size_t, max_contacts> warm;
+    std::size_t warm_count = 0;
+    const std::span last(active_.data(), active_count_);
+    for (std::size_t k = 0; k < n; ++k) {
+        const Row& a = rows_[k];
+        const auto row = static_cast<Index>(k);
+        lcp_.gaps()[row] = a.gap;
+        for (std::size_t l = 0; l <= k; ++l) {
+            const Row& b = rows_[l];
+            double sum = a.tool == b.tool ? a.normal.dot(b.normal) / coupling_ : 0;
+            if (a.patch >= 0 && a.patch == b.patch) {
+                const DeformedPatch& patch = patch_of(a);
+                Vector3d moved = Vector3d::Zero();
+                for (Index i = 0; i < 3; ++i)
+                    for (Index j = 0; j < 3; ++j)
+                        if (a.weights[i] > 0 && b.weights[j] > 0)
+                            moved += a.weights[i] * b.weights[j] *
+                                     patch.response(a.slots[static_cast<std::size_t>(i)],
+                                                    b.slots[static_cast<std::size_t>(j)], b.normal);
+                if (a.tool == b.tool && a.part == b.part) moved += touch_of(a).sinking * b.normal;
+                sum += a.normal.dot(moved);
+            }
+            lcp_.matrix()(row, static_cast<Index>(l)) = lcp_.matrix()(static_cast<Index>(l), row) = sum;
+        }
+        if (std::ranges::find(last, key_of(a)) != last.end()) warm[warm_count++] = k;
+    }
+    residual_ = lcp_.solve(n, std::span(warm).first(warm_count));
+    active_count_ = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+        rows_[k].force = lcp_.forces()[static_cast<Index>(k)];
+        if (rows_[k].force > 0) active_[active_count_++] = key_of(rows_[k]);
+    }
+}
+
+}  // namespace palpate::haptics
