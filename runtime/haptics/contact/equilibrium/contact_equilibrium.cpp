@@ -33,7 +33,7 @@ using Eigen::Index;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr int warm_iterations = 24, cold_iterations = 60;
+constexpr int warm_iterations = 8, cold_iterations = 24;
 constexpr double far_off = 10;          // times the change before it
 constexpr std::size_t most_walls = 48;  // leaves room for tissue
 
@@ -90,6 +90,7 @@ void ContactEquilibrium::pull(std::size_t t, std::span<const Sphere> spheres) no
     tool.cold = !tool.touching;
     tool.touching = tool.touching || meets;
     tool.reach = tool.cold ? cold_reach : first_reach + 2 * moved;
+    tool.near = tool.cold ? first_reach : 2 * moved;
     tool.held_reach = tool.cold ? 0 : (tool.last_tip - tool.parts[0].last_device).norm() + moved;
     tool.off = tool.cold ? Vector3d::Zero() : Vector3d(tool.last_tip - spheres[0].device);
 }
@@ -146,6 +147,7 @@ void ContactEquilibrium::iterate(int most) noexcept {
     double before = std::numeric_limits<double>::infinity();
     for (int iteration = 0; iteration < most; ++iteration) {
         rows_.cut(wall_count());
+        watched_.clear();
         double longest = cold_reach;
         bool predicts = false;
         for (std::size_t t = 0; t < tools_.size(); ++t) {
@@ -177,7 +179,7 @@ void ContactEquilibrium::iterate(int most) noexcept {
         before = change;
         relax_to(mix(newest, change < settled ? 1 : known),
                  predicts ? std::numeric_limits<double>::infinity() : longest);
-        if (change < settled) break;
+        if (change < settled && watched_are_clear()) break;
     }
 }
 

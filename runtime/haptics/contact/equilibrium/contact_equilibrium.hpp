@@ -157,7 +157,8 @@ class ContactEquilibrium {
         bool outside = true;    // of the tissue
         bool at_rest = false;   // no equilibrium was found
         bool cut = false;
-        double reach = 0;  // mm: triangles nearer than this to a sphere count
+        double reach = 0;  // mm: triangles nearer than this to a sphere are looked at
+        double near = 0;   // mm: those nearer than this are solved
     };
 
     static std::int64_t key_of(const Row& row) noexcept;
@@ -173,6 +174,8 @@ class ContactEquilibrium {
     bool start_anew() noexcept;
     void forget_tissue() noexcept;
     void iterate(int most) noexcept;
+    bool is_active(const Row& row) const noexcept;
+    bool watched_are_clear() const noexcept;
     void cut_rows() noexcept;
     void group_rows() noexcept;
     void solve_rows() noexcept;
@@ -206,6 +209,7 @@ class ContactEquilibrium {
     std::vector<DeformedPatch> patches_;
     std::vector<Tool> tools_;
     FixedList<Row, most_rows> rows_;                   // of this iteration, walls first
+    FixedList<Row, most_rows> watched_;                // near, but hardly pressing: looked after, not solved
     FixedList<Group, max_contacts> groups_;            // of those on tissue
     std::vector<std::vector<std::uint32_t>> visited_;  // by patch and triangle: the search that saw it last
     std::uint32_t search_ = 0;

@@ -5,9 +5,15 @@
 #include <cmath>
 
 namespace palpate::haptics {
+namespace {
 
-using namespace collision;
 using Eigen::Vector3d;
+using Eigen::Vector3f;
+using Eigen::Vector4f;
+
+constexpr std::int64_t kept = 32;  // ticks for which a vertex stays that nobody looks at
+
+}  // namespace
 
 void DeformedPatch::Forces::clear() noexcept {
     for (const std::int32_t slot : loaded) at[slot].setZero();
@@ -19,15 +25,8 @@ void DeformedPatch::Forces::add(std::int32_t slot, const Vector3d& force) noexce
     at[slot] += force;
 }
 
-void DeformedPatch::Forces::drop(std::int32_t slot) noexcept {
-    loaded.erase_if([&](std::int32_t other) { return other == slot; });
-    at[slot].setZero();
-}
-
 void DeformedPatch::reset() noexcept {
-    forces_.clear();
-    held_.clear();
-    combined_.clear();
+    for (Forces* forces : {&forces_, &held_, &combined_}) forces->clear();
     for (Answer& answer : answers_) answer.forces.clear();
     for (std::int32_t slot = 0; slot < size_; ++slot) slots_[vertices_[slot]] = no_slot;
     size_ = 0;
@@ -37,45 +36,67 @@ void DeformedPatch::reset() noexcept {
 void DeformedPatch::begin_tick() noexcept {
     ++tick_;
     std::copy_n(moved_.begin(), size_, before_.begin());
+    for (Answer& answer : answers_) answer.forces.clear();
+    combined_.clear();
+    for (std::int32_t slot = size_; slot-- > 0;) {
+        const bool loaded = forces_.at[slot] != Vector3d::Zero() || held_.at[slot] != Vector3d::Zero();
+        if (loaded || seen_[slot] + kept >= tick_) continue;
+        drop(slot);
+        return;  // one in a tick is enough
+    }
 }
 
-// Room is made by vertices that nobody looks at and nothing presses.
-std::int32_t DeformedPatch::free_slot() noexcept {
-    if (size_ < most_vertices) return size_++;
-    for (std::int32_t slot = 0; slot < size_; ++slot) {
-        const bool loaded = forces_.at[slot] != Vector3d::Zero() || held_.at[slot] != Vector3d::Zero();
-        if (loaded || seen_[slot] >= tick_) continue;
-        slots_[vertices_[slot]] = no_slot;
-        for (Answer& answer : answers_) answer.forces.drop(slot);
-        return slot;
+// The last slot takes the place of this one, which bears nothing.
+void DeformedPatch::drop(std::int32_t slot) noexcept {
+    slots_[vertices_[slot]] = no_slot;
+    const std::int32_t last = --size_;
+    if (slot == last) return;
+    vertices_[slot] = vertices_[last];
+    slots_[vertices_[slot]] = slot;
+    rest_[slot] = rest_[last];
+    moved_[slot] = moved_[last];
+    before_[slot] = before_[last];
+    held_moved_[slot] = held_moved_[last];
+    seen_[slot] = seen_[last];
+    for (Forces* forces : {&forces_, &held_}) {
+        std::swap(forces->at[slot], forces->at[last]);
+        std::replace(forces->loaded.begin(), forces->loaded.end(), last, slot);
     }
-    return no_slot;
+    for (std::int32_t other = 0; other < size_; ++other) {
+        const std::int32_t from = other == slot ? last : other;
+        blocks_[static_cast<std::size_t>(slot * most_vertices + other)] = block(from, last);
+        blocks_[static_cast<std::size_t>(other * most_vertices + slot)] = block(last, from);
+    }
+}
+
+void DeformedPatch::set_block(std::int32_t slot, std::int32_t loaded,
+                              const Eigen::Matrix3f& compliance) noexcept {
+    Block& to = blocks_[static_cast<std::size_t>(loaded * most_vertices + slot)];
+    to.topRows<3>() = compliance;
+    to.row(3).setZero();
 }
 
 // no_slot where there is no room left.
 std::int32_t DeformedPatch::slot_of(std::int32_t vertex) noexcept {
     std::int32_t slot = slots_[vertex];
-    const bool slot_is_new = slot == no_slot;
-    if (slot_is_new) {
-        slot = free_slot();
-        if (slot == no_slot) return no_slot;
-        slots_[vertex] = slot;
+    if (slot == no_slot) {
+        if (size_ == most_vertices) return no_slot;
+        slot = slots_[vertex] = size_++;
         vertices_[slot] = vertex;
         rest_[slot] = body_->rest_position(vertex);
         for (std::int32_t other = 0; other < size_; ++other) {
             const Eigen::Matrix3f between = body_->compliance_between(vertex, vertices_[other]);
-            blocks_[static_cast<std::size_t>(slot * most_vertices + other)] = between;
-            blocks_[static_cast<std::size_t>(other * most_vertices + slot)] = between.transpose();
+            set_block(slot, other, between);
+            set_block(other, slot, between.transpose());
         }
-    }
-    if (slot_is_new || seen_[slot] != tick_) {  // where nobody looked, nothing was kept up to date
-        before_[slot] = moved_[slot] = displacement_under(forces_, slot) + displacement_under(held_, slot);
+        held_moved_[slot] = displacement_under(held_, slot);
+        before_[slot] = moved_[slot] = displacement_under(forces_, slot) + held_moved_[slot];
         for (Answer& answer : answers_) {
             answer.moved[slot] = moved_[slot];
             answer.difference[slot].setZero();
         }
-        seen_[slot] = tick_;
     }
+    seen_[slot] = tick_;
     return slot;
 }
 
@@ -87,15 +108,15 @@ bool DeformedPatch::slots_of(std::int32_t triangle, std::array<std::int32_t, 3>&
     return true;
 }
 
-TriangleCorners DeformedPatch::look_at(std::int32_t triangle) const noexcept {
-    TriangleCorners corners;
+collision::TriangleCorners DeformedPatch::look_at(std::int32_t triangle) const noexcept {
+    collision::TriangleCorners corners;
     for (std::size_t corner = 0; corner < 3; ++corner) {
         const std::int32_t vertex = body_->triangle(triangle)[corner], slot = slots_[vertex];
-        if (slot != no_slot && seen_[slot] == tick_) {
-            corners[corner] = position(slot);
+        corners[corner] = body_->rest_position(vertex);
+        if (slot != no_slot) {
+            corners[corner] += moved_[slot];
             continue;
         }
-        corners[corner] = body_->rest_position(vertex);
         for (const Forces* forces : {&forces_, &held_})
             for (const std::int32_t loaded : forces->loaded)
                 corners[corner] +=
@@ -108,7 +129,7 @@ TriangleCorners DeformedPatch::look_at(std::int32_t triangle) const noexcept {
 double DeformedPatch::motion() const noexcept {
     double most = 0;
     for (std::int32_t slot = 0; slot < size_; ++slot)
-        if (seen_[slot] == tick_) most = std::max(most, (moved_[slot] - before_[slot]).squaredNorm());
+        most = std::max(most, (moved_[slot] - before_[slot]).squaredNorm());
     return std::sqrt(most);
 }
 
@@ -116,6 +137,17 @@ Vector3d DeformedPatch::displacement_under(const Forces& forces, std::int32_t sl
     Vector3d sum = Vector3d::Zero();
     for (const std::int32_t loaded : forces.loaded) sum += response(slot, loaded, forces.at[loaded]);
     return sum;
+}
+
+// The same for every slot.
+void DeformedPatch::displace(const Forces& forces, std::vector<Vector3d>& moved) noexcept {
+    std::fill_n(sum_.begin(), size_, Vector4f::Zero());
+    for (const std::int32_t loaded : forces.loaded) {
+        const Vector3f force = forces.at[loaded].cast<float>();
+        const Block* const row = &block(0, loaded);
+        for (std::int32_t slot = 0; slot < size_; ++slot) sum_[slot] += row[slot] * force;
+    }
+    for (std::int32_t slot = 0; slot < size_; ++slot) moved[slot] = sum_[slot].head<3>().cast<double>();
 }
 
 void DeformedPatch::begin_answer(std::size_t iterate) noexcept {
@@ -128,10 +160,10 @@ void DeformedPatch::load_answer(std::size_t iterate, std::int32_t slot, const Ve
 
 double DeformedPatch::end_answer(std::size_t iterate) noexcept {
     Answer& answer = answers_[iterate];
+    displace(answer.forces, answer.moved);
     double most = 0;
     for (std::int32_t slot = 0; slot < size_; ++slot) {
-        if (seen_[slot] != tick_) continue;
-        answer.moved[slot] = displacement_under(answer.forces, slot) + displacement_under(held_, slot);
+        answer.moved[slot] += held_moved_[slot];
         answer.difference[slot] = answer.moved[slot] - moved_[slot];
         most = std::max(most, answer.difference[slot].lpNorm<Eigen::Infinity>());
     }
@@ -141,7 +173,7 @@ double DeformedPatch::end_answer(std::size_t iterate) noexcept {
 double DeformedPatch::product_of_differences(std::size_t a, std::size_t b) const noexcept {
     double sum = 0;
     for (std::int32_t slot = 0; slot < size_; ++slot)
-        if (seen_[slot] == tick_) sum += answers_[a].difference[slot].dot(answers_[b].difference[slot]);
+        sum += answers_[a].difference[slot].dot(answers_[b].difference[slot]);
     return sum;
 }
 
@@ -156,7 +188,6 @@ void DeformedPatch::relax_to(const std::array<double, iterates>& weights, double
     std::swap(forces_, combined_);
     forces_.loaded.erase_if([&](std::int32_t slot) { return forces_.at[slot] == Vector3d::Zero(); });
     for (std::int32_t slot = 0; slot < size_; ++slot) {
-        if (seen_[slot] != tick_) continue;
         Vector3d to = Vector3d::Zero();
         for (std::size_t k = 0; k < iterates; ++k)
             if (weights[k] != 0) to += weights[k] * answers_[k].moved[slot];
@@ -164,7 +195,7 @@ void DeformedPatch::relax_to(const std::array<double, iterates>& weights, double
     }
 }
 
-void DeformedPatch::clear_held() noexcept {
+void DeformedPatch::begin_hold() noexcept {
     held_.clear();
 }
 
@@ -172,8 +203,8 @@ void DeformedPatch::hold(std::int32_t slot, const Vector3d& force) noexcept {
     held_.add(slot, force);
 }
 
-Vector3d DeformedPatch::held_displacement(std::int32_t slot) const noexcept {
-    return displacement_under(held_, slot);
+void DeformedPatch::end_hold() noexcept {
+    displace(held_, held_moved_);
 }
 
 }  // namespace palpate::haptics

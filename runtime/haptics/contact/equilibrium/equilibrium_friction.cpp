@@ -18,9 +18,17 @@ ContactEquilibrium::Bearings ContactEquilibrium::bearings_of(const Group& group,
                                                              double press) const noexcept {
     Bearings bearings;
     for (const Row& row : rows_of(group))
-        for (std::size_t i = 0; i < 3 && row.force > 0; ++i)
-            if (const double weight = row.weights[static_cast<Index>(i)]; weight > 0)
-                bearings.push_back({row.slots[i], weight * row.force / press});
+        for (std::size_t i = 0; i < 3 && row.force > 0; ++i) {
+            const double share = row.weights[static_cast<Index>(i)] * row.force / press;
+            if (!(share > 0)) continue;
+            const auto known = std::find_if(bearings.begin(), bearings.end(), [&](const Bearing& bearing) {
+                return bearing.slot == row.slots[i];
+            });
+            if (known != bearings.end())
+                known->share += share;
+            else
+                bearings.push_back({row.slots[i], share});
+        }
     return bearings;
 }
 
@@ -41,7 +49,7 @@ Vector3d ContactEquilibrium::slip_of(const Group& group, const Bearings& bearing
 
 // Friction, for what the present forces press with.
 void ContactEquilibrium::rub() noexcept {
-    for (DeformedPatch& patch : patches_) patch.clear_held();
+    for (DeformedPatch& patch : patches_) patch.begin_hold();
     for (Tool& tool : tools_) {
         tool.drag.setZero();
         for (Part& part : tool.parts)
@@ -74,6 +82,7 @@ void ContactEquilibrium::rub() noexcept {
         for (const auto& [slot, share] : bearings) patch.hold(slot, -share * touch.drag);
         tools_[static_cast<std::size_t>(group.tool)].drag += touch.drag;
     }
+    for (DeformedPatch& patch : patches_) patch.end_hold();
     for (Tool& tool : tools_)
         for (Part& part : tool.parts)
             for (Touch& touch : part.touches)

@@ -119,7 +119,7 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft) 
     for (std::size_t i = 0; i < touch.count; ++i) visit(touch.triangles[i]);
     for (const GodObject::Touch& rests : part.sphere.if_rigid->touches())
         if (rests.surface == bodies_.rigid_count() + soft) visit(rests.foot.triangle);
-    const std::size_t seeds = queue_.size(), first = rows_.size();
+    const std::size_t seeds = queue_.size(), first = rows_.size(), first_watched = watched_.size();
     double nearest = limit;
     Vector3d nearest_away = Vector3d::Zero(), nearest_normal = Vector3d::Zero();
     for (std::size_t next = 0; next < queue_.size(); ++next) {
@@ -143,8 +143,8 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft) 
         const auto same = [&](const Row& other) {
             return (other.point - closest.point).squaredNorm() < same_place * same_place;
         };
-        if (rows_.full() ||
-            std::any_of(rows_.begin() + static_cast<std::ptrdiff_t>(first), rows_.end(), same))
+        if (std::any_of(rows_.begin() + first, rows_.end(), same) ||
+            std::any_of(watched_.begin() + first_watched, watched_.end(), same))
             continue;
         row.tool = static_cast<std::int32_t>(t);
         row.part = static_cast<std::int32_t>(p);
@@ -160,12 +160,39 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft) 
             row.gap -=
                 row.weights[i] * row.normal.dot(patch.displacement(slot) - patch.held_displacement(slot));
         }
-        rows_.push_back(row);
+        auto& list = row.distance < tool.near || is_active(row) ? rows_ : watched_;
+        if (!list.full()) list.push_back(row);
     }
     touch.count = 0;
-    for (std::size_t i = first; i < rows_.size() && touch.count < touch.triangles.size(); ++i)
-        touch.triangles[touch.count++] = rows_[i].triangle;
+    const auto remember = [&](const Row& row) {
+        if (touch.count < touch.triangles.size()) touch.triangles[touch.count++] = row.triangle;
+    };
+    std::for_each(rows_.begin() + first, rows_.end(), remember);
+    std::for_each(watched_.begin() + first_watched, watched_.end(), remember);
     return nearest_normal.dot(nearest_away) >= 0;
+}
+
+// Whether it pressed in the last solution.
+bool ContactEquilibrium::is_active(const Row& row) const noexcept {
+    const auto end = active_.begin() + static_cast<std::ptrdiff_t>(active_count_);
+    return std::find(active_.begin(), end, key_of(row)) != end;
+}
+
+// Whether the state keeps clear of the triangles that were not solved, to first order.
+bool ContactEquilibrium::watched_are_clear() const noexcept {
+    return std::ranges::all_of(watched_, [&](const Row& row) {
+        const Tool& tool = tools_[static_cast<std::size_t>(row.tool)];
+        const Touch& touch = touch_of(row);
+        const DeformedPatch& patch = patch_of(row);
+        double distance =
+            row.normal.dot(tool.off - tool.drag / coupling_ + touch.sunk - touch.sunk_free) - row.gap;
+        for (Index i = 0; i < 3; ++i) {
+            const std::int32_t slot = row.slots[static_cast<std::size_t>(i)];
+            distance -=
+                row.weights[i] * row.normal.dot(patch.displacement(slot) - patch.held_displacement(slot));
+        }
+        return distance > -settled;
+    });
 }
 
 // Leaves as many rows as can be solved: each tool its nearest, in turn.
@@ -208,7 +235,6 @@ void ContactEquilibrium::solve_rows() noexcept {
     const std::size_t n = rows_.size();
     std::array<std::size_t, max_contacts> warm;
     std::size_t warm_count = 0;
-    const std::span last(active_.data(), active_count_);
     for (std::size_t k = 0; k < n; ++k) {
         const Row& a = rows_[k];
         const auto row = static_cast<Index>(k);
@@ -230,7 +256,7 @@ void ContactEquilibrium::solve_rows() noexcept {
             }
             lcp_.matrix()(row, static_cast<Index>(l)) = lcp_.matrix()(static_cast<Index>(l), row) = sum;
         }
-        if (std::ranges::find(last, key_of(a)) != last.end()) warm[warm_count++] = k;
+        if (is_active(a)) warm[warm_count++] = k;
     }
     residual_ = lcp_.solve(n, std::span(warm).first(warm_count));
     active_count_ = 0;
