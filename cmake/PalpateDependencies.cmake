@@ -5,6 +5,9 @@ find_package(Threads REQUIRED)
 # Eigen: value types and small dense algebra; header-only, so the runtime carries nothing with it.
 # NO_MODULE, and before ITK, whose own FindEigen3 would shadow it.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+# Its types change size and its memory owner with the vector instructions a program is compiled for; here they do not.
+# formats/records passes this on to whoever links us, and formats/records/eigen_layout.hpp checks it.
+add_compile_definitions(EIGEN_MAX_ALIGN_BYTES=16)
 # HDF5 C interface: the asset; VTK and h5py read the same file. HighFive is not in Debian 12.
 set(HDF5_PREFER_PARALLEL FALSE)
 find_package(HDF5 1.10 REQUIRED COMPONENTS C)

@@ -76,6 +76,18 @@ BoundarySurface read_boundary(const Hdf5File& file, const std::string& path, con
     return boundary;
 }
 
+// A file without it means that nothing relaxes.
+std::vector<RegionRelaxation> read_relaxation(const Hdf5File& file, const std::string& path) {
+    if (!file.contains(path + "/relaxation") && !file.contains(path + "/relaxation_regions")) return {};
+    const auto regions = read_rows<std::int32_t, std::int32_t>(file, path + "/relaxation_regions");
+    const auto terms = read_rows<double, std::array<double, 2>>(file, path + "/relaxation",
+                                                                static_cast<std::int64_t>(regions.size()));
+    std::vector<RegionRelaxation> relaxation;
+    for (std::size_t i = 0; i < regions.size(); ++i)
+        relaxation.push_back({regions[i], {.share = terms[i][0], .time = terms[i][1]}});
+    return relaxation;
+}
+
 void write_compliance(Hdf5Writer& writer, const std::string& path, const DenseCompliance& compliance) {
     const std::size_t dofs = compliance.dof_count();
     writer.dataset(path + "/dense", std::span(compliance.entries.get(), dofs * dofs), {dofs, dofs}, "mm/N");
@@ -245,6 +257,11 @@ void write_condensed_body(Hdf5Writer& writer, const std::string& path, const Def
     const MaterialColumns materials = columns_of(body.materials);
     write_rows<std::int32_t>(writer, path + "/material_regions", materials.regions);
     write_rows<double>(writer, path + "/materials", materials.values, "N/mm^2, 1");
+    if (!body.relaxation.empty()) {
+        const RelaxationColumns relaxation = columns_of(body.relaxation);
+        write_rows<std::int32_t>(writer, path + "/relaxation_regions", relaxation.regions);
+        write_rows<double>(writer, path + "/relaxation", relaxation.values, "1, s");
+    }
     write_rows<std::int32_t>(writer, path + "/fixed_nodes", body.fixed_nodes);
     write_rows<std::int32_t>(writer, path + "/surface_nodes", body.boundary.nodes);
     write_rows<std::int32_t>(writer, path + "/surface_triangles", body.boundary.surface.triangles);
@@ -273,6 +290,7 @@ DeformableBody read_condensed_body(const Hdf5File& file, const std::string& path
         file, path + "/materials", static_cast<std::int64_t>(regions.size()));
     for (std::size_t i = 0; i < regions.size(); ++i)
         body.materials.push_back({regions[i], {materials[i][0], materials[i][1]}});
+    body.relaxation = read_relaxation(file, path);
     body.fixed_nodes = read_rows<std::int32_t, std::int32_t>(file, path + "/fixed_nodes");
     body.boundary = read_boundary(file, path, body.mesh);
     body.contact_nodes = read_rows<std::int32_t, std::int32_t>(file, path + "/contact_nodes");

@@ -96,6 +96,26 @@ void check_materials(const DeformableBody& body, const std::string& where) {
                    error->expected);
 }
 
+void check_relaxation(const DeformableBody& body, const std::string& where) {
+    const std::size_t most = most_relaxation_terms * body.mesh.region_names.size();
+    if (body.relaxation.size() > most)
+        refuse(where, "has " + std::to_string(body.relaxation.size()) + " terms",
+               std::to_string(most) + " at most");
+    if (!std::ranges::is_sorted(body.relaxation, {}, &RegionRelaxation::region))
+        refuse(where, "is not in the order of its regions");
+    std::vector<RelaxationTerm> terms;  // of one region
+    for (std::size_t i = 0; i < body.relaxation.size(); ++i) {
+        const auto& [label, term] = body.relaxation[i];
+        if (i == 0 || label != body.relaxation[i - 1].region) terms.clear();
+        terms.push_back(term);
+        const std::string region = " of region " + std::to_string(label) + " ";
+        if (!has_label(body.mesh.region_names, label))
+            refuse(where, "a term" + region + "that the mesh does not have");
+        if (const auto error = relaxation_error(terms))
+            refuse(where, error->name + region + error->found, error->expected);
+    }
+}
+
 void check_boundary(const DeformableBody& body, const std::string& where) {
     const BoundarySurface boundary = boundary_surface(body.mesh);
     if (body.boundary.nodes != boundary.nodes ||
@@ -294,6 +314,7 @@ void check_body(const DeformableBody& body, const std::string& where) {
     check_name(body.name, where);
     check_mesh(body.mesh, where);
     check_materials(body, where + "/materials");
+    check_relaxation(body, where + "/relaxation");
     check_boundary(body, where);
     check_compliance(body, where + "/compliance");
     check_certificate(body.certificate, where + "/certificate");

@@ -20,6 +20,12 @@ struct RegionMaterial {
     Material material;
 };
 
+/// A term of the relaxation of one region of a tetrahedral mesh.
+struct RegionRelaxation {
+    std::int32_t region = 0;  ///< label value as in TetMesh::regions
+    RelaxationTerm term;
+};
+
 /// Polynomial degree of the displacements within a tetrahedron.
 enum class ElementOrder : std::int32_t {
     linear = 1,     ///< 4 nodes
@@ -40,7 +46,9 @@ struct DeformableBody {
     /// quadratic: the middle nodes of edges are unknowns that `mesh` does not list. Fixed nodes, contact
     /// nodes and the compliance stay over mesh nodes.
     ElementOrder element_order = ElementOrder::linear;
-    std::vector<RegionMaterial> materials;    ///< one per region that occurs in the mesh
+    std::vector<RegionMaterial> materials;  ///< one per region that occurs in the mesh
+    /// By region, then by time, both ascending; a region without a term does not relax.
+    std::vector<RegionRelaxation> relaxation;
     std::vector<std::int32_t> fixed_nodes;    ///< mesh nodes with zero displacement, ascending
     BoundarySurface boundary;                 ///< boundary_surface(mesh)
     std::vector<std::int32_t> contact_nodes;  ///< mesh node of each compliance block, ascending: some or
@@ -49,6 +57,14 @@ struct DeformableBody {
     Certificate certificate;
     ObbTree obb_tree;  ///< over boundary.surface at rest
 };
+
+/// The relaxation of one region; empty if it does not relax.
+inline std::vector<RelaxationTerm> relaxation_of(const DeformableBody& body, std::int32_t region) {
+    std::vector<RelaxationTerm> terms;
+    for (const RegionRelaxation& entry : body.relaxation)
+        if (entry.region == region) terms.push_back(entry.term);
+    return terms;
+}
 
 /// Everything a trainer needs to touch one patient.
 struct Case {

@@ -8,6 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "formats/records/eigen_layout.hpp"
+
 namespace palpate {
 
 /// Surface compliance C = (K^-1)_ss of a body held at its fixed nodes: u_s = C f_s, in mm/N, float32.

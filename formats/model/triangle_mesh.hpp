@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "formats/records/eigen_layout.hpp"
+
 namespace palpate {
 
 using Triangle = std::array<std::int32_t, 3>;

@@ -71,8 +71,12 @@ void read_column(const Hdf5File& file, const char* group, std::int64_t capacity,
                  std::vector<Row>& rows, const ColumnField& field) {
     using Stored = typename ColumnField::Storage;
     using Number = typename decltype(numbers_of(field))::Number;
-    const auto numbers =
-        file.dataset<Number>(column_path(group, field.name), shape_of(capacity, numbers_of(field)));
+    const std::string path = column_path(group, field.name);
+    if (field.absent && !file.contains(path)) {
+        for (Row& row : rows) row.*field.member = *field.absent;
+        return;
+    }
+    const auto numbers = file.dataset<Number>(path, shape_of(capacity, numbers_of(field)));
     const std::span<const std::byte> bytes = std::as_bytes(numbers);
     for (std::size_t i = 0; i < rows.size(); ++i) {
         Stored value;

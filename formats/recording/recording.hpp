@@ -27,7 +27,7 @@ struct RecordingHead {
     std::string palpate_version;
     std::string case_name;
     std::string asset_digest;             ///< asset_digest() of what was touched
-    std::string scheme;                   ///< how contact was found: "continuous", "single" or "twice"
+    std::string scheme;                   ///< how contact was found: "continuous" or another of the runtime's
     std::string clock;                    ///< "real" or "virtual"
     double coupling_stiffness = 0;        ///< N/mm, of the virtual coupling
     HapticSettings haptics;               ///< the asset's

@@ -1,23 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/records/tick_result.hpp"
 
-#include <utility>
-
 namespace palpate {
 
+std::span<const StatusText, status_count> status_texts() {
+    static constexpr std::array<StatusText, status_count> texts{{
+        {force_limited, "force_limited", "the force was cut to the largest one", false},
+        {rate_limited, "rate_limited", "the force was kept from changing faster than it may", false},
+        {contacts_cut, "contacts_cut", "more points touch than a tick solves: the shallowest are left out",
+         true},
+        {contact_unsolved, "contact_unsolved",
+         "contacts contradict each other, as in a wedge: no body gives way", true},
+        {starts_inside, "starts_inside",
+         "a tool is in a body, which is not felt until the tool has been clear of it", true},
+        {coming_back, "coming_back", "the force returns by and by after a fault", false},
+    }};
+    return texts;
+}
+
 std::string status_text(std::uint32_t status) {
-    constexpr std::array<std::pair<std::uint32_t, const char*>, 6> names{
-        {{force_limited, "force_limited"},
-         {rate_limited, "rate_limited"},
-         {contacts_cut, "contacts_cut"},
-         {contact_unsolved, "contact_unsolved"},
-         {starts_inside, "starts_inside"},
-         {coming_back, "coming_back"}}};
     std::string text;
-    for (const auto& [flag, name] : names) {
-        if (!(status & flag)) continue;
+    for (const StatusText& known : status_texts()) {
+        if (!(status & known.status)) continue;
         if (!text.empty()) text += '+';
-        text += name;
+        text += known.name;
     }
     return status == tick_ok ? "ok" : text;
 }

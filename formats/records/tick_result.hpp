@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <type_traits>
 
+#include "formats/records/eigen_layout.hpp"
 #include "formats/records/fault.hpp"
 #include "formats/records/field.hpp"
 
@@ -27,6 +29,20 @@ enum TickStatus : std::uint32_t {
     coming_back = 1U << 5,       ///< after a fault, the force returns by and by
 };
 
+/// How many flags there are.
+inline constexpr std::size_t status_count = 6;
+
+/// What is said of a flag of TickStatus.
+struct StatusText {
+    TickStatus status;
+    const char* name;     ///< "contacts_cut"
+    const char* meaning;  ///< what it says of the tick
+    bool told;            ///< whether a user must know; others are ordinary, or told as a fault
+};
+
+/// Every flag, in their order.
+std::span<const StatusText, status_count> status_texts();
+
 /// Names the flags of a status, separated by '+', "ok" for none.
 std::string status_text(std::uint32_t status);
 
@@ -34,6 +50,8 @@ std::string status_text(std::uint32_t status);
 struct Contact {
     std::int32_t body = 0;
     std::int32_t part = 0;
+    std::int32_t other_body = -1;
+    std::int32_t other_vertex = -1;
     std::int32_t triangle = 0;
     std::array<std::int32_t, 3> vertices{-1, -1, -1};
     std::array<float, 3> weights{0, 0, 0};
@@ -46,27 +64,42 @@ struct Contact {
 
 inline constexpr std::tuple contact_fields{
     Field("body", &Contact::body, "", "0 to the number of bodies - 1, rigid bodies first"),
-    Field("part", &Contact::part, "", "of the tool: 0 the tip, then along its shaft"),
+    Field("part", &Contact::part, "",
+          "of the tool: 0 the tip, then along its shaft; -1: another body presses in the tool's place"),
+    Field("other_body", &Contact::other_body, "", "that body; -1: the tool presses").since(1, -1),
+    Field("other_vertex", &Contact::other_vertex, "",
+          "of that body's surface, which presses; -1: the tool does")
+        .since(1, -1),
     Field("triangle", &Contact::triangle, "", "of the body's surface; -1 if the point is a vertex"),
     Field("vertices", &Contact::vertices, "", "of the body's surface; -1: unused"),
     Field("weights", &Contact::weights, "", "the point is the weighted sum of the vertices"),
-    Field("normal", &Contact::normal, "", "n: unit, from tissue to tool"),
+    Field("normal", &Contact::normal, "", "n: unit, from tissue to what presses it"),
     Field("gap", &Contact::gap, "mm", "delta: how far the point must give way along -n"),
     Field("force", &Contact::force, "N",
-          "f >= 0: the tool pushes the tissue by -n f, the tissue the tool by n f"),
+          "f >= 0: what presses pushes the tissue by -n f, the tissue pushes back by n f"),
     Field("series_compliance", &Contact::series_compliance, "mm/N",
           "c, in series with the body's own at this point: what the tool sinks in locally"),
     Field("friction", &Contact::friction, "N", "on the tool; the opposite on the tissue")};
 
-/// The contact's unit normal, from tissue to tool.
+/// The contact's unit normal, from tissue to what presses it.
 inline Eigen::Vector3d normal_of(const Contact& contact) noexcept {
     return Eigen::Map<const Eigen::Vector3f>(contact.normal.data()).cast<double>();
 }
 
-/// What the contact does to the tool, N.
-inline Eigen::Vector3d force_on_tool(const Contact& contact) noexcept {
+/// Whether a body beside it presses the tissue, and not the tool.
+inline bool is_of_neighbour(const Contact& contact) noexcept {
+    return contact.other_body >= 0;
+}
+
+/// What the contact does to what presses the tissue, N.
+inline Eigen::Vector3d reaction_of(const Contact& contact) noexcept {
     return static_cast<double>(contact.force) * normal_of(contact) +
            Eigen::Map<const Eigen::Vector3f>(contact.friction.data()).cast<double>();
+}
+
+/// What the contact does to the tool, N: nothing if a body beside it presses.
+inline Eigen::Vector3d force_on_tool(const Contact& contact) noexcept {
+    return is_of_neighbour(contact) ? Eigen::Vector3d(0, 0, 0) : reaction_of(contact);
 }
 
 /// What one tick saw and did with one tool, and when. Positions and forces in frame P.
@@ -114,7 +147,7 @@ inline constexpr std::tuple tick_fields{
           "how many contacts were recorded before this tick's; 0 in a running loop"),
     Field("detected_tick", &Tick::detected_tick, "",
           "published schemes: of whose position a detection came in this tick; -1 for none"),
-    Field("tick_ns", &Tick::tick_ns, "ns", "read, contact, force, write"),
+    Field("tick_ns", &Tick::tick_ns, "ns", "read, contact, force, write; handing this row over comes after"),
     Field("wake_latency_ns", &Tick::wake_latency_ns, "ns", "woken this long after the deadline"),
     Field("overruns", &Tick::overruns, "", "periods skipped so far").stored_as<std::int64_t>()};
 
@@ -127,5 +160,12 @@ struct TickResult : Tick {
     }
 };
 static_assert(std::is_trivially_copyable_v<TickResult>);
+
+/// Copies a tick and the contacts that count; `to` keeps what it has beyond them. A twentieth of the bytes
+/// where few points touch.
+inline void copy_active(const TickResult& from, TickResult& to) noexcept {
+    static_cast<Tick&>(to) = from;
+    std::ranges::copy(from.active_contacts(), to.contacts.begin());
+}
 
 }  // namespace palpate

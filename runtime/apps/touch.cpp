@@ -7,6 +7,7 @@
 #include "formats/model/errors.hpp"
 #include "runtime/apps/servo_pulse.hpp"
 #include "runtime/apps/start_recording.hpp"
+#include "runtime/apps/tell_statuses.hpp"
 #include "runtime/apps/touch_json.hpp"
 #include "runtime/apps/touch_outputs.hpp"
 #include "runtime/apps/touch_plan.hpp"
@@ -85,6 +86,7 @@ Json touch(const TouchOptions& options, cli::Session& session) {
     const ServoStatistics statistics = run.statistics();
     for (const realtime::SetupResult& setup : statistics.setup)
         if (!setup.ok) spdlog::warn("{}", setup.message);
+    tell_statuses(run.statuses());
     Json result{{"case", patient_case.name},
                 {"script", script},
                 {"scheme", options.scheme},

@@ -31,17 +31,25 @@ namespace {
 
 // The tick of the largest force, with all that is needed to compute it again from the stiffness matrix.
 Json peak_json(const TickResult& peak, const Case& patient_case, const HapticModel& model) {
+    // Of a deformable body, the node of the mesh; of a rigid one, the vertex.
+    const auto node_of = [&](std::size_t body, std::int32_t vertex) {
+        if (body < model.rigid_count()) return vertex;
+        const auto& soft = patient_case.deformable_bodies[body - model.rigid_count()];
+        return soft.boundary.nodes[static_cast<std::size_t>(vertex)];
+    };
     Json contacts = Json::array();
     for (const Contact& contact : peak.active_contacts()) {
         const auto body = static_cast<std::size_t>(contact.body);
-        const bool deformable = body >= model.rigid_count();
         Json nodes = Json::array(), weights = Json::array();
         for (std::size_t i = 0; i < 3 && contact.vertices[i] >= 0; ++i) {
-            const auto vertex = static_cast<std::size_t>(contact.vertices[i]);
-            const auto* soft =
-                deformable ? &patient_case.deformable_bodies[body - model.rigid_count()] : nullptr;
-            nodes.push_back(soft ? soft->boundary.nodes[vertex] : contact.vertices[i]);
+            nodes.push_back(node_of(body, contact.vertices[i]));
             weights.push_back(contact.weights[i]);
+        }
+        Json other_body, other_node;
+        if (is_of_neighbour(contact)) {
+            const auto other = static_cast<std::size_t>(contact.other_body);
+            other_body = model.body_name(other);
+            other_node = node_of(other, contact.other_vertex);
         }
         contacts.push_back(
             {{"body", model.body_name(body)},
@@ -52,6 +60,8 @@ Json peak_json(const TickResult& peak, const Case& patient_case, const HapticMod
              {"force_n", contact.force},
              {"friction_n", Json::array({contact.friction[0], contact.friction[1], contact.friction[2]})},
              {"part", contact.part},
+             {"other_body", other_body},
+             {"other_node", other_node},
              {"series_compliance_mm_per_n", contact.series_compliance}});
     }
     return {{"t_s", peak.time},
@@ -68,7 +78,7 @@ Json tool_json(const RunRecord& record, const Case& patient_case, const HapticMo
     return {{"force_peak_n", record.peak_force()},
             {"force_step_max_n", record.largest_force_step()},
             {"penetration", {{"device_mm", record.device_depth()}, {"tool_mm", record.tool_depth()}}},
-            {"statuses", record.statuses()},
+            {"statuses", record.statuses().by_name()},
             {"peak", peak_json(record.peak(), patient_case, model)}};
 }
 

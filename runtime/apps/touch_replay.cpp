@@ -9,6 +9,7 @@
 
 #include "formats/asset/asset.hpp"
 #include "formats/model/errors.hpp"
+#include "runtime/apps/tell_statuses.hpp"
 #include "runtime/apps/touch_json.hpp"
 #include "runtime/session/replay.hpp"
 
@@ -29,8 +30,11 @@ nlohmann::ordered_json replay_recording(const std::filesystem::path& file, const
     const Case patient_case = asset::read_asset(asset);
     const auto model = model_of(recording, file, asset, patient_case);
     std::vector<RunRecord> records = outputs.records_of(*model);
-    const ReplayOutcome outcome =
-        replay(recording, *model, [&](const TickResult& result) { records[result.tool].add(result); });
+    StatusCounts statuses;
+    const ReplayOutcome outcome = replay(recording, *model, [&](const TickResult& result) {
+        records[result.tool].add(result);
+        statuses.add(result);
+    });
     if (!outcome.started)
         throw InvalidInput({file.string(), "no tick from which a replay could start",
                             "the run's first tick, or three in a row without contact, force and fault",
@@ -51,6 +55,7 @@ nlohmann::ordered_json replay_recording(const std::filesystem::path& file, const
             "the recording is of palpate " + recording.head.palpate_version + ", this is " + cli::version() +
                 "; other versions, compilers and processors may round otherwise, and a file may have been "
                 "changed"};
+    tell_statuses(statuses);
     nlohmann::ordered_json result{{"case", patient_case.name},
                                   {"script", "replay"},
                                   {"scheme", recording.head.scheme},

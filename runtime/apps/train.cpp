@@ -10,8 +10,10 @@
 #include "formats/model/errors.hpp"
 #include "runtime/apps/servo_pulse.hpp"
 #include "runtime/apps/start_recording.hpp"
+#include "runtime/apps/tell_statuses.hpp"
 #include "runtime/devices/mounted_device.hpp"
 #include "runtime/devices/simulation.hpp"
+#include "runtime/haptics/drawn_creep.hpp"
 #include "runtime/session/device_list.hpp"
 #include "runtime/session/hand_script.hpp"
 #include "runtime/session/session.hpp"
@@ -109,14 +111,17 @@ class TickRate {
     double rate_ = 0;
 };
 
-void fill_frame(VisualFrame& frame, const TickResult& tick, const HapticModel& model) {
+void fill_frame(VisualFrame& frame, const TickResult& tick, const HapticModel& model,
+                std::span<DrawnCreep> creep) {
     frame.device_position = Eigen::Map<const Eigen::Vector3d>(tick.device_position.data());
     frame.tool_position = Eigen::Map<const Eigen::Vector3d>(tick.tool_position.data());
     frame.force = Eigen::Map<const Eigen::Vector3d>(tick.force.data());
     frame.depth = tick.depth;
     frame.overruns = tick.overruns;
-    for (std::size_t i = 0; i < frame.displacements.size(); ++i)
+    for (std::size_t i = 0; i < frame.displacements.size(); ++i) {
         model.surface_displacement(model.rigid_count() + i, tick, frame.displacements[i]);
+        if (model.method().can.creeps) creep[i].follow(tick.time, frame.displacements[i]);
+    }
 }
 
 struct Shown {
@@ -131,6 +136,8 @@ Shown show(const Options& options, Session& run, TrainWindow& window, VisualFram
     TickRate rate;
     ServoPulse pulse;
     Shown shown;
+    std::vector<DrawnCreep> creep;
+    for (const DeformableBody& body : run.patient_case().deformable_bodies) creep.emplace_back(body);
     run.start();
     const auto began = Clock::now();
     auto frame_began = began;
@@ -139,8 +146,9 @@ Shown show(const Options& options, Session& run, TrainWindow& window, VisualFram
            (options.seconds <= 0 || elapsed() < options.seconds)) {
         const TickResult& tick = run.latest();
         pulse.see(tick.tick);
-        fill_frame(frame, tick, run.model());
+        fill_frame(frame, tick, run.model(), creep);
         frame.faults = run.recent_faults(tick.time);
+        frame.statuses = run.statuses().recent(tick.time);
         frame.tick_rate_hz = rate.update(tick.tick);
         window.show(frame);
         run.visual_beat();
@@ -206,6 +214,7 @@ Json train(const Options& options, cli::Session& session) {
     const ServoStatistics statistics = run.statistics();
     for (const realtime::SetupResult& setup : statistics.setup)
         if (!setup.ok) spdlog::warn("{}", setup.message);
+    tell_statuses(run.statuses());
     Json result{{"case", patient_case.name},
                 {"device", run.device_name()},
                 {"frames", frame_ns.count()},
@@ -218,6 +227,7 @@ Json train(const Options& options, cli::Session& session) {
                 {"force_peak_n", felt.force_peak},
                 {"penetration", {{"device_mm", felt.depth_peak}}},
                 {"device_travel_mm", felt.travel},
+                {"statuses", run.statuses().by_name()},
                 {"faults", run.faults_json()}};
     if (const auto rows = run.recorded_rows())
         result["recording"] = {{"rows", *rows}, {"lost_rows", statistics.lost_records}};

@@ -1,18 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/collision/collision_surface.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "formats/model/errors.hpp"
 
 namespace palpate::collision {
 namespace {
 
+using Eigen::Vector3d;
+
 [[noreturn]] void refuse(const std::string& name, const std::string& found, const std::string& expected) {
     throw InvalidInput({.culprit = name,
                         .found = found,
                         .expected = expected,
                         .next_step = "build the OBB tree again with 'palpate obb'"});
+}
+
+// The smallest ball around a triangle has its centre in the circumcentre, or in the longest edge's middle
+// where the triangle is obtuse.
+Vector3d middle_of(const TriangleCorners& t) {
+    const double aa = (t[1] - t[2]).squaredNorm(), bb = (t[2] - t[0]).squaredNorm(),
+                 cc = (t[0] - t[1]).squaredNorm();
+    const double at_a = bb + cc - aa, at_b = cc + aa - bb, at_c = aa + bb - cc;
+    if (at_a > 0 && at_b > 0 && at_c > 0) {
+        const double wa = aa * at_a, wb = bb * at_b, wc = cc * at_c;
+        return (wa * t[0] + wb * t[1] + wc * t[2]) / (wa + wb + wc);
+    }
+    if (aa >= bb && aa >= cc) return 0.5 * (t[1] + t[2]);
+    return bb >= cc ? 0.5 * (t[2] + t[0]) : 0.5 * (t[0] + t[1]);
+}
+
+// Fits radius, normal and lift to the centre as it was rounded: read back from memory, for GCC 12 takes two
+// lanes of a rounding to float32 and back for none.
+void fit(TriangleDisc& disc, const TriangleCorners& t) {
+    const Vector3d centre = Eigen::Map<const Eigen::Vector3f>(disc.centre.data()).cast<double>();
+    double radius = 0;
+    for (const Vector3d& corner : t) radius = std::max(radius, (corner - centre).norm());
+    const Vector3d cross = (t[1] - t[0]).cross(t[2] - t[0]);
+    const double twice_area = cross.norm();
+    const Vector3d normal =
+        twice_area > 0.1 * radius * radius ? Vector3d(cross / twice_area) : Vector3d::Zero();
+    Eigen::Map<Eigen::Vector3f>(disc.normal.data()) = normal.cast<float>();
+    disc.radius = std::nextafter(static_cast<float>(radius), std::numeric_limits<float>::max());
+    disc.lift = static_cast<float>(normal.dot(t[0] - centre));
 }
 
 }  // namespace
@@ -48,6 +82,12 @@ CollisionSurface::CollisionSurface(const TriangleMesh& mesh, const ObbTree& tree
             scale = std::max(scale, vertex.cwiseAbs().maxCoeff());
         }
     }
+    discs_.resize(count);
+    for (std::size_t slot = 0; slot < count; ++slot)
+        Eigen::Map<Eigen::Vector3f>(discs_[slot].centre.data()) =
+            middle_of(corners(static_cast<std::int32_t>(slot))).cast<float>();
+    for (std::size_t slot = 0; slot < count; ++slot)
+        fit(discs_[slot], corners(static_cast<std::int32_t>(slot)));
     take_nodes(tree, scale, name);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -33,6 +34,25 @@ struct SweepContact {
     std::int32_t slot = 0;  ///< position in the tree's order: the hint for the next query
 };
 
+/// A disc that holds a triangle, and the triangle's plane. In float32, which rounds the disc's centre: the
+/// plane passes `lift` above it, along the normal. A triangle of hardly any area has no plane that could hold
+/// anything off: its normal is zero, and the disc a ball.
+struct alignas(32) TriangleDisc {
+    std::array<float, 3> centre;  ///< p_P, mm
+    float radius;                 ///< mm, rounded up
+    std::array<float, 3> normal;  ///< unit or zero
+    float lift;                   ///< mm
+};
+
+/// A walk through the tree for what is near a point, which may take several ticks.
+struct NearWalk {
+    Eigen::Vector3f centre = Eigen::Vector3f::Zero();  ///< p_P, mm
+    float reach = 0;                                   ///< mm; may shrink on the way
+    float passed_over = 0;  ///< mm: whatever was passed over is at least as far from the centre
+    std::size_t pending = 0;
+    std::array<std::int32_t, deepest_obb_tree + 2> nodes;
+};
+
 /// A triangle surface ready for queries at 1 kHz: triangles lie in the order of the tree's leaves, tree nodes
 /// fill one cache line each. Vertices are rounded once to float32 (1.5e-5 mm at 300 mm), the same for every
 /// triangle that shares them, so the surface stays closed; every query then computes in double. All queries
@@ -60,6 +80,13 @@ class CollisionSurface {
     std::size_t slots_near(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius,
                            std::span<std::int32_t> slots) const noexcept;
 
+    /// Begins to look for the triangles within `reach` of `centre`, mm.
+    NearWalk walk_near(const Eigen::Vector3f& centre, float reach) const noexcept;
+    /// Goes on to the next leaf that may hold a triangle within reach, over at most `nodes` nodes of the
+    /// tree, which it counts down. Writes the leaf's slots to `slots`, first and count; false where there is
+    /// none yet, because the walk is at its end (pending 0) or the nodes are used up.
+    bool next_leaf(NearWalk& walk, int& nodes, std::array<std::int32_t, 2>& slots) const noexcept;
+
     /// Tells whether p (mm) is outside: whether p - q, q the nearest surface point, goes along
     /// pseudonormal(q). The surface must bound a solid (unchecked); its vertices may be as acute and its
     /// triangles as thin as they like. A point on the surface is not outside. Source: Baerentzen, Aanaes
@@ -86,6 +113,7 @@ class CollisionSurface {
     std::int32_t mesh_triangle(std::int32_t slot) const noexcept { return triangles_[slot].mesh_triangle; }
     /// The corners of a slot's triangle, mm.
     TriangleCorners corners(std::int32_t slot) const noexcept;
+    const TriangleDisc& disc(std::int32_t slot) const noexcept { return discs_[slot]; }
     /// A node of the tree, 0 being the root, for queries that walk it themselves. As ObbTree says, but
     /// `first` of a leaf is a slot, and the box holds its triangles though axes are unit and square only to
     /// float32.
@@ -115,6 +143,7 @@ class CollisionSurface {
     std::vector<Node> nodes_;
     std::vector<Leaf> leaves_;
     std::vector<FlatTriangle> triangles_;
+    std::vector<TriangleDisc> discs_;
 };
 
 }  // namespace palpate::collision

@@ -2,11 +2,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <utility>
 
 #include "runtime/collision/collision_surface.hpp"
+#include "runtime/collision/lanes.hpp"
 
 namespace palpate::collision {
 namespace {
@@ -23,20 +23,8 @@ struct Pending {
 // A box seems nearer by this factor than float32 makes it.
 constexpr float rounding = 1 - 2e-6F;
 
-// Four floats in one register (GCC and Clang); the fourth lane is whatever lies behind three in memory.
-using Float4 = float __attribute__((vector_size(16)));
-
-Float4 load(const float* three) noexcept {
-    Float4 value;
-    std::memcpy(&value, three, sizeof(value));
-    return value;
-}
-
-Float4 absolute(Float4 value) noexcept {
-    return value < 0 ? -value : value;
-}
-
-// A box's axes (nine floats by columns, with others behind) times (x, y, z).
+// A box's axes (nine floats by columns, with others behind) times (x, y, z); the fourth lane is whatever lies
+// behind three in memory.
 Float4 rotated(const float* axes, float x, float y, float z) noexcept {
     return load(axes) * x + load(axes + 3) * y + load(axes + 6) * z;
 }
@@ -184,6 +172,47 @@ std::size_t CollisionSurface::slots_near(const Vector3d& a, const Vector3d& b, d
             if (found < slots.size()) slots[found] = slot;
     }
     return found;
+}
+
+NearWalk CollisionSurface::walk_near(const Vector3f& centre, float reach) const noexcept {
+    NearWalk walk;
+    walk.centre = centre;
+    walk.reach = reach;
+    walk.passed_over = std::numeric_limits<float>::infinity();
+    walk.nodes[walk.pending++] = 0;
+    return walk;
+}
+
+bool CollisionSurface::next_leaf(NearWalk& walk, int& nodes,
+                                 std::array<std::int32_t, 2>& slots) const noexcept {
+    for (; walk.pending > 0 && nodes > 0; --nodes) {
+        const std::int32_t link = nodes_[walk.nodes[--walk.pending]].link;
+        if (link < 0) {
+            const Leaf leaf = leaves_[-1 - link];
+            slots = {leaf.first, leaf.count};
+            --nodes;
+            return true;
+        }
+        for (const std::int32_t child : {link + 1, link}) {
+            const Node& node = nodes_[static_cast<std::size_t>(child)];
+            const float squared = squared_distance_bound(node, walk.centre);
+            if (squared > walk.reach * walk.reach) {
+                walk.passed_over = std::min(walk.passed_over, std::sqrt(squared));
+                continue;
+            }
+            walk.nodes[walk.pending++] = child;
+            // What is visited next is in the cache by then.
+            if (node.link >= 0) {
+                __builtin_prefetch(&nodes_[static_cast<std::size_t>(node.link)]);
+                __builtin_prefetch(&nodes_[static_cast<std::size_t>(node.link) + 1]);
+            } else {
+                const Leaf leaf = leaves_[static_cast<std::size_t>(-1 - node.link)];
+                __builtin_prefetch(&discs_[static_cast<std::size_t>(leaf.first)]);
+                __builtin_prefetch(&discs_[static_cast<std::size_t>(leaf.first + leaf.count - 1)]);
+            }
+        }
+    }
+    return false;
 }
 
 }  // namespace palpate::collision

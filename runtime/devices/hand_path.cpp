@@ -93,7 +93,7 @@ HandPath read_hand_path(const std::filesystem::path& file) {
                                              : std::to_string(columns) + ", as in the rows before",
                                 columns == 0 ? "of a recording of one axis name its --column" : ""});
         HandPath::Key key;
-        key.time = columns == 4 ? row.front() : 1e-3 * static_cast<double>(keys.size());
+        key.time = columns == 4 ? row.front() : 1e-3 * static_cast<double>(keys.size() + 1);
         key.position = {row[columns - 3], row[columns - 2], row[columns - 1]};
         if (!keys.empty() && key.time <= keys.back().time)
             throw InvalidInput({where, "time " + std::to_string(key.time) + " s does not rise",

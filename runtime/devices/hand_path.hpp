@@ -87,8 +87,9 @@ HandPath recorded_axis_path(const TouchPoint& target, const ScriptSettings& sett
 /// comments. Throws InvalidInput naming file and line.
 std::vector<double> read_column(const std::filesystem::path& file, std::size_t column);
 
-/// Reads a path from text: rows "x y z" (mm), one per millisecond, or "t x y z" (s, mm); commas or blanks
-/// between, '#' and '%' start comments. Throws InvalidInput naming file and line.
+/// Reads a path from text: rows "x y z" (mm), one per millisecond, the first for the first tick, or "t x y
+/// z" (s, mm); commas or blanks between, '#' and '%' start comments. Throws InvalidInput naming file and
+/// line.
 HandPath read_hand_path(const std::filesystem::path& file);
 
 }  // namespace palpate::devices

@@ -71,6 +71,13 @@ void HapticModel::couple_to(std::span<const DeviceLimits> devices) {
     }
 }
 
+std::int64_t HapticModel::memory_ticks() const noexcept {
+    std::int64_t ticks = 0;
+    if (method_.can.creeps)
+        for (const DeformableContact& body : bodies_.deformable) ticks = std::max(ticks, body.memory_ticks());
+    return ticks;
+}
+
 void HapticModel::reset() noexcept {
     for (Tool& tool : tools_) {
         tool.limiter.reset();

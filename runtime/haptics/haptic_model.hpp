@@ -63,9 +63,12 @@ class HapticModel {
     /// The collision loop of a method that needs detection, to be called 30 times a second from one thread,
     /// which may be another than tick()'s; nothing for others.
     void detect() noexcept;
-    /// The same for a given position of a given tick, as a replay has it (TickResult::detected_tick).
+    /// The same for a given position of a given tick, as a replay (TickResult::detected_tick) or a loop that
+    /// is late has it.
     void detect_at(const std::array<double, 3>& device, std::int64_t tick) noexcept;
 
+    /// Free ticks after which nothing is left of a touch where tissue creeps; 0 where nothing does.
+    std::int64_t memory_ticks() const noexcept;
     const HapticSettings& settings() const noexcept { return settings_; }
     /// Its line in the table of contact methods: name and capabilities.
     const ContactMethodEntry& method() const noexcept { return method_; }
@@ -79,7 +82,9 @@ class HapticModel {
     const collision::CollisionSurface& surface(std::size_t body) const { return *bodies_.surfaces[body]; }
 
     /// Writes the displacement (mm) of every surface vertex of deformable body `body` (>= rigid_count())
-    /// under the contacts of a tick: u = -sum_k C (f_k n_k + friction_k), zero at fixed nodes.
+    /// under the contacts of a tick: u = -sum_k C (f_k n_k + friction_k), + where it presses a neighbour
+    /// (Contact::other_body), zero at fixed nodes. What earlier contacts left behind where tissue creeps is
+    /// not in it: DrawnCreep.
     /// `displacements` has one entry per surface vertex. Safe beside a running tick; costs 3 m multiply-adds
     /// per touched degree of freedom.
     void surface_displacement(std::size_t body, const TickResult& result,

@@ -20,16 +20,13 @@ ServoLoop::ServoLoop(HapticModel& model, std::span<Device* const> devices, Servo
       servo_(servo ? *servo : own_servo_),
       states_(devices.size()),
       results_(devices.size()),
-      ring_(ring_capacity),
+      outlet_(devices.size(), ring_capacity),
       collision_([&model] { model.detect(); }) {
     if (devices.size() != model.tool_count())
         throw InvalidInput({"servo loop", std::to_string(devices.size()) + " devices",
                             std::to_string(model.tool_count()) + ", one for each tool", ""});
     std::vector<DeviceLimits> limits;
-    for (const Device* device : devices_) {
-        limits.push_back(device->limits());
-        latest_.push_back(std::make_unique<TripleBuffer<TickResult>>());
-    }
+    for (const Device* device : devices_) limits.push_back(device->limits());
     model.couple_to(limits);
 }
 
@@ -102,12 +99,12 @@ void ServoLoop::step(const ServoTick& wake) noexcept {
         results_[t].tick_ns = tick_ns;
         results_[t].wake_latency_ns = wake.wake_latency_ns;
         results_[t].overruns = static_cast<std::uint32_t>(wake.overruns);
-        latest_[t]->write(results_[t]);
-        ring_.push(results_[t]);
     }
+    outlet_.publish(results_);
+    const std::int64_t whole_ns = monotonic_ns() - begin;
     ++statistics_.ticks;
     statistics_.overruns = wake.overruns;
-    statistics_.tick_ns.record(static_cast<std::uint64_t>(std::max<std::int64_t>(0, tick_ns)));
+    statistics_.tick_ns.record(static_cast<std::uint64_t>(std::max<std::int64_t>(0, whole_ns)));
     statistics_.wake_latency_ns.record(static_cast<std::uint64_t>(wake.wake_latency_ns));
     if (stopping_.load(std::memory_order_relaxed)) count_stopping();
 }
@@ -119,7 +116,7 @@ void ServoLoop::count_stopping() noexcept {
 
 ServoStatistics ServoLoop::statistics() const {
     ServoStatistics statistics = statistics_;
-    statistics.lost_records = ring_.dropped();
+    statistics.lost_records = outlet_.ring().dropped();
     return statistics;
 }
 

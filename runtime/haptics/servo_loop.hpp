@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,12 +11,11 @@
 #include "formats/records/tick_result.hpp"
 #include "runtime/haptics/collision_loop.hpp"
 #include "runtime/haptics/haptic_model.hpp"
+#include "runtime/haptics/tick_outlet.hpp"
 #include "runtime/realtime/device.hpp"
 #include "runtime/realtime/histogram.hpp"
 #include "runtime/realtime/servo.hpp"
 #include "runtime/realtime/servo_callbacks.hpp"
-#include "runtime/realtime/spsc_ring.hpp"
-#include "runtime/realtime/triple_buffer.hpp"
 
 namespace palpate::haptics {
 
@@ -26,7 +24,7 @@ struct ServoStatistics {
     std::int64_t ticks = 0;
     std::int64_t overruns = 0;       ///< periods skipped
     std::uint64_t lost_records = 0;  ///< ticks that found the ring full
-    realtime::Histogram tick_ns;     ///< read, contact, force, write
+    realtime::Histogram tick_ns;     ///< read, contact, force, write, and the results handed over
     realtime::Histogram wake_latency_ns;
     std::vector<realtime::SetupResult> setup;  ///< priority and memory, as granted
 };
@@ -79,9 +77,9 @@ class ServoLoop {
     realtime::ServoCallbacks& callbacks() noexcept { return callbacks_; }
 
     /// The latest result of one tool, for one reader.
-    realtime::TripleBuffer<TickResult>& latest(std::size_t tool = 0) noexcept { return *latest_[tool]; }
+    realtime::TripleBuffer<TickResult>& latest(std::size_t tool = 0) noexcept { return outlet_.latest(tool); }
     /// The results of all tools, for one consumer; may stay unread.
-    realtime::SpscRing<TickResult>& ring() noexcept { return ring_; }
+    realtime::SpscRing<TickResult>& ring() noexcept { return outlet_.ring(); }
     /// Only while the loop is not running.
     ServoStatistics statistics() const;
 
@@ -94,11 +92,9 @@ class ServoLoop {
     std::vector<realtime::Device*> devices_;
     realtime::PeriodicServo own_servo_;
     realtime::Servo& servo_;
-    // One per tool, as are the next two.
-    std::vector<std::unique_ptr<realtime::TripleBuffer<TickResult>>> latest_;
-    std::vector<realtime::DeviceState> states_;
+    std::vector<realtime::DeviceState> states_;  // one per tool, as are the results
     std::vector<TickResult> results_;
-    realtime::SpscRing<TickResult> ring_;
+    TickOutlet outlet_;
     CollisionLoop collision_;
     realtime::ServoCallbacks callbacks_;
     ServoStatistics statistics_;

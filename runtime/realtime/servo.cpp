@@ -23,6 +23,7 @@ void PeriodicServo::stop() {
 
 void PeriodicServo::run(const OnTick& on_tick) {
     if (priority_ == Priority::fifo) setup_.push_back(request_fifo_priority(fifo_priority));
+    prefault_stack();
     PeriodicClock clock(period_ns);
     ready_.store(true);
     ready_.notify_one();

@@ -2,6 +2,7 @@
 #pragma once
 #include <atomic>
 #include <bit>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -22,6 +23,13 @@ class SpscRing {
 
     /// Producer: appends; when full, drops the value, counts it and returns false.
     bool push(const T& value) noexcept {
+        return fill([&](T& slot) { slot = value; });
+    }
+
+    /// Producer: appends what `write` makes of the next slot, which holds an older value, so that a part of a
+    /// large value can be copied alone; when full, as push(), and `write` is not called.
+    template <std::invocable<T&> Write>
+    bool fill(const Write& write) noexcept {
         const std::size_t head = head_.load(std::memory_order_relaxed);
         if (head - known_tail_ == slots_.size()) {
             known_tail_ = tail_.load(std::memory_order_acquire);
@@ -30,7 +38,7 @@ class SpscRing {
                 return false;
             }
         }
-        slots_[head & mask_] = value;
+        write(slots_[head & mask_]);
         head_.store(head + 1, std::memory_order_release);
         return true;
     }

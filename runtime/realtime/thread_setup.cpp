@@ -2,6 +2,7 @@
 #include "runtime/realtime/thread_setup.hpp"
 
 #include <cerrno>
+#include <cstddef>
 #include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
@@ -28,6 +29,12 @@ SetupResult request_fifo_priority(int priority) {
 SetupResult lock_memory() {
     return outcome(mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno, "locking memory",
                    "allow it with 'memlock' in /etc/security/limits.conf");
+}
+
+[[gnu::noinline]] void prefault_stack() noexcept {
+    constexpr std::size_t page = 4096;  // or a divisor of it
+    [[maybe_unused]] volatile char stack[prefaulted_stack];
+    for (std::size_t at = 0; at < prefaulted_stack; at += page) stack[at] = 0;
 }
 
 }  // namespace palpate::realtime

@@ -84,7 +84,8 @@ class Player {
   private:
     bool start(Rows rows) {
         const bool first = rows[0].tick == 0;
-        if (!first && (free_ticks_ < free_ticks_to_start || (detects_ && rows[0].detected_tick < 0)))
+        if (!first && (free_ticks_ < free_ticks_to_start + model_.memory_ticks() ||
+                       (detects_ && rows[0].detected_tick < 0)))
             return false;
         model_.reset();
         if (!tick(rows)) return false;
@@ -140,7 +141,7 @@ class Player {
     std::vector<realtime::DeviceState> states_;
     std::vector<TickResult> results_;
     bool running_ = false;
-    int free_ticks_ = 0;
+    std::int64_t free_ticks_ = 0;
     ReplayOutcome outcome_;
 };
 

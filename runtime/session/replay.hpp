@@ -43,7 +43,7 @@ std::unique_ptr<haptics::HapticModel> model_of(const recording::Recording& recor
 /// of each tick, with the run's own timing. Where ticks are missing, the model is reset and taken up again at
 /// the third tick in a row that is free: no contact, no force, no fault and none of its after-effects; a
 /// method that needs detection needs one in it besides. What went before such a tick has no influence on the
-/// forces after it.
+/// forces after it; where tissue creeps, that takes HapticModel::memory_ticks() more of them.
 ReplayOutcome replay(const recording::Recording& recording, haptics::HapticModel& model,
                      const std::function<void(const TickResult&)>& sink);
 

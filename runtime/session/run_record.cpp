@@ -42,7 +42,7 @@ void RunRecord::add(const TickResult& result) {
     last_tick_ = result.tick;
     device_depth_ = std::max(device_depth_, result.depth);
     tool_depth_ = std::max(tool_depth_, tool_depth_of(result));
-    if (result.status != tick_ok) ++statuses_[status_text(result.status)];
+    statuses_.add(result);
     if (log_) write_row(result);
 }
 

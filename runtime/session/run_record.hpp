@@ -2,10 +2,9 @@
 #pragma once
 #include <cstdint>
 #include <iosfwd>
-#include <map>
-#include <string>
 #include <vector>
 
+#include "formats/records/status_counts.hpp"
 #include "formats/records/tick_result.hpp"
 #include "runtime/haptics/haptic_model.hpp"
 #include "runtime/session/force_curve.hpp"
@@ -31,8 +30,8 @@ class RunRecord {
     /// what the contact solver left of a deformable one, mm.
     double tool_depth() const { return tool_depth_; }
     double largest_force_step() const { return largest_force_step_; }  ///< N between successive ticks
-    /// How many ticks had each unusual status.
-    const std::map<std::string, std::int64_t>& statuses() const { return statuses_; }
+    /// How many ticks had each flag of TickStatus.
+    const StatusCounts& statuses() const { return statuses_; }
 
   private:
     void write_row(const TickResult& result);
@@ -47,7 +46,7 @@ class RunRecord {
     double device_depth_ = 0;
     double tool_depth_ = 0;
     double largest_force_step_ = 0;
-    std::map<std::string, std::int64_t> statuses_;
+    StatusCounts statuses_;
 };
 
 }  // namespace palpate::session

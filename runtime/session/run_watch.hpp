@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "formats/records/status_counts.hpp"
 #include "runtime/haptics/servo_loop.hpp"
 #include "runtime/realtime/file_watch.hpp"
 #include "runtime/session/fault_log.hpp"
@@ -22,15 +23,21 @@ class RunWatch {
              std::function<void(const std::string&)> tell);
 
     /// Takes every result that the loop's ring gives.
-    void add(const TickResult& result) { log_.add(result); }
+    void add(const TickResult& result) {
+        log_.add(result);
+        statuses_.add(result);
+    }
 
     /// Flags of the faults that were there within the last two seconds of `time` (s), for an eye to read.
     std::uint32_t recent(double time) const;
+    /// Of all tools' ticks.
+    const StatusCounts& statuses() const { return statuses_; }
     /// [{fault, tool, from_s, until_s}, ...]; tool is null for a fault of the whole run.
     nlohmann::ordered_json faults_json() const;
 
   private:
     FaultLog log_;
+    StatusCounts statuses_;
     std::optional<realtime::FileWatch> asset_;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/session/session.hpp"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -74,7 +75,7 @@ void Session::stop() {
 }
 
 void Session::run_virtual(double seconds, const Sink& sink) {
-    loop_->run_virtual(static_cast<std::int64_t>(1000 * seconds),
+    loop_->run_virtual(static_cast<std::int64_t>(std::llround(1000 * seconds)),
                        [&](const TickResult& result) { take(result, sink); });
 }
 

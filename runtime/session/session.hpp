@@ -78,6 +78,8 @@ class Session {
     /// Faults of the last two seconds before `time` (s), and of the whole run: see RunWatch.
     std::uint32_t recent_faults(double time) const { return watch_->recent(time); }
     nlohmann::ordered_json faults_json() const;
+    /// What was unusual about the ticks taken so far.
+    const StatusCounts& statuses() const { return watch_->statuses(); }
     /// Rows recorded so far; nothing without a recording.
     std::optional<std::int64_t> recorded_rows() const;
     /// Not while it runs.

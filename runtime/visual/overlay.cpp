@@ -14,6 +14,7 @@
 #include <vtkTextProperty.h>
 
 #include "formats/records/fault.hpp"
+#include "formats/records/tick_result.hpp"
 
 namespace palpate::visual {
 namespace {
@@ -64,17 +65,19 @@ void set_length(vtkPoints* points, double length) {
     points->Modified();
 }
 
-// Why the force went to zero, two lines per fault.
-std::string notice_of(std::uint32_t faults) {
+}  // namespace
+
+std::string notice_of(const VisualFrame& frame) {
     std::string notice;
     for (const FaultText& text : fault_texts())
-        if ((faults & text.fault) && text.fault != servo_stopping)
+        if ((frame.faults & text.fault) && text.fault != servo_stopping)
             notice += fmt::format("{}force taken away: {}\n{}", notice.empty() ? "" : "\n", text.cause,
                                   text.remedy);
+    for (const StatusText& text : status_texts())
+        if (text.told && (frame.statuses & text.status))
+            notice += fmt::format("{}{}", notice.empty() ? "" : "\n", text.meaning);
     return notice;
 }
-
-}  // namespace
 
 Overlay::Overlay(const std::string& title, double max_force, vtkRenderer* renderer) : max_force_(max_force) {
     vtkNew<vtkPoints> whole;
@@ -109,7 +112,7 @@ void Overlay::update(const VisualFrame& frame, double frames_per_second) {
                                    std::max(0.0, frame.depth), frame.tick_rate_hz, frame.overruns,
                                    frames_per_second)
                            .c_str());
-    notice_->SetInput(notice_of(frame.faults).c_str());
+    notice_->SetInput(notice_of(frame).c_str());
 }
 
 void Overlay::show_help(bool on) {

@@ -12,6 +12,10 @@
 
 namespace palpate::visual {
 
+/// Says why the force went to zero, two lines for each fault, and what else a user must know of contacts and
+/// force, a line each; empty where there is nothing to say.
+std::string notice_of(const VisualFrame& frame);
+
 /// The figures and key hints that lie over the scene. Texts are set anew five times a second: often enough to
 /// read, seldom enough to cost nothing.
 class Overlay {

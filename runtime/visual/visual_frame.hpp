@@ -14,7 +14,8 @@ struct VisualFrame {
     double depth = 0;                                           ///< below the rest surface, mm
     double tick_rate_hz = 0;
     std::int64_t overruns = 0;
-    std::uint32_t faults = 0;  ///< Fault flags: why there is no force
+    std::uint32_t faults = 0;    ///< Fault flags: why there is no force
+    std::uint32_t statuses = 0;  ///< TickStatus flags: what was unusual just now
     /// Of every surface vertex of every deformable body, mm.
     std::vector<std::vector<Eigen::Vector3f>> displacements;
 };

@@ -87,6 +87,20 @@ class Touch(SampleAsset):
         self.assertLessEqual(result["penetration"]["tool_mm"], 1e-3)
         self.assertEqual(result["peak"]["contacts"][0]["body"], "skull")
 
+    def test_what_a_user_must_know_of_the_ticks_ends_the_run_in_one_line_and_nothing_else_does(self):
+        script = self.folder / "inside.txt"
+        script.write_text("0 40 10 15\n1 40 10 15\n")  # 10 mm below the skull's top
+        inside = self.touch("--virtual-clock", "--script", script, "--json", "-")
+        self.assertEqual(json.loads(inside.stdout)["statuses"], {"starts_inside": 1000})
+        said = [line for line in inside.stderr.splitlines() if "starts_inside" in line]
+        self.assertEqual(len(said), 1, inside.stderr)
+        self.assertIn("1000 starts_inside (a tool is in a body, which is not felt until", said[0])
+        # The force follows a jump of the hand as fast as it may, which is ordinary.
+        script.write_text("0 40 10 30\n0.5 40 10 30\n0.501 40 10 24\n1 40 10 24\n")
+        jump = self.touch("--virtual-clock", "--script", script, "--json", "-")
+        self.assertEqual(set(json.loads(jump.stdout)["statuses"]), {"rate_limited"})
+        self.assertNotIn("ticks", jump.stderr)
+
     def second(self):
         """A second hand, which goes down onto the skull beside the first one's place."""
         script = self.folder / "second.txt"
@@ -102,7 +116,7 @@ class Touch(SampleAsset):
         self.assertAlmostEqual(both["second"]["force_peak_n"], 1.0, delta=0.05)
 
     def test_each_scheme_pushes_and_the_published_ones_give_the_same_twice(self):
-        for scheme in ("single", "twice", "continuous"):
+        for scheme in ("single", "twice", "single-renewed", "twice-renewed", "continuous"):
             runs = [self.result("--virtual-clock", "--seconds", 2, "--scheme", scheme, "--device", "desktop")
                     for _ in range(2)]
             self.assertEqual(runs[0]["scheme"], scheme)

@@ -113,6 +113,7 @@ class Train(SampleAsset):
         self.assertGreater(result["frames_per_second"], 1)
         self.assertGreater(result["device_travel_mm"], 10)
         self.assertGreater(result["force_peak_n"], 0.01)
+        self.assertNotIn("starts_inside", result["statuses"])
 
     def test_keys_hold_a_simulated_device_that_gives_way(self):
         process, window = self.open_window("--device", "premium")

@@ -365,9 +365,14 @@ TEST(Asset, writing_refuses_parts_that_do_not_belong_together) {
 
 TEST(Parts, reading_a_body_returns_what_was_written) {
     const Scratch scratch;
-    const DeformableBody written = sample::elastic_cube(cells);
+    DeformableBody written = sample::elastic_cube(cells);
     write_body_part(scratch / "wall.body.h5", written);
     expect_same(read_body_part(scratch / "wall.body.h5"), written);
+    written.relaxation = {{1, {0.3, 0.5}}, {1, {0.2, 4}}, {2, {0.1, 1}}};
+    write_body_part(scratch / "relaxing.body.h5", written);
+    const DeformableBody read = read_body_part(scratch / "relaxing.body.h5");
+    expect_same(read, written);
+    EXPECT_EQ(relaxation_text(relaxation_of(read, 1)), "30 % in 0.5 s, 20 % in 4 s");
 }
 
 TEST(Parts, reading_a_body_with_a_compliance_by_blocks_returns_what_was_written) {
@@ -401,6 +406,9 @@ TEST(Parts, a_compliance_of_another_modulus_mesh_or_boundary_is_refused) {
     body.compliance = sample::kernel_compliance(body.mesh, body.contact_nodes, 5.0, 1.0);
     for (const auto& change : std::vector<std::function<void(DeformableBody&)>>{
              [](DeformableBody& b) { b.materials[0].material.youngs_modulus *= 1 + 1e-15; },
+             [](DeformableBody& b) {
+                 b.relaxation = {{1, {0.3, 1}}};
+             },
              [](DeformableBody& b) { b.mesh.rest_positions.back().x() += 1e-9; },
              [](DeformableBody& b) { b.mesh.regions[0] = 2; },
              [](DeformableBody& b) { b.fixed_nodes.pop_back(); },
@@ -475,6 +483,41 @@ INSTANTIATE_TEST_SUITE_P(
               "youngs_modulus of region"},
         Fault{"poisson_half", [](auto& b) { b.materials[0].material.poissons_ratio = 0.5; },
               "poissons_ratio of region"},
+        Fault{"relaxation_share_one",
+              [](auto& b) {
+                  b.relaxation = {{1, {1, 1}}};
+              },
+              "relaxation: share of region 1 is 1.0"},
+        Fault{"relaxation_time_nan",
+              [](auto& b) {
+                  b.relaxation = {{1, {0.3, nan}}};
+              },
+              "relaxation: time of region 1 is nan"},
+        Fault{"relaxation_whole",
+              [](auto& b) {
+                  b.relaxation = {{2, {0.5, 1}}, {2, {0.5, 2}}};
+              },
+              "in all terms together (expected less than 1)"},
+        Fault{"relaxation_times_equal",
+              [](auto& b) {
+                  b.relaxation = {{2, {0.5, 1}}, {2, {0.2, 1}}};
+              },
+              "ascending times"},
+        Fault{"relaxation_of_no_region",
+              [](auto& b) {
+                  b.relaxation = {{3, {0.5, 1}}};
+              },
+              "a term of region 3 that the mesh does not have"},
+        Fault{"relaxation_unsorted",
+              [](auto& b) {
+                  b.relaxation = {{2, {0.5, 1}}, {1, {0.2, 1}}};
+              },
+              "is not in the order of its regions"},
+        Fault{"relaxation_many",
+              [](auto& b) {
+                  b.relaxation.assign(9, {1, {0.01, 1}});
+              },
+              "relaxation: has 9 terms (expected 8 at most)"},
         Fault{"fixed_unsorted", [](auto& b) { std::swap(b.fixed_nodes[0], b.fixed_nodes[1]); },
               "fixed_nodes: entry 1"},
         Fault{"fixed_range", [](auto& b) { b.fixed_nodes.back() = 125; }, "fixed_nodes: entry"},

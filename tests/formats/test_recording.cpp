@@ -3,6 +3,7 @@
 #include <csignal>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <hdf5.h>
 #include <limits>
 #include <random>
 #include <sys/wait.h>
@@ -136,6 +137,31 @@ TEST(Recording, comes_back_as_it_was_written) {
     EXPECT_EQ(recording.contacts_before, 0);
     ASSERT_EQ(recording.ticks.size(), 60U);
     expect_rows(recording, 60, 5);
+}
+
+// As before contacts told of a body that presses in the tool's place.
+TEST(Recording, without_the_columns_of_neighbours_means_that_the_tool_pressed) {
+    const Scratch scratch;
+    const auto path = scratch / "run.h5";
+    make_recording(path, two_tools(), 50);
+    {
+        RecordingWriter writer(path);
+        add_rows(writer, 20, 5);
+    }
+    const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+    H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110);
+    const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, access);
+    for (const char* column : {"/contacts/other_body", "/contacts/other_vertex"})
+        ASSERT_GE(H5Ldelete(file, column, H5P_DEFAULT), 0);
+    H5Fclose(file);
+    H5Pclose(access);
+    const Recording recording = read_recording(path);
+    ASSERT_GT(recording.contacts.size(), 0U);
+    for (const Contact& contact : recording.contacts) {
+        EXPECT_EQ(contact.other_body, -1);
+        EXPECT_EQ(contact.other_vertex, -1);
+        EXPECT_FALSE(is_of_neighbour(contact));
+    }
 }
 
 TEST(Recording, keeps_the_newest_rows_when_it_has_wrapped) {

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <limits>
+#include <map>
 #include <set>
+#include <string>
 
 #include "formats/asset/body_io.hpp"
 #include "formats/model/errors.hpp"
@@ -12,6 +14,7 @@
 #include "formats/records/haptic_settings.hpp"
 #include "formats/records/material.hpp"
 #include "formats/records/quality_contract.hpp"
+#include "formats/records/status_counts.hpp"
 #include "formats/records/tick_result.hpp"
 #include "tests/formats/scratch.hpp"
 
@@ -69,6 +72,25 @@ TEST(Records, the_first_field_out_of_its_range_is_named_with_value_unit_and_rang
     EXPECT_EQ(haptics_error({.friction_at_rest = 0.1, .friction_sliding = 0.2})->name, "friction_sliding");
 }
 
+TEST(Records, a_relaxation_that_makes_no_sense_is_named) {
+    using Terms = std::vector<RelaxationTerm>;
+    EXPECT_FALSE(relaxation_error(Terms{}));
+    EXPECT_FALSE(relaxation_error(Terms{{0.5, 0.1}, {0.4999, 10}}));
+    const auto name = [](const Terms& terms) {
+        const auto error = relaxation_error(terms);
+        return error ? error->name + " " + error->found : "";
+    };
+    EXPECT_EQ(name({{0, 1}}), "share is 0.000000");
+    EXPECT_EQ(name({{1, 1}}), "share is 1.000000");
+    EXPECT_EQ(name({{std::nan(""), 1}}), "share is nan");
+    EXPECT_EQ(name({{0.5, 0}}), "time is 0.000000 s");
+    EXPECT_EQ(name({{0.5, 1}, {0.25, 1}}), "time is 1.000000 s after 1.000000");
+    EXPECT_EQ(name({{0.5, 1}, {0.5, 2}}), "share is 1.000000 in all terms together");
+    EXPECT_EQ(name({{0.1, 1}, {0.1, 2}, {0.1, 3}, {0.1, 4}, {0.1, 5}}), "relaxation has 5 terms");
+    EXPECT_EQ(relaxation_text(Terms{{0.3, 1}, {0.25, 10}}), "30 % in 1 s, 25 % in 10 s");
+    EXPECT_EQ(relaxation_text(Terms{}), "none");
+}
+
 TEST(Records, keys_options_and_titles_follow_from_name_and_unit) {
     EXPECT_EQ(key_of("coupling_stiffness", "N/mm"), "coupling_stiffness_n_per_mm");
     EXPECT_EQ(key_of(std::get<0>(material_fields)), "youngs_modulus_kpa");
@@ -94,6 +116,7 @@ TEST(Records, no_table_names_a_field_twice) {
     expect_whole<HapticSettings>(haptic_fields);
     expect_whole<QualityContract>(quality_fields);
     expect_whole<Material>(material_fields);
+    expect_whole<RelaxationTerm>(relaxation_fields);
     expect_whole<Certificate>(certificate_fields);
     expect_whole<DeviceLimits>(device_limit_fields);
     expect_whole<Tick>(tick_fields);
@@ -107,6 +130,56 @@ TEST(Records, tables_of_plain_doubles_name_every_member) {
     EXPECT_EQ(std::tuple_size_v<decltype(haptic_fields)> * sizeof(double), sizeof(HapticSettings));
     EXPECT_EQ(std::tuple_size_v<decltype(quality_fields)> * sizeof(double), sizeof(QualityContract));
     EXPECT_EQ(std::tuple_size_v<decltype(material_fields)> * sizeof(double), sizeof(Material));
+}
+
+TickResult tick_at(double time, std::uint32_t status, std::uint32_t faults = no_fault) {
+    TickResult result{};
+    result.time = time;
+    result.status = status;
+    result.faults = faults;
+    return result;
+}
+
+TEST(TickStatus, every_flag_has_one_text_and_a_name) {
+    std::set<std::string> names;
+    std::uint32_t flags = tick_ok;
+    for (const StatusText& text : status_texts()) {
+        EXPECT_EQ(flags + 1, text.status);  // in order, and none left out
+        flags |= text.status;
+        names.insert(text.name);
+        EXPECT_NE(std::string(text.meaning), "");
+    }
+    EXPECT_EQ(names.size(), status_count);
+    EXPECT_EQ(status_text(tick_ok), "ok");
+    EXPECT_EQ(status_text(force_limited | contacts_cut), "force_limited+contacts_cut");
+}
+
+TEST(StatusCounts, count_each_flag_and_forget_it_to_the_eye_after_two_seconds) {
+    StatusCounts counts;
+    counts.add(tick_at(1, tick_ok));
+    EXPECT_TRUE(counts.by_name().empty());
+    counts.add(tick_at(2, contacts_cut | rate_limited));
+    counts.add(tick_at(3, contacts_cut));
+    EXPECT_EQ(counts.by_name(),
+              (std::map<std::string, std::int64_t>{{"contacts_cut", 2}, {"rate_limited", 1}}));
+    EXPECT_EQ(counts.recent(3.5), contacts_cut | rate_limited);
+    EXPECT_EQ(counts.recent(4.5), contacts_cut);
+    EXPECT_EQ(counts.recent(5.5), tick_ok);
+}
+
+TEST(StatusCounts, the_closing_line_names_what_a_user_must_know_and_nothing_else) {
+    StatusCounts counts;
+    counts.add(tick_at(0, force_limited | rate_limited | coming_back));
+    counts.add(tick_at(1, tick_ok, servo_stopping));
+    EXPECT_EQ(counts.closing_line(), "");
+    counts.add(tick_at(2, starts_inside | rate_limited));
+    counts.add(tick_at(3, starts_inside | contact_unsolved));
+    counts.add(tick_at(4, tick_ok, device_lost | servo_stopping));
+    EXPECT_EQ(counts.closing_line(),
+              "not all ticks were as they should be: "
+              "1 contact_unsolved (contacts contradict each other, as in a wedge: no body gives way); "
+              "2 starts_inside (a tool is in a body, which is not felt until the tool has been clear of it); "
+              "1 with a fault (the force was taken away: device_lost)");
 }
 
 }  // namespace

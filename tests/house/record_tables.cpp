@@ -64,6 +64,7 @@ int main() {
     std::cout << Json{{"haptics", rows_of<HapticSettings>(haptic_fields)},
                       {"quality", rows_of<QualityContract>(quality_fields)},
                       {"material", rows_of<Material>(material_fields)},
+                      {"relaxation", rows_of<RelaxationTerm>(relaxation_fields)},
                       {"certificate", rows_of<Certificate>(certificate_fields)},
                       {"device_limits", rows_of<DeviceLimits>(device_limit_fields)},
                       {"tick", rows_of<Tick>(tick_fields)},

@@ -17,11 +17,12 @@ from pathlib import Path
 # Target folder: object -> why it is the tick's.
 TICK = {
     "runtime/collision/CMakeFiles/palpate_collision.dir": {
-        "neighbourhood": "sweeps against the triangles around the tool",
+        "neighbourhood": "sweeps against the triangles next to the tool",
         "segment_queries": "segments against segments and triangles",
         "surface_access": "triangles and nodes, read by every query",
         "surface_normals": "inside or outside, normals",
         "surface_queries": "nearest point, sweep, triangles near",
+        "surroundings": "gathers the triangles around the tool",
         "tree_pairs": "surface against surface",
         "triangle_queries": "point and sphere against one triangle",
     },
@@ -30,9 +31,12 @@ TICK = {
         "contact/equilibrium/contact_equilibrium": "tools and tissue, brought to rest together",
         "contact/equilibrium/equilibrium_friction": "the same, friction",
         "contact/equilibrium/equilibrium_iterates": "the same, the way there",
+        "contact/equilibrium/equilibrium_neighbours": "the same, bodies that press each other",
         "contact/equilibrium/equilibrium_rows": "the same, what may press",
+        "contact/equilibrium/neighbour_contact": "bodies beside each other",
         "contact/deformable_contact": "compliance and displacements of an elastic body",
         "contact/equilibrium/deformed_patch": "the part of a surface that tools are near",
+        "contact/equilibrium/deformed_patch_creep": "what is left of earlier forces on it",
         "contact/god_object": "the tool that stays outside",
         "contact/local_indentation": "what a sphere sinks in",
         "force_limiter": "force and slew limits",

@@ -157,10 +157,27 @@ stages::NearPlace near_place(TableReader& rule) {
     return place;
 }
 
+// relaxation = [{ share, time_s }, ...]
+void read_relaxation(TableReader& region, const std::string& label, stages::CondenseRequest& request) {
+    std::vector<RelaxationTerm> terms;
+    for (TableReader entry : region.tables("relaxation")) {
+        RelaxationTerm& term = terms.emplace_back();
+        for_each_field(relaxation_fields, [&](const auto& field) {
+            term.*field.member = entry.required<double>(key_of(field)) / field.written_factor;
+        });
+        entry.refuse_unknown();
+    }
+    if (const auto error = relaxation_error(terms))
+        region.fail(*region.raw().get("relaxation"), "relaxation", error->name + " " + error->found,
+                    error->expected);
+    for (const RelaxationTerm& term : terms) request.relaxation.push_back({label, term});
+}
+
 void read_region(TableReader& region, DeformableSpec& spec) {
     const auto label = region.required<std::string>("label");
     spec.condense.materials.push_back(
         {label, region.required<double>("youngs_modulus_kpa"), region.required<double>("poissons_ratio")});
+    read_relaxation(region, label, spec.condense);
     const auto cell_size = region.optional<double>("cell_size_mm");
     const auto mesh_region = region.optional<std::int64_t>("mesh_region");
     region.refuse_unknown();

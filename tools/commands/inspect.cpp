@@ -48,6 +48,7 @@ void add_regions(Json& rows, const DeformableBody& body) {
                         {"label", region},
                         {"youngs_modulus_kpa", material.youngs_modulus * 1e3},
                         {"poissons_ratio", material.poissons_ratio},
+                        {"relaxation", relaxation_text(relaxation_of(body, region))},
                         {"tetrahedra", std::ranges::count(body.mesh.regions, region)},
                         {"volume_ml", volume * 1e-3}});
     }

@@ -19,7 +19,8 @@ const std::vector<Experiment> experiments{
     // name, what it finds out, function
     {"faults", "a virtual day of pushing while devices, servo, window and asset fail at random", faults},
     {"passivity", "the stiffest wall that the closed loop bears, against 2b/T", passivity},
-    {"puncture", "how often a tool is pushed through a bone, by scheme; the published tables 1 and 2",
+    {"puncture",
+     "how often a tool is pushed through a bone, by scheme; the published tables 1, 2 and figures 6, 8",
      puncture},
     {"realtime", "ten minutes against the clock beside four busy processes, with and without priority",
      realtime},

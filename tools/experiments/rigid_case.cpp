@@ -18,9 +18,9 @@ Case rigid_case(const std::string& name, TriangleMesh surface, const HapticSetti
     return made;
 }
 
-TriangleMesh plate_surface() {
+TriangleMesh plate_surface(double thickness) {
     TriangleMesh plate;
-    for (const double z : {-100.0, 0.0})
+    for (const double z : {-thickness, 0.0})
         for (const double y : {-100.0, 100.0})
             for (const double x : {-100.0, 100.0}) plate.vertices.emplace_back(x, y, z);
     plate.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},

@@ -90,7 +90,8 @@ std::string mechanics_section(const ReportPage& page) {
             rows.push_back(
                 {escaped(body.name),
                  label != body.mesh.region_names.end() ? swatch(*label) : std::to_string(entry.region),
-                 significant(1000 * e, 4), significant(nu, 4), significant(1000 * e / (2 * (1 + nu)), 3)});
+                 significant(1000 * e, 4), significant(nu, 4), significant(1000 * e / (2 * (1 + nu)), 3),
+                 relaxation_text(relaxation_of(body, entry.region))});
         }
     std::string content;
     if (!rows.empty())
@@ -98,7 +99,8 @@ std::string mechanics_section(const ReportPage& page) {
                                {"Region"},
                                {"Young’s modulus, kPa", true},
                                {"Poisson’s ratio", true},
-                               {"Shear modulus, kPa", true}},
+                               {"Shear modulus, kPa", true},
+                               {"Lost under a lasting strain"}},
                               rows);
     for (const DeformableBody& body : patient_case.deformable_bodies) {
         const double share = 100.0 * static_cast<double>(body.fixed_nodes.size()) /

@@ -40,6 +40,23 @@ std::vector<RegionMaterial> materials_of(const CondenseRequest& request, const T
     return materials;
 }
 
+std::vector<RegionRelaxation> asked_relaxation(const CondenseRequest& request, const TetMesh& mesh) {
+    std::vector<RegionRelaxation> relaxation;
+    for (const auto& [label, term] : request.relaxation)
+        relaxation.push_back(
+            {require_label(mesh.region_names, label, request.mesh.filename().string()).value, term});
+    std::ranges::stable_sort(relaxation, {}, &RegionRelaxation::region);
+    return relaxation;
+}
+
+void require_sound_relaxation(const DeformableBody& body) {
+    for (const Label& region : body.mesh.region_names)
+        if (const auto error = relaxation_error(relaxation_of(body, region.value)))
+            throw InvalidInput({"relaxation of region '" + region.name + "'",
+                                error->name + " " + error->found, error->expected,
+                                "correct 'relaxation' in the case file, or --relaxation"});
+}
+
 std::vector<NodeRule> rules_of(const std::string& option, const std::vector<NodePick>& picks) {
     std::vector<NodeRule> rules;
     for (const NodePick& pick : picks)
@@ -71,6 +88,8 @@ MadeBody make_body(const CondenseRequest& request, int threads, const ProgressCa
     body.name = request.name.empty() ? request.mesh.stem().string() : request.name;
     body.mesh = meshing::read_tetrahedra(request.mesh);
     body.materials = materials_of(request, body.mesh);
+    body.relaxation = asked_relaxation(request, body.mesh);
+    require_sound_relaxation(body);
     const BoundarySurface boundary = boundary_surface(body.mesh);
     body.fixed_nodes = fixed_nodes_of(body.mesh, boundary, fixed);
     body.contact_nodes = contact_nodes_of(body.mesh, boundary, contact, body.fixed_nodes);

@@ -12,6 +12,15 @@ MaterialColumns columns_of(const std::vector<RegionMaterial>& materials) {
     return columns;
 }
 
+RelaxationColumns columns_of(const std::vector<RegionRelaxation>& relaxation) {
+    RelaxationColumns columns;
+    for (const RegionRelaxation& entry : relaxation) {
+        columns.regions.push_back(entry.region);
+        columns.values.push_back({entry.term.share, entry.term.time});
+    }
+    return columns;
+}
+
 LabelColumns columns_of(const std::vector<Label>& labels) {
     LabelColumns columns;
     for (const Label& label : labels) {

@@ -17,6 +17,12 @@ struct MaterialColumns {
 };
 MaterialColumns columns_of(const std::vector<RegionMaterial>& materials);
 
+struct RelaxationColumns {
+    std::vector<std::int32_t> regions;          ///< label value of each term
+    std::vector<std::array<double, 2>> values;  ///< share of Young's modulus, time in s
+};
+RelaxationColumns columns_of(const std::vector<RegionRelaxation>& relaxation);
+
 struct LabelColumns {
     std::vector<std::int32_t> values;
     std::vector<std::string> names;

@@ -83,11 +83,17 @@ std::string surface_digest(const TriangleMesh& surface) {
 
 std::string mechanics_digest(const DeformableBody& body) {
     const MaterialColumns materials = columns_of(body.materials);
+    std::string relaxation;
+    if (!body.relaxation.empty()) {
+        const RelaxationColumns columns = columns_of(body.relaxation);
+        relaxation = line("relaxation_regions", columns.regions) + line("relaxation", columns.values);
+    }
     return sha256(line("rest_positions", body.mesh.rest_positions) +
                   line("tetrahedra", body.mesh.tetrahedra) + line("regions", body.mesh.regions) +
                   line("material_regions", materials.regions) + line("materials", materials.values) +
-                  line("fixed_nodes", body.fixed_nodes) + line("contact_nodes", body.contact_nodes) +
-                  "element_order " + std::to_string(static_cast<std::int32_t>(body.element_order)) + '\n');
+                  relaxation + line("fixed_nodes", body.fixed_nodes) +
+                  line("contact_nodes", body.contact_nodes) + "element_order " +
+                  std::to_string(static_cast<std::int32_t>(body.element_order)) + '\n');
 }
 
 }  // namespace palpate::asset

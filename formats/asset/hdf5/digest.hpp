@@ -20,8 +20,8 @@ std::string sha256_file(const std::filesystem::path& path);
 /// Digest of a surface's vertices and triangles; ties an OBB tree to its surface.
 std::string surface_digest(const TriangleMesh& surface);
 
-/// Digest of what a compliance follows from: nodes, tetrahedra, regions, materials, fixed and contact nodes,
-/// element order.
+/// Digest of what a compliance follows from: nodes, tetrahedra, regions, materials with their relaxation,
+/// fixed and contact nodes, element order.
 std::string mechanics_digest(const DeformableBody& body);
 
 }  // namespace palpate::asset

@@ -20,6 +20,12 @@ Eigen::Matrix3f DeformableContact::compliance_between(std::int32_t a, std::int32
     return compliance_block(compliance_, blocks_[a], blocks_[b]);
 }
 
+std::int64_t DeformableContact::memory_ticks() const noexcept {
+    std::int64_t ticks = 0;
+    for (const TickCreep& creep : creep_) ticks = std::max(ticks, creep.memory_ticks);
+    return ticks;
+}
+
 void DeformableContact::surface_displacement(std::span<const Contact> contacts,
                                              std::span<Vector3f> displacements) const noexcept {
     std::array<NodeForce, most_loaded> forces;
@@ -34,15 +40,18 @@ void DeformableContact::surface_displacement(std::span<const Contact> contacts,
         else if (count < forces.size())
             forces[count++] = {block, force};
     };
+    const auto spread = [&](std::int32_t vertex, float weight, const Vector3f& push) {
+        if (!spread_) return load(vertex, weight * push);
+        for (const LoadSpread::Share& share : spread_->shares(vertex))
+            load(share.vertex, weight * share.weight * push);
+    };
     for (const Contact& contact : contacts) {
-        if (contact.body != body_index_ || !(contact.force > 0)) continue;
-        const Vector3f push = -force_on_tool(contact).cast<float>();
+        if (!(contact.force > 0)) continue;
+        const Vector3f push = -reaction_of(contact).cast<float>();
+        if (contact.other_body == body_index_) spread(contact.other_vertex, 1, -push);
+        if (contact.body != body_index_) continue;
         for (std::size_t i = 0; i < 3 && contact.vertices[i] >= 0; ++i)
-            if (spread_)
-                for (const LoadSpread::Share& share : spread_->shares(contact.vertices[i]))
-                    load(share.vertex, contact.weights[i] * share.weight * push);
-            else
-                load(contact.vertices[i], contact.weights[i] * push);
+            spread(contact.vertices[i], contact.weights[i], push);
     }
     std::ranges::fill(displacements, Vector3f::Zero());
     const auto contact_nodes = static_cast<std::size_t>(node_count(compliance_));

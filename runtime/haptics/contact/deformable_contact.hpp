@@ -8,6 +8,7 @@
 
 #include "formats/model/body.hpp"
 #include "formats/records/tick_result.hpp"
+#include "runtime/haptics/contact/creep.hpp"
 #include "runtime/haptics/contact/load_spread.hpp"
 
 namespace palpate::haptics {
@@ -20,7 +21,7 @@ class DeformableContact {
     /// together.
     DeformableContact(const DeformableBody& body, std::int32_t body_index, bool spreads_load);
 
-    /// See HapticModel::surface_displacement(); contacts of other bodies are ignored. Thread-safe.
+    /// See HapticModel::surface_displacement(); contacts between other bodies are ignored. Thread-safe.
     void surface_displacement(std::span<const Contact> contacts,
                               std::span<Eigen::Vector3f> displacements) const noexcept;
 
@@ -36,9 +37,19 @@ class DeformableContact {
     Eigen::Vector3d rest_position(std::int32_t vertex) const noexcept {
         return vertices_[vertex].cast<double>();
     }
+    /// Whether a vertex gives way at all: it is neither fixed nor left out.
+    bool gives_way(std::int32_t vertex) const noexcept { return blocks_[vertex] >= 0; }
     /// How vertex a gives way per force on vertex b, mm/N; zero if either is fixed or left out.
     /// Realtime-safe.
     Eigen::Matrix3f compliance_between(std::int32_t a, std::int32_t b) const noexcept;
+
+    /// How a vertex creeps in ticks of 1 ms; null if it does not. The same for vertices that creep alike.
+    const TickCreep* creep_of(std::int32_t vertex) const noexcept {
+        return creeps() && creep_of_vertex_[vertex] >= 0 ? &creep_[creep_of_vertex_[vertex]] : nullptr;
+    }
+    bool creeps() const noexcept { return !creep_.empty(); }
+    /// Ticks after which nothing is left of a load; 0 if nothing creeps.
+    std::int64_t memory_ticks() const noexcept;
 
   private:
     std::int32_t body_index_;
@@ -49,6 +60,8 @@ class DeformableContact {
     std::vector<Triangle> triangles_;  // surface vertices
     std::vector<std::array<std::int32_t, 3>> neighbours_;
     std::vector<Eigen::Vector3f> vertices_;  // at rest, p_P, mm
+    std::vector<TickCreep> creep_;
+    std::vector<std::int32_t> creep_of_vertex_;  // -1 where it does not creep
 };
 
 }  // namespace palpate::haptics

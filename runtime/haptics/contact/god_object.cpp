@@ -14,6 +14,7 @@ using Eigen::Vector3d;
 constexpr double tiny = 1e-7;          // mm: shorter moves are none
 constexpr double settled = 0.01;       // mm: after a shorter round the next tick goes on (5 mN at 0.5 N/mm)
 constexpr int max_sweeps = 15;         // per tick; smooth places take 3
+constexpr double parallel = 1e-9;      // determinant of normals' products: a smaller set does
 constexpr double same_normal = 0.999;  // cosine; feet closer than 2.5 degrees are one
 
 }  // namespace
@@ -46,6 +47,8 @@ bool GodObject::move(Surfaces surfaces, const Vector3d& device, const Friction& 
         find_touches(surfaces, device);
     else
         let_go();
+    for (std::size_t i = 0; i < obstacles_.size(); ++i)
+        if (obstacles_[i].followed) obstacles_[i].near.look_ahead(*surfaces[i], position_, radius_);
     return all_followed_ || follow_what_is_clear(surfaces);
 }
 
@@ -172,25 +175,38 @@ Vector3d GodObject::nearest_admissible(const Vector3d& device) noexcept {
         return device + lack * planes_[0].normal;
     }
     const double tolerance = 1e-9;  // mm
+    std::array<double, max_touches> lacks;
+    for (std::size_t i = 0; i < plane_count_; ++i)
+        lacks[i] = planes_[i].offset - planes_[i].normal.dot(device);
     for (unsigned set = 0; set < 1U << plane_count_; ++set) {
-        std::array<HalfSpace, max_touches> active;
-        Eigen::Index count = 0;
+        std::array<std::size_t, max_touches> active{};
+        std::size_t count = 0;
         for (std::size_t i = 0; i < plane_count_; ++i)
-            if (set >> i & 1U) active[count++] = planes_[i];
+            if (set >> i & 1U) active[count++] = i;
         if (count > 3) continue;
+        const auto normal = [&](std::size_t k) -> const Vector3d& { return planes_[active[k]].normal; };
 
         Vector3d x = device;
-        if (count > 0) {
-            Eigen::Matrix<double, 3, 3> normals = Eigen::Matrix3d::Zero();
-            Eigen::Matrix3d gram = Eigen::Matrix3d::Identity();
-            Vector3d lack = Vector3d::Zero();
-            for (Eigen::Index i = 0; i < count; ++i) {
-                normals.col(i) = active[i].normal;
-                lack[i] = active[i].offset - normals.col(i).dot(device);
-            }
-            gram.topLeftCorner(count, count) = (normals.transpose() * normals).topLeftCorner(count, count);
-            if (gram.determinant() < 1e-9) continue;  // nearly parallel: a smaller set does
-            const Vector3d lambda = gram.inverse() * lack;
+        if (count == 1) {
+            const double lambda = 1 / normal(0).dot(normal(0)) * lacks[active[0]];
+            if (lambda < 0) continue;
+            x += normal(0) * lambda;
+        } else if (count == 2) {
+            const double a = normal(0).dot(normal(0)), b = normal(0).dot(normal(1)),
+                         d = normal(1).dot(normal(1)), determinant = a * d - b * b;
+            if (determinant < parallel) continue;
+            const double inverse = 1 / determinant, first = lacks[active[0]], second = lacks[active[1]];
+            const double lambda = d * inverse * first - b * inverse * second,
+                         mu = a * inverse * second - b * inverse * first;
+            if (lambda < 0 || mu < 0) continue;
+            x += normal(0) * lambda + normal(1) * mu;
+        } else if (count == 3) {
+            Eigen::Matrix3d normals;
+            normals << normal(0), normal(1), normal(2);
+            const Eigen::Matrix3d gram = normals.transpose() * normals;
+            if (gram.determinant() < parallel) continue;
+            const Vector3d lambda =
+                gram.inverse() * Vector3d(lacks[active[0]], lacks[active[1]], lacks[active[2]]);
             if (lambda.minCoeff() < 0) continue;
             x += normals * lambda;
         }
@@ -198,8 +214,9 @@ Vector3d GodObject::nearest_admissible(const Vector3d& device) noexcept {
         for (std::size_t i = 0; i < plane_count_; ++i)
             admissible = admissible && planes_[i].normal.dot(x) >= planes_[i].offset - tolerance;
         if (!admissible) continue;
-        std::copy_n(active.begin(), count, planes_.begin());
-        plane_count_ = static_cast<std::size_t>(count);
+        for (std::size_t k = 0; k < count; ++k)
+            if (active[k] != k) planes_[k] = planes_[active[k]];
+        plane_count_ = count;
         return x;
     }
     plane_count_ = std::min(plane_count_, max_touches - 1);

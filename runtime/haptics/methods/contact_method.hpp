@@ -42,7 +42,8 @@ class ContactMethod {
     /// Collision loop's side, of a method that needs detection: to be called 30 times a second from one
     /// thread, which may be another than tick()'s. No allocation or lock.
     virtual void detect() noexcept {}
-    /// The same for a given position (p_P, mm) of a given tick, as a replay has it. Instead of detect().
+    /// The same for a given position (p_P, mm) of a given tick, as a replay or a loop that is late has it.
+    /// Instead of detect().
     virtual void detect_at(const std::array<double, 3>& /*device*/, std::int64_t /*tick*/) noexcept {}
 };
 

@@ -19,6 +19,7 @@ struct ContactCapabilities {
     bool spreads_loads = false;     ///< on tissue, so that it does not feel the mesh: LoadSpread
     bool needs_detection = false;   ///< ContactMethod::detect() must be called 30 times a second
     bool sums_rigid_walls = false;  ///< where only rigid walls hold the tip, one contact is their resultant
+    bool creeps = false;            ///< as tissue does that relaxes
     std::size_t most_tools = std::numeric_limits<std::size_t>::max();
 };
 
@@ -42,7 +43,7 @@ std::span<const ContactMethodEntry> contact_methods();
 const ContactMethodEntry& find_contact_method(std::string_view name,
                                               const std::string& culprit = "contact method");
 
-/// "single, twice or continuous": the names of the methods that take at least `tool_count` tools.
+/// "single, twice, ... or continuous": the names of the methods that take at least `tool_count` tools.
 std::string contact_method_names(std::size_t tool_count = 1);
 /// "'single' is published: ...; 'twice' ...": the whole table in words.
 std::string contact_method_sentences();

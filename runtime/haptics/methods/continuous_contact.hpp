@@ -53,6 +53,7 @@ class ContinuousContact final : public ContactMethod {
     void place(std::size_t tool, const ContactPose& pose) noexcept;
     void forget(std::size_t tool) noexcept;
     void follow(std::size_t tool, TickResult& result) noexcept;
+    void write_neighbours(std::span<TickResult> results) const noexcept;
     void depth_in_tissue(const Tool& tool, TickResult& result) const noexcept;
     Eigen::Vector3d force_of(std::size_t tool, TickResult& result) noexcept;
 

@@ -10,8 +10,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double unsolved = 1e-3;  // mm of residual that is reported
-constexpr int most_rounds = 4;     // of contacts that only the solution of the others meets
+constexpr double unsolved = 1e-3;      // mm of residual that is reported
+constexpr int most_rounds = 4;         // of contacts that only the solution of the others meets
+constexpr double farthest_return = 5;  // mm: a sphere of the shaft found again farther off starts anew
 
 }  // namespace
 
@@ -39,7 +40,15 @@ void ContinuousContact::tick(std::span<const ContactPose> poses, double coupling
         forces[t] = force_of(t, results[t]);
         results[t].tool_position = array_of(tools_[t].parts[0].device + forces[t] / coupling_);
     }
+    write_neighbours(results);
     equilibrium_.end_tick();
+}
+
+// Of the bodies that press each other, the first tool that pushes tissue tells.
+void ContinuousContact::write_neighbours(std::span<TickResult> results) const noexcept {
+    for (std::size_t t = 0; t < tools_.size(); ++t)
+        if (results[t].contact_count > 0 && equilibrium_.touches_tissue(t))
+            return equilibrium_.write_neighbours(results[t]);
 }
 
 Vector3d ContinuousContact::force_of(std::size_t t, TickResult& result) noexcept {
@@ -85,12 +94,24 @@ void ContinuousContact::depth_in_tissue(const Tool& tool, TickResult& result) co
 
 void ContinuousContact::place(std::size_t t, const ContactPose& pose) noexcept {
     Tool& tool = tools_[t];
-    tool.parts_felt = 0;
     tool.held_by_shaft = false;
-    if (!pose.trusted) return;
+    if (!pose.trusted) {
+        tool.parts_felt = 0;
+        return;
+    }
     if (pose.jumped) forget(t);
-    tool.parts_felt = pose.shaft.squaredNorm() > 0 ? tool.parts.size() : 1;
-    for (Part& part : tool.parts) part.device = pose.tip + part.behind_tip * pose.shaft;
+    const std::size_t felt = pose.shaft.squaredNorm() > 0 ? tool.parts.size() : 1;
+    for (std::size_t p = 0; p < felt; ++p) {
+        Part& part = tool.parts[p];
+        const Vector3d to = pose.tip + part.behind_tip * pose.shaft;
+        // While the shaft's direction was not known, nobody saw which way its spheres went.
+        if (p > 0 && p >= tool.parts_felt && (to - part.device).norm() > farthest_return) {
+            part.on_rigid.reset();
+            part.on_all.reset();
+        }
+        part.device = to;
+    }
+    tool.parts_felt = felt;
 }
 
 void ContinuousContact::forget(std::size_t t) noexcept {

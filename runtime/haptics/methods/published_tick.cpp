@@ -63,8 +63,7 @@ PublishedContact::Detection PublishedContact::inside_or_outside(std::size_t body
 }
 
 void PublishedContact::lose() noexcept {
-    device_.write(std::nullopt);
-    detections_.refresh();
+    device_.write({.losses = ++losses_});
     detected_ = false;
     ticks_undetected_ = 0;
     std::ranges::fill(contacted_, Contacted{});
@@ -72,14 +71,20 @@ void PublishedContact::lose() noexcept {
 }
 
 void PublishedContact::detect() noexcept {
-    if (const std::optional<Asked>& asked = device_.read()) detect_at(asked->device, asked->tick);
+    answer(asked());
 }
 
 void PublishedContact::detect_at(const std::array<double, 3>& device, std::int64_t tick) noexcept {
+    answer({.device = device, .tick = tick, .losses = asked().losses, .trusted = true});
+}
+
+void PublishedContact::answer(const Asked& asked) noexcept {
+    if (!asked.trusted) return;
     Answered& answer = detections_.back();
     for (std::size_t body = 0; body < bodies_.surfaces.size(); ++body)
-        answer.bodies[body] = inside_or_outside(body, Eigen::Map<const Vector3d>(device.data()));
-    answer.tick = tick;
+        answer.bodies[body] = inside_or_outside(body, Eigen::Map<const Vector3d>(asked.device.data()));
+    answer.tick = asked.tick;
+    answer.losses = asked.losses;
     detections_.publish();
 }
 
@@ -87,7 +92,8 @@ void PublishedContact::detect_at(const std::array<double, 3>& device, std::int64
 void PublishedContact::decide(std::size_t body, const Detection& detection, bool fresh,
                               const Vector3d& device) noexcept {
     auto& [render_force, foot] = contacted_[body];
-    if (fresh) foot = detection.foot;
+    const bool keeps = !renewed_ && render_force;
+    if (fresh && !(keeps && detection.foot.normal.dot(foot.normal) < 0)) foot = detection.foot;
     if (!twice_) {
         render_force = detection.inside_or_outside == -1;
         return;
@@ -95,7 +101,7 @@ void PublishedContact::decide(std::size_t body, const Detection& detection, bool
     const Vector3d step = last_device_ ? device - *last_device_ : Vector3d::Zero().eval();
     if (detection.inside_or_outside == -1) {
         render_force = true;
-    } else if (step.dot(detection.foot.normal) < 0) {
+    } else if (step.dot(keeps ? foot.normal : detection.foot.normal) < 0) {
         const Detection second = inside_or_outside(body, *last_device_);
         if (second.inside_or_outside == -1) {
             if (!render_force) foot = second.foot;
@@ -108,8 +114,8 @@ void PublishedContact::decide(std::size_t body, const Detection& detection, bool
 }
 
 // The force of a body whose surface is `offset` (mm) from the device. Fills what the contact says of it.
-Vector3d PublishedContact::answer(std::size_t body, const Vector3d& offset, double coupling_stiffness,
-                                  Contact& contact) const noexcept {
+Vector3d PublishedContact::force_of(std::size_t body, const Vector3d& offset, double coupling_stiffness,
+                                    Contact& contact) const noexcept {
     const Foot& foot = contacted_[body].foot;
     const double depth = offset.dot(foot.normal);
     contact.body = static_cast<std::int32_t>(body);
@@ -144,8 +150,9 @@ void PublishedContact::tick(std::span<const ContactPose> poses, double coupling,
 
 Vector3d PublishedContact::tick(const Vector3d& device, double coupling_stiffness,
                                 TickResult& result) noexcept {
-    device_.write(Asked{{device[0], device[1], device[2]}, result.tick});
-    const bool fresh = detections_.refresh();
+    device_.write({{device[0], device[1], device[2]}, result.tick, losses_, true});
+    // An answer that was on its way when the tool was lost says nothing of where it was found again.
+    const bool fresh = detections_.refresh() && detections_.front().losses == losses_;
     detected_ = detected_ || fresh;
     if (fresh) result.detected_tick = detections_.front().tick;
     ticks_undetected_ = fresh ? 0 : ticks_undetected_ + 1;
@@ -156,7 +163,7 @@ Vector3d PublishedContact::tick(const Vector3d& device, double coupling_stiffnes
         if (!contacted_[body].render_force) continue;
         Contact contact;
         const Vector3d force =
-            answer(body, contacted_[body].foot.anchor - device, coupling_stiffness, contact);
+            force_of(body, contacted_[body].foot.anchor - device, coupling_stiffness, contact);
         sum += force;
         const double magnitude = force.norm(), depth = contact.gap;
         if (depth > result.depth) {

@@ -44,6 +44,7 @@ int wander(const CollisionSurface& surface, const Vector3d& middle, double reach
         const Vector3d to = at + step * heading;
         const auto expected = surface.sweep_sphere(at, to, radius);
         const auto found = near.sweep_sphere(surface, at, to, radius);
+        if (i % 3 != 0) near.look_ahead(surface, at, radius);
         EXPECT_EQ(found.has_value(), expected.has_value()) << i << " radius " << radius << " step " << step;
         if (found.has_value() != expected.has_value()) return touched;
         if (!found) {
@@ -102,6 +103,37 @@ TEST(Neighbourhood, sweeps_like_the_tree_far_from_the_surface) {
     const CollisionSurface surface(scene.mesh, tilted_tree(scene.mesh, 3), "scene");
     for (const double radius : radii) wander(surface, Scene::middle, 500, radius);
     wander(surface, Scene::middle + Vector3d(300, 0, 0), 20, 1);
+}
+
+TEST(Neighbourhood, stops_at_the_first_of_all_triangles) {
+    const Scene scene;
+    const CollisionSurface surface(scene.mesh, tilted_tree(scene.mesh, 3), "scene");
+    Scene walk;
+    for (const double radius : radii) {
+        Neighbourhood near;
+        Vector3d at = walk.point(), goal = walk.point();
+        int touched = 0;
+        for (int i = 0; i < sweeps; ++i) {
+            if (i % 100 == 0) goal = walk.point();
+            // Pressed on, from where it stopped, as far below the surface as a coupling leads.
+            const Vector3d to = at + std::min(1.0, i % 2 ? 0.03 : 2 / (goal - at).norm()) * (goal - at);
+            double first = 2;
+            for (std::int32_t slot = 0; slot < surface.triangle_count(); ++slot)
+                if (const auto contact = sweep_sphere_triangle(at, to - at, radius, 1, surface.corners(slot)))
+                    first = std::min(first, contact->fraction);
+            const auto found = near.sweep_sphere(surface, at, to, radius);
+            near.look_ahead(surface, at, radius);
+            ASSERT_EQ(found.has_value(), first <= 1) << i << " radius " << radius;
+            if (found) {
+                ++touched;
+                ASSERT_NEAR(found->fraction, first, of_the_way) << i << " radius " << radius;
+                at += std::max(0.0, found->fraction - 1e-3) * (to - at) + 2e-3 * found->normal;
+            } else {
+                at += 0.1 * (to - at);
+            }
+        }
+        EXPECT_GT(touched, sweeps / 50) << radius;
+    }
 }
 
 TEST(Neighbourhood, keeps_to_the_tree_after_the_radius_changes) {

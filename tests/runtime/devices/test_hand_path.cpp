@@ -67,10 +67,13 @@ TEST(HandPath, seen_from_another_frame_and_back_is_the_same) {
     }
 }
 
-TEST(ReadHandPath, takes_a_position_per_millisecond_or_times) {
+TEST(ReadHandPath, takes_a_position_per_tick_or_times) {
     const HandPath rows = read_hand_path(text_file("# mm\n1 2 3\n\n1, 2, 5 # second\n"));
-    EXPECT_EQ(rows.at(0.0005), Vector3d(1, 2, 4));
-    EXPECT_EQ(rows.duration(), 0.001);
+    EXPECT_EQ(rows.at(0), Vector3d(1, 2, 3));
+    EXPECT_EQ(rows.at(0.001), Vector3d(1, 2, 3));
+    EXPECT_EQ(rows.at(0.0015), Vector3d(1, 2, 4));
+    EXPECT_EQ(rows.at(0.002), Vector3d(1, 2, 5));
+    EXPECT_EQ(rows.duration(), 0.002);
     const HandPath timed = read_hand_path(text_file("0 1 2 3\n2,1,2,5\n"));
     EXPECT_EQ(timed.at(1), Vector3d(1, 2, 4));
 }

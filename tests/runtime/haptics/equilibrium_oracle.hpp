@@ -17,20 +17,16 @@ namespace palpate {
 /// and the tools then are: an independent way to the equilibrium.
 class EquilibriumOracle {
   public:
-    explicit EquilibriumOracle(const DeformableBody& body)
-        : body_(body), spread_(body, haptics::compliance_blocks(body)), compliance_(inverse(body)) {}
+    /// `body_index`: of this body among all of the case's.
+    explicit EquilibriumOracle(const DeformableBody& body, std::int32_t body_index = 0)
+        : body_(body),
+          body_index_(body_index),
+          spread_(body, haptics::compliance_blocks(body)),
+          compliance_(inverse(body)) {}
 
-    /// Displacement of each surface vertex under the contacts of all tools, mm.
+    /// Displacement of each surface vertex under the contacts of all tools and neighbours, mm.
     std::vector<Eigen::Vector3d> displacements(std::span<const TickResult> results) const {
-        Eigen::VectorXd load = Eigen::VectorXd::Zero(compliance_.rows());
-        for (const TickResult& result : results)
-            for (const Contact& contact : result.active_contacts())
-                for (std::size_t i = 0; i < 3; ++i)
-                    for (const haptics::LoadSpread::Share& share : spread_.shares(contact.vertices[i]))
-                        load.segment<3>(dof(share.vertex)) -=
-                            static_cast<double>(contact.weights[i] * share.weight * contact.force) *
-                            normal_of(contact);
-        const Eigen::VectorXd u = compliance_ * load;
+        const Eigen::VectorXd u = compliance_ * loads(results);
         std::vector<Eigen::Vector3d> moved;
         for (std::size_t v = 0; v < body_.boundary.nodes.size(); ++v) {
             Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -39,6 +35,19 @@ class EquilibriumOracle {
             moved.push_back(mean);
         }
         return moved;
+    }
+
+    /// What holds the fixed nodes, by the whole stiffness matrix, all together, N.
+    Eigen::Vector3d base_reaction(std::span<const TickResult> results) const {
+        const Eigen::VectorXd internal =
+            sample::dense_stiffness(body_.mesh, sample::soft_tissue()) * (compliance_ * loads(results));
+        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+        for (const std::int32_t node : body_.fixed_nodes) sum += internal.segment<3>(3 * node);
+        // What a load spreads onto fixed nodes they bear at once.
+        for_each_load(results, [&](std::int32_t vertex, const Eigen::Vector3d& force) {
+            sum -= (1 - spread_.freedom(vertex)) * force;
+        });
+        return sum;
     }
 
     /// Where a tool of `radius` rests against the surface: its centre, sunk in as Hertz has it.
@@ -114,6 +123,27 @@ class EquilibriumOracle {
     }
 
   private:
+    Eigen::VectorXd loads(std::span<const TickResult> results) const {
+        Eigen::VectorXd load = Eigen::VectorXd::Zero(compliance_.rows());
+        for_each_load(results, [&](std::int32_t vertex, const Eigen::Vector3d& force) {
+            for (const haptics::LoadSpread::Share& share : spread_.shares(vertex))
+                load.segment<3>(dof(share.vertex)) += static_cast<double>(share.weight) * force;
+        });
+        return load;
+    }
+
+    template <typename Take>
+    void for_each_load(std::span<const TickResult> results, const Take& take) const {
+        for (const TickResult& result : results)
+            for (const Contact& contact : result.active_contacts()) {
+                const Eigen::Vector3d push = static_cast<double>(contact.force) * normal_of(contact);
+                if (contact.other_body == body_index_) take(contact.other_vertex, push);
+                if (contact.body != body_index_) continue;
+                for (std::size_t i = 0; i < 3; ++i)
+                    take(contact.vertices[i], -static_cast<double>(contact.weights[i]) * push);
+            }
+    }
+
     Eigen::Index dof(std::int32_t vertex) const {
         return 3 * body_.boundary.nodes[static_cast<std::size_t>(vertex)];
     }
@@ -133,6 +163,7 @@ class EquilibriumOracle {
     }
 
     const DeformableBody& body_;
+    std::int32_t body_index_;
     haptics::LoadSpread spread_;
     Eigen::MatrixXd compliance_;
 };

@@ -202,10 +202,5 @@ TEST(HapticModel, refuses_settings_and_cases_that_cannot_be_felt) {
     });
 }
 
-TEST(StatusText, names_every_flag) {
-    EXPECT_EQ(status_text(tick_ok), "ok");
-    EXPECT_EQ(status_text(force_limited | contacts_cut), "force_limited+contacts_cut");
-}
-
 }  // namespace
 }  // namespace palpate

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <Eigen/LU>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -30,8 +31,11 @@ class Published {
     Published(Case patient_case, std::string_view scheme)
         : case_(std::move(patient_case)),
           bodies_(case_, false),
-          contact_(case_, bodies_,
-                   scheme == "twice" ? PublishedContact::Tested::twice : PublishedContact::Tested::single) {}
+          contact_(
+              case_, bodies_,
+              scheme.starts_with("twice") ? PublishedContact::Tested::twice
+                                          : PublishedContact::Tested::single,
+              scheme.ends_with("renewed") ? PublishedContact::Face::renewed : PublishedContact::Face::kept) {}
 
     Vector3d tick(const Vector3d& device) noexcept {
         result_ = TickResult{};
@@ -152,8 +156,80 @@ TEST(PublishedContact, reset_forgets_the_last_detection_and_position) {
     EXPECT_EQ(plate_contact.tick(height(1.4)), Vector3d::Zero());
 }
 
+constexpr std::array all_schemes{"single", "twice", "single-renewed", "twice-renewed"};
+
+TEST(PublishedContact, an_answer_to_what_was_asked_before_a_loss_never_counts) {
+    for (const std::string_view scheme : all_schemes) {
+        Published plate_contact(published_plate(), scheme);
+        plate_contact.tick(height(1.5));
+        const PublishedContact::Asked asked = plate_contact.contact().asked();
+        plate_contact.contact().lose();
+        plate_contact.contact().answer(asked);  // was on its way
+        EXPECT_EQ(plate_contact.tick(height(1.5)), Vector3d::Zero());
+        EXPECT_EQ(plate_contact.result().detected_tick, -1);
+        plate_contact.contact().answer(asked);  // or comes later still
+        EXPECT_EQ(plate_contact.tick(height(1.5)), Vector3d::Zero());
+        plate_contact.contact().detect();
+        EXPECT_NEAR(plate_contact.tick(height(1.5)).z(), stiffness * 0.5, stiffness * surface_error);
+    }
+}
+
+TEST(PublishedContact, a_given_detection_counts_in_the_first_tick_after_a_loss) {
+    Published plate_contact(published_plate(), "twice");
+    plate_contact.detect_at(height(1.5));
+    plate_contact.contact().lose();
+    plate_contact.contact().detect();  // of no position
+    EXPECT_EQ(plate_contact.tick(height(1.5)), Vector3d::Zero());
+    plate_contact.contact().lose();
+    plate_contact.contact().detect_at({above.x(), above.y(), 1.5}, 3);
+    EXPECT_NEAR(plate_contact.tick(height(1.5)).z(), stiffness * 0.5, stiffness * surface_error);
+    EXPECT_EQ(plate_contact.result().detected_tick, 3);
+}
+
+TEST(PublishedContact, a_tip_pressed_past_the_middle_of_a_wall_stays_with_the_face_it_came_through) {
+    for (const std::string_view scheme : all_schemes) {
+        Published plate_contact(published_plate(), scheme);
+        plate_contact.detect_at(height(1.5));
+        plate_contact.detect_at(height(0.5));  // nearer to the far side
+        const bool renewed = scheme.ends_with("renewed");
+        EXPECT_NEAR(plate_contact.tick(height(0.5)).z(), stiffness * (renewed ? -0.5 : 1.5),
+                    stiffness * surface_error)
+            << scheme;
+    }
+}
+
+TEST(PublishedContact, a_kept_face_is_left_for_one_beside_it) {
+    // From the top over the edge at x = 20 to the side.
+    Published plate_contact(published_plate(), "twice");
+    plate_contact.detect_at({19, 9, 1.8});
+    plate_contact.detect_at({19.9, 9, 1.2});
+    const Vector3d force = plate_contact.tick({19.9, 9, 1.2});
+    EXPECT_NEAR((force - stiffness * Vector3d(0.1, 0, 0)).norm(), 0, stiffness * surface_error);
+}
+
+TEST(PublishedContact, a_face_is_kept_for_as_long_as_there_is_force) {
+    Published plate_contact(published_plate(), "twice");
+    plate_contact.detect_at(height(1.5));
+    plate_contact.detect_at(height(3));  // lets go
+    plate_contact.detect_at(height(0.5));
+    EXPECT_NEAR(plate_contact.tick(height(0.5)).z(), -stiffness * 0.5, stiffness * surface_error);
+}
+
+TEST(PublishedContact, behind_a_wall_twice_goes_by_the_face_it_came_through) {
+    for (const std::string_view scheme : {"twice", "twice-renewed"}) {
+        Published plate_contact(published_plate(), scheme);
+        plate_contact.detect_at(height(1.5));
+        plate_contact.tick(height(-0.2));
+        plate_contact.contact().detect();  // outside, nearest to the far side
+        // Still inwards, so the flag stays; outwards by the far side's normal, so it goes.
+        EXPECT_NEAR(plate_contact.tick(height(-0.3)).z(), scheme == "twice" ? stiffness * 2.3 : 0,
+                    stiffness * surface_error);
+        EXPECT_EQ(plate_contact.tick(height(-0.3)), Vector3d::Zero());
+    }
+}
+
 TEST(PublishedContact, a_point_found_in_the_far_half_of_a_wall_is_led_through) {
-    for (const std::string_view scheme : {"single", "twice"}) {
+    for (const std::string_view scheme : all_schemes) {
         Published plate_contact(published_plate(), scheme);
         plate_contact.detect_at(height(0.5));
         EXPECT_NEAR(plate_contact.tick(height(0.5)).z(), -stiffness * 0.5, stiffness * surface_error);

@@ -219,6 +219,35 @@ TEST(Shaft, away_from_the_body_changes_nothing) {
     }
 }
 
+// A way that nobody saw says nothing about what lies between.
+TEST(Shaft, whose_direction_comes_back_beyond_a_plate_is_not_held_by_it) {
+    HapticModel model(with_shaft(plate()));
+    TickResult result{};
+    const Vector3d along(-1, 0, 0);
+    model.tick(held_at({40, 0, 5}, along), result);
+    for (double z = 5; z > -15; z -= 0.5) model.tick(held_at({40, 0, z}), result);
+    model.tick(held_at({40, 0, -15}, along), result);
+    EXPECT_EQ(force_of(result).norm(), 0);
+    // From there it feels the plate's other side.
+    for (double z = -15; z < -10.6; z += 0.1) model.tick(held_at({40, 0, z}, along), result);
+    EXPECT_LT(force_of(result).z(), -0.1);
+}
+
+// A tool of five elements meets more of the tissue than can be solved; the wall beside it holds all the same.
+TEST(LargeTool, is_held_by_the_wall_beside_fine_tissue) {
+    Case c = cube_for_tools(6, 17);  // edges of 3.3 mm
+    c.rigid_bodies.push_back(rigid("wall", box({26, -30, 22}, {40, 50, 80})));
+    HapticModel model(c);
+    TickResult result{};
+    for (double z = 42; z > 33; z -= 0.1) model.tick(held_at({8.9, 10.2, z}), result);
+    for (double x = 8.9; x < 10.4; x += 0.05) model.tick(held_at({x, 10.2, 33}), result);
+    for (int tick = 0; tick < settling; ++tick) model.tick(held_at({10.4, 10.2, 33}), result);
+    // 10.4 mm + 17 mm of radius is 1.4 mm beyond the wall's face; the tissue pushes a little along it.
+    EXPECT_LT(force_of(result).x(), -0.9 * 1.4 * c.haptics.coupling_stiffness);
+    EXPECT_LT(tool_of(result).x() + 17, 26.01);
+    EXPECT_GT(force_of(result).z(), 0.05);
+}
+
 // A long thin shaft lies on tissue in more places than can be solved at once; that takes neither the wall
 // beside it nor the other tool their share.
 TEST(TwoTools, keep_their_walls_and_their_share_where_contacts_are_too_many) {

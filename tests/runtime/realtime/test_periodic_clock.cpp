@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <atomic>
 #include <chrono>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <thread>
 
 #include "runtime/realtime/periodic_clock.hpp"
+#include "runtime/realtime/servo.hpp"
 #include "runtime/realtime/thread_setup.hpp"
 
 namespace palpate {
@@ -39,6 +42,39 @@ TEST(ThreadSetup, says_what_was_done_or_why_not) {
         EXPECT_FALSE(request_fifo_priority(10).message.empty());
         EXPECT_FALSE(request_fifo_priority(1000).ok);
     }).join();
+}
+
+constexpr std::size_t deep = 128 * 1024;  // bytes, within prefaulted_stack
+// A sanitizer's own pages, an eighth of the stack's, and some more; without prefault_stack() it is all of 32.
+constexpr long shadow_pages = deep / 4096 / 4;
+
+// Uses the stack as deep as that; returns how many pages it was the first to touch.
+[[gnu::noinline]] long faults_of_a_deep_call() {
+    rusage before{}, after{};
+    getrusage(RUSAGE_THREAD, &before);
+    [[maybe_unused]] volatile char stack[deep];
+    for (std::size_t at = 0; at < deep; at += 1024) stack[at] = 1;
+    getrusage(RUSAGE_THREAD, &after);
+    return after.ru_minflt - before.ru_minflt;
+}
+
+TEST(ThreadSetup, a_prefaulted_stack_is_touched_before_a_deep_call_needs_it) {
+    std::thread([] {
+        prefault_stack();
+        EXPECT_LE(faults_of_a_deep_call(), shadow_pages);
+    }).join();
+}
+
+// Its thread's stack, as seen from a tick.
+TEST(ThreadSetup, a_periodic_servo_prefaults_its_stack) {
+    PeriodicServo servo(PeriodicServo::Priority::none);
+    std::atomic<long> faults{-1};
+    servo.start([&](const ServoTick&) {
+        if (faults < 0) faults = faults_of_a_deep_call();
+    });
+    while (faults < 0) std::this_thread::yield();
+    servo.stop();
+    EXPECT_LE(faults, shadow_pages);
 }
 
 }  // namespace

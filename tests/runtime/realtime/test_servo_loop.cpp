@@ -73,6 +73,28 @@ TEST(ServoLoop, published_schemes_detect_beside_the_ticks) {
     EXPECT_GT(strongest, 0);
 }
 
+TEST(TickOutlet, hands_over_a_tick_with_the_contacts_that_count_and_copies_no_others) {
+    constexpr float seen = 1, unseen = 2;
+    TickOutlet outlet(1, 1);
+    TickResult result{};
+    for (Contact& contact : result.contacts) contact.force = unseen;
+    for (int tick = 0; tick < 4; ++tick) {  // so that every slot is used again
+        result.tick = tick;
+        result.contact_count = 2;
+        result.contacts[0].force = result.contacts[1].force = seen;
+        outlet.publish({&result, 1});
+        TickResult popped{};
+        ASSERT_TRUE(outlet.ring().pop(popped));
+        for (const TickResult& got : {popped, outlet.latest(0).read()}) {
+            EXPECT_EQ(got.tick, tick);
+            ASSERT_EQ(got.active_contacts().size(), 2U);
+            EXPECT_EQ(got.contacts[0].force, seen);
+            EXPECT_EQ(got.contacts[1].force, seen);
+            EXPECT_EQ(got.contacts[2].force, 0);
+        }
+    }
+}
+
 TEST(ServoLoop, each_tool_has_its_device_and_its_results) {
     HapticModel model(sample::sample_case(), "continuous", 2);
     RecordingDevice pressing;

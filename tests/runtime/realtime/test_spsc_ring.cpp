@@ -28,6 +28,19 @@ TEST(SpscRing, keeps_order_and_counts_what_it_drops) {
     EXPECT_FALSE(ring.pop(value));
 }
 
+TEST(SpscRing, fills_a_slot_in_place_and_not_where_it_is_full) {
+    SpscRing<std::array<int, 2>> ring(1);
+    const auto write_first = [](std::array<int, 2>& slot) { slot[0] = 7; };
+    EXPECT_TRUE(ring.push({1, 2}));
+    EXPECT_FALSE(ring.fill([](std::array<int, 2>&) { FAIL() << "a full ring has no slot"; }));
+    EXPECT_EQ(ring.dropped(), 1U);
+    std::array<int, 2> value{};
+    EXPECT_TRUE(ring.pop(value));
+    EXPECT_TRUE(ring.fill(write_first));
+    EXPECT_TRUE(ring.pop(value));
+    EXPECT_EQ(value, (std::array{7, 2}));
+}
+
 TEST(SpscRing, carries_every_value_whole_between_threads) {
     using Record = std::array<std::uint64_t, 20>;
     constexpr std::uint64_t count = 1 << 17;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fstream>
 #include <gtest/gtest.h>
+#include <map>
 
 #include "formats/model/errors.hpp"
 #include "tests/tools/imaging/hand_written_images.hpp"
@@ -101,6 +102,28 @@ scribbles = "strokes.seg.nrrd"
     EXPECT_EQ(liver.files.at("seeds_file"), folder / "seeds/liver.mrk.json");
     EXPECT_EQ(liver.files.at("scribbles"), folder / "strokes.seg.nrrd");
     EXPECT_EQ(liver.parameters.dump(), R"({"open_mm":2,"keep_largest":true,"close_mm":1})");
+}
+
+TEST(CaseFile, a_region_may_relax_by_a_series_that_makes_sense) {
+    const auto with = [](const std::string& terms) { return minimal + "relaxation = [" + terms + "]\n"; };
+    EXPECT_TRUE(read_case_file(written(minimal)).deformable.at(0).condense.relaxation.empty());
+    const CaseFile file =
+        read_case_file(written(with("{ share = 0.3, time_s = 0.5 }, { share = 0.2, time_s = 4 }")));
+    const auto& terms = file.deformable.at(0).condense.relaxation;
+    ASSERT_EQ(terms.size(), 2U);
+    EXPECT_EQ(terms[1].label, "liver");
+    EXPECT_EQ(terms[1].term.share, 0.2);
+    EXPECT_EQ(terms[1].term.time, 4);
+    for (const auto& [text, part] : std::map<std::string, std::string>{
+             {"{ share = 0.3, time = 0.5 }", "time_s"},
+             {"{ share = 0.3, time_s = 1, tau = 2 }", "tau"},
+             {"{ share = 1.2, time_s = 1 }", "between 0 and 1"},
+             {"{ share = 0.6, time_s = 1 }, { share = 0.5, time_s = 2 }", "less than 1"},
+             {"{ share = 0.2, time_s = 2 }, { share = 0.2, time_s = 1 }", "ascending times"}}) {
+        const std::string found = message(with(text));
+        EXPECT_NE(found.find("case.toml:17"), std::string::npos) << found;
+        EXPECT_NE(found.find(part), std::string::npos) << found;
+    }
 }
 
 TEST(CaseFile, an_unknown_key_is_refused_with_line_and_nearest_name) {

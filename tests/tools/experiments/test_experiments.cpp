@@ -7,6 +7,8 @@
 #include "tools/experiments/fault_run.hpp"
 #include "tools/experiments/puncture/approach_run.hpp"
 #include "tools/experiments/puncture/approaches.hpp"
+#include "tools/experiments/puncture/synchroniser.hpp"
+#include "tools/experiments/puncture/wall_map.hpp"
 #include "tools/experiments/rigid_case.hpp"
 #include "tools/experiments/stability/wall_stability.hpp"
 #include "tools/experiments/statistics.hpp"
@@ -152,6 +154,43 @@ TEST(RunApproach, continuous_contact_holds_on_a_thin_wall_and_single_detection_d
     const Outcome lost = run_approach(single, device, onto_shell(radius, thickness, 700), false);
     EXPECT_TRUE(is_puncture(lost, 1));
     EXPECT_GT(lost.deepest, 9);
+}
+
+// Up to its first force the hand goes the same way, so one more turn of the loop is all that is between them.
+TEST(Synchroniser, late_answers_put_the_first_force_off_by_one_turn_of_the_loop) {
+    constexpr double turn = 1.0 / 30, tick = 0.001;
+    const Case c = rigid_case("plate", plate_surface(), settings);
+    haptics::HapticModel model(c, "single");
+    const TouchPoint place{
+        .point = {7, 19, 0}, .normal = Vector3d::UnitZ(), .tangent = Vector3d::UnitX(), .clearance = 60};
+    const HandPath path = press_path(place, {.tool_radius = 0, .depth = 4, .speed = 40, .seconds = 1});
+    for (const double phase : {0.1, 0.45, 0.8}) {
+        const auto touch = [&](Crossing crossing) {
+            return touch_published(model, find_device_model("desktop"), path, place.normal, phase, crossing);
+        };
+        const TouchFigures before = touch(Crossing::late), after = touch(Crossing::synchronised);
+        ASSERT_GT(after.first_force_s, 0);
+        EXPECT_NEAR(before.first_force_s - after.first_force_s, turn, tick);
+        EXPECT_GT(before.largest_step, after.largest_step);  // it begins deeper
+        EXPECT_GT(before.pull, after.pull);                  // and ends farther out
+    }
+}
+
+// At rest the tip is 10 * 0.3 / 1.3 = 2.3 mm deep: past the middle of 4 mm, not of 6.
+TEST(WallMap, a_renewed_face_is_lost_where_the_hand_presses_past_the_middle_and_a_kept_one_is_not) {
+    const DeviceModel& device = find_device_model("desktop");
+    EXPECT_EQ(punctures_of_wall("twice-renewed", device, 4, 0.3), 100);
+    EXPECT_EQ(punctures_of_wall("twice", device, 4, 0.3), 0);
+    EXPECT_EQ(punctures_of_wall("twice", device, 1, 0.3), 100);  // past the whole of it
+    EXPECT_EQ(punctures_of_wall("continuous", device, 1, 0.3), 0);
+}
+
+TEST(WallMap, a_count_lies_where_the_thickest_wall_above_it_ends) {
+    std::array<int, walls.size()> counts{100, 100, 20, 10};
+    EXPECT_DOUBLE_EQ(wall_at(counts, 14), 3.6);
+    EXPECT_DOUBLE_EQ(wall_at(counts, 60), 2.5);
+    counts.fill(50);
+    EXPECT_TRUE(std::isnan(wall_at(counts, 14)));
 }
 
 TEST(FaultRun, five_virtual_minutes_keep_to_every_limit_and_report_every_fault_once) {

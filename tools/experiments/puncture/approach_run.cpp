@@ -14,12 +14,6 @@ using Eigen::Vector3d;
 
 constexpr double approach_tick_s = 1e-3;
 constexpr double just_before = 2;  // mm: beyond what a bump beside the entry holds up
-constexpr HandImpedance hand;
-
-bool detects_at(double time, double phase) {
-    const auto detections = [&](double t) { return std::floor(Approach::detections_per_s * t + phase); };
-    return detections(time) > detections(time - approach_tick_s);
-}
 
 // Whether the tool overlaps the surface or has crossed it since the last tick.
 bool passes_surface(const collision::CollisionSurface& surface, const Vector3d& before, const Vector3d& now,
@@ -36,7 +30,7 @@ Outcome run_approach(haptics::HapticModel& model, const DeviceModel& device_mode
     const auto& [entry, direction, thickness] = approach.place;
     const double arrival = (Approach::run_up + Approach::stroke) / approach.speed;
     const double end = arrival + Approach::press_s;
-    DynamicDevice device(device_model, hand,
+    DynamicDevice device(device_model, approach.hand,
                          HandPath({{0, entry - Approach::run_up * direction},
                                    {arrival, entry + Approach::stroke * direction}}));
     model.reset();
@@ -80,12 +74,17 @@ Outcome run_approach(haptics::HapticModel& model, const DeviceModel& device_mode
     return outcome;
 }
 
-double unbroken_force(double coupling_stiffness) {
-    return Approach::stroke * coupling_stiffness * hand.stiffness / (coupling_stiffness + hand.stiffness);
+bool detects_at(double time, double phase) {
+    const auto detections = [&](double t) { return std::floor(Approach::detections_per_s * t + phase); };
+    return detections(time) > detections(time - approach_tick_s);
 }
 
-bool is_puncture(const Outcome& outcome, double coupling_stiffness) {
-    return outcome.held < unbroken_force(coupling_stiffness) / 2;
+double unbroken_force(double coupling_stiffness, double hand_stiffness) {
+    return Approach::stroke * coupling_stiffness * hand_stiffness / (coupling_stiffness + hand_stiffness);
+}
+
+bool is_puncture(const Outcome& outcome, double coupling_stiffness, double hand_stiffness) {
+    return outcome.held < unbroken_force(coupling_stiffness, hand_stiffness) / 2;
 }
 
 bool is_pulled(const Outcome& outcome) {

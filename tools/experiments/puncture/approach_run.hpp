@@ -2,11 +2,16 @@
 #pragma once
 #include <functional>
 
+#include "formats/records/haptic_settings.hpp"
 #include "runtime/devices/dynamic_device.hpp"
 #include "runtime/haptics/haptic_model.hpp"
 #include "tools/experiments/puncture/approaches.hpp"
 
 namespace palpate::experiments {
+
+/// Of everything that the experiment touches.
+inline constexpr HapticSettings approach_settings{
+    .tool_radius = 0.5, .coupling_stiffness = 1.0, .max_force = 7.9, .max_force_rate = 7.9};
 
 /// One approach: the hand goes straight at `speed` from run_up before the entry to stroke behind it, where it
 /// stays and presses for press_s.
@@ -18,6 +23,7 @@ struct Approach {
     Place place;
     double speed = 145;  ///< of the hand, mm/s
     double phase = 0;    ///< 0 ... 1, of the detection loop when the hand sets out
+    devices::HandImpedance hand{};
 };
 
 /// What came of it. Along the approach is positive inwards.
@@ -43,10 +49,14 @@ Outcome run_approach(haptics::HapticModel& model, const devices::DeviceModel& de
                      const Approach& approach, bool watch_tool,
                      const std::function<void(const ApproachTick&)>& sink = {});
 
+/// Whether the detection loop, 30 times a second from `phase` on, comes by in the tick at `time` (s).
+bool detects_at(double time, double phase);
+
 /// The force that an unbroken wall would hold the hand back with at the stroke's end: coupling and hand in
 /// series, N. A puncture is an approach with less than half of it at its end.
-double unbroken_force(double coupling_stiffness);
-bool is_puncture(const Outcome& outcome, double coupling_stiffness);
+double unbroken_force(double coupling_stiffness, double hand_stiffness = devices::HandImpedance{}.stiffness);
+bool is_puncture(const Outcome& outcome, double coupling_stiffness,
+                 double hand_stiffness = devices::HandImpedance{}.stiffness);
 /// Ever drawn inwards by more than 0.1 N.
 bool is_pulled(const Outcome& outcome);
 

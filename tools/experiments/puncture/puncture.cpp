@@ -13,6 +13,8 @@
 #include "formats/drawing/chart.hpp"
 #include "tools/experiments/puncture/approach_run.hpp"
 #include "tools/experiments/puncture/puncture_groups.hpp"
+#include "tools/experiments/puncture/synchroniser.hpp"
+#include "tools/experiments/puncture/wall_map.hpp"
 #include "tools/experiments/rigid_case.hpp"
 #include "tools/experiments/statistics.hpp"
 #include "tools/meshing/files/mesh_files.hpp"
@@ -30,8 +32,6 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t fast_count = 10000, per_speed = 100;
 constexpr double slowest_group = 131, fastest_group = 157;  // mm/s, as published
 constexpr std::array speeds{50.0, 100.0, 145.0, 200.0, 300.0, 500.0, 700.0, 1000.0};
-constexpr HapticSettings settings{
-    .tool_radius = 0.5, .coupling_stiffness = 1.0, .max_force = 7.9, .max_force_rate = 7.9};
 
 constexpr auto definition = R"(## What counts as a puncture
 
@@ -48,7 +48,7 @@ outside and the bone around is not an edge (within 6 mm no steeper than 34 degre
 
 // What the experiment works on.
 struct Bench {
-    TriangleMesh mesh;
+    Case bone;
     std::vector<std::unique_ptr<HapticModel>> models;  // by scheme
     const DeviceModel& device = find_device_model("desktop");
     std::mt19937_64 random;
@@ -60,7 +60,8 @@ struct Bench {
     std::vector<Approach> draw(std::size_t count, const std::function<double(std::size_t)>& speed_of) {
         std::uniform_real_distribution<double> unit(0, 1);
         std::vector<Approach> approaches;
-        for (Place& place : draw_places(mesh, models[0]->surface(0), settings.tool_radius, count, random))
+        for (Place& place : draw_places(bone.rigid_bodies[0].surface, models[0]->surface(0),
+                                        approach_settings.tool_radius, count, random))
             approaches.push_back({std::move(place), speed_of(approaches.size()), unit(random)});
         return approaches;
     }
@@ -76,12 +77,12 @@ struct Bench {
 Bench bench_of(const Options& options) {
     if (options.surface.empty())
         throw UsageError({"--surface", "not given", "triangles of a bone (.vtp)", ""});
-    Bench bench{.mesh = meshing::read_surface(options.surface),
+    Bench bench{.bone = rigid_case(options.surface.stem().string(), meshing::read_surface(options.surface),
+                                   approach_settings),
                 .models = {},
                 .random = std::mt19937_64(options.seed)};
-    const Case bone = rigid_case(options.surface.stem().string(), bench.mesh, settings);
     for (const std::string_view scheme : schemes) {
-        bench.models.push_back(std::make_unique<HapticModel>(bone, scheme));
+        bench.models.push_back(std::make_unique<HapticModel>(bench.bone, scheme));
         const DynamicDevice device(bench.device, {}, HandPath({{0, Eigen::Vector3d::Zero()}}));
         const DeviceLimits limits = device.limits();
         bench.models.back()->couple_to({&limits, 1});
@@ -111,15 +112,18 @@ const Approach& shown_approach(const GroupRun& run) {
     return run.approaches[index];
 }
 
+const Place& thickest(const GroupRun& run) {
+    return std::ranges::max_element(run.approaches, {}, [](const Approach& a) { return a.place.thickness; })
+        ->place;
+}
+
 // Punctures by speed, for every scheme, at the same places.
 Chart speed_chart(std::string& table, Json& result, Bench& bench) {
     Chart chart{.title = fmt::format("Punctures in {} approaches", per_speed),
                 .x_label = "speed of the hand [mm/s]",
                 .y_label = "punctures [%]"};
-    table += fmt::format(
-        "\n## By speed\n\nPunctures in the same {} approaches at each speed.\n\n"
-        "| mm/s | single | twice | continuous |\n|--:|--:|--:|--:|\n",
-        per_speed);
+    table += fmt::format("\n## By speed\n\nPunctures in the same {} approaches at each speed.\n\n{}",
+                         per_speed, scheme_columns("mm/s"));
     for (const std::string_view name : schemes) chart.series.push_back({.name = std::string(name)});
     auto approaches = bench.draw(per_speed, [](std::size_t) { return speeds.front(); });
     for (const double speed : speeds) {
@@ -225,12 +229,22 @@ Findings puncture(const Options& options, cli::Session& session) {
     findings.result["groups"] = add_group_tables(findings.table, run);
     findings.result["reasons"] = add_reasons(findings.table, run);
 
-    session.progress.step("speeds", 0.15);
+    session.progress.step("walls", 0.1);
+    const WallMap map = map_walls(bench.device);
+    findings.result["walls"] = add_wall_tables(findings.table, map);
+
+    session.progress.step("synchroniser", 0.3);
+    const SynchroniserRun synchronised = compare_synchronisers(bench.bone, thickest(run), bench.device);
+    findings.result["synchroniser"] = add_synchroniser_table(findings.table, synchronised);
+
+    session.progress.step("speeds", 0.4);
     const Chart by_speed = speed_chart(findings.table, findings.result, bench);
-    session.progress.step("fast approaches", 0.3);
+    session.progress.step("fast approaches", 0.55);
     findings.result["fast"] = fast_table(findings.table, bench);
 
     const auto [force, depth] = curves(bench, shown_approach(run));
+    findings.pictures.emplace_back("puncture_by_wall", drawing::charts_svg(wall_charts(map)));
+    findings.pictures.emplace_back("synchroniser", drawing::charts_svg(synchronised.charts));
     findings.pictures.emplace_back("puncture_by_speed", drawing::charts_svg({by_speed}));
     findings.pictures.emplace_back("puncture_curves", drawing::charts_svg({force, depth}));
     return findings;

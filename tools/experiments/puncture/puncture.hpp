@@ -5,7 +5,8 @@
 namespace palpate::experiments {
 
 /// Counts how often a tool is pushed through a bone (`--surface`) by each contact scheme, as the published
-/// tables 1 and 2 do, says why, and looks for a puncture in 10 000 approaches with `continuous`. Throws
+/// tables 1 and 2 do, says why, finds where their counts lie over wall and pressure, draws figures 6 and 8
+/// with and without the synchroniser, and looks for a puncture in 10 000 approaches with `continuous`. Throws
 /// UsageError without a surface.
 Findings puncture(const Options& options, cli::Session& session);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <numeric>
 
 #include "tools/experiments/statistics.hpp"
@@ -58,12 +59,12 @@ std::string quartiles(const std::vector<double>& values) {
                        quantile(values, 0.75));
 }
 
-// How many approaches the detection loop should lose, by thickness and speed alone.
+// How many approaches should be lost, by thickness, speed and pressure alone.
 struct Expected {
-    double missed = 0;    // no detection inside the wall, of a tip that nothing slows down
-    double far_half = 0;  // that, or the first detection is nearer to the far side
-    int pressed = 0;      // a tip pressed on an unbroken surface rests beyond the middle of the wall
-    double either = 0;    // far_half or pressed
+    double missed = 0;                   // no detection inside the wall, of a tip that nothing slows down
+    double far_half = 0;                 // that, or the first detection is nearer to the far side
+    int past_middle = 0, past_wall = 0;  // where a tip pressed on an unbroken surface rests
+    std::array<double, 4> punctures{};   // by published scheme
 };
 
 Expected expect(const GroupRun& run) {
@@ -72,18 +73,23 @@ Expected expect(const GroupRun& run) {
     for (std::size_t i = 0; i < run.approaches.size(); ++i) {
         const double step = held[i].speed / Approach::detections_per_s;
         const double wall = run.approaches[i].place.thickness;
+        const double rest = held[i].held / run.coupling;
         const double far_half = std::max(0.0, 1 - wall / 2 / step);
-        const bool pressed = held[i].held / run.coupling > wall / 2;
+        const bool past_middle = rest > wall / 2, past_wall = rest > wall;
         expected.missed += std::max(0.0, 1 - wall / step);
         expected.far_half += far_half;
-        expected.pressed += pressed;
-        expected.either += pressed ? 1 : far_half;
+        expected.past_middle += past_middle;
+        expected.past_wall += past_wall;
+        const std::array lost{past_wall ? 1 : far_half, past_wall ? 1.0 : 0, past_middle ? 1 : far_half,
+                              past_middle ? 1.0 : 0};
+        for (std::size_t scheme = 0; scheme < lost.size(); ++scheme)
+            expected.punctures[scheme] += lost[scheme];
     }
     return expected;
 }
 
 Json add_thickness_table(std::string& table, const GroupRun& run) {
-    table += "\n| wall mm | approaches | single | twice | continuous |\n|:--|--:|--:|--:|--:|\n";
+    table += "\n" + scheme_columns("wall mm | approaches");
     Json rows = Json::array();
     for (std::size_t c = 0; c + 1 < thickness_classes.size(); ++c) {
         const double from = thickness_classes[c], to = thickness_classes[c + 1];
@@ -97,15 +103,26 @@ Json add_thickness_table(std::string& table, const GroupRun& run) {
                 punctures[scheme] += is_puncture(run.outcomes[scheme][i], run.coupling);
         }
         const bool last = c + 2 == thickness_classes.size();
-        table += fmt::format("| {} | {} | {} | {} | {} |\n",
+        table += fmt::format("| {} | {} | {} |\n",
                              last ? fmt::format("{:g} …", from) : fmt::format("{:g} … {:g}", from, to),
-                             approaches, punctures[0], punctures[1], punctures[2]);
+                             approaches, fmt::join(punctures, " | "));
         rows.push_back({{"from_mm", from}, {"approaches", approaches}, {"punctures", punctures}});
     }
     return rows;
 }
 
 }  // namespace
+
+std::string scheme_columns(const std::string& what) {
+    std::string head = "| " + what + " |", rule = "\n|--:|";
+    for (const char c : what)
+        if (c == '|') rule += "--:|";
+    for (const std::string_view name : schemes) {
+        head += fmt::format(" {} |", name);
+        rule += "--:|";
+    }
+    return head + rule + "\n";
+}
 
 std::string chance_text(int count, int trials) {
     const Interval chance = chance_interval(count, trials);
@@ -142,7 +159,7 @@ Json add_group_tables(std::string& table, const GroupRun& run) {
                         {"speed_mm_s", speeds},
                         {"punctures_total", sum(punctures)},
                         {"pulled_total", sum(pulled)}};
-        if (scheme == published.size()) continue;
+        if (scheme >= published.size()) continue;
         const Published& theirs = published[scheme];
         table += count_row(name + ", published: punctures", theirs.punctures) +
                  speed_row(theirs.speeds, theirs.mean_speed);
@@ -162,32 +179,33 @@ Json add_reasons(std::string& table, const GroupRun& run) {
     table += fmt::format(
         "\n## Why\n\n"
         "A detection inside the bone anchors the force at the nearest surface point. In the far half of a "
-        "wall that "
-        "is the far side, and the force leads through. The wall, along the approach up to where the line "
-        "first "
-        "leaves the bone, is {} mm thick (quartiles); the tip goes {:.1f} mm between two detections.\n\n"
+        "wall that is the far side, and the force leads through. The wall, along the approach up to where "
+        "the "
+        "line first leaves the bone, is {} mm thick (quartiles); the tip goes {:.1f} mm between two "
+        "detections.\n\n"
         "- Late: of 100 approaches at these speeds, {:.1f} should pass the whole wall between two "
-        "detections, and "
-        "{:.1f} its near half. `twice` detects within a tick, so this is gone.\n"
+        "detections, and {:.1f} its near half. `twice` detects within a tick, so this is gone.\n"
         "- Pressed: in {} of 100 the coupling gives way under the hand by more than half the wall, with the "
-        "force that "
-        "`continuous` holds at the end; the next detection then anchors on the far side. Neither published "
-        "scheme "
-        "helps.\n"
-        "- Together that lets expect {:.1f} punctures with `single` and {} with `twice`.\n\n"
+        "force that `continuous` holds at the end, in {} by more than the whole. A face that is kept bears "
+        "the "
+        "first. Where every detection renews it, the next one anchors on the far side, and the second test "
+        "does not help.\n"
+        "- Together that lets expect {:.1f} punctures with `single` and {:g} with `twice`, {:.1f} and {:g} "
+        "where the face is renewed.\n\n"
         "The publication states neither the bone's thickness, nor the spring's stiffness, nor how hard was "
-        "pressed; "
-        "its counts follow from these as ours do, so they need not agree.\n\n"
+        "pressed; its counts follow from these as ours do, so they need not agree.\n\n"
         "| quartiles | first force after ms | tip then mm deep | wall where punctured mm | wall where held "
         "mm |\n"
         "|:--|--:|--:|--:|--:|\n",
-        quartiles(walls), mean(steps), expected.missed, expected.far_half, expected.pressed, expected.either,
-        expected.pressed);
+        quartiles(walls), mean(steps), expected.missed, expected.far_half, expected.past_middle,
+        expected.past_wall, expected.punctures[0], expected.punctures[1], expected.punctures[2],
+        expected.punctures[3]);
     Json result{{"thickness_mm", walls},
                 {"expected_missed", expected.missed},
                 {"expected_far_half", expected.far_half},
-                {"expected_pressed", expected.pressed},
-                {"expected_either", expected.either}};
+                {"expected_past_middle", expected.past_middle},
+                {"expected_past_wall", expected.past_wall},
+                {"expected_punctures", expected.punctures}};
     for (std::size_t scheme = 0; scheme < run.outcomes.size(); ++scheme) {
         std::vector<double> latency, depth, punctured, held;
         for (std::size_t i = 0; i < run.approaches.size(); ++i) {

@@ -12,9 +12,13 @@ namespace palpate::experiments {
 
 inline constexpr std::size_t puncture_groups = 10, approaches_per_group = 10;
 
-/// The contact methods that are compared, and which of them holds the tool outside.
-inline constexpr std::array<std::string_view, 3> schemes{"single", "twice", "continuous"};
-inline constexpr std::size_t continuous_scheme = 2;
+/// The contact methods that are compared, and which of them holds the tool outside: the published ones, the
+/// face in contact kept, then renewed, and ours.
+inline constexpr std::array<std::string_view, 5> schemes{"single", "twice", "single-renewed", "twice-renewed",
+                                                         "continuous"};
+inline constexpr std::size_t continuous_scheme = 4;
+/// "| what | single | twice | ... |" and the rule below, for tables with a column for each scheme.
+std::string scheme_columns(const std::string& what);
 
 /// The same approaches by every scheme, group after group.
 struct GroupRun {

@@ -51,6 +51,7 @@ void add_queries(RigidTicks& found, const TriangleMesh& bone, const HandPath& pa
         }
     const PeerTimes peer = time_cgal(bone, positions);
     found.cgal_tree_s = peer.build_s;
+    found.cgal_closest = peer.closest;
     const auto add = [&](const char* name, const realtime::Histogram& times) {
         found.rows.push_back({.group = "query", .name = name, .times = times, .run = {}});
     };

@@ -11,6 +11,7 @@ namespace palpate::experiments {
 /// CGAL's on the same path.
 struct RigidTicks {
     std::vector<TickRow> rows;
+    realtime::Histogram cgal_closest;  ///< ns: what CGAL takes for the point nearest to each position
     double tree_s = 0, surface_s = 0, cgal_tree_s = 0;  ///< to build the OBB tree, the rest, CGAL's tree
     std::int64_t below = 0;                             ///< ticks_below() of all runs with `continuous`
 };

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "runtime/haptics/collision_loop.hpp"
+#include "runtime/haptics/tick_outlet.hpp"
 
 namespace palpate::experiments {
 namespace {
@@ -35,18 +36,27 @@ TickRun pass_of(HapticModel& model, std::span<const HandPath> paths, Counted cou
     model.reset();
     std::vector<DeviceState> states(paths.size());
     std::vector<TickResult> results(paths.size());
+    TickOutlet outlet(paths.size());
+    TickResult taken;
     TickRun run;
     const std::int64_t ticks = ticks_of(paths);
     for (run.ticks = 0; run.ticks < ticks; ++run.ticks) {
         for (std::size_t t = 0; t < paths.size(); ++t) states[t] = state_at(paths[t], run.ticks);
         if (clock) clock->wait();
-        const std::uint64_t spent = nanoseconds_of([&] { model.tick(states, results); });
+        const std::uint64_t spent = nanoseconds_of([&] {
+            model.tick(states, results);
+            outlet.publish(results);
+        });
+        while (outlet.ring().pop(taken)) {
+        }
         std::int64_t rows = 0, pressed = 0;
         std::uint32_t status = tick_ok;
         for (const TickResult& result : results) {
             rows += result.contact_count;
             pressed += std::ranges::count_if(result.active_contacts(),
                                              [](const Contact& contact) { return contact.force > 0; });
+            run.pairs +=
+                static_cast<double>(std::ranges::count_if(result.active_contacts(), is_of_neighbour));
             status |= result.status;
         }
         run.cut += (status & contacts_cut) != 0;
@@ -64,6 +74,7 @@ TickRun pass_of(HapticModel& model, std::span<const HandPath> paths, Counted cou
     const auto touching = static_cast<double>(std::max<std::int64_t>(1, run.touching));
     run.rows /= touching;
     run.pressed /= touching;
+    run.pairs /= touching;
     return run;
 }
 

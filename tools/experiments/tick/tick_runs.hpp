@@ -39,13 +39,14 @@ class Shortest {
     std::vector<std::uint64_t> times_;
 };
 
-/// What the ticks along a path took.
+/// What the ticks along a path took. As in a servo loop, a tick has handed its results over when it ends.
 struct TickRun {
-    realtime::Histogram tick;    ///< HapticModel::tick(), ns
+    realtime::Histogram tick;    ///< HapticModel::tick() and TickOutlet::publish(), ns
     realtime::Histogram detect;  ///< HapticModel::detect(), ns: of what needs it, 30 in a virtual second
     std::int64_t ticks = 0, touching = 0;
     std::int64_t cut = 0, unsolved = 0;  ///< with TickStatus contacts_cut, contact_unsolved
     double rows = 0, pressed = 0;        ///< mean contact points of touching ticks, and those with force
+    double pairs = 0;                    ///< of these, between two bodies
 };
 
 enum class Counted { all, touching };  ///< which ticks the histogram holds

@@ -9,6 +9,7 @@
 #include "runtime/session/touch_target.hpp"
 #include "tools/experiments/soft_ellipsoid.hpp"
 #include "tools/experiments/tick/tick_rigid.hpp"
+#include "tools/obb/build_obb_tree.hpp"
 
 namespace palpate::experiments {
 namespace {
@@ -23,6 +24,8 @@ constexpr std::array wanted_contacts{8, 16, 32, 64};
 constexpr double relative_depth = 0.5;  // of the tool's surface, in its radii
 constexpr int fixed_limit_contacts = 16;
 constexpr double period_us = 1000;
+constexpr double small_radius = 5;   // mm: of the tool beside pairs
+constexpr double pairs_limit = 150;  // us
 
 // On the ellipsoid, x mm beside its top; slides go along y.
 TouchPoint place_at(double x) {
@@ -76,6 +79,34 @@ TickRow row_of(std::string name, const TickRun& run, std::size_t nodes, int cont
     return row;
 }
 
+// The same body elsewhere.
+DeformableBody moved(DeformableBody body, const Vector3d& by) {
+    for (Vector3d& p : body.mesh.rest_positions) p += by;
+    for (Vector3d& p : body.boundary.surface.vertices) p += by;
+    body.obb_tree = obb::build_obb_tree(body.boundary.surface);
+    return body;
+}
+
+// A sphere pushes the ellipsoid's end so that its other end presses a second one, which it overlaps at rest
+// as organs cut from one label map do: with as many pairs as a tick solves.
+TickRow neighbour_row(const DeformableBody& body, double radius, double seconds) {
+    constexpr double overlap = 4, depth = 8;  // mm
+    Case made = soft_case(body, radius, false);
+    made.deformable_bodies.push_back(moved(body, Vector3d(2 * semi_axes.x() - overlap, 0, 0)));
+    made.deformable_bodies[1].name = "neighbour";
+    HapticModel model(made);
+    const TouchPoint place{
+        .point = {-semi_axes.x(), 0, 0}, .normal = -Vector3d::UnitX(), .tangent = Vector3d::UnitY()};
+    const HandPath path = slide_path(
+        place, {.tool_radius = radius, .depth = depth, .speed = 10, .slide_length = 4, .seconds = seconds});
+    const TickRun run = time_ticks(model, {&path, 1}, Counted::touching);
+    TickRow row = row_of(fmt::format("continuous, {} and {} nodes, {:.1f} mm sphere, {:.0f} pairs that press",
+                                     body.contact_nodes.size(), body.contact_nodes.size(), radius, run.pairs),
+                         run, 0, 0);
+    row.limit_p999 = pairs_limit;
+    return row;
+}
+
 }  // namespace
 
 SoftTicks soft_ticks(cli::Session& session) {
@@ -116,6 +147,7 @@ SoftTicks soft_ticks(cli::Session& session) {
             HapticModel model(loaded->patient_case, usual_contact_method, 2);
             const std::array paths{slide_at(-10, radius, relative_depth * radius, seconds),
                                    slide_at(10, radius, relative_depth * radius, seconds)};
+            others.push_back(neighbour_row(body, small_radius, seconds));
             others.push_back(
                 row_of("continuous, two tools, " + what, time_ticks(model, paths, Counted::touching), 0, 0));
         }

@@ -11,19 +11,36 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-LabelMaterial parse_material(const std::string& text) {
+struct LabelledPair {
+    std::string label;
+    double first = 0, second = 0;
+};
+
+// LABEL:NUMBER,NUMBER
+LabelledPair parse_pair(const std::string& option, const std::string& text, const std::string& expected,
+                        const std::string& example) {
     const auto colon = text.rfind(':');
     const auto comma = text.find(',', colon == std::string::npos ? 0 : colon);
-    double modulus_kpa = 0, ratio = 0;
+    double first = 0, second = 0;
     const auto number = [&](std::size_t begin, std::size_t end, double& value) {
         return std::from_chars(text.data() + begin, text.data() + end, value).ptr == text.data() + end &&
                std::isfinite(value);
     };
-    if (colon == std::string::npos || comma == std::string::npos || !number(colon + 1, comma, modulus_kpa) ||
-        !number(comma + 1, text.size(), ratio))
-        throw UsageError({"--material " + text, "cannot be read", "REGION:YOUNGS_MODULUS_KPA,POISSONS_RATIO",
-                          "for example liver:6.3,0.45"});
-    return {text.substr(0, colon), modulus_kpa, ratio};
+    if (colon == std::string::npos || comma == std::string::npos || !number(colon + 1, comma, first) ||
+        !number(comma + 1, text.size(), second))
+        throw UsageError({option + " " + text, "cannot be read", expected, "for example " + example});
+    return {text.substr(0, colon), first, second};
+}
+
+LabelMaterial parse_material(const std::string& text) {
+    const auto [label, modulus_kpa, ratio] =
+        parse_pair("--material", text, "REGION:YOUNGS_MODULUS_KPA,POISSONS_RATIO", "liver:6.3,0.45");
+    return {label, modulus_kpa, ratio};
+}
+
+LabelRelaxation parse_relaxation(const std::string& text) {
+    const auto [label, share, time] = parse_pair("--relaxation", text, "REGION:SHARE,TIME", "liver:0.3,1");
+    return {label, {.share = share, .time = time}};
 }
 
 NodePick pick_from(const std::string& words) {
@@ -43,6 +60,19 @@ void to_json(Json& json, const LabelMaterial& material) {
 void from_json(const Json& json, LabelMaterial& material) {
     cli::refuse_other_keys(json, {"label", "youngs_modulus_kpa", "poissons_ratio"});
     material = {json.at("label"), json.at("youngs_modulus_kpa"), json.at("poissons_ratio")};
+}
+
+void to_json(Json& json, const LabelRelaxation& relaxation) {
+    json = {{"label", relaxation.label}};
+    for_each_field(relaxation_fields,
+                   [&](const auto& field) { json[key_of(field)] = relaxation.term.*field.member; });
+}
+
+void from_json(const Json& json, LabelRelaxation& relaxation) {
+    cli::refuse_other_keys(json, {"label", "share", "time_s"});
+    relaxation.label = json.at("label");
+    for_each_field(relaxation_fields,
+                   [&](const auto& field) { relaxation.term.*field.member = json.at(key_of(field)); });
 }
 
 void to_json(Json& json, const NodePick& pick) {
@@ -80,6 +110,11 @@ void declare(cli::Command& command, CondenseRequest& request) {
         .items("--material", cli::item_list(request.materials, parse_material),
                "material of a region: REGION:YOUNGS_MODULUS,POISSONS_RATIO", "kPa, 1")
         .required();
+    command.items(
+        "--relaxation", cli::item_list(request.relaxation, parse_relaxation),
+        "term of a region's relaxation, by ascending time: REGION:SHARE,TIME; the part SHARE of its "
+        "modulus is lost with the time constant TIME",
+        "1, s");
     command.items("--fixed", cli::item_list(request.fixed, pick_from),
                   "rule that fixes nodes; several add up", "mm");
     command.items("--contact", cli::item_list(request.contact, pick_from),

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/records/material.hpp"
 #include "tools/cli/command.hpp"
 
 namespace palpate::stages {
@@ -15,6 +16,13 @@ struct LabelMaterial {
     std::string label;  ///< name or value
     double youngs_modulus_kpa = 0;
     double poissons_ratio = 0;
+};
+
+/// A term of a region's relaxation, see RelaxationTerm: "liver:0.3,1" or {"label": "liver", "share": 0.3,
+/// "time_s": 1}.
+struct LabelRelaxation {
+    std::string label;  ///< name or value
+    RelaxationTerm term;
 };
 
 /// What picks nodes; one member but the words is set. Positions and radius are LPS mm.
@@ -30,6 +38,8 @@ struct NodePick {
 
 void to_json(nlohmann::ordered_json& json, const LabelMaterial& material);
 void from_json(const nlohmann::ordered_json& json, LabelMaterial& material);
+void to_json(nlohmann::ordered_json& json, const LabelRelaxation& relaxation);
+void from_json(const nlohmann::ordered_json& json, LabelRelaxation& relaxation);
 void to_json(nlohmann::ordered_json& json, const NodePick& pick);
 void from_json(const nlohmann::ordered_json& json, NodePick& pick);
 
@@ -38,14 +48,15 @@ struct CondenseRequest {
     std::filesystem::path mesh;  ///< .vtu
     std::string name;            ///< of the body; empty: the mesh file's
     std::vector<LabelMaterial> materials;
-    std::vector<NodePick> fixed, contact;  ///< no contact: all surface nodes that are not fixed
-    std::string element = "linear";        ///< or "quadratic"
-    std::string representation = "auto";   ///< or "dense", "hierarchical"
-    double accuracy = 1e-3;                ///< relative error of a hierarchical compliance
-    double memory_gib = 0;                 ///< that may be in use at once; 0: what the machine has left
-    double size_mib = 1024;                ///< that the compliance may have in the file
-    bool discretisation_error = false;     ///< estimate it
-    std::filesystem::path output;          ///< .body.h5
+    std::vector<LabelRelaxation> relaxation;  ///< of each region by ascending time
+    std::vector<NodePick> fixed, contact;     ///< no contact: all surface nodes that are not fixed
+    std::string element = "linear";           ///< or "quadratic"
+    std::string representation = "auto";      ///< or "dense", "hierarchical"
+    double accuracy = 1e-3;                   ///< relative error of a hierarchical compliance
+    double memory_gib = 0;                    ///< that may be in use at once; 0: what the machine has left
+    double size_mib = 1024;                   ///< that the compliance may have in the file
+    bool discretisation_error = false;        ///< estimate it
+    std::filesystem::path output;             ///< .body.h5
 };
 
 /// The files that list nodes, in the order of the rules.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 // Contact that keeps energy. A tool of spheres of radius r hangs on its virtual coupling of stiffness K from
 // the device at d; x is where it is, u the displacements of the bodies' surfaces, C their compliance against
@@ -21,9 +22,12 @@
 //     A_kl = n_k . n_l / K + sum_ij w_ki w_lj n_k . C_ij n_l + n_k . S n_l,
 //     delta_k = n_k . (x - d + s - s_0) - sum_i w_ki n_k . u_i - g_k.
 // The first term of A is there where k and l are of one tool, the second where they lie on one body, the
-// third where they press one sphere; a rigid body has the first alone. The forces answer with the next x = d
-// + sum f n / K, u = -C sum w n f and s, and so on until nothing changes. Answers are combined as Anderson
-// (1965) has it, for two sets of contacts would take turns for ever.
+// third where they press one sphere; a rigid body has the first alone. Where bodies press each other
+// (neighbour_contact.cpp), there are rows of the second kind between them. Where tissue creeps, C and s are
+// what they come to within a tick, and what earlier forces left behind counts as if it were held: so V is
+// another in each tick, and a closed way loses energy (deformed_patch_creep.cpp, remember_pushes()). The
+// forces answer with the next x = d + sum f n / K, u = -C sum w n f and s, and so on until nothing changes.
+// Answers are combined as Anderson (1965) has it, for two sets of contacts would take turns for ever.
 
 namespace palpate::haptics {
 namespace {
@@ -40,7 +44,12 @@ constexpr std::size_t most_walls = 48;  // leaves room for tissue
 }  // namespace
 
 void ContactEquilibrium::reset() noexcept {
+    for (Tool& tool : tools_)
+        for (Part& part : tool.parts)
+            for (Touch& touch : part.touches) touch.forget_pushes();
+    for (DeformedPatch& patch : patches_) patch.reset();
     for (std::size_t t = 0; t < tools_.size(); ++t) forget(t);
+    neighbours_.forget();
     forget_tissue();
 }
 
@@ -51,10 +60,11 @@ void ContactEquilibrium::forget(std::size_t t) noexcept {
     tool.press.setZero();
     tool.drag.setZero();
     for (Part& part : tool.parts)
-        for (Touch& touch : part.touches) {
+        for (std::size_t soft = 0; soft < patches_.size(); ++soft) {
+            Touch& touch = part.touches[soft];
             touch.count = 0;
-            touch.freedom = 1;
-            touch.sunk.setZero();
+            if (touch.creep == nullptr) touch.freedom = 1;
+            touch.sunk = local_dent(touch, patches_[soft]);
             touch.push.setZero();
             touch.drag.setZero();
             touch.slip.setZero();
@@ -65,13 +75,15 @@ void ContactEquilibrium::forget(std::size_t t) noexcept {
 void ContactEquilibrium::begin_tick(double stiffness) noexcept {
     coupling_ = stiffness;
     rows_.clear();
+    groups_.clear();
     residual_ = 0;
     for (Tool& tool : tools_) {
-        tool.felt = 0;
+        tool.was_felt = std::exchange(tool.felt, 0);
         tool.outside = true;
         tool.at_rest = false;
     }
     for (DeformedPatch& patch : patches_) patch.begin_tick();
+    neighbours_.look(patches_);
 }
 
 void ContactEquilibrium::pull(std::size_t t, std::span<const Sphere> spheres) noexcept {
@@ -81,10 +93,17 @@ void ContactEquilibrium::pull(std::size_t t, std::span<const Sphere> spheres) no
     for (std::size_t p = 0; p < spheres.size(); ++p) {
         Part& part = tool.parts[p];
         part.last_device = part.sphere.device;
-        moved = std::max(moved, (spheres[p].device - part.last_device).norm());
+        if (p < tool.was_felt) moved = std::max(moved, (spheres[p].device - part.last_device).norm());
         part.sphere = spheres[p];
         for (const GodObject::Touch& touch : spheres[p].if_rigid->touches())
             meets = meets || touch.surface >= bodies_.rigid_count();
+        // Clear of a body as it is at rest, a sphere will meet it elsewhere.
+        for (std::size_t soft = 0; soft < patches_.size(); ++soft)
+            if (part.touches[soft].push == Vector3d::Zero() &&
+                std::ranges::none_of(spheres[p].if_rigid->touches(), [&](const GodObject::Touch& touch) {
+                    return touch.surface == bodies_.rigid_count() + soft;
+                }))
+                part.touches[soft].forget_pushes();
     }
     tool.felt = spheres.size();
     tool.cold = !tool.touching;
@@ -168,6 +187,7 @@ void ContactEquilibrium::iterate(int most) noexcept {
             longest = std::min(longest, tool.reach);
         }
         cut_rows();
+        neighbours_.gather(patches_, max_contacts - rows_.size());
         group_rows();
         solve_rows();
         const std::size_t newest = static_cast<std::size_t>(iteration) % DeformedPatch::iterates;
@@ -177,9 +197,10 @@ void ContactEquilibrium::iterate(int most) noexcept {
         known = change > far_off * before ? 1 : std::min(known + 1, DeformedPatch::iterates);
         if (predicts) known = 0;
         before = change;
+        neighbours_.move(change);
         relax_to(mix(newest, change < settled ? 1 : known),
                  predicts ? std::numeric_limits<double>::infinity() : longest);
-        if (change < settled && watched_are_clear()) break;
+        if (change < settled && watched_are_clear() && neighbours_.is_clear(patches_)) break;
     }
 }
 
@@ -191,11 +212,12 @@ bool ContactEquilibrium::found(std::size_t t) const noexcept {
     for (const Part& part : std::span(tool.parts).first(tool.felt))
         for (const GodObject::Touch& touch : part.sphere.if_rigid->touches()) {
             if (touch.surface < bodies_.rigid_count()) continue;
-            const TriangleCorners corners =
-                patches_[touch.surface - bodies_.rigid_count()].look_at(touch.foot.triangle);
+            const std::size_t soft = touch.surface - bodies_.rigid_count();
+            const TriangleCorners corners = patches_[soft].look_at(touch.foot.triangle);
             Vector3d foot = Vector3d::Zero();
             for (std::size_t i = 0; i < 3; ++i)
                 foot += touch.foot.barycentric[static_cast<Index>(i)] * corners[i];
+            foot -= local_dent(part.touches[soft], patches_[soft]);
             if (touch.normal.dot(foot - part.sphere.device) + radius_ > first_reach) return false;
         }
     return true;
@@ -234,6 +256,8 @@ void ContactEquilibrium::end_tick() noexcept {
     bool any = false;
     last_motion_ = 0;
     for (const DeformedPatch& patch : patches_) last_motion_ = std::max(last_motion_, patch.motion());
+    remember_pushes();
+    neighbours_.end_tick(patches_);
     for (std::size_t t = 0; t < tools_.size(); ++t) {
         Tool& tool = tools_[t];
         const bool pressed = std::ranges::any_of(rows_, [&](const Row& row) {
@@ -253,17 +277,43 @@ void ContactEquilibrium::end_tick() noexcept {
     }
 }
 
-// Where nothing is touched, nothing that was leaves a trace in what will be.
+// Where nothing is touched, nothing that was leaves a trace in what will be, but for dents.
 void ContactEquilibrium::forget_tissue() noexcept {
+    bool any = false;
     for (DeformedPatch& patch : patches_) {
         if (patch.is_at_rest()) continue;
-        patch.reset();
+        any = true;
+        patch.release();
         for (Tool& tool : tools_)
             for (Part& part : tool.parts)
                 for (Touch& touch : part.touches) touch.way = -1;
     }
+    if (any) neighbours_.forget();
     active_count_ = 0;
     last_motion_ = 0;
+}
+
+// What a sphere sinks in locally creeps too: s follows now F and what is left of earlier presses, as a sphere
+// on a half-space that creeps does while its contact grows (Lee, Radok 1960). That is kept with the sphere,
+// as the tissue under it when it began to press creeps, until it is clear of the body.
+void ContactEquilibrium::remember_pushes() noexcept {
+    for (const Group& group : groups_) {
+        Touch& touch = touch_of(group);
+        const DeformableContact& body = patch_of(group).body();
+        if (touch.creep != nullptr || !body.creeps() || body.spread() == nullptr) continue;
+        const Row& most = *std::ranges::max_element(rows_of(group), {}, &Row::force);
+        if (!(most.force > 0)) continue;
+        Index corner = 0;
+        most.weights.maxCoeff(&corner);
+        touch.creep = body.creep_of(body.triangle(most.triangle)[static_cast<std::size_t>(corner)]);
+    }
+    for (Tool& tool : tools_)
+        for (Part& part : tool.parts)
+            for (Touch& touch : part.touches) {
+                if (touch.creep == nullptr) continue;
+                touch.left_push.take(*touch.creep, touch.push);
+                touch.lasting_push = touch.left_push.lasting(*touch.creep);
+            }
 }
 
 }  // namespace palpate::haptics

@@ -12,15 +12,17 @@
 #include "runtime/haptics/contact/contact_bodies.hpp"
 #include "runtime/haptics/contact/contact_lcp.hpp"
 #include "runtime/haptics/contact/equilibrium/deformed_patch.hpp"
+#include "runtime/haptics/contact/equilibrium/neighbour_contact.hpp"
 #include "runtime/haptics/contact/fixed_list.hpp"
 #include "runtime/haptics/contact/god_object.hpp"
 
 namespace palpate::haptics {
 
 /// Finds where tools and tissue come to rest together: tools made of spheres, each pulled by its virtual
-/// coupling, on deformable bodies as they are displaced and on half-spaces that rigid bodies allow. The
-/// equations stand in contact_equilibrium.cpp. What was found in one tick is where the next one starts. One
-/// thread; realtime-safe: everything is allocated on construction.
+/// coupling, on deformable bodies as they are displaced and on half-spaces that rigid bodies allow, and the
+/// deformable bodies on what lies beside them. The equations stand in contact_equilibrium.cpp. What was found
+/// in one tick is where the next one starts. One thread; realtime-safe: everything is allocated on
+/// construction.
 class ContactEquilibrium {
   public:
     /// A sphere of a tool in one tick.
@@ -65,11 +67,15 @@ class ContactEquilibrium {
     /// that friction holds goes no farther off.
     double held_reach(std::size_t tool) const noexcept { return tools_[tool].held_reach; }
     /// Whether it touches more than could be solved, and part of it was left out.
-    bool was_cut(std::size_t tool) const noexcept { return tools_[tool].cut; }
+    bool was_cut(std::size_t tool) const noexcept {
+        return tools_[tool].cut || (tools_[tool].touching && neighbours_.was_cut());
+    }
     /// Worst violation of the contact conditions, mm.
     double residual() const noexcept { return residual_; }
     /// Appends the contacts with deformable bodies that press the tool.
     void write_contacts(std::size_t tool, TickResult& result) const noexcept;
+    /// Appends those of deformable bodies with what lies beside them.
+    void write_neighbours(TickResult& result) const noexcept { neighbours_.write_contacts(result); }
     /// Ends the tick: what this one found is the start of the next.
     void end_tick() noexcept;
 
@@ -125,6 +131,10 @@ class ContactEquilibrium {
         Eigen::Vector3d sunk_free = Eigen::Vector3d::Zero();
         Eigen::Matrix3d sinking = Eigen::Matrix3d::Zero();
         double freedom = 1;  // of the tissue that bears it
+        // Where that creeps: as what, and what is left of earlier presses; and what of that lasts, N.
+        const TickCreep* creep = nullptr;
+        CreepHistory left_push;
+        Eigen::Vector3d lasting_push = Eigen::Vector3d::Zero();
         // Friction. It holds until more than it can is asked for, and what could not be held in one tick is
         // made good in the next.
         Eigen::Vector3d drag = Eigen::Vector3d::Zero();      // on the tool, N
@@ -138,6 +148,14 @@ class ContactEquilibrium {
         Eigen::Vector3d rubbed_centre = Eigen::Vector3d::Zero();
         double way = -1;  // mm, that sphere and tissue went since; negative: nothing was looked at
         Eigen::Vector3d last_centre = Eigen::Vector3d::Zero();
+
+        void forget_pushes() noexcept {
+            if (creep == nullptr) return;
+            creep = nullptr;
+            freedom = 1;
+            left_push = {};
+            lasting_push.setZero();
+        }
     };
     struct Part {
         Sphere sphere;
@@ -146,7 +164,7 @@ class ContactEquilibrium {
     };
     struct Tool {
         std::vector<Part> parts;
-        std::size_t felt = 0;  // of the parts, in this tick
+        std::size_t felt = 0, was_felt = 0;  // of the parts: in this tick, in the last one
         Eigen::Vector3d off = Eigen::Vector3d::Zero();
         Offsets next_off = no_offsets(), difference = no_offsets();  // of the answers to `off`
         Eigen::Vector3d last_tip = Eigen::Vector3d::Zero();
@@ -165,6 +183,9 @@ class ContactEquilibrium {
     std::size_t wall_count() const noexcept;
     void gather_at_rest(std::size_t tool, std::size_t part) noexcept;
     void linearise(Touch& touch, const DeformedPatch& patch) const noexcept;
+    // How the sphere is sunk in if nothing presses it, mm: by what earlier presses left behind.
+    Eigen::Vector3d local_dent(const Touch& touch, const DeformedPatch& patch) const noexcept;
+    void remember_pushes() noexcept;
     Eigen::Vector3d centre_of(const Tool& tool, const Part& part, const Touch& touch) const noexcept {
         return part.sphere.device + tool.off + touch.sunk;
     }
@@ -179,6 +200,8 @@ class ContactEquilibrium {
     void cut_rows() noexcept;
     void group_rows() noexcept;
     void solve_rows() noexcept;
+    std::size_t add_neighbours(std::array<std::size_t, max_contacts>& warm, std::size_t warm_count) noexcept;
+    void take_neighbours() noexcept;
     // Of a row or a group of rows.
     const Touch& touch_of(const auto& of) const noexcept {
         return tools_[static_cast<std::size_t>(of.tool)]
@@ -207,6 +230,7 @@ class ContactEquilibrium {
     Friction friction_;
     double coupling_ = 0;
     std::vector<DeformedPatch> patches_;
+    NeighbourContact neighbours_;
     std::vector<Tool> tools_;
     FixedList<Row, most_rows> rows_;                   // of this iteration, walls first
     FixedList<Row, most_rows> watched_;                // near, but hardly pressing: looked after, not solved

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace palpate::haptics {
 namespace {
@@ -12,6 +13,9 @@ using Eigen::Vector3f;
 using Eigen::Vector4f;
 
 constexpr std::int64_t kept = 32;  // ticks for which a vertex stays that nobody looks at
+constexpr double faded = 1e-4;     // mm: a dent smaller than this keeps no vertex
+// Vertices beyond which dents give way to what is near a tool now.
+constexpr std::int32_t crowded = DeformedPatch::most_vertices / 2;
 
 }  // namespace
 
@@ -31,6 +35,7 @@ void DeformedPatch::reset() noexcept {
     for (std::int32_t slot = 0; slot < size_; ++slot) slots_[vertices_[slot]] = no_slot;
     size_ = 0;
     tick_ = 0;
+    remembers_ = false;
 }
 
 void DeformedPatch::begin_tick() noexcept {
@@ -38,12 +43,24 @@ void DeformedPatch::begin_tick() noexcept {
     std::copy_n(moved_.begin(), size_, before_.begin());
     for (Answer& answer : answers_) answer.forces.clear();
     combined_.clear();
+    if (body_->creeps()) creep();
+    drop_one();  // in a tick is enough
+}
+
+// The vertex that bears least of a dent, if it bears nothing else.
+void DeformedPatch::drop_one() noexcept {
+    std::int32_t weakest = no_slot;
+    double least = size_ > crowded ? std::numeric_limits<double>::infinity() : faded;
     for (std::int32_t slot = size_; slot-- > 0;) {
         const bool loaded = forces_.at[slot] != Vector3d::Zero() || held_.at[slot] != Vector3d::Zero();
         if (loaded || seen_[slot] + kept >= tick_) continue;
-        drop(slot);
-        return;  // one in a tick is enough
+        const double dent = dent_at(slot);
+        if (dent >= least) continue;
+        weakest = slot;
+        least = dent;
+        if (dent == 0) break;
     }
+    if (weakest != no_slot) drop(weakest);
 }
 
 // The last slot takes the place of this one, which bears nothing.
@@ -58,6 +75,10 @@ void DeformedPatch::drop(std::int32_t slot) noexcept {
     before_[slot] = before_[last];
     held_moved_[slot] = held_moved_[last];
     seen_[slot] = seen_[last];
+    creeps_as_[slot] = creeps_as_[last];
+    left_forces_[slot] = left_forces_[last];
+    left_moves_[slot] = left_moves_[last];
+    lasting_[slot] = lasting_[last];
     for (Forces* forces : {&forces_, &held_}) {
         std::swap(forces->at[slot], forces->at[last]);
         std::replace(forces->loaded.begin(), forces->loaded.end(), last, slot);
@@ -84,12 +105,15 @@ std::int32_t DeformedPatch::slot_of(std::int32_t vertex) noexcept {
         slot = slots_[vertex] = size_++;
         vertices_[slot] = vertex;
         rest_[slot] = body_->rest_position(vertex);
+        creeps_as_[slot] = body_->creep_of(vertex);
         for (std::int32_t other = 0; other < size_; ++other) {
-            const Eigen::Matrix3f between = body_->compliance_between(vertex, vertices_[other]);
+            const Eigen::Matrix3f between = growth(creeps_as_[slot], creeps_as_[other]) *
+                                            body_->compliance_between(vertex, vertices_[other]);
             set_block(slot, other, between);
             set_block(other, slot, between.transpose());
         }
         held_moved_[slot] = displacement_under(held_, slot);
+        if (body_->creeps()) enter_creep(slot);
         before_[slot] = moved_[slot] = displacement_under(forces_, slot) + held_moved_[slot];
         for (Answer& answer : answers_) {
             answer.moved[slot] = moved_[slot];
@@ -109,21 +133,20 @@ bool DeformedPatch::slots_of(std::int32_t triangle, std::array<std::int32_t, 3>&
 }
 
 collision::TriangleCorners DeformedPatch::look_at(std::int32_t triangle) const noexcept {
-    collision::TriangleCorners corners;
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-        const std::int32_t vertex = body_->triangle(triangle)[corner], slot = slots_[vertex];
-        corners[corner] = body_->rest_position(vertex);
-        if (slot != no_slot) {
-            corners[corner] += moved_[slot];
-            continue;
-        }
-        for (const Forces* forces : {&forces_, &held_})
-            for (const std::int32_t loaded : forces->loaded)
-                corners[corner] +=
-                    (body_->compliance_between(vertex, vertices_[loaded]) * forces->at[loaded].cast<float>())
-                        .cast<double>();
-    }
-    return corners;
+    const Triangle& t = body_->triangle(triangle);
+    return {look_at_vertex(t[0]), look_at_vertex(t[1]), look_at_vertex(t[2])};
+}
+
+Vector3d DeformedPatch::look_at_vertex(std::int32_t vertex) const noexcept {
+    const std::int32_t slot = slots_[vertex];
+    Vector3d at = body_->rest_position(vertex);
+    if (slot != no_slot) return at + moved_[slot];
+    for (const Forces* forces : {&forces_, &held_})
+        for (const std::int32_t loaded : forces->loaded)
+            at += (growth(body_->creep_of(vertex), creeps_as_[loaded]) *
+                   (body_->compliance_between(vertex, vertices_[loaded]) * forces->at[loaded].cast<float>()))
+                      .cast<double>();
+    return at;
 }
 
 double DeformedPatch::motion() const noexcept {
@@ -205,6 +228,8 @@ void DeformedPatch::hold(std::int32_t slot, const Vector3d& force) noexcept {
 
 void DeformedPatch::end_hold() noexcept {
     displace(held_, held_moved_);
+    if (!body_->creeps()) return;
+    for (std::int32_t slot = 0; slot < size_; ++slot) held_moved_[slot] += lasting_[slot];
 }
 
 }  // namespace palpate::haptics

@@ -13,8 +13,9 @@ namespace palpate::haptics {
 
 /// The part of a deformable body's surface that tools are near, as it is displaced: its vertices, the nodal
 /// forces on them, and their blocks of the compliance, which are read once when a vertex comes in and stay
-/// while it is needed. Vertices are known by their slots, which stay the same within a tick. Allocates on
-/// construction only.
+/// while it is needed. Vertices are known by their slots, which stay the same within a tick. Where tissue
+/// creeps, vertices stay while what pressed them has left a dent, and the blocks are those of a tick:
+/// deformed_patch_creep.cpp. Allocates on construction only.
 class DeformedPatch {
   public:
     static constexpr std::int32_t most_vertices = 256;
@@ -25,17 +26,26 @@ class DeformedPatch {
 
     const DeformableContact& body() const noexcept { return *body_; }
 
-    /// Forgets all vertices and forces.
+    /// Forgets all vertices and forces, and what came before.
     void reset() noexcept;
-    /// Starts a tick: the displacements so far are those before it, and vertices that nobody has looked at
-    /// for some time go.
+    /// Forgets the forces, and all else but for what they leave behind where tissue creeps.
+    void release() noexcept;
+    /// Starts a tick: the displacements so far are those before it, what creeps goes on by a tick, and
+    /// vertices that nobody has looked at for some time go.
     void begin_tick() noexcept;
 
     /// The slots of a triangle's corners, which come in if they are new; false where there is no room left.
     bool slots_of(std::int32_t triangle, std::array<std::int32_t, 3>& slots) noexcept;
+    /// The slot of a vertex, which comes in if it is new; negative where there is no room left.
+    std::int32_t slot_of(std::int32_t vertex) noexcept;
+    bool is_in(std::int32_t vertex) const noexcept { return slots_[vertex] != no_slot; }
+    /// How many vertices more may come in.
+    std::int32_t room() const noexcept { return most_vertices - size_; }
     /// Where a triangle's corners are, p_P, mm, whether its vertices are in or not: for a look from time to
     /// time.
     collision::TriangleCorners look_at(std::int32_t triangle) const noexcept;
+    /// The same of one vertex.
+    Eigen::Vector3d look_at_vertex(std::int32_t vertex) const noexcept;
     bool bears_force() const noexcept { return !forces_.loaded.empty(); }
     /// Whether nothing is known of it but its rest.
     bool is_at_rest() const noexcept { return size_ == 0; }
@@ -47,15 +57,29 @@ class DeformedPatch {
         return {rest_[slots[0]] + moved_[slots[0]], rest_[slots[1]] + moved_[slots[1]],
                 rest_[slots[2]] + moved_[slots[2]]};
     }
-    /// By how much a vertex is displaced, mm: now, before this tick, and by the forces held alone.
+    /// Where a vertex is, p_P, mm.
+    Eigen::Vector3d position(std::int32_t slot) const noexcept { return rest_[slot] + moved_[slot]; }
+    /// By how much a vertex is displaced, mm: now, before this tick, and by the forces held alone with what
+    /// earlier ones left behind.
     const Eigen::Vector3d& displacement(std::int32_t slot) const noexcept { return moved_[slot]; }
     const Eigen::Vector3d& displacement_before(std::int32_t slot) const noexcept { return before_[slot]; }
     const Eigen::Vector3d& held_displacement(std::int32_t slot) const noexcept { return held_moved_[slot]; }
-    /// What a force (N) on one vertex displaces another by, mm.
+    /// What a force (N) on one vertex displaces another by within a tick, mm.
     Eigen::Vector3d response(std::int32_t slot, std::int32_t loaded,
                              const Eigen::Vector3d& force) const noexcept {
         const Eigen::Vector4f moved = block(slot, loaded) * force.cast<float>();
         return moved.head<3>().cast<double>();
+    }
+
+    /// What a force (N), shared out to three vertices, displaces another by, mm. Shares that are not positive
+    /// do not count.
+    Eigen::Vector3f yielding(std::int32_t slot, const std::array<std::int32_t, 3>& loaded,
+                             const Eigen::Vector3d& shares, const Eigen::Vector3d& force) const noexcept {
+        Eigen::Vector4f moved = Eigen::Vector4f::Zero();
+        for (std::size_t j = 0; j < 3; ++j)
+            if (const double share = shares[static_cast<Eigen::Index>(j)]; share > 0)
+                moved += block(slot, loaded[j]) * (share * force).cast<float>();
+        return moved.head<3>();
     }
 
     /// One of the last `iterates` answers to a state of forces and displacements: the forces that contact
@@ -98,8 +122,15 @@ class DeformedPatch {
         return blocks_[static_cast<std::size_t>(loaded * most_vertices + slot)];
     }
     void set_block(std::int32_t slot, std::int32_t loaded, const Eigen::Matrix3f& compliance) noexcept;
-    std::int32_t slot_of(std::int32_t vertex) noexcept;
     void drop(std::int32_t slot) noexcept;
+    void drop_one() noexcept;
+    // In deformed_patch_creep.cpp.
+    void creep() noexcept;
+    void enter_creep(std::int32_t slot) noexcept;
+    double dent_at(std::int32_t slot) const noexcept;
+    float growth(const TickCreep* a, const TickCreep* b) const noexcept {
+        return a != nullptr && a == b ? static_cast<float>(a->now) : 1.0F;
+    }
     Eigen::Vector3d displacement_under(const Forces& forces, std::int32_t slot) const noexcept;
     void displace(const Forces& forces, std::vector<Eigen::Vector3d>& moved) noexcept;
 
@@ -114,6 +145,13 @@ class DeformedPatch {
     std::vector<Answer> answers_;
     std::int32_t size_ = 0;
     std::int64_t tick_ = 0;
+    // Creep, by slot: as what, what is left of the forces on it and of its displacement, and what of that
+    // lasts, mm.
+    std::vector<const TickCreep*> creeps_as_;
+    std::vector<CreepHistory> left_forces_, left_moves_;
+    std::vector<Eigen::Vector3d> lasting_;
+    bool remembers_ = false;        // loads,
+    std::int64_t last_loaded_ = 0;  // of which the last was in this tick
 };
 
 }  // namespace palpate::haptics

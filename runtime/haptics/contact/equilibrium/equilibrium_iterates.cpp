@@ -26,7 +26,7 @@ double ContactEquilibrium::sink(std::size_t iterate) noexcept {
             for (std::size_t soft = 0; soft < patches_.size(); ++soft) {
                 Touch& touch = part.touches[soft];
                 touch.push.setZero();
-                touch.next_sunk[iterate].setZero();
+                touch.next_sunk[iterate] = local_dent(touch, patches_[soft]);
             }
     for (const Group& group : groups_) {
         Touch& touch = touch_of(group);
@@ -45,9 +45,13 @@ double ContactEquilibrium::sink(std::size_t iterate) noexcept {
         if (!(press > 0) || !(pushing > 0)) continue;
         touch.freedom = free / press;
         touch.next_sunk[iterate] = touch.sunk_free + touch.sinking * touch.push;
+        const double now = touch.creep != nullptr ? touch.creep->now : 1;
+        const Vector3d push = now * touch.push + touch.lasting_push;
+        const double along = push.norm();
+        if (!(along > 0)) continue;
         const LocalIndentation local =
-            local_indentation(pushing, radius_, spread->contact_modulus(), spread->radius());
-        const Vector3d wanted = touch.freedom * local.depth / pushing * touch.push;
+            local_indentation(along, radius_, spread->contact_modulus(), spread->radius());
+        const Vector3d wanted = touch.freedom * local.depth / along * push;
         change = std::max(change, (wanted - touch.next_sunk[iterate]).lpNorm<Eigen::Infinity>());
     }
     return change;
@@ -67,6 +71,7 @@ double ContactEquilibrium::answer(std::size_t iterate) noexcept {
             if (const double weight = row.weights[static_cast<Index>(i)]; weight > 0)
                 patch.load_answer(iterate, row.slots[i], -weight * push);
     }
+    neighbours_.load_answer(patches_, iterate);
     double change = sink(iterate);
     for (Tool& tool : tools_) {
         tool.press = coupling_ * tool.next_off[iterate];

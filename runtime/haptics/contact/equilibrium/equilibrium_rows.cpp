@@ -28,16 +28,30 @@ void ContactEquilibrium::linearise(Touch& touch, const DeformedPatch& patch) con
     touch.sinking.setZero();
     const LoadSpread* spread = patch.body().spread();
     if (!spread) return;
-    const double known = touch.push.norm(),
+    const double now = touch.creep != nullptr ? touch.creep->now : 1;
+    const Vector3d push = now * touch.push + touch.lasting_push;
+    const double known = push.norm(),
                  press = std::max(known, slight_press * spread->contact_modulus() * radius_ * radius_);
     const LocalIndentation local =
         local_indentation(press, radius_, spread->contact_modulus(), spread->radius());
     if (!(press > 0)) return;
     touch.sinking = touch.freedom * local.depth / press * Eigen::Matrix3d::Identity();
-    if (known < press) return;
-    const Vector3d axis = touch.push / known;
-    touch.sinking += touch.freedom * (local.slope - local.depth / press) * axis * axis.transpose();
-    touch.sunk_free = touch.freedom * (local.depth - local.slope * press) * axis;
+    if (known >= press) {
+        const Vector3d axis = push / known;
+        touch.sinking += touch.freedom * (local.slope - local.depth / press) * axis * axis.transpose();
+        touch.sunk_free = touch.freedom * (local.depth - local.slope * press) * axis;
+    }
+    if (touch.creep == nullptr) return;
+    touch.sunk_free += touch.sinking * touch.lasting_push;
+    touch.sinking *= now;
+}
+
+Vector3d ContactEquilibrium::local_dent(const Touch& touch, const DeformedPatch& patch) const noexcept {
+    const double push = touch.lasting_push.norm();
+    if (touch.creep == nullptr || !(push > 0)) return Vector3d::Zero();
+    const LoadSpread& spread = *patch.body().spread();
+    return touch.freedom * local_indentation(push, radius_, spread.contact_modulus(), spread.radius()).depth /
+           push * touch.lasting_push;
 }
 
 // The feet on which a sphere rests if nothing gives way, with the surface at rest: where contact starts.
@@ -258,7 +272,9 @@ void ContactEquilibrium::solve_rows() noexcept {
         }
         if (is_active(a)) warm[warm_count++] = k;
     }
-    residual_ = lcp_.solve(n, std::span(warm).first(warm_count));
+    warm_count = add_neighbours(warm, warm_count);
+    residual_ = lcp_.solve(n + neighbours_.row_count(), std::span(warm).first(warm_count));
+    take_neighbours();
     active_count_ = 0;
     for (std::size_t k = 0; k < n; ++k) {
         rows_[k].force = lcp_.forces()[static_cast<Index>(k)];

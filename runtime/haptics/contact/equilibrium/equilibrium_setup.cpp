@@ -18,11 +18,15 @@ DeformedPatch::DeformedPatch(const DeformableContact& body)
       forces_(most_vertices),
       held_(most_vertices),
       combined_(most_vertices),
-      answers_(iterates, Answer(most_vertices)) {}
+      answers_(iterates, Answer(most_vertices)),
+      creeps_as_(most_vertices),
+      left_forces_(most_vertices),
+      left_moves_(most_vertices),
+      lasting_(most_vertices, Eigen::Vector3d::Zero()) {}
 
 ContactEquilibrium::ContactEquilibrium(const ContactBodies& bodies, double radius, const Friction& friction,
                                        std::size_t tool_count, std::size_t spheres)
-    : bodies_(bodies), radius_(radius), friction_(friction) {
+    : bodies_(bodies), radius_(radius), friction_(friction), neighbours_(bodies) {
     for (const DeformableContact& body : bodies.deformable) {
         patches_.emplace_back(body);
         visited_.emplace_back(body.triangle_count(), 0U);

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "formats/records/tick_result.hpp"
+#include "runtime/visual/overlay.hpp"
+
+namespace palpate {
+namespace {
+
+using visual::notice_of;
+using visual::VisualFrame;
+
+TEST(Overlay, says_nothing_of_ordinary_ticks) {
+    VisualFrame frame;
+    EXPECT_EQ(notice_of(frame), "");
+    frame.statuses = force_limited | rate_limited | coming_back;
+    EXPECT_EQ(notice_of(frame), "");
+}
+
+TEST(Overlay, says_what_a_user_must_know_of_faults_and_statuses) {
+    VisualFrame frame;
+    frame.faults = motors_warm | servo_stopping;
+    frame.statuses = starts_inside | contact_unsolved | force_limited;
+    EXPECT_EQ(notice_of(frame),
+              "force taken away: the device's motors are too warm\nlet them cool down\n"
+              "contacts contradict each other, as in a wedge: no body gives way\n"
+              "a tool is in a body, which is not felt until the tool has been clear of it");
+}
+
+}  // namespace
+}  // namespace palpate
