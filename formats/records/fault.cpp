@@ -6,7 +6,7 @@
 namespace palpate {
 
 std::span<const FaultText> fault_texts() {
-    static constexpr std::array<FaultText, 12> texts{{
+    static constexpr std::array<FaultText, 13> texts{{
         {invalid_position, "invalid_position", "the device gave a position that is not a number",
          "check its cables, then 'palpate doctor'"},
         {device_lost, "device_lost", "the device no longer answers",
@@ -28,6 +28,8 @@ std::span<const FaultText> fault_texts() {
         {asset_removed, "asset_removed", "the asset's file was removed or changed",
          "put the file back, or start again with the new one"},
         {servo_stopping, "servo_stopping", "the run ends", ""},
+        {implausible_speed, "implausible_speed", "the device's position jumped, faster than 5 m/s",
+         "check its cables, then 'palpate doctor'"},
     }};
     return texts;
 }

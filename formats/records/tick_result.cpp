@@ -14,6 +14,8 @@ std::span<const StatusText, status_count> status_texts() {
         {starts_inside, "starts_inside",
          "a tool is in a body, which is not felt until the tool has been clear of it", true},
         {coming_back, "coming_back", "the force returns by and by after a fault", false},
+        {energy_injected, "energy_injected",
+         "contact gave a hand more energy than it got: a damper takes it back", true},
     }};
     return texts;
 }

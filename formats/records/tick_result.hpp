@@ -27,10 +27,11 @@ enum TickStatus : std::uint32_t {
     contact_unsolved = 1U << 3,  ///< contacts contradict each other, as in a wedge: no body gave way
     starts_inside = 1U << 4,     ///< a body is not felt until the tool has been clear of it once
     coming_back = 1U << 5,       ///< after a fault, the force returns by and by
+    energy_injected = 1U << 6,   ///< contact gave more energy than it got: a damper takes it back
 };
 
 /// How many flags there are.
-inline constexpr std::size_t status_count = 6;
+inline constexpr std::size_t status_count = 7;
 
 /// What is said of a flag of TickStatus.
 struct StatusText {

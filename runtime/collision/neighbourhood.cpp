@@ -18,6 +18,7 @@ constexpr std::size_t few_gathered = 32, many_gathered = 96;
 constexpr std::size_t few = 6, many = 20;
 constexpr double first_margin = 0.3;                                          // mm
 constexpr double least_margin = 0.02, most_margin = 2, most_wide_margin = 4;  // mm
+constexpr double touching = 1e-3;  // mm: nearer, no direction leads from a triangle to the tool
 constexpr double growth = 1.25;
 constexpr double rounded_normal = 2e-7;  // error of a product with one, relative to the largest coordinate
 constexpr int all_nodes = std::numeric_limits<int>::max();
@@ -30,6 +31,27 @@ constexpr double ticks_at_once = 4;  // for which to gather in one go
 // A way of this many margins is a jump, not the motion of a tick.
 constexpr double jump = 8;
 constexpr int most_pieces = 4;
+
+// The first triangle that a sphere meets on its way, of those that are tried.
+struct FirstContact {
+    const CollisionSurface& surface;
+    const Vector3d& from;
+    const Vector3d& way;
+    double radius;
+    SweepContact best;
+
+    FirstContact(const CollisionSurface& on, const Vector3d& start, const Vector3d& along, double of_sphere,
+                 double limit) noexcept
+        : surface(on), from(start), way(along), radius(of_sphere) {
+        best.fraction = limit;
+        best.slot = -1;
+    }
+    void test(std::int32_t slot) noexcept {
+        const auto contact = sweep_sphere_triangle(from, way, radius, best.fraction, surface.corners(slot));
+        if (!contact || (best.slot >= 0 && contact->fraction >= best.fraction)) return;
+        best = {contact->fraction, contact->point, contact->normal, surface.mesh_triangle(slot), slot};
+    }
+};
 
 double followed(double margin, std::size_t count, std::size_t few_of_it, std::size_t many_of_it,
                 double most) noexcept {
@@ -125,7 +147,7 @@ bool Neighbourhood::choose_within(const Vector3d& p, double reach) noexcept {
         chosen &= distance <= far + plane_error * circle;
         if (!any(chosen)) continue;
         const Float4 share = beside > 0 ? beside / across : Float4{};
-        const Float4 scale = distance > 1e-3F ? -1 / distance : Float4{};
+        const Float4 scale = distance > static_cast<float>(touching) ? -1 / distance : Float4{};
         const Float4 mx = scale * (height * nx + share * px), my = scale * (height * ny + share * py),
                      mz = scale * (height * nz + share * pz);
         const Float4 along = mx * nx + my * ny + mz * nz;
@@ -157,7 +179,7 @@ bool Neighbourhood::may_touch(const CollisionSurface& surface, std::size_t at, c
     const TriangleCorners t = surface.corners(slots_[at]);
     const TrianglePoint nearest = closest_point_on_triangle(from, t);
     const double distance = std::sqrt(nearest.squared_distance);
-    if (distance < 1e-3) return true;
+    if (distance < touching) return true;
     const Vector3f normal = ((from - nearest.point) / distance).cast<float>();
     const Vector3d n = normal.cast<double>();
     // The normal is rounded to float32, or for some compilers is not, so both count.
@@ -178,14 +200,7 @@ bool Neighbourhood::may_touch(const CollisionSurface& surface, std::size_t at, c
 std::optional<SweepContact> Neighbourhood::sweep_near(const CollisionSurface& surface, const Vector3d& from,
                                                       const Vector3d& way, double radius, double done,
                                                       double limit) noexcept {
-    SweepContact best;
-    best.fraction = limit;
-    best.slot = -1;
-    const auto test = [&](std::int32_t slot) {
-        const auto contact = sweep_sphere_triangle(from, way, radius, best.fraction, surface.corners(slot));
-        if (!contact || (best.slot >= 0 && contact->fraction >= best.fraction)) return;
-        best = {contact->fraction, contact->point, contact->normal, surface.mesh_triangle(slot), slot};
-    };
+    FirstContact first_contact(surface, from, way, radius, limit);
     const Vector3d start = from + done * way;
     const Vector3f a = (start - origin_).cast<float>();
     const float near = static_cast<float>(radius) + float_error;
@@ -193,9 +208,9 @@ std::optional<SweepContact> Neighbourhood::sweep_near(const CollisionSurface& su
     if (hint_ >= 0) {
         if (!(hint_at_ < count_ && slots_[hint_at_] == hint_)) find_hint();
         if (hint_at_ == count_ || crosses(hint_at_, a, (from + limit * way - origin_).cast<float>(), near))
-            test(hint_);
+            first_contact.test(hint_);
     }
-    const Vector3d to = from + best.fraction * way;
+    const Vector3d to = from + first_contact.best.fraction * way;
     const Vector3f b = (to - origin_).cast<float>();
     for (std::size_t first = 0; first < count_; first += lanes) {
         const Float4 x = load(&nx_[first]), y = load(&ny_[first]), z = load(&nz_[first]);
@@ -206,8 +221,12 @@ std::optional<SweepContact> Neighbourhood::sweep_near(const CollisionSurface& su
         for (std::size_t lane = 0; lane < lanes; ++lane)
             if (candidates[lane] && slots_[first + lane] != hint_ &&
                 may_touch(surface, first + lane, start, to, radius))
-                test(slots_[first + lane]);
+                first_contact.test(slots_[first + lane]);
     }
+    return kept(first_contact.best);
+}
+
+std::optional<SweepContact> Neighbourhood::kept(const SweepContact& best) noexcept {
     if (best.slot < 0) return std::nullopt;
     hint_ = best.slot;
     return best;
@@ -229,14 +248,7 @@ void Neighbourhood::find_hint() noexcept {
 std::optional<SweepContact> Neighbourhood::sweep_around(const CollisionSurface& surface, const Vector3d& from,
                                                         const Vector3d& way, double radius,
                                                         double limit) noexcept {
-    SweepContact best;
-    best.fraction = limit;
-    best.slot = -1;
-    const auto test = [&](std::int32_t slot) {
-        const auto contact = sweep_sphere_triangle(from, way, radius, best.fraction, surface.corners(slot));
-        if (!contact || (best.slot >= 0 && contact->fraction >= best.fraction)) return;
-        best = {contact->fraction, contact->point, contact->normal, surface.mesh_triangle(slot), slot};
-    };
+    FirstContact first_contact(surface, from, way, radius, limit);
     const Surroundings& all = around();
     const Vector3d half = 0.5 * limit * way;
     const Vector3f middle = (from + half - all.centre()).cast<float>(), h = half.cast<float>();
@@ -259,11 +271,9 @@ std::optional<SweepContact> Neighbourhood::sweep_around(const CollisionSurface& 
         candidates &= height * height + beside * beside <= within * within;
         if (!any(candidates)) continue;
         for (std::size_t lane = 0; lane < lanes; ++lane)
-            if (candidates[lane]) test(all.slot(first + lane));
+            if (candidates[lane]) first_contact.test(all.slot(first + lane));
     }
-    if (best.slot < 0) return std::nullopt;
-    hint_ = best.slot;
-    return best;
+    return kept(first_contact.best);
 }
 
 std::optional<SweepContact> Neighbourhood::sweep_sphere(const CollisionSurface& surface, const Vector3d& from,

@@ -48,6 +48,7 @@ class Neighbourhood {
     }
     bool may_touch(const CollisionSurface& surface, std::size_t at, const Eigen::Vector3d& from,
                    const Eigen::Vector3d& to, double radius) noexcept;
+    std::optional<SweepContact> kept(const SweepContact& best) noexcept;
     bool crosses(std::size_t at, const Eigen::Vector3f& a, const Eigen::Vector3f& b,
                  float near) const noexcept;
     void find_hint() noexcept;

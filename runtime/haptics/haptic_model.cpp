@@ -60,7 +60,8 @@ HapticModel::HapticModel(const Case& patient_case, std::string_view method, std:
       tools_(tool_count, Tool{ForceLimiter(settings_)}),
       poses_(tool_count),
       forces_(tool_count),
-      contact_(method_.make(patient_case, bodies_, tool_count)) {}
+      contact_(method_.make(patient_case, bodies_, tool_count)),
+      observer_(tool_count, settings_.shaft_length) {}
 
 void HapticModel::couple_to(std::span<const DeviceLimits> devices) {
     coupling_ = settings_.coupling_stiffness;
@@ -84,6 +85,7 @@ void HapticModel::reset() noexcept {
         tool.lost = false;
     }
     contact_->reset();
+    observer_.reset();
     tick_ = 0;
 }
 

@@ -15,6 +15,7 @@
 #include "runtime/haptics/force_limiter.hpp"
 #include "runtime/haptics/methods/contact_method.hpp"
 #include "runtime/haptics/methods/contact_methods.hpp"
+#include "runtime/haptics/passivity_observer.hpp"
 #include "runtime/realtime/device.hpp"
 
 namespace palpate::haptics {
@@ -107,6 +108,7 @@ class HapticModel {
     std::vector<ContactPose> poses_;  // of this tick, as are the forces
     std::vector<Eigen::Vector3d> forces_;
     std::unique_ptr<ContactMethod> contact_;
+    PassivityObserver observer_;
     std::int64_t tick_ = 0;
 };
 

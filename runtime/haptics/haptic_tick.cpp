@@ -33,9 +33,11 @@ void HapticModel::tick(std::span<const realtime::DeviceState> devices, std::span
     }
     ++tick_;
     contact_->tick(poses_, coupling_, results, forces_);
+    if (method_.can.keeps_energy) observer_.damp(poses_, coupling_, results, forces_);
     for (std::size_t t = 0; t < tools_.size(); ++t)
         results[t].force =
             array_of(tools_[t].limiter.limit(forces_[t], results[t].faults, results[t].status));
+    observer_.hold(results);
 }
 
 ContactPose HapticModel::begin(Tool& tool, const realtime::DeviceState& device, TickResult& result) noexcept {

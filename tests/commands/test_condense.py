@@ -141,6 +141,41 @@ class Condense(unittest.TestCase):
         self.assertEqual((result["fixed_nodes"], result["contact_nodes"]), (4, 2))
         self.assertEqual(self.compliance()[0], [120, 124])
 
+    def rest_positions(self):
+        with h5py.File(self.body) as file:
+            return file["palpate/body/rest_positions"][...]
+
+    def test_another_posture_moves_the_body_and_says_how_far(self):
+        self.write_organ()
+        held = ["--fixed", "touching:skull"]
+        densities = ["--density", "liver:1060", "--density", "tumour:1100"]
+        self.assertIsNone(self.result_of(*held, *densities)["sag"])
+        scanned = self.rest_positions()
+        result = self.result_of(*held, *densities, "--scanned", "supine", "--posture", "left_side")
+        moved = self.rest_positions() - scanned
+        self.assertAlmostEqual(numpy.linalg.norm(moved, axis=1).max(), result["sag"]["largest_displacement_mm"], places=9)
+        self.assertGreater(result["sag"]["largest_displacement_mm"], 1e-3)
+        top = moved[scanned[:, 2] == 4]
+        self.assertTrue((top[:, 0] > 0).all() and (top[:, 1] < 0).all(), "to the left, and up from the back")
+        self.assertEqual(abs(moved[scanned[:, 2] == 0]).max(), 0)
+        self.body.unlink()
+        self.assert_refused(USAGE, ["posture", "--scanned"], *held, *densities, "--posture", "prone")
+        self.assert_refused(USAGE, ["sitting", "upright"], *held, *densities, "--scanned", "supine", "--posture", "sitting")
+        self.assert_refused(INVALID, ["'tumour'", "density"], *held, "--density", "liver:1060", "--scanned", "supine",
+                            "--posture", "prone")
+        self.assert_refused(USAGE, ["--density liver", "liver:1060"], *held, "--density", "liver")
+
+    def test_a_relaxation_is_stored_by_region_and_refused_where_it_makes_no_sense(self):
+        self.write_organ()
+        held = ["--fixed", "touching:skull"]
+        self.result_of(*held, "--relaxation", "liver:0.3,1", "--relaxation", "liver:0.2,10")
+        with h5py.File(self.body) as file:
+            self.assertEqual(file["palpate/body/relaxation"][...].tolist(), [[0.3, 1], [0.2, 10]])
+            self.assertEqual(file["palpate/body/relaxation_regions"][...].tolist(), [1, 1])
+        self.body.unlink()
+        self.assert_refused(INVALID, ["'liver'", "relaxation"], *held, "--relaxation", "liver:1.2,1")
+        self.assert_refused(USAGE, ["--relaxation liver:0.3", "liver:0.3,1"], *held, "--relaxation", "liver:0.3")
+
     def test_quadratic_tetrahedra_give_way_more_than_linear_ones(self):
         self.write_organ()
         arguments = ["--fixed", "touching:skull", "--contact", "sphere:2,2,4,0.1"]

@@ -41,6 +41,7 @@ TICK = {
         "contact/local_indentation": "what a sphere sinks in",
         "force_limiter": "force and slew limits",
         "haptic_tick": "one tick, from positions to forces",
+        "passivity_observer": "no more energy out than in",
     },
     "runtime/realtime/CMakeFiles/palpate_realtime.dir": {
         "histogram": "what a tick spent",

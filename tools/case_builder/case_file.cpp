@@ -178,6 +178,8 @@ void read_region(TableReader& region, DeformableSpec& spec) {
     spec.condense.materials.push_back(
         {label, region.required<double>("youngs_modulus_kpa"), region.required<double>("poissons_ratio")});
     read_relaxation(region, label, spec.condense);
+    if (const auto density = region.positive("density_kg_m3"))
+        spec.condense.densities.push_back({label, *density});
     const auto cell_size = region.optional<double>("cell_size_mm");
     const auto mesh_region = region.optional<std::int64_t>("mesh_region");
     region.refuse_unknown();
@@ -212,6 +214,29 @@ DeformableSpec deformable(TableReader reader, const std::filesystem::path& folde
         reader.fail(reader.raw(), "region", "is missing", "[[deformable.region]] with a label");
     reader.refuse_unknown();
     return spec;
+}
+
+// scanned = "supine", felt = "upright" or [x, y, z], for all bodies that give way.
+void read_posture(TableReader& root, std::vector<DeformableSpec>& bodies) {
+    TableReader table = root.table("posture");
+    const auto posture = [&](const char* key) -> std::string {
+        if (table.raw().get_as<toml::array>(key) == nullptr)
+            return table.optional<std::string>(key).value_or("");
+        const std::vector<double> direction = table.numbers(key, 3);
+        return fmt::format("{},{},{}", direction[0], direction[1], direction[2]);
+    };
+    const std::string scanned = posture("scanned"), felt = posture("felt");
+    table.refuse_unknown();
+    if (scanned.empty() != felt.empty())
+        table.fail(table.raw(), scanned.empty() ? "scanned" : "felt", "is missing", "both postures");
+    for (DeformableSpec& body : bodies) {
+        if (!felt.empty() && body.condense.densities.size() != body.condense.materials.size())
+            table.fail(table.raw(), "felt",
+                       "needs a density of every region, and '" + body.name + "' lacks one",
+                       "density_kg_m3 in each [[deformable.region]]", "soft tissue has about 1 050");
+        body.condense.scanned_posture = scanned;
+        body.condense.felt_posture = felt;
+    }
 }
 
 void read_import_options(TableReader& input, const std::filesystem::path& folder, CaseFile& result) {
@@ -262,6 +287,7 @@ CaseFile read_case_file(const std::filesystem::path& path) {
         result.rigid.push_back(rigid(table, path.parent_path()));
     for (const TableReader& table : root.tables("deformable"))
         result.deformable.push_back(deformable(table, path.parent_path()));
+    read_posture(root, result.deformable);
     TableReader haptics = root.table("haptics"), quality = root.table("quality");
     read_record(haptics, haptic_fields, result.haptics);
     haptics.refuse_unknown();

@@ -24,6 +24,16 @@ void say_plan(const CondensationPlan& plan) {
     spdlog::info("chosen: {} ({})", name_of(plan.chosen.method), plan.reason);
 }
 
+// Linear elasticity is meant for small strains.
+constexpr double much_stretch = 0.2;
+
+void say_sag(const Sag& sag) {
+    spdlog::info("gravity moves the body by up to {:.1f} mm and stretches edges by up to {:.0f} %",
+                 sag.largest_displacement, 100 * sag.largest_stretch);
+    if (sag.largest_stretch > much_stretch)
+        spdlog::warn("that is more than linear tissue is good for: look at the shape in the report");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -59,6 +69,7 @@ int main(int argc, char** argv) {
             });
         asset::write_body_part(staged.path(), made.body);
         staged.commit();
-        return stages::to_json(made.body, made.plan);
+        if (made.sag && !session.quiet) say_sag(*made.sag);
+        return stages::to_json(made);
     });
 }

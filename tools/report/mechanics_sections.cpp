@@ -2,6 +2,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "tools/report/charts.hpp"
 #include "tools/report/html.hpp"
@@ -40,6 +41,29 @@ std::string rigid_table(const Case& patient_case) {
                         {"OBB nodes", true},
                         {"Extent L × P × S, mm", true}},
                        rows);
+}
+
+// What a request says under `key`, escaped; empty if it says no text.
+std::string word_of(const nlohmann::json& request, const char* key) {
+    const auto found = request.find(key);
+    return found != request.end() && found->is_string() ? escaped(found->get<std::string>()) : "";
+}
+
+// Where a body's shape is not the scan's.
+std::string posture_sentences(const std::string& provenance) {
+    const auto json = nlohmann::json::parse(provenance, nullptr, false);
+    if (!json.is_object() || !json.contains("steps") || !json["steps"].is_array()) return "";
+    std::string sentences;
+    for (const auto& step : json["steps"]) {
+        if (!step.is_object() || !step.contains("request") || !step["request"].is_object()) continue;
+        const nlohmann::json& request = step["request"];
+        if (!word_of(request, "posture").empty())
+            sentences += fmt::format(
+                "<p><b>{}</b> was scanned {} and has the shape that gravity gives it {}; "
+                "pictures of the scan show the former.</p>\n",
+                word_of(request, "name"), word_of(request, "scanned"), word_of(request, "posture"));
+    }
+    return sentences;
 }
 
 }  // namespace
@@ -115,6 +139,7 @@ std::string mechanics_section(const ReportPage& page) {
             1e-6 * static_cast<double>(value_bytes(body.compliance)), grouped(body.certificate.free_dofs),
             body.element_order == ElementOrder::linear ? "linear" : "quadratic");
     }
+    content += posture_sentences(patient_case.provenance);
     std::vector<html::Card> cards;
     for_each_field(haptic_fields, [&](const auto& field) {
         cards.push_back({title_of(field.name), significant(patient_case.haptics.*field.member), field.unit});

@@ -40,6 +40,33 @@ std::vector<RegionMaterial> materials_of(const CondenseRequest& request, const T
     return materials;
 }
 
+std::vector<RegionDensity> densities_of(const CondenseRequest& request, const TetMesh& mesh) {
+    std::vector<RegionDensity> densities;
+    for (const LabelDensity& entry : request.densities) {
+        if (!(entry.density_kg_m3 > 0))
+            throw InvalidInput({"density of region '" + entry.label + "'",
+                                std::to_string(entry.density_kg_m3), "a positive number, kg/m³",
+                                "soft tissue has about 1 000"});
+        densities.push_back(
+            {require_label(mesh.region_names, entry.label, request.mesh.filename().string()).value,
+             entry.density_kg_m3});
+    }
+    return densities;
+}
+
+// Brings the body from the posture of its scan into that in which it is felt.
+std::optional<Sag> settle(const CondenseRequest& request, DeformableBody& body) {
+    if (request.scanned_posture.empty() != request.felt_posture.empty())
+        throw UsageError({"posture",
+                          request.felt_posture.empty() ? "only the scan's is given" : "the scan's is missing",
+                          "both, or none", "say --scanned and --posture, or both keys of [posture]"});
+    const std::vector<RegionDensity> densities = densities_of(request, body.mesh);
+    if (request.felt_posture.empty()) return std::nullopt;
+    const Eigen::Vector3d change =
+        gravity_in(request.felt_posture, "posture") - gravity_in(request.scanned_posture, "scanned posture");
+    return move_at_rest(body, displacements_under(body, densities, change));
+}
+
 std::vector<RegionRelaxation> asked_relaxation(const CondenseRequest& request, const TetMesh& mesh) {
     std::vector<RegionRelaxation> relaxation;
     for (const auto& [label, term] : request.relaxation)
@@ -95,6 +122,7 @@ MadeBody make_body(const CondenseRequest& request, int threads, const ProgressCa
     body.contact_nodes = contact_nodes_of(body.mesh, boundary, contact, body.fixed_nodes);
     progress("forecasting", 0);
     body = prepared_body(std::move(body));
+    const std::optional<Sag> sag = settle(request, body);
     CondensationPlan plan = plan_condensation(body, {.representation = representation,
                                                      .accuracy = request.accuracy,
                                                      .memory_bytes = request.memory_gib * 0x1p30,
@@ -106,7 +134,7 @@ MadeBody make_body(const CondenseRequest& request, int threads, const ProgressCa
         progress("solving on richer elements", 0.95);
         body.certificate.discretisation_error = estimate_discretisation_error(body);
     }
-    return {std::move(body), std::move(plan)};
+    return {std::move(body), std::move(plan), sag};
 }
 
 }  // namespace palpate::stages

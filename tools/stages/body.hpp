@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <functional>
+#include <optional>
 
 #include "formats/model/body.hpp"
 #include "formats/model/progress.hpp"
 #include "tools/fem/condensation/condensation_plan.hpp"
+#include "tools/fem/condensation/posture.hpp"
 #include "tools/stages/requests/condense_request.hpp"
 
 namespace palpate::stages {
@@ -13,6 +15,7 @@ namespace palpate::stages {
 struct MadeBody {
     DeformableBody body;
     fem::CondensationPlan plan;
+    std::optional<fem::Sag> sag;  ///< into another posture
 };
 
 /// Reads a mesh, holds its nodes and condenses it; writes nothing. `announce` is given the plan before the

@@ -26,7 +26,12 @@ Json to_json(const CondensationPlan& plan) {
     return {{"method", name_of(plan.chosen.method)}, {"reason", plan.reason}, {"forecasts", forecasts}};
 }
 
-Json to_json(const DeformableBody& body, const CondensationPlan& plan) {
+Json to_json(const MadeBody& made) {
+    const DeformableBody& body = made.body;
+    Json sag;
+    if (made.sag)
+        sag = {{"largest_displacement_mm", made.sag->largest_displacement},
+               {"largest_stretch_percent", 100 * made.sag->largest_stretch}};
     return {{"name", body.name},
             {"nodes", body.mesh.rest_positions.size()},
             {"tetrahedra", body.mesh.tetrahedra.size()},
@@ -36,7 +41,8 @@ Json to_json(const DeformableBody& body, const CondensationPlan& plan) {
             {"contact_nodes", body.contact_nodes.size()},
             {"representation", representation_of(body.compliance)},
             {"compliance_bytes", value_bytes(body.compliance)},
-            {"plan", to_json(plan)},
+            {"sag", sag},
+            {"plan", to_json(made.plan)},
             {"certificate", to_json(body.certificate)}};
 }
 

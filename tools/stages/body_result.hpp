@@ -3,15 +3,15 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "formats/model/body.hpp"
-#include "tools/fem/condensation/condensation_plan.hpp"
+#include "tools/stages/body.hpp"
 
 namespace palpate::stages {
 
 /// What a certificate says, by the names of its figures.
 nlohmann::ordered_json to_json(const Certificate& certificate);
 
-/// A condensed body in figures, its plan and its certificate.
-nlohmann::ordered_json to_json(const DeformableBody& body, const fem::CondensationPlan& plan);
+/// A condensed body in figures, its plan and its certificate; how it sagged, or null.
+nlohmann::ordered_json to_json(const MadeBody& made);
 
 /// What was chosen, why, and every method's forecast.
 nlohmann::ordered_json to_json(const fem::CondensationPlan& plan);

@@ -168,7 +168,9 @@ DeviceState HdDevice::read(double time) noexcept {
     // a tool must not be dragged there before the doubt has become a fault.
     const bool given = std::ranges::all_of(state.position, [](double x) { return std::isfinite(x); });
     const bool doubted = ticks_frozen_ > 0 && placed_;
-    if (given && !doubted) {
+    if (given && !doubted && !(state.faults & distrusted_position) && !speed_.plausible(state.position, time))
+        state.faults |= implausible_speed;
+    else if (given && !doubted) {
         position_ = state.position;
         placed_ = ticks_frozen_ == 0;
     }

@@ -7,6 +7,7 @@
 
 #include "runtime/devices/openhaptics/hd_api.hpp"
 #include "runtime/devices/openhaptics/hd_error.hpp"
+#include "runtime/devices/openhaptics/speed_watch.hpp"
 #include "runtime/realtime/device.hpp"
 
 namespace palpate::devices {
@@ -17,9 +18,10 @@ namespace palpate::devices {
 /// are for the scheduler's thread; everything else for one other thread.
 ///
 /// Faults: motors_warm from the moment a motor's temperature is 1 until all are below motors_cool;
-/// pose_frozen while the pose is the one of encoders without data; not_calibrated while somebody has to move
-/// the stylus for it, and where an update has not helped; the errors of the driver as hd_error_texts() has
-/// them, for as long as they come.
+/// pose_frozen while the pose is the one of encoders without data; implausible_speed while the position is
+/// farther from the last plausible one than a hand gets in that time, see SpeedWatch; not_calibrated while
+/// somebody has to move the stylus for it, and where an update has not helped; the errors of the driver as
+/// hd_error_texts() has them, for as long as they come.
 class HdDevice final : public realtime::Device {
   public:
     static constexpr int look_ticks = 100;    ///< between two looks at temperature and calibration
@@ -78,6 +80,7 @@ class HdDevice final : public realtime::Device {
     bool warm_ = false, misplaced_ = false;
     int ticks_to_look_ = 0;
     int ticks_frozen_ = 0;
+    SpeedWatch speed_;
     std::array<double, 3> position_{0, 0, 0};  // the last good one
     bool placed_ = false;                      // there has been one
 };

@@ -30,7 +30,11 @@ constexpr std::array table{
                        make_published<Tested::twice, Face::renewed>},
     ContactMethodEntry{"continuous",
                        "is ours: every tick sweeps the tool from the last to the present position",
-                       {.has_radius = true, .spreads_loads = true, .sums_rigid_walls = true, .creeps = true},
+                       {.has_radius = true,
+                        .spreads_loads = true,
+                        .sums_rigid_walls = true,
+                        .creeps = true,
+                        .keeps_energy = true},
                        make_continuous},
 };
 

@@ -126,6 +126,27 @@ TEST(CaseFile, a_region_may_relax_by_a_series_that_makes_sense) {
     }
 }
 
+TEST(CaseFile, a_posture_is_for_all_bodies_and_needs_densities) {
+    const auto with = [](const std::string& posture, const std::string& region) {
+        return minimal + region + "[posture]\n" + posture;
+    };
+    const CaseFile file = read_case_file(
+        written(with("scanned = \"supine\"\nfelt = [0, -0.5, 0.5]\n", "density_kg_m3 = 1060\n")));
+    const stages::CondenseRequest& condense = file.deformable.at(0).condense;
+    EXPECT_EQ(condense.scanned_posture, "supine");
+    EXPECT_EQ(condense.felt_posture, "0,-0.5,0.5");
+    ASSERT_EQ(condense.densities.size(), 1U);
+    EXPECT_EQ(condense.densities[0].label, "liver");
+    EXPECT_EQ(condense.densities[0].density_kg_m3, 1060);
+    EXPECT_TRUE(read_case_file(written(minimal)).deformable.at(0).condense.felt_posture.empty());
+    const std::string both = "scanned = \"supine\"\nfelt = \"prone\"\n";
+    EXPECT_NE(message(with("scanned = \"supine\"\n", "")).find("'felt'"), std::string::npos);
+    EXPECT_NE(message(with(both, "")).find("density_kg_m3"), std::string::npos);
+    EXPECT_NE(message(with(both, "density_kg_m3 = -1\n")).find("density_kg_m3"), std::string::npos);
+    EXPECT_NE(message(with(both + "sitting = true\n", "density_kg_m3 = 1060\n")).find("sitting"),
+              std::string::npos);
+}
+
 TEST(CaseFile, an_unknown_key_is_refused_with_line_and_nearest_name) {
     const std::string text = message(minimal + "poisons_ratio = 0.4\n");
     EXPECT_NE(text.find("case.toml:17"), std::string::npos) << text;

@@ -71,8 +71,7 @@ void compare(SynchroniserRun& run, const Touched& body, const std::string& figur
             const bool before = scheme == "single" && crossing == Crossing::late,
                        after = scheme == "twice" && crossing == Crossing::synchronised;
             if (!before && !after) continue;
-            curve.name =
-                fmt::format("{} ({}, {})", before ? "1 before" : "2 after", scheme, name_of(crossing));
+            curve.name = fmt::format("{}: {}, {}", before ? "1" : "2", scheme, name_of(crossing));
             chart.series.push_back(std::move(curve));
         }
 }

@@ -43,6 +43,17 @@ LabelRelaxation parse_relaxation(const std::string& text) {
     return {label, {.share = share, .time = time}};
 }
 
+LabelDensity parse_density(const std::string& text) {
+    const auto colon = text.rfind(':');
+    double density = 0;
+    const char* const end = text.data() + text.size();
+    if (colon == std::string::npos || std::from_chars(text.data() + colon + 1, end, density).ptr != end ||
+        !std::isfinite(density))
+        throw UsageError(
+            {"--density " + text, "cannot be read", "REGION:KG_PER_M3", "for example liver:1060"});
+    return {text.substr(0, colon), density};
+}
+
 NodePick pick_from(const std::string& words) {
     NodePick pick;
     pick.words = words;
@@ -73,6 +84,15 @@ void from_json(const Json& json, LabelRelaxation& relaxation) {
     relaxation.label = json.at("label");
     for_each_field(relaxation_fields,
                    [&](const auto& field) { relaxation.term.*field.member = json.at(key_of(field)); });
+}
+
+void to_json(Json& json, const LabelDensity& density) {
+    json = {{"label", density.label}, {"density_kg_m3", density.density_kg_m3}};
+}
+
+void from_json(const Json& json, LabelDensity& density) {
+    cli::refuse_other_keys(json, {"label", "density_kg_m3"});
+    density = {json.at("label"), json.at("density_kg_m3")};
 }
 
 void to_json(Json& json, const NodePick& pick) {
@@ -115,6 +135,13 @@ void declare(cli::Command& command, CondenseRequest& request) {
         "term of a region's relaxation, by ascending time: REGION:SHARE,TIME; the part SHARE of its "
         "modulus is lost with the time constant TIME",
         "1, s");
+    command.items("--density", cli::item_list(request.densities, parse_density),
+                  "density of a region, for a posture: REGION:DENSITY", "kg/m³");
+    command.option("--scanned", request.scanned_posture,
+                   "posture of the scan, whose shape gravity made: supine, prone, left_side, right_side "
+                   "(lying on it), upright, or X,Y,Z, which way gravity points (LPS)");
+    command.option("--posture", request.felt_posture,
+                   "posture in which the body is felt: its shape there is made from the scan's");
     command.items("--fixed", cli::item_list(request.fixed, pick_from),
                   "rule that fixes nodes; several add up", "mm");
     command.items("--contact", cli::item_list(request.contact, pick_from),

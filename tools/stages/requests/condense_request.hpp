@@ -25,6 +25,12 @@ struct LabelRelaxation {
     RelaxationTerm term;
 };
 
+/// A region's density: "liver:1060" or {"label": "liver", "density_kg_m3": 1060}.
+struct LabelDensity {
+    std::string label;  ///< name or value
+    double density_kg_m3 = 0;
+};
+
 /// What picks nodes; one member but the words is set. Positions and radius are LPS mm.
 struct NodePick {
     std::string words;              ///< as people type it, see parse_node_rule(); else:
@@ -40,6 +46,8 @@ void to_json(nlohmann::ordered_json& json, const LabelMaterial& material);
 void from_json(const nlohmann::ordered_json& json, LabelMaterial& material);
 void to_json(nlohmann::ordered_json& json, const LabelRelaxation& relaxation);
 void from_json(const nlohmann::ordered_json& json, LabelRelaxation& relaxation);
+void to_json(nlohmann::ordered_json& json, const LabelDensity& density);
+void from_json(const nlohmann::ordered_json& json, LabelDensity& density);
 void to_json(nlohmann::ordered_json& json, const NodePick& pick);
 void from_json(const nlohmann::ordered_json& json, NodePick& pick);
 
@@ -49,14 +57,16 @@ struct CondenseRequest {
     std::string name;            ///< of the body; empty: the mesh file's
     std::vector<LabelMaterial> materials;
     std::vector<LabelRelaxation> relaxation;  ///< of each region by ascending time
-    std::vector<NodePick> fixed, contact;     ///< no contact: all surface nodes that are not fixed
-    std::string element = "linear";           ///< or "quadratic"
-    std::string representation = "auto";      ///< or "dense", "hierarchical"
-    double accuracy = 1e-3;                   ///< relative error of a hierarchical compliance
-    double memory_gib = 0;                    ///< that may be in use at once; 0: what the machine has left
-    double size_mib = 1024;                   ///< that the compliance may have in the file
-    bool discretisation_error = false;        ///< estimate it
-    std::filesystem::path output;             ///< .body.h5
+    std::vector<LabelDensity> densities;
+    std::string scanned_posture, felt_posture;  ///< see fem::gravity_in(); both empty: the shape stays
+    std::vector<NodePick> fixed, contact;       ///< no contact: all surface nodes that are not fixed
+    std::string element = "linear";             ///< or "quadratic"
+    std::string representation = "auto";        ///< or "dense", "hierarchical"
+    double accuracy = 1e-3;                     ///< relative error of a hierarchical compliance
+    double memory_gib = 0;                      ///< that may be in use at once; 0: what the machine has left
+    double size_mib = 1024;                     ///< that the compliance may have in the file
+    bool discretisation_error = false;          ///< estimate it
+    std::filesystem::path output;               ///< .body.h5
 };
 
 /// The files that list nodes, in the order of the rules.

@@ -100,6 +100,26 @@ TEST_F(HdDeviceTest, a_limit_that_the_driver_does_not_know_is_zero) {
     EXPECT_EQ(limits.workspace_high[0], 0);
 }
 
+TEST_F(HdDeviceTest, a_glitch_of_the_encoders_is_a_fault_and_a_fast_hand_is_none) {
+    HdDevice& device = open();
+    double time = 0;
+    const auto read_at = [&](double x) {
+        behind().position = {x, 0, 0};
+        const DeviceState state = device.read(time += 1e-3);
+        device.write({0, 0, 0});
+        return state;
+    };
+    for (int k = 0; k < 20; ++k) EXPECT_EQ(read_at(2.0 * k).faults, no_fault) << "2 m/s";
+    const DeviceState glitch = read_at(38 + 6);
+    EXPECT_EQ(glitch.faults, implausible_speed);
+    EXPECT_THAT(glitch.position, ElementsAre(38, 0, 0));
+    EXPECT_EQ(read_at(38).faults, no_fault);
+    // What stays 12 mm off is where the stylus is, 3 ms later: 4 m/s.
+    EXPECT_EQ(read_at(50).faults, implausible_speed);
+    EXPECT_EQ(read_at(50).faults, implausible_speed);
+    EXPECT_EQ(read_at(50).faults, no_fault);
+}
+
 TEST_F(HdDeviceTest, the_state_is_the_drivers_and_the_shaft_the_stylus_own_z_axis) {
     HdDevice& device = open();
     behind().position = {1, -2, 3};

@@ -13,7 +13,7 @@ using namespace fem;
 
 DirectContact spread_over(const DeformableBody& body, const haptics::LoadSpread& spread,
                           const DirectContact& contact) {
-    DirectContact result{{}, {}, contact.normal, contact.series_compliance};
+    DirectContact result{{}, {}, contact.normal, contact.series_compliance, contact.of_tool};
     for (std::size_t i = 0; i < contact.nodes.size(); ++i) {
         const auto at = std::ranges::lower_bound(body.boundary.nodes, contact.nodes[i]);
         for (const auto& [vertex, weight] :
@@ -43,8 +43,9 @@ Eigen::MatrixXd direct_compliance(const DeformableBody& body, const std::vector<
         const auto row = static_cast<Eigen::Index>(k);
         A(row, row) += contacts[k].series_compliance;
         for (std::size_t l = 0; l < contacts.size(); ++l)
-            A(row, static_cast<Eigen::Index>(l)) +=
-                contacts[k].normal.dot(contacts[l].normal) / coupling_stiffness;
+            if (contacts[k].of_tool && contacts[l].of_tool)
+                A(row, static_cast<Eigen::Index>(l)) +=
+                    contacts[k].normal.dot(contacts[l].normal) / coupling_stiffness;
     }
     return A;
 }

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "formats/records/tick_result.hpp"
+#include "runtime/haptics/methods/contact_method.hpp"
+
+namespace palpate::haptics {
+
+/// Watches that contact gives hands no more energy than they gave it, and takes away what would be more. From
+/// the tick in which the first tool touches to that in which none does, the work of all forces must not be
+/// above what sampling explains,
+///     sum F . dx <= sum K |dx| (|dx| / 2 + resolution) + P L |ds|,
+/// for a force that is held while the device moves by dx is that of a spring of at most the coupling's
+/// stiffness K, half a step late; P L |ds| is what turning a shaft of length L against forces of sum P may
+/// have stored, for its torque is not felt. What is above it is taken back by a damper: the force along the
+/// way becomes less, or turns against it no further than to zero. Contact that keeps energy never needs it.
+/// After Hannaford, Ryu, IEEE Trans. Robotics Autom. 18:1-10 (2002). Realtime-safe but for the constructor.
+class PassivityObserver {
+  public:
+    static constexpr double resolution = 1e-3;  ///< mm: to which contact is solved, and encoders read
+
+    PassivityObserver(std::size_t tool_count, double shaft_length)
+        : tools_(tool_count), shaft_length_(shaft_length) {}
+
+    void reset() noexcept;
+
+    /// Adds the work of the forces that were held since the last tick. If there was more than there may be,
+    /// lowers `forces`, N, along the way on which their tools give it, and adds energy_injected to those
+    /// results' status. `coupling`: N/mm.
+    void damp(std::span<const ContactPose> poses, double coupling, std::span<TickResult> results,
+              std::span<Eigen::Vector3d> forces) noexcept;
+    /// Keeps what the tick ends with: forces as they are held from now on, and contacts. After a fault, whose
+    /// forces are not those of contact, watches again once no tool touches.
+    void hold(std::span<const TickResult> results) noexcept;
+
+    /// Of this touch: work on the hands above what there may be, N mm; below zero normally.
+    double excess() const noexcept { return excess_; }
+
+  private:
+    struct Tool {
+        Eigen::Vector3d tip{0, 0, 0}, shaft{0, 0, 0};
+        Eigen::Vector3d force{0, 0, 0};  // on the device since the last tick, N
+        double pressed = 0;              // N, sum of contact forces
+    };
+
+    std::vector<Tool> tools_;
+    double shaft_length_;
+    double excess_ = 0;
+    bool watching_ = true;
+};
+
+}  // namespace palpate::haptics

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <functional>
+#include <gtest/gtest.h>
+
+#include "runtime/haptics/passivity_observer.hpp"
+#include "tests/runtime/haptics/held_tool.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace haptics;
+using Eigen::Vector3d;
+
+constexpr double watched_coupling = 0.5;  // N/mm
+
+// A contact that is whatever a test says, under the observer, and what a hand got from it.
+class WatchedContact {
+  public:
+    struct Tick {
+        Vector3d force;  // N, on the device
+        std::uint32_t status;
+    };
+
+    explicit WatchedContact(double shaft_length = 0) : observer_(1, shaft_length) {}
+
+    Tick tick(const Vector3d& tip, const Vector3d& wanted, std::uint32_t faults = no_fault,
+              const Vector3d& shaft = Vector3d::Zero()) {
+        work_ += force_of(result_).dot(tip - tip_);
+        tip_ = tip;
+        const ContactPose pose{.tip = tip, .shaft = shaft, .trusted = true};
+        result_.status = tick_ok;
+        result_.faults = faults;
+        Vector3d force = wanted;
+        observer_.damp({&pose, 1}, watched_coupling, {&result_, 1}, {&force, 1});
+        result_.force = {force[0], force[1], force[2]};
+        result_.contact_count = wanted.isZero(0) ? 0 : 1;
+        result_.contacts[0].normal = {0, 0, 1};
+        result_.contacts[0].force = static_cast<float>(wanted.norm());
+        observer_.hold({&result_, 1});
+        return {force, result_.status};
+    }
+    double work() const { return work_; }  // on the hand, N mm
+
+  private:
+    PassivityObserver observer_;
+    TickResult result_{};
+    Vector3d tip_ = Vector3d::Zero();
+    double work_ = 0;
+};
+
+TEST(PassivityObserver, a_spring_that_is_read_once_a_tick_is_left_alone) {
+    WatchedContact contact;
+    for (int k = 0; k < 5000; ++k) {
+        const double z = 3 * std::cos(0.05 * k);  // 150 mm/s at the most
+        const Vector3d force(0, 0, watched_coupling * std::max(0.0, -z));
+        const auto tick = contact.tick({0, 0, z}, force);
+        ASSERT_EQ(tick.status, tick_ok) << k;
+        ASSERT_EQ(tick.force, force) << k;
+    }
+}
+
+// Pushes along one half of a circle and not against the other: each way round gives energy.
+TEST(PassivityObserver, what_gives_energy_is_damped_to_what_sampling_explains) {
+    WatchedContact contact;
+    double sampling = 0, undamped = 0;
+    int counted = 0;
+    Vector3d last(3, 0, 0);
+    contact.tick(last, Vector3d::Zero());
+    for (int k = 1; k <= 6283; ++k) {
+        const Vector3d tip = 3 * Vector3d(std::cos(1e-2 * k), std::sin(1e-2 * k), 0);
+        const Vector3d way = tip - last;
+        const Vector3d force(0, way[1] > 0 ? 0.2 : 0.1, 0);
+        sampling += watched_coupling * way.norm() * (way.norm() / 2 + PassivityObserver::resolution);
+        undamped += force.dot(way);
+        const auto tick = contact.tick(tip, force);
+        counted += (tick.status & energy_injected) != 0;
+        ASSERT_GE(tick.force.dot(way), std::min(0.0, force.dot(way)) - 1e-12)
+            << "no more than the force itself";
+        last = tip;
+    }
+    EXPECT_GT(undamped, 5);
+    EXPECT_GT(counted, 1000);
+    EXPECT_LE(contact.work(), sampling + 0.2 * 0.03) << "one tick late";
+}
+
+TEST(PassivityObserver, every_touch_has_its_own_account) {
+    WatchedContact contact;
+    // Paid a lot while touching the first time, which says nothing of the second.
+    for (int k = 0; k < 100; ++k) contact.tick({0, 0, -0.02 * k}, {0, 0, 1});
+    contact.tick({0, 0, 5}, Vector3d::Zero());
+    contact.tick({0, 0, 5}, Vector3d::Zero());
+    int counted = 0;
+    for (int k = 0; k < 100; ++k)
+        counted += (contact.tick({0, 0, 5 + 0.02 * k}, {0, 0, 1}).status & energy_injected) != 0;
+    EXPECT_GT(counted, 50);
+}
+
+TEST(PassivityObserver, what_a_fault_took_away_is_not_held_against_contact) {
+    WatchedContact contact;
+    for (int k = 0; k < 100; ++k) contact.tick({0, 0, -0.02 * k}, Vector3d(0, 0, 0.01 * k), motors_warm);
+    for (int k = 100; k > 0; --k)
+        ASSERT_EQ(contact.tick({0, 0, -0.02 * k}, Vector3d(0, 0, 0.01 * k)).status, tick_ok);
+}
+
+TEST(PassivityObserver, a_shaft_that_turns_may_have_stored_what_its_tip_gives_back) {
+    WatchedContact contact(50);
+    contact.tick({0, 0, 0}, {0, 0, 1}, no_fault, Vector3d::UnitX());
+    contact.tick({0, 0, 0}, {0, 0, 1}, no_fault, Vector3d(std::cos(0.1), 0, std::sin(0.1)));
+    // 1 N on 50 mm by 0.1 rad: 5 N mm.
+    double z = 0;
+    for (int k = 1; k <= 49; ++k) {
+        z = 0.1 * k;
+        ASSERT_EQ(
+            contact.tick({0, 0, z}, {0, 0, 1}, no_fault, Vector3d(std::cos(0.1), 0, std::sin(0.1))).status,
+            tick_ok)
+            << z;
+    }
+}
+
+TEST(PassivityObserver, never_moves_on_tissue_and_walls) {
+    Case c = sample::sample_case();
+    c.deformable_bodies = {sample::true_elastic_cube(3)};
+    HapticModel model(c);
+    TickResult result{};
+    int touched = 0, injected = 0;
+    for (int tick = 0; tick < 20000; ++tick) {
+        const double t = 1e-3 * tick;
+        const Vector3d tip(20 + 18 * std::sin(1.1 * t), 10 + 9 * std::sin(2.3 * t + 1),
+                           21 + 7 * std::cos(5.1 * t));
+        model.tick(held_at(tip), result);
+        touched += result.contact_count > 0;
+        injected += (result.status & energy_injected) != 0;
+    }
+    EXPECT_GT(touched, 4000);
+    EXPECT_EQ(injected, 0);
+}
+
+}  // namespace
+}  // namespace palpate
