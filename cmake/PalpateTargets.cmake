@@ -59,11 +59,14 @@ if(PALPATE_SANITIZERS)
     add_compile_definitions(PALPATE_SANITIZED)
 endif()
 
-# palpate_precompiled(<set> LINKS ... HEADERS ...): headers that are compiled once; a target takes a set with
-# PRECOMPILED <set>. Every file still includes what it uses: preset tidy reads it without them.
+# palpate_precompiled(<set> [OPTIMISED -O1] LINKS ... HEADERS ...): headers that are compiled once; a target takes a set
+# with PRECOMPILED <set>. Every file still includes what it uses: preset tidy reads it without them. OPTIMISED: how preset
+# release compiles the set and all who take it, for GCC keeps what a header was precompiled with, whatever a file asks for.
 function(palpate_precompiled set)
-    cmake_parse_arguments(arg "" "" "LINKS;HEADERS" ${ARGN})
+    cmake_parse_arguments(arg "" "OPTIMISED" "LINKS;HEADERS" ${ARGN})
     add_library(palpate_precompiled_${set} OBJECT ${PROJECT_SOURCE_DIR}/cmake/precompiled.cpp)
+    set_target_properties(palpate_precompiled_${set} PROPERTIES PALPATE_OPTIMISED "${arg_OPTIMISED}")
+    target_compile_options(palpate_precompiled_${set} PRIVATE $<$<CONFIG:Release>:${arg_OPTIMISED}>)
     target_link_libraries(palpate_precompiled_${set} PRIVATE ${arg_LINKS} palpate_house)
     target_compile_features(palpate_precompiled_${set} PUBLIC cxx_std_20)
     target_precompile_headers(palpate_precompiled_${set} PRIVATE ${arg_HEADERS})
@@ -72,6 +75,8 @@ endfunction()
 function(palpate_reuse_precompiled target set)
     if(TARGET palpate_precompiled_${set})
         target_precompile_headers(${target} REUSE_FROM palpate_precompiled_${set})
+        get_target_property(optimised palpate_precompiled_${set} PALPATE_OPTIMISED)
+        target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:${optimised}>)
     endif()
 endfunction()
 
@@ -107,15 +112,18 @@ function(palpate_library path)
     endif()
 endfunction()
 
-# palpate_executable(<name> SOURCES ... LINKS ...): a command; lands in build/<preset>/bin and is installed. Target
+# palpate_executable(<name> SOURCES ... LINKS ... [PRECOMPILED set]): a command; lands in build/<preset>/bin and is installed. Target
 # `commands` builds them all and nothing else.
 add_custom_target(commands)
 function(palpate_executable name)
-    cmake_parse_arguments(arg "" "" "SOURCES;LINKS" ${ARGN})
+    cmake_parse_arguments(arg "" "PRECOMPILED" "SOURCES;LINKS" ${ARGN})
+    if(NOT arg_PRECOMPILED)
+        set(arg_PRECOMPILED commands)
+    endif()
     add_executable(${name} ${arg_SOURCES})
     target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
     target_link_libraries(${name} PRIVATE ${arg_LINKS} palpate_house)
-    palpate_reuse_precompiled(${name} commands)
+    palpate_reuse_precompiled(${name} ${arg_PRECOMPILED})
     add_dependencies(commands ${name})
     install(TARGETS ${name} RUNTIME DESTINATION bin)
 endfunction()
