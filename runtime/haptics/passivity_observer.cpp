@@ -19,24 +19,23 @@ void PassivityObserver::damp(std::span<const ContactPose> poses, double coupling
                              std::span<TickResult> results, std::span<Vector3d> forces) noexcept {
     for (std::size_t t = 0; t < tools_.size(); ++t) {
         if (!poses[t].trusted) continue;
-        const Tool& tool = tools_[t];
+        Tool& tool = tools_[t];
         const Vector3d way = poses[t].tip - tool.tip;
         excess_ += tool.force.dot(way) - coupling * way.norm() * (way.norm() / 2 + resolution) -
                    tool.pressed * shaft_length_ * (poses[t].shaft - tool.shaft).norm();
+        if (!way.isZero(0)) tool.way = way;
+        tool.tip = poses[t].tip;
+        tool.shaft = poses[t].shaft;
     }
     double left = watching_ ? excess_ : 0;  // N mm to take back
-    for (std::size_t t = 0; t < tools_.size(); ++t) {
-        if (!poses[t].trusted) continue;
-        const Vector3d way = poses[t].tip - tools_[t].tip;
+    for (std::size_t t = 0; t < tools_.size() && left > 0; ++t) {
+        const Vector3d& way = tools_[t].way;
         const double gives = forces[t].dot(way);  // N mm, if the hand goes on so
-        if (left > 0 && gives > 0) {
-            const double taken = std::min(gives, left);
-            forces[t] -= taken / way.squaredNorm() * way;
-            left -= taken;
-            results[t].status |= energy_injected;
-        }
-        tools_[t].tip = poses[t].tip;
-        tools_[t].shaft = poses[t].shaft;
+        if (!(gives > 0)) continue;
+        const double taken = std::min(gives, left);
+        forces[t] -= taken / way.squaredNorm() * way;
+        left -= taken;
+        results[t].status |= energy_injected;
     }
 }
 

@@ -29,7 +29,7 @@ class PassivityObserver {
     void reset() noexcept;
 
     /// Adds the work of the forces that were held since the last tick. If there was more than there may be,
-    /// lowers `forces`, N, along the way on which their tools give it, and adds energy_injected to those
+    /// lowers `forces`, N, along the way on which their tools gave it last, and adds energy_injected to those
     /// results' status. `coupling`: N/mm.
     void damp(std::span<const ContactPose> poses, double coupling, std::span<TickResult> results,
               std::span<Eigen::Vector3d> forces) noexcept;
@@ -43,6 +43,7 @@ class PassivityObserver {
   private:
     struct Tool {
         Eigen::Vector3d tip{0, 0, 0}, shaft{0, 0, 0};
+        Eigen::Vector3d way{0, 0, 0};  // the last that was any, mm: coarse encoders do not move in every tick
         Eigen::Vector3d force{0, 0, 0};  // on the device since the last tick, N
         double pressed = 0;              // N, sum of contact forces
     };

@@ -84,6 +84,22 @@ TEST(PassivityObserver, what_gives_energy_is_damped_to_what_sampling_explains) {
     EXPECT_LE(contact.work(), sampling + 0.2 * 0.03) << "one tick late";
 }
 
+// 5 mm/s on encoders of 0.03 mm: most ticks see no motion, and must not give the force back.
+TEST(PassivityObserver, coarse_encoders_hide_no_energy) {
+    WatchedContact contact;
+    double sampling = 0;
+    contact.tick(Vector3d::Zero(), Vector3d::Zero());
+    Vector3d last = Vector3d::Zero();
+    for (int k = 1; k <= 2000; ++k) {
+        const Vector3d tip(0.03 * std::floor(0.005 * k / 0.03), 0, 0);
+        const double way = (tip - last).norm();
+        sampling += watched_coupling * way * (way / 2 + PassivityObserver::resolution);
+        contact.tick(tip, {0.2, 0, 0});
+        last = tip;
+    }
+    EXPECT_LE(contact.work(), sampling + 0.2 * 0.03);
+}
+
 TEST(PassivityObserver, every_touch_has_its_own_account) {
     WatchedContact contact;
     // Paid a lot while touching the first time, which says nothing of the second.
