@@ -52,9 +52,10 @@ std::string word_of(const nlohmann::json& request, const char* key) {
 // Where a body's shape is not the scan's.
 std::string posture_sentences(const std::string& provenance) {
     const auto json = nlohmann::json::parse(provenance, nullptr, false);
-    if (!json.is_object() || !json.contains("steps") || !json["steps"].is_array()) return "";
+    const nlohmann::json::json_pointer steps("/build/steps");
+    if (!json.contains(steps) || !json[steps].is_array()) return "";
     std::string sentences;
-    for (const auto& step : json["steps"]) {
+    for (const auto& step : json[steps]) {
         if (!step.is_object() || !step.contains("request") || !step["request"].is_object()) continue;
         const nlohmann::json& request = step["request"];
         if (!word_of(request, "posture").empty())

@@ -25,7 +25,8 @@ Case hostile_case() {
     patient_case.deformable_bodies.front().name = "wall</td><img>";
     patient_case.deformable_bodies.front().mesh.region_names.back().name = "tumour <b>";
     patient_case.provenance =
-        R"({"tool":{"name":"<i>palpate</i>"},"inputs":["a & b"],"meshes":{"cube":{"checks":[)"
+        R"({"tool":{"name":"<i>palpate</i>"},"inputs":["a & b"],"build":{"steps":[7,{"request":3},{"request":{"posture":1}},)"
+        R"({"command":"condense","request":{"name":"wall<","scanned":"supine","posture":"<b>prone"}}]},"meshes":{"cube":{"checks":[)"
         R"({"name":"max_mean_distance_mm","measure":"the mean <i>surface</i> distance","region":"cube","value":0.3,)"
         R"("bound":"at most","limit":0.25,"unit":"mm","met":false},)"
         R"({"what":"the volume error of 'cube'","found":"0.5 %","limit":"at most 1 %","kept":true}]}}})";
@@ -222,6 +223,13 @@ TEST_F(ReportTest, distances_carry_a_scale_in_mm_and_the_farthest_place) {
     const std::string page = full_page();
     for (const char* words : {"label &lt;a&gt;", "0.38 mm", "≥ 0.5 mm", "0.125", ">A</text>", ">R</text>"})
         EXPECT_TRUE(contains(page, words)) << words;
+}
+
+TEST_F(ReportTest, a_shape_that_is_not_the_scans_says_so_whatever_the_provenance_holds) {
+    EXPECT_TRUE(contains(full_page(),
+                         "wall&lt;</b> was scanned supine and has the shape that gravity gives it "
+                         "&lt;b&gt;prone"));
+    EXPECT_FALSE(contains(bare_page(), "was scanned"));
 }
 
 TEST(ColourScale, ends_at_a_round_number_and_holds_there) {
