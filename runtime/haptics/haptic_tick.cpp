@@ -37,7 +37,7 @@ void HapticModel::tick(std::span<const realtime::DeviceState> devices, std::span
     for (std::size_t t = 0; t < tools_.size(); ++t)
         results[t].force =
             array_of(tools_[t].limiter.limit(forces_[t], results[t].faults, results[t].status));
-    observer_.hold(results);
+    if (method_.can.keeps_energy) observer_.hold(results);
 }
 
 ContactPose HapticModel::begin(Tool& tool, const realtime::DeviceState& device, TickResult& result) noexcept {

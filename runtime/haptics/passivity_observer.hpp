@@ -37,9 +37,6 @@ class PassivityObserver {
     /// forces are not those of contact, watches again once no tool touches.
     void hold(std::span<const TickResult> results) noexcept;
 
-    /// Of this touch: work on the hands above what there may be, N mm; below zero normally.
-    double excess() const noexcept { return excess_; }
-
   private:
     struct Tool {
         Eigen::Vector3d tip{0, 0, 0}, shaft{0, 0, 0};
@@ -50,7 +47,8 @@ class PassivityObserver {
 
     std::vector<Tool> tools_;
     double shaft_length_;
-    double excess_ = 0;
+    double excess_ =
+        0;  // of this touch: work on the hands above what there may be, N mm; normally below zero
     bool watching_ = true;
 };
 

@@ -6,7 +6,7 @@
 #include "formats/model/body.hpp"
 #include "formats/model/progress.hpp"
 #include "tools/fem/condensation/condensation_plan.hpp"
-#include "tools/fem/condensation/posture.hpp"
+#include "tools/fem/gravity/posture.hpp"
 #include "tools/stages/requests/condense_request.hpp"
 
 namespace palpate::stages {

@@ -11,8 +11,9 @@ namespace palpate::devices {
 /// highest speed. Realtime-safe.
 class SpeedWatch {
   public:
-    static constexpr double fastest = 5000;  ///< mm/s; devices are rated for about a fifth of it
-    static constexpr double period = 1e-3;   ///< s, that two positions are apart at the least
+    static constexpr double fastest =
+        5000;                               ///< mm/s; five times the fastest hand of `palpate bench puncture`
+    static constexpr double period = 1e-3;  ///< s, that two positions are apart at the least
 
     /// Whether a hand may be at `position` (mm) at `time` (s), and if so, remembers it.
     bool plausible(const std::array<double, 3>& position, double time) noexcept {

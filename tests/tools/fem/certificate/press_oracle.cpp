@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Solves the strongest contact of a run of `palpate touch` again, directly on the asset's sparse stiffness:
 // press_oracle ASSET.vtkhdf TOUCH.json prints the force felt on the tool and the exact one (N), which points
-// of the contact would pull (should be none) and how far any unloaded point lies inside what presses it (mm).
-// For an asset of one deformable body and rigid ones beside it.
+// of the contact would pull (should be none) and how far any unloaded point lies inside what presses it, and
+// any loaded one of the felt forces is off it (mm). For an asset of one deformable body and rigid ones beside
+// it.
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -33,6 +36,14 @@ Eigen::VectorXd of_tool(const std::vector<test::DirectContact>& contacts, const 
     return Eigen::Map<Eigen::VectorXd>(found.data(), static_cast<Eigen::Index>(found.size()));
 }
 
+// Of all contacts that press, between bodies too: those forces may differ, what they displace must not.
+double worst_where_pressed(const Eigen::VectorXd& residual, const std::vector<bool>& active) {
+    double worst = 0;
+    for (std::size_t k = 0; k < active.size(); ++k)
+        if (active[k]) worst = std::max(worst, std::abs(residual[static_cast<Eigen::Index>(k)]));
+    return worst;
+}
+
 }  // namespace
 
 int main(int, char** argv) {
@@ -57,6 +68,7 @@ int main(int, char** argv) {
     std::cout << nlohmann::json{{"felt_n", of_tool(contacts, felt).sum()},
                                 {"exact_n", of_tool(contacts, exact).sum()},
                                 {"smallest_exact_n", of_tool(contacts, exact).minCoeff()},
-                                {"deepest_inside_mm", (delta - A * exact).maxCoeff()}}
+                                {"deepest_inside_mm", (delta - A * exact).maxCoeff()},
+                                {"felt_residual_mm", worst_where_pressed(A * felt - delta, active)}}
               << '\n';
 }

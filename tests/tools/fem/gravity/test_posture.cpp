@@ -4,7 +4,7 @@
 #include "formats/model/errors.hpp"
 #include "tests/tools/fem/blocks.hpp"
 #include "tools/fem/condensation/condense.hpp"
-#include "tools/fem/condensation/posture.hpp"
+#include "tools/fem/gravity/posture.hpp"
 
 namespace palpate {
 namespace {

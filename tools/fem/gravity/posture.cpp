@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fem/condensation/posture.hpp"
+#include "tools/fem/gravity/posture.hpp"
 
 #include <algorithm>
 #include <array>
