@@ -50,14 +50,10 @@ std::string svg_of(const std::filesystem::path& path) {
 
 SurfaceComparison comparison_of(const std::string& body, const TriangleMesh& surface,
                                 const std::string& against, const TriangleMesh& reference) {
-    const SurfaceDistance distance = surface_distance(surface, reference);
-    return {body,
-            against,
-            triangle_distances(surface, reference),
-            distance.mean,
-            distance.percentile_95,
-            distance.maximum,
-            distance.farthest};
+    TriangleDistances distances = triangle_distances(surface, reference);
+    const SurfaceDistance& whole = distances.whole;
+    return {body,          against,       std::move(distances.of_triangle), whole.mean, whole.percentile_95,
+            whole.maximum, whole.farthest};
 }
 
 // The rigid body's surface against what `palpate surface` made of the same origin before it decimated.

@@ -184,7 +184,24 @@ TEST(SurfaceDistance, concentric_spheres_are_as_far_apart_as_their_radii) {
     EXPECT_NEAR(distance.mean, 2, 0.05);  // chords sag by some hundredths
     EXPECT_NEAR(distance.percentile_95, 2, 0.05);
     EXPECT_NEAR(distance.maximum, 2, 0.1);
-    EXPECT_NEAR(surface_distance(inner, inner).maximum, 0, 1e-9);
+    EXPECT_EQ(surface_distance(inner, inner).maximum, 0);
+}
+
+TEST(SurfaceDistance, a_triangle_is_as_far_off_as_the_farthest_of_its_corners) {
+    const TriangleMesh ball = isosurface(cone(Eigen::Matrix3d::Identity(), 12), 100);
+    TriangleMesh dented = ball;
+    const std::int32_t dent = ball.triangles[7][1];
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    for (const Eigen::Vector3d& p : ball.vertices) centre += p / static_cast<double>(ball.vertices.size());
+    dented.vertices[dent] += (ball.vertices[dent] - centre).normalized();  // 1 mm outwards
+    const TriangleDistances distances = triangle_distances(dented, ball);
+    const double off = distances.whole.maximum;
+    EXPECT_NEAR(off, 1, 0.05);
+    for (std::size_t t = 0; t < dented.triangles.size(); ++t)
+        if (std::ranges::find(dented.triangles[t], dent) != dented.triangles[t].end())
+            EXPECT_EQ(distances.of_triangle[t], off);
+        else
+            EXPECT_LT(distances.of_triangle[t], 1e-9);
 }
 
 TEST(LabelSurface, cube_keeps_its_volume_however_it_is_smoothed) {

@@ -13,6 +13,20 @@
 namespace palpate::meshing {
 namespace {
 
+std::vector<double> largest_of_triangles(const TriangleMesh& surface, std::span<const SurfaceSample> samples,
+                                         std::span<const NearestPlace> places) {
+    std::vector<double> of_vertex(surface.vertices.size(), 0), of_triangle(surface.triangles.size(), 0);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        double& most = of_triangle[samples[i].triangle];
+        most = std::max(most, places[i].distance);
+        if (samples[i].vertex >= 0) of_vertex[samples[i].vertex] = places[i].distance;
+    }
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+        for (const std::int32_t v : surface.triangles[t])
+            of_triangle[t] = std::max(of_triangle[t], of_vertex[v]);
+    return of_triangle;
+}
+
 vtkNew<vtkPolyData> to_vtk(const TriangleMesh& surface) {
     vtkNew<vtkPoints> points;
     points->SetDataTypeToDouble();
@@ -41,7 +55,7 @@ std::vector<SurfaceSample> samples_of(const TriangleMesh& surface) {
             const std::int32_t vertex = surface.triangles[t][c], next = surface.triangles[t][(c + 1) % 3];
             const Eigen::Vector3d& p = surface.vertices[vertex];
             sum += p;
-            if (!seen[vertex]) samples.push_back({p, triangle});
+            if (!seen[vertex]) samples.push_back({p, triangle, vertex});
             seen[vertex] = true;
             // The triangle on the other side runs along the edge the other way.
             if (vertex < next) samples.push_back({(p + surface.vertices[next]) / 2, triangle});
@@ -77,24 +91,6 @@ std::vector<NearestPlace> nearest_places(std::span<const SurfaceSample> samples,
     return places;
 }
 
-std::vector<double> triangle_distances(const TriangleMesh& surface, const TriangleMesh& reference) {
-    std::vector<SurfaceSample> samples;
-    for (const Eigen::Vector3d& p : surface.vertices) samples.push_back({p, 0});
-    for (const Triangle& t : surface.triangles) {
-        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-        for (const std::int32_t v : t) sum += surface.vertices[v];
-        samples.push_back({sum / 3, 0});
-    }
-    const std::vector<NearestPlace> places = nearest_places(samples, reference);
-    std::vector<double> distances;
-    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-        double most = places[surface.vertices.size() + t].distance;
-        for (const std::int32_t v : surface.triangles[t]) most = std::max(most, places[v].distance);
-        distances.push_back(most);
-    }
-    return distances;
-}
-
 SurfaceDistance summary(std::span<const SurfaceSample> samples_a, std::span<const NearestPlace> of_a,
                         std::span<const SurfaceSample> samples_b, std::span<const NearestPlace> of_b) {
     std::vector<double> distances;
@@ -113,9 +109,17 @@ SurfaceDistance summary(std::span<const SurfaceSample> samples_a, std::span<cons
     return result;
 }
 
+TriangleDistances triangle_distances(const TriangleMesh& surface, const TriangleMesh& reference) {
+    if (surface.vertices == reference.vertices && surface.triangles == reference.triangles)
+        return {{}, std::vector<double>(surface.triangles.size(), 0)};
+    const std::vector<SurfaceSample> samples = samples_of(surface), of_reference = samples_of(reference);
+    const std::vector<NearestPlace> places = nearest_places(samples, reference);
+    return {summary(samples, places, of_reference, nearest_places(of_reference, surface)),
+            largest_of_triangles(surface, samples, places)};
+}
+
 SurfaceDistance surface_distance(const TriangleMesh& a, const TriangleMesh& b) {
-    const std::vector<SurfaceSample> samples_a = samples_of(a), samples_b = samples_of(b);
-    return summary(samples_a, nearest_places(samples_a, b), samples_b, nearest_places(samples_b, a));
+    return triangle_distances(a, b).whole;
 }
 
 }  // namespace palpate::meshing

@@ -13,6 +13,7 @@ namespace palpate::meshing {
 struct SurfaceSample {
     Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< p_P, mm
     std::int32_t triangle = 0;                        ///< that it lies on
+    std::int32_t vertex = -1;                         ///< that it is, -1: within an edge or a triangle
 };
 
 /// Lists every vertex in use, the middle of every edge of a closed surface and every triangle's centroid.
@@ -27,10 +28,6 @@ struct NearestPlace {
 /// Finds the nearest place of `surface` for each sample. Cost: O(log n) a sample.
 std::vector<NearestPlace> nearest_places(std::span<const SurfaceSample> samples, const TriangleMesh& surface);
 
-/// Returns for each triangle of `surface` the largest distance of its corners and its centroid to
-/// `reference`, mm.
-std::vector<double> triangle_distances(const TriangleMesh& surface, const TriangleMesh& reference);
-
 /// How far two surfaces are apart, mm, both ways over the samples of each.
 struct SurfaceDistance {
     double mean = 0, percentile_95 = 0, maximum = 0;
@@ -41,7 +38,17 @@ struct SurfaceDistance {
 SurfaceDistance summary(std::span<const SurfaceSample> samples_a, std::span<const NearestPlace> of_a,
                         std::span<const SurfaceSample> samples_b, std::span<const NearestPlace> of_b);
 
-/// Measures the distance of two surfaces both ways. Cost: O((m + n) log(m + n)).
+/// How far two surfaces are apart, and which triangles of the first one.
+struct TriangleDistances {
+    SurfaceDistance whole;            ///< both ways
+    std::vector<double> of_triangle;  ///< of the first surface: the largest of its corners and samples, mm
+};
+
+/// Measures the distance of two surfaces both ways. Searches nothing where they are one and the same, else
+/// cost: O((m + n) log(m + n)).
+TriangleDistances triangle_distances(const TriangleMesh& surface, const TriangleMesh& reference);
+
+/// The same without the triangles.
 SurfaceDistance surface_distance(const TriangleMesh& a, const TriangleMesh& b);
 
 }  // namespace palpate::meshing

@@ -129,7 +129,7 @@ void add_regions(vtkRenderer* renderer, const DeformableBody& body, double outer
 }
 
 constexpr int width = 760, height = 620;  // pixels of a picture
-constexpr int samples = 2;  // each way in a pixel: smooth edges with any number of glassy layers
+constexpr int samples = 2;  // each way in a pixel: smooth edges, also of glassy layers
 
 // Narrows the view until everything just fits; some two thousand points of each surface tell.
 void fit(vtkRenderer* renderer) {
@@ -191,13 +191,9 @@ std::vector<SceneView> draw(vtkRenderer* renderer, const std::vector<ViewDirecti
     vtkNew<vtkRenderWindow> window;
     window->SetOffScreenRendering(1);
     window->SetMultiSamples(0);
-    window->SetAlphaBitPlanes(1);
     window->SetSize(samples * width, samples * height);
     window->AddRenderer(renderer);
     renderer->SetBackground(0.965, 0.972, 0.98);
-    renderer->SetUseDepthPeeling(1);
-    renderer->SetMaximumNumberOfPeels(4);
-    renderer->SetOcclusionRatio(0.005);
     std::vector<SceneView> views;
     for (const ViewDirection& from : directions) {
         vtkCamera* camera = renderer->GetActiveCamera();
