@@ -13,32 +13,34 @@ using Eigen::Vector3d;
 
 constexpr std::array<std::array<std::size_t, 2>, 3> edges{{{0, 1}, {1, 2}, {2, 0}}};
 
-TrianglePoint make_point(const Vector3d& p, const TriangleCorners& t, const Vector3d& barycentric,
+TrianglePoint make_point(const Vector3d& p, const TriangleCorners& t, double a, double b, double c,
                          Feature feature) noexcept {
     TrianglePoint result;
-    result.barycentric = barycentric;
-    result.point = barycentric[0] * t[0] + barycentric[1] * t[1] + barycentric[2] * t[2];
+    result.point = a * t[0] + b * t[1] + c * t[2];
     result.squared_distance = (p - result.point).squaredNorm();
+    result.barycentric = {a, b, c};
     result.feature = feature;
     return result;
 }
 
 TrianglePoint closest_point_on_edges(const Vector3d& p, const TriangleCorners& t) noexcept {
-    TrianglePoint best;
-    best.squared_distance = std::numeric_limits<double>::infinity();
-    for (const auto& [i, j] : edges) {
-        const Vector3d edge = t[j] - t[i];
+    double least = std::numeric_limits<double>::infinity(), along = 0;
+    std::size_t nearest = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vector3d edge = t[(i + 1) % 3] - t[i], way = p - t[i];
         const double squared_length = edge.squaredNorm();
-        const double s =
-            squared_length > 0 ? std::clamp((p - t[i]).dot(edge) / squared_length, 0.0, 1.0) : 0.0;
-        Vector3d barycentric = Vector3d::Zero();
-        barycentric[static_cast<Eigen::Index>(i)] = 1 - s;
-        barycentric[static_cast<Eigen::Index>(j)] = s;
-        const TrianglePoint here =
-            make_point(p, t, barycentric, s > 0 && s < 1 ? Feature::edge : Feature::vertex);
-        if (here.squared_distance < best.squared_distance) best = here;
+        const double s = squared_length > 0 ? std::clamp(way.dot(edge) / squared_length, 0.0, 1.0) : 0.0;
+        const double squared_distance = (way - s * edge).squaredNorm();
+        if (squared_distance >= least) continue;
+        least = squared_distance;
+        along = s;
+        nearest = i;
     }
-    return best;
+    std::array<double, 3> weights{};
+    weights[nearest] = 1 - along;
+    weights[(nearest + 1) % 3] = along;
+    return make_point(p, t, weights[0], weights[1], weights[2],
+                      along > 0 && along < 1 ? Feature::edge : Feature::vertex);
 }
 
 // The edges, and the face if p lies over it by cross products from its foot, which lose half the digits that
@@ -52,7 +54,9 @@ TrianglePoint closest_point_on_thin_triangle(const Vector3d& p, const TriangleCo
         weights[static_cast<Eigen::Index>(i)] =
             normal.dot((t[(i + 1) % 3] - foot).cross(t[(i + 2) % 3] - foot));
     if (!(weights.minCoeff() > 0)) return best;
-    const TrianglePoint here = make_point(p, t, weights / weights.sum(), Feature::face);
+    const double sum = weights.sum();
+    const TrianglePoint here =
+        make_point(p, t, weights[0] / sum, weights[1] / sum, weights[2] / sum, Feature::face);
     return here.squared_distance < best.squared_distance ? here : best;
 }
 
@@ -79,13 +83,13 @@ Vector3d unit_normal(const TriangleCorners& t) noexcept {
 TrianglePoint closest_point_on_triangle(const Vector3d& p, const TriangleCorners& t) noexcept {
     const Vector3d ab = t[1] - t[0], ac = t[2] - t[0], ap = p - t[0];
     const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-    if (d1 <= 0 && d2 <= 0) return make_point(p, t, {1, 0, 0}, Feature::vertex);
+    if (d1 <= 0 && d2 <= 0) return make_point(p, t, 1, 0, 0, Feature::vertex);
     const Vector3d bp = p - t[1];
     const double d3 = ab.dot(bp), d4 = ac.dot(bp);
-    if (d3 >= 0 && d4 <= d3) return make_point(p, t, {0, 1, 0}, Feature::vertex);
+    if (d3 >= 0 && d4 <= d3) return make_point(p, t, 0, 1, 0, Feature::vertex);
     const Vector3d cp = p - t[2];
     const double d5 = ab.dot(cp), d6 = ac.dot(cp);
-    if (d6 >= 0 && d5 <= d6) return make_point(p, t, {0, 0, 1}, Feature::vertex);
+    if (d6 >= 0 && d5 <= d6) return make_point(p, t, 0, 0, 1, Feature::vertex);
 
     // Twice the signed areas of (p, b, c), (p, c, a), (p, a, b) in the triangle's plane, times twice its
     // area.
@@ -94,7 +98,7 @@ TrianglePoint closest_point_on_triangle(const Vector3d& p, const TriangleCorners
     // Relative to the edges, 1e-6 is where these differences have lost ten digits.
     if (sum <= 1e-6 * ab.squaredNorm() * ac.squaredNorm()) return closest_point_on_thin_triangle(p, t);
     if (!(va > 0 && vb > 0 && vc > 0)) return closest_point_on_edges(p, t);
-    return make_point(p, t, {va / sum, vb / sum, vc / sum}, Feature::face);
+    return make_point(p, t, va / sum, vb / sum, vc / sum, Feature::face);
 }
 
 namespace {

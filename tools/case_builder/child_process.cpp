@@ -13,8 +13,6 @@
 #include "formats/model/errors.hpp"
 #include "tools/cli/staged_file.hpp"
 
-extern char** environ;
-
 namespace palpate::case_builder {
 namespace {
 

@@ -16,6 +16,12 @@ constexpr double dependent =
 
 }  // namespace
 
+void ContactLcp::know(std::size_t row) noexcept {
+    if (known_[row]) return;
+    known_[row] = true;
+    fill_(filler_, row);
+}
+
 // Extends the factor L L' of the active rows' submatrix by `row`; false if the row depends on them.
 bool ContactLcp::append(std::size_t row) noexcept {
     const auto r = static_cast<Index>(row);
@@ -111,11 +117,15 @@ void ContactLcp::make_feasible() noexcept {
     }
 }
 
-double ContactLcp::solve(std::size_t rows, std::span<const std::size_t> active) noexcept {
+double ContactLcp::solve_filling(std::size_t rows, std::span<const std::size_t> active) noexcept {
     const auto n = static_cast<Index>(rows);
     count_ = 0;
+    known_.reset();
     f_.head(n).setZero();
-    for (const std::size_t row : active) append(row);
+    for (const std::size_t row : active) {
+        know(row);
+        append(row);
+    }
     // From f = 0 the first step may drop warm rows one by one; what remains is feasible and optimal on
     // itself.
     make_feasible();
@@ -143,6 +153,7 @@ double ContactLcp::solve(std::size_t rows, std::span<const std::size_t> active) 
         if (entering == rows) break;
         // Where a pivot is noise, so is what the active rows leave to this one for the same reason.
         const auto row = static_cast<Index>(entering);
+        know(entering);
         const double noise = dependent * A_(row, row) * f_.head(n).sum();
         if (!append(entering) && !(-lowest > noise && exchange(entering))) {
             set_aside[entering] = true;

@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <bitset>
 #include <cstddef>
 #include <span>
 
@@ -20,15 +21,28 @@ class ContactLcp {
     using Matrix = Eigen::Matrix<double, max_contacts, max_contacts>;
     using Vector = Eigen::Matrix<double, max_contacts, 1>;
 
-    Matrix& matrix() noexcept { return A_; }    ///< fill the leading n x n block, both triangles
+    Matrix& matrix() noexcept { return A_; }
     Vector& gaps() noexcept { return delta_; }  ///< delta, mm
 
-    /// Solves for the leading n rows, starting from the rows in `active` (may be empty). Returns the
-    /// residual: the worst of -w where f = 0 and |w| where f > 0, mm.
-    double solve(std::size_t n, std::span<const std::size_t> active) noexcept;
+    /// Solves for the leading n rows, starting from the rows in `active` (may be empty). `fill(row)` writes
+    /// the leading n entries of that column of matrix(), and is called once for each row that is to bear
+    /// force: the others' columns need not be known. Returns the residual: the worst of -w where f = 0 and
+    /// |w| where f > 0, mm.
+    template <typename Fill>
+    double solve(std::size_t n, std::span<const std::size_t> active, Fill fill) noexcept {
+        filler_ = &fill;
+        fill_ = [](void* filler, std::size_t row) { (*static_cast<Fill*>(filler))(row); };
+        return solve_filling(n, active);
+    }
+    /// The same with the whole matrix there.
+    double solve(std::size_t n, std::span<const std::size_t> active) noexcept {
+        return solve(n, active, [](std::size_t) {});
+    }
     const Vector& forces() const noexcept { return f_; }  ///< N, the leading n are valid
 
   private:
+    double solve_filling(std::size_t n, std::span<const std::size_t> active) noexcept;
+    void know(std::size_t row) noexcept;
     bool append(std::size_t row) noexcept;
     bool exchange(std::size_t row) noexcept;
     void remove(std::size_t position) noexcept;
@@ -39,6 +53,9 @@ class ContactLcp {
     Vector delta_, f_, candidate_;
     std::array<std::size_t, max_contacts> order_{};  // active rows, in the order of L's
     std::size_t count_ = 0;
+    std::bitset<max_contacts> known_;  // columns of A
+    void* filler_ = nullptr;
+    void (*fill_)(void*, std::size_t) = nullptr;
 };
 
 }  // namespace palpate::haptics

@@ -129,7 +129,7 @@ void add_regions(vtkRenderer* renderer, const DeformableBody& body, double outer
 }
 
 constexpr int width = 760, height = 620;  // pixels of a picture
-constexpr int samples = 2;  // each way in a pixel: smooth edges, also of glassy layers
+constexpr int samples = 2;                // each way in a pixel: smooth edges, also of glassy layers
 
 // Narrows the view until everything just fits; some two thousand points of each surface tell.
 void fit(vtkRenderer* renderer) {

@@ -27,7 +27,9 @@
 // what they come to within a tick, and what earlier forces left behind counts as if it were held: so V is
 // another in each tick, and a closed way loses energy (deformed_patch_creep.cpp, remember_pushes()). The
 // forces answer with the next x = d + sum f n / K, u = -C sum w n f and s, and so on until nothing changes.
-// Answers are combined as Anderson (1965) has it, for two sets of contacts would take turns for ever.
+// Answers are combined as Anderson (1965) has it, for two sets of contacts would take turns for ever, with
+// steps between answers of the tick before besides: so two answers do in most ticks. Friction is part of
+// state and answer.
 
 namespace palpate::haptics {
 namespace {
@@ -39,6 +41,8 @@ using Eigen::Vector3f;
 
 constexpr int warm_iterations = 8, cold_iterations = 24;
 constexpr double far_off = 10;          // times the change before it
+constexpr double walked_ahead = 4;      // times the change: what answers and their combinations come to
+constexpr double helped = 0.5;          // times the change before it
 constexpr std::size_t most_walls = 48;  // leaves room for tissue
 
 }  // namespace
@@ -55,6 +59,7 @@ void ContactEquilibrium::reset() noexcept {
 
 void ContactEquilibrium::forget(std::size_t t) noexcept {
     Tool& tool = tools_[t];
+    bank_ = in_row_ = carried_ = 0;
     tool.touching = tool.at_rest = false;
     tool.off.setZero();
     tool.press.setZero();
@@ -62,7 +67,7 @@ void ContactEquilibrium::forget(std::size_t t) noexcept {
     for (Part& part : tool.parts)
         for (std::size_t soft = 0; soft < patches_.size(); ++soft) {
             Touch& touch = part.touches[soft];
-            touch.count = 0;
+            touch.near.clear();
             if (touch.creep == nullptr) touch.freedom = 1;
             touch.sunk = local_dent(touch, patches_[soft]);
             touch.push.setZero();
@@ -83,6 +88,11 @@ void ContactEquilibrium::begin_tick(double stiffness) noexcept {
         tool.at_rest = false;
     }
     for (DeformedPatch& patch : patches_) patch.begin_tick();
+    // What tissue has forgotten, spheres forget too.
+    for (Tool& tool : tools_)
+        for (Part& part : tool.parts)
+            for (std::size_t soft = 0; soft < patches_.size(); ++soft)
+                if (patches_[soft].is_at_rest()) part.touches[soft].forget_pushes();
     neighbours_.look(patches_);
 }
 
@@ -135,6 +145,7 @@ std::size_t ContactEquilibrium::wall_count() const noexcept {
 }
 
 void ContactEquilibrium::solve() noexcept {
+    carry_over();
     const auto starts = [](const Tool& tool) { return tool.felt > 0 && tool.touching && tool.cold; };
     iterate(std::ranges::any_of(tools_, starts) ? cold_iterations : warm_iterations);
     // What was found from the last tick on may have led astray: then contact starts anew. And where that does
@@ -164,11 +175,15 @@ bool ContactEquilibrium::start_anew() noexcept {
 void ContactEquilibrium::iterate(int most) noexcept {
     std::size_t known = 0;
     double before = std::numeric_limits<double>::infinity();
+    double went =
+        std::numeric_limits<double>::infinity();  // mm, at the most, since spheres looked around them
     for (int iteration = 0; iteration < most; ++iteration) {
         rows_.cut(wall_count());
         watched_.clear();
         double longest = cold_reach;
         bool predicts = false;
+        const bool walks = went > first_reach;
+        if (walks) went = 0;
         for (std::size_t t = 0; t < tools_.size(); ++t) {
             Tool& tool = tools_[t];
             if (tool.felt == 0) continue;
@@ -180,7 +195,7 @@ void ContactEquilibrium::iterate(int most) noexcept {
                 for (std::size_t soft = 0; !starts && soft < patches_.size(); ++soft) {
                     if (!tool.touching && !patches_[soft].bears_force()) continue;
                     if (iteration == (tool.touching && tool.cold ? 1 : 0)) look_around(t, p, soft);
-                    tool.outside = gather(t, p, soft) && tool.outside;
+                    tool.outside = gather(t, p, soft, walks) && tool.outside;
                 }
             }
             predicts = predicts || starts;
@@ -190,15 +205,34 @@ void ContactEquilibrium::iterate(int most) noexcept {
         neighbours_.gather(patches_, max_contacts - rows_.size());
         group_rows();
         solve_rows();
-        const std::size_t newest = static_cast<std::size_t>(iteration) % DeformedPatch::iterates;
-        if (friction_.at_rest > 0) rub();
+        const auto round = static_cast<std::size_t>(iteration);
+        const std::size_t newest = answer_of(round);
+        if (friction_.at_rest > 0)
+            rub(newest);
+        else
+            for (DeformedPatch& patch : patches_) patch.keep_hold(newest);
         const double change = answer(newest);
+        compare(round);
+        // Where answers of a tick before have led astray, it goes on from what they were added to.
+        if (known > 0 && carried_ > 1 && change > before) {
+            carried_ = known = 0;
+            went += walked_ahead * change;
+            neighbours_.move(change);
+            relax_to(alone(answer_of(round - 1)), longest);
+            continue;
+        }
+        if (known > 1 && change > helped * before) carried_ = 0;
         // An answer from far off says little about the next one, and one to surfaces at rest nothing.
-        known = change > far_off * before ? 1 : std::min(known + 1, DeformedPatch::iterates);
-        if (predicts) known = 0;
+        known = change > far_off * before ? 1 : std::min(known + 1, first_answers);
+        if (predicts) {
+            known = 0;
+            went = std::numeric_limits<double>::infinity();
+        }
+        if (known == round + 1) in_row_ = known;
         before = change;
         neighbours_.move(change);
-        relax_to(mix(newest, change < settled ? 1 : known),
+        went += walked_ahead * change;
+        relax_to(change < settled ? alone(newest) : mix(round, known, carried_),
                  predicts ? std::numeric_limits<double>::infinity() : longest);
         if (change < settled && watched_are_clear() && neighbours_.is_clear(patches_)) break;
     }
@@ -289,7 +323,7 @@ void ContactEquilibrium::forget_tissue() noexcept {
                 for (Touch& touch : part.touches) touch.way = -1;
     }
     if (any) neighbours_.forget();
-    active_count_ = 0;
+    active_count_ = bank_ = in_row_ = carried_ = 0;
     last_motion_ = 0;
 }
 

@@ -81,10 +81,14 @@ class ContactEquilibrium {
 
   private:
     static constexpr std::size_t most_rows = 512;  // before they are cut
+    static constexpr std::size_t most_near = 256;  // triangles beside a sphere
     static constexpr double settled = 1e-4;        // mm: changes smaller than this end the search
     // mm beyond a sphere within which triangles count: of a tool at rest, and where contact starts.
     static constexpr double first_reach = 0.1, cold_reach = 0.5;
 
+    // Of the answers to states: the first ones of a tick, of this one and of one before it, and later ones.
+    static constexpr std::size_t first_answers = 3;
+    static_assert(DeformedPatch::iterates == 3 * first_answers);
     using Weights = std::array<double, DeformedPatch::iterates>;
     using Offsets = std::array<Eigen::Vector3d, DeformedPatch::iterates>;
     static Offsets no_offsets() noexcept {
@@ -117,13 +121,12 @@ class ContactEquilibrium {
     };
     using Bearings = FixedList<Bearing, 3 * max_contacts>;
     struct Surrounding {
-        std::int32_t triangle = 0;
+        std::int32_t tree_slot = 0, triangle = 0;
         double due = 0;  // mm of the way
     };
     // One sphere of a tool on one body.
     struct Touch {
-        std::array<std::int32_t, max_contacts> triangles{};  // that pressed it last
-        std::size_t count = 0;
+        FixedList<std::int32_t, most_near> near;  // triangles, when it was looked last
         // How far the sphere sinks into the tissue beyond what the surface gives way, against the press; and
         // the press (N) about which that is linearised: sunk_free + sinking * press.
         Eigen::Vector3d sunk = Eigen::Vector3d::Zero(), push = Eigen::Vector3d::Zero();
@@ -137,9 +140,10 @@ class ContactEquilibrium {
         Eigen::Vector3d lasting_push = Eigen::Vector3d::Zero();
         // Friction. It holds until more than it can is asked for, and what could not be held in one tick is
         // made good in the next.
-        Eigen::Vector3d drag = Eigen::Vector3d::Zero();      // on the tool, N
+        Eigen::Vector3d drag = Eigen::Vector3d::Zero();  // on the tool, N; and as answers have it
+        Offsets next_drag = no_offsets(), drag_difference = no_offsets();
         Eigen::Vector3d slip = Eigen::Vector3d::Zero();      // mm, to be made good
-        bool slides = false, slid = false, pressed = false;  // in this tick; in the last one
+        bool slides = false, slid = false, pressed = false;  // now; before, or in the last tick
         double press = 0;                                    // N, all rows together
         Eigen::Vector3d axis = Eigen::Vector3d::Zero();      // of the press
         // What else is around, looked at again once the ways that sphere and tissue went could make it near.
@@ -155,6 +159,7 @@ class ContactEquilibrium {
             freedom = 1;
             left_push = {};
             lasting_push.setZero();
+            sunk.setZero();
         }
     };
     struct Part {
@@ -182,6 +187,10 @@ class ContactEquilibrium {
     static std::int64_t key_of(const Row& row) noexcept;
     std::size_t wall_count() const noexcept;
     void gather_at_rest(std::size_t tool, std::size_t part) noexcept;
+    // N: up to which a sphere sinks in as it does under that, in proportion.
+    double slight_press(const LoadSpread& spread) const noexcept {
+        return 1e-3 * spread.contact_modulus() * radius_ * radius_;
+    }
     void linearise(Touch& touch, const DeformedPatch& patch) const noexcept;
     // How the sphere is sunk in if nothing presses it, mm: by what earlier presses left behind.
     Eigen::Vector3d local_dent(const Touch& touch, const DeformedPatch& patch) const noexcept;
@@ -190,7 +199,7 @@ class ContactEquilibrium {
         return part.sphere.device + tool.off + touch.sunk;
     }
     void look_around(std::size_t tool, std::size_t part, std::size_t soft) noexcept;
-    bool gather(std::size_t tool, std::size_t part, std::size_t soft) noexcept;
+    bool gather(std::size_t tool, std::size_t part, std::size_t soft, bool walks) noexcept;
     bool found(std::size_t tool) const noexcept;
     bool start_anew() noexcept;
     void forget_tissue() noexcept;
@@ -200,8 +209,8 @@ class ContactEquilibrium {
     void cut_rows() noexcept;
     void group_rows() noexcept;
     void solve_rows() noexcept;
-    std::size_t add_neighbours(std::array<std::size_t, max_contacts>& warm, std::size_t warm_count) noexcept;
-    void take_neighbours() noexcept;
+    void fill_column(std::size_t row) noexcept;
+    void fill_neighbours_column(std::size_t row) noexcept;
     // Of a row or a group of rows.
     const Touch& touch_of(const auto& of) const noexcept {
         return tools_[static_cast<std::size_t>(of.tool)]
@@ -218,11 +227,24 @@ class ContactEquilibrium {
     }
     double sink(std::size_t iterate) noexcept;
     double answer(std::size_t iterate) noexcept;
-    void rub() noexcept;
+    void rub(std::size_t iterate) noexcept;
     void keep_hold() noexcept;
     Bearings bearings_of(const Group& group, double press) const noexcept;
     Eigen::Vector3d slip_of(const Group& group, const Bearings& bearings) const noexcept;
-    Weights mix(std::size_t iterate, std::size_t known) const noexcept;
+    // The answer that the iteration of a tick gives; and those that are carried over from a tick before.
+    std::size_t answer_of(std::size_t iteration) const noexcept {
+        return iteration < first_answers ? bank_ * first_answers + iteration
+                                         : 2 * first_answers + iteration % first_answers;
+    }
+    std::size_t carried_answer(std::size_t k) const noexcept { return (1 - bank_) * first_answers + k; }
+    void carry_over() noexcept;
+    void compare(std::size_t iteration) noexcept;
+    Weights mix(std::size_t iteration, std::size_t known, std::size_t carried) const noexcept;
+    static Weights alone(std::size_t answer) noexcept {
+        Weights weights{};
+        weights[answer] = 1;
+        return weights;
+    }
     void relax_to(const Weights& weights, double longest) noexcept;
 
     const ContactBodies& bodies_;
@@ -241,6 +263,11 @@ class ContactEquilibrium {
     std::array<std::int64_t, max_contacts> active_{};  // keys of rows that pressed in the last solution
     std::size_t active_count_ = 0;
     ContactLcp lcp_;
+    DeformedPatch::Field field_;  // of a row's force
+    // Inner products of the answers' differences from their states, mm²; where this tick's answers are, how
+    // many of the first there are in a row, and how many are left of a tick before.
+    Eigen::Matrix<double, DeformedPatch::iterates, DeformedPatch::iterates> products_;
+    std::size_t bank_ = 0, in_row_ = 0, carried_ = 0;
     double residual_ = 0;
     double last_motion_ = 0;  // mm, of tissue, in the tick before
 };

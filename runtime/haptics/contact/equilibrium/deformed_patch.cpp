@@ -22,16 +22,27 @@ constexpr std::int32_t crowded = DeformedPatch::most_vertices / 2;
 void DeformedPatch::Forces::clear() noexcept {
     for (const std::int32_t slot : loaded) at[slot].setZero();
     loaded.clear();
+    is_loaded.reset();
 }
 
 void DeformedPatch::Forces::add(std::int32_t slot, const Vector3d& force) noexcept {
-    if (std::find(loaded.begin(), loaded.end(), slot) == loaded.end()) loaded.push_back(slot);
+    if (!is_loaded[static_cast<std::size_t>(slot)]) loaded.push_back(slot);
+    is_loaded[static_cast<std::size_t>(slot)] = true;
     at[slot] += force;
 }
 
+void DeformedPatch::Forces::move(std::int32_t from, std::int32_t to) noexcept {
+    const auto listed = std::find(loaded.begin(), loaded.end(), from);
+    if (listed == loaded.end()) return;
+    *listed = to;
+    is_loaded[static_cast<std::size_t>(from)] = false;
+    is_loaded[static_cast<std::size_t>(to)] = true;
+    std::swap(at[from], at[to]);
+}
+
 void DeformedPatch::reset() noexcept {
-    for (Forces* forces : {&forces_, &held_, &combined_}) forces->clear();
-    for (Answer& answer : answers_) answer.forces.clear();
+    for (Forces* forces : {&forces_, &held_}) forces->clear();
+    for (Answer& answer : answers_) answer.clear();
     for (std::int32_t slot = 0; slot < size_; ++slot) slots_[vertices_[slot]] = no_slot;
     size_ = 0;
     tick_ = 0;
@@ -41,8 +52,6 @@ void DeformedPatch::reset() noexcept {
 void DeformedPatch::begin_tick() noexcept {
     ++tick_;
     std::copy_n(moved_.begin(), size_, before_.begin());
-    for (Answer& answer : answers_) answer.forces.clear();
-    combined_.clear();
     if (body_->creeps()) creep();
     drop_one();  // in a tick is enough
 }
@@ -79,9 +88,14 @@ void DeformedPatch::drop(std::int32_t slot) noexcept {
     left_forces_[slot] = left_forces_[last];
     left_moves_[slot] = left_moves_[last];
     lasting_[slot] = lasting_[last];
-    for (Forces* forces : {&forces_, &held_}) {
-        std::swap(forces->at[slot], forces->at[last]);
-        std::replace(forces->loaded.begin(), forces->loaded.end(), last, slot);
+    forces_.move(last, slot);
+    held_.move(last, slot);
+    for (Answer& answer : answers_) {
+        answer.forces.move(last, slot);
+        answer.held.move(last, slot);
+        answer.moved[slot] = answer.moved[last];
+        answer.held_moved[slot] = answer.held_moved[last];
+        answer.difference[slot] = answer.difference[last];
     }
     for (std::int32_t other = 0; other < size_; ++other) {
         const std::int32_t from = other == slot ? last : other;
@@ -116,7 +130,8 @@ std::int32_t DeformedPatch::slot_of(std::int32_t vertex) noexcept {
         if (body_->creeps()) enter_creep(slot);
         before_[slot] = moved_[slot] = displacement_under(forces_, slot) + held_moved_[slot];
         for (Answer& answer : answers_) {
-            answer.moved[slot] = moved_[slot];
+            answer.held_moved[slot] = displacement_under(answer.held, slot) + lasting_[slot];
+            answer.moved[slot] = displacement_under(answer.forces, slot) + answer.held_moved[slot];
             answer.difference[slot].setZero();
         }
     }
@@ -141,11 +156,14 @@ Vector3d DeformedPatch::look_at_vertex(std::int32_t vertex) const noexcept {
     const std::int32_t slot = slots_[vertex];
     Vector3d at = body_->rest_position(vertex);
     if (slot != no_slot) return at + moved_[slot];
-    for (const Forces* forces : {&forces_, &held_})
-        for (const std::int32_t loaded : forces->loaded)
-            at += (growth(body_->creep_of(vertex), creeps_as_[loaded]) *
-                   (body_->compliance_between(vertex, vertices_[loaded]) * forces->at[loaded].cast<float>()))
-                      .cast<double>();
+    const auto add = [&](std::int32_t loaded, const Vector3d& force) {
+        at += (growth(body_->creep_of(vertex), creeps_as_[loaded]) *
+               (body_->compliance_between(vertex, vertices_[loaded]) * force.cast<float>()))
+                  .cast<double>();
+    };
+    for (const std::int32_t loaded : forces_.loaded) add(loaded, forces_.at[loaded] + held_.at[loaded]);
+    for (const std::int32_t loaded : held_.loaded)
+        if (!forces_.is_loaded[static_cast<std::size_t>(loaded)]) add(loaded, held_.at[loaded]);
     return at;
 }
 
@@ -173,6 +191,15 @@ void DeformedPatch::displace(const Forces& forces, std::vector<Vector3d>& moved)
     for (std::int32_t slot = 0; slot < size_; ++slot) moved[slot] = sum_[slot].head<3>().cast<double>();
 }
 
+void DeformedPatch::yield(const std::array<std::int32_t, 3>& loaded, const Vector3d& shares,
+                          const Vector3d& force, Field& moved) const noexcept {
+    const std::array<const Block*, 3> rows{&block(0, loaded[0]), &block(0, loaded[1]), &block(0, loaded[2])};
+    const Eigen::Matrix3f forces = force.cast<float>() * shares.cast<float>().transpose();
+    for (std::int32_t slot = 0; slot < size_; ++slot)
+        moved[static_cast<std::size_t>(slot)] =
+            rows[0][slot] * forces.col(0) + rows[1][slot] * forces.col(1) + rows[2][slot] * forces.col(2);
+}
+
 void DeformedPatch::begin_answer(std::size_t iterate) noexcept {
     answers_[iterate].forces.clear();
 }
@@ -186,7 +213,7 @@ double DeformedPatch::end_answer(std::size_t iterate) noexcept {
     displace(answer.forces, answer.moved);
     double most = 0;
     for (std::int32_t slot = 0; slot < size_; ++slot) {
-        answer.moved[slot] += held_moved_[slot];
+        answer.moved[slot] += answer.held_moved[slot];
         answer.difference[slot] = answer.moved[slot] - moved_[slot];
         most = std::max(most, answer.difference[slot].lpNorm<Eigen::Infinity>());
     }
@@ -200,36 +227,61 @@ double DeformedPatch::product_of_differences(std::size_t a, std::size_t b) const
     return sum;
 }
 
-void DeformedPatch::relax_to(const std::array<double, iterates>& weights, double step) noexcept {
-    combined_.clear();
-    for (const std::int32_t slot : forces_.loaded) combined_.add(slot, (1 - step) * forces_.at[slot]);
+// A part `step` of the way from the state's forces to a combination of the answers'.
+void DeformedPatch::combine(Forces& state, Forces Answer::*part, const std::array<double, iterates>& weights,
+                            double step) noexcept {
+    if (step < 1)
+        for (const std::int32_t slot : state.loaded) state.at[slot] *= 1 - step;
+    else
+        state.clear();
     for (std::size_t k = 0; k < iterates; ++k) {
         if (weights[k] == 0) continue;
-        for (const std::int32_t slot : answers_[k].forces.loaded)
-            combined_.add(slot, step * weights[k] * answers_[k].forces.at[slot]);
+        const Forces& forces = answers_[k].*part;
+        for (const std::int32_t slot : forces.loaded) state.add(slot, step * weights[k] * forces.at[slot]);
     }
-    std::swap(forces_, combined_);
-    forces_.loaded.erase_if([&](std::int32_t slot) { return forces_.at[slot] == Vector3d::Zero(); });
-    for (std::int32_t slot = 0; slot < size_; ++slot) {
-        Vector3d to = Vector3d::Zero();
+    const auto bears_none = [&](std::int32_t slot) {
+        const bool none = state.at[slot] == Vector3d::Zero();
+        if (none) state.is_loaded[static_cast<std::size_t>(slot)] = false;
+        return none;
+    };
+    state.loaded.erase_if(bears_none);
+}
+
+void DeformedPatch::relax_to(const std::array<double, iterates>& weights, double step) noexcept {
+    combine(forces_, &Answer::forces, weights, step);
+    combine(held_, &Answer::held, weights, step);
+    const auto flat = [&](std::vector<Vector3d>& by_slot) {
+        return Eigen::Map<Eigen::ArrayXd>(by_slot.front().data(), Eigen::Index{3} * size_);
+    };
+    const auto go = [&](std::vector<Vector3d>& state, std::vector<Vector3d> Answer::*part) {
+        flat(state) *= 1 - step;
         for (std::size_t k = 0; k < iterates; ++k)
-            if (weights[k] != 0) to += weights[k] * answers_[k].moved[slot];
-        moved_[slot] += step * (to - moved_[slot]);
-    }
+            if (weights[k] != 0) flat(state) += step * weights[k] * flat(answers_[k].*part);
+    };
+    go(moved_, &Answer::moved);
+    go(held_moved_, &Answer::held_moved);
 }
 
-void DeformedPatch::begin_hold() noexcept {
-    held_.clear();
+void DeformedPatch::keep_hold(std::size_t iterate) noexcept {
+    Answer& answer = answers_[iterate];
+    answer.held.clear();
+    for (const std::int32_t slot : held_.loaded) answer.held.add(slot, held_.at[slot]);
+    std::copy_n(held_moved_.begin(), size_, answer.held_moved.begin());
 }
 
-void DeformedPatch::hold(std::int32_t slot, const Vector3d& force) noexcept {
-    held_.add(slot, force);
+void DeformedPatch::begin_hold(std::size_t iterate) noexcept {
+    answers_[iterate].held.clear();
 }
 
-void DeformedPatch::end_hold() noexcept {
-    displace(held_, held_moved_);
+void DeformedPatch::hold(std::size_t iterate, std::int32_t slot, const Vector3d& force) noexcept {
+    answers_[iterate].held.add(slot, force);
+}
+
+void DeformedPatch::end_hold(std::size_t iterate) noexcept {
+    Answer& answer = answers_[iterate];
+    displace(answer.held, answer.held_moved);
     if (!body_->creeps()) return;
-    for (std::int32_t slot = 0; slot < size_; ++slot) held_moved_[slot] += lasting_[slot];
+    for (std::int32_t slot = 0; slot < size_; ++slot) answer.held_moved[slot] += lasting_[slot];
 }
 
 }  // namespace palpate::haptics

@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <bitset>
 #include <cstdint>
 #include <vector>
 
@@ -19,7 +20,7 @@ namespace palpate::haptics {
 class DeformedPatch {
   public:
     static constexpr std::int32_t most_vertices = 256;
-    static constexpr std::size_t iterates = 3;
+    static constexpr std::size_t iterates = 9;
 
     /// `body` must outlive this.
     explicit DeformedPatch(const DeformableContact& body);
@@ -71,6 +72,21 @@ class DeformedPatch {
         return moved.head<3>().cast<double>();
     }
 
+    /// By how much each vertex is displaced, by slot, mm.
+    using Field = std::array<Eigen::Vector4f, static_cast<std::size_t>(most_vertices)>;
+    /// Writes what a force (N), shared out to three vertices, displaces each vertex by.
+    void yield(const std::array<std::int32_t, 3>& loaded, const Eigen::Vector3d& shares,
+               const Eigen::Vector3d& force, Field& moved) const noexcept;
+    /// The mean of a field over three vertices.
+    static Eigen::Vector3d mean(const Field& moved, const std::array<std::int32_t, 3>& slots,
+                                const Eigen::Vector3d& shares) noexcept {
+        const Eigen::Vector3f weights = shares.cast<float>();
+        const Eigen::Vector4f sum = weights[0] * moved[static_cast<std::size_t>(slots[0])] +
+                                    weights[1] * moved[static_cast<std::size_t>(slots[1])] +
+                                    weights[2] * moved[static_cast<std::size_t>(slots[2])];
+        return sum.head<3>().cast<double>();
+    }
+
     /// What a force (N), shared out to three vertices, displaces another by, mm. Shares that are not positive
     /// do not count.
     Eigen::Vector3f yielding(std::int32_t slot, const std::array<std::int32_t, 3>& loaded,
@@ -82,7 +98,7 @@ class DeformedPatch {
         return moved.head<3>();
     }
 
-    /// One of the last `iterates` answers to a state of forces and displacements: the forces that contact
+    /// One of `iterates` answers to a state of forces and displacements: the forces that contact
     /// answers it with, and what they displace. Collects forces, N, then works out displacements and returns
     /// the largest by which they differ from the state, mm.
     void begin_answer(std::size_t iterate) noexcept;
@@ -93,10 +109,12 @@ class DeformedPatch {
     /// Moves the state a part `step` of the way to a combination of answers, weights summing to 1.
     void relax_to(const std::array<double, iterates>& weights, double step) noexcept;
 
-    /// Forces that stay as they are while contact is solved, as friction's, N: collected, then put in place.
-    void begin_hold() noexcept;
-    void hold(std::int32_t slot, const Eigen::Vector3d& force) noexcept;
-    void end_hold() noexcept;
+    /// Of the answer that comes next, the forces that stay as they are while contact is solved, as
+    /// friction's, N: those of the state, or others, which are collected.
+    void keep_hold(std::size_t iterate) noexcept;
+    void begin_hold(std::size_t iterate) noexcept;
+    void hold(std::size_t iterate, std::int32_t slot, const Eigen::Vector3d& force) noexcept;
+    void end_hold(std::size_t iterate) noexcept;
 
   private:
     static constexpr std::int32_t no_slot = -1;
@@ -108,14 +126,21 @@ class DeformedPatch {
         std::vector<Eigen::Vector3d> at;  // by slot
         // Slots with a force.
         FixedList<std::int32_t, static_cast<std::size_t>(most_vertices)> loaded;
+        std::bitset<static_cast<std::size_t>(most_vertices)> is_loaded;
         explicit Forces(std::size_t slots) : at(slots, Eigen::Vector3d::Zero()) {}
         void clear() noexcept;
         void add(std::int32_t slot, const Eigen::Vector3d& force) noexcept;
+        void move(std::int32_t from, std::int32_t to) noexcept;  // which bears nothing
     };
     struct Answer {
-        Forces forces;
-        std::vector<Eigen::Vector3d> moved, difference;
-        explicit Answer(std::size_t slots) : forces(slots), moved(slots), difference(slots) {}
+        Forces forces, held;
+        std::vector<Eigen::Vector3d> moved, held_moved, difference;
+        explicit Answer(std::size_t slots)
+            : forces(slots), held(slots), moved(slots), held_moved(slots), difference(slots) {}
+        void clear() noexcept {
+            forces.clear();
+            held.clear();
+        }
     };
 
     const Block& block(std::int32_t slot, std::int32_t loaded) const noexcept {
@@ -132,6 +157,8 @@ class DeformedPatch {
         return a != nullptr && a == b ? static_cast<float>(a->now) : 1.0F;
     }
     Eigen::Vector3d displacement_under(const Forces& forces, std::int32_t slot) const noexcept;
+    void combine(Forces& state, Forces Answer::*part, const std::array<double, iterates>& weights,
+                 double step) noexcept;
     void displace(const Forces& forces, std::vector<Eigen::Vector3d>& moved) noexcept;
 
     const DeformableContact* body_;
@@ -141,7 +168,7 @@ class DeformedPatch {
     std::vector<std::int64_t> seen_;  // the tick in which it was looked at last
     std::vector<Eigen::Vector4f> sum_;
     std::vector<Block> blocks_;  // row by loaded slot
-    Forces forces_, held_, combined_;
+    Forces forces_, held_;
     std::vector<Answer> answers_;
     std::int32_t size_ = 0;
     std::int64_t tick_ = 0;

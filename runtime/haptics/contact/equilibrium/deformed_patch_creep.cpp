@@ -66,8 +66,8 @@ double DeformedPatch::dent_at(std::int32_t slot) const noexcept {
 
 void DeformedPatch::release() noexcept {
     if (!remembers_) return reset();
-    for (Forces* forces : {&forces_, &held_, &combined_}) forces->clear();
-    for (Answer& answer : answers_) answer.forces.clear();
+    for (Forces* forces : {&forces_, &held_}) forces->clear();
+    for (Answer& answer : answers_) answer.clear();
     for (std::int32_t slot = 0; slot < size_; ++slot) moved_[slot] = held_moved_[slot] = lasting_[slot];
 }
 

@@ -48,13 +48,14 @@ Vector3d ContactEquilibrium::slip_of(const Group& group, const Bearings& bearing
 }
 
 // Friction, for what the present forces press with.
-void ContactEquilibrium::rub() noexcept {
-    for (DeformedPatch& patch : patches_) patch.begin_hold();
-    for (Tool& tool : tools_) {
-        tool.drag.setZero();
+void ContactEquilibrium::rub(std::size_t iterate) noexcept {
+    for (DeformedPatch& patch : patches_) patch.begin_hold(iterate);
+    for (Tool& tool : tools_)
         for (Part& part : tool.parts)
-            for (Touch& touch : part.touches) touch.press = 0;
-    }
+            for (Touch& touch : part.touches) {
+                touch.press = 0;
+                touch.next_drag[iterate].setZero();
+            }
     for (const Group& group : groups_) {
         Touch& touch = touch_of(group);
         DeformedPatch& patch = patch_of(group);
@@ -65,7 +66,8 @@ void ContactEquilibrium::rub() noexcept {
         }
         if (!(touch.press > 0) || !(push.norm() > 0)) continue;
         touch.axis = push.normalized();
-        touch.drag -= touch.axis.dot(touch.drag) * touch.axis;
+        Vector3d& drag = touch.next_drag[iterate];
+        drag = touch.drag - touch.axis.dot(touch.drag) * touch.axis;
         const Bearings bearings = bearings_of(group, touch.press);
         const Vector3d slip = slip_of(group, bearings);
         if (const double way = slip.norm(); way > 0) {
@@ -74,19 +76,15 @@ void ContactEquilibrium::rub() noexcept {
             for (const auto& [slot, share] : bearings)
                 for (const auto& [loaded, other] : bearings)
                     compliance += share * other * along.dot(patch.response(slot, loaded, along));
-            touch.drag -= slip / compliance;
+            drag -= slip / compliance;
         }
-        const double wanted = touch.drag.norm();
+        const double wanted = drag.norm();
         touch.slides = wanted > (touch.slid ? friction_.sliding : friction_.at_rest) * touch.press;
-        if (touch.slides) touch.drag *= friction_.sliding * touch.press / wanted;
-        for (const auto& [slot, share] : bearings) patch.hold(slot, -share * touch.drag);
-        tools_[static_cast<std::size_t>(group.tool)].drag += touch.drag;
+        touch.slid = touch.slid || touch.slides;
+        if (touch.slides) drag *= friction_.sliding * touch.press / wanted;
+        for (const auto& [slot, share] : bearings) patch.hold(iterate, slot, -share * drag);
     }
-    for (DeformedPatch& patch : patches_) patch.end_hold();
-    for (Tool& tool : tools_)
-        for (Part& part : tool.parts)
-            for (Touch& touch : part.touches)
-                if (!(touch.press > 0)) touch.drag.setZero();
+    for (DeformedPatch& patch : patches_) patch.end_hold(iterate);
 }
 
 // Where tools and tissue hold on to each other in the next tick.

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "runtime/haptics/contact/equilibrium/contact_equilibrium.hpp"
 #include "runtime/haptics/contact/local_indentation.hpp"
@@ -13,7 +14,8 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-constexpr double largest_weight = 5;  // of one answer in a combination of several
+constexpr double largest_weight = 5;  // of one step among several
+constexpr double slight_step = 0.01;  // of what is to be made good
 
 }  // namespace
 
@@ -47,8 +49,8 @@ double ContactEquilibrium::sink(std::size_t iterate) noexcept {
         touch.next_sunk[iterate] = touch.sunk_free + touch.sinking * touch.push;
         const double now = touch.creep != nullptr ? touch.creep->now : 1;
         const Vector3d push = now * touch.push + touch.lasting_push;
-        const double along = push.norm();
-        if (!(along > 0)) continue;
+        if (push.isZero(0)) continue;
+        const double along = std::max(push.norm(), slight_press(*spread));
         const LocalIndentation local =
             local_indentation(along, radius_, spread->contact_modulus(), spread->radius());
         const Vector3d wanted = touch.freedom * local.depth / along * push;
@@ -75,13 +77,16 @@ double ContactEquilibrium::answer(std::size_t iterate) noexcept {
     double change = sink(iterate);
     for (Tool& tool : tools_) {
         tool.press = coupling_ * tool.next_off[iterate];
-        tool.next_off[iterate] += tool.drag / coupling_;
+        for (const Part& part : tool.parts)
+            for (const Touch& touch : part.touches)
+                tool.next_off[iterate] += touch.next_drag[iterate] / coupling_;
         if (tool.felt == 0) tool.off = tool.next_off[iterate];
         tool.difference[iterate] = tool.next_off[iterate] - tool.off;
         change = std::max(change, tool.difference[iterate].lpNorm<Eigen::Infinity>());
         for (Part& part : std::span(tool.parts).first(tool.felt))
             for (Touch& touch : part.touches) {
                 touch.sunk_difference[iterate] = touch.next_sunk[iterate] - touch.sunk;
+                touch.drag_difference[iterate] = (touch.next_drag[iterate] - touch.drag) / coupling_;
                 change = std::max(change, touch.sunk_difference[iterate].lpNorm<Eigen::Infinity>());
             }
     }
@@ -89,48 +94,76 @@ double ContactEquilibrium::answer(std::size_t iterate) noexcept {
     return change;
 }
 
-// The weights, summing to 1, with which the last `known` answers differ least from their states, as if
-// answers were linear in states (Anderson 1965).
-ContactEquilibrium::Weights ContactEquilibrium::mix(std::size_t newest, std::size_t known) const noexcept {
-    constexpr std::size_t all = DeformedPatch::iterates;
-    Weights weights{};
-    weights[newest] = 1;
-    if (known < 2) return weights;
-    Eigen::Matrix<double, all, all> products = Eigen::Matrix<double, all, all>::Identity();
-    Eigen::Matrix<double, all, 1> ones = Eigen::Matrix<double, all, 1>::Zero();
-    for (std::size_t a = 0; a < known; ++a)
-        for (std::size_t b = 0; b <= a; ++b) {
-            const std::size_t i = (newest + all - a) % all, j = (newest + all - b) % all;
-            double sum = 0;
-            for (const Tool& tool : tools_) {
-                sum += tool.difference[i].dot(tool.difference[j]);
-                for (const Part& part : std::span(tool.parts).first(tool.felt))
-                    for (const Touch& touch : part.touches)
-                        sum += touch.sunk_difference[i].dot(touch.sunk_difference[j]);
-            }
-            for (const DeformedPatch& patch : patches_) sum += patch.product_of_differences(i, j);
-            products(static_cast<Index>(a), static_cast<Index>(b)) =
-                products(static_cast<Index>(b), static_cast<Index>(a)) = sum;
+// Keeps the first answers of the tick before, if they tell anything.
+void ContactEquilibrium::carry_over() noexcept {
+    if (in_row_ < 2) return;
+    bank_ = 1 - bank_;
+    carried_ = std::exchange(in_row_, 0);
+}
+
+// Compares an answer with those that mix() may ask for.
+void ContactEquilibrium::compare(std::size_t iteration) noexcept {
+    const std::size_t newest = answer_of(iteration);
+    const auto with = [&](std::size_t other) {
+        double sum = 0;
+        for (const Tool& tool : tools_) {
+            sum += tool.difference[newest].dot(tool.difference[other]);
+            for (const Part& part : std::span(tool.parts).first(tool.felt))
+                for (const Touch& touch : part.touches)
+                    sum += touch.sunk_difference[newest].dot(touch.sunk_difference[other]) +
+                           touch.drag_difference[newest].dot(touch.drag_difference[other]);
         }
-    const auto n = static_cast<Index>(known);
-    const double scale = products.topLeftCorner(n, n).trace();
-    if (!(scale > 0)) return weights;
-    products.topLeftCorner(n, n) /= scale;
-    for (Index k = 0; k < n; ++k) {
-        products(k, k) += 1e-10;
-        ones[k] = 1;
+        for (const DeformedPatch& patch : patches_) sum += patch.product_of_differences(newest, other);
+        const auto i = static_cast<Index>(newest), j = static_cast<Index>(other);
+        products_(i, j) = products_(j, i) = sum;
+    };
+    for (std::size_t k = 0; k < std::min(iteration + 1, first_answers); ++k) with(answer_of(iteration - k));
+    for (std::size_t k = 0; k < carried_; ++k) with(carried_answer(k));
+}
+
+// The weights, summing to 1, with which an answer and what it would be after steps like those from one answer
+// to the next differ least from their states, as if answers were linear in states (Anderson 1965). Such steps
+// are those between the last `known` answers of this tick, and between the first `carried` of a tick before:
+// what answers depend on hardly changes from tick to tick (Degroote et al. 2009 reuse steps so).
+ContactEquilibrium::Weights ContactEquilibrium::mix(std::size_t iteration, std::size_t known,
+                                                    std::size_t carried) const noexcept {
+    constexpr std::size_t most_steps = 2 * (first_answers - 1);
+    constexpr double dependent = 1e-8;  // part of a step that is rounding
+    const std::size_t newest = answer_of(iteration);
+    FixedList<std::pair<std::size_t, std::size_t>, most_steps> steps;
+    for (std::size_t k = 1; k < known; ++k)
+        steps.push_back({answer_of(iteration - k + 1), answer_of(iteration - k)});
+    for (std::size_t k = 1; k < carried; ++k) steps.push_back({carried_answer(k), carried_answer(k - 1)});
+    const auto product = [&](std::size_t a, std::size_t b) {
+        return products_(static_cast<Index>(a), static_cast<Index>(b));
+    };
+    Weights weights = alone(newest);
+    if (steps.empty()) return weights;
+    using Square = Eigen::Matrix<double, most_steps, most_steps>;
+    Square matrix = Square::Identity();
+    Eigen::Matrix<double, most_steps, 1> right = Eigen::Matrix<double, most_steps, 1>::Zero(), scale = right;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        const auto [a, b] = steps[i];
+        const double squared = product(a, a) - 2 * product(a, b) + product(b, b);
+        const auto row = static_cast<Index>(i);
+        // A step that is small beside what is to be made good says nothing about it.
+        if (!(squared > slight_step * slight_step * product(newest, newest))) continue;
+        scale[row] = 1 / std::sqrt(squared);
+        right[row] = scale[row] * (product(a, newest) - product(b, newest));
+        matrix(row, row) = 1 + dependent;
+        for (std::size_t j = 0; j < i; ++j) {
+            const auto [c, d] = steps[j];
+            const auto column = static_cast<Index>(j);
+            matrix(row, column) = matrix(column, row) =
+                scale[row] * scale[column] * (product(a, c) - product(a, d) - product(b, c) + product(b, d));
+        }
     }
-    const Eigen::Matrix<double, all, 1> solution = products.ldlt().solve(ones);
-    const double sum = solution.head(n).sum();
-    if (!(std::abs(sum) > 0) || !solution.allFinite()) return weights;
-    for (std::size_t a = 0; a < known; ++a) {
-        const double weight = solution[static_cast<Index>(a)] / sum;
-        if (std::abs(weight) > largest_weight) {
-            weights = {};
-            weights[newest] = 1;
-            return weights;
-        }
-        weights[(newest + all - a) % all] = weight;
+    const Eigen::Matrix<double, most_steps, 1> parts = matrix.ldlt().solve(right).cwiseProduct(scale);
+    if (!parts.allFinite() || parts.cwiseAbs().maxCoeff() > largest_weight)
+        return carried > 0 ? mix(iteration, known, 0) : weights;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        weights[steps[i].first] -= parts[static_cast<Index>(i)];
+        weights[steps[i].second] += parts[static_cast<Index>(i)];
     }
     return weights;
 }
@@ -150,6 +183,12 @@ void ContactEquilibrium::relax_to(const Weights& weights, double longest) noexce
         tool.off += step * (combined(tool.next_off) - tool.off);
         for (Part& part : std::span(tool.parts).first(tool.felt))
             for (Touch& touch : part.touches) touch.sunk += step * (combined(touch.next_sunk) - touch.sunk);
+        tool.drag.setZero();
+        for (Part& part : tool.parts)
+            for (Touch& touch : part.touches) {
+                touch.drag += step * (combined(touch.next_drag) - touch.drag);
+                tool.drag += touch.drag;
+            }
     }
     for (DeformedPatch& patch : patches_) patch.relax_to(weights, step);
 }

@@ -17,8 +17,6 @@ using Eigen::Vector3d;
 
 constexpr double same_place = 1e-6;  // mm: closest points nearer than this are one
 constexpr double look_margin = 1;    // mm: how much farther around is looked
-// E* r²: about which sinking in is linearised where nothing is known yet.
-constexpr double slight_press = 1e-3;
 
 }  // namespace
 
@@ -30,8 +28,7 @@ void ContactEquilibrium::linearise(Touch& touch, const DeformedPatch& patch) con
     if (!spread) return;
     const double now = touch.creep != nullptr ? touch.creep->now : 1;
     const Vector3d push = now * touch.push + touch.lasting_push;
-    const double known = push.norm(),
-                 press = std::max(known, slight_press * spread->contact_modulus() * radius_ * radius_);
+    const double known = push.norm(), press = std::max(known, slight_press(*spread));
     const LocalIndentation local =
         local_indentation(press, radius_, spread->contact_modulus(), spread->radius());
     if (!(press > 0)) return;
@@ -88,32 +85,47 @@ void ContactEquilibrium::look_around(std::size_t t, std::size_t p, std::size_t s
     const DeformedPatch& patch = patches_[soft];
     const Vector3d centre = centre_of(tool, part, touch), from = part.sphere.if_rigid->position();
     const double limit = radius_ + tool.reach;
-    touch.way += (centre - touch.last_centre).norm() + last_motion_;
+    const bool anew = touch.way < 0;
+    if (anew) {
+        touch.around.clear();
+        touch.way = 0;
+    } else {
+        touch.way += (centre - touch.last_centre).norm() + last_motion_;
+    }
     touch.last_centre = centre;
-    if (touch.way < 0 || (centre - touch.looked_to).norm() > look_margin / 2 ||
+    if (anew || (centre - touch.looked_to).norm() > look_margin / 2 ||
         (from - touch.looked_from).norm() > look_margin / 2) {
         const CollisionSurface& surface = *bodies_.surfaces[bodies_.rigid_count() + soft];
         std::array<std::int32_t, most_rows> slots;
         const std::size_t found = surface.slots_near(from, centre, limit + look_margin, slots);
-        touch.around.clear();
-        for (std::size_t i = 0; i < std::min(found, slots.size()); ++i)
-            touch.around.push_back({surface.mesh_triangle(slots[i]), 0});
+        // What was looked at before keeps its turn; both lists are in the tree's order.
+        FixedList<Surrounding, most_rows> around;
+        const Surrounding* known = touch.around.begin();
+        for (const std::int32_t slot : std::span(slots).first(std::min(found, slots.size()))) {
+            while (known != touch.around.end() && known->tree_slot < slot) ++known;
+            around.push_back(known != touch.around.end() && known->tree_slot == slot
+                                 ? *known
+                                 : Surrounding{slot, surface.mesh_triangle(slot), touch.way});
+        }
+        touch.around = around;
         touch.looked_from = from;
         touch.looked_to = centre;
-        touch.way = 0;
     }
+    std::vector<std::uint32_t>& visited = visited_[soft];
+    ++search_;
+    for (const std::int32_t triangle : touch.near) visited[triangle] = search_;
     for (Surrounding& near : touch.around) {
-        if (near.due > touch.way || touch.count == touch.triangles.size()) continue;
+        if (near.due > touch.way || touch.near.full() || visited[near.triangle] == search_) continue;
         const TrianglePoint closest = closest_point_on_triangle(centre, patch.look_at(near.triangle));
         const double distance = std::sqrt(closest.squared_distance);
-        if (distance < limit) touch.triangles[touch.count++] = near.triangle;
+        if (distance < limit) touch.near.push_back(near.triangle);
         near.due = touch.way + std::max(0.0, distance - limit);
     }
 }
 
 // The triangles near a sphere, walked to over the displaced surface from those that were near it last and
 // from those on which it would rest. Tells whether the centre is outside.
-bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft) noexcept {
+bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, bool walks) noexcept {
     const Tool& tool = tools_[t];
     Part& part = tools_[t].parts[p];
     Touch& touch = part.touches[soft];
@@ -130,10 +142,12 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft) 
         visited[triangle] = search_;
         queue_.push_back(triangle);
     };
-    for (std::size_t i = 0; i < touch.count; ++i) visit(touch.triangles[i]);
+    for (const std::int32_t triangle : touch.near) visit(triangle);
+    touch.near.clear();
     for (const GodObject::Touch& rests : part.sphere.if_rigid->touches())
         if (rests.surface == bodies_.rigid_count() + soft) visit(rests.foot.triangle);
-    const std::size_t seeds = queue_.size(), first = rows_.size(), first_watched = watched_.size();
+    const std::size_t seeds = queue_.size();
+    FixedList<Vector3d, most_rows> shared;
     double nearest = limit;
     Vector3d nearest_away = Vector3d::Zero(), nearest_normal = Vector3d::Zero();
     for (std::size_t next = 0; next < queue_.size(); ++next) {
@@ -142,11 +156,13 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft) 
         if (!patch.slots_of(triangle, row.slots)) break;
         const TriangleCorners corners = patch.corners(row.slots);
         const TrianglePoint closest = closest_point_on_triangle(centre, corners);
-        const double distance = std::sqrt(closest.squared_distance);
-        const bool near = distance < limit;
-        if (near || next < seeds)
+        const bool near = closest.squared_distance < limit * limit;
+        if (walks && (near || next < seeds))
             for (const std::int32_t neighbour : body.neighbours(triangle)) visit(neighbour);
-        if (!near || !(distance > 0)) continue;
+        if (!near) continue;
+        if (!touch.near.full()) touch.near.push_back(triangle);
+        const double distance = std::sqrt(closest.squared_distance);
+        if (!(distance > 0)) continue;
         row.normal = (centre - closest.point) / distance;
         if (distance < nearest + same_place) {
             if (distance < nearest - same_place) nearest_normal.setZero();
@@ -154,12 +170,14 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft) 
             nearest_away = row.normal;
             nearest_normal += angle_about(closest.point, corners) * unit_normal(corners);
         }
-        const auto same = [&](const Row& other) {
-            return (other.point - closest.point).squaredNorm() < same_place * same_place;
-        };
-        if (std::any_of(rows_.begin() + first, rows_.end(), same) ||
-            std::any_of(watched_.begin() + first_watched, watched_.end(), same))
-            continue;
+        // Triangles have points in common where these are not within one of them.
+        if (closest.feature != Feature::face) {
+            const auto same = [&](const Vector3d& other) {
+                return (other - closest.point).squaredNorm() < same_place * same_place;
+            };
+            if (std::any_of(shared.begin(), shared.end(), same)) continue;
+            if (!shared.full()) shared.push_back(closest.point);
+        }
         row.tool = static_cast<std::int32_t>(t);
         row.part = static_cast<std::int32_t>(p);
         row.patch = static_cast<std::int32_t>(soft);
@@ -177,12 +195,6 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft) 
         auto& list = row.distance < tool.near || is_active(row) ? rows_ : watched_;
         if (!list.full()) list.push_back(row);
     }
-    touch.count = 0;
-    const auto remember = [&](const Row& row) {
-        if (touch.count < touch.triangles.size()) touch.triangles[touch.count++] = row.triangle;
-    };
-    std::for_each(rows_.begin() + first, rows_.end(), remember);
-    std::for_each(watched_.begin() + first_watched, watched_.end(), remember);
     return nearest_normal.dot(nearest_away) >= 0;
 }
 
@@ -250,36 +262,53 @@ void ContactEquilibrium::solve_rows() noexcept {
     std::array<std::size_t, max_contacts> warm;
     std::size_t warm_count = 0;
     for (std::size_t k = 0; k < n; ++k) {
-        const Row& a = rows_[k];
-        const auto row = static_cast<Index>(k);
-        lcp_.gaps()[row] = a.gap;
-        for (std::size_t l = 0; l <= k; ++l) {
-            const Row& b = rows_[l];
-            double sum = a.tool == b.tool ? a.normal.dot(b.normal) / coupling_ : 0;
-            if (a.patch >= 0 && a.patch == b.patch) {
-                const DeformedPatch& patch = patch_of(a);
-                Vector3d moved = Vector3d::Zero();
-                for (Index i = 0; i < 3; ++i)
-                    for (Index j = 0; j < 3; ++j)
-                        if (a.weights[i] > 0 && b.weights[j] > 0)
-                            moved += a.weights[i] * b.weights[j] *
-                                     patch.response(a.slots[static_cast<std::size_t>(i)],
-                                                    b.slots[static_cast<std::size_t>(j)], b.normal);
-                if (a.tool == b.tool && a.part == b.part) moved += touch_of(a).sinking * b.normal;
-                sum += a.normal.dot(moved);
-            }
-            lcp_.matrix()(row, static_cast<Index>(l)) = lcp_.matrix()(static_cast<Index>(l), row) = sum;
-        }
-        if (is_active(a)) warm[warm_count++] = k;
+        lcp_.gaps()[static_cast<Index>(k)] = rows_[k].gap;
+        if (is_active(rows_[k])) warm[warm_count++] = k;
     }
-    warm_count = add_neighbours(warm, warm_count);
-    residual_ = lcp_.solve(n + neighbours_.row_count(), std::span(warm).first(warm_count));
-    take_neighbours();
+    for (std::size_t k = 0; k < neighbours_.row_count(); ++k) {
+        lcp_.gaps()[static_cast<Index>(n + k)] = neighbours_.gap(k);
+        if (neighbours_.is_active(k)) warm[warm_count++] = n + k;
+    }
+    residual_ =
+        lcp_.solve(n + neighbours_.row_count(), std::span(warm).first(warm_count),
+                   [&](std::size_t row) { row < n ? fill_column(row) : fill_neighbours_column(row - n); });
     active_count_ = 0;
     for (std::size_t k = 0; k < n; ++k) {
         rows_[k].force = lcp_.forces()[static_cast<Index>(k)];
         if (rows_[k].force > 0) active_[active_count_++] = key_of(rows_[k]);
     }
+    neighbours_.take({lcp_.forces().data() + n, neighbours_.row_count()});
+}
+
+// How far a force of one row opens the others.
+void ContactEquilibrium::fill_column(std::size_t l) noexcept {
+    const Row& pressing = rows_[l];
+    if (pressing.patch >= 0)
+        patch_of(pressing).yield(pressing.slots, pressing.weights, pressing.normal, field_);
+    double* column = &lcp_.matrix()(0, static_cast<Index>(l));
+    for (const Row& row : rows_) {
+        Vector3d opens = Vector3d::Zero();
+        if (row.tool == pressing.tool) opens = pressing.normal / coupling_;
+        if (row.patch >= 0 && row.patch == pressing.patch) {
+            opens += DeformedPatch::mean(field_, row.slots, row.weights);
+            if (row.tool == pressing.tool && row.part == pressing.part)
+                opens += touch_of(row).sinking * pressing.normal;
+        }
+        *column++ = row.normal.dot(opens);
+    }
+    for (std::size_t k = 0; k < neighbours_.row_count(); ++k)
+        *column++ = pressing.patch >= 0 ? neighbours_.closing(k, pressing.patch, field_) : 0;
+}
+
+// The same of a row between bodies beside each other.
+void ContactEquilibrium::fill_neighbours_column(std::size_t k) noexcept {
+    double* column = &lcp_.matrix()(0, static_cast<Index>(rows_.size() + k));
+    for (const Row& row : rows_)
+        *column++ = row.patch < 0 ? 0
+                                  : neighbours_.compliance_to_tool(patches_, k, row.patch, row.slots,
+                                                                   row.weights, row.normal);
+    const std::span<const double> compliances = neighbours_.compliances(patches_, k);
+    std::ranges::copy(compliances, column);
 }
 
 }  // namespace palpate::haptics

@@ -17,7 +17,6 @@ DeformedPatch::DeformedPatch(const DeformableContact& body)
       blocks_(static_cast<std::size_t>(most_vertices * most_vertices)),
       forces_(most_vertices),
       held_(most_vertices),
-      combined_(most_vertices),
       answers_(iterates, Answer(most_vertices)),
       creeps_as_(most_vertices),
       left_forces_(most_vertices),

@@ -239,7 +239,7 @@ void NeighbourContact::gather(std::span<DeformedPatch> patches, std::size_t room
     moved_ = 0;
     for (const std::size_t probe : near_) meet(probe, patches);
     cut_rows(std::min(room, most_rows));
-    fill_compliance(patches);
+    known_.reset();
 }
 
 void NeighbourContact::move(double way) noexcept {
@@ -286,19 +286,32 @@ double NeighbourContact::compliance_to_tool(std::span<const DeformedPatch> patch
     return row.normal.dot(apart.cast<double>());
 }
 
-// By the way of what each row's force displaces, for the rows share vertices.
-void NeighbourContact::fill_compliance(std::span<const DeformedPatch> patches) noexcept {
-    for (std::size_t l = 0; l < rows_.size(); ++l) {
+std::span<const double> NeighbourContact::compliances(std::span<const DeformedPatch> patches,
+                                                      std::size_t l) noexcept {
+    auto column = compliance_.col(static_cast<Index>(l));
+    if (!known_[l]) {
+        known_[l] = true;
+        column.setZero();
         const Row& row = rows_[l];
         const Interface& interface = interface_of(row);
-        compliance_.col(static_cast<Index>(l)).setZero();
         add_compliance(patches, interface.soft, l, {row.slot, 0, 0}, Vector3d::UnitX(), row.normal);
         if (interface.other >= 0)
             add_compliance(patches, interface.other, l, row.slots, row.weights, -row.normal);
     }
+    return {column.data(), rows_.size()};
 }
 
-// What row l's `force` on a patch, shared out to three vertices, opens row l and those after it by.
+double NeighbourContact::closing(std::size_t k, std::int32_t patch,
+                                 const DeformedPatch::Field& moved) const noexcept {
+    const Row& row = rows_[k];
+    const Interface& interface = interface_of(row);
+    Vector3d closer = Vector3d::Zero();
+    if (patch == interface.soft) closer += moved[static_cast<std::size_t>(row.slot)].head<3>().cast<double>();
+    if (patch == interface.other) closer -= DeformedPatch::mean(moved, row.slots, row.weights);
+    return -row.normal.dot(closer);
+}
+
+// What row l's `force` on a patch, shared out to three vertices, opens each row by.
 void NeighbourContact::add_compliance(std::span<const DeformedPatch> patches, std::int32_t patch,
                                       std::size_t l, const std::array<std::int32_t, 3>& loaded,
                                       const Vector3d& shares, const Vector3d& force) noexcept {
@@ -313,7 +326,7 @@ void NeighbourContact::add_compliance(std::span<const DeformedPatch> patches, st
         }
         return moved[s];
     };
-    for (std::size_t k = l; k < rows_.size(); ++k) {
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
         const Row& row = rows_[k];
         const Interface& interface = interface_of(row);
         Eigen::Vector3f apart = Eigen::Vector3f::Zero();
@@ -331,7 +344,7 @@ void NeighbourContact::take(std::span<const double> forces) noexcept {
         rows_[k].force = forces[k];
         if (!(forces[k] > 0)) continue;
         Probe& probe = probes_[rows_[k].probe];
-        const double opens = forces[k] * compliance(k, k);
+        const double opens = forces[k] * compliance_(static_cast<Index>(k), static_cast<Index>(k));
         if (probe.pressed >= 0 && probe.opens > opens) continue;
         probe.pressed = rows_[k].triangle;
         probe.opens = opens;

@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <bitset>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -47,10 +48,10 @@ class NeighbourContact {
     /// Of row k: what forces must open, mm, and whether it pressed in the last solution.
     double gap(std::size_t k) const noexcept { return rows_[k].gap; }
     bool is_active(std::size_t k) const noexcept { return probe_of(rows_[k]).pressed == rows_[k].triangle; }
-    /// How far row k opens per force of row l, mm/N.
-    double compliance(std::size_t k, std::size_t l) const noexcept {
-        return compliance_(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l));
-    }
+    /// How far each row opens per force of row l, mm/N; worked out once for rows as they are.
+    std::span<const double> compliances(std::span<const DeformedPatch> patches, std::size_t l) noexcept;
+    /// How far row k closes if `patch` is displaced so, mm.
+    double closing(std::size_t k, std::int32_t patch, const DeformedPatch::Field& moved) const noexcept;
     /// How far row k opens per force with which a tool pushes `patch` along -normal, mm/N.
     double compliance_to_tool(std::span<const DeformedPatch> patches, std::size_t k, std::int32_t patch,
                               const std::array<std::int32_t, 3>& slots, const Eigen::Vector3d& weights,
@@ -134,7 +135,6 @@ class NeighbourContact {
                 const Eigen::Vector3d& centre) const noexcept;
     void meet(std::size_t probe, std::span<DeformedPatch> patches) noexcept;
     void cut_rows(std::size_t room) noexcept;
-    void fill_compliance(std::span<const DeformedPatch> patches) noexcept;
     void add_compliance(std::span<const DeformedPatch> patches, std::int32_t patch, std::size_t l,
                         const std::array<std::int32_t, 3>& loaded, const Eigen::Vector3d& shares,
                         const Eigen::Vector3d& force) noexcept;
@@ -146,7 +146,8 @@ class NeighbourContact {
     std::vector<Probe> probes_;
     FixedList<std::size_t, most_near> near_;
     FixedList<Row, 2 * most_near> rows_, watched_;
-    Eigen::Matrix<double, most_rows, most_rows> compliance_;  // lower half, of rows_
+    Eigen::Matrix<double, most_rows, most_rows> compliance_;  // of rows_,
+    std::bitset<most_rows> known_;                            // by columns
     bool cut_ = false;
     bool stale_ = true;  // rows_
     double moved_ = 0;   // mm, since they were found
