@@ -232,8 +232,13 @@ void ContactEquilibrium::iterate(int most) noexcept {
         before = change;
         neighbours_.move(change);
         went += walked_ahead * change;
-        relax_to(change < settled ? alone(newest) : mix(round, known, carried_),
-                 predicts ? std::numeric_limits<double>::infinity() : longest);
+        Weights next = change < settled ? alone(newest) : mix(round, known, carried_);
+        // Steps of a tick before say little of where they do not lead, as where tissue is about to snap.
+        if (carried_ > 1 && departure(next, newest) > change) {
+            carried_ = 0;
+            next = mix(round, known, 0);
+        }
+        relax_to(next, predicts ? std::numeric_limits<double>::infinity() : longest);
         if (change < settled && watched_are_clear() && neighbours_.is_clear(patches_)) break;
     }
 }

@@ -245,6 +245,13 @@ class ContactEquilibrium {
         weights[answer] = 1;
         return weights;
     }
+    static Eigen::Vector3d combined(const Weights& weights, const Offsets& answers) noexcept {
+        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+        for (std::size_t k = 0; k < weights.size(); ++k)
+            if (weights[k] != 0) sum += weights[k] * answers[k];
+        return sum;
+    }
+    double departure(const Weights& weights, std::size_t from) const noexcept;
     void relax_to(const Weights& weights, double longest) noexcept;
 
     const ContactBodies& bodies_;

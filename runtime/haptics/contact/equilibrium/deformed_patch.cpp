@@ -227,6 +227,18 @@ double DeformedPatch::product_of_differences(std::size_t a, std::size_t b) const
     return sum;
 }
 
+double DeformedPatch::departure(const std::array<double, iterates>& weights,
+                                std::size_t from) const noexcept {
+    double most = 0;
+    for (std::int32_t slot = 0; slot < size_; ++slot) {
+        Vector3d way = (weights[from] - 1) * answers_[from].moved[slot];
+        for (std::size_t k = 0; k < iterates; ++k)
+            if (k != from && weights[k] != 0) way += weights[k] * answers_[k].moved[slot];
+        most = std::max(most, way.lpNorm<Eigen::Infinity>());
+    }
+    return most;
+}
+
 // A part `step` of the way from the state's forces to a combination of the answers'.
 void DeformedPatch::combine(Forces& state, Forces Answer::*part, const std::array<double, iterates>& weights,
                             double step) noexcept {

@@ -168,25 +168,29 @@ ContactEquilibrium::Weights ContactEquilibrium::mix(std::size_t iteration, std::
     return weights;
 }
 
+// How far a combination of answers is from one of them, mm.
+double ContactEquilibrium::departure(const Weights& weights, std::size_t from) const noexcept {
+    double most = 0;
+    for (const Tool& tool : tools_)
+        most = std::max(most, (combined(weights, tool.next_off) - tool.next_off[from]).norm());
+    for (const DeformedPatch& patch : patches_) most = std::max(most, patch.departure(weights, from));
+    return most;
+}
+
 // Goes to a combination of answers, at most `longest` mm.
 void ContactEquilibrium::relax_to(const Weights& weights, double longest) noexcept {
-    const auto combined = [&](const Offsets& answers) {
-        Vector3d to = Vector3d::Zero();
-        for (std::size_t k = 0; k < weights.size(); ++k)
-            if (weights[k] != 0) to += weights[k] * answers[k];
-        return to;
-    };
     double way = 0;
-    for (const Tool& tool : tools_) way = std::max(way, (combined(tool.next_off) - tool.off).norm());
+    for (const Tool& tool : tools_) way = std::max(way, (combined(weights, tool.next_off) - tool.off).norm());
     const double step = way > longest ? longest / way : 1;
     for (Tool& tool : tools_) {
-        tool.off += step * (combined(tool.next_off) - tool.off);
+        tool.off += step * (combined(weights, tool.next_off) - tool.off);
         for (Part& part : std::span(tool.parts).first(tool.felt))
-            for (Touch& touch : part.touches) touch.sunk += step * (combined(touch.next_sunk) - touch.sunk);
+            for (Touch& touch : part.touches)
+                touch.sunk += step * (combined(weights, touch.next_sunk) - touch.sunk);
         tool.drag.setZero();
         for (Part& part : tool.parts)
             for (Touch& touch : part.touches) {
-                touch.drag += step * (combined(touch.next_drag) - touch.drag);
+                touch.drag += step * (combined(weights, touch.next_drag) - touch.drag);
                 tool.drag += touch.drag;
             }
     }
