@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
+#include <utility>
 
 #include "runtime/haptics/collision_loop.hpp"
 #include "runtime/haptics/tick_outlet.hpp"
@@ -28,6 +30,19 @@ DeviceState state_at(const HandPath& path, std::int64_t tick) {
     state.time = 1e-3 * static_cast<double>(tick);
     Eigen::Map<Eigen::Vector3d>(state.position.data()) = path.at(state.time);
     return state;
+}
+
+// The surface nodes that bear a tick's contacts.
+std::size_t loaded_nodes(std::span<const TickResult> results) {
+    std::set<std::pair<std::int32_t, std::int32_t>> nodes;  // of a body
+    for (const TickResult& result : results)
+        for (const Contact& contact : result.active_contacts()) {
+            if (!(contact.force > 0)) continue;
+            for (std::size_t i = 0; i < 3; ++i)
+                if (contact.weights[i] > 0) nodes.insert({contact.body, contact.vertices[i]});
+            if (is_of_neighbour(contact)) nodes.insert({contact.other_body, contact.other_vertex});
+        }
+    return nodes.size();
 }
 
 // One pass; `clock` paces it if there is one.
@@ -62,7 +77,7 @@ TickRun pass_of(HapticModel& model, std::span<const HandPath> paths, Counted cou
         run.cut += (status & contacts_cut) != 0;
         run.unsolved += (status & contact_unsolved) != 0;
         run.touching += rows > 0;
-        run.rows += static_cast<double>(rows);
+        run.loaded += static_cast<double>(loaded_nodes(results));
         run.pressed += static_cast<double>(pressed);
         const auto step = static_cast<std::size_t>(run.ticks);
         if (counted == Counted::all || rows > 0) tick.record(step, spent);
@@ -72,7 +87,7 @@ TickRun pass_of(HapticModel& model, std::span<const HandPath> paths, Counted cou
             detect.record(step, nanoseconds_of([&] { model.detect(); }));
     }
     const auto touching = static_cast<double>(std::max<std::int64_t>(1, run.touching));
-    run.rows /= touching;
+    run.loaded /= touching;
     run.pressed /= touching;
     run.pairs /= touching;
     return run;

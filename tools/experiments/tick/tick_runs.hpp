@@ -45,7 +45,7 @@ struct TickRun {
     realtime::Histogram detect;  ///< HapticModel::detect(), ns: of what needs it, 30 in a virtual second
     std::int64_t ticks = 0, touching = 0;
     std::int64_t cut = 0, unsolved = 0;  ///< with TickStatus contacts_cut, contact_unsolved
-    double rows = 0, pressed = 0;        ///< mean contact points of touching ticks, and those with force
+    double pressed = 0, loaded = 0;      ///< mean contact points with force of touching ticks; surface nodes
     double pairs = 0;                    ///< of these, between two bodies
 };
 

@@ -8,10 +8,10 @@
 
 namespace palpate::experiments {
 
-/// A soft body and a tool of the size that presses on about `contacts` of its nodes.
+/// A soft body and a tool of the size that loads about `loaded` of its nodes.
 struct SoftTouchCase {
     Case patient_case;
-    int contacts = 0;
+    int loaded = 0;
     devices::HandPath path;
 };
 
@@ -20,10 +20,10 @@ struct SoftTicks {
     std::vector<TickRow> rows;
     struct Point {
         std::size_t nodes;
-        double pressed, p50, p999;  ///< us
+        double loaded, p50, p999;  ///< us
     };
     std::vector<Point> without_friction;
-    SoftTouchCase loaded;  ///< that of the rows under load: 2000 nodes, 16 contacts
+    SoftTouchCase loaded;  ///< that of the rows under load: 2000 nodes, 16 of them loaded
 };
 SoftTicks soft_ticks(cli::Session& session);
 
