@@ -50,7 +50,10 @@ constexpr std::size_t most_walls = 48;  // leaves room for tissue
 void ContactEquilibrium::reset() noexcept {
     for (Tool& tool : tools_)
         for (Part& part : tool.parts)
-            for (Touch& touch : part.touches) touch.forget_pushes();
+            for (Touch& touch : part.touches) {
+                touch.forget_pushes();
+                touch.way = -1;
+            }
     for (DeformedPatch& patch : patches_) patch.reset();
     for (std::size_t t = 0; t < tools_.size(); ++t) forget(t);
     neighbours_.forget();

@@ -97,15 +97,28 @@ void DeformedPatch::drop(std::int32_t slot) noexcept {
         answer.held_moved[slot] = answer.held_moved[last];
         answer.difference[slot] = answer.difference[last];
     }
+    const auto at = [&](std::int32_t to, std::int32_t loaded) -> Block& {
+        return blocks_[static_cast<std::size_t>(loaded * most_vertices + to)];
+    };
     for (std::int32_t other = 0; other < size_; ++other) {
         const std::int32_t from = other == slot ? last : other;
-        blocks_[static_cast<std::size_t>(slot * most_vertices + other)] = block(from, last);
-        blocks_[static_cast<std::size_t>(other * most_vertices + slot)] = block(last, from);
+        at(other, slot) = at(from, last);
+        at(slot, other) = at(last, from);
     }
+    known_[static_cast<std::size_t>(slot)] = known_[static_cast<std::size_t>(last)];
+}
+
+void DeformedPatch::know(std::int32_t loaded) const noexcept {
+    known_[static_cast<std::size_t>(loaded)] = true;
+    const std::int32_t vertex = vertices_[loaded];
+    for (std::int32_t slot = 0; slot < size_; ++slot)
+        set_block(slot, loaded,
+                  growth(creeps_as_[loaded], creeps_as_[slot]) *
+                      body_->compliance_between(vertex, vertices_[slot]).transpose());
 }
 
 void DeformedPatch::set_block(std::int32_t slot, std::int32_t loaded,
-                              const Eigen::Matrix3f& compliance) noexcept {
+                              const Eigen::Matrix3f& compliance) const noexcept {
     Block& to = blocks_[static_cast<std::size_t>(loaded * most_vertices + slot)];
     to.topRows<3>() = compliance;
     to.row(3).setZero();
@@ -120,12 +133,12 @@ std::int32_t DeformedPatch::slot_of(std::int32_t vertex) noexcept {
         vertices_[slot] = vertex;
         rest_[slot] = body_->rest_position(vertex);
         creeps_as_[slot] = body_->creep_of(vertex);
-        for (std::int32_t other = 0; other < size_; ++other) {
-            const Eigen::Matrix3f between = growth(creeps_as_[slot], creeps_as_[other]) *
-                                            body_->compliance_between(vertex, vertices_[other]);
-            set_block(slot, other, between);
-            set_block(other, slot, between.transpose());
-        }
+        known_[static_cast<std::size_t>(slot)] = false;
+        for (std::int32_t loaded = 0; loaded < slot; ++loaded)
+            if (known_[static_cast<std::size_t>(loaded)])
+                set_block(slot, loaded,
+                          growth(creeps_as_[slot], creeps_as_[loaded]) *
+                              body_->compliance_between(vertex, vertices_[loaded]));
         held_moved_[slot] = displacement_under(held_, slot);
         if (body_->creeps()) enter_creep(slot);
         before_[slot] = moved_[slot] = displacement_under(forces_, slot) + held_moved_[slot];
@@ -185,7 +198,7 @@ void DeformedPatch::displace(const Forces& forces, std::vector<Vector3d>& moved)
     std::fill_n(sum_.begin(), size_, Vector4f::Zero());
     for (const std::int32_t loaded : forces.loaded) {
         const Vector3f force = forces.at[loaded].cast<float>();
-        const Block* const row = &block(0, loaded);
+        const Block* const row = blocks_of(loaded);
         for (std::int32_t slot = 0; slot < size_; ++slot) sum_[slot] += row[slot] * force;
     }
     for (std::int32_t slot = 0; slot < size_; ++slot) moved[slot] = sum_[slot].head<3>().cast<double>();
@@ -193,7 +206,7 @@ void DeformedPatch::displace(const Forces& forces, std::vector<Vector3d>& moved)
 
 void DeformedPatch::yield(const std::array<std::int32_t, 3>& loaded, const Vector3d& shares,
                           const Vector3d& force, Field& moved) const noexcept {
-    const std::array<const Block*, 3> rows{&block(0, loaded[0]), &block(0, loaded[1]), &block(0, loaded[2])};
+    const std::array<const Block*, 3> rows{blocks_of(loaded[0]), blocks_of(loaded[1]), blocks_of(loaded[2])};
     const Eigen::Matrix3f forces = force.cast<float>() * shares.cast<float>().transpose();
     for (std::int32_t slot = 0; slot < size_; ++slot)
         moved[static_cast<std::size_t>(slot)] =

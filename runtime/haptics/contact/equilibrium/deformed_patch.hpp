@@ -13,10 +13,10 @@
 namespace palpate::haptics {
 
 /// The part of a deformable body's surface that tools are near, as it is displaced: its vertices, the nodal
-/// forces on them, and their blocks of the compliance, which are read once when a vertex comes in and stay
-/// while it is needed. Vertices are known by their slots, which stay the same within a tick. Where tissue
-/// creeps, vertices stay while what pressed them has left a dent, and the blocks are those of a tick:
-/// deformed_patch_creep.cpp. Allocates on construction only.
+/// forces on them, and their blocks of the compliance, which are read once and stay while they are needed:
+/// those by which a vertex displaces others when it is first pressed. Vertices are known by their slots,
+/// which stay the same within a tick. Where tissue creeps, vertices stay while what pressed them has left a
+/// dent, and the blocks are those of a tick: deformed_patch_creep.cpp. Allocates on construction only.
 class DeformedPatch {
   public:
     static constexpr std::int32_t most_vertices = 256;
@@ -146,9 +146,15 @@ class DeformedPatch {
     };
 
     const Block& block(std::int32_t slot, std::int32_t loaded) const noexcept {
-        return blocks_[static_cast<std::size_t>(loaded * most_vertices + slot)];
+        return blocks_of(loaded)[slot];
     }
-    void set_block(std::int32_t slot, std::int32_t loaded, const Eigen::Matrix3f& compliance) noexcept;
+    // Of a force on a slot, by the slots that it displaces; read from C when it is first asked for.
+    const Block* blocks_of(std::int32_t loaded) const noexcept {
+        if (!known_[static_cast<std::size_t>(loaded)]) know(loaded);
+        return &blocks_[static_cast<std::size_t>(loaded * most_vertices)];
+    }
+    void know(std::int32_t loaded) const noexcept;
+    void set_block(std::int32_t slot, std::int32_t loaded, const Eigen::Matrix3f& compliance) const noexcept;
     void drop(std::int32_t slot) noexcept;
     void drop_one() noexcept;
     // In deformed_patch_creep.cpp.
@@ -169,7 +175,9 @@ class DeformedPatch {
     std::vector<Eigen::Vector3d> rest_, moved_, before_, held_moved_;
     std::vector<std::int64_t> seen_;  // the tick in which it was looked at last
     std::vector<Eigen::Vector4f> sum_;
-    std::vector<Block> blocks_;  // row by loaded slot
+    // Rows by loaded slot, and which of them are there.
+    mutable std::vector<Block> blocks_;
+    mutable std::bitset<static_cast<std::size_t>(most_vertices)> known_;
     Forces forces_, held_;
     std::vector<Answer> answers_;
     std::int32_t size_ = 0;

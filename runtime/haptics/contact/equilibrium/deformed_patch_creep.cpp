@@ -27,7 +27,7 @@ void DeformedPatch::creep() noexcept {
     for (const Forces* forces : {&forces_, &held_})
         for (const std::int32_t loaded : forces->loaded) {
             const Vector3f force = forces->at[loaded].cast<float>();
-            const Block* const row = &block(0, loaded);
+            const Block* const row = blocks_of(loaded);
             for (std::int32_t slot = 0; slot < size_; ++slot)
                 if (creeps_as_[slot] == creeps_as_[loaded]) sum_[slot] += row[slot] * force;
         }
@@ -61,7 +61,9 @@ void DeformedPatch::enter_creep(std::int32_t slot) noexcept {
 // How far what is left of the forces on a vertex displaces it, mm.
 double DeformedPatch::dent_at(std::int32_t slot) const noexcept {
     const TickCreep* const creep = creeps_as_[slot];
-    return creep == nullptr ? 0 : response(slot, slot, left_forces_[slot].lasting(*creep)).norm();
+    if (creep == nullptr) return 0;
+    const Vector3d left = left_forces_[slot].lasting(*creep);
+    return left.isZero(0) ? 0 : response(slot, slot, left).norm();
 }
 
 void DeformedPatch::release() noexcept {

@@ -98,14 +98,19 @@ void ContactEquilibrium::look_around(std::size_t t, std::size_t p, std::size_t s
         const CollisionSurface& surface = *bodies_.surfaces[bodies_.rigid_count() + soft];
         std::array<std::int32_t, most_rows> slots;
         const std::size_t found = surface.slots_near(from, centre, limit + look_margin, slots);
-        // What was looked at before keeps its turn; both lists are in the tree's order.
+        // What was looked at before keeps its turn; both lists are in the tree's order. What is new is
+        // farther off than it need be looked at, so not all of it is looked at in one tick.
         FixedList<Surrounding, most_rows> around;
         const Surrounding* known = touch.around.begin();
+        double later = 0;
         for (const std::int32_t slot : std::span(slots).first(std::min(found, slots.size()))) {
             while (known != touch.around.end() && known->tree_slot < slot) ++known;
-            around.push_back(known != touch.around.end() && known->tree_slot == slot
-                                 ? *known
-                                 : Surrounding{slot, surface.mesh_triangle(slot), touch.way});
+            if (known != touch.around.end() && known->tree_slot == slot) {
+                around.push_back(*known);
+                continue;
+            }
+            around.push_back({slot, surface.mesh_triangle(slot), touch.way + later});
+            if (!anew) later = std::min(later + look_margin / 64, look_margin / 4);
         }
         touch.around = around;
         touch.looked_from = from;
@@ -148,14 +153,17 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
         if (rests.surface == bodies_.rigid_count() + soft) visit(rests.foot.triangle);
     const std::size_t seeds = queue_.size();
     FixedList<Vector3d, most_rows> shared;
+    struct Nearest {
+        std::array<std::int32_t, 3> slots{};
+        Vector3d point;
+    };
+    FixedList<Nearest, max_contacts> nearest_ones;
     double nearest = limit;
-    Vector3d nearest_away = Vector3d::Zero(), nearest_normal = Vector3d::Zero();
     for (std::size_t next = 0; next < queue_.size(); ++next) {
         const std::int32_t triangle = queue_[next];
-        Row row;
-        if (!patch.slots_of(triangle, row.slots)) break;
-        const TriangleCorners corners = patch.corners(row.slots);
-        const TrianglePoint closest = closest_point_on_triangle(centre, corners);
+        std::array<std::int32_t, 3> slots;
+        if (!patch.slots_of(triangle, slots)) break;
+        const TrianglePoint closest = closest_point_on_triangle(centre, patch.corners(slots));
         const bool near = closest.squared_distance < limit * limit;
         if (walks && (near || next < seeds))
             for (const std::int32_t neighbour : body.neighbours(triangle)) visit(neighbour);
@@ -163,12 +171,10 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
         if (!touch.near.full()) touch.near.push_back(triangle);
         const double distance = std::sqrt(closest.squared_distance);
         if (!(distance > 0)) continue;
-        row.normal = (centre - closest.point) / distance;
         if (distance < nearest + same_place) {
-            if (distance < nearest - same_place) nearest_normal.setZero();
+            if (distance < nearest - same_place) nearest_ones.clear();
             nearest = std::min(nearest, distance);
-            nearest_away = row.normal;
-            nearest_normal += angle_about(closest.point, corners) * unit_normal(corners);
+            if (!nearest_ones.full()) nearest_ones.push_back({slots, closest.point});
         }
         // Triangles have points in common where these are not within one of them.
         if (closest.feature != Feature::face) {
@@ -178,11 +184,14 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
             if (std::any_of(shared.begin(), shared.end(), same)) continue;
             if (!shared.full()) shared.push_back(closest.point);
         }
+        Row row;
         row.tool = static_cast<std::int32_t>(t);
         row.part = static_cast<std::int32_t>(p);
         row.patch = static_cast<std::int32_t>(soft);
         row.triangle = triangle;
+        row.slots = slots;
         row.weights = closest.barycentric;
+        row.normal = (centre - closest.point) / distance;
         row.point = closest.point;
         row.distance = distance - radius_;
         row.gap =
@@ -195,7 +204,13 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
         auto& list = row.distance < tool.near || is_active(row) ? rows_ : watched_;
         if (!list.full()) list.push_back(row);
     }
-    return nearest_normal.dot(nearest_away) >= 0;
+    Vector3d normal = Vector3d::Zero(), away = Vector3d::Zero();
+    for (const Nearest& one : nearest_ones) {
+        const TriangleCorners corners = patch.corners(one.slots);
+        normal += angle_about(one.point, corners) * unit_normal(corners);
+        away = centre - one.point;
+    }
+    return normal.dot(away) >= 0;
 }
 
 // Whether it pressed in the last solution.
