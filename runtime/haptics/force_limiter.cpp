@@ -28,6 +28,7 @@ void ForceLimiter::reset() noexcept {
 Eigen::Vector3d ForceLimiter::limit(const Eigen::Vector3d& wanted, std::uint32_t& faults,
                                     std::uint32_t& status) noexcept {
     if (!wanted.allFinite()) faults |= invalid_force;
+    if (faults != no_fault && ticks_well_ >= ramp_ticks) ramp_left_ = ramp_ticks;
     ticks_well_ = faults != no_fault ? 0 : std::min(ticks_well_ + 1, ramp_ticks + return_ticks);
     if (ticks_well_ > 0 && ticks_well_ < ramp_ticks + return_ticks) status |= coming_back;
     if (ticks_well_ < ramp_ticks) return ramp_to_zero();
@@ -45,10 +46,12 @@ Eigen::Vector3d ForceLimiter::limit(const Eigen::Vector3d& wanted, std::uint32_t
     return last_;
 }
 
+// In equal steps: a small force is not dropped at once.
 Eigen::Vector3d ForceLimiter::ramp_to_zero() noexcept {
-    Eigen::Vector3d step = -last_;
-    shorten(step, max_force_ / ramp_ticks);
-    last_ += step;
+    if (ramp_left_ > 0) {
+        last_ *= (ramp_left_ - 1.0) / ramp_left_;
+        --ramp_left_;
+    }
     return last_;
 }
 

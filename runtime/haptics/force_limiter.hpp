@@ -29,8 +29,8 @@ class ForceLimiter {
 
     /// Shortens `wanted` (N) to the largest force, then lets the force change by at most max_force_rate per
     /// tick; adds force_limited and rate_limited to `status`. With any of `faults` (to which a force that is
-    /// not finite adds invalid_force), and for ramp_ticks after, the force goes to zero instead, by max_force
-    /// / ramp_ticks in each tick, then comes back in proportion to the time since (status coming_back),
+    /// not finite adds invalid_force), and for ramp_ticks after, the force goes to zero instead, in
+    /// ramp_ticks equal steps, then comes back in proportion to the time since (status coming_back),
     /// growing by at most max_force / 100 a tick, so that a hand that pressed on meanwhile is not kicked.
     Eigen::Vector3d limit(const Eigen::Vector3d& wanted, std::uint32_t& faults,
                           std::uint32_t& status) noexcept;
@@ -41,6 +41,7 @@ class ForceLimiter {
     double max_force_;
     double max_step_;
     Eigen::Vector3d last_ = Eigen::Vector3d::Zero();
+    int ramp_left_ = 0;                           // steps to zero
     int ticks_well_ = ramp_ticks + return_ticks;  // since the last fault; counted no further than this
 };
 

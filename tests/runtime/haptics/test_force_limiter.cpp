@@ -74,6 +74,17 @@ TEST(ForceLimiter, ramps_to_zero_in_time_after_a_force_that_is_not_a_number) {
     EXPECT_NEAR(last, 0, limiter_rounding);
 }
 
+TEST(ForceLimiter, a_small_force_goes_in_as_many_steps_as_a_large_one) {
+    ForceLimiter limiter(settings);
+    constexpr double small = 0.1;
+    for (int tick = 0; tick < 10; ++tick) next(limiter, {0, small, 0});
+    for (int left = ForceLimiter::ramp_ticks - 1; left >= 0; --left) {
+        const Vector3d force = next(limiter, {0, small, 0}, tick_late);
+        EXPECT_NEAR((force - Vector3d(0, small * left / ForceLimiter::ramp_ticks, 0)).norm(), 0,
+                    limiter_rounding);
+    }
+}
+
 TEST(ForceLimiter, a_fault_of_one_tick_still_ends_in_zero_force) {
     ForceLimiter limiter(settings);
     for (int tick = 0; tick < 10; ++tick) next(limiter, {3, 0, 0});
