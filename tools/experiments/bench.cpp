@@ -5,6 +5,7 @@
 
 #include "tools/experiments/experiments.hpp"
 #include "tools/experiments/faults.hpp"
+#include "tools/experiments/puncture/many_approaches.hpp"
 #include "tools/experiments/puncture/puncture.hpp"
 #include "tools/experiments/realtime.hpp"
 #include "tools/experiments/stability/passivity.hpp"
@@ -17,6 +18,8 @@ namespace {
 
 const std::vector<Experiment> experiments{
     // name, what it finds out, function
+    {"approaches", "whether any of many fast approaches gets a tool through a surface with `continuous`",
+     many_approaches},
     {"faults", "a virtual day of pushing while devices, servo, window and asset fail at random", faults},
     {"passivity", "the stiffest wall that the closed loop bears, against 2b/T", passivity},
     {"puncture",
@@ -43,6 +46,8 @@ nlohmann::ordered_json run(const std::string& name, const Options& options, cli:
     const Experiment& experiment = find_experiment(name);
     if (!(options.seconds >= 0))
         throw UsageError({"--seconds", std::to_string(options.seconds), "0 or more", ""});
+    if (options.approaches < 0)
+        throw UsageError({"--approaches", std::to_string(options.approaches), "0 or more", ""});
     std::filesystem::create_directories(options.output);
     cli::StagedFile table = session.stage(options.output / (name + ".md"));
     Findings findings = experiment.run(options, session);
@@ -77,12 +82,13 @@ int main(int argc, char** argv) {
     std::string name;
     experiments::Options options;
     command.option("experiment", name, "which one").required();
-    command.input("--surface", options.surface, "triangles of a bone (.vtp), LPS mm");
+    command.input("--surface", options.surfaces, "triangles of a bone (.vtp), LPS mm");
     command.input("--case", options.cases, "assets (.vtkhdf)");
     command.input("--path", options.path, "hand path: rows 'x y z' (mm), one per millisecond");
     command.output("-o,--output", options.output, "folder for the table (.md) and the pictures (.svg)");
     command.option("--seed", options.seed, "of everything random");
     command.option("--seconds", options.seconds, "how long; 0 is the experiment's own", "s");
+    command.option("--approaches", options.approaches, "how many to each surface; 0 is the experiment's own");
     return command.run(argc, argv,
                        [&](cli::Session& session) { return experiments::run(name, options, session); });
 }

@@ -13,12 +13,13 @@ namespace palpate::experiments {
 
 /// What an experiment may be told. Each reads what it needs.
 struct Options {
-    std::filesystem::path surface;             ///< triangles (.vtp), LPS mm
-    std::vector<std::filesystem::path> cases;  ///< assets (.vtkhdf)
-    std::filesystem::path path;                ///< recorded hand path
-    std::filesystem::path output = "bench";    ///< folder for the table (.md) and the pictures (.svg)
+    std::vector<std::filesystem::path> surfaces;  ///< triangles (.vtp), LPS mm
+    std::vector<std::filesystem::path> cases;     ///< assets (.vtkhdf)
+    std::filesystem::path path;                   ///< recorded hand path
+    std::filesystem::path output = "bench";       ///< folder for the table (.md) and the pictures (.svg)
     std::uint64_t seed = 1;
-    double seconds = 0;  ///< 0: the experiment's own
+    double seconds = 0;           ///< 0: the experiment's own
+    std::int64_t approaches = 0;  ///< of each surface; 0: the experiment's own
 };
 
 /// What an experiment found: `result` is its JSON, `table` GitHub Markdown, `pictures` SVG by name.

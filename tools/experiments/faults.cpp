@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/experiments/faults.hpp"
 
+#include <array>
 #include <fmt/format.h>
 
 #include "formats/asset/asset.hpp"
@@ -12,6 +13,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t visit_ticks = 600'000;  // ten minutes at one place
+constexpr std::array<std::string_view, 3> methods_in_turn{"continuous", "twice", "twice-renewed"};
 constexpr std::string_view explanation =
     "Virtual time at 1 kHz: a simulated Touch, whose motors stay cool, in a hand that gives way (0.3 N/mm) "
     "pushes, slides and leaves "
@@ -22,9 +24,9 @@ constexpr std::string_view explanation =
     "beyond the "
     "slew limit; `not gone` ticks with any force 20 ms after a fault began, while it lasts; `missed` faults "
     "that "
-    "were not reported in their first tick, `unexpected` reports without a fault. Every second visit is with "
-    "the "
-    "scheme `twice`.\n\n"
+    "were not reported in their first tick, `unexpected` reports without a fault. Visits are with the "
+    "methods "
+    "`continuous`, `twice` and `twice-renewed` in turn.\n\n"
     "| case | virtual time, h | faults | reported | missed | unexpected | above limit | above slew | not "
     "finite | not "
     "gone | strongest, N | largest step, N | growth while coming back, N |\n"
@@ -71,13 +73,12 @@ Findings faults(const Options& options, cli::Session& session) {
     for (const auto& file : options.cases) {
         const Case patient_case = asset::read_asset(file);
         FaultRun whole;
-        for (int visit = 0; whole.ticks < share; ++visit) {
+        for (std::size_t visit = 0; whole.ticks < share; ++visit) {
             session.progress.step(patient_case.name,
                                   static_cast<double>(whole.ticks) / static_cast<double>(share));
             const std::int64_t ticks = std::min(visit_ticks, share - whole.ticks);
-            const std::string_view method = visit % 2 == 0 ? "continuous" : "twice";
-            whole.add(
-                run_with_faults(patient_case, method, device, draw_injections(ticks, random), ticks, random));
+            whole.add(run_with_faults(patient_case, methods_in_turn[visit % methods_in_turn.size()], device,
+                                      draw_injections(ticks, random), ticks, random));
         }
         runs.push_back(json_of(patient_case.name, whole));
         rows += row_of(patient_case.name, whole);

@@ -4,14 +4,17 @@
 #include <limits>
 
 #include "tests/formats/sample_case.hpp"
+#include "tests/formats/scratch.hpp"
 #include "tools/experiments/fault_run.hpp"
 #include "tools/experiments/puncture/approach_run.hpp"
 #include "tools/experiments/puncture/approaches.hpp"
+#include "tools/experiments/puncture/many_approaches.hpp"
 #include "tools/experiments/puncture/synchroniser.hpp"
 #include "tools/experiments/puncture/wall_map.hpp"
 #include "tools/experiments/rigid_case.hpp"
 #include "tools/experiments/stability/wall_stability.hpp"
 #include "tools/experiments/statistics.hpp"
+#include "tools/meshing/files/mesh_files.hpp"
 
 namespace palpate::experiments {
 namespace {
@@ -154,6 +157,25 @@ TEST(RunApproach, continuous_contact_holds_on_a_thin_wall_and_single_detection_d
     const Outcome lost = run_approach(single, device, onto_shell(radius, thickness, 700), false);
     EXPECT_TRUE(is_puncture(lost, 1));
     EXPECT_GT(lost.deepest, 9);
+}
+
+TEST(ManyApproaches, end_alike_however_many_threads_share_them) {
+    const sample::Scratch scratch;
+    meshing::write_surface(scratch / "shell.vtp", shell(40, 1));
+    const auto run = [&](int threads) {
+        cli::Session session{
+            .threads = threads, .progress = cli::Progress(true), .shortfall = {}, .text = {}};
+        Options options;
+        options.surfaces = {scratch / "shell.vtp"};
+        options.approaches = 20;
+        return many_approaches(options, session).result;
+    };
+    const auto one = run(1), surface = one["surfaces"][0];
+    EXPECT_EQ(surface["approaches"], 20);
+    EXPECT_EQ(surface["tool_passed_surface"], 0);
+    EXPECT_EQ(surface["punctures"], 0);
+    EXPECT_GT(surface["tip_speed_max_mm_s"], 500);
+    EXPECT_EQ(run(3), one);
 }
 
 // Up to its first force the hand goes the same way, so one more turn of the loop is all that is between them.

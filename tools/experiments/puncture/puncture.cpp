@@ -29,7 +29,7 @@ using drawing::Series;
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t fast_count = 10000, per_speed = 100;
+constexpr std::size_t per_speed = 100;
 constexpr double slowest_group = 131, fastest_group = 157;  // mm/s, as published
 constexpr std::array speeds{50.0, 100.0, 145.0, 200.0, 300.0, 500.0, 700.0, 1000.0};
 
@@ -67,18 +67,18 @@ struct Bench {
     }
     std::vector<Outcome> run(std::size_t scheme, const std::vector<Approach>& approaches) {
         std::vector<Outcome> outcomes;
-        const bool watch = scheme == continuous_scheme;
         for (const Approach& approach : approaches)
-            outcomes.push_back(run_approach(model(scheme), device, approach, watch));
+            outcomes.push_back(run_approach(model(scheme), device, approach, false));
         return outcomes;
     }
 };
 
 Bench bench_of(const Options& options) {
-    if (options.surface.empty())
-        throw UsageError({"--surface", "not given", "triangles of a bone (.vtp)", ""});
-    Bench bench{.bone = rigid_case(options.surface.stem().string(), meshing::read_surface(options.surface),
-                                   approach_settings),
+    if (options.surfaces.size() != 1)
+        throw UsageError({"--surface", std::to_string(options.surfaces.size()) + " given",
+                          "triangles of one bone (.vtp)", ""});
+    const std::filesystem::path& file = options.surfaces.front();
+    Bench bench{.bone = rigid_case(file.stem().string(), meshing::read_surface(file), approach_settings),
                 .models = {},
                 .random = std::mt19937_64(options.seed)};
     for (const std::string_view scheme : schemes) {
@@ -169,47 +169,6 @@ std::array<Chart, 2> curves(Bench& bench, const Approach& approach) {
     return charts;
 }
 
-Json fast_table(std::string& table, Bench& bench) {
-    std::uniform_real_distribution<double> speed(speeds.front(), speeds.back());
-    const auto approaches = bench.draw(fast_count, [&](std::size_t) { return speed(bench.random); });
-    int lost = 0, through = 0, passed = 0, pulled = 0;
-    double least_aside = Approach::stroke;
-    std::vector<double> tip_speeds;
-    for (const Outcome& outcome : bench.run(continuous_scheme, approaches)) {
-        const bool punctured = bench.punctured(outcome);
-        lost += punctured;
-        through += punctured && outcome.tool_passed_surface;
-        passed += outcome.tool_passed_surface;
-        pulled += is_pulled(outcome);
-        if (punctured) least_aside = std::min(least_aside, outcome.aside);
-        tip_speeds.push_back(outcome.speed);
-    }
-    table += fmt::format(
-        "\n## {} approaches with `continuous`\n\nThe hand at {:g} to {:g} mm/s, the tip at up to {:.0f} mm/s "
-        "(median "
-        "{:.0f}) just before the surface. Every tick of every approach the tool itself, as drawn, was tested "
-        "for "
-        "overlap with the bone and for having crossed its surface since the tick before.\n\n"
-        "- Tool ever overlapping or crossing the surface: **{}**\n"
-        "- Punctures by the rule above: **{}** (chance {}); of these with the tool through the surface: "
-        "**{}**\n"
-        "- Pulled: {}\n",
-        fast_count, speeds.front(), speeds.back(), quantile(tip_speeds, 1), quantile(tip_speeds, 0.5), passed,
-        lost, chance_text(lost, static_cast<int>(fast_count)), through, pulled);
-    if (lost > through)
-        table += fmt::format(
-            "\nWhere the hold was lost though the tool never passed the surface, the tip had gone {:.1f} mm "
-            "or more "
-            "to the side, without friction: round an edge of the bone or into an opening of it.\n",
-            least_aside);
-    return {{"approaches", fast_count},
-            {"punctures", lost},
-            {"punctures_through_surface", through},
-            {"tool_passed_surface", passed},
-            {"pulled", pulled},
-            {"tip_speed_max_mm_s", quantile(tip_speeds, 1)}};
-}
-
 }  // namespace
 
 Findings puncture(const Options& options, cli::Session& session) {
@@ -233,14 +192,12 @@ Findings puncture(const Options& options, cli::Session& session) {
     const WallMap map = map_walls(bench.device);
     findings.result["walls"] = add_wall_tables(findings.table, map);
 
-    session.progress.step("synchroniser", 0.3);
+    session.progress.step("synchroniser", 0.5);
     const SynchroniserRun synchronised = compare_synchronisers(bench.bone, thickest(run), bench.device);
     findings.result["synchroniser"] = add_synchroniser_table(findings.table, synchronised);
 
-    session.progress.step("speeds", 0.4);
+    session.progress.step("speeds", 0.7);
     const Chart by_speed = speed_chart(findings.table, findings.result, bench);
-    session.progress.step("fast approaches", 0.55);
-    findings.result["fast"] = fast_table(findings.table, bench);
 
     const auto [force, depth] = curves(bench, shown_approach(run));
     findings.pictures.emplace_back("puncture_by_wall", drawing::charts_svg(wall_charts(map)));

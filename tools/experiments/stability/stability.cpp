@@ -10,6 +10,7 @@
 
 #include "formats/asset/asset.hpp"
 #include "formats/drawing/chart.hpp"
+#include "formats/model/arrays.hpp"
 #include "runtime/devices/dynamic_device.hpp"
 #include "runtime/haptics/servo_loop.hpp"
 #include "runtime/session/run_record.hpp"
@@ -61,15 +62,19 @@ constexpr std::string_view curve_head =
     "episodes "
     "over the bound | by at most, N mm |\n"
     "|---|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n";
+constexpr std::array frictions{0.0, 0.4};  // at rest and sliding alike
+constexpr double lost_depth = 0.1;         // mm
+
 constexpr std::string_view long_text =
     "\nRandom pushing, sliding and leaving with `continuous`: visits to random places of all bodies, up to "
-    "100 mm/s, as deep as above.\n\n";
+    "100 mm/s, as deep as above, without friction and with it. Force is lost in a tick if there is none "
+    "though the device has its tool more than 0.1 mm below a body's surface at rest, and no fault takes it "
+    "away.\n\n";
 constexpr std::string_view long_head =
-    "| case | visits, s | touching, s | not finite | above the limit | pulling ticks | strongest pull, N | "
-    "tool "
-    "inside, mm | visits deeper than 0.05 mm | work, N mm | bound, N mm | most given in an episode, N mm | "
-    "episodes over the bound | by at most, N mm |\n"
-    "|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n";
+    "| case | friction | visits, s | touching, s | force lost, ticks | not finite | above the limit | "
+    "pulling ticks | strongest pull, N | tool inside, mm | visits deeper than 0.05 mm | work, N mm | "
+    "bound, N mm | most given in an episode, N mm | episodes over the bound | by at most, N mm |\n"
+    "|---|--:|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n";
 
 // One way of touching, measured.
 struct Run {
@@ -206,17 +211,37 @@ TouchTarget random_place(const Case& patient_case, const HapticModel& model, std
     }
 }
 
+// Whether a ball at p (mm), of `radius`, is more than lost_depth below a body's surface at rest.
+bool is_below_a_surface(const HapticModel& model, const Eigen::Vector3d& p, double radius) {
+    constexpr double deepest = 20;  // mm
+    for (std::size_t body = 0; body < model.body_count(); ++body) {
+        const auto nearest = model.surface(body).closest_point(p, deepest);
+        if (!nearest) continue;
+        const bool outside = model.surface(body).is_outside(p, *nearest);
+        if ((outside ? nearest->distance : -nearest->distance) < radius - lost_depth) return true;
+    }
+    return false;
+}
+
+// Force that a hand should feel and does not.
+bool is_force_lost(const HapticModel& model, const TickResult& result) {
+    return result.contact_count == 0 && result.faults == no_fault && (result.status & starts_inside) == 0 &&
+           is_below_a_surface(model, vector_of(result.device_position), model.settings().tool_radius);
+}
+
 struct LongRun {
+    double friction = 0;
     ForceFigures figures;
-    std::int64_t visits = 0, visits_inside = 0, not_finite = 0, above_limit = 0;
+    std::int64_t visits = 0, visits_inside = 0, not_finite = 0, above_limit = 0, lost = 0;
     double strongest = 0, deepest = 0;
 };
 
-LongRun push_at_random(const Case& patient_case, const RestNormals& normals, double seconds,
+LongRun push_at_random(Case patient_case, double friction, const RestNormals& normals, double seconds,
                        std::uint64_t seed, cli::Session& session) {
+    patient_case.haptics.friction_at_rest = patient_case.haptics.friction_sliding = friction;
     HapticModel model(patient_case);
     ForceQuality quality(normals, model, passivity_of(model));
-    LongRun run;
+    LongRun run{.friction = friction, .figures = {}};
     std::mt19937_64 random(seed);
     const double radius = model.settings().tool_radius;
     const ScriptSettings settings{.tool_radius = radius,
@@ -232,6 +257,7 @@ LongRun push_at_random(const Case& patient_case, const RestNormals& normals, dou
         touch(model, random_path(target.place, settings, random()), visit_s, quality,
               [&](const TickResult& result) {
                   const double force = Eigen::Map<const Eigen::Vector3d>(result.force.data()).norm();
+                  run.lost += is_force_lost(model, result);
                   run.not_finite += !std::isfinite(force);
                   run.above_limit += force > model.settings().max_force * (1 + 1e-12);
                   run.strongest = std::max(run.strongest, force);
@@ -246,8 +272,10 @@ LongRun push_at_random(const Case& patient_case, const RestNormals& normals, dou
 
 Json long_run_json(const Case& patient_case, const LongRun& run) {
     Json json{{"case", patient_case.name},
+              {"friction", run.friction},
               {"visits", run.visits},
               {"visit_s", visit_s},
+              {"force_lost_ticks", run.lost},
               {"not_finite_ticks", run.not_finite},
               {"above_limit_ticks", run.above_limit},
               {"strongest_n", run.strongest},
@@ -260,12 +288,13 @@ Json long_run_json(const Case& patient_case, const LongRun& run) {
 std::string long_run_row(const Case& patient_case, const LongRun& run) {
     const ForceFigures& q = run.figures;
     return fmt::format(
-        "| {} | {} x {:.0f} | {:.0f} | {} | {} | {} | {:.2g} | {:.4f} | {} | {:.1f} | {:.1f} | {:.3f} | {} "
+        "| {} | {:g} | {} x {:.0f} | {:.0f} | {} | {} | {} | {} | {:.2g} | {:.4f} | {} | {:.1f} | {:.1f} | "
+        "{:.3f} | {} "
         "of {} "
         "| {:.3f} |\n",
-        patient_case.name, run.visits, visit_s, 1e-3 * static_cast<double>(q.touching_ticks), run.not_finite,
-        run.above_limit, q.pulling_ticks, q.strongest_pull, run.deepest, run.visits_inside, q.given, q.bound,
-        q.most_given, q.over_bound, q.episodes, q.worst_over_bound);
+        patient_case.name, run.friction, run.visits, visit_s, 1e-3 * static_cast<double>(q.touching_ticks),
+        run.lost, run.not_finite, run.above_limit, q.pulling_ticks, q.strongest_pull, run.deepest,
+        run.visits_inside, q.given, q.bound, q.most_given, q.over_bound, q.episodes, q.worst_over_bound);
 }
 
 }  // namespace
@@ -284,9 +313,12 @@ Findings stability(const Options& options, cli::Session& session) {
         curve_rows += comparison.rows;
         findings.pictures.emplace_back("stability_" + patient_case.name,
                                        drawing::charts_svg(comparison.charts));
-        const LongRun run = push_at_random(patient_case, normals, seconds, options.seed, session);
-        long_runs.push_back(long_run_json(patient_case, run));
-        long_rows += long_run_row(patient_case, run);
+        for (const double friction : frictions) {
+            const LongRun run =
+                push_at_random(patient_case, friction, normals, seconds, options.seed, session);
+            long_runs.push_back(long_run_json(patient_case, run));
+            long_rows += long_run_row(patient_case, run);
+        }
     }
     session.progress.finish();
     findings.result = {

@@ -190,8 +190,8 @@ void add_table(Findings& findings, const std::string& title, const std::vector<T
 }  // namespace
 
 Findings tick(const Options& options, cli::Session& session) {
-    if (options.surface.empty() != options.path.empty())
-        throw UsageError({"--surface and --path", "only one of them", "both, or neither", ""});
+    if (options.surfaces.size() != (options.path.empty() ? 0U : 1U))
+        throw UsageError({"--surface and --path", "not one of each", "one of each, or neither", ""});
     const double paced_s = options.seconds > 0 ? options.seconds : 5;
     const Histogram clock = clock_cost();
     Findings findings{.result = {{"clock_ns", clock.percentile(0.5)}, {"rows", Json::array()}},
@@ -199,9 +199,9 @@ Findings tick(const Options& options, cli::Session& session) {
                       .pictures = {}};
     std::vector<Chart> charts;
     LoadRows load;
-    if (!options.surface.empty()) {
+    if (!options.surfaces.empty()) {
         session.progress.step("bone", 0);
-        const TriangleMesh bone = meshing::read_surface(options.surface);
+        const TriangleMesh bone = meshing::read_surface(options.surfaces.front());
         const HandPath path = read_hand_path(options.path);
         const RigidTicks rigid = rigid_ticks(bone, path);
         add_table(findings, fmt::format("Bone of {} triangles", bone.triangles.size()), rigid.rows,
