@@ -181,10 +181,18 @@ class Build(unittest.TestCase):
         built = self.fail(3, "did you mean tool_radius_mm")
         self.assertRegex(built.stderr, r"case\.toml:\d+")
 
-    def test_a_body_without_fixed_nodes_is_refused_before_factorising(self):
+    def test_mistakes_of_the_case_are_all_told_before_the_first_stage(self):
         self.change("fixed = [{ plane_mm = [0, 8, 0, 0, 1, 0] }]\n", "")
-        built = self.fail(3, "no node is held", "singular")
-        self.assertNotIn("factorising", built.stderr)
+        self.change('label = "tumour"', 'label = "tumor"')
+        built = self.fail(3, "has 2 mistakes", "'fixed' of deformable is missing", "nearest names: 'tumour'")
+        self.assertNotIn("import", built.stderr)
+
+    def test_implausible_values_are_questioned_and_kept_with_the_asset(self):
+        self.change("youngs_modulus_kpa = 30", "youngs_modulus_kpa = 30000")
+        built = self.build_in(self.folder)
+        self.assertEqual(built.returncode, 0, built.stderr)
+        self.assertIn("30000 kPa is implausible", built.stderr)
+        self.assertIn("30000 kPa is implausible", (self.folder / "case.html").read_text())
 
     def test_unmet_quality_contract_exits_with_4(self):
         self.change("[haptics]", "[quality]\nmin_dihedral_deg = 80\n[haptics]")

@@ -33,7 +33,9 @@ ROOMS = {
     "stage_shapes": {"requests", "imaging", "meshing"},
     "stage_bodies": {"requests", "fem", "meshing"},
     "stage_cases": {"requests", "asset", "meshing", "obb"},
-    "case_builder": {"model", "asset", "cli", "imaging", "requests", "json", "toml"},
+    "tissue": {"model"},
+    "draft": {"model", "imaging", "tissue"},
+    "case_builder": {"model", "asset", "cli", "imaging", "requests", "tissue", "json", "toml"},
     "seeds": {"model", "imaging", "vtk"},
     "hd_conformance": {"model", "devices", "json"},
     "realtime": {"records"},
@@ -46,8 +48,8 @@ ROOMS = {
     "session": {"model", "asset", "recording", "drawing", "json", "realtime", "collision", "haptics", "devices", "openigtlink"},
 }
 ROOMS["experiments"] = {"asset", "drawing", "cli", "session", "fem", "meshing", "obb", "cgal_peer"}  # measures both sides
-COMMANDS = {"model", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "case_builder", "requests", "stage_images", "stage_shapes",
-            "stage_bodies", "stage_cases", "seeds", "json"}
+COMMANDS = {"model", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "case_builder", "draft", "requests", "stage_images", "stage_shapes",
+            "stage_bodies", "stage_cases", "seeds", "tissue", "json"}
 APPS = {"model", "asset", "recording", "cli", "realtime", "collision", "haptics", "devices", "openigtlink", "session", "json"}
 EXECUTABLES = {
     "palpate": {"cli", "model"},

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <fmt/format.h>
 #include <set>
 
@@ -11,6 +12,7 @@
 #include "formats/records/quality_contract.hpp"
 #include "tools/case_builder/table_reader.hpp"
 #include "tools/imaging/recipes/recipe.hpp"
+#include "tools/tissue/tissue.hpp"
 
 namespace palpate::case_builder {
 namespace {
@@ -137,8 +139,12 @@ RigidSpec rigid(TableReader reader, const std::filesystem::path& folder) {
 template <typename Table, typename Record>
 void read_record(TableReader& reader, const Table& table, Record& record) {
     for_each_field(table, [&](const auto& field) {
-        if (const auto value = reader.optional<double>(key_of(field)))
-            record.*field.member = *value / field.written_factor;
+        const auto value = reader.optional<double>(key_of(field));
+        if (!value) return;
+        record.*field.member = *value / field.written_factor;
+        if (!std::isfinite(*value) || !field.range.contains(record.*field.member))
+            reader.fail(reader.node(key_of(field)), key_of(field), fmt::format("is {}", *value),
+                        to_string(field.range));
     });
 }
 
@@ -151,8 +157,8 @@ stages::NearPlace near_place(TableReader& rule) {
     } else {
         place.label = rule.required<std::string>("near");
     }
-    place.cell_size = rule.required<double>("cell_size_mm");
-    place.within = rule.required<double>("within_mm");
+    place.cell_size = rule.required_positive("cell_size_mm");
+    place.within = rule.required_positive("within_mm");
     rule.refuse_unknown();
     return place;
 }
@@ -173,14 +179,41 @@ void read_relaxation(TableReader& region, const std::string& label, stages::Cond
     for (const RelaxationTerm& term : terms) request.relaxation.push_back({label, term});
 }
 
-void read_region(TableReader& region, DeformableSpec& spec) {
-    const auto label = region.required<std::string>("label");
+// The preset that a region names; null if it names none.
+const tissue::Tissue* tissue_of(TableReader& region) {
+    const auto name = region.optional<std::string>("tissue");
+    if (!name) return nullptr;
+    std::vector<std::string> names;
+    for (const tissue::Tissue& tissue : tissue::tissues()) names.push_back(tissue.name);
+    region.choice("tissue", names);
+    return &tissue::require_tissue(*name, "tissue");
+}
+
+// Young's modulus, Poisson's ratio, density and relaxation: what is written, else what the tissue has.
+void read_mechanics(TableReader& region, const std::string& label, DeformableSpec& spec) {
+    const tissue::Tissue* const tissue = tissue_of(region);
+    const auto number = [&](const char* key, double preset) {
+        return tissue != nullptr ? region.optional<double>(key).value_or(preset)
+                                 : region.required<double>(key);
+    };
     spec.condense.materials.push_back(
-        {label, region.required<double>("youngs_modulus_kpa"), region.required<double>("poissons_ratio")});
+        {label, number("youngs_modulus_kpa", tissue != nullptr ? tissue->youngs_modulus_kpa : 0),
+         number("poissons_ratio", tissue != nullptr ? tissue->poissons_ratio : 0)});
+    if (tissue != nullptr) spec.tissues.push_back({label, tissue->name});
+    if (tissue != nullptr && !region.has("relaxation"))
+        for (const RelaxationTerm& term : tissue->relaxation)
+            spec.condense.relaxation.push_back({label, term});
     read_relaxation(region, label, spec.condense);
     if (const auto density = region.positive("density_kg_m3"))
         spec.condense.densities.push_back({label, *density});
-    const auto cell_size = region.optional<double>("cell_size_mm");
+    else if (tissue != nullptr)
+        spec.condense.densities.push_back({label, tissue->density_kg_m3});
+}
+
+void read_region(TableReader& region, DeformableSpec& spec) {
+    const auto label = region.required<std::string>("label");
+    read_mechanics(region, label, spec);
+    const auto cell_size = region.positive("cell_size_mm");
     const auto mesh_region = region.optional<std::int64_t>("mesh_region");
     region.refuse_unknown();
     stages::MeshRequest& mesh = spec.mesh;
@@ -198,7 +231,7 @@ DeformableSpec deformable(TableReader reader, const std::filesystem::path& folde
     stages::MeshRequest& mesh = spec.mesh;
     read_imported_file(reader, "mesh", folder, {"mesh"}, mesh.mesh_file, mesh.unit, mesh.frame);
     TableReader sizes = reader.table("mesh");
-    read(sizes, "cell_size_mm", mesh.sizing.cell_size);
+    mesh.sizing.cell_size = sizes.positive("cell_size_mm").value_or(mesh.sizing.cell_size);
     read(sizes, "facet_size_mm", mesh.sizing.facet_size);
     read(sizes, "facet_distance_mm", mesh.sizing.facet_distance);
     read(sizes, "smoothing_mm", mesh.sizing.smoothing);
@@ -251,20 +284,10 @@ void read_import_options(TableReader& input, const std::filesystem::path& folder
     read(input, "overlaps", result.labels_import.overlaps);
 }
 
-toml::table parse(const std::filesystem::path& path) {
-    try {
-        return toml::parse_file(path.string());
-    } catch (const toml::parse_error& error) {
-        const auto line = error.source().begin.line;
-        throw InvalidInput({line > 0 ? fmt::format("{}:{}", path.string(), line) : path.string(),
-                            std::string(error.description()), "", "see docs/case_file.md"});
-    }
-}
-
 }  // namespace
 
 CaseFile read_case_file(const std::filesystem::path& path) {
-    const toml::table document = parse(path);
+    const toml::table document = read_toml(path);
     TableReader root(document, path.string(), "");
     if (const auto schema = root.required<std::int64_t>("schema"); schema != 1)
         root.fail(*document.get("schema"), "schema", "is " + std::to_string(schema), "1",
@@ -322,14 +345,6 @@ bool needs_labels(const CaseFile& case_file) {
     }) || std::ranges::any_of(case_file.deformable, [](const DeformableSpec& body) {
         return body.mesh.mesh_file.empty();
     });
-}
-
-void require_what_the_bodies_need(const CaseFile& case_file) {
-    for (const RigidSpec& body : case_file.rigid)
-        if (body.surface.isovalue && !case_file.volume)
-            throw InvalidInput({"rigid body '" + body.name + "'",
-                                "isovalue_hu needs grey values, and no volume is named", "",
-                                "set input.volume or pass --volume, or leave isovalue_hu out"});
 }
 
 }  // namespace palpate::case_builder

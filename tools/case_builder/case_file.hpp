@@ -38,12 +38,19 @@ struct RigidSpec {
     stages::SurfaceRequest surface;  ///< but for the volume, labels and output of the build
 };
 
+/// The preset of a region's material.
+struct RegionTissue {
+    std::string label;
+    std::string tissue;  ///< name of one of tissue::tissues()
+};
+
 /// A deformable body: regions meshed together, or an imported mesh of them, the nodes that are held and those
 /// that can be touched.
 struct DeformableSpec {
     std::string name;
-    stages::MeshRequest mesh;          ///< but for the labels and output of the build
-    stages::CondenseRequest condense;  ///< but for the mesh and output of the build
+    stages::MeshRequest mesh;           ///< but for the labels and output of the build
+    stages::CondenseRequest condense;   ///< but for the mesh and output of the build
+    std::vector<RegionTissue> tissues;  ///< of the regions that name one
 };
 
 /// A case file, schema 1: what to build for one patient. Paths are absolute or relative to the case file.
@@ -69,8 +76,5 @@ CaseFile read_case_file(const std::filesystem::path& path);
 
 /// Tells whether some stage needs the label map of the structures; imported meshes and surfaces alone do not.
 bool needs_labels(const CaseFile& case_file);
-
-/// Throws InvalidInput if a body asks for a grey isovalue and no volume is named.
-void require_what_the_bodies_need(const CaseFile& case_file);
 
 }  // namespace palpate::case_builder

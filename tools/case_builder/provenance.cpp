@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "formats/asset/hdf5/digest.hpp"
+#include "tools/case_builder/cautions.hpp"
 
 namespace palpate::case_builder {
 namespace {
@@ -54,7 +55,10 @@ Json provenance(const CaseFile& case_file, std::span<const Stage> before) {
     Json structures = Json::array();
     for (const StructureSpec& structure : case_file.structures)
         structures.push_back(structure_request(structure, "_sha256", asset::sha256_file));
-    return {{"inputs", inputs}, {"structures", structures}, {"steps", steps}};
+    return {{"inputs", inputs},
+            {"structures", structures},
+            {"steps", steps},
+            {"cautions", cautions_of(case_file)}};
 }
 
 }  // namespace palpate::case_builder

@@ -109,6 +109,8 @@ Stage pack_stage(const CaseFile& case_file, const BuildPaths& paths, const std::
         stage.inputs.push_back(request.deformable.back().body);
         stage.inputs.push_back(request.mesh_results.back().file);
     }
+    if (needs_labels(case_file))
+        stage.inputs.push_back(request.notes.emplace_back(paths.parts / "segment.json"));
     stage.request = cli::to_request(request);
     return stage;
 }

@@ -5,10 +5,19 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "formats/model/errors.hpp"
 #include "formats/model/label_map.hpp"
 
 namespace palpate::case_builder {
+
+toml::table read_toml(const std::filesystem::path& path) {
+    try {
+        return toml::parse_file(path.string());
+    } catch (const toml::parse_error& error) {
+        const auto line = error.source().begin.line;
+        throw InvalidInput({line > 0 ? fmt::format("{}:{}", path.string(), line) : path.string(),
+                            std::string(error.description()), "", "see docs/case_file.md"});
+    }
+}
 
 TableReader::TableReader(const toml::table& table, std::string file, std::string where)
     : table_(table), file_(std::move(file)), where_(std::move(where)) {}
@@ -33,6 +42,11 @@ std::optional<double> TableReader::positive(const std::string& key) {
     if (value && !(*value > 0 && std::isfinite(*value)))
         fail(*table_.get(key), key, fmt::format("is {}", *value), "a number above 0");
     return value;
+}
+
+double TableReader::required_positive(const std::string& key) {
+    required<double>(key);
+    return *positive(key);
 }
 
 std::vector<double> TableReader::numbers(const std::string& key, std::size_t count) {
@@ -85,13 +99,26 @@ void TableReader::refuse_unknown() const {
     }
 }
 
+ErrorDetail TableReader::complaint(const toml::node& node, const std::string& key, const std::string& found,
+                                   const std::string& expected, const std::string& next_step) const {
+    return {position_of(node),
+            fmt::format("key '{}'{} {}", key, where_.empty() ? "" : " of " + where_, found), expected,
+            next_step};
+}
+
 void TableReader::fail(const toml::node& node, const std::string& key, const std::string& found,
                        const std::string& expected, const std::string& next_step) const {
+    throw InvalidInput(complaint(node, key, found, expected, next_step));
+}
+
+std::string TableReader::position_of(const toml::node& node) const {
     const auto line = node.source().begin.line;
-    const std::string place = line > 0 ? fmt::format("{}:{}", file_, line) : file_;
-    throw InvalidInput({place,
-                        fmt::format("key '{}'{} {}", key, where_.empty() ? "" : " of " + where_, found),
-                        expected, next_step});
+    return line > 0 ? fmt::format("{}:{}", file_, line) : file_;
+}
+
+const toml::node& TableReader::node(const std::string& key) const {
+    const toml::node* found = table_.get(key);
+    return found != nullptr ? *found : table_;
 }
 
 std::string TableReader::place_of(const std::string& key) const {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <filesystem>
 #include <optional>
 #include <set>
 #include <string>
@@ -7,7 +8,12 @@
 #include <type_traits>
 #include <vector>
 
+#include "formats/model/errors.hpp"
+
 namespace palpate::case_builder {
+
+/// Reads a TOML file. Throws InvalidInput naming file and line for a syntax error.
+toml::table read_toml(const std::filesystem::path& path);
 
 /// Reads one table of a TOML file and remembers which keys it was asked for, so that the others can be
 /// refused. Everything throws InvalidInput naming file, line and key if a value is missing or has the wrong
@@ -43,6 +49,7 @@ class TableReader {
 
     /// A number above zero.
     std::optional<double> positive(const std::string& key);
+    double required_positive(const std::string& key);
 
     /// Exactly `count` numbers.
     std::vector<double> numbers(const std::string& key, std::size_t count);
@@ -60,9 +67,17 @@ class TableReader {
     /// Throws for a key that nobody asked for, with the nearest known ones.
     void refuse_unknown() const;
 
-    /// Throws InvalidInput "file:line: key 'key' of where found (expected ...); next step".
+    /// "file:line: key 'key' of where found (expected ...); next step".
+    ErrorDetail complaint(const toml::node& node, const std::string& key, const std::string& found,
+                          const std::string& expected, const std::string& next_step = "") const;
+    /// Throws InvalidInput with that.
     [[noreturn]] void fail(const toml::node& node, const std::string& key, const std::string& found,
                            const std::string& expected, const std::string& next_step = "") const;
+
+    /// "file:line" of a node.
+    std::string position_of(const toml::node& node) const;
+    /// What holds a key's value; the table itself if it has none.
+    const toml::node& node(const std::string& key) const;
 
   private:
     std::string place_of(const std::string& key) const;

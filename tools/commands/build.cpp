@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <spdlog/spdlog.h>
+
 #include "formats/model/errors.hpp"
-#include "tools/case_builder/case_file.hpp"
+#include "tools/case_builder/case_check.hpp"
+#include "tools/case_builder/cautions.hpp"
 #include "tools/case_builder/stages.hpp"
 #include "tools/cli/command.hpp"
 
@@ -51,7 +54,8 @@ int main(int argc, char** argv) {
         case_builder::CaseFile case_file = case_builder::read_case_file(case_path);
         if (!volume.empty()) case_file.volume = volume;
         if (!labels.empty()) case_file.labels = labels;
-        case_builder::require_what_the_bodies_need(case_file);
+        case_builder::check_case_file(case_path, case_file);
+        for (const std::string& doubt : case_builder::doubts_of(case_file)) spdlog::warn("{}", doubt);
         if (parts.empty()) parts = std::filesystem::path(output).replace_extension(".parts");
         const case_builder::BuildPaths paths{parts, output,
                                              std::filesystem::path(output).replace_extension(".html")};

@@ -9,6 +9,7 @@
 #include "tools/cli/command.hpp"
 #include "tools/imaging/files/image_files.hpp"
 #include "tools/imaging/recipes/recipe.hpp"
+#include "tools/imaging/recipes/recipe_json.hpp"
 #include "tools/imaging/recipes/segmentation.hpp"
 #include "tools/imaging/voxels/label_statistics.hpp"
 #include "tools/stages/requests/segment_request.hpp"
@@ -19,21 +20,6 @@ using namespace palpate;
 using namespace palpate::imaging;
 using nlohmann::json;
 using nlohmann::ordered_json;  // cleaning steps apply in the order written
-
-// A JSON value as a recipe takes it; arrays of points are flattened.
-RecipeValue recipe_value(const ordered_json& value, const std::string& culprit) {
-    if (value.is_boolean()) return value.get<bool>();
-    if (value.is_number()) return value.get<double>();
-    if (value.is_string()) return value.get<std::string>();
-    std::vector<double> numbers;
-    const ordered_json flat = value.flatten();
-    for (const ordered_json& number : flat) {
-        if (!value.is_array() || !number.is_number())
-            throw InvalidInput({culprit, value.dump(), "a number, numbers, a text, true or false", ""});
-        numbers.push_back(number.get<double>());
-    }
-    return numbers;
-}
 
 // One structure of a request or a recipe file.
 StructureRecipe recipe_of(const stages::StructureRequest& structure, const std::string& culprit) {

@@ -21,6 +21,7 @@ h3{margin:22px 0 8px;font-size:16px}
 .lead{margin:0 0 16px;color:var(--soft);max-width:78ch}
 .verdict{display:flex;gap:14px;align-items:flex-start;border-radius:8px;padding:12px 16px;margin:0 0 18px;background:var(--good-wash)}
 .verdict strong{color:var(--good);font-size:17px;white-space:nowrap}
+.cautions{border:1px solid var(--line);border-radius:8px;padding:10px 16px;margin:0 0 18px;font-size:14px}.cautions ul{margin:4px 0 0;padding-left:20px}
 .verdict.failed{background:var(--bad-wash)}.verdict.failed strong{color:var(--bad)}
 .cards{display:grid;grid-template-columns:repeat(auto-fit,minmax(135px,1fr));gap:10px;margin:0}
 .cards div{border:1px solid var(--line);border-radius:8px;padding:9px 12px}

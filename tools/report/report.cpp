@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "tools/report/html.hpp"
 #include "tools/report/page_style.hpp"
@@ -34,6 +35,29 @@ std::string verdict(const std::vector<MeasuredBody>& bodies) {
         "the certificate is within its limit. Worst residual {}, smallest dihedral angle "
         "{:.1f}°.</div></div>\n",
         html::significant(residual, 2), angle);
+}
+
+// What the verdict is not about: how the case was made. Empty if its provenance tells nothing of it.
+std::string cautions(const std::string& provenance) {
+    const auto json = nlohmann::json::parse(provenance, nullptr, false);
+    std::string items;
+    const auto add_texts = [&](const nlohmann::json& texts, const char* format) {
+        for (const auto& text : texts)
+            if (text.is_string())
+                items += "<li>" + fmt::format(fmt::runtime(format), html::escaped(text.get<std::string>())) +
+                         "</li>\n";
+    };
+    const auto list_at = [](const nlohmann::json& from, const char* place) {
+        const nlohmann::json::json_pointer pointer(place);
+        return from.is_object() && from.contains(pointer) ? from[pointer] : nlohmann::json();
+    };
+    add_texts(list_at(json, "/build/cautions"), "{}");
+    for (const auto& mesh : list_at(json, "/meshes"))
+        add_texts(list_at(mesh, "/at_image_edge"),
+                  "‘{}’ reaches the image’s edge: what lies beyond it is missing.");
+    add_texts(list_at(json, "/notes"), "{}");
+    if (items.empty()) return "";
+    return "<div class=\"cautions\"><strong>What that does not say</strong><ul>" + items + "</ul></div>\n";
 }
 
 std::string key_figures(const ReportInputs& inputs, const std::vector<MeasuredBody>& bodies) {
@@ -78,8 +102,8 @@ std::string html_report(const ReportInputs& inputs) {
            "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>" +
            name + " – Palpate report</title>\n<style>" + std::string(page_style) +
            "</style>\n</head>\n<body>\n<main>\n<header>\n<p class=\"kind\">Palpate report</p>\n<h1>" + name +
-           "</h1>\n" + verdict(page.bodies) + key_figures(inputs, page.bodies) + "</header>\n<nav>" +
-           navigation + "</nav>\n" + content +
+           "</h1>\n" + verdict(page.bodies) + cautions(inputs.patient_case.provenance) +
+           key_figures(inputs, page.bodies) + "</header>\n<nav>" + navigation + "</nav>\n" + content +
            "<footer>Lengths in mm, positions in the patient frame: L left, P posterior, S superior (LPS). "
            "Not a "
            "medical device; not for diagnosis or treatment.</footer>\n</main>\n</body>\n</html>\n";

@@ -3,6 +3,7 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "formats/asset/parts.hpp"
 #include "formats/model/errors.hpp"
@@ -55,6 +56,25 @@ Json read_mesh_results(const std::vector<NamedFile>& files) {
     return meshes;
 }
 
+// What earlier stages told a person to look at; folders stay out of it.
+Json read_notes(const std::vector<std::filesystem::path>& files) {
+    Json notes = Json::array();
+    for (const std::filesystem::path& file : files) {
+        std::ifstream stream(file, std::ios::binary);
+        const Json result = Json::parse(stream, nullptr, false);
+        if (!result.is_object())
+            throw InvalidInput({file.string(), "is no result", "what --json of a command wrote", ""});
+        for (const Json& note : result.value("notes", Json::array())) {
+            std::string kept;
+            std::istringstream words(note.get<std::string>());
+            for (std::string word; words >> word;)
+                kept += (kept.empty() ? "" : " ") + word.substr(word.find_last_of("/\\") + 1);
+            notes.push_back(kept);
+        }
+    }
+    return notes;
+}
+
 ObbTree tree_of(const BodyFiles& files, const TriangleMesh& surface) {
     return files.tree.empty() ? obb::build_obb_tree(surface) : asset::read_obb_part(files.tree, surface);
 }
@@ -82,7 +102,8 @@ Case make_case(const PackRequest& request, const ProgressCallback& progress) {
               .provenance = ""};
     made.provenance = Json{{"software", cli::software_versions()},
                            {"build", read_provenance(request.provenance)},
-                           {"meshes", read_mesh_results(request.mesh_results)}}
+                           {"meshes", read_mesh_results(request.mesh_results)},
+                           {"notes", read_notes(request.notes)}}
                           .dump();
     progress("read parts and build trees", 0);
     for (const BodyFiles& files : request.rigid) made.rigid_bodies.push_back(read_rigid(files));

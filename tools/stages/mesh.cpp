@@ -48,6 +48,23 @@ MeshSizing sizing_of(const MeshRequest& request, const LabelMap& map,
     return sizing;
 }
 
+// The names of the regions that have a voxel on the image's border: what lies beyond was not scanned.
+std::vector<std::string> regions_at_edge(const LabelMap& map, const std::vector<std::int32_t>& regions) {
+    const auto& size = map.grid.size;
+    std::set<std::int32_t> found;
+    std::size_t offset = 0;
+    for (std::int32_t k = 0; k < size[2]; ++k)
+        for (std::int32_t j = 0; j < size[1]; ++j)
+            for (std::int32_t i = 0; i < size[0]; ++i, ++offset)
+                if (i == 0 || j == 0 || k == 0 || i + 1 == size[0] || j + 1 == size[1] || k + 1 == size[2])
+                    found.insert(map.labels[offset]);
+    std::vector<std::string> names;
+    for (const std::int32_t region : regions)
+        if (found.contains(region))
+            names.push_back(std::ranges::find(map.names, region, &Label::value)->name);
+    return names;
+}
+
 Body body_from_labels(const MeshRequest& request, const ProgressCallback& progress, const NoteSink& note) {
     if (request.labels.empty() || request.regions.empty())
         throw UsageError({"mesh", "nothing to mesh", "--labels with --region, or --mesh-file", ""});
@@ -70,6 +87,10 @@ Body body_from_labels(const MeshRequest& request, const ProgressCallback& progre
         made.attempts.size());
     body.result = to_json(made.mesh, made.measures);
     body.result["attempts"] = to_json(made.attempts);
+    body.result["at_image_edge"] = regions_at_edge(map, values);
+    for (const Json& name : body.result["at_image_edge"])
+        note(fmt::format("'{}' reaches the image's edge: what lies beyond it is missing",
+                         name.get<std::string>()));
     body.mesh = std::move(made.mesh);
     return body;
 }

@@ -26,7 +26,8 @@ Case hostile_case() {
     patient_case.deformable_bodies.front().mesh.region_names.back().name = "tumour <b>";
     patient_case.provenance =
         R"({"tool":{"name":"<i>palpate</i>"},"inputs":["a & b"],"build":{"steps":[7,{"request":3},{"request":{"posture":1}},)"
-        R"({"command":"condense","request":{"name":"wall<","scanned":"supine","posture":"<b>prone"}}]},"meshes":{"cube":{"checks":[)"
+        R"({"command":"condense","request":{"name":"wall<","scanned":"supine","posture":"<b>prone"}}],)"
+        R"("cautions":["wall is <u>made up", 7]},"notes":["HU & more"],"meshes":{"cube":{"at_image_edge":["cube<"],"checks":[)"
         R"({"name":"max_mean_distance_mm","measure":"the mean <i>surface</i> distance","region":"cube","value":0.3,)"
         R"("bound":"at most","limit":0.25,"unit":"mm","met":false},)"
         R"({"what":"the volume error of 'cube'","found":"0.5 %","limit":"at most 1 %","kept":true}]}}})";
@@ -230,6 +231,14 @@ TEST_F(ReportTest, a_shape_that_is_not_the_scans_says_so_whatever_the_provenance
                          "wall&lt;</b> was scanned supine and has the shape that gravity gives it "
                          "&lt;b&gt;prone"));
     EXPECT_FALSE(contains(bare_page(), "was scanned"));
+}
+
+TEST_F(ReportTest, beside_the_verdict_stands_what_it_does_not_say) {
+    const std::string page = full_page();
+    for (const char* words : {"<li>wall is &lt;u&gt;made up</li>", "<li>HU &amp; more</li>",
+                              "‘cube&lt;’ reaches the image’s edge"})
+        EXPECT_TRUE(contains(page, words)) << words;
+    EXPECT_FALSE(contains(bare_page(), "What that does not say"));
 }
 
 TEST(ColourScale, ends_at_a_round_number_and_holds_there) {

@@ -183,9 +183,10 @@ TEST(Request, of_pack_survives_json) {
     request.haptics.tool_radius = 1.5;
     request.haptics.max_force_rate = 0.25;
     request.mesh_results = {{"wall", "w=1.json"}};
+    request.notes = {existing("import.json"), existing("segment.json")};
     request.provenance = existing("p.json");
     request.output = "out.vtkhdf";
-    expect_round_trip(request, 8);
+    expect_round_trip(request, 9);
 }
 
 TEST(Request, of_report_survives_json) {

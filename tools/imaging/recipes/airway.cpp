@@ -64,7 +64,7 @@ Mask airway(const Volume& volume, std::span<const Eigen::Vector3d> seeds, double
 
 Mask make_airway(const Job& job) {
     const Parameters& p = job.parameters;
-    return airway(job.require_volume(), seed_points(job), p.number("threshold_hu"), p.number("opening_mm"),
+    return airway(*job.volume, seed_points(job), p.number("threshold_hu"), p.number("opening_mm"),
                   job.culprit());
 }
 
@@ -83,7 +83,8 @@ Recipe airway_recipe() {
                  region_parameters(),
                  cleaning_parameters()}),
             .if_empty = "raise threshold_hu, lower opening_mm, or check region and cleaning",
-            .make = make_airway};
+            .make = make_airway,
+            .needs_volume = true};
 }
 
 }  // namespace palpate::imaging

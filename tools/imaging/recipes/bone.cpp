@@ -34,10 +34,10 @@ Mask make_bone(const Job& job) {
     const Parameters& p = job.parameters;
     double threshold_hu = p.number("threshold_hu");
     if (threshold_hu == 0) {
-        threshold_hu = bone_threshold(job.require_volume());
+        threshold_hu = bone_threshold(*job.volume);
         if (job.note) job.note(fmt::format("{}: threshold {:.0f} HU found", job.culprit(), threshold_hu));
     }
-    return bone(job.require_volume(), threshold_hu, p.number("separation_mm"));
+    return bone(*job.volume, threshold_hu, p.number("separation_mm"));
 }
 
 }  // namespace
@@ -53,7 +53,8 @@ Recipe bone_recipe() {
                  region_parameters(),
                  with_defaults(cleaning_parameters(), {{"min_component_ml", "1"}})}),
             .if_empty = "lower threshold_hu or min_component_ml; are the values in HU?",
-            .make = make_bone};
+            .make = make_bone,
+            .needs_volume = true};
 }
 
 }  // namespace palpate::imaging

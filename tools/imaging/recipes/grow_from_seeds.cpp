@@ -34,7 +34,7 @@ LabelMap race(const Job& job) {
     for (const Seed& seed : seeds) claimed.insert(place(seed));
     for (const Seed& seed : others)
         if (claimed.insert(place(seed)).second) seeds.push_back({"background", seed.p_P});
-    return grow_from_seeds(job.require_volume(), seeds, growing);
+    return grow_from_seeds(*job.volume, seeds, growing);
 }
 
 Mask make_grown(const Job& job) {
@@ -58,7 +58,9 @@ Recipe grow_from_seeds_recipe() {
                               region_parameters(),
                               cleaning_parameters()}),
             .if_empty = "raise tolerance, move the seeds, or check the cleaning",
-            .make = make_grown};
+            .make = make_grown,
+            .needs_volume = true,
+            .needs_seeds = true};
 }
 
 }  // namespace palpate::imaging

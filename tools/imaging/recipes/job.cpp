@@ -33,13 +33,6 @@ std::vector<Seed> seeds_of_strokes(const LabelMap& strokes, std::size_t limit) {
 
 }  // namespace
 
-const Volume& Job::require_volume() const {
-    if (volume == nullptr)
-        throw InvalidInput({culprit(), "recipe '" + structure.recipe + "' has no volume to look at", "",
-                            "name the volume, for CT with values in HU"});
-    return *volume;
-}
-
 Mask Job::structure_named_by(const std::string& parameter) const {
     return mask_of(map, require_label(map, parameters.text(parameter), culprit()).value);
 }

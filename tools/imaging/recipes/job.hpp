@@ -23,15 +23,13 @@ struct Job {
     const StructureRecipe& structure;
     const Parameters& parameters;
     std::span<const StructureRecipe> all;  ///< the structures of this run
-    const Volume* volume;                  ///< in HU
+    const Volume* volume;                  ///< in HU; there is one where the recipe needs it
     const LabelMap* prior;
     const LabelMap& map;  ///< the structures made so far
     const NoteSink& note;
     std::optional<LabelMap>& grown;  ///< what the structures of grow-from-seeds share, once made
 
     std::string culprit() const { return "structure '" + structure.name + "'"; }
-    /// Throws InvalidInput if there is none.
-    const Volume& require_volume() const;
     /// The voxels of the structure that the parameter names; throws InvalidInput if the parameter is absent
     /// or no such structure was made before.
     Mask structure_named_by(const std::string& parameter) const;

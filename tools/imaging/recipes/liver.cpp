@@ -14,8 +14,8 @@ Mask make_liver(const Job& job) {
                                      .drift_hu = p.number("drift_hu"),
                                      .neck_mm = p.number("neck_mm"),
                                      .gap_mm = p.number("gap_mm")};
-    const Mask mask = clip(organ(job.require_volume(), seed_points(job), parameters, job.culprit(), job.note),
-                           region_of(p));
+    const Mask mask =
+        clip(organ(*job.volume, seed_points(job), parameters, job.culprit(), job.note), region_of(p));
     const double ml = static_cast<double>(mask.count()) * mask.grid.voxel_volume() / cubic_mm_per_ml;
     if (ml > p.number("largest_ml"))
         throw InvalidInput(
@@ -47,7 +47,9 @@ Recipe liver_recipe() {
              region_parameters(),
              with_defaults(cleaning_parameters(), {{"smooth_mm", "3"}})}),
         .if_empty = "move the seeds into the liver, or check region and cleaning",
-        .make = make_liver};
+        .make = make_liver,
+        .needs_volume = true,
+        .needs_seeds = true};
 }
 
 }  // namespace palpate::imaging

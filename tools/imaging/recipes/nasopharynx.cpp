@@ -41,7 +41,7 @@ Mask soft_wall(const Volume& volume, const Mask& air, const Mask& taken, const R
 Mask make_nasopharynx(const Job& job) {
     const Parameters& p = job.parameters;
     const Mask air = job.structure_named_by("air");
-    return soft_wall(job.require_volume(), air, labelled(job.map), region_of(p), p.number("thickness_mm"),
+    return soft_wall(*job.volume, air, labelled(job.map), region_of(p), p.number("thickness_mm"),
                      p.number("lower_hu"), p.number("upper_hu"), p.number("smoothing_mm"));
 }
 
@@ -54,14 +54,15 @@ Recipe nasopharynx_recipe() {
         .name = "nasopharynx",
         .meaning = "the soft wall of an air passage, in one piece",
         .parameters = concatenated(
-            {{{"air", text, "", "airway", "structure the wall encloses"},
+            {{{"air", structure, "", "airway", "structure the wall encloses"},
               {"thickness_mm", number, "mm", "6", "depth of the wall from the air", not_negative},
               {"lower_hu", number, "HU", "-400", "soft tissue is at least this dense", any},
               {"upper_hu", number, "HU", "225", "soft tissue is at most this dense", any},
               {"smoothing_mm", number, "mm", "1", "gaps and spikes below this radius vanish", not_negative}},
              region_parameters()}),
         .if_empty = "raise thickness_mm or move the region to the passage's wall",
-        .make = make_nasopharynx};
+        .make = make_nasopharynx,
+        .needs_volume = true};
 }
 
 }  // namespace palpate::imaging

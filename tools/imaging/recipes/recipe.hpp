@@ -12,8 +12,9 @@ namespace palpate::imaging {
 
 /// A parameter of a recipe, as people write it.
 struct RecipeParameter {
-    /// `point` is x, y, z and `points` are several (LPS, mm); `file` is the path of a file that is read.
-    enum class Kind { number, point, points, text, file, flag };
+    /// `point` is x, y, z and `points` are several (LPS, mm); `file` is the path of a file that is read,
+    /// `structure` the name of a structure that was made before.
+    enum class Kind { number, point, points, text, file, structure, flag };
     /// Which numbers are allowed; coordinates are always finite.
     enum class Range { any, finite, not_negative, positive };
     std::string name;
@@ -43,6 +44,9 @@ struct Recipe {
     Mask (*make)(const Job&) = nullptr;
     /// The colour of the label that it takes over; where it gives none, a default one is taken.
     std::optional<std::array<float, 3>> (*colour)(const Job&) = nullptr;
+    bool needs_volume = false;  ///< grey values to look at
+    bool needs_seeds = false;   ///< one at least
+    bool makes_up = false;      ///< what it makes is not in the image
 };
 
 /// All recipes, by name in alphabetical order.

@@ -51,6 +51,7 @@ RecipeValue parse_value(const std::string& structure, const RecipeParameter& inf
             return parse_number(structure, info.name, text);
         case Kind::text:
         case Kind::file:
+        case Kind::structure:
             return text;
         case Kind::flag:
             if (text == "yes" || text == "true") return true;
@@ -80,6 +81,7 @@ std::pair<std::string, bool> expected_value(Kind kind, const RecipeValue& value)
             return {"yes or no", std::holds_alternative<bool>(value)};
         case Kind::text:
         case Kind::file:
+        case Kind::structure:
             break;
     }
     return {"a text", std::holds_alternative<std::string>(value)};

@@ -80,6 +80,10 @@ LabelMap segment(const Volume* volume, const LabelMap* prior, std::span<const St
             progress(structure.name, static_cast<double>(n) / static_cast<double>(structures.size()));
         const Parameters parameters(structure);
         const Recipe& recipe = *find_recipe(structure.recipe);
+        if (recipe.needs_volume && hounsfield == nullptr)
+            throw InvalidInput({"structure '" + structure.name + "'",
+                                "recipe '" + structure.recipe + "' has no volume to look at", "",
+                                "name the volume, for CT with values in HU"});
         const Job job{structure, parameters, structures, hounsfield, prior, map, note, grown};
         const Mask mask = cleaned(recipe.make(job), job);
         const std::int32_t replaced = replaced_label(map, structure, parameters);

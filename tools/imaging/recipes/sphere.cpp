@@ -16,11 +16,12 @@ Recipe sphere_recipe() {
     using enum RecipeParameter::Kind;
     return {.name = "sphere",
             .meaning = "a ball within another structure",
-            .parameters = {{"inside", text, "", "", "structure whose voxels it takes"},
+            .parameters = {{"inside", structure, "", "", "structure whose voxels it takes"},
                            {"center_mm", point, "mm", "", "centre x, y, z"},
                            {"radius_mm", number, "mm", "", "radius", RecipeParameter::Range::not_negative}},
             .if_empty = "move center_mm into the structure named by 'inside', or raise radius_mm",
-            .make = make_sphere};
+            .make = make_sphere,
+            .makes_up = true};
 }
 
 }  // namespace palpate::imaging

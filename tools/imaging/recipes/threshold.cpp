@@ -7,7 +7,7 @@ namespace {
 
 Mask make_threshold(const Job& job) {
     const Parameters& p = job.parameters;
-    return threshold(job.require_volume(), p.number("lower_hu"), p.number("upper_hu"));
+    return threshold(*job.volume, p.number("lower_hu"), p.number("upper_hu"));
 }
 
 }  // namespace
@@ -22,7 +22,8 @@ Recipe threshold_recipe() {
                                         region_parameters(),
                                         cleaning_parameters()}),
             .if_empty = "widen lower_hu ... upper_hu, or check region and cleaning",
-            .make = make_threshold};
+            .make = make_threshold,
+            .needs_volume = true};
 }
 
 }  // namespace palpate::imaging

@@ -57,8 +57,7 @@ Mask lesion(const Volume& volume, const Mask& organ, std::span<const Eigen::Vect
 
 Mask make_tumour(const Job& job) {
     const Mask organ = job.structure_named_by("inside");
-    return lesion(job.require_volume(), organ, seed_points(job), job.parameters.number("margin_mm"),
-                  job.culprit());
+    return lesion(*job.volume, organ, seed_points(job), job.parameters.number("margin_mm"), job.culprit());
 }
 
 }  // namespace
@@ -68,14 +67,16 @@ Recipe tumour_recipe() {
     return {.name = "tumour",
             .meaning = "a lesion in an organ, darker or brighter than it, in one piece without holes",
             .parameters = concatenated(
-                {{{"inside", text, "", "", "structure whose voxels it takes"},
+                {{{"inside", structure, "", "", "structure whose voxels it takes"},
                   {"margin_mm", number, "mm", "2", "how far it may reach beyond the voxels of that structure",
                    RecipeParameter::Range::not_negative}},
                  seed_parameters(),
                  region_parameters(),
                  with_defaults(cleaning_parameters(), {{"fill_holes", "yes"}, {"keep_largest", "yes"}})}),
             .if_empty = "move the seeds, raise margin_mm, or check region and cleaning",
-            .make = make_tumour};
+            .make = make_tumour,
+            .needs_volume = true,
+            .needs_seeds = true};
 }
 
 }  // namespace palpate::imaging

@@ -64,8 +64,8 @@ Mask make_vessels(const Job& job) {
     const Parameters& p = job.parameters;
     std::optional<Mask> inside;
     if (p.has("inside")) inside = job.structure_named_by("inside");
-    return vessels(job.require_volume(), inside ? &*inside : nullptr, seed_points(job),
-                   p.number("contrast_hu"), p.number("max_radius_mm"), job.culprit());
+    return vessels(*job.volume, inside ? &*inside : nullptr, seed_points(job), p.number("contrast_hu"),
+                   p.number("max_radius_mm"), job.culprit());
 }
 
 }  // namespace
@@ -73,19 +73,21 @@ Mask make_vessels(const Job& job) {
 Recipe vessels_recipe() {
     using enum RecipeParameter::Kind;
     using enum RecipeParameter::Range;
-    return {.name = "vessels",
-            .meaning = "bright tubes in an organ, or those that hold a seed",
-            .parameters = concatenated(
-                {{{"inside", text, "", "", "structure whose voxels they take [default: background only]"},
-                  {"contrast_hu", number, "HU", "25", "they are so much brighter than their surroundings",
-                   not_negative},
-                  {"max_radius_mm", number, "mm", "8", "what a larger ball fits into is no vessel",
-                   not_negative}},
-                 seed_parameters(),
-                 region_parameters(),
-                 with_defaults(cleaning_parameters(), {{"min_component_ml", "0.05"}})}),
-            .if_empty = "lower contrast_hu or min_component_ml, or raise max_radius_mm",
-            .make = make_vessels};
+    return {
+        .name = "vessels",
+        .meaning = "bright tubes in an organ, or those that hold a seed",
+        .parameters = concatenated(
+            {{{"inside", structure, "", "", "structure whose voxels they take [default: background only]"},
+              {"contrast_hu", number, "HU", "25", "they are so much brighter than their surroundings",
+               not_negative},
+              {"max_radius_mm", number, "mm", "8", "what a larger ball fits into is no vessel",
+               not_negative}},
+             seed_parameters(),
+             region_parameters(),
+             with_defaults(cleaning_parameters(), {{"min_component_ml", "0.05"}})}),
+        .if_empty = "lower contrast_hu or min_component_ml, or raise max_radius_mm",
+        .make = make_vessels,
+        .needs_volume = true};
 }
 
 }  // namespace palpate::imaging

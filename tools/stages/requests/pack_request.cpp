@@ -68,6 +68,8 @@ void declare(cli::Command& command, PackRequest& request) {
     cli::record_options(command, haptic_fields, request.haptics);
     command.items("--mesh-result", cli::item_list(request.mesh_results, parse_mesh_result),
                   "NAME=RESULT.json: what palpate mesh --json said of a body; repeat for more");
+    command.input("--notes", request.notes,
+                  "result of import or segment (.json) whose notes the asset keeps; repeat for more");
     command.input("--provenance", request.provenance, "what made the parts (.json)");
     command.output("-o,--output", request.output, "asset (.vtkhdf)").required();
 }

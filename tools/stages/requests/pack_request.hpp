@@ -35,8 +35,9 @@ struct PackRequest {
     std::vector<BodyFiles> rigid, deformable;
     HapticSettings haptics;
     std::vector<NamedFile> mesh_results;
-    std::filesystem::path provenance;  ///< what made the parts (.json); may be empty
-    std::filesystem::path output;      ///< .vtkhdf
+    std::vector<std::filesystem::path> notes;  ///< results (.json) whose notes the asset keeps
+    std::filesystem::path provenance;          ///< what made the parts (.json); may be empty
+    std::filesystem::path output;              ///< .vtkhdf
 };
 
 /// Binds the options of `palpate pack`.

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""palpate init: a scan or a label map becomes a case file that builds at once."""
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import tomllib
+import unittest
+
+BIN = pathlib.Path(os.environ["PALPATE_BIN"])
+PHANTOM = pathlib.Path(os.environ["PALPATE_BUILD"]) / "tests" / "phantom"
+
+
+def run(*arguments):
+    environment = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
+    return subprocess.run(list(map(str, arguments)), text=True, capture_output=True, timeout=200, env=environment)
+
+
+class Init(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.temporary.cleanup)
+        cls.folder = pathlib.Path(cls.temporary.name)
+        cls.volume, cls.labels = cls.folder / "abdomen.nrrd", cls.folder / "truth.seg.nrrd"
+        made = run(PHANTOM, "abdomen", cls.volume, cls.labels)
+        assert made.returncode == 0, made.stderr
+
+    def init(self, *arguments):
+        return run(BIN / "palpate", "init", *arguments)
+
+    def case(self, name, *arguments):
+        path = self.folder / name
+        made = self.init(*arguments, "-o", path, "--force")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        return tomllib.loads(path.read_text())
+
+    def assertBuilds(self, name):
+        asset = (self.folder / name).with_suffix(".vtkhdf")
+        built = run(BIN / "palpate", "build", self.folder / name, "-o", asset, "--force")
+        self.assertEqual(built.returncode, 0, built.stderr)
+        seen = json.loads(run(BIN / "palpate", "inspect", asset, "--json", "-").stdout)
+        return seen, asset.with_suffix(".html").read_text()
+
+    def test_a_label_map_becomes_an_organ_with_lesion_and_neighbour_that_builds(self):
+        case = self.case("labels.toml", self.labels)
+        self.assertEqual([region["label"] for region in case["deformable"][0]["region"]], ["liver", "tumour"])
+        self.assertEqual(case["input"]["labels"], "truth.seg.nrrd")
+        seen, report = self.assertBuilds("labels.toml")
+        self.assertEqual({region["region"] for region in seen["regions"]}, {"liver", "tumour"})
+        cautions = seen["provenance"]["build"]["cautions"]
+        self.assertTrue(any("preset 'liver'" in caution for caution in cautions), cautions)
+        self.assertIn("What that does not say", report)
+
+    def test_a_liver_is_found_in_a_scan_from_one_seed_and_builds(self):
+        where = json.loads(run(BIN / "palpate", "segment", "--labels", self.labels, "--structure",
+                               "liver: recipe=import", "-o", self.folder / "l.seg.nrrd", "--json", "-",
+                               "--force").stdout)["labels"][0]["centroid_mm"]
+        seed = ",".join(f"{x:.1f}" for x in where)
+        case = self.case("scan.toml", self.volume, "--organ", "liver", f"--seed={seed}")
+        self.assertEqual(case["structure"][0]["recipe"], "liver")
+        self.assertBuilds("scan.toml")
+
+    def test_what_is_missing_is_asked_for(self):
+        for arguments, code, phrase in (
+                ((self.volume, "-o", self.folder / "a.toml"), 2, "--seed"),
+                ((self.volume, "--organ", "spleen", "-o", self.folder / "a.toml"), 2, "label map"),
+                ((self.labels, "--organ", "lever", "-o", self.folder / "a.toml"), 3, "liver"),
+                ((self.labels, "--approach", "up", "-o", self.folder / "a.toml"), 2, "anterior"),
+                ((self.labels, "-o", self.folder / "a.txt"), 2, ".toml")):
+            made = self.init(*arguments)
+            self.assertEqual(made.returncode, code, made.stderr)
+            self.assertIn(phrase, made.stderr)
+            self.assertFalse((self.folder / "a.toml").exists())
+
+    def test_a_file_that_is_there_is_kept(self):
+        there = self.folder / "there.toml"
+        there.write_text("mine")
+        self.assertEqual(self.init(self.labels, "-o", there).returncode, 3)
+        self.assertEqual(there.read_text(), "mine")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "formats/model/errors.hpp"
+#include "tools/case_builder/case_check.hpp"
+#include "tools/case_builder/child_process.hpp"
+#include "tools/cli/command.hpp"
+#include "tools/draft/anatomy.hpp"
+#include "tools/draft/case_draft.hpp"
+#include "tools/imaging/files/image_files.hpp"
+#include "tools/imaging/files/label_names.hpp"
+#include "tools/imaging/recipes/segmentation.hpp"
+
+namespace {
+using namespace palpate;
+using namespace palpate::imaging;
+namespace fs = std::filesystem;
+
+struct InitRequest {
+    fs::path input, output, seeds_file;
+    std::string organ, label_names, approach = "anterior", series;
+    std::vector<std::string> seeds;
+    double contact_nodes = draft::Wishes{}.contact_nodes;
+};
+
+const NoteSink warn = [](std::string_view said) { spdlog::warn("{}", said); };
+
+// Whether a volume holds labels: whole numbers, and nearly every voxel of a structure beside one of its own.
+bool looks_like_labels(const Volume& volume) {
+    std::size_t inside = 0, alike = 0;
+    for (std::size_t v = 0; v + 1 < volume.values.size(); ++v) {
+        const float value = volume.values[v];
+        if (value < 0 || value > 65535 || value != std::floor(value)) return false;
+        if (value == 0) continue;
+        ++inside;
+        alike += volume.values[v + 1] == value;
+    }
+    return inside > 0 && static_cast<double>(alike) > 0.7 * static_cast<double>(inside);
+}
+
+// How the case file, which will lie beside `output`, names a file.
+std::string path_from(const fs::path& output, const fs::path& file) {
+    const fs::path folder = fs::absolute(output).parent_path();
+    return draft::quoted(fs::absolute(file).lexically_proximate(folder).string());
+}
+
+std::string import_lines(const std::string& label, bool organ) {
+    return fmt::format("recipe = \"import\"\nlabel = {}\n{}", draft::quoted(label),
+                       organ ? "close_mm = 3.0\nfill_holes = true\nkeep_largest = true\n" : "");
+}
+
+draft::CaseDraft draft_of_labels(const InitRequest& request, const draft::Wishes& wishes) {
+    LabelMap map = read_label_map(request.input, warn);
+    name_labels(map, request.label_names, warn);
+    draft::CaseDraft found = draft_case(std::move(map), wishes, request.input.filename().string());
+    found.input = fmt::format("labels = {}\n", path_from(request.output, request.input));
+    if (!request.label_names.empty())
+        found.input += fmt::format("label_names = {}\n", fs::is_regular_file(request.label_names)
+                                                             ? path_from(request.output, request.label_names)
+                                                             : draft::quoted(request.label_names));
+    for (draft::DraftStructure& structure : found.structures)
+        structure.recipe = import_lines(structure.name, structure.name == found.name);
+    return found;
+}
+
+// Seeds in a window, if there is one and the person wants it.
+void place_seeds(InitRequest& request) {
+    if (std::getenv("DISPLAY") == nullptr)
+        throw UsageError({"--seed", "none given, and there is no display to click one",
+                          "a point x,y,z (LPS, mm) inside the " + request.organ,
+                          "or --seeds-file with points of 3D Slicer or 'palpate seeds'"});
+    request.seeds_file = fs::path(request.output).replace_extension(".mrk.json");
+    if (fs::exists(request.seeds_file)) return;
+    spdlog::info("click into the {}, save with S, leave with Q", request.organ);
+    const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "palpate-seeds";
+    const auto child = case_builder::run_child(
+        program, {request.input.string(), "--label", request.organ, "-o", request.seeds_file.string()});
+    if (child.exit_code != 0 || !fs::exists(request.seeds_file))
+        throw InvalidInput({request.seeds_file.string(), "no seeds were saved", "one at least",
+                            "run again and save with S, or give --seed"});
+}
+
+std::string joined(const std::vector<std::string>& words, const char* separator) {
+    return fmt::format("{}", fmt::join(words, separator));
+}
+
+// A structure grown in the scan, as the case will grow it.
+draft::CaseDraft draft_of_volume(InitRequest request, const Volume& volume, draft::Wishes wishes,
+                                 cli::Session& session) {
+    if (request.organ.empty()) request.organ = "liver";
+    if (request.organ != "liver")
+        throw UsageError({"--organ " + request.organ, "has no recipe that finds it from seeds alone", "liver",
+                          "give a label map that has it, or write its recipe into a case file by hand"});
+    if (request.seeds.empty() && request.seeds_file.empty()) place_seeds(request);
+    const std::string how = request.seeds.empty() ? "seeds_file=" + request.seeds_file.string()
+                                                  : "seeds=" + joined(request.seeds, ";");
+    const std::vector<StructureRecipe> structures{parse_structure("liver: recipe=liver " + how)};
+    LabelMap map = segment(
+        &volume, nullptr, structures,
+        [&](std::string_view, double done) { session.progress.step("finding the liver", 0.2 + 0.6 * done); },
+        warn);
+    wishes.organ = "liver";
+    draft::CaseDraft found = draft_case(std::move(map), wishes, request.input.filename().string());
+    found.input = fmt::format("volume = {}\n", path_from(request.output, request.input));
+    if (!request.series.empty()) found.input += fmt::format("series = {}\n", draft::quoted(request.series));
+    std::string& recipe = found.structures.front().recipe;
+    recipe = "recipe = \"liver\"\n";
+    if (request.seeds.empty())
+        recipe += fmt::format("seeds_file = {}\n", path_from(request.output, request.seeds_file));
+    else
+        recipe += fmt::format("seeds_mm = [{}]\n", joined(request.seeds, ", "));
+    recipe += "keep_largest = true\n";
+    return found;
+}
+
+draft::CaseDraft draft_of(const InitRequest& request, cli::Session& session) {
+    const draft::Wishes wishes{.organ = request.organ,
+                               .approach = draft::direction_of(request.approach, "--approach"),
+                               .contact_nodes = request.contact_nodes};
+    session.progress.step("reading", 0);
+    const std::string name = request.input.filename().string();
+    if (name.ends_with(".seg.nrrd") || !request.label_names.empty()) return draft_of_labels(request, wishes);
+    ReadOptions options;
+    options.series = request.series;
+    const Volume volume = read_volume(request.input, warn, options);
+    return looks_like_labels(volume) ? draft_of_labels(request, wishes)
+                                     : draft_of_volume(request, volume, wishes, session);
+}
+
+nlohmann::ordered_json run_init(const InitRequest& request, cli::Session& session) {
+    if (request.output.extension() != ".toml")
+        throw UsageError({"--output", request.output.string(), "a name that ends in .toml", ""});
+    set_imaging_threads(session.threads);
+    cli::StagedFile staged = session.stage(request.output);
+    const draft::CaseDraft found = draft_of(request, session);
+    staged.write_text(draft::case_text(found));
+    staged.commit();
+    case_builder::check_case_file(request.output, case_builder::read_case_file(request.output));
+    const std::string asset = fs::path(request.output).replace_extension(".vtkhdf").string();
+    session.text = fmt::format(
+        "{}: '{}', {:.0f} ml, cells of {:g} mm, held at {}; {} neighbours\n"
+        "Look at it, then: palpate build {} -o {}\n",
+        request.output.string(), found.name, found.volume_ml, found.cell_size, found.why_held,
+        found.rigid.size(), request.output.string(), asset);
+    nlohmann::ordered_json regions = nlohmann::ordered_json::array();
+    for (const draft::DraftRegion& region : found.regions)
+        regions.push_back({{"label", region.label}, {"tissue", region.tissue}});
+    return {{"case", request.output.string()},
+            {"organ", found.name},
+            {"volume_ml", found.volume_ml},
+            {"cell_size_mm", found.cell_size},
+            {"held", found.why_held},
+            {"regions", regions},
+            {"rigid", found.rigid}};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    cli::Command command(
+        {.name = "init",
+         .summary = "Drafts a case file that builds at once, from a scan or a label map",
+         .examples = {"palpate init totalseg.nii.gz --organ liver -o liver.toml",
+                      "palpate init ct_series/ --organ liver --seed -60,10,40 -o liver.toml"},
+         .notes =
+             "A label map (any that 'palpate import --labels' reads; TotalSegmentator's names are known) "
+             "gives the organ,\nits lesions and its neighbours. In a scan the liver is found from a seed "
+             "or three; without one, the seeds\nwindow opens where there is a display. The file says why "
+             "each thing is as it is; edit it and build."});
+    InitRequest request;
+    command.input("input", request.input, "label map, CT volume or DICOM folder").required();
+    command.option("--organ", request.organ,
+                   "what gives way: a label, or 'liver' in a scan; the largest of known tissue without it");
+    command.option("--label-names", request.label_names, "names of labels, as 'palpate import' takes them");
+    command.option("--series", request.series, "of a DICOM folder with several");
+    command.option("--seed", request.seeds, "a point x,y,z inside the organ (LPS, mm); repeat for more")
+        .one_value_each();
+    command.input("--seeds-file", request.seeds_file, "points of 3D Slicer or 'palpate seeds'");
+    command.option("--approach", request.approach,
+                   "side that the tool comes from: anterior, posterior, left, right, superior, inferior");
+    command.option("--contact-nodes", request.contact_nodes, "surface nodes that the mesh should have, about")
+        .positive();
+    command.output("-o,--output", request.output, "case file (.toml)").required();
+    return command.run(argc, argv, [&](cli::Session& session) { return run_init(request, session); });
+}

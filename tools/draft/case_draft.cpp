@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/draft/case_draft.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <map>
+
+#include "formats/model/errors.hpp"
+#include "tools/draft/anatomy.hpp"
+#include "tools/imaging/voxels/mask.hpp"
+
+namespace palpate::draft {
+namespace {
+
+using imaging::Mask;
+
+constexpr double held_share = 0.12;         // of the organ's surface
+constexpr double beside_mm = 10;            // as near as this, a structure is a neighbour
+constexpr std::size_t most_neighbours = 5;  // the nearest
+constexpr double least_lesion_ml = 0.2;
+constexpr double largest_neighbour = 4;  // organ's volumes: larger is no neighbour but what lies around
+// A mesh's mean edge over its cell size, the bound of its circumradii, as `palpate mesh` makes them.
+constexpr double edge_over_cell = 0.85;
+
+// Face neighbours of a voxel, as steps.
+constexpr std::array<std::array<std::int32_t, 3>, 6> faces{
+    {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
+
+// Calls visit(voxel's index, face's axis, label beyond) for every face of the label's voxels.
+template <typename Visit>
+void for_each_face(const LabelMap& map, std::int32_t label, const Visit& visit) {
+    const auto& [ni, nj, nk] = map.grid.size;
+    for (std::int32_t k = 0; k < nk; ++k)
+        for (std::int32_t j = 0; j < nj; ++j)
+            for (std::int32_t i = 0; i < ni; ++i) {
+                if (map.labels[map.grid.offset(i, j, k)] != label) continue;
+                for (std::size_t face = 0; face < faces.size(); ++face) {
+                    const auto& [di, dj, dk] = faces[face];
+                    const bool inside = map.grid.contains(i + di, j + dj, k + dk);
+                    const std::int32_t beyond =
+                        inside ? map.labels[map.grid.offset(i + di, j + dj, k + dk)] : 0;
+                    if (beyond != label) visit(Eigen::Vector3d(i, j, k), face / 2, beyond);
+                }
+            }
+}
+
+// The surface of a label's voxels.
+struct Outside {
+    double area = 0;                      // mm²; faces of voxels have half as much again as what they bound
+    std::vector<Eigen::Vector3d> points;  // p_P of the voxels, mm
+    std::map<std::int32_t, double> touched;  // part of all faces, by the label beyond
+};
+
+Outside outside_of(const LabelMap& map, std::int32_t label) {
+    Outside outside;
+    const Eigen::Vector3d& h = map.grid.spacing;
+    double faces_seen = 0;
+    for_each_face(map, label, [&](const Eigen::Vector3d& index, std::size_t axis, std::int32_t beyond) {
+        const auto a = static_cast<Eigen::Index>(axis);
+        outside.area += h.prod() / h[a] * 2 / 3;
+        outside.points.push_back(map.grid.point_of(index));
+        outside.touched[beyond] += 1;
+        ++faces_seen;
+    });
+    for (auto& [beyond, part] : outside.touched) part /= faces_seen;
+    return outside;
+}
+
+std::map<std::int32_t, double> volumes_ml(const LabelMap& map) {
+    std::map<std::int32_t, double> volumes;
+    for (const std::uint16_t label : map.labels) ++volumes[label];
+    for (auto& [label, volume] : volumes) volume *= map.grid.voxel_volume() / 1000;
+    return volumes;
+}
+
+Label choose_organ(const LabelMap& map, const Wishes& wishes, const std::string& culprit,
+                   std::map<std::int32_t, double>& volumes) {
+    if (!wishes.organ.empty()) return require_label(map, wishes.organ, culprit);
+    const Label* best = nullptr;
+    const auto rank = [&](const Label& label) {
+        return std::pair(!anatomy_of(label.name, wishes.approach).tissue.empty(), volumes[label.value]);
+    };
+    for (const Label& label : map.names)
+        if (anatomy_of(label.name, wishes.approach).part == Part::organ &&
+            (best == nullptr || rank(label) > rank(*best)))
+            best = &label;
+    if (best == nullptr)
+        throw InvalidInput(
+            {culprit, "has no structure that gives way, by the names", "an organ", "name it with --organ"});
+    if (rank(*best).first || map.names.size() == 1) return *best;
+    constexpr std::size_t shown = 10;
+    std::string names;
+    for (std::size_t i = 0; i < std::min(shown, map.names.size()); ++i)
+        names += (names.empty() ? "" : ", ") + map.names[i].name;
+    if (map.names.size() > shown) names += fmt::format(" and {} more", map.names.size() - shown);
+    throw InvalidInput({culprit, "has no organ of known tissue; it has " + names, "",
+                        "choose one with --organ, or name them with --label-names"});
+}
+
+void keep_largest_piece(LabelMap& map, std::int32_t label) {
+    const Mask piece = imaging::keep_largest(imaging::mask_of(map, label));
+    for (std::size_t v = 0; v < map.labels.size(); ++v)
+        if (map.labels[v] == label && piece.voxels[v] == 0) map.labels[v] = 0;
+}
+
+// Beyond the plane across `towards` lies held_share of the surface.
+Eigen::Vector3d plane_point(std::vector<Eigen::Vector3d> points, const Eigen::Vector3d& towards) {
+    const auto place = points.begin() +
+                       static_cast<std::ptrdiff_t>((1 - held_share) * static_cast<double>(points.size() - 1));
+    std::ranges::nth_element(points, place, {}, [&](const Eigen::Vector3d& p) { return p.dot(towards); });
+    return *place;
+}
+
+double rounded(double mm) {
+    return std::max(0.5, std::round(2 * mm) / 2);
+}
+
+// Labels near the organ, by how much of them is.
+std::vector<Label> neighbours_of(const LabelMap& map, const Label& organ, const Wishes& wishes,
+                                 std::map<std::int32_t, double>& volumes) {
+    const std::vector<float> distance = imaging::distance_to(imaging::mask_of(map, organ.value));
+    std::map<std::int32_t, std::size_t> near;
+    for (std::size_t v = 0; v < distance.size(); ++v)
+        if (map.labels[v] != 0 && distance[v] > 0 && distance[v] <= beside_mm) ++near[map.labels[v]];
+    std::vector<Label> found;
+    for (const Label& label : map.names) {
+        const Part part = anatomy_of(label.name, wishes.approach).part;
+        if (near.contains(label.value) && (part == Part::organ || part == Part::bone) &&
+            volumes[label.value] <= largest_neighbour * volumes[organ.value])
+            found.push_back(label);
+    }
+    std::ranges::sort(found, std::ranges::greater{}, [&](const Label& label) { return near[label.value]; });
+    if (found.size() > most_neighbours) found.resize(most_neighbours);
+    return found;
+}
+
+// Lesions that lie in the organ, each with cells that fit it.
+void add_lesions(CaseDraft& draft, const LabelMap& map, const Label& organ, const Wishes& wishes,
+                 std::map<std::int32_t, double>& volumes) {
+    for (const Label& label : map.names) {
+        const Anatomy anatomy = anatomy_of(label.name, wishes.approach);
+        if (anatomy.part != Part::lesion || label.value == organ.value ||
+            volumes[label.value] < least_lesion_ml)
+            continue;
+        const auto touched = outside_of(map, label.value).touched;
+        if (const auto part = touched.find(organ.value); part == touched.end() || part->second < 0.5)
+            continue;
+        const double diameter = std::cbrt(6000 * volumes[label.value] / 3.1416);
+        draft.structures.push_back(
+            {label.name, fmt::format("a lesion of {:.1f} ml in it", volumes[label.value]), ""});
+        draft.regions.push_back(
+            {label.name, anatomy.tissue, std::min(draft.cell_size, rounded(diameter / 4))});
+    }
+}
+
+}  // namespace
+
+CaseDraft draft_case(LabelMap map, const Wishes& wishes, const std::string& culprit) {
+    auto volumes = volumes_ml(map);
+    const Label organ = choose_organ(map, wishes, culprit, volumes);
+    keep_largest_piece(map, organ.value);
+    volumes = volumes_ml(map);
+    const Anatomy anatomy = anatomy_of(organ.name, wishes.approach);
+    const Outside outside = outside_of(map, organ.value);
+    CaseDraft draft;
+    draft.name = organ.name;
+    draft.volume_ml = volumes[organ.value];
+    draft.area_cm2 = outside.area / 100;
+    // Equilateral triangles of edge e have a node for each 0.866 e².
+    const double edge = std::sqrt(outside.area / (0.866 * wishes.contact_nodes));
+    // What is finer than the voxels is made up.
+    draft.cell_size = std::max(rounded(edge / edge_over_cell), rounded(map.grid.spacing.maxCoeff()));
+    draft.held_towards = anatomy.held_towards;
+    draft.held_at = plane_point(outside.points, anatomy.held_towards);
+    draft.why_held = anatomy.why_held;
+    draft.tool_radius = std::clamp(std::round(edge), 1.0, 5.0);
+    add_lesions(draft, map, organ, wishes, volumes);
+    draft.structures.push_back(
+        {organ.name, fmt::format("{:.0f} ml, {:.0f} cm² of surface", draft.volume_ml, draft.area_cm2), ""});
+    draft.regions.insert(draft.regions.begin(), {organ.name, anatomy.tissue, 0});
+    for (const Label& neighbour : neighbours_of(map, organ, wishes, volumes)) {
+        draft.structures.push_back({neighbour.name, "beside it", ""});
+        draft.rigid.push_back(neighbour.name);
+    }
+    return draft;
+}
+
+}  // namespace palpate::draft

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "formats/model/label_map.hpp"
+
+namespace palpate::draft {
+
+/// A structure of the case to be.
+struct DraftStructure {
+    std::string name;
+    std::string why;     ///< one clause
+    std::string recipe;  ///< its lines of TOML
+};
+
+/// A region of the deformable body.
+struct DraftRegion {
+    std::string label;
+    std::string tissue;    ///< a preset; empty: none is known
+    double cell_size = 0;  ///< mm; 0: the body's
+};
+
+/// A case file before it is written.
+struct CaseDraft {
+    std::string name;
+    std::string input;  ///< the lines under [input]
+    std::vector<DraftStructure> structures;
+    std::vector<std::string> rigid;  ///< labels
+    std::vector<DraftRegion> regions;
+    Eigen::Vector3d held_at =
+        Eigen::Vector3d::Zero();  ///< p_P, mm: on the plane beyond which the body is held
+    Eigen::Vector3d held_towards = Eigen::Vector3d::Zero();  ///< unit
+    std::string why_held;
+    double volume_ml = 0, area_cm2 = 0;
+    double cell_size = 0;    ///< mm
+    double voxel = 0;        ///< mm, the largest edge
+    double tool_radius = 0;  ///< mm
+};
+
+/// What the person may decide.
+struct Wishes {
+    std::string organ;  ///< a label; empty: the largest structure that gives way, of known tissue first
+    Eigen::Vector3d approach{0, -1, 0};  ///< unit, LPS: from the tissue to the surgeon
+    double contact_nodes = 2000;         ///< surface nodes that the mesh should have, about
+};
+
+/// Drafts a case from a label map: the largest piece of the organ with its lesions, its neighbours, what
+/// holds it, and how fine the mesh is to be. Structures have no recipe yet; lesions come before the organ, so
+/// that it may close over what is not theirs. Throws InvalidInput naming `culprit` if the organ is no label
+/// of the map (with the nearest names), or if none gives way.
+CaseDraft draft_case(LabelMap map, const Wishes& wishes, const std::string& culprit);
+
+/// Writes the draft as a case file with comments.
+std::string case_text(const CaseDraft& draft);
+
+/// A text as TOML writes it, in quotes.
+std::string quoted(const std::string& text);
+
+}  // namespace palpate::draft
