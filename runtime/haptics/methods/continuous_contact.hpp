@@ -66,6 +66,8 @@ class ContinuousContact final : public ContactMethod {
     void add_rigid_contacts(std::size_t tool, TickResult& result) noexcept;
     bool within_reach(std::size_t tool, const Eigen::Vector3d& force) const noexcept;
     Eigen::Vector3d friction_of(const Part& part) const noexcept;
+    bool kept_by_tissue(const Part& part) const noexcept;
+    Eigen::Vector3d wall_friction(Tool& tool, const Eigen::Vector3d& force) noexcept;
 
     const ContactBodies& bodies_;
     Friction friction_;

@@ -49,7 +49,7 @@ bool ContinuousContact::hold_off_rigid(std::span<TickResult> results) noexcept {
     for (std::size_t t = 0; t < tools_.size(); ++t) {
         TickResult& result = results[t];
         if (!equilibrium_.touches_tissue(t)) continue;
-        const Vector3d push = equilibrium_.press(t) / coupling_;
+        const Vector3d push = (equilibrium_.press(t) + equilibrium_.drag(t)) / coupling_;
         for (std::size_t p = 0; p < tools_[t].parts_felt; ++p) {
             Part& part = tools_[t].parts[p];
             const auto touch = part.on_rigid.touch_on_the_way(rigid_surfaces_, part.device + push);
@@ -112,6 +112,7 @@ bool ContinuousContact::within_reach(std::size_t t, const Vector3d& force) const
     return force.norm() <= coupling_ * (reach + room_for_rounding);
 }
 
+// Friction of the walls that hold a part besides tissue, N.
 Vector3d ContinuousContact::friction_of(const Part& part) const noexcept {
     double press = 0;
     for (const Contact& contact : part.rigid_contacts) press += static_cast<double>(contact.force);
@@ -119,9 +120,35 @@ Vector3d ContinuousContact::friction_of(const Part& part) const noexcept {
     Vector3d drag = -coupling_ * part.on_rigid.held_back();
     const double most = friction_.at_rest * press, wanted = drag.norm();
     if (wanted > most) drag *= most / wanted;
-    for (Contact& contact : part.rigid_contacts)
-        Eigen::Map<Eigen::Vector3f>(contact.friction.data()) =
-            (static_cast<double>(contact.force) / press * drag).cast<float>();
+    return drag;
+}
+
+// The same of all parts of a tool on which `force` (N) acts besides, but for what would drag it into a wall
+// that it does not touch yet.
+Vector3d ContinuousContact::wall_friction(Tool& tool, const Vector3d& force) noexcept {
+    constexpr int most_walls = 4;
+    const auto parts = std::span(tool.parts).first(tool.parts_felt);
+    Vector3d drag = Vector3d::Zero();
+    for (const Part& part : parts) drag += friction_of(part);
+    if (drag == Vector3d::Zero()) return drag;
+    for (int wall = 0;; ++wall) {
+        std::optional<GodObject::Touch> touch;
+        for (Part& part : parts)
+            if (!touch)
+                touch =
+                    part.on_rigid.touch_on_the_way(rigid_surfaces_, part.device + (force + drag) / coupling_);
+        if (!touch) break;
+        const double inwards = touch->normal.dot(drag);
+        if (wall == most_walls || !(inwards < 0)) return Vector3d::Zero();
+        drag -= inwards * touch->normal;
+    }
+    double press = 0;
+    for (const Part& part : parts)
+        for (const Contact& contact : part.rigid_contacts) press += static_cast<double>(contact.force);
+    for (const Part& part : parts)
+        for (Contact& contact : part.rigid_contacts)
+            Eigen::Map<Eigen::Vector3f>(contact.friction.data()) =
+                (static_cast<double>(contact.force) / press * drag).cast<float>();
     return drag;
 }
 

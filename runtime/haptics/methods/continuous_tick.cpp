@@ -55,16 +55,17 @@ Vector3d ContinuousContact::force_of(std::size_t t, TickResult& result) noexcept
     Tool& tool = tools_[t];
     const auto walls = result.contact_count;
     equilibrium_.write_contacts(t, result);
-    if (result.contact_count == 0) return rigid_force(tool.parts[0].on_rigid, tool.parts[0].device, result);
+    const bool found = equilibrium_.solved(t);
+    if (result.contact_count == 0 && (found || !equilibrium_.touches_tissue(t)))
+        return rigid_force(tool.parts[0].on_rigid, tool.parts[0].device, result);
     const Vector3d press = equilibrium_.press(t);
     if (equilibrium_.was_cut(t)) result.status |= contacts_cut;
-    if (!equilibrium_.solved(t)) result.status |= contact_unsolved;
-    if (equilibrium_.residual() <= unsolved && within_reach(t, press)) {
+    if (!found) result.status |= contact_unsolved;
+    if (result.contact_count > 0 && equilibrium_.residual() <= unsolved && within_reach(t, press)) {
         result.residual = equilibrium_.residual();
         if (result.contact_count > walls) depth_in_tissue(tool, result);
         Vector3d force = press + equilibrium_.drag(t);
-        if (friction_.at_rest > 0)
-            for (const Part& part : std::span(tool.parts).first(tool.parts_felt)) force += friction_of(part);
+        if (friction_.at_rest > 0) force += wall_friction(tool, force);
         return force;
     }
     // The contacts contradict each other: nothing gives way, and the part that is held most decides.
@@ -122,6 +123,17 @@ void ContinuousContact::forget(std::size_t t) noexcept {
     equilibrium_.forget(t);
 }
 
+// Between tissue and bone a sphere may come to rest on bone alone, where tissue has kept it from the device.
+bool ContinuousContact::kept_by_tissue(const Part& part) const noexcept {
+    const auto touches = part.on_all.touches();
+    const auto is_soft = [&](const GodObject::Touch& touch) {
+        return touch.surface >= bodies_.rigid_count();
+    };
+    return !touches.empty() && std::ranges::none_of(touches, is_soft) &&
+           (part.on_all.position() - part.device).norm() >
+               (part.on_rigid.position() - part.device).norm() + unsolved;
+}
+
 // Moves the god-objects of the tool's parts.
 void ContinuousContact::follow(std::size_t t, TickResult& result) noexcept {
     Tool& tool = tools_[t];
@@ -133,7 +145,7 @@ void ContinuousContact::follow(std::size_t t, TickResult& result) noexcept {
         // A lone sphere on rigid bodies needs no second one.
         if (!bodies_.deformable.empty() || tool.parts.size() > 1)
             if (!part.on_all.move(all_surfaces_, part.device)) result.status |= starts_inside;
-        spheres_.push_back({part.device, &part.on_all});
+        spheres_.push_back({part.device, &part.on_all, kept_by_tissue(part)});
         if (part.on_rigid.touches().empty()) continue;
         tool.held_by_shaft = tool.held_by_shaft || p > 0;
         const double depth = (part.on_rigid.position() - part.device).norm();

@@ -15,9 +15,11 @@ using Eigen::Vector3d;
 
 // mm: the residual that counts as solved, and the god-object's skin
 constexpr double solved = 1e-3 + 2 * GodObject::skin;
+constexpr double noticed = 0.1;  // mm
 
 // Pushes a tool of 1 mm from outside, at x = -8 mm, into a gap, about and through what bounds it; the force
-// is finite and at most that of the coupling over the way to where the tool would be if nothing gave way.
+// is finite and, without friction, at most that of the coupling over the way to where the tool would be if
+// nothing gave way; where that is far off, there is some.
 // Where a rigid body bounds the gap, the tool stays out of it. Returns how many ticks touched.
 int push_into(const Case& c, const Vector3d& entrance, double spread) {
     HapticModel model(c);
@@ -40,7 +42,10 @@ int push_into(const Case& c, const Vector3d& entrance, double spread) {
         undeformed.move(surfaces, device);
         const double reach = (undeformed.position() - device).norm();
         EXPECT_TRUE(force_of(result).allFinite()) << tick;
-        EXPECT_LE(force_of(result).norm(), model.coupling() * (reach + solved)) << tick;
+        const double most =
+            c.haptics.friction_at_rest > 0 ? c.haptics.max_force : model.coupling() * (reach + solved);
+        EXPECT_LE(force_of(result).norm(), most) << tick;
+        EXPECT_TRUE(result.contact_count > 0 || reach < noticed) << tick;
         for (std::size_t body = 0; body < model.rigid_count(); ++body) {
             const auto nearest = model.surface(body).closest_point(tool_of(result), 50);
             EXPECT_TRUE(nearest && nearest->distance >= c.haptics.tool_radius - 0.01) << tick;
@@ -80,6 +85,17 @@ TEST(Wedge, between_a_rigid_plate_and_soft_tissue_lets_the_tissue_give_way) {
     for (const double room : {0.5, 1.5, 1.99}) {
         Case c = soft_cube(3);
         c.rigid_bodies.push_back(rigid("lid", box({-2, -10, 20 + room}, {30, 30, 30 + room})));
+        EXPECT_GT(push_into(c, {-8, 9.3, 20 + room / 2}, 3), 5000) << room;
+    }
+}
+
+// What tissue drags along must not go into bone.
+TEST(Wedge, between_bone_and_tissue_that_rub_keeps_the_tool_out_of_bone) {
+    for (const double room : {0.5, 1.5, 1.99}) {
+        Case c = soft_cube(3);
+        c.haptics.friction_at_rest = c.haptics.friction_sliding = 0.4;
+        c.rigid_bodies.push_back(rigid("lid", box({-2, -10, 20 + room}, {30, 30, 30 + room})));
+        c.rigid_bodies.push_back(rigid("post", box({-6, -10, 0}, {-5, 4, 40})));
         EXPECT_GT(push_into(c, {-8, 9.3, 20 + room / 2}, 3), 5000) << room;
     }
 }

@@ -110,6 +110,7 @@ void ContactEquilibrium::pull(std::size_t t, std::span<const Sphere> spheres) no
         part.sphere = spheres[p];
         for (const GodObject::Touch& touch : spheres[p].if_rigid->touches())
             meets = meets || touch.surface >= bodies_.rigid_count();
+        meets = meets || spheres[p].kept_by_tissue;
         // Clear of a body as it is at rest, a sphere will meet it elsewhere.
         for (std::size_t soft = 0; soft < patches_.size(); ++soft)
             if (part.touches[soft].push == Vector3d::Zero() &&
@@ -251,7 +252,8 @@ void ContactEquilibrium::iterate(int most) noexcept {
 bool ContactEquilibrium::found(std::size_t t) const noexcept {
     const Tool& tool = tools_[t];
     if (!tool.outside || tool.press != Vector3d::Zero()) return tool.outside;
-    for (const Part& part : std::span(tool.parts).first(tool.felt))
+    for (const Part& part : std::span(tool.parts).first(tool.felt)) {
+        if (part.sphere.kept_by_tissue) return false;
         for (const GodObject::Touch& touch : part.sphere.if_rigid->touches()) {
             if (touch.surface < bodies_.rigid_count()) continue;
             const std::size_t soft = touch.surface - bodies_.rigid_count();
@@ -262,6 +264,7 @@ bool ContactEquilibrium::found(std::size_t t) const noexcept {
             foot -= local_dent(part.touches[soft], patches_[soft]);
             if (touch.normal.dot(foot - part.sphere.device) + radius_ > first_reach) return false;
         }
+    }
     return true;
 }
 
@@ -269,6 +272,7 @@ void ContactEquilibrium::write_contacts(std::size_t t, TickResult& result) const
     for (const Row& row : rows_) {
         if (row.wall) {
             row.wall->force = static_cast<float>(row.force);
+            row.wall->gap = static_cast<float>(gap_of_wall(row));
             continue;
         }
         const auto used = static_cast<std::size_t>(result.contact_count);

@@ -29,6 +29,8 @@ class ContactEquilibrium {
     struct Sphere {
         Eigen::Vector3d device = Eigen::Vector3d::Zero();  ///< where the coupling pulls its centre, p_P, mm
         const GodObject* if_rigid = nullptr;  ///< where it rests if nothing gives way; rigid bodies first
+        bool kept_by_tissue =
+            false;  ///< there by tissue, whatever it touches: rigid bodies alone let it nearer
     };
 
     /// `bodies` must outlive this. Tools of `spheres` spheres at most, the first at the tip.
@@ -186,6 +188,7 @@ class ContactEquilibrium {
 
     static std::int64_t key_of(const Row& row) noexcept;
     std::size_t wall_count() const noexcept;
+    double gap_of_wall(const Row& row) const noexcept;
     void gather_at_rest(std::size_t tool, std::size_t part) noexcept;
     // N: up to which a sphere sinks in as it does under that, in proportion.
     double slight_press(const LoadSpread& spread) const noexcept {

@@ -272,12 +272,17 @@ std::int64_t ContactEquilibrium::key_of(const Row& row) noexcept {
     return (side << 32) + row.triangle;
 }
 
+// What is left of a wall's gap once tissue drags the tool.
+double ContactEquilibrium::gap_of_wall(const Row& row) const noexcept {
+    return row.gap - row.normal.dot(tools_[static_cast<std::size_t>(row.tool)].drag) / coupling_;
+}
+
 void ContactEquilibrium::solve_rows() noexcept {
     const std::size_t n = rows_.size();
     std::array<std::size_t, max_contacts> warm;
     std::size_t warm_count = 0;
     for (std::size_t k = 0; k < n; ++k) {
-        lcp_.gaps()[static_cast<Index>(k)] = rows_[k].gap;
+        lcp_.gaps()[static_cast<Index>(k)] = rows_[k].wall ? gap_of_wall(rows_[k]) : rows_[k].gap;
         if (is_active(rows_[k])) warm[warm_count++] = k;
     }
     for (std::size_t k = 0; k < neighbours_.row_count(); ++k) {
