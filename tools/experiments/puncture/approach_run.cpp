@@ -15,12 +15,10 @@ using Eigen::Vector3d;
 constexpr double approach_tick_s = 1e-3;
 constexpr double just_before = 2;  // mm: beyond what a bump beside the entry holds up
 
-// Whether the tool overlaps the surface or has crossed it since the last tick.
-bool passes_surface(const collision::CollisionSurface& surface, const Vector3d& before, const Vector3d& now,
-                    double radius) {
+// Whether the tool overlaps the surface or is beneath it.
+bool is_in_surface(const collision::CollisionSurface& surface, const Vector3d& tool, double radius) {
     constexpr double rounding = 1e-6;  // mm
-    return surface.closest_point(now, radius - rounding).has_value() ||
-           surface.sweep_sphere(before, now, 0).has_value();
+    return surface.closest_point(tool, radius - rounding).has_value() || !surface.is_outside(tool);
 }
 
 }  // namespace
@@ -64,8 +62,8 @@ Outcome run_approach(haptics::HapticModel& model, const DeviceModel& device_mode
         }
         if (watch_tool) {
             const Vector3d now = vector_of(result.tool_position);
-            outcome.tool_passed_surface |=
-                passes_surface(model.surface(0), tool, now, model.settings().tool_radius);
+            outcome.tool_in_surface |= is_in_surface(model.surface(0), now, model.settings().tool_radius);
+            outcome.way_crossed |= model.surface(0).sweep_sphere(tool, now, 0).has_value();
             tool = now;
         }
         if (sink) sink({time, depth, -along});

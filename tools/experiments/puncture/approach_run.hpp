@@ -28,14 +28,16 @@ struct Approach {
 
 /// What came of it. Along the approach is positive inwards.
 struct Outcome {
-    double held = 0;                   ///< mean force against the approach over the last judged_s, N
-    double pull = 0;                   ///< largest force along the approach, N
-    double speed = 0;                  ///< of the tip 2 mm before the entry, mm/s
-    double latency = -1;               ///< s from passing the entry to the first force; -1: there was none
-    double depth_at_force = 0;         ///< mm behind the entry at the first force
-    double deepest = 0;                ///< of the tip, mm behind the entry
-    double aside = 0;                  ///< farthest that the tip came off the line of approach, mm
-    bool tool_passed_surface = false;  ///< the tool itself, as drawn, crossed or overlapped the surface
+    double held = 0;               ///< mean force against the approach over the last judged_s, N
+    double pull = 0;               ///< largest force along the approach, N
+    double speed = 0;              ///< of the tip 2 mm before the entry, mm/s
+    double latency = -1;           ///< s from passing the entry to the first force; -1: there was none
+    double depth_at_force = 0;     ///< mm behind the entry at the first force
+    double deepest = 0;            ///< of the tip, mm behind the entry
+    double aside = 0;              ///< farthest that the tip came off the line of approach, mm
+    bool tool_in_surface = false;  ///< the tool itself, as drawn, overlapped the surface or was beneath it
+    bool way_crossed = false;      ///< its straight way from a tick to the next went through the surface, as
+                                   ///< it does round an edge too
 };
 
 /// What a tick saw, for curves.

@@ -25,14 +25,16 @@ constexpr std::string_view approaches_method =
     "# Approaches with `continuous`\n\nThe hand and the rule of `palpate bench puncture`, at random places "
     "of "
     "each surface as that draws them, at {:g} to {:g} mm/s. Every tick of every approach the tool itself, as "
-    "drawn, is tested for overlap with the surface and for having crossed it since the tick before. The hold "
-    "may be lost without that: a tip without friction goes round an edge or into an opening.\n\n"
-    "| surface | triangles | approaches | tip just before the surface, median / most, mm/s | tool crossed or "
-    "overlapped | hold lost | of these crossed | least aside of these, mm | pulled |\n"
-    "|---|--:|--:|--:|--:|--:|--:|--:|--:|\n";
+    "drawn, is tested for overlap with the surface and for being beneath it, and its straight way since the "
+    "tick before for going through: as it does where a fast tool slides round an edge between two ticks. The "
+    "hold may be lost without any of it: a tip without friction goes round an edge or into an opening.\n\n"
+    "| surface | triangles | approaches | tip just before the surface, median / most, mm/s | tool overlapped "
+    "or beneath | straight way through | hold lost | of these any of both | least aside of these, mm | "
+    "pulled |\n"
+    "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n";
 
 struct Tally {
-    std::int64_t passed = 0, lost = 0, lost_through = 0, pulled = 0;
+    std::int64_t inside = 0, crossed = 0, lost = 0, lost_through = 0, pulled = 0;
     double least_aside = Approach::stroke;  // mm, where the hold was lost
     std::vector<double> tip_speeds;         // mm/s
 };
@@ -65,8 +67,9 @@ std::vector<Approach> draw(const Case& bone, const HapticModel& model, std::int6
 void add(Tally& tally, const Outcome& outcome, double coupling) {
     const bool lost = is_puncture(outcome, coupling);
     tally.lost += lost;
-    tally.lost_through += lost && outcome.tool_passed_surface;
-    tally.passed += outcome.tool_passed_surface;
+    tally.lost_through += lost && (outcome.tool_in_surface || outcome.way_crossed);
+    tally.inside += outcome.tool_in_surface;
+    tally.crossed += outcome.way_crossed;
     tally.pulled += is_pulled(outcome);
     if (lost) tally.least_aside = std::min(tally.least_aside, outcome.aside);
     tally.tip_speeds.push_back(outcome.speed);
@@ -114,14 +117,15 @@ Findings many_approaches(const Options& options, cli::Session& session) {
             run(models, device, approaches, [&](double fraction) { session.progress.step(name, fraction); });
         const std::size_t triangles = bone.rigid_bodies[0].surface.triangles.size();
         const double median = quantile(tally.tip_speeds, 0.5), most = quantile(tally.tip_speeds, 1);
-        findings.table +=
-            fmt::format("| {} | {} | {} | {:.0f} / {:.0f} | **{}** | {} | {} | {} | {} |\n", name, triangles,
-                        count, median, most, tally.passed, tally.lost, tally.lost_through,
-                        tally.lost > 0 ? fmt::format("{:.1f}", tally.least_aside) : "–", tally.pulled);
+        findings.table += fmt::format(
+            "| {} | {} | {} | {:.0f} / {:.0f} | **{}** | {} | {} | **{}** | {} | {} |\n", name, triangles,
+            count, median, most, tally.inside, tally.crossed, tally.lost, tally.lost_through,
+            tally.lost > 0 ? fmt::format("{:.1f}", tally.least_aside) : "–", tally.pulled);
         findings.result["surfaces"].push_back({{"surface", name},
                                                {"triangles", triangles},
                                                {"approaches", count},
-                                               {"tool_passed_surface", tally.passed},
+                                               {"tool_in_surface", tally.inside},
+                                               {"straight_way_through", tally.crossed},
                                                {"punctures", tally.lost},
                                                {"punctures_through_surface", tally.lost_through},
                                                {"pulled", tally.pulled},
