@@ -9,6 +9,7 @@ import tomllib
 import unittest
 
 BIN = pathlib.Path(os.environ["PALPATE_BIN"])
+DATA = pathlib.Path(os.environ.get("PALPATE_DATA", ""))
 PHANTOM = pathlib.Path(os.environ["PALPATE_BUILD"]) / "tests" / "phantom"
 
 
@@ -61,6 +62,22 @@ class Init(unittest.TestCase):
         case = self.case("scan.toml", self.volume, "--organ", "liver", f"--seed={seed}")
         self.assertEqual(case["structure"][0]["recipe"], "liver")
         self.assertBuilds("scan.toml")
+
+    # Real scans: one call of init, one of build, nothing written by hand.
+    @unittest.skipUnless((DATA / "abdomen_ct_totalseg3mm").is_dir(), "PALPATE_DATA: abdomen_ct_totalseg3mm is absent")
+    def test_organs_of_a_totalsegmentator_map_build(self):
+        for organ in ("liver", "kidney_right"):
+            with self.subTest(organ=organ):
+                self.case(organ + ".toml", DATA / "abdomen_ct_totalseg3mm" / "seg_totalseg.nii.gz", "--organ", organ)
+                seen, report = self.assertBuilds(organ + ".toml")
+                self.assertEqual(seen["name"], organ)
+                self.assertIn("✓ Verified", report)
+
+    @unittest.skipUnless((DATA / "abdomen_dicom_ts20").is_dir(), "PALPATE_DATA: abdomen_dicom_ts20 is absent")
+    def test_a_liver_of_a_dicom_folder_builds_from_one_seed(self):
+        self.case("dicom.toml", DATA / "abdomen_dicom_ts20" / "dicom", "--seed=-76,-166,-785")
+        seen, report = self.assertBuilds("dicom.toml")
+        self.assertIn("reaches the image’s edge", report)  # the slab ends in the liver
 
     def test_what_is_missing_is_asked_for(self):
         for arguments, code, phrase in (
