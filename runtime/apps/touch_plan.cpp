@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <spdlog/spdlog.h>
 #include <sstream>
 
 #include "formats/model/errors.hpp"
@@ -43,6 +44,14 @@ std::array<double, 3> shaft_of(const TouchOptions& options, const TouchPlan& pla
     return {along[0], along[1], along[2]};
 }
 
+// Deeper than hands press organs: perhaps a unit was mistaken.
+void question_depth(double depth) {
+    constexpr double most = 50;  // mm
+    if (depth > most)
+        spdlog::warn("a press of {:g} mm depth is implausible; up to {:g} mm is usual. Is the unit right?",
+                     depth, most);
+}
+
 }  // namespace
 
 TouchPlan plan_of(const TouchOptions& options, const DeviceKind& device, const Case& patient_case,
@@ -57,6 +66,7 @@ TouchPlan plan_of(const TouchOptions& options, const DeviceKind& device, const C
     const TouchTarget target =
         choose_touch_target(patient_case, model, options.body, point_of("--target", options.target));
     if (!device.simulated) return {std::nullopt, target, options.seconds};
+    question_depth(options.depth);
     const ScriptSettings settings{.tool_radius = model.contact_radius(),
                                   .depth = options.depth,
                                   .speed = options.speed,

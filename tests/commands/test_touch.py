@@ -101,6 +101,11 @@ class Touch(SampleAsset):
         self.assertEqual(set(json.loads(jump.stdout)["statuses"]), {"rate_limited"})
         self.assertNotIn("ticks", jump.stderr)
 
+    def test_an_implausible_depth_is_questioned(self):
+        run = self.touch("--virtual-clock", "--seconds", 0.5, "--depth", 300)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("300 mm depth is implausible", run.stderr)
+
     def second(self):
         """A second hand, which goes down onto the skull beside the first one's place."""
         script = self.folder / "second.txt"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fmt/format.h>
@@ -24,6 +24,7 @@ struct InitRequest {
     fs::path input, output, seeds_file;
     std::string organ, label_names, approach = "anterior", series;
     std::vector<std::string> seeds;
+    bool labels = false;
     double contact_nodes = draft::Wishes{}.contact_nodes;
 };
 
@@ -123,7 +124,8 @@ draft::CaseDraft draft_of(const InitRequest& request, cli::Session& session) {
                                .contact_nodes = request.contact_nodes};
     session.progress.step("reading", 0);
     const std::string name = request.input.filename().string();
-    if (name.ends_with(".seg.nrrd") || !request.label_names.empty()) return draft_of_labels(request, wishes);
+    if (request.labels || name.ends_with(".seg.nrrd") || !request.label_names.empty())
+        return draft_of_labels(request, wishes);
     ReadOptions options;
     options.series = request.series;
     const Volume volume = read_volume(request.input, warn, options);
@@ -175,6 +177,8 @@ int main(int argc, char** argv) {
     command.input("input", request.input, "label map, CT volume or DICOM folder").required();
     command.option("--organ", request.organ,
                    "what gives way: a label, or 'liver' in a scan; the largest of known tissue without it");
+    command.flag("--labels", request.labels,
+                 "the input is a label map, as DICOM SEG is; found out without it");
     command.option("--label-names", request.label_names, "names of labels, as 'palpate import' takes them");
     command.option("--series", request.series, "of a DICOM folder with several");
     command.option("--seed", request.seeds, "a point x,y,z inside the organ (LPS, mm); repeat for more")

@@ -29,6 +29,7 @@ constexpr std::array words{
     Word{"aorta", Part::vessel, ""},
     Word{"vertebra", Part::bone, ""},
     Word{"rib_", Part::bone, ""},
+    Word{"ribs", Part::bone, ""},
     Word{"costal", Part::bone, ""},
     Word{"skull", Part::bone, ""},
     Word{"crani", Part::bone, ""},
