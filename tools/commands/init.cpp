@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -14,6 +17,8 @@
 #include "tools/imaging/files/image_files.hpp"
 #include "tools/imaging/files/label_names.hpp"
 #include "tools/imaging/recipes/segmentation.hpp"
+#include "tools/meshing/files/imported_mesh.hpp"
+#include "tools/meshing/measures/quality.hpp"
 
 namespace {
 using namespace palpate;
@@ -65,6 +70,32 @@ draft::CaseDraft draft_of_labels(const InitRequest& request, const draft::Wishes
                                                              : draft::quoted(request.label_names));
     for (draft::DraftStructure& structure : found.structures)
         structure.recipe = import_lines(structure.name, structure.name == found.name);
+    return found;
+}
+
+bool is_mesh(const fs::path& file) {
+    constexpr std::array endings{".msh", ".mesh", ".vtu"};
+    return std::ranges::find(endings, file.extension().string()) != endings.end();
+}
+
+// The contract asks of an imported mesh what it has: nobody will make it finer.
+draft::CaseDraft draft_of_mesh(const InitRequest& request, const draft::Wishes& wishes) {
+    meshing::ImportedMeshOptions options;
+    const TetMesh as_numbered = read_imported_tetrahedra(request.input, options);
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& p : as_numbered.rest_positions) box.extend(p);
+    options.unit = draft::plausible_unit(box.sizes().maxCoeff());
+    const TetMesh mesh = read_imported_tetrahedra(request.input, options, warn);
+    draft::CaseDraft found =
+        draft_case(mesh, wishes, request.organ.empty() ? request.input.stem().string() : request.organ);
+    found.mesh = fmt::format(
+        "mesh_file = {}\n# The file does not say its unit; in this one it is as large as organs are.\n"
+        "mesh_unit = \"{}\"\n",
+        path_from(request.output, request.input), options.unit);
+    const meshing::MeshQuality quality = meshing::measure(mesh);
+    found.quality =
+        fmt::format("# What this mesh has.\n[quality]\nmin_dihedral_deg = {:g}\nmax_dihedral_deg = {:g}\n",
+                    std::floor(quality.min_dihedral_deg), std::ceil(quality.max_dihedral_deg));
     return found;
 }
 
@@ -123,6 +154,7 @@ draft::CaseDraft draft_of(const InitRequest& request, cli::Session& session) {
                                .approach = draft::direction_of(request.approach, "--approach"),
                                .contact_nodes = request.contact_nodes};
     session.progress.step("reading", 0);
+    if (is_mesh(request.input)) return draft_of_mesh(request, wishes);
     const std::string name = request.input.filename().string();
     if (request.labels || name.ends_with(".seg.nrrd") || !request.label_names.empty())
         return draft_of_labels(request, wishes);
@@ -144,7 +176,7 @@ nlohmann::ordered_json run_init(const InitRequest& request, cli::Session& sessio
     case_builder::check_case_file(request.output, case_builder::read_case_file(request.output));
     const std::string asset = fs::path(request.output).replace_extension(".vtkhdf").string();
     session.text = fmt::format(
-        "{}: '{}', {:.0f} ml, cells of {:g} mm, held at {}; {} neighbours\n"
+        "{}: '{}', {:.0f} ml, cells of {:.1f} mm, held at {}; {} neighbours\n"
         "Look at it, then: palpate build {} -o {}\n",
         request.output.string(), found.name, found.volume_ml, found.cell_size, found.why_held,
         found.rigid.size(), request.output.string(), asset);
@@ -165,16 +197,19 @@ nlohmann::ordered_json run_init(const InitRequest& request, cli::Session& sessio
 int main(int argc, char** argv) {
     cli::Command command(
         {.name = "init",
-         .summary = "Drafts a case file that builds at once, from a scan or a label map",
+         .summary = "Drafts a case file that builds at once, from a scan, a label map or tetrahedra",
          .examples = {"palpate init totalseg.nii.gz --organ liver -o liver.toml",
                       "palpate init ct_series/ --organ liver --seed -60,10,40 -o liver.toml"},
          .notes =
              "A label map (any that 'palpate import --labels' reads; TotalSegmentator's names are known) "
              "gives the organ,\nits lesions and its neighbours. In a scan the liver is found from a seed "
-             "or three; without one, the seeds\nwindow opens where there is a display. The file says why "
-             "each thing is as it is; edit it and build."});
+             "or three; without one, the seeds\nwindow opens where there is a display. Tetrahedra keep "
+             "their regions, in the unit in which they are as large\nas organs. The file says why each "
+             "thing is as it is; edit it and build."});
     InitRequest request;
-    command.input("input", request.input, "label map, CT volume or DICOM folder").required();
+    command
+        .input("input", request.input, "label map, CT volume, DICOM folder or tetrahedra (.msh, .mesh, .vtu)")
+        .required();
     command.option("--organ", request.organ,
                    "what gives way: a label, or 'liver' in a scan; the largest of known tissue without it");
     command.flag("--labels", request.labels,

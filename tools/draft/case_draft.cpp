@@ -186,4 +186,34 @@ CaseDraft draft_case(LabelMap map, const Wishes& wishes, const std::string& culp
     return draft;
 }
 
+CaseDraft draft_case(const TetMesh& mesh, const Wishes& wishes, const std::string& name) {
+    const Anatomy whole = anatomy_of(name, wishes.approach);
+    const BoundarySurface boundary = boundary_surface(mesh);
+    CaseDraft draft;
+    draft.name = name;
+    for (const Label& region : mesh.region_names) {
+        const std::string tissue = anatomy_of(region.name, wishes.approach).tissue;
+        draft.regions.push_back({region.name, tissue.empty() ? whole.tissue : tissue, 0, region.value});
+    }
+    double edges = 0;
+    for (const Triangle& t : boundary.surface.triangles)
+        edges += (boundary.surface.vertices[static_cast<std::size_t>(t[0])] -
+                  boundary.surface.vertices[static_cast<std::size_t>(t[1])])
+                     .norm();
+    const double edge = edges / static_cast<double>(boundary.surface.triangles.size());
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) draft.volume_ml += six_volume(mesh, t) / 6000;
+    draft.cell_size = edge / edge_over_cell;
+    draft.tool_radius = std::clamp(std::round(edge), 1.0, 5.0);
+    draft.held_towards = whole.held_towards;
+    draft.held_at = plane_point(boundary.surface.vertices, whole.held_towards);
+    draft.why_held = whole.why_held;
+    return draft;
+}
+
+std::string plausible_unit(double extent) {
+    constexpr double least_mm = 25;  // of a gland; the largest organs have some 400
+    if (extent >= least_mm) return "mm";
+    return 10 * extent >= least_mm ? "cm" : "m";
+}
+
 }  // namespace palpate::draft

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "formats/model/label_map.hpp"
+#include "formats/model/tet_mesh.hpp"
 
 namespace palpate::draft {
 
@@ -18,14 +19,17 @@ struct DraftStructure {
 /// A region of the deformable body.
 struct DraftRegion {
     std::string label;
-    std::string tissue;    ///< a preset; empty: none is known
-    double cell_size = 0;  ///< mm; 0: the body's
+    std::string tissue;            ///< a preset; empty: none is known
+    double cell_size = 0;          ///< mm; 0: the body's
+    std::int32_t mesh_region = 0;  ///< its value in an imported mesh; 0: it comes from a label
 };
 
 /// A case file before it is written.
 struct CaseDraft {
     std::string name;
-    std::string input;  ///< the lines under [input]
+    std::string input;    ///< the lines under [input]; empty: there are none
+    std::string mesh;     ///< the lines of the body's mesh
+    std::string quality;  ///< the lines under [quality]
     std::vector<DraftStructure> structures;
     std::vector<std::string> rigid;  ///< labels
     std::vector<DraftRegion> regions;
@@ -35,7 +39,6 @@ struct CaseDraft {
     std::string why_held;
     double volume_ml = 0, area_cm2 = 0;
     double cell_size = 0;    ///< mm
-    double voxel = 0;        ///< mm, the largest edge
     double tool_radius = 0;  ///< mm
 };
 
@@ -51,6 +54,14 @@ struct Wishes {
 /// that it may close over what is not theirs. Throws InvalidInput naming `culprit` if the organ is no label
 /// of the map (with the nearest names), or if none gives way.
 CaseDraft draft_case(LabelMap map, const Wishes& wishes, const std::string& culprit);
+
+/// Drafts a case from tetrahedra that somebody made elsewhere, in mm, without its line mesh_file. A name that
+/// says nothing of a region leaves the tissue to that of `name`, the file's.
+CaseDraft draft_case(const TetMesh& mesh, const Wishes& wishes, const std::string& name);
+
+/// The unit in which a body of that largest extent (in the file's numbers) is as large as organs are: "mm",
+/// "cm" or "m".
+std::string plausible_unit(double extent);
 
 /// Writes the draft as a case file with comments.
 std::string case_text(const CaseDraft& draft);

@@ -22,6 +22,7 @@ std::string region_text(const DraftRegion& region) {
                 ? "# No preset is known for it: these are a liver's. Put in what you know.\n"
                   "youngs_modulus_kpa = 6.3\npoissons_ratio = 0.45\n"
                 : fmt::format("tissue = {}\n", quoted(region.tissue));
+    if (region.mesh_region > 0) text += fmt::format("mesh_region = {}\n", region.mesh_region);
     if (region.cell_size > 0) text += fmt::format("cell_size_mm = {:g}\n", region.cell_size);
     return text;
 }
@@ -40,20 +41,17 @@ std::string quoted(const std::string& text) {
 std::string case_text(const CaseDraft& draft) {
     std::string text = fmt::format(
         "# A first draft: it builds as it is, and waits for what you know better. Positions are LPS mm.\n"
-        "schema = 1\nname = {}\n\n[input]\n{}",
-        quoted(body_name(draft.name)), draft.input);
+        "schema = 1\nname = {}\n{}",
+        quoted(body_name(draft.name)), draft.input.empty() ? "" : "\n[input]\n" + draft.input);
     for (const DraftStructure& structure : draft.structures)
         text += fmt::format("\n# {}\n[[structure]]\nname = {}\n{}", structure.why, quoted(structure.name),
                             structure.recipe);
     text += fmt::format(
-        "\n[[deformable]]\nname = {}\n"
-        "# Smaller cells make a finer and a larger asset: half the size, four times the surface nodes.\n"
-        "mesh = {{ cell_size_mm = {:g}, facet_distance_mm = {:.2f} }}\n"
+        "\n[[deformable]]\nname = {}\n{}"
         "# Held is {}:\n# what lies beyond this plane, a point and the way to go.\n"
         "fixed = [{{ plane_mm = [{:.1f}, {:.1f}, {:.1f}, {:.3f}, {:.3f}, {:.3f}] }}]\n",
-        quoted(body_name(draft.name)), draft.cell_size, draft.cell_size / 9, draft.why_held,
-        draft.held_at.x(), draft.held_at.y(), draft.held_at.z(), draft.held_towards.x(),
-        draft.held_towards.y(), draft.held_towards.z());
+        quoted(body_name(draft.name)), draft.mesh, draft.why_held, draft.held_at.x(), draft.held_at.y(),
+        draft.held_at.z(), draft.held_towards.x(), draft.held_towards.y(), draft.held_towards.z());
     for (const DraftRegion& region : draft.regions) text += region_text(region);
     if (!draft.rigid.empty())
         text += "\n# Neighbours that do not give way; make one [[deformable]] if it should.\n";
@@ -61,12 +59,7 @@ std::string case_text(const CaseDraft& draft) {
         text += fmt::format("[[rigid]]\nname = {}\nlabel = {}\n\n", quoted(body_name(label)), quoted(label));
     text += fmt::format("{}[haptics]\ntool_radius_mm = {:g}\n", draft.rigid.empty() ? "\n" : "",
                         draft.tool_radius);
-    text += fmt::format(
-        "\n# What cells and voxels of that size can keep.\n"
-        "[quality]\nmax_mean_distance_mm = {:.2f}\nmax_p95_distance_mm = {:.2f}\n"
-        "max_distance_voxel_diagonals = 2.0\nmax_centroid_distance_mm = {:.2f}\n",
-        std::max(0.25, draft.cell_size / 25), std::max(0.5, draft.cell_size / 10),
-        std::max(0.05, draft.voxel / 10));
+    if (!draft.quality.empty()) text += "\n" + draft.quality;
     return text;
 }
 

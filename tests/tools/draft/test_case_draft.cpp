@@ -114,6 +114,23 @@ TEST(CaseDraft, an_organ_that_is_not_there_or_not_known_is_asked_for) {
     EXPECT_NE(message(map_of({{"femur_left", {0, 0, 0}, 9}}), "").find("gives way"), std::string::npos);
 }
 
+TEST(CaseDraft, tetrahedra_keep_their_regions_and_take_the_tissue_of_the_files_name) {
+    TetMesh mesh;
+    mesh.rest_positions = {{0, 0, 0}, {30, 0, 0}, {0, 30, 0}, {0, 0, 30}};
+    mesh.tetrahedra = {{0, 1, 2, 3}};
+    mesh.regions = {4};
+    mesh.region_names = {{4, "region 4"}};
+    const CaseDraft draft = draft_case(mesh, {}, "liver");
+    ASSERT_EQ(draft.regions.size(), 1U);
+    EXPECT_EQ(draft.regions[0].mesh_region, 4);
+    EXPECT_EQ(draft.regions[0].tissue, "liver");
+    EXPECT_NEAR(draft.volume_ml, 4.5, 1e-12);
+    EXPECT_TRUE(draft.structures.empty());
+    EXPECT_EQ(plausible_unit(180), "mm");
+    EXPECT_EQ(plausible_unit(18), "cm");
+    EXPECT_EQ(plausible_unit(0.18), "m");
+}
+
 TEST(CaseText, escapes_what_toml_would_read_otherwise) {
     EXPECT_EQ(quoted("a \"b\" \\c"), R"("a \"b\" \\c")");
 }
