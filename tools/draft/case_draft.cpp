@@ -154,6 +154,15 @@ void add_lesions(CaseDraft& draft, const LabelMap& map, const Label& organ, cons
     }
 }
 
+// The contract takes its limits times the voxels' edge, where that is above 1 mm.
+std::string quality_lines(double cell_size, const ImageGrid& grid) {
+    const double coarseness = std::max(1.0, std::cbrt(grid.voxel_volume()));
+    return fmt::format(
+        "# What cells of that size can keep.\n[quality]\nmax_mean_distance_mm = {:.2f}\n"
+        "max_p95_distance_mm = {:.2f}\nmax_distance_voxel_diagonals = 2.0\nmax_centroid_distance_mm = 0.1\n",
+        std::max(0.25, cell_size / 25 / coarseness), std::max(0.5, cell_size / 10 / coarseness));
+}
+
 }  // namespace
 
 CaseDraft draft_case(LabelMap map, const Wishes& wishes, const std::string& culprit) {
@@ -171,6 +180,11 @@ CaseDraft draft_case(LabelMap map, const Wishes& wishes, const std::string& culp
     const double edge = std::sqrt(outside.area / (0.866 * wishes.contact_nodes));
     // What is finer than the voxels is made up.
     draft.cell_size = std::max(rounded(edge / edge_over_cell), rounded(map.grid.spacing.maxCoeff()));
+    draft.mesh = fmt::format(
+        "# Smaller cells make a finer and a larger asset: half the size, four times the surface nodes.\n"
+        "mesh = {{ cell_size_mm = {:g}, facet_distance_mm = {:.2f} }}\n",
+        draft.cell_size, draft.cell_size / 9);
+    draft.quality = quality_lines(draft.cell_size, map.grid);
     draft.held_towards = anatomy.held_towards;
     draft.held_at = plane_point(outside.points, anatomy.held_towards);
     draft.why_held = anatomy.why_held;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <functional>
 #include <gtest/gtest.h>
 #include <numbers>
@@ -72,6 +73,9 @@ TEST(CaseDraft, takes_the_organ_with_its_lesions_and_what_lies_beside_it) {
     EXPECT_EQ(draft.rigid, (std::vector<std::string>{"kidney_right"}));
     ASSERT_EQ(draft.structures.size(), 3U);
     EXPECT_EQ(draft.structures[0].name, "liver_tumor");  // before the organ closes over it
+    const std::string text = case_text(draft);
+    EXPECT_NE(text.find("cell_size_mm = " + fmt::format("{:g}", draft.cell_size)), std::string::npos) << text;
+    EXPECT_NE(text.find("\n[quality]\n"), std::string::npos) << text;
 }
 
 TEST(CaseDraft, cells_follow_from_the_surface_and_the_nodes_that_are_wanted) {

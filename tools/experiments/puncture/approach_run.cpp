@@ -15,10 +15,11 @@ using Eigen::Vector3d;
 constexpr double approach_tick_s = 1e-3;
 constexpr double just_before = 2;  // mm: beyond what a bump beside the entry holds up
 
-// Whether the tool overlaps the surface or is beneath it.
+// Whether the tool overlaps the surface or is beneath it, by less than a fast tool goes in some ticks.
 bool is_in_surface(const collision::CollisionSurface& surface, const Vector3d& tool, double radius) {
-    constexpr double rounding = 1e-6;  // mm
-    return surface.closest_point(tool, radius - rounding).has_value() || !surface.is_outside(tool);
+    constexpr double rounding = 1e-6, beneath = 5;  // mm
+    const auto nearest = surface.closest_point(tool, beneath);
+    return nearest && (nearest->distance < radius - rounding || !surface.is_outside(tool, *nearest));
 }
 
 }  // namespace
