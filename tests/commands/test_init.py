@@ -65,13 +65,11 @@ class Init(unittest.TestCase):
 
     # Real scans: one call of init, one of build, nothing written by hand.
     @unittest.skipUnless((DATA / "abdomen_ct_totalseg3mm").is_dir(), "PALPATE_DATA: abdomen_ct_totalseg3mm is absent")
-    def test_organs_of_a_totalsegmentator_map_build(self):
-        for organ in ("liver", "kidney_right"):
-            with self.subTest(organ=organ):
-                self.case(organ + ".toml", DATA / "abdomen_ct_totalseg3mm" / "seg_totalseg.nii.gz", "--organ", organ)
-                seen, report = self.assertBuilds(organ + ".toml")
-                self.assertEqual(seen["name"], organ)
-                self.assertIn("✓ Verified", report)
+    def test_an_organ_of_a_totalsegmentator_map_builds(self):
+        self.case("kidney.toml", DATA / "abdomen_ct_totalseg3mm" / "seg_totalseg.nii.gz", "--organ", "kidney_right")
+        seen, report = self.assertBuilds("kidney.toml")
+        self.assertEqual(seen["name"], "kidney_right")
+        self.assertIn("✓ Verified", report)
 
     @unittest.skipUnless((DATA / "abdomen_dicom_ts20").is_dir(), "PALPATE_DATA: abdomen_dicom_ts20 is absent")
     def test_a_liver_of_a_dicom_folder_builds_from_one_seed(self):
