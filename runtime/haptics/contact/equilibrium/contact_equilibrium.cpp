@@ -330,10 +330,11 @@ void ContactEquilibrium::forget_tissue() noexcept {
         if (patch.is_at_rest()) continue;
         any = true;
         patch.release();
-        for (Tool& tool : tools_)
-            for (Part& part : tool.parts)
-                for (Touch& touch : part.touches) touch.way = -1;
     }
+    // A sphere may have looked around in vain.
+    for (Tool& tool : tools_)
+        for (Part& part : tool.parts)
+            for (Touch& touch : part.touches) touch.way = -1;
     if (any) neighbours_.forget();
     active_count_ = bank_ = in_row_ = carried_ = 0;
     last_motion_ = 0;
