@@ -34,6 +34,13 @@ struct SweepContact {
     std::int32_t slot = 0;  ///< position in the tree's order: the hint for the next query
 };
 
+/// Whether a triangle that is touched at `fraction` of the way comes before the first one so far, whose slot
+/// is negative if there is none. Of those touched at once it is the one of the lowest slot, in whatever order
+/// they are asked.
+inline bool comes_before(double fraction, std::int32_t slot, const SweepContact& first) noexcept {
+    return first.slot < 0 || fraction < first.fraction || (fraction == first.fraction && slot < first.slot);
+}
+
 /// A disc that holds a triangle, and the triangle's plane. In float32, which rounds the disc's centre: the
 /// plane passes `lift` above it, along the normal. A triangle of hardly any area has no plane that could hold
 /// anything off: its normal is zero, and the disc a ball.

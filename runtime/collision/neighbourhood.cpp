@@ -48,7 +48,7 @@ struct FirstContact {
     }
     void test(std::int32_t slot) noexcept {
         const auto contact = sweep_sphere_triangle(from, way, radius, best.fraction, surface.corners(slot));
-        if (!contact || (best.slot >= 0 && contact->fraction >= best.fraction)) return;
+        if (!contact || !comes_before(contact->fraction, slot, best)) return;
         best = {contact->fraction, contact->point, contact->normal, surface.mesh_triangle(slot), slot};
     }
 };

@@ -24,8 +24,7 @@ class Neighbourhood {
     /// Forgets what was touched last, so that what is touched next depends on the sweep alone.
     void let_go() noexcept { hint_ = -1; }
 
-    /// The same as surface.sweep_sphere(from, to, radius): the same fraction and point; where several
-    /// triangles are touched at once, the slot may be another. Gathers anew when the sweep leaves the
+    /// The same as surface.sweep_sphere(from, to, radius), to the bit. Gathers anew when the sweep leaves the
     /// neighbourhood, and asks the tree where that would hold too many triangles or the way is long.
     std::optional<SweepContact> sweep_sphere(const CollisionSurface& surface, const Eigen::Vector3d& from,
                                              const Eigen::Vector3d& to, double radius) noexcept;

@@ -117,7 +117,7 @@ std::optional<SweepContact> CollisionSurface::sweep_sphere(const Vector3d& from,
     best.slot = -1;
     const auto test = [&](std::int32_t slot) {
         const auto contact = sweep_sphere_triangle(from, way, radius, best.fraction, corners(slot));
-        if (!contact || (best.slot >= 0 && contact->fraction >= best.fraction)) return;
+        if (!contact || !comes_before(contact->fraction, slot, best)) return;
         best = {contact->fraction, contact->point, contact->normal, mesh_triangle(slot), slot};
     };
     if (hint >= 0 && hint < triangle_count()) test(hint);
@@ -127,7 +127,7 @@ std::optional<SweepContact> CollisionSurface::sweep_sphere(const Vector3d& from,
     std::array<Pending, deepest_obb_tree + 2> stack;
     std::size_t size = 0;
     stack[size++] = {0, 0};
-    while (size > 0 && !(best.slot >= 0 && best.fraction <= 0)) {
+    while (size > 0) {
         const Pending top = stack[--size];
         const double reach = radius + best.fraction * length;
         if (static_cast<double>(top.squared_bound) > reach * reach) continue;

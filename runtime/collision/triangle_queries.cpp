@@ -153,10 +153,10 @@ std::optional<TriangleContact> sweep_sphere_triangle(const Vector3d& from, const
     };
     if (height >= radius && twice_area > 0) {
         // Clear of the triangle's plane, the sphere must get down to it first.
-        if (sound && height > radius && (descent <= 0 || height - radius > limit * descent))
-            return std::nullopt;
+        const double fraction =
+            descent > 0 ? (height - radius) / descent : std::numeric_limits<double>::infinity();
+        if (sound && height > radius && fraction > limit) return std::nullopt;
         if (descent > 0) {
-            const double fraction = (height - radius) / descent;
             const Vector3d point = from + fraction * way - radius * face_normal;
             if (sound) earliest = fraction;
             if (fraction <= limit && on_face(point)) {
