@@ -8,6 +8,7 @@
 
 #include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
+#include "formats/provenance/cautions.hpp"
 #include "runtime/apps/servo_pulse.hpp"
 #include "runtime/apps/start_recording.hpp"
 #include "runtime/apps/tell_statuses.hpp"
@@ -184,7 +185,10 @@ Json train(const Options& options, cli::Session& session) {
     const Case& patient_case = run.patient_case();
     const TouchPoint place = choose_touch_target(patient_case, run.model(), options.body, std::nullopt).place;
     const Eigen::Vector3d start = start_outside(place, run.model().settings().tool_radius);
-    WindowSettings window_settings{.width = width, .height = height, .start = start};
+    WindowSettings window_settings{.width = width,
+                                   .height = height,
+                                   .start = start,
+                                   .cautions = provenance::cautions_in(patient_case.provenance)};
     window_settings.sight = choose_sight(patient_case, place.point, place.normal);
     cli::end_softly_on_interrupt();
     run.hold(device.open(
@@ -216,6 +220,7 @@ Json train(const Options& options, cli::Session& session) {
         if (!setup.ok) spdlog::warn("{}", setup.message);
     tell_statuses(run.statuses());
     Json result{{"case", patient_case.name},
+                {"cautions", window_settings.cautions},
                 {"device", run.device_name()},
                 {"frames", frame_ns.count()},
                 {"frames_per_second", static_cast<double>(frame_ns.count()) / seconds},
@@ -248,8 +253,9 @@ int main(int argc, char** argv) {
          .notes =
              "Mouse and keyboard move the hand: drag with the left button in the plane of view, turn the "
              "wheel or press W and S for depth, step with the arrow keys. Drag with the right button to turn "
-             "the view; + and - zoom, C cuts the bodies open, B hides the rigid ones, R goes back to the "
-             "start, H hides the hints, Q or Escape closes. The window needs an X display; on a machine "
+             "the view; + and - zoom, C cuts the bodies open, B hides the rigid ones, I shows and hides "
+             "how the case was made, R goes back to the start, H hides the hints, Q or Escape closes. The "
+             "window needs an X display; on a machine "
              "without one use 'xvfb-run'.\n"
              "With --device " +
              device_usages([](const DeviceKind& kind) { return !kind.simulated; }, false) +

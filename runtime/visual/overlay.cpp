@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <sstream>
 #include <vtkActor2D.h>
 #include <vtkCellArray.h>
+#include <vtkCoordinate.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataMapper2D.h>
@@ -22,8 +24,10 @@ namespace {
 constexpr double bar_width = 240, bar_height = 10;
 constexpr auto help_text =
     "left drag  move the tool      wheel, W S  deeper, back      arrows  step\n"
-    "right drag  turn the view      + -  zoom      C  cut away      B  bone      R  reset      H  help      "
-    "Q  quit";
+    "right drag  turn the view      + -  zoom      R  reset      Q  quit\n"
+    "C  cut away      B  bone      I  about this case      H  help";
+constexpr std::size_t cautions_width = 64;  // characters
+constexpr double cautions_room = 460;       // pixels that so many take, mostly
 
 void place(vtkTextActor* actor, double x, double y, int size, bool right, bool top, vtkRenderer* renderer) {
     actor->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
@@ -40,6 +44,16 @@ void place(vtkTextActor* actor, double x, double y, int size, bool right, bool t
     renderer->AddActor2D(actor);
 }
 
+// So many pixels: lines that start below each other, at the right of a window of any size.
+void start_left_of_its_place(vtkTextActor* actor, double pixels) {
+    vtkNew<vtkCoordinate> right;
+    right->SetCoordinateSystemToNormalizedViewport();
+    right->SetValue(actor->GetPosition());
+    actor->GetPositionCoordinate()->SetReferenceCoordinate(right);
+    actor->GetPositionCoordinate()->SetCoordinateSystemToViewport();
+    actor->SetPosition(-pixels, 0);
+}
+
 void make_bar(vtkActor2D* actor, vtkPoints* points, double opacity, vtkRenderer* renderer) {
     vtkNew<vtkCellArray> cells;
     cells->InsertNextCell({0, 1, 2, 3});
@@ -54,6 +68,12 @@ void make_bar(vtkActor2D* actor, vtkPoints* points, double opacity, vtkRenderer*
     actor->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
     actor->SetPosition(0.017, 0.885);
     renderer->AddActor2D(actor);
+}
+
+// Characters, of UTF-8.
+std::size_t length_of(const std::string& text) {
+    return static_cast<std::size_t>(std::ranges::count_if(
+        text, [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U; }));
 }
 
 void set_length(vtkPoints* points, double length) {
@@ -79,7 +99,25 @@ std::string notice_of(const VisualFrame& frame) {
     return notice;
 }
 
-Overlay::Overlay(const std::string& title, double max_force, vtkRenderer* renderer) : max_force_(max_force) {
+std::string cautions_text(std::span<const std::string> cautions, std::size_t width) {
+    std::string text;
+    for (const std::string& caution : cautions) {
+        std::istringstream words(caution);
+        std::size_t used = 0;
+        text += text.empty() ? "" : "\n";
+        for (std::string word; words >> word;) {
+            const bool fits = used == 0 || used + 1 + length_of(word) <= width;
+            text += used == 0 ? "\u2022 " : fits ? " " : "\n   ";
+            used = (fits && used > 0 ? used + 1 : 0) + length_of(word);
+            text += word;
+        }
+    }
+    return text;
+}
+
+Overlay::Overlay(const std::string& title, double max_force, std::span<const std::string> cautions,
+                 vtkRenderer* renderer)
+    : max_force_(max_force) {
     vtkNew<vtkPoints> whole;
     set_length(whole, bar_width);
     set_length(bar_points_, 0);
@@ -92,7 +130,12 @@ Overlay::Overlay(const std::string& title, double max_force, vtkRenderer* render
     place(notice_, 0.5, 0.86, 20, false, true, renderer);
     notice_->GetTextProperty()->SetJustificationToCentered();
     notice_->GetTextProperty()->SetColor(1, 0.75, 0.3);
+    place(cautions_, 0.983, 0.92, 14, false, true, renderer);
+    start_left_of_its_place(cautions_, cautions_room);
     title_->SetInput(title.c_str());
+    const std::string text = cautions_text(cautions, cautions_width);
+    cautions_->SetInput(text.empty() ? "nothing is noted about how this case was made" : text.c_str());
+    cautions_->SetVisibility(!text.empty());
     help_->SetInput(help_text);
     help_->GetTextProperty()->SetOpacity(0.75);
 }
@@ -100,6 +143,10 @@ Overlay::Overlay(const std::string& title, double max_force, vtkRenderer* render
 void Overlay::update(const VisualFrame& frame, double frames_per_second) {
     using namespace std::chrono_literals;
     const double newtons = frame.force.norm();
+    if (newtons > 0 && !was_touched_) {
+        was_touched_ = true;
+        cautions_->VisibilityOff();
+    }
     const double share = std::min(1.0, newtons / max_force_);
     set_length(bar_points_, bar_width * share);
     bar_->GetProperty()->SetColor(share < 0.5 ? 0.35 + 1.3 * share : 1,
@@ -117,6 +164,10 @@ void Overlay::update(const VisualFrame& frame, double frames_per_second) {
 
 void Overlay::show_help(bool on) {
     help_->SetVisibility(on);
+}
+
+void Overlay::turn_cautions() {
+    cautions_->SetVisibility(!cautions_->GetVisibility());
 }
 
 }  // namespace palpate::visual

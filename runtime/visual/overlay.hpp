@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <chrono>
+#include <span>
 #include <string>
 #include <vtkActor2D.h>
 #include <vtkNew.h>
@@ -16,19 +17,27 @@ namespace palpate::visual {
 /// force, a line each; empty where there is nothing to say.
 std::string notice_of(const VisualFrame& frame);
 
+/// What a case's cautions say, for the window: one below the other, in lines of at most `width` characters;
+/// empty where there are none.
+std::string cautions_text(std::span<const std::string> cautions, std::size_t width);
+
 /// The figures and key hints that lie over the scene. Texts are set anew five times a second: often enough to
 /// read, seldom enough to cost nothing.
 class Overlay {
   public:
-    Overlay(const std::string& title, double max_force, vtkRenderer* renderer);
+    Overlay(const std::string& title, double max_force, std::span<const std::string> cautions,
+            vtkRenderer* renderer);
 
     void update(const VisualFrame& frame, double frames_per_second);
     void show_help(bool on);
+    /// Shows the case's cautions, or hides them. They are shown from the start until something is touched.
+    void turn_cautions();
 
   private:
     double max_force_;  // N
+    bool was_touched_ = false;
     std::chrono::steady_clock::time_point last_{};
-    vtkNew<vtkTextActor> force_, figures_, title_, help_, notice_;
+    vtkNew<vtkTextActor> force_, figures_, title_, help_, notice_, cautions_;
     vtkNew<vtkPoints> bar_points_;
     vtkNew<vtkActor2D> bar_, bar_frame_;
 };

@@ -60,7 +60,7 @@ struct TrainWindow::Parts {
         : settings(window_settings),
           hand(window_settings.start),
           scene(patient_case, window_settings.sight, window_settings.rigid_budget, renderer, front),
-          overlay(patient_case.name, patient_case.haptics.max_force, front),
+          overlay(patient_case.name, patient_case.haptics.max_force, window_settings.cautions, front),
           tool_radius(patient_case.haptics.tool_radius),
           cut(window_settings.sight.blocked) {
         renderer->GradientBackgroundOn();
@@ -193,6 +193,7 @@ struct TrainWindow::Parts {
         if (key == "c") cut = !cut;
         if (key == "b") scene.show_rigid(rigid_shown = !rigid_shown);
         if (key == "h") overlay.show_help(help_shown = !help_shown);
+        if (key == "i") overlay.turn_cautions();
         if (key == "r") reset();
         if (key == "q" || key == "Escape") closed = true;
     }

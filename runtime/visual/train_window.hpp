@@ -2,6 +2,8 @@
 #pragma once
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "formats/model/body.hpp"
 #include "runtime/visual/sight.hpp"
@@ -15,6 +17,7 @@ struct WindowSettings {
     std::int64_t rigid_budget = 60'000;               ///< triangles of all rigid bodies on the screen
     Eigen::Vector3d start = Eigen::Vector3d::Zero();  ///< where the hand is first, p_P, mm
     Sight sight{};                                    ///< where the eye is first
+    std::vector<std::string> cautions{};              ///< what a certificate does not say of the case
 };
 
 /// The trainer's window: draws the scene and turns mouse and keyboard into a place for the hand. One thread,

@@ -19,6 +19,7 @@ ROOMS = {
     "drawing": set(),
     "records": set(),
     "model": {"records"},
+    "provenance": {"json"},
     "asset": {"model", "hdf5", "openssl", "threads"},
     "recording": {"model", "asset"},
     "imaging": {"model", "itk", "hdf5", "dcmtk", "vtk", "json"},  # HDF5 is one of ITK's own
@@ -26,7 +27,7 @@ ROOMS = {
     "obb": {"model"},
     "fem": {"model", "linear_algebra"},
     "linear_algebra": {"cholmod", "metis", "lapack"},
-    "report": {"model", "asset", "drawing", "meshing", "vtk", "json"},
+    "report": {"model", "asset", "drawing", "provenance", "meshing", "vtk", "json"},
     "cli": {"model", "drawing", "cli11", "spdlog", "json", "toml"},
     "requests": {"model", "cli", "json"},
     "stage_images": {"requests", "imaging"},
@@ -55,11 +56,11 @@ EXECUTABLES = {
     "palpate": {"cli", "model"},
     "palpate-touch": APPS,
     "palpate-doctor": APPS | {"doctor"},
-    "palpate-train": APPS | {"visual"},
+    "palpate-train": APPS | {"provenance", "visual"},
     "palpate-bench": {"experiments"},
 }
 HEAVY = {"itk", "cgal", "cholmod", "metis", "vtk"}
-LEAN = {"palpate_drawing", "palpate_records", "palpate_model", "palpate_asset", "palpate_recording", "palpate_cli", "palpate_realtime", "palpate_collision",
+LEAN = {"palpate_drawing", "palpate_provenance", "palpate_records", "palpate_model", "palpate_asset", "palpate_recording", "palpate_cli", "palpate_realtime", "palpate_collision",
         "palpate_haptics", "palpate_devices", "palpate_openigtlink", "palpate_session", "palpate_doctor", "palpate-touch",
         "palpate-doctor"}
 # These two draw, so VTK is theirs; nothing else that is heavy.

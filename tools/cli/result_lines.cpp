@@ -20,6 +20,13 @@ bool is_table(const nlohmann::ordered_json& value) {
            std::ranges::all_of(value, [](const auto& row) { return row.is_object(); });
 }
 
+bool are_sentences(const nlohmann::ordered_json& value) {
+    return value.is_array() && !value.empty() && std::ranges::all_of(value, [](const auto& item) {
+               return item.is_string() &&
+                      item.template get_ref<const std::string&>().find(' ') != std::string::npos;
+           });
+}
+
 // Rows of scalars under their keys, columns as wide as their widest cell; nested values are left to --json.
 void print_table(const nlohmann::ordered_json& rows, const std::string& name) {
     std::vector<std::string> keys;
@@ -50,6 +57,8 @@ void print_lines(const nlohmann::ordered_json& value, const std::string& prefix)
             print_lines(item, name);
         else if (is_table(item))
             print_table(item, name);
+        else if (are_sentences(item))
+            for (const auto& sentence : item) std::cout << name << ' ' << cell_text(sentence) << '\n';
         else
             std::cout << name << ' ' << cell_text(item) << '\n';
     }

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "formats/provenance/cautions.hpp"
 #include "tools/report/html.hpp"
 #include "tools/report/page_style.hpp"
 #include "tools/report/pictures/virtual_display.hpp"
@@ -39,23 +39,9 @@ std::string verdict(const std::vector<MeasuredBody>& bodies) {
 
 // What the verdict is not about: how the case was made. Empty if its provenance tells nothing of it.
 std::string cautions(const std::string& provenance) {
-    const auto json = nlohmann::json::parse(provenance, nullptr, false);
     std::string items;
-    const auto add_texts = [&](const nlohmann::json& texts, const char* format) {
-        for (const auto& text : texts)
-            if (text.is_string())
-                items += "<li>" + fmt::format(fmt::runtime(format), html::escaped(text.get<std::string>())) +
-                         "</li>\n";
-    };
-    const auto list_at = [](const nlohmann::json& from, const char* place) {
-        const nlohmann::json::json_pointer pointer(place);
-        return from.is_object() && from.contains(pointer) ? from[pointer] : nlohmann::json();
-    };
-    add_texts(list_at(json, "/build/cautions"), "{}");
-    for (const auto& mesh : list_at(json, "/meshes"))
-        add_texts(list_at(mesh, "/at_image_edge"),
-                  "‘{}’ reaches the image’s edge: what lies beyond it is missing.");
-    add_texts(list_at(json, "/notes"), "{}");
+    for (const std::string& caution : provenance::cautions_in(provenance))
+        items += "<li>" + html::escaped(caution) + "</li>\n";
     if (items.empty()) return "";
     return "<div class=\"cautions\"><strong>What that does not say</strong><ul>" + items + "</ul></div>\n";
 }

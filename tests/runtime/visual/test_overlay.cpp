@@ -7,6 +7,7 @@
 namespace palpate {
 namespace {
 
+using visual::cautions_text;
 using visual::notice_of;
 using visual::VisualFrame;
 
@@ -25,6 +26,14 @@ TEST(Overlay, says_what_a_user_must_know_of_faults_and_statuses) {
               "force taken away: the device's motors are too warm\nlet them cool down\n"
               "contacts contradict each other, as in a wedge: no body gives way\n"
               "a tool is in a body, which is not felt until the tool has been clear of it");
+}
+
+TEST(Overlay, breaks_cautions_between_words_and_counts_characters_not_bytes) {
+    EXPECT_EQ(cautions_text({}, 12), "");
+    EXPECT_EQ(cautions_text(std::vector<std::string>{"‘äöü’ is made up", "no source"}, 13),
+              "\u2022 ‘äöü’ is made\n   up\n\u2022 no source");
+    EXPECT_EQ(cautions_text(std::vector<std::string>{"a wordlongerthanthat b"}, 6),
+              "\u2022 a\n   wordlongerthanthat\n   b");
 }
 
 }  // namespace
