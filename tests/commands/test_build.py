@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """palpate build from a phantom to asset and report: what runs again when, and what happens when something is wrong."""
+import html
 import json
 import os
 import pathlib
@@ -196,7 +197,34 @@ class Build(unittest.TestCase):
 
     def test_unmet_quality_contract_exits_with_4(self):
         self.change("[haptics]", "[quality]\nmin_dihedral_deg = 80\n[haptics]")
-        self.fail(4, "dihedral")
+        self.fail(4, "dihedral", "failure.html shows what there is so far")
+
+    def test_a_page_shows_what_there_was_before_a_stage_failed(self):
+        page = self.folder / "case.parts" / "failure.html"
+        self.assertFalse(page.exists(), "nothing failed yet")
+        self.change("[haptics]", "[quality]\nmin_dihedral_deg = 80\n[haptics]")
+        self.fail(4)
+        text = page.read_text()
+        said = html.unescape(re.search(r"Not built</strong><div>(.*?)</div>", text, re.DOTALL).group(1))
+        self.assertTrue(said.startswith("palpate-mesh: "), said)
+        self.assertIn("dihedral", said)
+        # Three planes through the image and through each structure, and what the stages before took.
+        slices, stages = text.split('id="stages"')
+        structures = re.findall(r"<h3>(.*?)</h3>", slices)
+        self.assertEqual(structures, ["liver", "tumour", "spine"])
+        self.assertEqual(slices.count("data:image/png;base64,"), 3 + 3 * len(structures))
+        self.assertIn("surface spine", stages)
+        self.assertNotIn("mesh liver", stages)
+        self.change("min_dihedral_deg = 80", "min_dihedral_deg = 1")
+        self.assertIn("mesh liver", self.stages_run())
+        self.assertFalse(page.exists(), "the build did not fail any more")
+
+    def test_a_failed_import_is_shown_without_an_image(self):
+        (self.folder / "abdomen.nrrd").write_text("NRRD0004\nnonsense\n\n")
+        self.fail(3)
+        text = (self.folder / "case.parts" / "failure.html").read_text()
+        self.assertIn("palpate-import: ", text)
+        self.assertNotIn("data:image/png", text)
 
     def test_somebody_elses_output_is_not_replaced(self):
         (self.folder / "case.vtkhdf").write_text("precious")

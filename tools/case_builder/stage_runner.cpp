@@ -92,6 +92,10 @@ std::filesystem::path StageRunner::result_path(const std::string& stage_name) co
     return folder_ / (file + ".json");
 }
 
+std::filesystem::path StageRunner::error_path(const std::string& stage_name) const {
+    return result_path(stage_name).replace_extension(".error.txt");
+}
+
 std::filesystem::path StageRunner::record_path(const std::string& stage_name) const {
     return result_path(stage_name).replace_extension(".stage.json");
 }
@@ -115,9 +119,16 @@ StageRecord StageRunner::run(Stage stage) const {
         std::filesystem::create_directories(folder_);
         const auto request = std::filesystem::path(result).replace_extension(".request.json");
         cli::write_text_file(request, stage.request.dump(2) + "\n", true);
-        std::vector<std::string> arguments{
-            "--request", request.string(),        "--force", "--json", result.string(),
-            "--threads", std::to_string(threads_)};
+        std::vector<std::string> arguments{"--request",
+                                           request.string(),
+                                           "--force",
+                                           "--json",
+                                           result.string(),
+                                           "--threads",
+                                           std::to_string(threads_),
+                                           "--error-file",
+                                           error_path(stage.name).string()};
+        std::filesystem::remove(error_path(stage.name));
         if (quiet_) arguments.emplace_back("--quiet");
         const ChildResult child = run_child(program, arguments);
         if (child.exit_code != 0) fail(stage, child.exit_code);

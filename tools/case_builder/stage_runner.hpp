@@ -42,6 +42,8 @@ class StageRunner {
     StageRecord run(Stage stage) const;
 
     /// Where a stage leaves its command's JSON result; later stages may name it as an input.
+    /// What the stage said when it failed last; there only if it did.
+    std::filesystem::path error_path(const std::string& stage_name) const;
     std::filesystem::path result_path(const std::string& stage_name) const;
 
     /// True if this file is the recorded output of a stage in this folder.

@@ -115,6 +115,17 @@ Stage pack_stage(const CaseFile& case_file, const BuildPaths& paths, const std::
     return stage;
 }
 
+std::filesystem::path write_records(const BuildPaths& paths, const std::vector<StageRecord>& records) {
+    Json rows = Json::array();
+    for (const StageRecord& record : records)
+        rows.push_back({{"stage", record.name},
+                        {"seconds", record.seconds},
+                        {"peak_memory_bytes", record.peak_memory_bytes}});
+    std::filesystem::path file = paths.parts / "stages.json";
+    cli::write_text_file(file, rows.dump(2) + "\n", true);
+    return file;
+}
+
 }  // namespace
 
 std::vector<Stage> stages_to_asset(const CaseFile& case_file, const BuildPaths& paths) {
@@ -149,18 +160,12 @@ Stage touch_stage(const BuildPaths& paths) {
 
 Stage report_stage(const CaseFile& case_file, const BuildPaths& paths,
                    const std::vector<StageRecord>& records, const std::filesystem::path& touch_result) {
-    Json rows = Json::array();
-    for (const StageRecord& record : records)
-        rows.push_back({{"stage", record.name},
-                        {"seconds", record.seconds},
-                        {"peak_memory_bytes", record.peak_memory_bytes}});
     stages::ReportRequest request;
     request.asset = paths.asset;
     request.touch = touch_result;
     request.curve = paths.parts / "force.svg";
-    request.stages = paths.parts / "stages.json";
+    request.stages = write_records(paths, records);
     request.output = paths.report;
-    cli::write_text_file(request.stages, rows.dump(2) + "\n", true);
     Stage stage{"report",
                 "report",
                 {},
@@ -173,6 +178,30 @@ Stage report_stage(const CaseFile& case_file, const BuildPaths& paths,
                 request.rigid.push_back({body.name, body.surface.label_names.front(), body.surface.isovalue});
     }
     if (case_file.volume) stage.inputs.push_back(request.volume = paths.parts / "volume.nrrd");
+    stage.request = cli::to_request(request);
+    return stage;
+}
+
+std::filesystem::path failure_page(const BuildPaths& paths) {
+    return paths.parts / "failure.html";
+}
+
+Stage failure_stage(const CaseFile& case_file, const BuildPaths& paths,
+                    const std::vector<StageRecord>& records, const std::filesystem::path& error) {
+    stages::ReportRequest request;
+    request.failed_with = error;
+    request.name = case_file.name;
+    request.stages = write_records(paths, records);
+    request.output = failure_page(paths);
+    Stage stage{"failure page", "report", {}, {request.failed_with, request.stages}, {request.output}};
+    const auto was_made = [&](const char* name) {
+        return std::ranges::find(records, name, &StageRecord::name) != records.end();
+    };
+    if (was_made("import volume")) stage.inputs.push_back(request.volume = paths.parts / "volume.nrrd");
+    if (was_made("segment"))
+        stage.inputs.push_back(request.labels = paths.parts / "labels.seg.nrrd");
+    else if (was_made("import labels"))
+        stage.inputs.push_back(request.labels = paths.parts / "prior.seg.nrrd");
     stage.request = cli::to_request(request);
     return stage;
 }

@@ -28,4 +28,12 @@ Stage touch_stage(const BuildPaths& paths);
 Stage report_stage(const CaseFile& case_file, const BuildPaths& paths,
                    const std::vector<StageRecord>& records, const std::filesystem::path& touch_result);
 
+/// Where a failed build shows what there is.
+std::filesystem::path failure_page(const BuildPaths& paths);
+
+/// The stage that writes failure_page() where another failed: what it said (`error`, .txt), and slices
+/// through what `records`' stages made.
+Stage failure_stage(const CaseFile& case_file, const BuildPaths& paths,
+                    const std::vector<StageRecord>& records, const std::filesystem::path& error);
+
 }  // namespace palpate::case_builder

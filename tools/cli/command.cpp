@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fmt/format.h>
+#include <fstream>
 #include <iostream>
 #include <new>
 #include <nlohmann/json.hpp>
@@ -99,6 +100,8 @@ Command::Command(CommandText text)
     app_->set_version_flag("--version", "palpate " + version());
     const std::string group = "Every command";
     app_->add_option("--json", json_path_, "write the result as JSON to this file, '-' for stdout")
+        ->group(group);
+    app_->add_option("--error-file", error_path_, "where it fails, write its message to this file as well")
         ->group(group);
     app_->add_flag("--quiet", quiet_, "say nothing but errors")->group(group);
     app_->add_flag("--verbose", verbose_, "say more")->group(group);
@@ -267,8 +270,11 @@ void Command::emit(nlohmann::ordered_json result, const std::string& text, doubl
 int Command::run(int argc, char** argv, const std::function<nlohmann::ordered_json(Session&)>& job) {
     const std::string program = "palpate-" + text_.name;
     const auto start = std::chrono::steady_clock::now();
-    const auto say = [&](const std::exception& error) {
-        std::cerr << program << ": " << with_final_names(error.what()) << '\n';
+    const auto say = [&](const std::string& message) {
+        const std::string text = program + ": " + with_final_names(message) + "\n";
+        std::cerr << text;
+        if (!error_path_.empty() && !(std::ofstream(error_path_) << text))
+            std::cerr << program << ": " << error_path_ << ": cannot be written\n";
     };
     try {
         if (const int code = parse(argc, argv); code >= 0) return code;
@@ -297,20 +303,20 @@ int Command::run(int argc, char** argv, const std::function<nlohmann::ordered_js
         if (session.shortfall) throw QualityNotMet(*session.shortfall);
         return std::cout ? ExitCode::ok : ExitCode::failed;
     } catch (const UsageError& error) {
-        say(error);
+        say(error.what());
         return ExitCode::usage;
     } catch (const InvalidInput& error) {
-        say(error);
+        say(error.what());
         return ExitCode::invalid_input;
     } catch (const QualityNotMet& error) {
-        say(error);
+        say(error.what());
         return ExitCode::quality_not_met;
     } catch (const Interrupted&) {
         return ExitCode::interrupted;
     } catch (const std::bad_alloc&) {
-        std::cerr << program << ": out of memory; use a coarser mesh or a machine with more memory\n";
+        say("out of memory; use a coarser mesh or a machine with more memory");
     } catch (const std::exception& error) {
-        say(error);
+        say(error.what());
     }
     return ExitCode::failed;
 }

@@ -135,7 +135,7 @@ class Command {
     CommandText text_;
     std::unique_ptr<CLI::App> app_;
     std::vector<Parameter> parameters_;
-    std::string json_path_;
+    std::string json_path_, error_path_;
     bool quiet_ = false;
     bool verbose_ = false;
     bool force_ = false;

@@ -28,6 +28,36 @@ void require_our_output(const case_builder::StageRunner& runner, const std::stri
                             "choose another name or pass --force"});
 }
 
+// A page on what there was before a stage failed. That it cannot be made does not hide why the stage failed.
+void show_failure(const case_builder::CaseFile& case_file, const case_builder::BuildPaths& paths,
+                  const std::vector<case_builder::StageRecord>& records,
+                  const case_builder::StageRunner& runner, const std::filesystem::path& error_file) {
+    try {
+        runner.run(case_builder::failure_stage(case_file, paths, records, error_file));
+        spdlog::error("{} shows what there is so far", case_builder::failure_page(paths).string());
+    } catch (const Error& error) {
+        spdlog::warn("no page on what there is so far: {}", error.what());
+    }
+}
+
+std::vector<case_builder::StageRecord> make_asset(const case_builder::CaseFile& case_file,
+                                                  const case_builder::BuildPaths& paths,
+                                                  const case_builder::StageRunner& runner) {
+    std::filesystem::remove(case_builder::failure_page(paths));
+    std::vector<case_builder::StageRecord> records;
+    for (const case_builder::Stage& stage : case_builder::stages_to_asset(case_file, paths)) {
+        try {
+            records.push_back(runner.run(stage));
+        } catch (const Error&) {
+            const auto error_file = runner.error_path(stage.name);
+            if (std::filesystem::exists(error_file))
+                show_failure(case_file, paths, records, runner, error_file);
+            throw;
+        }
+    }
+    return records;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -38,8 +68,10 @@ int main(int argc, char** argv) {
                     "inputs changed.",
          .examples = {"palpate build pipelines/cases/liver.toml -o liver.vtkhdf",
                       "palpate build nasopharynx.toml --volume patient7.nrrd -o patient7.vtkhdf"},
-         .notes = "Beside OUTPUT.vtkhdf it writes OUTPUT.html and the folder OUTPUT.parts with every "
-                  "intermediate result."});
+         .notes =
+             "Beside OUTPUT.vtkhdf it writes OUTPUT.html and the folder OUTPUT.parts with every "
+             "intermediate result. Where a stage fails, OUTPUT.parts/failure.html shows what it said and "
+             "slices through what there was by then."});
     command.input("case", case_path, "case file (.toml)").required();
     command.input("--volume", volume, "CT or MRI to use instead of the case file's input.volume");
     command.input("--labels", labels, "label map to use instead of the case file's input.labels");
@@ -65,9 +97,7 @@ int main(int argc, char** argv) {
             require_our_output(runner, "pack", paths.asset);
             require_our_output(runner, "report", paths.report);
         }
-        std::vector<case_builder::StageRecord> records;
-        for (const case_builder::Stage& stage : case_builder::stages_to_asset(case_file, paths))
-            records.push_back(runner.run(stage));
+        std::vector<case_builder::StageRecord> records = make_asset(case_file, paths, runner);
         records.push_back(runner.run(case_builder::touch_stage(paths)));
         records.push_back(
             runner.run(case_builder::report_stage(case_file, paths, records, runner.result_path("touch"))));

@@ -99,7 +99,10 @@ std::vector<SurfaceComparison> comparisons_of(const stages::ReportRequest& reque
 }
 
 std::string page_of(const stages::ReportRequest& request, cli::Session& session) {
-    const Case patient_case = asset::read_asset(request.asset);
+    const bool failed = request.asset.empty();
+    Case patient_case;
+    patient_case.name = request.name.empty() ? request.failed_with.stem().string() : request.name;
+    if (!failed) patient_case = asset::read_asset(request.asset);
     std::optional<Volume> volume;
     std::optional<LabelMap> labels;
     if (!request.volume.empty()) volume = read_volume(request.volume);
@@ -109,7 +112,7 @@ std::string page_of(const stages::ReportRequest& request, cli::Session& session)
                         .labels = labels ? &*labels : nullptr};
     if (!request.rigid.empty() && !labels)
         throw UsageError({"--rigid", "needs --labels", "the label map that the body was made from", ""});
-    if (labels) {
+    if (labels && !failed) {
         session.progress.step("measuring distances", 0.1);
         inputs.comparisons = comparisons_of(request, patient_case, *labels, volume);
     }
@@ -118,7 +121,7 @@ std::string page_of(const stages::ReportRequest& request, cli::Session& session)
     if (!request.stages.empty())
         inputs.stages = stages_from_json(json_of(request.stages), request.stages.string());
     session.progress.step("drawing", 0.3);
-    return html_report(inputs);
+    return failed ? html_failure(inputs, text_of(request.failed_with)) : html_report(inputs);
 }
 
 }  // namespace
@@ -136,6 +139,8 @@ int main(int argc, char** argv) {
     stages::ReportRequest request;
     declare(command, request);
     return command.run(argc, argv, [&](cli::Session& session) {
+        if (request.asset.empty() == request.failed_with.empty())
+            throw UsageError({"asset", "is given with --failed-with, or neither is", "one of them", ""});
         cli::StagedFile page = session.stage(request.output);
         set_imaging_threads(session.threads);
         session.progress.step("reading the case", 0);

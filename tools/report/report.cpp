@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <span>
 
 #include "formats/provenance/cautions.hpp"
 #include "tools/report/html.hpp"
@@ -68,7 +69,33 @@ std::string key_figures(const ReportInputs& inputs, const std::vector<MeasuredBo
     return html::cards(result);
 }
 
+std::string page_html(const ReportPage& page, const std::string& header, std::span<const Section> sections) {
+    const std::string name = html::escaped(page.inputs.patient_case.name);
+    std::string navigation, content;
+    for (const Section& section : sections) {
+        navigation += fmt::format("<a href=\"#{}\">{}</a>", section.anchor, section.title);
+        content += section.make(page);
+    }
+    return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+           "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>" +
+           name + " – Palpate report</title>\n<style>" + std::string(page_style) +
+           "</style>\n</head>\n<body>\n<main>\n<header>\n<p class=\"kind\">Palpate report</p>\n<h1>" + name +
+           "</h1>\n" + header + "</header>\n<nav>" + navigation + "</nav>\n" + content +
+           "<footer>Lengths in mm, positions in the patient frame: L left, P posterior, S superior (LPS). "
+           "Not a "
+           "medical device; not for diagnosis or treatment.</footer>\n</main>\n</body>\n</html>\n";
+}
+
 }  // namespace
+
+std::string html_failure(const ReportInputs& inputs, const std::string& message) {
+    constexpr Section sections[] = {{"slices", "Slices", slices_section},
+                                    {"stages", "Stages", stages_section}};
+    return page_html({inputs, {}},
+                     "<div class=\"verdict failed\"><strong>✗ Not built</strong><div>" +
+                         html::escaped(message) + "</div></div>\n",
+                     sections);
+}
 
 std::string html_report(const ReportInputs& inputs) {
     const VirtualDisplay display;
@@ -78,21 +105,10 @@ std::string html_report(const ReportInputs& inputs) {
         std::vector<Check> checks = checks_of(body, mesh);
         page.bodies.push_back({body, std::move(mesh), std::move(checks)});
     }
-    const std::string name = html::escaped(inputs.patient_case.name);
-    std::string navigation, content;
-    for (const Section& section : report_sections) {
-        navigation += fmt::format("<a href=\"#{}\">{}</a>", section.anchor, section.title);
-        content += section.make(page);
-    }
-    return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-           "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>" +
-           name + " – Palpate report</title>\n<style>" + std::string(page_style) +
-           "</style>\n</head>\n<body>\n<main>\n<header>\n<p class=\"kind\">Palpate report</p>\n<h1>" + name +
-           "</h1>\n" + verdict(page.bodies) + cautions(inputs.patient_case.provenance) +
-           key_figures(inputs, page.bodies) + "</header>\n<nav>" + navigation + "</nav>\n" + content +
-           "<footer>Lengths in mm, positions in the patient frame: L left, P posterior, S superior (LPS). "
-           "Not a "
-           "medical device; not for diagnosis or treatment.</footer>\n</main>\n</body>\n</html>\n";
+    return page_html(
+        page,
+        verdict(page.bodies) + cautions(inputs.patient_case.provenance) + key_figures(inputs, page.bodies),
+        report_sections);
 }
 
 }  // namespace palpate::report

@@ -35,6 +35,10 @@ struct ReportInputs {
 /// status means "run"; throws InvalidInput naming `culprit` and the record at fault.
 std::vector<StageRecord> stages_from_json(const nlohmann::json& json, const std::string& culprit);
 
+/// Makes a page on a case that could not be built: what failed, as it was said, slices through what images
+/// there are, and what the stages before took. Needs no display.
+std::string html_failure(const ReportInputs& inputs, const std::string& message);
+
 /// Makes one self-contained HTML page: no script, no link, pictures within. Draws in 3-D, so it needs an X
 /// display or Xvfb (VirtualDisplay); throws SystemFailure where there is neither.
 std::string html_report(const ReportInputs& inputs);

@@ -191,6 +191,8 @@ TEST(Request, of_pack_survives_json) {
 
 TEST(Request, of_report_survives_json) {
     expect_round_trip(ReportRequest{.asset = existing("a.vtkhdf"),
+                                    .failed_with = existing("e.txt"),
+                                    .name = "liver",
                                     .volume = existing("v.nrrd"),
                                     .labels = existing("l.nrrd"),
                                     .rigid = {{"skull", "bone", 226.0}, {"spine", "spine", {}}},
@@ -198,7 +200,7 @@ TEST(Request, of_report_survives_json) {
                                     .curve = existing("c.svg"),
                                     .stages = existing("s.json"),
                                     .output = "out.html"},
-                      8);
+                      10);
 }
 
 TEST(Request, words_and_json_ask_for_the_same) {

@@ -35,7 +35,11 @@ void from_json(const nlohmann::ordered_json& json, RigidOrigin& origin) {
 }
 
 void declare(cli::Command& command, ReportRequest& request) {
-    command.input("asset", request.asset, "case to report on (.vtkhdf)").required();
+    command.input("asset", request.asset, "case to report on (.vtkhdf)");
+    command.input("--failed-with", request.failed_with,
+                  "instead of a case: what a stage said that failed, by --error-file (.txt); the page shows "
+                  "that and what there is");
+    command.option("--name", request.name, "title of a page without a case");
     command.input("--volume", request.volume, "volume to show slices of, any format of 'palpate import'");
     command.input("--labels", request.labels, "label map to show contours of (.seg.nrrd)");
     command.items(

@@ -20,9 +20,11 @@ struct RigidOrigin {
 void to_json(nlohmann::ordered_json& json, const RigidOrigin& origin);
 void from_json(const nlohmann::ordered_json& json, RigidOrigin& origin);
 
-/// What `palpate report` is asked for; all but asset and output may be empty.
+/// What `palpate report` is asked for; all but output and one of asset and failed_with may be empty.
 struct ReportRequest {
-    std::filesystem::path asset;  ///< .vtkhdf
+    std::filesystem::path asset;        ///< .vtkhdf
+    std::filesystem::path failed_with;  ///< what a stage said that failed, in place of an asset (.txt)
+    std::string name;                   ///< of the case, in place of the asset's
     std::filesystem::path volume, labels;
     std::vector<RigidOrigin> rigid;  ///< bodies to compare with what they were made from
     std::filesystem::path touch;     ///< statistics of a run (.json)
