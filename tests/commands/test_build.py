@@ -149,6 +149,32 @@ class Build(unittest.TestCase):
         self.change("tool_radius_mm = 4", "tool_radius_mm = 3")
         self.assertEqual(self.stages_run(), ["pack", "touch", "report"])
 
+    def test_a_value_that_is_set_goes_before_the_case_files_own(self):
+        setting = ("--set", "deformable.liver.region.liver.youngs_modulus_kpa=7")
+        self.assertEqual(self.stages_run(*setting), ["condense liver", "pack", "touch", "report"])
+        self.assertEqual(self.stages_run(*setting), [])
+        moved = self.folder / "elsewhere"
+        moved.mkdir()
+        shutil.move(self.folder / "abdomen.nrrd", moved)
+        self.assertEqual(self.stages_run(*setting, "--set", f"input.volume={moved / 'abdomen.nrrd'}"), [])
+        self.fail(3, "--set:1", "did you mean tool_radius_mm", arguments=("--set", "haptics.tool_radios_mm=3"))
+        self.fail(2, "KEY=VALUE", arguments=("--set", "haptics"))
+
+    def test_one_stage_runs_alone(self):
+        self.change("youngs_modulus_kpa = 6.3", "youngs_modulus_kpa = 7")
+        self.assertEqual(self.stages_run("--stage", "condense liver"), ["condense liver"])
+        self.assertEqual(self.stages_run("--stage", "condense liver"), [])
+        self.assertEqual(self.stages_run(), ["pack", "touch", "report"])
+        self.fail(2, "'condense liver'", arguments=("--stage", "condense"))
+
+    def test_one_stage_that_failed_on_its_input_is_not_tried_again(self):
+        self.change("[haptics]", "[quality]\nmin_dihedral_deg = 80\n[haptics]")
+        request = self.folder / "case.parts" / "mesh-liver.request.json"
+        self.fail(4, "dihedral", arguments=("--stage", "mesh liver"))
+        request.unlink()
+        again = self.fail(4, "as before: ", arguments=("--stage", "mesh liver"))
+        self.assertFalse(request.exists(), again.stderr)
+
     def test_other_seeds_segment_anew(self):
         seeds = self.folder / "muscle.fcsv"
         seeds.write_text("# CoordinateSystem = LPS\n1,34,20,0\n")

@@ -7,6 +7,7 @@
 #include "formats/model/label_map.hpp"
 #include "formats/records/material.hpp"
 #include "tools/case_builder/table_reader.hpp"
+#include "tools/case_builder/toml_document.hpp"
 #include "tools/imaging/recipes/recipe.hpp"
 #include "tools/imaging/recipes/recipe_json.hpp"
 
@@ -214,8 +215,9 @@ void check_inputs(const CaseFile& case_file, Mistakes& mistakes) {
 
 }  // namespace
 
-void check_case_file(const std::filesystem::path& path, const CaseFile& case_file) {
-    const toml::table document = read_toml(path);
+void check_case_file(const std::filesystem::path& path, const CaseFile& case_file,
+                     std::span<const Override> overrides) {
+    const toml::table document = read_toml(path, overrides);
     TableReader root(document, path.string(), "");
     const std::vector<Label> labels = labels_of(case_file, case_file.structures.size());
     Mistakes mistakes;

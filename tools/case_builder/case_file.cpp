@@ -11,6 +11,7 @@
 #include "formats/records/haptic_settings.hpp"
 #include "formats/records/quality_contract.hpp"
 #include "tools/case_builder/table_reader.hpp"
+#include "tools/case_builder/toml_document.hpp"
 #include "tools/imaging/recipes/recipe.hpp"
 #include "tools/tissue/tissue.hpp"
 
@@ -24,8 +25,7 @@ void read(TableReader& table, const std::string& key, T& value) {
 }
 
 // The rules under `key`, { touching = "skull" } or { sphere_mm = [x, y, z, r] } ...
-std::vector<stages::NodePick> node_picks(TableReader& body, const std::string& key,
-                                         const std::filesystem::path& folder) {
+std::vector<stages::NodePick> node_picks(TableReader& body, const std::string& key) {
     std::vector<stages::NodePick> picks;
     for (TableReader table : body.tables(key)) {
         stages::NodePick pick;
@@ -34,7 +34,7 @@ std::vector<stages::NodePick> node_picks(TableReader& body, const std::string& k
         pick.box_mm = table.optional_numbers("box_mm", 6).value_or(std::vector<double>{});
         pick.sphere_mm = table.optional_numbers("sphere_mm", 4).value_or(std::vector<double>{});
         pick.plane_mm = table.optional_numbers("plane_mm", 6).value_or(std::vector<double>{});
-        if (const auto file = table.optional<std::string>("nodes_file")) pick.nodes_file = folder / *file;
+        pick.nodes_file = table.path("nodes_file").value_or("");
         table.refuse_unknown();
         if (table.raw().size() != 1)
             body.fail(table.raw(), key, "has a rule that is not understood",
@@ -69,25 +69,27 @@ nlohmann::ordered_json to_json(const toml::node& node) {
     return list;
 }
 
-// The keys of a table in the order in which they are written; toml++ keeps them by name.
+// The keys of a table in the order in which they are written; toml++ keeps them by name. Those that an
+// override adds are written nowhere in the file and come last.
 std::vector<std::string> keys_as_written(const toml::table& table) {
-    std::vector<std::pair<toml::source_position, std::string>> found;
-    for (const auto& [key, node] : table) found.emplace_back(node.source().begin, key.str());
+    std::vector<std::tuple<bool, toml::source_position, std::string>> found;
+    for (const auto& [key, node] : table)
+        found.emplace_back(!key.source().begin, key.source().begin, key.str());
     std::ranges::sort(found);
     std::vector<std::string> keys;
-    for (const auto& [position, key] : found) keys.push_back(key);
+    for (const auto& [added, position, key] : found) keys.push_back(key);
     return keys;
 }
 
 // A structure's other keys are the recipe's parameters, cleaning steps in the order written; `palpate
 // segment` knows which exist and refuses the rest.
-StructureSpec structure(TableReader reader, const std::filesystem::path& folder) {
+StructureSpec structure(TableReader reader) {
     StructureSpec spec;
     spec.name = reader.required<std::string>("name");
     spec.recipe = reader.required<std::string>("recipe");
     for (const std::string& key : keys_as_written(reader.raw()))
         if (imaging::is_file_parameter(key))
-            spec.files[key] = folder / reader.required<std::string>(key);
+            spec.files[key] = *reader.path(key);
         else if (key != "name" && key != "recipe")
             spec.parameters[key] = to_json(*reader.raw().get(key));
     return spec;
@@ -104,10 +106,10 @@ std::string body_name(TableReader& reader) {
 }
 
 // Keys PREFIX_file, PREFIX_unit and PREFIX_frame; with a file, none of the keys that `excluded` names.
-void read_imported_file(TableReader& reader, const std::string& prefix, const std::filesystem::path& folder,
+void read_imported_file(TableReader& reader, const std::string& prefix,
                         std::initializer_list<const char*> excluded, std::filesystem::path& file,
                         std::string& unit, std::string& frame) {
-    const auto path = reader.optional<std::string>(prefix + "_file");
+    const auto path = reader.path(prefix + "_file");
     read(reader, prefix + "_unit", unit);
     read(reader, prefix + "_frame", frame);
     if (!path && (reader.has(prefix + "_unit") || reader.has(prefix + "_frame")))
@@ -117,15 +119,15 @@ void read_imported_file(TableReader& reader, const std::string& prefix, const st
         if (reader.has(key))
             reader.fail(*reader.raw().get(key), key, "makes no sense beside " + prefix + "_file", "",
                         "leave one of them out");
-    file = folder / *path;
+    file = *path;
 }
 
-RigidSpec rigid(TableReader reader, const std::filesystem::path& folder) {
+RigidSpec rigid(TableReader reader) {
     RigidSpec spec;
     spec.name = body_name(reader);
     stages::SurfaceRequest& surface = spec.surface;
-    read_imported_file(reader, "surface", folder, {"label", "isovalue_hu"}, surface.surface_file,
-                       surface.unit, surface.frame);
+    read_imported_file(reader, "surface", {"label", "isovalue_hu"}, surface.surface_file, surface.unit,
+                       surface.frame);
     const std::string label = reader.optional<std::string>("label").value_or(spec.name);
     if (surface.surface_file.empty()) surface.label_names = {label};
     surface.isovalue = reader.optional<double>("isovalue_hu");
@@ -225,11 +227,11 @@ void read_region(TableReader& region, DeformableSpec& spec) {
     if (cell_size) mesh.region_cell_sizes.push_back({label, *cell_size});
 }
 
-DeformableSpec deformable(TableReader reader, const std::filesystem::path& folder) {
+DeformableSpec deformable(TableReader reader) {
     DeformableSpec spec;
     spec.name = spec.condense.name = body_name(reader);
     stages::MeshRequest& mesh = spec.mesh;
-    read_imported_file(reader, "mesh", folder, {"mesh"}, mesh.mesh_file, mesh.unit, mesh.frame);
+    read_imported_file(reader, "mesh", {"mesh"}, mesh.mesh_file, mesh.unit, mesh.frame);
     TableReader sizes = reader.table("mesh");
     mesh.sizing.cell_size = sizes.positive("cell_size_mm").value_or(mesh.sizing.cell_size);
     read(sizes, "facet_size_mm", mesh.sizing.facet_size);
@@ -239,8 +241,8 @@ DeformableSpec deformable(TableReader reader, const std::filesystem::path& folde
     for (TableReader rule : reader.tables("refine"))
         if (const stages::NearPlace place = near_place(rule); mesh.mesh_file.empty())
             mesh.near.push_back(place);
-    spec.condense.fixed = node_picks(reader, "fixed", folder);
-    spec.condense.contact = node_picks(reader, "contact", folder);
+    spec.condense.fixed = node_picks(reader, "fixed");
+    spec.condense.contact = node_picks(reader, "contact");
     read_compliance(reader, spec.condense);
     for (TableReader region : reader.tables("region")) read_region(region, spec);
     if (spec.condense.materials.empty())
@@ -272,13 +274,14 @@ void read_posture(TableReader& root, std::vector<DeformableSpec>& bodies) {
     }
 }
 
-void read_import_options(TableReader& input, const std::filesystem::path& folder, CaseFile& result) {
+void read_import_options(TableReader& input, CaseFile& result) {
     result.volume_import.series = input.text_or_number("series").value_or("");
     read(input, "accept_gaps", result.volume_import.accept_gaps);
     read(input, "nifti_frame", result.volume_import.nifti_frame);
     result.labels_import.nifti_frame = result.volume_import.nifti_frame;
     if (const auto names = input.optional<std::string>("label_names")) {
-        if (std::filesystem::is_regular_file(folder / *names)) result.label_table = folder / *names;
+        if (const auto file = input.path("label_names"); std::filesystem::is_regular_file(*file))
+            result.label_table = file;
         result.labels_import.label_names = result.label_table ? result.label_table->string() : *names;
     }
     read(input, "overlaps", result.labels_import.overlaps);
@@ -286,30 +289,22 @@ void read_import_options(TableReader& input, const std::filesystem::path& folder
 
 }  // namespace
 
-CaseFile read_case_file(const std::filesystem::path& path) {
-    const toml::table document = read_toml(path);
+CaseFile read_case_file(const std::filesystem::path& path, std::span<const Override> overrides) {
+    const toml::table document = read_toml(path, overrides);
     TableReader root(document, path.string(), "");
     if (const auto schema = root.required<std::int64_t>("schema"); schema != 1)
         root.fail(*document.get("schema"), "schema", "is " + std::to_string(schema), "1",
                   schema > 1 ? "use a newer palpate" : "");
     CaseFile result;
     result.name = root.required<std::string>("name");
-    const auto resolved =
-        [&](const std::optional<std::string>& text) -> std::optional<std::filesystem::path> {
-        if (!text) return std::nullopt;
-        return path.parent_path() / *text;
-    };
     TableReader input = root.table("input");
-    result.volume = resolved(input.optional<std::string>("volume"));
-    result.labels = resolved(input.optional<std::string>("labels"));
-    read_import_options(input, path.parent_path(), result);
+    result.volume = input.path("volume");
+    result.labels = input.path("labels");
+    read_import_options(input, result);
     input.refuse_unknown();
-    for (const TableReader& table : root.tables("structure"))
-        result.structures.push_back(structure(table, path.parent_path()));
-    for (const TableReader& table : root.tables("rigid"))
-        result.rigid.push_back(rigid(table, path.parent_path()));
-    for (const TableReader& table : root.tables("deformable"))
-        result.deformable.push_back(deformable(table, path.parent_path()));
+    for (const TableReader& table : root.tables("structure")) result.structures.push_back(structure(table));
+    for (const TableReader& table : root.tables("rigid")) result.rigid.push_back(rigid(table));
+    for (const TableReader& table : root.tables("deformable")) result.deformable.push_back(deformable(table));
     read_posture(root, result.deformable);
     TableReader haptics = root.table("haptics"), quality = root.table("quality");
     read_record(haptics, haptic_fields, result.haptics);

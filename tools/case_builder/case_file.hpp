@@ -5,11 +5,13 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "formats/records/haptic_settings.hpp"
 #include "formats/records/quality_contract.hpp"
+#include "tools/case_builder/overrides.hpp"
 #include "tools/stages/requests/condense_request.hpp"
 #include "tools/stages/requests/import_request.hpp"
 #include "tools/stages/requests/mesh_request.hpp"
@@ -69,10 +71,10 @@ struct CaseFile {
     int attempts = stages::MeshRequest{}.attempts;  ///< to keep the contract
 };
 
-/// Reads a case file. Throws InvalidInput naming file, line and key for a syntax error, an unknown key (with
-/// the nearest known ones), a missing or wrongly typed value, a name used twice or unfit for a file name, or
-/// another schema.
-CaseFile read_case_file(const std::filesystem::path& path);
+/// Reads a case file, some of its values replaced. Throws InvalidInput naming file, line and key for a syntax
+/// error, an unknown key (with the nearest known ones), a missing or wrongly typed value, a name used twice
+/// or unfit for a file name, or another schema.
+CaseFile read_case_file(const std::filesystem::path& path, std::span<const Override> overrides = {});
 
 /// Tells whether some stage needs the label map of the structures; imported meshes and surfaces alone do not.
 bool needs_labels(const CaseFile& case_file);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <fmt/format.h>
+#include <span>
 
 #include "tools/case_builder/provenance.hpp"
 #include "tools/cli/items.hpp"
@@ -90,13 +91,16 @@ Stage condense_stage(const DeformableSpec& body, const std::filesystem::path& pa
     return stage;
 }
 
-Stage pack_stage(const CaseFile& case_file, const BuildPaths& paths, const std::vector<Stage>& before) {
+std::filesystem::path provenance_file(const BuildPaths& paths) {
+    return paths.parts / "provenance.json";
+}
+
+Stage pack_stage(const CaseFile& case_file, const BuildPaths& paths) {
     stages::PackRequest request;
     request.name = case_file.name;
     request.haptics = case_file.haptics;
     request.output = paths.asset;
-    request.provenance = paths.parts / "provenance.json";
-    cli::write_text_file(request.provenance, provenance(case_file, before).dump(2) + "\n", true);
+    request.provenance = provenance_file(paths);
     Stage stage{"pack", "pack", {}, {request.provenance}, {paths.asset}};
     for (const RigidSpec& rigid : case_file.rigid) {
         request.rigid.push_back({rigid.name, paths.parts / (rigid.name + ".vtp"), {}});
@@ -115,56 +119,42 @@ Stage pack_stage(const CaseFile& case_file, const BuildPaths& paths, const std::
     return stage;
 }
 
-std::filesystem::path write_records(const BuildPaths& paths, const std::vector<StageRecord>& records) {
-    Json rows = Json::array();
-    for (const StageRecord& record : records)
-        rows.push_back({{"stage", record.name},
-                        {"seconds", record.seconds},
-                        {"peak_memory_bytes", record.peak_memory_bytes}});
-    std::filesystem::path file = paths.parts / "stages.json";
-    cli::write_text_file(file, rows.dump(2) + "\n", true);
-    return file;
-}
-
-}  // namespace
-
-std::vector<Stage> stages_to_asset(const CaseFile& case_file, const BuildPaths& paths) {
-    std::filesystem::create_directories(paths.parts);
-    std::vector<Stage> stages;
-    if (case_file.volume)
-        stages.push_back(import_stage("import volume", case_file.volume_import, *case_file.volume,
-                                      paths.parts / "volume.nrrd"));
-    if (case_file.labels) stages.push_back(import_labels_stage(case_file, paths.parts / "prior.seg.nrrd"));
-    if (needs_labels(case_file)) stages.push_back(segment_stage(case_file, paths.parts));
-    for (const RigidSpec& body : case_file.rigid) stages.push_back(surface_stage(body, paths.parts));
-    for (const DeformableSpec& body : case_file.deformable) {
-        stages.push_back(mesh_stage(body, case_file, paths.parts));
-        stages.push_back(condense_stage(body, paths.parts));
-    }
-    stages.push_back(pack_stage(case_file, paths, stages));
-    return stages;
-}
-
-Stage touch_stage(const BuildPaths& paths) {
+Stage touch_stage(const BuildPaths& paths, TouchClock clock) {
     const std::filesystem::path curve = paths.parts / "force.svg", log = paths.parts / "touch.csv";
-    return {"touch",
-            "touch",
-            {{"asset", paths.asset.string()},
-             {"script", "press"},
-             {"seconds", 4},
-             {"curve", curve.string()},
-             {"log", log.string()}},
-            {paths.asset},
-            {curve, log}};
+    Json request{{"asset", paths.asset.string()},
+                 {"script", "press"},
+                 {"seconds", 4},
+                 {"curve", curve.string()},
+                 {"log", log.string()}};
+    if (clock == TouchClock::virtual_time) request["virtual_clock"] = true;
+    return {"touch", "touch", std::move(request), {paths.asset}, {curve, log}};
 }
 
-Stage report_stage(const CaseFile& case_file, const BuildPaths& paths,
-                   const std::vector<StageRecord>& records, const std::filesystem::path& touch_result) {
+std::filesystem::path records_file(const BuildPaths& paths) {
+    return paths.parts / "stages.json";
+}
+
+std::span<const Stage> stages_before(const Stage& stage, const std::vector<Stage>& stages) {
+    const auto at = std::ranges::find(stages, stage.name, &Stage::name);
+    return {stages.data(), static_cast<std::size_t>(at - stages.begin())};
+}
+
+void write_records(const BuildPaths& paths, std::span<const Stage> stages, const StageRunner& runner) {
+    Json rows = Json::array();
+    for (const Stage& stage : stages)
+        if (const auto record = runner.recorded(stage.name))
+            rows.push_back({{"stage", record->name},
+                            {"seconds", record->seconds},
+                            {"peak_memory_bytes", record->peak_memory_bytes}});
+    cli::write_text_file(records_file(paths), rows.dump(2) + "\n", true);
+}
+
+Stage report_stage(const CaseFile& case_file, const BuildPaths& paths) {
     stages::ReportRequest request;
     request.asset = paths.asset;
-    request.touch = touch_result;
+    request.touch = paths.parts / "touch.json";
     request.curve = paths.parts / "force.svg";
-    request.stages = write_records(paths, records);
+    request.stages = records_file(paths);
     request.output = paths.report;
     Stage stage{"report",
                 "report",
@@ -182,20 +172,51 @@ Stage report_stage(const CaseFile& case_file, const BuildPaths& paths,
     return stage;
 }
 
+}  // namespace
+
+std::vector<Stage> stages_of(const CaseFile& case_file, const BuildPaths& paths, TouchClock clock) {
+    std::vector<Stage> stages;
+    if (case_file.volume)
+        stages.push_back(import_stage("import volume", case_file.volume_import, *case_file.volume,
+                                      paths.parts / "volume.nrrd"));
+    if (case_file.labels) stages.push_back(import_labels_stage(case_file, paths.parts / "prior.seg.nrrd"));
+    if (needs_labels(case_file)) stages.push_back(segment_stage(case_file, paths.parts));
+    for (const RigidSpec& body : case_file.rigid) stages.push_back(surface_stage(body, paths.parts));
+    for (const DeformableSpec& body : case_file.deformable) {
+        stages.push_back(mesh_stage(body, case_file, paths.parts));
+        stages.push_back(condense_stage(body, paths.parts));
+    }
+    stages.push_back(pack_stage(case_file, paths));
+    stages.push_back(touch_stage(paths, clock));
+    stages.push_back(report_stage(case_file, paths));
+    return stages;
+}
+
+void prepare(const Stage& stage, const CaseFile& case_file, const BuildPaths& paths,
+             const std::vector<Stage>& stages, const StageRunner& runner) {
+    std::filesystem::create_directories(paths.parts);
+    const auto before = stages_before(stage, stages);
+    if (stage.name == "pack")
+        cli::write_text_file(provenance_file(paths), provenance(case_file, before).dump(2) + "\n", true);
+    if (stage.name == "report") write_records(paths, before, runner);
+}
+
 std::filesystem::path failure_page(const BuildPaths& paths) {
     return paths.parts / "failure.html";
 }
 
-Stage failure_stage(const CaseFile& case_file, const BuildPaths& paths,
-                    const std::vector<StageRecord>& records, const std::filesystem::path& error) {
+Stage failure_stage(const CaseFile& case_file, const BuildPaths& paths, const std::vector<Stage>& stages,
+                    const Stage& failed, const StageRunner& runner) {
+    const auto before = stages_before(failed, stages);
+    write_records(paths, before, runner);
     stages::ReportRequest request;
-    request.failed_with = error;
+    request.failed_with = runner.error_path(failed.name);
     request.name = case_file.name;
-    request.stages = write_records(paths, records);
+    request.stages = records_file(paths);
     request.output = failure_page(paths);
     Stage stage{"failure page", "report", {}, {request.failed_with, request.stages}, {request.output}};
     const auto was_made = [&](const char* name) {
-        return std::ranges::find(records, name, &StageRecord::name) != records.end();
+        return std::ranges::find(before, name, &Stage::name) != before.end();
     };
     if (was_made("import volume")) stage.inputs.push_back(request.volume = paths.parts / "volume.nrrd");
     if (was_made("segment"))

@@ -16,24 +16,25 @@ struct BuildPaths {
     std::filesystem::path report;  ///< .html
 };
 
-/// Lists the stages from image to asset, in order; the last one is "pack". Writes what made the
-/// asset's parts, provenance.json, into `paths.parts`.
-std::vector<Stage> stages_to_asset(const CaseFile& case_file, const BuildPaths& paths);
+/// How the finished asset is pressed for four seconds: in real time, which tells how this machine keeps up,
+/// or as fast as possible, which tells the same of the forces on a machine that does other work.
+enum class TouchClock { real, virtual_time };
 
-/// The stage that presses the finished asset for four seconds of real time.
-Stage touch_stage(const BuildPaths& paths);
+/// Lists all stages of a build in order, from image to report.
+std::vector<Stage> stages_of(const CaseFile& case_file, const BuildPaths& paths,
+                             TouchClock clock = TouchClock::real);
 
-/// The stage that writes the report; `records` are what the earlier stages took, `touch_result` is the JSON
-/// result of touch_stage().
-Stage report_stage(const CaseFile& case_file, const BuildPaths& paths,
-                   const std::vector<StageRecord>& records, const std::filesystem::path& touch_result);
+/// Writes what a stage reads that no stage makes: of "pack" how the asset was made, provenance.json; of
+/// "report" what the stages took, stages.json. To be called when the stages before are done.
+void prepare(const Stage& stage, const CaseFile& case_file, const BuildPaths& paths,
+             const std::vector<Stage>& stages, const StageRunner& runner);
 
 /// Where a failed build shows what there is.
 std::filesystem::path failure_page(const BuildPaths& paths);
 
-/// The stage that writes failure_page() where another failed: what it said (`error`, .txt), and slices
-/// through what `records`' stages made.
-Stage failure_stage(const CaseFile& case_file, const BuildPaths& paths,
-                    const std::vector<StageRecord>& records, const std::filesystem::path& error);
+/// The stage that writes failure_page() where `failed` did: what it said, and slices through what the stages
+/// before it made.
+Stage failure_stage(const CaseFile& case_file, const BuildPaths& paths, const std::vector<Stage>& stages,
+                    const Stage& failed, const StageRunner& runner);
 
 }  // namespace palpate::case_builder

@@ -9,16 +9,6 @@
 
 namespace palpate::case_builder {
 
-toml::table read_toml(const std::filesystem::path& path) {
-    try {
-        return toml::parse_file(path.string());
-    } catch (const toml::parse_error& error) {
-        const auto line = error.source().begin.line;
-        throw InvalidInput({line > 0 ? fmt::format("{}:{}", path.string(), line) : path.string(),
-                            std::string(error.description()), "", "see docs/case_file.md"});
-    }
-}
-
 TableReader::TableReader(const toml::table& table, std::string file, std::string where)
     : table_(table), file_(std::move(file)), where_(std::move(where)) {}
 
@@ -35,6 +25,13 @@ std::optional<std::string> TableReader::choice(const std::string& key,
         fail(*table_.get(key), key, "is '" + *text + "'", fmt::format("{}", fmt::join(choices, ", ")),
              "did you mean " + nearest_names(*text, choices).front() + "?");
     return text;
+}
+
+std::optional<std::filesystem::path> TableReader::path(const std::string& key) {
+    const auto text = optional<std::string>(key);
+    if (!text) return std::nullopt;
+    const auto& written_in = node(key).source().path;
+    return std::filesystem::path(written_in ? *written_in : file_).parent_path() / *text;
 }
 
 std::optional<double> TableReader::positive(const std::string& key) {
@@ -112,8 +109,9 @@ void TableReader::fail(const toml::node& node, const std::string& key, const std
 }
 
 std::string TableReader::position_of(const toml::node& node) const {
-    const auto line = node.source().begin.line;
-    return line > 0 ? fmt::format("{}:{}", file_, line) : file_;
+    const auto& [begin, end, path] = node.source();
+    const std::string& file = path ? *path : file_;
+    return begin.line > 0 ? fmt::format("{}:{}", file, begin.line) : file;
 }
 
 const toml::node& TableReader::node(const std::string& key) const {

@@ -12,9 +12,6 @@
 
 namespace palpate::case_builder {
 
-/// Reads a TOML file. Throws InvalidInput naming file and line for a syntax error.
-toml::table read_toml(const std::filesystem::path& path);
-
 /// Reads one table of a TOML file and remembers which keys it was asked for, so that the others can be
 /// refused. Everything throws InvalidInput naming file, line and key if a value is missing or has the wrong
 /// type. The table must outlive its reader.
@@ -47,6 +44,9 @@ class TableReader {
     /// A text that must be one of a few.
     std::optional<std::string> choice(const std::string& key, const std::vector<std::string>& choices);
 
+    /// A path, as from the folder of the file in which it is written.
+    std::optional<std::filesystem::path> path(const std::string& key);
+
     /// A number above zero.
     std::optional<double> positive(const std::string& key);
     double required_positive(const std::string& key);
@@ -74,7 +74,7 @@ class TableReader {
     [[noreturn]] void fail(const toml::node& node, const std::string& key, const std::string& found,
                            const std::string& expected, const std::string& next_step = "") const;
 
-    /// "file:line" of a node.
+    /// "file:line" of a node, of the file in which it is written.
     std::string position_of(const toml::node& node) const;
     /// What holds a key's value; the table itself if it has none.
     const toml::node& node(const std::string& key) const;

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "formats/model/errors.hpp"
 #include "tools/case_builder/case_check.hpp"
 #include "tools/case_builder/cautions.hpp"
+#include "tools/case_builder/overrides.hpp"
 #include "tools/case_builder/stages.hpp"
 #include "tools/cli/command.hpp"
 
@@ -28,40 +31,82 @@ void require_our_output(const case_builder::StageRunner& runner, const std::stri
                             "choose another name or pass --force"});
 }
 
+void require_asset_name(const std::filesystem::path& output) {
+    if (output.extension() != ".vtkhdf")
+        throw UsageError({output.string(), "is no name for an asset", "a name that ends in .vtkhdf", ""});
+    if (output.has_parent_path() && !std::filesystem::is_directory(output.parent_path()))
+        throw InvalidInput({output.string(), "its folder does not exist", "",
+                            "make it first: mkdir -p " + output.parent_path().string()});
+}
+
+std::vector<case_builder::Override> overrides_of(const std::vector<std::string>& settings) {
+    std::vector<case_builder::Override> overrides;
+    for (const std::string& setting : settings)
+        overrides.push_back(
+            case_builder::parse_override(setting, "--set", static_cast<int>(overrides.size()) + 1));
+    return overrides;
+}
+
+// What one build is made of.
+struct Build {
+    const case_builder::CaseFile& case_file;
+    const case_builder::BuildPaths& paths;
+    const std::vector<case_builder::Stage> stages;
+    const case_builder::StageRunner& runner;
+};
+
 // A page on what there was before a stage failed. That it cannot be made does not hide why the stage failed.
-void show_failure(const case_builder::CaseFile& case_file, const case_builder::BuildPaths& paths,
-                  const std::vector<case_builder::StageRecord>& records,
-                  const case_builder::StageRunner& runner, const std::filesystem::path& error_file) {
+void show_failure(const Build& build, const case_builder::Stage& failed) {
     try {
-        runner.run(case_builder::failure_stage(case_file, paths, records, error_file));
-        spdlog::error("{} shows what there is so far", case_builder::failure_page(paths).string());
+        build.runner.run(
+            case_builder::failure_stage(build.case_file, build.paths, build.stages, failed, build.runner));
+        spdlog::error("{} shows what there is so far", case_builder::failure_page(build.paths).string());
     } catch (const Error& error) {
         spdlog::warn("no page on what there is so far: {}", error.what());
     }
 }
 
-std::vector<case_builder::StageRecord> make_asset(const case_builder::CaseFile& case_file,
-                                                  const case_builder::BuildPaths& paths,
-                                                  const case_builder::StageRunner& runner) {
-    std::filesystem::remove(case_builder::failure_page(paths));
-    std::vector<case_builder::StageRecord> records;
-    for (const case_builder::Stage& stage : case_builder::stages_to_asset(case_file, paths)) {
-        try {
-            records.push_back(runner.run(stage));
-        } catch (const Error&) {
-            const auto error_file = runner.error_path(stage.name);
-            if (std::filesystem::exists(error_file))
-                show_failure(case_file, paths, records, runner, error_file);
-            throw;
-        }
+case_builder::StageRecord run(const Build& build, const case_builder::Stage& stage) {
+    case_builder::prepare(stage, build.case_file, build.paths, build.stages, build.runner);
+    try {
+        return build.runner.run(stage);
+    } catch (const Error&) {
+        if (std::filesystem::exists(build.runner.error_path(stage.name))) show_failure(build, stage);
+        throw;
     }
+}
+
+std::vector<case_builder::StageRecord> run_all(const Build& build) {
+    std::filesystem::remove(case_builder::failure_page(build.paths));
+    std::vector<case_builder::StageRecord> records;
+    for (const case_builder::Stage& stage : build.stages) records.push_back(run(build, stage));
     return records;
+}
+
+// One stage of the build, whose inputs other runs have made. What failed before and would again is not tried.
+std::vector<case_builder::StageRecord> run_one(const Build& build, const std::string& name) {
+    const auto stage = std::ranges::find(build.stages, name, &case_builder::Stage::name);
+    if (stage == build.stages.end()) {
+        std::vector<std::string> names;
+        for (const case_builder::Stage& one : build.stages) names.push_back(one.name);
+        throw UsageError({"--stage " + name, "is no stage of this case",
+                          fmt::format("one of '{}'", fmt::join(names, "', '")), ""});
+    }
+    case_builder::prepare(*stage, build.case_file, build.paths, build.stages, build.runner);
+    if (const auto failure = build.runner.failed(*stage); failure && case_builder::is_lasting(*failure)) {
+        spdlog::error("as before: {}", failure->said);
+        case_builder::throw_failure(stage->name, failure->exit_code);
+    }
+    return {run(build, *stage)};
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
     std::filesystem::path case_path, volume, labels, parts, output;
+    std::vector<std::string> settings;
+    std::string stage_name;
+    bool virtual_clock = false;
     cli::Command command(
         {.name = "build",
          .summary = "Builds one patient's asset and report from a case file, running only the stages whose "
@@ -71,23 +116,28 @@ int main(int argc, char** argv) {
          .notes =
              "Beside OUTPUT.vtkhdf it writes OUTPUT.html and the folder OUTPUT.parts with every "
              "intermediate result. Where a stage fails, OUTPUT.parts/failure.html shows what it said and "
-             "slices through what there was by then."});
+             "slices through what there was by then. --set deformable.liver.mesh.cell_size_mm=8 goes before "
+             "what the case file says; an element of an array of tables is called by its name or label."});
     command.input("case", case_path, "case file (.toml)").required();
     command.input("--volume", volume, "CT or MRI to use instead of the case file's input.volume");
     command.input("--labels", labels, "label map to use instead of the case file's input.labels");
     command.output("-o,--output", output, "asset (.vtkhdf)").required();
     command.output("--parts", parts, "folder for intermediate results; OUTPUT.parts by default");
+    command.option("--set", settings,
+                   "KEY=VALUE that goes before the case file's own; again for another key");
+    command.option("--stage", stage_name, "run this stage alone, \"mesh liver\", the others being done");
+    command.flag("--virtual-clock", virtual_clock,
+                 "press the finished asset as fast as possible and not in real time, for machines that do "
+                 "other work");
     return command.run(argc, argv, [&](cli::Session& session) {
-        if (output.extension() != ".vtkhdf")
-            throw UsageError({output.string(), "is no name for an asset", "a name that ends in .vtkhdf", ""});
-        if (output.has_parent_path() && !std::filesystem::is_directory(output.parent_path()))
-            throw InvalidInput({output.string(), "its folder does not exist", "",
-                                "make it first: mkdir -p " + output.parent_path().string()});
-        case_builder::CaseFile case_file = case_builder::read_case_file(case_path);
+        require_asset_name(output);
+        const std::vector<case_builder::Override> overrides = overrides_of(settings);
+        case_builder::CaseFile case_file = case_builder::read_case_file(case_path, overrides);
         if (!volume.empty()) case_file.volume = volume;
         if (!labels.empty()) case_file.labels = labels;
-        case_builder::check_case_file(case_path, case_file);
-        for (const std::string& doubt : case_builder::doubts_of(case_file)) spdlog::warn("{}", doubt);
+        case_builder::check_case_file(case_path, case_file, overrides);
+        if (stage_name.empty())
+            for (const std::string& doubt : case_builder::doubts_of(case_file)) spdlog::warn("{}", doubt);
         if (parts.empty()) parts = std::filesystem::path(output).replace_extension(".parts");
         const case_builder::BuildPaths paths{parts, output,
                                              std::filesystem::path(output).replace_extension(".html")};
@@ -97,12 +147,13 @@ int main(int argc, char** argv) {
             require_our_output(runner, "pack", paths.asset);
             require_our_output(runner, "report", paths.report);
         }
-        std::vector<case_builder::StageRecord> records = make_asset(case_file, paths, runner);
-        records.push_back(runner.run(case_builder::touch_stage(paths)));
-        records.push_back(
-            runner.run(case_builder::report_stage(case_file, paths, records, runner.result_path("touch"))));
-        return nlohmann::ordered_json{{"asset", paths.asset.string()},
-                                      {"report", paths.report.string()},
-                                      {"stages", stages_json(records)}};
+        using case_builder::TouchClock;
+        const auto stages =
+            stages_of(case_file, paths, virtual_clock ? TouchClock::virtual_time : TouchClock::real);
+        const Build build{case_file, paths, stages, runner};
+        return nlohmann::ordered_json{
+            {"asset", paths.asset.string()},
+            {"report", paths.report.string()},
+            {"stages", stages_json(stage_name.empty() ? run_all(build) : run_one(build, stage_name))}};
     });
 }

@@ -19,6 +19,18 @@ nlohmann::ordered_json request_of(const std::vector<Stage>& stages, const std::s
     return stage == stages.end() ? "no such stage" : stage->request;
 }
 
+BuildPaths paths_in(const fs::path& folder) {
+    return {folder / "parts", folder / "x.vtkhdf", folder / "x.html"};
+}
+
+// How the asset of a case was made, as "pack" reads it.
+std::string provenance_of(const CaseFile& file, const std::vector<Stage>& stages, const fs::path& folder) {
+    const auto pack = std::ranges::find(stages, "pack", &Stage::name);
+    prepare(*pack, file, paths_in(folder), stages, StageRunner(folder, folder / "parts", 1, true));
+    std::ifstream stream(folder / "parts" / "provenance.json");
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 TEST(Stages, the_frame_of_nifti_files_is_asked_for_only_where_the_input_is_one) {
     const fs::path folder = fs::path(testing::TempDir()) / ("palpate_frames_" + std::to_string(getpid()));
     fs::create_directories(folder / "series");
@@ -29,8 +41,7 @@ TEST(Stages, the_frame_of_nifti_files_is_asked_for_only_where_the_input_is_one) 
     file.labels = folder / "l.nii.gz";
     file.volume_import.series = "3";
     file.volume_import.nifti_frame = file.labels_import.nifti_frame = "qform";
-    const std::vector<Stage> stages =
-        stages_to_asset(file, {folder / "parts", folder / "x.vtkhdf", folder / "x.html"});
+    const std::vector<Stage> stages = stages_of(file, paths_in(folder));
     EXPECT_EQ(request_of(stages, "import volume"),
               nlohmann::ordered_json({{"input", (folder / "series").string()},
                                       {"output", (folder / "parts" / "volume.nrrd").string()},
@@ -64,12 +75,12 @@ TEST(Stages, imported_files_replace_image_and_labels_and_their_names_stay_out_of
     skull.surface.max_triangles = 1000;
     skull.surface.max_distance = 0.5;
     file.rigid = {skull};
-    const std::vector<Stage> stages =
-        stages_to_asset(file, {folder / "parts", folder / "x.vtkhdf", folder / "x.html"});
+    const std::vector<Stage> stages = stages_of(file, paths_in(folder));
 
     std::vector<std::string> names;
     std::ranges::transform(stages, std::back_inserter(names), &Stage::name);
-    EXPECT_EQ(names, (std::vector<std::string>{"surface skull", "mesh liver", "condense liver", "pack"}));
+    EXPECT_EQ(names, (std::vector<std::string>{"surface skull", "mesh liver", "condense liver", "pack",
+                                               "touch", "report"}));
     EXPECT_EQ(request_of(stages, "mesh liver").dump(),
               nlohmann::ordered_json(
                   {{"mesh_file", (folder / "doe_john.msh").string()},
@@ -85,8 +96,7 @@ TEST(Stages, imported_files_replace_image_and_labels_and_their_names_stay_out_of
                                       {"max_distance_mm", 0.5},
                                       {"output", (folder / "parts" / "skull.vtp").string()}})
                   .dump());
-    std::ifstream stream(folder / "parts" / "provenance.json");
-    const std::string provenance{std::istreambuf_iterator<char>(stream), {}};
+    const std::string provenance = provenance_of(file, stages, folder);
     EXPECT_NE(provenance.find("liver_file_sha256"), std::string::npos);
     EXPECT_EQ(provenance.find("doe"), std::string::npos) << provenance;
     fs::remove_all(folder);
@@ -110,8 +120,7 @@ TEST(Stages, rules_of_a_body_reach_condense_and_its_node_files_decide_about_a_re
     liver.condense.contact[0].region = "tumour";
     liver.condense.element = "quadratic";
     file.deformable = {liver};
-    const std::vector<Stage> stages =
-        stages_to_asset(file, {folder / "parts", folder / "x.vtkhdf", folder / "x.html"});
+    const std::vector<Stage> stages = stages_of(file, paths_in(folder));
     const auto request = request_of(stages, "condense liver");
     EXPECT_EQ(request["fixed"].dump(),
               R"([{"touching":"skull"},{"nodes_file":")" + nodes.string() + R"("}])");
@@ -120,12 +129,21 @@ TEST(Stages, rules_of_a_body_reach_condense_and_its_node_files_decide_about_a_re
     const auto condense = std::ranges::find(stages, "condense liver", &Stage::name);
     EXPECT_EQ(condense->inputs, (std::vector<fs::path>{folder / "parts" / "liver.vtu", nodes}));
 
-    std::ifstream stream(folder / "parts" / "provenance.json");
-    const std::string provenance{std::istreambuf_iterator<char>(stream), {}};
+    const std::string provenance = provenance_of(file, stages, folder);
     EXPECT_NE(provenance.find("liver_nodes_1_sha256"), std::string::npos);
     EXPECT_NE(provenance.find(R"("nodes_file": "liver_nodes_1")"), std::string::npos) << provenance;
     EXPECT_EQ(provenance.find("doe"), std::string::npos) << provenance;
     fs::remove_all(folder);
+}
+
+TEST(Stages, a_finished_asset_is_pressed_in_real_time_unless_the_clock_is_virtual) {
+    CaseFile file;
+    file.rigid.resize(1);
+    file.rigid[0].surface.surface_file = "skull.stl";
+    const fs::path folder = "build";
+    EXPECT_FALSE(request_of(stages_of(file, paths_in(folder)), "touch").contains("virtual_clock"));
+    const auto stages = stages_of(file, paths_in(folder), TouchClock::virtual_time);
+    EXPECT_EQ(request_of(stages, "touch")["virtual_clock"], true);
 }
 
 }  // namespace
