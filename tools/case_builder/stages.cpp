@@ -155,12 +155,13 @@ Stage report_stage(const CaseFile& case_file, const BuildPaths& paths) {
     request.touch = paths.parts / "touch.json";
     request.curve = paths.parts / "force.svg";
     request.stages = records_file(paths);
+    request.thumbnail = paths.parts / "thumbnail.png";
     request.output = paths.report;
     Stage stage{"report",
                 "report",
                 {},
                 {request.asset, request.touch, request.curve, request.stages},
-                {request.output}};
+                {request.output, request.thumbnail}};
     if (needs_labels(case_file)) {
         stage.inputs.push_back(request.labels = paths.parts / "labels.seg.nrrd");
         for (const RigidSpec& body : case_file.rigid)

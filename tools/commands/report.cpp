@@ -14,6 +14,7 @@
 #include "tools/meshing/measures/surface_distance.hpp"
 #include "tools/meshing/surfaces/surfaces.hpp"
 #include "tools/report/html.hpp"
+#include "tools/report/pictures/virtual_display.hpp"
 #include "tools/stages/requests/report_request.hpp"
 #include "tools/stages/surface.hpp"
 
@@ -98,11 +99,15 @@ std::vector<SurfaceComparison> comparisons_of(const stages::ReportRequest& reque
     return comparisons;
 }
 
-std::string page_of(const stages::ReportRequest& request, cli::Session& session) {
-    const bool failed = request.asset.empty();
+Case case_of(const stages::ReportRequest& request) {
+    if (!request.asset.empty()) return asset::read_asset(request.asset);
     Case patient_case;
     patient_case.name = request.name.empty() ? request.failed_with.stem().string() : request.name;
-    if (!failed) patient_case = asset::read_asset(request.asset);
+    return patient_case;
+}
+
+std::string page_of(const stages::ReportRequest& request, const Case& patient_case, cli::Session& session) {
+    const bool failed = request.asset.empty();
     std::optional<Volume> volume;
     std::optional<LabelMap> labels;
     if (!request.volume.empty()) volume = read_volume(request.volume);
@@ -141,10 +146,17 @@ int main(int argc, char** argv) {
     return command.run(argc, argv, [&](cli::Session& session) {
         if (request.asset.empty() == request.failed_with.empty())
             throw UsageError({"asset", "is given with --failed-with, or neither is", "one of them", ""});
+        if (!request.thumbnail.empty() && request.asset.empty())
+            throw UsageError({"--thumbnail", "needs a case to picture", "an asset", ""});
         cli::StagedFile page = session.stage(request.output);
+        std::optional<VirtualDisplay> display;  // one for all that is drawn
+        if (!request.asset.empty()) display.emplace();
         set_imaging_threads(session.threads);
         session.progress.step("reading the case", 0);
-        const std::string html = page_of(request, session);
+        const Case patient_case = case_of(request);
+        const std::string html = page_of(request, patient_case, session);
+        if (!request.thumbnail.empty())
+            cli::write_text_file(request.thumbnail, thumbnail_png(patient_case), session.force);
         page.write_text(html);
         page.commit();
         return nlohmann::json{{"report", request.output.string()}, {"bytes", html.size()}};

@@ -97,6 +97,12 @@ std::string html_failure(const ReportInputs& inputs, const std::string& message)
                      sections);
 }
 
+std::string thumbnail_png(const Case& patient_case) {
+    const VirtualDisplay display;
+    return png_bytes(
+        shrunk(scene_pictures(patient_case, {view_directions().front().direction}).front().picture, 4));
+}
+
 std::string html_report(const ReportInputs& inputs) {
     const VirtualDisplay display;
     ReportPage page{inputs, {}};

@@ -39,6 +39,10 @@ std::vector<StageRecord> stages_from_json(const nlohmann::json& json, const std:
 /// there are, and what the stages before took. Needs no display.
 std::string html_failure(const ReportInputs& inputs, const std::string& message);
 
+/// Draws all bodies small, as the report's first picture of them, 190 by 155 pixels; a PNG file's bytes.
+/// Needs a display as html_report() does.
+std::string thumbnail_png(const Case& patient_case);
+
 /// Makes one self-contained HTML page: no script, no link, pictures within. Draws in 3-D, so it needs an X
 /// display or Xvfb (VirtualDisplay); throws SystemFailure where there is neither.
 std::string html_report(const ReportInputs& inputs);

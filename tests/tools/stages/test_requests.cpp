@@ -199,8 +199,9 @@ TEST(Request, of_report_survives_json) {
                                     .touch = existing("t.json"),
                                     .curve = existing("c.svg"),
                                     .stages = existing("s.json"),
+                                    .thumbnail = "t.png",
                                     .output = "out.html"},
-                      10);
+                      11);
 }
 
 TEST(Request, words_and_json_ask_for_the_same) {

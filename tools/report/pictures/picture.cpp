@@ -9,6 +9,22 @@
 
 namespace palpate::report {
 
+Picture shrunk(const Picture& picture, int factor) {
+    Picture small{picture.width / factor, picture.height / factor, {}};
+    small.rgb.resize(small.offset(0, small.height));
+    for (int y = 0; y < small.height; ++y)
+        for (int x = 0; x < small.width; ++x)
+            for (std::size_t channel = 0; channel < 3; ++channel) {
+                int sum = 0;
+                for (int i = 0; i < factor * factor; ++i)
+                    sum +=
+                        picture
+                            .rgb[picture.offset(factor * x + i % factor, factor * y + i / factor) + channel];
+                small.rgb[small.offset(x, y) + channel] = static_cast<std::uint8_t>(sum / (factor * factor));
+            }
+    return small;
+}
+
 std::string png_bytes(const Picture& picture) {
     vtkNew<vtkImageData> image;
     image->SetDimensions(picture.width, picture.height, 1);

@@ -19,6 +19,10 @@ struct Picture {
     }
 };
 
+/// The mean of each square of `factor` by `factor` pixels; what is left over at the right and below is
+/// dropped.
+Picture shrunk(const Picture& picture, int factor);
+
 /// Encodes a picture as PNG and returns the file's bytes.
 std::string png_bytes(const Picture& picture);
 

@@ -49,6 +49,7 @@ void declare(cli::Command& command, ReportRequest& request) {
     command.input("--touch", request.touch, "statistics made by 'palpate touch --json'");
     command.input("--curve", request.curve, "force curve made by 'palpate touch --curve' (.svg)");
     command.input("--stages", request.stages, "stage times and peak memory made by 'palpate build' (.json)");
+    command.output("--thumbnail", request.thumbnail, "small picture of the case to write as well (.png)");
     command.output("-o,--output", request.output, "page to write (.html)").required();
 }
 

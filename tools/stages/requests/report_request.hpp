@@ -26,11 +26,12 @@ struct ReportRequest {
     std::filesystem::path failed_with;  ///< what a stage said that failed, in place of an asset (.txt)
     std::string name;                   ///< of the case, in place of the asset's
     std::filesystem::path volume, labels;
-    std::vector<RigidOrigin> rigid;  ///< bodies to compare with what they were made from
-    std::filesystem::path touch;     ///< statistics of a run (.json)
-    std::filesystem::path curve;     ///< its force curve (.svg)
-    std::filesystem::path stages;    ///< what a build took (.json)
-    std::filesystem::path output;    ///< .html
+    std::vector<RigidOrigin> rigid;   ///< bodies to compare with what they were made from
+    std::filesystem::path touch;      ///< statistics of a run (.json)
+    std::filesystem::path curve;      ///< its force curve (.svg)
+    std::filesystem::path stages;     ///< what a build took (.json)
+    std::filesystem::path thumbnail;  ///< small picture of the asset to write as well (.png)
+    std::filesystem::path output;     ///< .html
 };
 
 /// Binds the options of `palpate report`.
