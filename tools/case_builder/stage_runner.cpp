@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <mutex>
 #include <span>
 #include <spdlog/spdlog.h>
 
@@ -23,6 +25,18 @@ using namespace asset;
 
 std::string digest_of_text(const std::string& text) {
     return sha256(std::as_bytes(std::span(text)));
+}
+
+// Of a program, worked out once for as long as its file is not written anew.
+std::string program_digest(const std::filesystem::path& program) {
+    static std::mutex mutex;
+    static std::map<std::pair<std::filesystem::path, std::filesystem::file_time_type>, std::string> known;
+    const std::scoped_lock lock(mutex);
+    std::error_code missing;  // is told by who reads it
+    const auto written = std::filesystem::last_write_time(program, missing);
+    std::string& digest = known[{program, written}];
+    if (digest.empty()) digest = sha256_file(program);
+    return digest;
 }
 
 std::string text_of(const std::filesystem::path& path) {
@@ -130,7 +144,7 @@ std::filesystem::path StageRunner::failure_path(const std::string& stage_name) c
 
 // Everything that decides about a stage's outputs. Folders do not: a build that moved is still up to date.
 std::string StageRunner::key_of(const Stage& stage) const {
-    std::string text = sha256_file(programs_ / ("palpate-" + stage.command)) + "\n" +
+    std::string text = program_digest(programs_ / ("palpate-" + stage.command)) + "\n" +
                        without_folders(stage.request, stage).dump() + "\n";
     for (const auto& input : stage.inputs) text += content_digest(input) + "\n";
     return digest_of_text(text);

@@ -63,10 +63,7 @@ toml::table parsed(const Override& override) {
     try {
         return parse(override.value);
     } catch (const toml::parse_error&) {
-        std::string quoted;
-        for (const char letter : override.value)
-            (letter == '"' || letter == '\\' ? quoted += '\\' : quoted) += letter;
-        return parse('"' + quoted + '"');
+        return parse(quoted(override.value));
     }
 }
 

@@ -6,6 +6,7 @@
 #include "formats/model/errors.hpp"
 #include "tools/case_builder/case_check.hpp"
 #include "tools/case_builder/cautions.hpp"
+#include "tools/case_builder/forecast.hpp"
 #include "tools/case_builder/overrides.hpp"
 #include "tools/case_builder/stages.hpp"
 #include "tools/cli/command.hpp"
@@ -83,21 +84,30 @@ std::vector<case_builder::StageRecord> run_all(const Build& build) {
     return records;
 }
 
-// One stage of the build, whose inputs other runs have made. What failed before and would again is not tried.
-std::vector<case_builder::StageRecord> run_one(const Build& build, const std::string& name) {
+const case_builder::Stage& stage_named(const Build& build, const std::string& name) {
     const auto stage = std::ranges::find(build.stages, name, &case_builder::Stage::name);
-    if (stage == build.stages.end()) {
-        std::vector<std::string> names;
-        for (const case_builder::Stage& one : build.stages) names.push_back(one.name);
-        throw UsageError({"--stage " + name, "is no stage of this case",
-                          fmt::format("one of '{}'", fmt::join(names, "', '")), ""});
-    }
-    case_builder::prepare(*stage, build.case_file, build.paths, build.stages, build.runner);
-    if (const auto failure = build.runner.failed(*stage); failure && case_builder::is_lasting(*failure)) {
+    if (stage != build.stages.end()) return *stage;
+    std::vector<std::string> names;
+    for (const case_builder::Stage& one : build.stages) names.push_back(one.name);
+    throw UsageError({"--stage " + name, "is no stage of this case",
+                      fmt::format("one of '{}'", fmt::join(names, "', '")), ""});
+}
+
+// One stage of the build, whose inputs other runs have made. What failed before and would again is not tried.
+case_builder::StageRecord run_one(const Build& build, const std::string& name) {
+    const case_builder::Stage& stage = stage_named(build, name);
+    case_builder::prepare(stage, build.case_file, build.paths, build.stages, build.runner);
+    if (const auto failure = build.runner.failed(stage); failure && case_builder::is_lasting(*failure)) {
         spdlog::error("as before: {}", failure->said);
-        case_builder::throw_failure(stage->name, failure->exit_code);
+        case_builder::throw_failure(stage.name, failure->exit_code);
     }
-    return {run(build, *stage)};
+    return run(build, stage);
+}
+
+nlohmann::ordered_json forecast(const Build& build, const std::string& name) {
+    const case_builder::Stage& stage = stage_named(build, name);
+    const double bytes = static_cast<double>(case_builder::peak_memory_forecast(stage, build.runner));
+    return {{"stage", stage.name}, {"peak_memory_mb", bytes / 1e6}};
 }
 
 }  // namespace
@@ -106,7 +116,7 @@ int main(int argc, char** argv) {
     std::filesystem::path case_path, volume, labels, parts, output;
     std::vector<std::string> settings;
     std::string stage_name;
-    bool virtual_clock = false;
+    bool virtual_clock = false, forecast_only = false;
     cli::Command command(
         {.name = "build",
          .summary = "Builds one patient's asset and report from a case file, running only the stages whose "
@@ -125,7 +135,12 @@ int main(int argc, char** argv) {
     command.output("--parts", parts, "folder for intermediate results; OUTPUT.parts by default");
     command.option("--set", settings,
                    "KEY=VALUE that goes before the case file's own; again for another key");
-    command.option("--stage", stage_name, "run this stage alone, \"mesh liver\", the others being done");
+    const cli::Option stage_option =
+        command.option("--stage", stage_name, "run this stage alone, \"mesh liver\", the others being done");
+    command
+        .flag("--forecast", forecast_only,
+              "run nothing, say what memory --stage may take once those before it are done")
+        .needs(stage_option);
     command.flag("--virtual-clock", virtual_clock,
                  "press the finished asset as fast as possible and not in real time, for machines that do "
                  "other work");
@@ -151,9 +166,10 @@ int main(int argc, char** argv) {
         const auto stages =
             stages_of(case_file, paths, virtual_clock ? TouchClock::virtual_time : TouchClock::real);
         const Build build{case_file, paths, stages, runner};
-        return nlohmann::ordered_json{
-            {"asset", paths.asset.string()},
-            {"report", paths.report.string()},
-            {"stages", stages_json(stage_name.empty() ? run_all(build) : run_one(build, stage_name))}};
+        if (forecast_only) return forecast(build, stage_name);
+        const auto records = stage_name.empty() ? run_all(build) : std::vector{run_one(build, stage_name)};
+        return nlohmann::ordered_json{{"asset", paths.asset.string()},
+                                      {"report", paths.report.string()},
+                                      {"stages", stages_json(records)}};
     });
 }
