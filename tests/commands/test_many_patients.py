@@ -1,66 +1,111 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The Snakefile over a table of two patients: the one that fails is named and does not stop the other."""
+"""palpate batch over small tables: who is built, who fails and why, and what a second run, a kill and an interrupt leave to do."""
+import json
 import os
-import pathlib
 import shutil
+import signal
 import subprocess
-import tempfile
+import time
 import unittest
 
-BIN = pathlib.Path(os.environ["PALPATE_BIN"])
-SOURCE = pathlib.Path(os.environ["PALPATE_SOURCE"])
-PHANTOM = pathlib.Path(os.environ["PALPATE_BUILD"]) / "tests" / "phantom"
-
-CASE = """schema = 1
-name = "abdomen"
-[[structure]]
-name = "liver"
-recipe = "import"
-[[deformable]]
-name = "liver"
-mesh = { cell_size_mm = 9 }
-fixed = [{ plane_mm = [0, 8, 0, 0, 1, 0] }]
-[[deformable.region]]
-label = "liver"
-youngs_modulus_kpa = 6.3
-poissons_ratio = 0.45
-"""
+from small_cohort import BIN, STAGES, SmallCohort, digests
 
 
 @unittest.skipUnless(shutil.which("snakemake"), "snakemake is not installed")
-class ManyPatients(unittest.TestCase):
-    def test_one_failure_is_named_and_the_rest_is_built_once(self):
-        with tempfile.TemporaryDirectory() as name:
-            folder = pathlib.Path(name)
-            subprocess.run([PHANTOM, "abdomen", folder / "ct.nrrd", folder / "good.seg.nrrd", "--quiet"], check=True,
-                           stdout=subprocess.DEVNULL)
-            (folder / "bad.seg.nrrd").write_bytes((folder / "good.seg.nrrd").read_bytes()[:2000])
-            (folder / "case.toml").write_text(CASE)
-            (folder / "patients.tsv").write_text("patient\tcase\tvolume\tlabels\n"
-                                                 "first\tcase.toml\t\tbad.seg.nrrd\n"
-                                                 "second\tcase.toml\t\tgood.seg.nrrd\n")
+class ManyPatients(SmallCohort):
+    def test_each_failure_is_named_the_rest_is_built_once_and_a_change_reruns_what_it_touches(self):
+        self.write_table(("first", "inputs/case.toml", "", "", ""), ("second", "inputs/case.toml", "inputs/good.seg.nrrd", "5", "stiffer"),
+                         ("cut", "inputs/case.toml", "inputs/bad.seg.nrrd", "", ""), ("gone", "inputs/case.toml", "inputs/none.seg.nrrd", "", ""),
+                         ("negative", "inputs/case.toml", "", "-4", ""), ("p 1;touch X", "inputs/case.toml", "", "", ""))
+        ran = self.batch(code=4)
+        self.assertIn("2 of 6 patients", ran.stderr)
+        self.assertFalse((self.folder / "X").exists())
+        for patient, modulus in ("first", 6.3), ("second", 5):
+            self.assertTrue((self.out / f"{patient}.vtkhdf").exists())
+            self.assertTrue((self.out / f"{patient}.html").exists())
+            status = self.status(patient)
+            self.assertEqual([(row["stage"], row["status"]) for row in status["stages"]], [(stage, "finished") for stage in STAGES])
+            inspected = subprocess.run([BIN / "palpate", "inspect", self.out / f"{patient}.vtkhdf", "--json", "-"], stdout=subprocess.PIPE,
+                                       text=True, check=True).stdout
+            self.assertEqual(json.loads(inspected)["regions"][0]["youngs_modulus_kpa"], modulus)
+        failures = {"cut": r"bad\.seg\.nrrd.*check that the file is whole", "gone": r"patients\.tsv:5: .*none\.seg\.nrrd: is not there",
+                    "negative": r"patients\.tsv:6: .*youngs_modulus_kpa.* positive"}
+        results = [line.split("\t") for line in (self.out / "results.tsv").read_text().splitlines()[1:]]
+        self.assertEqual([row[:2] for row in results], [["first", "built"], ["second", "built"], ["cut", "failed"], ["gone", "failed"],
+                                                        ["negative", "failed"], ["p 1;touch X", "failed"]])
+        for patient, said in failures.items():
+            self.assertRegex(self.status(patient)["said"].replace("\n", " "), said)
+        self.assertEqual(self.status("cut")["failed_stage"], "import labels")
+        self.assertRegex(results[5][-1], r"patients\.tsv:7: .*no safe file name")
 
-            def snakemake():
-                return subprocess.run(["snakemake", "--snakefile", SOURCE / "pipelines" / "Snakefile",
-                                       "--profile", SOURCE / "pipelines" / "profiles" / "local", "--directory", folder,
-                                       "--config", "table=patients.tsv", "out=out", f"palpate={BIN / 'palpate'}"],
-                                      text=True, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=250)
+        page = (self.out / "index.html").read_text()
+        self.assertEqual(page.count("data:image/png;base64,"), 2, "a picture of each that was built")
+        for link in ("first.html", "second.html", "cut.parts/failure.html"):
+            self.assertIn(f'href="{link}"', page)
+            self.assertTrue((self.out / link).exists())
 
-            ran = snakemake()
-            self.assertNotEqual(ran.returncode, 0)
-            out = folder / "out"
-            self.assertTrue((out / "second.vtkhdf").exists(), ran.stdout)
-            self.assertTrue((out / "second.html").exists())
-            self.assertFalse((out / "first.vtkhdf").exists())
-            failures = (out / "failures.txt").read_text()
-            self.assertRegex(failures, r"^first\tpalpate-import: .*bad\.seg\.nrrd")
-            self.assertEqual(len(failures.splitlines()), 1)
+        before = digests(self.out)
+        self.batch(code=4)
+        self.assertEqual(self.stages_to_do(), 0, "bad input is not tried again either")
+        self.write_table(("first", "inputs/case.toml", "", "", ""), ("second", "inputs/case.toml", "", "7", "stiffer still"))
+        self.batch()
+        self.assertEqual(self.stages_to_do(), len(STAGES) - 3, "from condensation on, of one patient")
+        self.assertEqual(digests(self.out)["first.vtkhdf"], before["first.vtkhdf"])
+        self.assertNotEqual(digests(self.out)["second.vtkhdf"], before["second.vtkhdf"])
 
-            (folder / "patients.tsv").write_text("patient\tcase\tvolume\tlabels\n"
-                                                 "second\tcase.toml\t\tgood.seg.nrrd\n")
-            again = snakemake()
-            self.assertEqual(again.returncode, 0, again.stdout)
-            self.assertIn("Nothing to be done", again.stdout)
+    def test_the_table_is_checked_without_building(self):
+        self.write_table(("first", "inputs/case.toml", "", "", ""))
+        self.batch("--check")
+        self.assertFalse(self.out.exists())
+        self.write_table(("first", "inputs/case.toml", "", "-4", ""), ("second", "none.toml", "", "", ""))
+        ran = self.batch("--check", code=3)
+        self.assertIn("patients.tsv:2", ran.stderr)
+        self.assertIn("patients.tsv:3", ran.stderr)
+        self.write_table()
+        self.assertIn("has no patients", self.batch("--check", code=3).stderr)
+
+    def test_a_request_of_each_patient_builds_him_elsewhere(self):
+        self.write_table(("first", "inputs/case.toml", "inputs/good.seg.nrrd", "", ""))
+        self.batch("--requests")
+        array = shutil.copy(BIN.parent / "share" / "palpate" / "pipelines" / "slurm_array.sh", self.folder)
+        path = f"{BIN}:{os.environ['PATH']}"
+        subprocess.run([array, "out"], cwd=self.folder, env={**os.environ, "PATH": path, "SLURM_ARRAY_TASK_ID": "1"}, check=True,
+                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.batch()
+        self.assertEqual(self.stages_to_do(), 0)
+        self.assertEqual(self.status("first")["status"], "built")
+
+    def start_and_wait_for_a_stage(self):
+        finished = len(list(self.out.glob("*.parts/*.stage.json")))
+        process = subprocess.Popen(self.command(), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        while len(list(self.out.glob("*.parts/*.stage.json"))) <= finished:
+            self.assertIsNone(process.poll())
+            time.sleep(0.05)
+        return process
+
+    def assert_goes_on(self):
+        finished = {path: path.stat().st_mtime_ns for path in self.out.glob("*.parts/*.stage.json")}
+        self.batch()
+        for path, stamp in finished.items():
+            self.assertEqual(path.stat().st_mtime_ns, stamp, f"{path} ran again")
+        for asset in self.out.glob("*.vtkhdf"):
+            subprocess.run([BIN / "palpate", "verify", asset], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+    def test_an_interrupt_or_a_kill_loses_no_finished_stage(self):
+        self.write_table(*((f"p{i}", "inputs/case.toml", "", str(4 + i), "") for i in range(3)))
+        process = self.start_and_wait_for_a_stage()
+        other = self.batch(code=3)
+        self.assertIn("is being built by another palpate batch", other.stderr)
+        process.send_signal(signal.SIGINT)
+        said = process.communicate(timeout=60)[1]
+        self.assertEqual(process.returncode, 130, said)
+        self.assertIn("run the same command again", said)
+        self.assertIn("unfinished", (self.out / "results.tsv").read_text())
+        process = self.start_and_wait_for_a_stage()
+        process.kill()
+        process.communicate()
+        self.assert_goes_on()
+        self.assertEqual(len(digests(self.out)), 3)
 
 
 if __name__ == "__main__":

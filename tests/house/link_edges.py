@@ -37,6 +37,7 @@ ROOMS = {
     "tissue": {"model"},
     "draft": {"model", "imaging", "tissue"},
     "case_builder": {"model", "asset", "cli", "imaging", "requests", "tissue", "json", "toml"},
+    "cohort": {"model", "case_builder", "cli", "report", "json"},
     "seeds": {"model", "imaging", "vtk"},
     "hd_conformance": {"model", "devices", "json"},
     "realtime": {"records"},
@@ -49,7 +50,7 @@ ROOMS = {
     "session": {"model", "asset", "recording", "drawing", "json", "realtime", "collision", "haptics", "devices", "openigtlink"},
 }
 ROOMS["experiments"] = {"asset", "drawing", "cli", "session", "fem", "meshing", "obb", "cgal_peer"}  # measures both sides
-COMMANDS = {"model", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "case_builder", "draft", "requests", "stage_images", "stage_shapes",
+COMMANDS = {"model", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "case_builder", "cohort", "draft", "requests", "stage_images", "stage_shapes",
             "stage_bodies", "stage_cases", "seeds", "tissue", "json"}
 APPS = {"model", "asset", "recording", "cli", "realtime", "collision", "haptics", "devices", "openigtlink", "session", "json"}
 EXECUTABLES = {

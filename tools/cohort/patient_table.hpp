@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tools/case_builder/overrides.hpp"
+
+namespace palpate::cohort {
+
+/// One row of a table of patients.
+struct Patient {
+    std::string name;                 ///< of the outputs
+    bool named = false;               ///< whether it can name files: it is safe and nobody else's
+    std::filesystem::path case_path;  ///< absolute
+    std::vector<case_builder::Override> overrides;  ///< the row's cells that are not empty
+    std::string where;                              ///< "patients.tsv:7"
+    std::string mistake;                            ///< what is wrong with the row; empty if nothing
+};
+
+/// Reads a tab-separated table whose first line names its columns: `patient` (letters, digits, '.', '_',
+/// '-'), `case` (a case file), and any of `volume`, `labels` and dotted keys of case files
+/// ("deformable.liver.mesh.cell_size_mm"), whose cells go before the case file's values where they are not
+/// empty. Columns that begin with '#' are for people. Paths are absolute or relative to the table. Throws
+/// InvalidInput naming the column for a head that cannot be used; a row that cannot be keeps its mistake.
+std::vector<Patient> read_patient_table(const std::filesystem::path& path);
+
+}  // namespace palpate::cohort

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// palpate batch: builds all patients of a table and shows them on one page.
+#include <algorithm>
+#include <fmt/format.h>
+#include <set>
+#include <spdlog/spdlog.h>
+
+#include "formats/model/errors.hpp"
+#include "tools/case_builder/folder_lock.hpp"
+#include "tools/cli/command.hpp"
+#include "tools/cohort/cohort_page.hpp"
+#include "tools/cohort/plan.hpp"
+#include "tools/cohort/results.hpp"
+#include "tools/cohort/snakemake.hpp"
+
+namespace {
+
+using namespace palpate;
+using namespace palpate::cohort;
+
+std::filesystem::path own_folder() {
+    return std::filesystem::read_symlink("/proc/self/exe").parent_path();
+}
+
+using States = std::vector<std::vector<StageState>>;
+
+// A table as it is built.
+struct Cohort {
+    std::filesystem::path table;  // absolute
+    CohortFolder folder;
+    std::vector<PatientBuild> builds;
+};
+
+Cohort read_cohort(const std::filesystem::path& table, const std::filesystem::path& output) {
+    Cohort cohort{std::filesystem::absolute(table).lexically_normal(),
+                  {std::filesystem::absolute(output).lexically_normal()},
+                  {}};
+    for (const Patient& patient : read_patient_table(cohort.table)) {
+        cohort.builds.push_back(build_of(patient, cohort.folder));
+        if (const std::string& mistake = cohort.builds.back().patient.mistake; !mistake.empty())
+            spdlog::error("{}: {}", patient.name, mistake);
+    }
+    return cohort;
+}
+
+States states_of_all(const Cohort& cohort, cli::Progress& progress) {
+    States states;
+    for (const PatientBuild& build : cohort.builds) {
+        progress.step("comparing digests",
+                      static_cast<double>(states.size()) / static_cast<double>(cohort.builds.size()));
+        states.push_back(states_of(build, own_folder()));
+    }
+    progress.finish();
+    return states;
+}
+
+void write_requests(const Cohort& cohort) {
+    std::filesystem::remove_all(cohort.folder.batch() / "requests");
+    std::filesystem::create_directories(cohort.folder.batch() / "requests");
+    for (const PatientBuild& build : cohort.builds)
+        if (build.patient.mistake.empty())
+            cli::write_text_file(cohort.folder.request_of(build.patient.name),
+                                 request_of(build).dump(2) + "\n", true);
+    cli::write_text_file(cohort.folder.batch() / "table_folder", cohort.table.parent_path().string() + "\n",
+                         true);
+}
+
+// Tells how far all stages are; those after one that failed for good will not run.
+class Bar {
+  public:
+    Bar(const Cohort& cohort, const States& states, cli::Progress& progress) : progress_(progress) {
+        for (std::size_t i = 0; i < states.size(); ++i) {
+            const auto to_do = stages_to_do(cohort.builds[i], states[i]);
+            total_ += std::ranges::count(to_do, true);
+        }
+    }
+    std::int64_t total() const { return total_; }
+
+    void show(const JobEvent& event) {
+        if (event.kind == JobEvent::Kind::started) return;
+        if (event.kind == JobEvent::Kind::finished) ++finished_;
+        if (event.kind == JobEvent::Kind::failed) failed_.insert(event.patient);
+        progress_.step(
+            fmt::format("{} of {} stages{}; {}: {}{}", finished_, total_,
+                        failed_.empty() ? "" : fmt::format(", failed patients: {}", failed_.size()),
+                        event.patient, event.stage, event.kind == JobEvent::Kind::failed ? " failed" : ""),
+            static_cast<double>(finished_) / static_cast<double>(total_));
+    }
+
+  private:
+    cli::Progress& progress_;
+    std::int64_t finished_ = 0, total_ = 0;
+    std::set<std::string> failed_;
+};
+
+// Only what is not finished goes to Snakemake, with fresh stamps, so that nothing but digests decides.
+std::int64_t run_what_is_to_do(const Cohort& cohort, const States& states, const SnakemakeRun& run,
+                               cli::Session& session) {
+    Bar bar(cohort, states, session.progress);
+    if (bar.total() == 0) return 0;
+    std::filesystem::remove_all(cohort.folder.done());
+    for (std::size_t i = 0; i < states.size(); ++i)
+        if (std::ranges::count(stages_to_do(cohort.builds[i], states[i]), true) > 0)
+            std::filesystem::remove(failure_page(cohort.builds[i].paths));
+    cli::write_text_file(
+        cohort.folder.plan(),
+        plan_of(cohort.builds, states, cohort.folder, cohort.table.parent_path(), own_folder()).dump(1) +
+            "\n",
+        true);
+    run_snakemake(run, cohort.folder, [&](const JobEvent& event) { bar.show(event); });
+    session.progress.finish();
+    return bar.total();
+}
+
+std::vector<PatientResult> write_results(const Cohort& cohort, States states) {
+    std::vector<PatientResult> results;
+    for (std::size_t i = 0; i < states.size(); ++i) {
+        results.push_back(result_of(cohort.builds[i], std::move(states[i])));
+        if (cohort.builds[i].patient.named)
+            cli::write_text_file(cohort.folder.status_of(results[i].patient),
+                                 status_json(results[i]).dump(2) + "\n", true);
+    }
+    cli::write_text_file(cohort.folder.results(), results_table(results), true);
+    cli::write_text_file(cohort.folder.benchmarks(), stages_table(results), true);
+    cli::write_text_file(cohort.folder.page(), cohort_page(cohort.table.stem().string(), results), true);
+    return results;
+}
+
+void refuse_others(const CohortFolder& folder) {
+    if (case_builder::FolderLock::held_by_another(folder.batch(), "batch"))
+        throw InvalidInput({folder.root.string(), "is being built by another palpate batch", "",
+                            "wait for it or end it; what it finished is kept"});
+}
+
+nlohmann::ordered_json result_json(const Cohort& cohort, std::span<const PatientResult> results,
+                                   std::int64_t stages) {
+    nlohmann::ordered_json patients = nlohmann::ordered_json::array();
+    for (const PatientResult& result : results)
+        patients.push_back({{"patient", result.patient},
+                            {"status", name_of(result.outcome)},
+                            {"failed_stage", result.failed_stage},
+                            {"said", result.said}});
+    return {{"page", cohort.folder.page().string()},
+            {"table", cohort.folder.results().string()},
+            {"stages_to_do", stages},
+            {"patients", patients}};
+}
+
+nlohmann::ordered_json build_cohort(const Cohort& cohort, const SnakemakeRun& run, cli::Session& session) {
+    std::filesystem::create_directories(cohort.folder.batch());
+    std::filesystem::create_directories(cohort.folder.snakemake_log().parent_path());
+    refuse_others(cohort.folder);
+    const case_builder::FolderLock lock(cohort.folder.batch(), "batch");
+    write_requests(cohort);
+    std::int64_t stages = 0;
+    bool interrupted = false;
+    try {
+        stages = run_what_is_to_do(cohort, states_of_all(cohort, session.progress), run, session);
+    } catch (const cli::Interrupted&) {
+        interrupted = true;
+    }
+    const auto results = write_results(cohort, states_of_all(cohort, session.progress));
+    session.text = summary_text(results) + cohort.folder.page().string() + "\n";
+    if (interrupted) {
+        spdlog::error("interrupted; run the same command again to go on");
+        throw cli::Interrupted();
+    }
+    const auto built = std::ranges::count(results, Outcome::built, &PatientResult::outcome);
+    if (built < std::ssize(results))
+        session.shortfall = ErrorDetail{
+            cohort.table.string(), fmt::format("{} of {} patients were built", built, results.size()), "all",
+            "mend what is said above and run again; finished stages are kept. " +
+                cohort.folder.snakemake_log().string() + " says the rest"};
+    return result_json(cohort, results, stages);
+}
+
+nlohmann::ordered_json check_cohort(const Cohort& cohort) {
+    const auto mistaken = std::ranges::count_if(
+        cohort.builds, [](const PatientBuild& build) { return !build.patient.mistake.empty(); });
+    if (mistaken > 0)
+        throw InvalidInput({cohort.table.string(),
+                            fmt::format("{} of {} patients cannot be built", mistaken, cohort.builds.size()),
+                            "", "mend what is said above"});
+    return {{"table", cohort.table.string()}, {"patients", cohort.builds.size()}};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    std::filesystem::path table, output;
+    std::string profile = "local";
+    bool check = false, requests = false;
+    cli::Command command(
+        {.name = "batch",
+         .summary = "Builds every patient of a table side by side and shows them on one page.",
+         .examples = {"palpate batch patients.tsv -o cohort",
+                      "palpate batch patients.tsv -o cohort --profile slurm"},
+         .notes =
+             "The table is separated by tabs: patient, case and, where a patient differs from the case file, "
+             "volume, labels or a case file's key such as deformable.liver.mesh.cell_size_mm; paths are "
+             "relative to the table. OUTPUT gets an asset, a report and a status (.json) for each patient, "
+             "index.html, results.tsv, stages.tsv and logs. One patient's failure stops no other; exit code "
+             "4 "
+             "says that not all were built. Run again, only stages whose inputs changed run, also after an "
+             "interrupt or a kill. Needs Snakemake."});
+    command.input("table", table, "patients (.tsv)").required();
+    command.output("-o,--output", output, "folder for the cohort").required();
+    command.option("--profile", profile,
+                   "where stages run: local, slurm, or a folder with a Snakemake profile");
+    const cli::Option check_option =
+        command.flag("--check", check, "check the table and all case files, build nothing");
+    command
+        .flag("--requests", requests,
+              "write for each patient what 'palpate build --request' takes to OUTPUT/.batch/requests, for a "
+              "scheduler of your own, and build nothing")
+        .excludes(check_option);
+    return command.run(argc, argv, [&](cli::Session& session) {
+        const Cohort cohort = read_cohort(table, output);
+        if (check) return check_cohort(cohort);
+        if (requests) {
+            write_requests(cohort);
+            return nlohmann::ordered_json{{"requests", (cohort.folder.batch() / "requests").string()}};
+        }
+        const SnakemakeRun run{std::filesystem::weakly_canonical(own_folder() / "../share/palpate/pipelines"),
+                               profile, session.threads};
+        return build_cohort(cohort, run, session);
+    });
+}
