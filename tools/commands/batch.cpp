@@ -2,6 +2,7 @@
 // palpate batch: builds all patients of a table and shows them on one page.
 #include <algorithm>
 #include <fmt/format.h>
+#include <map>
 #include <set>
 #include <spdlog/spdlog.h>
 
@@ -65,31 +66,42 @@ void write_requests(const Cohort& cohort) {
                          true);
 }
 
-// Tells how far all stages are; those after one that failed for good will not run.
+// Tells how far patients and stages are.
 class Bar {
   public:
     Bar(const Cohort& cohort, const States& states, cli::Progress& progress) : progress_(progress) {
         for (std::size_t i = 0; i < states.size(); ++i) {
             const auto to_do = stages_to_do(cohort.builds[i], states[i]);
-            total_ += std::ranges::count(to_do, true);
+            const auto count = std::ranges::count(to_do, true);
+            if (count > 0) left_[cohort.builds[i].patient.name] = count;
+            stages_ += count;
         }
+        patients_ = left_.size();
     }
-    std::int64_t total() const { return total_; }
+    std::int64_t stages() const { return stages_; }
 
     void show(const JobEvent& event) {
         if (event.kind == JobEvent::Kind::started) return;
-        if (event.kind == JobEvent::Kind::finished) ++finished_;
-        if (event.kind == JobEvent::Kind::failed) failed_.insert(event.patient);
+        const bool failed = event.kind == JobEvent::Kind::failed;
+        if (failed) {
+            failed_.insert(event.patient);
+        } else {
+            ++finished_;
+            if (--left_[event.patient] == 0) left_.erase(event.patient);
+        }
         progress_.step(
-            fmt::format("{} of {} stages{}; {}: {}{}", finished_, total_,
+            fmt::format("{} of {} patients, {} of {} stages{}; {}: {}{}", patients_ - left_.size(), patients_,
+                        finished_, stages_,
                         failed_.empty() ? "" : fmt::format(", failed patients: {}", failed_.size()),
-                        event.patient, event.stage, event.kind == JobEvent::Kind::failed ? " failed" : ""),
-            static_cast<double>(finished_) / static_cast<double>(total_));
+                        event.patient, event.stage, failed ? " failed" : ""),
+            static_cast<double>(finished_) / static_cast<double>(stages_));
     }
 
   private:
     cli::Progress& progress_;
-    std::int64_t finished_ = 0, total_ = 0;
+    std::map<std::string, std::int64_t> left_;  // stages of each patient
+    std::size_t patients_ = 0;
+    std::int64_t finished_ = 0, stages_ = 0;
     std::set<std::string> failed_;
 };
 
@@ -97,7 +109,7 @@ class Bar {
 std::int64_t run_what_is_to_do(const Cohort& cohort, const States& states, const SnakemakeRun& run,
                                cli::Session& session) {
     Bar bar(cohort, states, session.progress);
-    if (bar.total() == 0) return 0;
+    if (bar.stages() == 0) return 0;
     std::filesystem::remove_all(cohort.folder.done());
     for (std::size_t i = 0; i < states.size(); ++i)
         if (std::ranges::count(stages_to_do(cohort.builds[i], states[i]), true) > 0)
@@ -109,7 +121,7 @@ std::int64_t run_what_is_to_do(const Cohort& cohort, const States& states, const
         true);
     run_snakemake(run, cohort.folder, [&](const JobEvent& event) { bar.show(event); });
     session.progress.finish();
-    return bar.total();
+    return bar.stages();
 }
 
 std::vector<PatientResult> write_results(const Cohort& cohort, States states) {
