@@ -108,7 +108,7 @@ class Batch:
                 "cores_busy_percent": round(100 * cpu / seconds / os.cpu_count(), 1)}
 
     def wait_for_stages(self, count):
-        while len(list(self.out.glob("*.parts/*.stage.json"))) < count:
+        while len(list(self.out.glob("*.parts/[!.]*.stage.json"))) < count:
             assert self.process.poll() is None
             time.sleep(0.1)
 
@@ -126,7 +126,7 @@ def peaks_over_forecasts(out):
 
 
 def stage_times(out):
-    return {path: path.stat().st_mtime_ns for path in out.glob("*.parts/*.stage.json")}
+    return {path: path.stat().st_mtime_ns for path in out.glob("*.parts/[!.]*.stage.json")}
 
 
 def resumed(folder, out, built, total, **options):

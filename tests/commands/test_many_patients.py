@@ -76,15 +76,15 @@ class ManyPatients(SmallCohort):
         self.assertEqual(self.status("first")["status"], "built")
 
     def start_and_wait_for_a_stage(self):
-        finished = len(list(self.out.glob("*.parts/*.stage.json")))
+        finished = len(list(self.out.glob("*.parts/[!.]*.stage.json")))
         process = subprocess.Popen(self.command(), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-        while len(list(self.out.glob("*.parts/*.stage.json"))) <= finished:
+        while len(list(self.out.glob("*.parts/[!.]*.stage.json"))) <= finished:
             self.assertIsNone(process.poll())
             time.sleep(0.05)
         return process
 
     def assert_goes_on(self):
-        finished = {path: path.stat().st_mtime_ns for path in self.out.glob("*.parts/*.stage.json")}
+        finished = {path: path.stat().st_mtime_ns for path in self.out.glob("*.parts/[!.]*.stage.json")}
         self.batch()
         for path, stamp in finished.items():
             self.assertEqual(path.stat().st_mtime_ns, stamp, f"{path} ran again")
