@@ -112,33 +112,53 @@ void require_one_plane(const DicomSeries& series, const std::filesystem::path& p
     }
 }
 
-}  // namespace
-
-Volume read_dicom(const std::filesystem::path& path, const NoteSink& note, const ReadOptions& options) {
+// The slices of the chosen series in order of place, and their grid but for the distance of slices.
+std::pair<std::vector<DicomSlice>, ImageGrid> ordered_slices(const std::filesystem::path& path,
+                                                             const NoteSink& note, const ReadOptions& options,
+                                                             std::string& modality) {
     const std::vector<DicomSeries> all = scan_dicom(path, note);
     DicomSeries series = choose_series(all, options, path, note);
     if (series.slices.size() < 2)
         throw InvalidInput({path.string(), "holds a single DICOM slice", "a series of 2 slices or more",
                             "name the folder that holds the whole series"});
     require_one_plane(series, path);
-    if (note && series.summary.modality != "CT")
-        note(fmt::format("modality {}: values are not HU",
-                         series.summary.modality.empty() ? "unknown" : series.summary.modality));
-
+    modality = series.summary.modality;
     const DicomSlice& first = series.slices.front();
-    Volume volume;
-    ImageGrid& grid = volume.grid;
+    ImageGrid grid;
     grid.size = {first.size[0], first.size[1], static_cast<std::int32_t>(series.slices.size())};
     grid.spacing.head<2>() = *first.spacing;
     grid.direction.leftCols<2>() = *first.directions;
     grid.direction.col(2) = grid.direction.col(0).cross(grid.direction.col(1));
     check_geometry(grid, path, note);
-
     const Eigen::Vector3d normal = grid.direction.col(2);
     std::ranges::stable_sort(series.slices, {}, [&](const DicomSlice& s) { return normal.dot(*s.origin); });
+    grid.origin = *series.slices.front().origin;
+    return {std::move(series.slices), grid};
+}
+
+}  // namespace
+
+PlacedSeries read_dicom_places(const std::filesystem::path& path, const NoteSink& note,
+                               const ReadOptions& options) {
+    std::string modality;
+    auto [slices, grid] = ordered_slices(path, note, options, modality);
+    const double length = grid.direction.col(2).dot(*slices.back().origin - grid.origin);
+    if (length > 0) grid.spacing[2] = length / static_cast<double>(slices.size() - 1);
+    PlacedSeries series{grid, {}};
+    for (const DicomSlice& slice : slices) series.slices.push_back({slice.file, slice.frame, *slice.origin});
+    return series;
+}
+
+Volume read_dicom(const std::filesystem::path& path, const NoteSink& note, const ReadOptions& options) {
+    std::string modality;
+    const auto [slices, ordered_grid] = ordered_slices(path, note, options, modality);
+    if (note && modality != "CT")
+        note(fmt::format("modality {}: values are not HU", modality.empty() ? "unknown" : modality));
+    Volume volume{ordered_grid, {}};
+    ImageGrid& grid = volume.grid;
+    const Eigen::Vector3d normal = grid.direction.col(2);
     std::vector<SlicePlace> places;
-    for (const DicomSlice& slice : series.slices) places.push_back({*slice.origin, name_of(slice)});
-    grid.origin = places.front().origin;
+    for (const DicomSlice& slice : slices) places.push_back({*slice.origin, name_of(slice)});
     const StackFault fault = find_stack_fault(places, normal, grid.spacing.head<2>().minCoeff());
     if (!fault.found.empty() && !options.accept_gaps)
         throw InvalidInput({path.string(), fault.found, fault.expected,
@@ -146,12 +166,12 @@ Volume read_dicom(const std::filesystem::path& path, const NoteSink& note, const
     grid.spacing[2] = fault.mean_gap > 0 ? fault.mean_gap : 1;
 
     std::set<std::string> files;
-    for (const DicomSlice& slice : series.slices) files.insert(slice.file);
+    for (const DicomSlice& slice : slices) files.insert(slice.file);
     std::uintmax_t bytes = 0;
     for (const std::string& file : files) bytes += std::filesystem::file_size(file);
     check_claim(grid.voxel_count(), bytes, Packing::deflated, path);
     volume.values.resize(grid.voxel_count());
-    for (const std::string& file : files) read_pixels(file, series.slices, grid, volume.values);
+    for (const std::string& file : files) read_pixels(file, slices, grid, volume.values);
     return fault.found.empty() ? volume : resample_stack(volume, places, path, note);
 }
 

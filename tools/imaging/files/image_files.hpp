@@ -70,6 +70,25 @@ struct SeriesSummary {
 /// it reads every file's header.
 std::vector<SeriesSummary> list_series(const std::filesystem::path& path, const NoteSink& note = {});
 
+/// One slice of a DICOM series and where it lies.
+struct PlacedSlice {
+    std::string file;
+    std::size_t frame = 0;   ///< of the file, from 0
+    Eigen::Vector3d origin;  ///< p_P of its first voxel, mm
+};
+
+/// The slices of a DICOM series by place, ascending along k, and the grid of them all; its spacing along k is
+/// the mean one.
+struct PlacedSeries {
+    ImageGrid grid;
+    std::vector<PlacedSlice> slices;
+};
+
+/// Reads where the slices of a DICOM series lie, without their pixels; chooses and throws as read_volume()
+/// does, but gaps are no fault. Cost: it reads every file's header.
+PlacedSeries read_dicom_places(const std::filesystem::path& path, const NoteSink& note = {},
+                               const ReadOptions& options = {});
+
 /// Reads a label map in any format of read_volume(), or DICOM SEG instead of grey DICOM, as integers. Names
 /// and colours come from SegmentN_* fields of an NRRD header, from a DICOM SEG's segments, or from the label
 /// table in a NIfTI header extension as TotalSegmentator and Connectome Workbench write it; a value without
