@@ -23,6 +23,7 @@ ROOMS = {
     "asset": {"model", "hdf5", "openssl", "threads"},
     "recording": {"model", "asset"},
     "imaging": {"model", "itk", "hdf5", "dcmtk", "vtk", "json"},  # HDF5 is one of ITK's own
+    "archive": {"model", "asset", "imaging", "dcmtk", "hdf5", "zlib"},
     "meshing": {"model", "cgal", "vtk", "json"},
     "obb": {"model"},
     "fem": {"model", "linear_algebra"},
@@ -50,7 +51,7 @@ ROOMS = {
     "session": {"model", "asset", "recording", "drawing", "json", "realtime", "collision", "haptics", "devices", "openigtlink"},
 }
 ROOMS["experiments"] = {"asset", "drawing", "cli", "session", "fem", "meshing", "obb", "cgal_peer"}  # measures both sides
-COMMANDS = {"model", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "case_builder", "cohort", "draft", "requests", "stage_images", "stage_shapes",
+COMMANDS = {"model", "archive", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "case_builder", "cohort", "draft", "requests", "stage_images", "stage_shapes",
             "stage_bodies", "stage_cases", "seeds", "tissue", "json"}
 APPS = {"model", "asset", "recording", "cli", "realtime", "collision", "haptics", "devices", "openigtlink", "session", "json"}
 EXECUTABLES = {
@@ -71,7 +72,7 @@ FAMILIES = {
     "dcmtk": r"/libdcm|/libof(?:log|std)", "igtl": r"OpenIGTLink::",
     "itk": r"ITK|itk|gdcm", "cgal": r"CGAL", "vtk": r"VTK::|X11::", "cholmod": r"cholmod", "metis": r"libmetis",
     "lapack": r"lapacke|openblas", "cli11": r"CLI11::", "spdlog": r"spdlog", "fmt": r"fmt::", "json": r"nlohmann_json",
-    "toml": r"tomlplusplus", "threads": r"Threads::", "house": r"palpate_house",
+    "toml": r"tomlplusplus", "threads": r"Threads::", "zlib": r"ZLIB::", "house": r"palpate_house",
 }
 FORBIDDEN_SONAMES = {"palpate-touch": r"libITK|libitk|libCGAL|libcholmod|libmetis|libvtk",
                      "palpate-doctor": r"libITK|libitk|libCGAL|libcholmod|libmetis|libvtk",

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+#include "formats/model/errors.hpp"
+#include "tools/archive/objects/archive_objects.hpp"
+#include "tools/archive/objects/segment_codes.hpp"
+#include "tools/cli/command.hpp"
+#include "tools/imaging/files/label_names.hpp"
+#include "tools/stages/surface.hpp"
+
+namespace {
+
+using namespace palpate;
+using namespace palpate::archive;
+
+const cli::CommandText text{
+    .name = "export",
+    .summary = "Turns a label map or a closed surface into a DICOM object for a hospital's archive.",
+    .examples = {"palpate export labels.seg.nrrd --reference ct_series/ --identity -o labels.dcm",
+                 "palpate export labels.seg.nrrd --label liver -o liver_stl.dcm"},
+    .notes =
+        "A label map becomes a DICOM Segmentation, a surface (.vtp, .vtk, .stl, .obj, .ply) or the outline "
+        "of "
+        "one\n"
+        "label an Encapsulated STL; positions are LPS mm in both. Without --reference nothing leads to a "
+        "patient:\n"
+        "no name, id or date, and UIDs made from the content, so that equal input gives equal bytes. With it "
+        "the\n"
+        "object refers to study, series, slices and frame of reference of the series that it was made from, "
+        "whose\n"
+        "UIDs lead an archive's owner to the patient; with --identity it also has the patient's name, id, "
+        "birth\n"
+        "date and sex and the study's date, id and accession number, so that an archive files it there.\n"
+        "Segments are numbered from 1 in the order of their values."};
+
+struct ExportRequest {
+    std::filesystem::path input, output, reference;
+    std::string label, label_names, title, series, unit = "mm", frame;
+    std::string algorithm = "semiautomatic", algorithm_name = "palpate segment";
+    bool identity = false;
+};
+
+bool is_surface(const std::filesystem::path& path) {
+    const std::string ending = path.extension().string();
+    return ending == ".vtp" || ending == ".stl" || ending == ".obj" || ending == ".ply" || ending == ".vtk";
+}
+
+nlohmann::ordered_json export_surface(const ExportRequest& request, const Filing& filing,
+                                      const cli::StagedFile& staged, const imaging::NoteSink& note) {
+    stages::SurfaceRequest wanted;
+    wanted.output = request.output;
+    wanted.unit = request.unit;
+    wanted.frame = request.frame;
+    if (request.label.empty()) {
+        wanted.surface_file = request.input;
+    } else {
+        wanted.labels = request.input;
+        wanted.label_names = {request.label};
+        wanted.min_triangles = 0;
+    }
+    const stages::MadeSurface made = make_surface(
+        wanted, [](std::string_view, double) {}, note);
+    std::string title = request.title;
+    if (title.empty()) title = request.label.empty() ? "surface" : request.label;
+    write_surface_object(staged.path(), made.surface, title, filing, request.input.string());
+    return {{"object", "encapsulated STL"},
+            {"title", title},
+            {"triangles", made.surface.triangles.size()},
+            {"volume_mm3", made.quality.volume}};
+}
+
+nlohmann::ordered_json export_labels(const ExportRequest& request, const Filing& filing,
+                                     const cli::StagedFile& staged, const imaging::NoteSink& note) {
+    LabelMap map = imaging::read_label_map(request.input, note);
+    if (!request.label_names.empty()) imaging::name_labels(map, request.label_names, note);
+    const std::string culprit = request.input.string();
+    map = along_reference(map, filing.reference ? &*filing.reference : nullptr, culprit);
+    write_segmentation_object(staged.path(), map, filing, culprit);
+    nlohmann::ordered_json segments = nlohmann::ordered_json::array();
+    for (const Label& label : map.names) {
+        const SegmentCodes codes = codes_of(label.name);
+        segments.push_back({{"segment", segments.size() + 1},
+                            {"value", label.value},
+                            {"name", label.name},
+                            {"code", codes.type.value},
+                            {"meaning", codes.type.meaning}});
+        if (!codes.known)
+            note(fmt::format("no code is known for '{}': an anatomical structure, tissue", label.name));
+    }
+    return {{"object", "segmentation"}, {"segments", segments}};
+}
+
+nlohmann::ordered_json run_export(const ExportRequest& request, cli::Session& session) {
+    if (request.identity && request.reference.empty())
+        throw UsageError({"--identity", "is given without --reference", "both",
+                          "name the folder of the series that the result was made from"});
+    if (!request.label.empty() && is_surface(request.input))
+        throw UsageError({"--label", request.input.string() + " is a surface", "a label map", ""});
+    cli::StagedFile staged = session.stage(request.output);
+    const imaging::NoteSink note = [](std::string_view said) { spdlog::warn("{}", said); };
+    imaging::set_imaging_threads(session.threads);
+    Filing filing{.reference = std::nullopt,
+                  .identity = request.identity,
+                  .algorithm_type = request.algorithm,
+                  .algorithm_name = request.algorithm_name,
+                  .version = cli::version()};
+    for (char& c : filing.algorithm_type) c = static_cast<char>(c - 'a' + 'A');
+    if (!request.reference.empty()) {
+        imaging::ReadOptions options;
+        options.series = request.series;
+        filing.reference = read_reference(request.reference, options, note);
+    }
+    const bool surface = is_surface(request.input) || !request.label.empty();
+    nlohmann::ordered_json result = surface ? export_surface(request, filing, staged, note)
+                                            : export_labels(request, filing, staged, note);
+    result["filed_beside"] = filing.reference ? "reference" : "nothing";
+    result["identity"] = filing.identity;
+    staged.commit();
+    return result;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    cli::Command command(text);
+    ExportRequest request;
+    command.input("input", request.input, "label map (.seg.nrrd, NIfTI, NRRD, DICOM SEG) or closed surface")
+        .required();
+    const cli::Option label =
+        command.option("--label", request.label, "the outline of this label, by name or value, as a surface");
+    command.option("--label-names", request.label_names, "names for the labels, as 'import' takes them")
+        .excludes(label);
+    command.option("--title", request.title, "of a surface; by default its label, or 'surface'");
+    command.option("--unit", request.unit, "of a surface's file: um, mm, cm, m or in");
+    command.option("--frame", request.frame,
+                   "of a surface's file: lps or ras; by default what it states, else lps");
+    command.option("--algorithm", request.algorithm, "how the labels came about")
+        .one_of({"automatic", "semiautomatic", "manual"});
+    command.option("--algorithm-name", request.algorithm_name, "what made the labels");
+    const cli::Option reference =
+        command.input("--reference", request.reference, "DICOM folder that the result was made from");
+    command.option("--series", request.series, "of that folder, by number, UID or description")
+        .needs(reference);
+    command.flag("--identity", request.identity, "take the reference's patient and study along");
+    command.output("-o,--output", request.output, "DICOM object (.dcm)").required();
+    return command.run(argc, argv, [&](cli::Session& session) { return run_export(request, session); });
+}
