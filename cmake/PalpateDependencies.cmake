@@ -46,6 +46,8 @@ if(PALPATE_TOOLS)
         find_library(PALPATE_DCM_${part}_LIBRARY ${part} REQUIRED)
         list(APPEND PALPATE_DCMTK_LIBRARIES ${PALPATE_DCM_${part}_LIBRARY})
     endforeach()
+    # zlib: what is packed in a .nii.gz, when names are looked for in it.
+    find_package(ZLIB REQUIRED)
     # GDCM: series and slices of DICOM. ITK reads them through it without passing it on, so it is found by itself.
     find_path(PALPATE_GDCM_INCLUDE gdcmTrace.h PATH_SUFFIXES gdcm-3.0 REQUIRED)
     set(PALPATE_GDCM_LIBRARIES)

@@ -159,6 +159,6 @@ int main(int argc, char** argv) {
             cli::write_text_file(request.thumbnail, thumbnail_png(patient_case), session.force);
         page.write_text(html);
         page.commit();
-        return nlohmann::json{{"report", request.output.string()}, {"bytes", html.size()}};
+        return nlohmann::json{{"report", request.output.filename().string()}, {"bytes", html.size()}};
     });
 }

@@ -6,6 +6,7 @@
 
 #include "formats/asset/asset.hpp"
 #include "formats/model/errors.hpp"
+#include "tools/archive/privacy/find_identity.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/fem/certificate/certificate.hpp"
 #include "tools/fem/solvers/dense_kernels.hpp"
@@ -126,26 +127,61 @@ Json verify(const std::filesystem::path& asset, std::int32_t columns, std::int32
                 {"checks", checks.rows()}};
 }
 
+// A line for each finding, values shortened.
+Json verify_privacy(const std::vector<std::filesystem::path>& files, cli::Session& session) {
+    const archive::PrivacyReport report = archive::find_identity(files, archive::this_machine());
+    Json rows = Json::array();
+    for (const archive::Finding& finding : report.findings) {
+        rows.push_back({{"file", finding.file.string()},
+                        {"where", finding.where},
+                        {"kind", finding.kind},
+                        {"value", finding.value}});
+        session.text += fmt::format("{}: {}: {}: {}\n", finding.file.string(), finding.where, finding.kind,
+                                    finding.value);
+    }
+    session.text += fmt::format("{} files searched, {} findings\n", report.files, rows.size());
+    if (!rows.empty())
+        session.shortfall = ErrorDetail{files.front().string() + (files.size() > 1 ? " and others" : ""),
+                                        fmt::format("{} findings of identity or place", rows.size()), "none",
+                                        "do not hand them on; import or export again without identity"};
+    return Json{{"verdict", rows.empty() ? "ok" : "failed"}, {"files", report.files}, {"findings", rows}};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     restart_with_fitting_kernels(argv);
     cli::Command command(
         {.name = "verify",
-         .summary = "Rechecks everything that an asset claims, the mechanics by solving them again.",
-         .examples = {"palpate verify liver.vtkhdf",
-                      "palpate verify liver.vtkhdf --columns 64 --json liver.verify.json"},
+         .summary =
+             "Rechecks everything that an asset claims, or searches any files for what tells a patient.",
+         .examples = {"palpate verify liver.vtkhdf --columns 64 --json liver.verify.json",
+                      "palpate verify --privacy liver.vtkhdf liver.html liver.parts/"},
          .notes =
              "An asset that cannot be read or is damaged gives exit code 3, a failed check on a readable one "
              "4.\n"
              "Positive definiteness of a dense compliance is by Cholesky in double, which takes twice its "
              "memory; a "
-             "hierarchical one is tried on contacts."});
-    std::filesystem::path asset;
+             "hierarchical one is tried on contacts. With --privacy the mechanics are left out, and any "
+             "files and "
+             "folders\n"
+             "are searched for a patient's identity, dates, people, this machine's user and host, and paths; "
+             "a "
+             "finding\n"
+             "gives exit code 4. Its value is told by two characters and its length. Pixels are not looked "
+             "at."});
+    std::vector<std::filesystem::path> files;
+    bool privacy = false;
     std::int32_t columns = certificate_columns, loads = certificate_loads;
-    command.input("asset", asset, "asset (.vtkhdf)").required();
+    command.input("files", files, "asset (.vtkhdf); with --privacy any files and folders").required();
+    command.flag("--privacy", privacy, "search for identity and place instead");
     command.option("--columns", columns, "columns of each compliance to solve again").range(1, 100000);
     command.option("--loads", loads, "random contact loads to solve again").range(1, 100000);
-    return command.run(argc, argv,
-                       [&](cli::Session& session) { return verify(asset, columns, loads, session); });
+    return command.run(argc, argv, [&](cli::Session& session) {
+        if (privacy) return verify_privacy(files, session);
+        if (files.size() != 1)
+            throw UsageError({"verify", fmt::format("{} files", files.size()), "one asset",
+                              "verify them one by one, or search them with --privacy"});
+        return verify(files.front(), columns, loads, session);
+    });
 }
