@@ -152,6 +152,28 @@ SurfaceCompliance map_compliance(const Hdf5File& file, const std::string& path, 
     file.refuse(path, "is neither dense nor hierarchical", "'dense', or 'first_child' and what goes with it");
 }
 
+// Unchecked.
+ObbTree obb_tree_from(const Hdf5File& file, const std::string& path) {
+    const auto centers = read_rows<float, std::array<float, 3>>(file, path + "/centers");
+    const auto count = static_cast<std::int64_t>(centers.size());
+    const auto axes = file.dataset<float>(path + "/axes", {count, 3, 3});
+    const auto half_extents = read_rows<float, std::array<float, 3>>(file, path + "/half_extents", count);
+    const auto first = file.dataset<std::int32_t>(path + "/first", {count});
+    const auto counts = file.dataset<std::int32_t>(path + "/count", {count});
+    ObbTree tree;
+    tree.nodes.resize(centers.size());
+    for (std::size_t i = 0; i < centers.size(); ++i) {
+        ObbNode& node = tree.nodes[i];
+        node.axes = Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(axes.data() + 9 * i);
+        node.center = Eigen::Vector3f(centers[i].data());
+        node.half_extents = Eigen::Vector3f(half_extents[i].data());
+        node.first = first[i];
+        node.count = counts[i];
+    }
+    tree.triangle_order = read_rows<std::int32_t, std::int32_t>(file, path + "/triangle_order");
+    return tree;
+}
+
 }  // namespace
 
 void write_header(Hdf5Writer& writer, const std::string& kind) {
@@ -162,10 +184,15 @@ void write_header(Hdf5Writer& writer, const std::string& kind) {
     writer.attribute("/palpate", "space", "LPS");
 }
 
-void check_header(const Hdf5File& file, const std::string& kind) {
+std::string header_kind(const Hdf5File& file) {
     if (!file.contains("/palpate"))
         throw InvalidInput({file.name(), "is an HDF5 file, but not one of palpate's", "a group /palpate",
                             "give an asset (.vtkhdf) or a part that palpate wrote"});
+    return file.text_attribute("/palpate", "kind");
+}
+
+void check_header(const Hdf5File& file, const std::string& kind) {
+    const std::string found_kind = header_kind(file);
     const auto found_schema = file.attribute<std::int32_t>("/palpate", "schema");
     if (found_schema > schema)
         throw InvalidInput({file.name(), "has schema " + std::to_string(found_schema),
@@ -174,7 +201,6 @@ void check_header(const Hdf5File& file, const std::string& kind) {
     if (found_schema != schema)
         throw InvalidInput({file.name(), "has schema " + std::to_string(found_schema), std::to_string(schema),
                             "make the file again with this palpate"});
-    const std::string found_kind = file.text_attribute("/palpate", "kind");
     if (found_kind != kind)
         throw InvalidInput(
             {file.name(), "is of kind '" + found_kind + "'", "'" + kind + "'",
@@ -200,28 +226,22 @@ void write_obb_tree(Hdf5Writer& writer, const std::string& path, const ObbTree& 
     write_rows<std::int32_t>(writer, path + "/triangle_order", tree.triangle_order);
 }
 
+std::string surface_digest_of_obb_tree(const Hdf5File& file, const std::string& path) {
+    return file.text_attribute(path, "surface_sha256");
+}
+
 ObbTree read_obb_tree(const Hdf5File& file, const std::string& path, const TriangleMesh& surface) {
-    if (file.text_attribute(path, "surface_sha256") != surface_digest(surface))
+    if (surface_digest_of_obb_tree(file, path) != surface_digest(surface))
         throw InvalidInput({file.name() + ": " + path, "was built over another surface", "",
                             "run 'palpate obb' on the surface again"});
-    const auto centers = read_rows<float, std::array<float, 3>>(file, path + "/centers");
-    const auto count = static_cast<std::int64_t>(centers.size());
-    const auto axes = file.dataset<float>(path + "/axes", {count, 3, 3});
-    const auto half_extents = read_rows<float, std::array<float, 3>>(file, path + "/half_extents", count);
-    const auto first = file.dataset<std::int32_t>(path + "/first", {count});
-    const auto counts = file.dataset<std::int32_t>(path + "/count", {count});
-    ObbTree tree;
-    tree.nodes.resize(centers.size());
-    for (std::size_t i = 0; i < centers.size(); ++i) {
-        ObbNode& node = tree.nodes[i];
-        node.axes = Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(axes.data() + 9 * i);
-        node.center = Eigen::Vector3f(centers[i].data());
-        node.half_extents = Eigen::Vector3f(half_extents[i].data());
-        node.first = first[i];
-        node.count = counts[i];
-    }
-    tree.triangle_order = read_rows<std::int32_t, std::int32_t>(file, path + "/triangle_order");
+    ObbTree tree = obb_tree_from(file, path);
     check_obb_tree(tree, surface.triangles.size(), file.name() + ": " + path);
+    return tree;
+}
+
+ObbTree read_obb_tree(const Hdf5File& file, const std::string& path) {
+    ObbTree tree = obb_tree_from(file, path);
+    check_obb_tree(tree, tree.triangle_order.size(), file.name() + ": " + path);
     return tree;
 }
 

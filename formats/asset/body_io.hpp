@@ -16,10 +16,16 @@ namespace palpate::asset {
 void write_header(Hdf5Writer& writer, const std::string& kind);
 /// Throws InvalidInput if the file is of a newer schema, of another kind, or in another frame.
 void check_header(const Hdf5File& file, const std::string& kind);
+/// The kind that a file says it is; throws InvalidInput if it is none of palpate's.
+std::string header_kind(const Hdf5File& file);
 
 void write_obb_tree(Hdf5Writer& writer, const std::string& path, const ObbTree& tree,
                     const TriangleMesh& surface);
+/// Throws InvalidInput if the tree was built over another surface.
 ObbTree read_obb_tree(const Hdf5File& file, const std::string& path, const TriangleMesh& surface);
+/// The same over whichever surface has its digest.
+ObbTree read_obb_tree(const Hdf5File& file, const std::string& path);
+std::string surface_digest_of_obb_tree(const Hdf5File& file, const std::string& path);
 
 void write_rigid_body(Hdf5Writer& writer, const std::string& path, const RigidBody& body);
 RigidBody read_rigid_body(const Hdf5File& file, const std::string& path);

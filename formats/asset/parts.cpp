@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/asset/parts.hpp"
 
+#include <fstream>
+#include <string_view>
+
 #include "formats/asset/body_io.hpp"
 #include "formats/asset/hdf5/digest.hpp"
 #include "formats/asset/validate.hpp"
@@ -12,6 +15,17 @@ constexpr const char* tree_path = "/palpate/obb_tree";
 constexpr const char* body_path = "/palpate/body";
 
 }  // namespace
+
+bool is_hdf5(const std::filesystem::path& path) {
+    constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
+    std::string head(signature.size(), '\0');
+    std::ifstream(path, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
+    return head == signature;
+}
+
+std::string kind_of(const std::filesystem::path& path) {
+    return header_kind(Hdf5File(path));
+}
 
 void write_obb_part(const std::filesystem::path& path, const ObbTree& tree, const TriangleMesh& surface) {
     check_surface(surface, "surface");
@@ -27,6 +41,13 @@ ObbTree read_obb_part(const std::filesystem::path& path, const TriangleMesh& sur
     check_header(file, "obb_tree");
     file.check_digests("/palpate");
     return read_obb_tree(file, tree_path, surface);
+}
+
+ObbPart read_obb_part(const std::filesystem::path& path) {
+    const Hdf5File file(path);
+    check_header(file, "obb_tree");
+    file.check_digests("/palpate");
+    return {read_obb_tree(file, tree_path), surface_digest_of_obb_tree(file, tree_path)};
 }
 
 void write_body_part(const std::filesystem::path& path, const DeformableBody& body) {

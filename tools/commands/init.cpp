@@ -35,19 +35,6 @@ struct InitRequest {
 
 const NoteSink warn = [](std::string_view said) { spdlog::warn("{}", said); };
 
-// Whether a volume holds labels: whole numbers, and nearly every voxel of a structure beside one of its own.
-bool looks_like_labels(const Volume& volume) {
-    std::size_t inside = 0, alike = 0;
-    for (std::size_t v = 0; v + 1 < volume.values.size(); ++v) {
-        const float value = volume.values[v];
-        if (value < 0 || value > 65535 || value != std::floor(value)) return false;
-        if (value == 0) continue;
-        ++inside;
-        alike += volume.values[v + 1] == value;
-    }
-    return inside > 0 && static_cast<double>(alike) > 0.7 * static_cast<double>(inside);
-}
-
 // How the case file, which will lie beside `output`, names a file.
 std::string path_from(const fs::path& output, const fs::path& file) {
     const fs::path folder = fs::absolute(output).parent_path();
@@ -59,8 +46,7 @@ std::string import_lines(const std::string& label, bool organ) {
                        organ ? "close_mm = 3.0\nfill_holes = true\nkeep_largest = true\n" : "");
 }
 
-draft::CaseDraft draft_of_labels(const InitRequest& request, const draft::Wishes& wishes) {
-    LabelMap map = read_label_map(request.input, warn);
+draft::CaseDraft draft_of_labels(const InitRequest& request, LabelMap map, const draft::Wishes& wishes) {
     name_labels(map, request.label_names, warn);
     draft::CaseDraft found = draft_case(std::move(map), wishes, request.input.filename().string());
     found.input = fmt::format("labels = {}\n", path_from(request.output, request.input));
@@ -156,13 +142,14 @@ draft::CaseDraft draft_of(const InitRequest& request, cli::Session& session) {
     session.progress.step("reading", 0);
     if (is_mesh(request.input)) return draft_of_mesh(request, wishes);
     const std::string name = request.input.filename().string();
-    if (request.labels || name.ends_with(".seg.nrrd") || !request.label_names.empty())
-        return draft_of_labels(request, wishes);
+    const bool labels = request.labels || name.ends_with(".seg.nrrd") || !request.label_names.empty();
     ReadOptions options;
     options.series = request.series;
-    const Volume volume = read_volume(request.input, warn, options);
-    return looks_like_labels(volume) ? draft_of_labels(request, wishes)
-                                     : draft_of_volume(request, volume, wishes, session);
+    FoundImage found =
+        read_image(request.input, labels ? ImageKind::labels : ImageKind::found_out, warn, options);
+    if (auto* map = std::get_if<LabelMap>(&found.image))
+        return draft_of_labels(request, std::move(*map), wishes);
+    return draft_of_volume(request, std::get<Volume>(found.image), wishes, session);
 }
 
 nlohmann::ordered_json run_init(const InitRequest& request, cli::Session& session) {

@@ -14,7 +14,7 @@ double GreyPreset::shade(double value) const {
 GreyScale grey_scale(const Volume& volume) {
     GreyScale scale;
     scale.offset = imaging::hounsfield_offset(volume);
-    scale.hounsfield = scale.offset > 0 || std::ranges::min(volume.values) <= -500;
+    scale.hounsfield = scale.offset > 0 || imaging::holds_air(volume);
     if (scale.hounsfield) {
         scale.presets = {{"soft tissue", 400, 40},
                          {"liver", 180, 90},

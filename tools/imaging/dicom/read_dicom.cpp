@@ -58,9 +58,9 @@ bool rescale(gdcm::PixelFormat::ScalarType type, const char* stored, const Dicom
     }
 }
 
-// The pixels of one file's slices, each to its place in the stack.
-void read_pixels(const std::string& file, std::span<const DicomSlice> slices, const ImageGrid& grid,
-                 std::span<float> values) {
+// The pixels of one file's slices, each to its place in the stack; returns their type.
+std::string read_pixels(const std::string& file, std::span<const DicomSlice> slices, const ImageGrid& grid,
+                        std::span<float> values) {
     const auto fail = [&](const std::string& found) {
         return InvalidInput({file, found, "whole grey pixels that GDCM can decode",
                              "copy the file again, or decompress it with 'gdcmconv --raw'"});
@@ -87,6 +87,7 @@ void read_pixels(const std::string& file, std::span<const DicomSlice> slices, co
              !rescale(format.GetScalarType(), buffer.data() + slices[k].frame * count * format.GetPixelSize(),
                       slices[k], values.subspan(k * count, count))))
             throw fail(fmt::format("holds pixels of type {}", format.GetScalarTypeAsString()));
+    return in_lower_case(format.GetScalarTypeAsString());
 }
 
 void require_one_plane(const DicomSeries& series, const std::filesystem::path& path) {
@@ -149,12 +150,13 @@ PlacedSeries read_dicom_places(const std::filesystem::path& path, const NoteSink
     return series;
 }
 
-Volume read_dicom(const std::filesystem::path& path, const NoteSink& note, const ReadOptions& options) {
+DicomImage read_dicom(const std::filesystem::path& path, const NoteSink& note, const ReadOptions& options) {
     std::string modality;
     const auto [slices, ordered_grid] = ordered_slices(path, note, options, modality);
     if (note && modality != "CT")
         note(fmt::format("modality {}: values are not HU", modality.empty() ? "unknown" : modality));
-    Volume volume{ordered_grid, {}};
+    DicomImage image{.volume = {ordered_grid, {}}, .modality = modality, .stored_type = ""};
+    Volume& volume = image.volume;
     ImageGrid& grid = volume.grid;
     const Eigen::Vector3d normal = grid.direction.col(2);
     std::vector<SlicePlace> places;
@@ -171,8 +173,12 @@ Volume read_dicom(const std::filesystem::path& path, const NoteSink& note, const
     for (const std::string& file : files) bytes += std::filesystem::file_size(file);
     check_claim(grid.voxel_count(), bytes, Packing::deflated, path);
     volume.values.resize(grid.voxel_count());
-    for (const std::string& file : files) read_pixels(file, slices, grid, volume.values);
-    return fault.found.empty() ? volume : resample_stack(volume, places, path, note);
+    for (const std::string& file : files) {
+        const std::string type = read_pixels(file, slices, grid, volume.values);
+        if (image.stored_type.empty()) image.stored_type = type;
+    }
+    if (!fault.found.empty()) volume = resample_stack(volume, places, path, note);
+    return image;
 }
 
 }  // namespace palpate::imaging

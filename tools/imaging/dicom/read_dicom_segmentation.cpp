@@ -197,6 +197,16 @@ bool is_whole_dicom(const std::filesystem::path& path) {
     return file.loadFile(path.c_str()).good();
 }
 
+bool is_dicom_segmentation(const std::filesystem::path& path) {
+    OFLog::configure(OFLogger::OFF_LOG_LEVEL);
+    DcmFileFormat file;
+    OFString modality;
+    return file.loadFileUntilTag(path.c_str(), EXS_Unknown, EGL_noChange, DCM_MaxReadLength, ERM_autoDetect,
+                                 DCM_PatientName)
+               .good() &&
+           file.getDataset()->findAndGetOFString(DCM_Modality, modality).good() && modality == "SEG";
+}
+
 LabelMap read_dicom_segmentation(const std::filesystem::path& path, const NoteSink& note, Overlaps overlaps) {
     const Source source(path);
     const ImageGrid grid = source.grid(note);

@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "formats/model/image_grid.hpp"
@@ -98,6 +99,23 @@ PlacedSeries read_dicom_places(const std::filesystem::path& path, const NoteSink
 /// background, or if segments overlap and the option is to refuse (with the pairs).
 LabelMap read_label_map(const std::filesystem::path& path, const NoteSink& note = {},
                         const ReadOptions& options = {});
+
+/// What a caller takes an image for.
+enum class ImageKind { found_out, volume, labels };
+
+/// An image as what it is, and what else its file tells.
+struct FoundImage {
+    std::variant<Volume, LabelMap> image;
+    std::string told_by;      ///< why it counts as that, one clause for people
+    std::string stored_type;  ///< of its voxels: "int16"; "binary" for DICOM SEG
+    std::string modality;     ///< as in SeriesSummary; empty for what is no DICOM
+};
+
+/// Reads a volume or a label map, whichever the file holds unless `kind` says. Labels are a DICOM SEG, what
+/// names segments or labels in its header, and whole numbers of which seven in ten lie beside one of their
+/// own. Throws as read_volume() and read_label_map() do. Cost: the one's or the other's.
+FoundImage read_image(const std::filesystem::path& path, ImageKind kind = ImageKind::found_out,
+                      const NoteSink& note = {}, const ReadOptions& options = {});
 
 /// Writes gzip-compressed NRRD in LPS, as int16 if every value is an integer that fits, else as float32.
 /// Nothing but geometry and values is written. The path must end in ".nrrd".

@@ -125,6 +125,12 @@ LabelMap several_layers(const StoredImage& image, std::span<const std::uint16_t>
     return painter.finish(path, note);
 }
 
+void require_labels(const LabelMap& map, const std::filesystem::path& path) {
+    if (map.names.empty())
+        throw InvalidInput({path.string(), "is empty: every voxel is background", "",
+                            "choose another file or segment again"});
+}
+
 LabelMap label_map_of(StoredImage image, const std::filesystem::path& path, const NoteSink& note,
                       Overlaps overlaps) {
     const std::vector<Segment> segments = segments_of(image, path);
@@ -137,25 +143,30 @@ LabelMap label_map_of(StoredImage image, const std::filesystem::path& path, cons
 
 }  // namespace
 
+LabelMap label_map_from(StoredImage image, const std::filesystem::path& path, const NoteSink& note,
+                        Overlaps overlaps) {
+    LabelMap map = label_map_of(std::move(image), path, note, overlaps);
+    require_labels(map, path);
+    make_names_unique(map, note);
+    return map;
+}
+
 LabelMap read_label_map(const std::filesystem::path& path, const NoteSink& note, const ReadOptions& options) {
     itk::Object::GlobalWarningDisplayOff();
     if (std::error_code none; !std::filesystem::is_regular_file(path, none))
         throw InvalidInput({path.string(),
                             std::filesystem::is_directory(path, none) ? "is a folder" : "no such file",
                             "a file with a label map, as .seg.nrrd, .nii.gz or DICOM SEG", "check the path"});
-    LabelMap map;
     try {
-        map = is_dicom(path)
-                  ? read_dicom_segmentation(path, note, options.overlaps)
-                  : label_map_of(read_image_file(path, note, options), path, note, options.overlaps);
+        if (!is_dicom(path))
+            return label_map_from(read_image_file(path, note, options), path, note, options.overlaps);
+        LabelMap map = read_dicom_segmentation(path, note, options.overlaps);
+        require_labels(map, path);
+        make_names_unique(map, note);
+        return map;
     } catch (const std::bad_alloc&) {
         throw beyond_memory(path);
     }
-    if (map.names.empty())
-        throw InvalidInput({path.string(), "is empty: every voxel is background", "",
-                            "choose another file or segment again"});
-    make_names_unique(map, note);
-    return map;
 }
 
 }  // namespace palpate::imaging

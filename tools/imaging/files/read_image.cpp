@@ -41,13 +41,6 @@ std::vector<float> float_values(StoredImage& image) {
         image.voxels);
 }
 
-Volume volume_of(StoredImage image, const std::filesystem::path& path) {
-    if (image.layers != 1)
-        throw InvalidInput({path.string(), fmt::format("has {} values per voxel", image.layers), "1",
-                            "export one scalar volume, or read a label map with layers as labels"});
-    return {image.grid, float_values(image)};
-}
-
 // Well-formed UTF-8 (Unicode 15, table 3-7): no overlong forms, no surrogates, U+10FFFF at most.
 bool is_utf8(std::string_view text) {
     int expected = 0;
@@ -152,15 +145,30 @@ void check_geometry(ImageGrid& grid, const std::filesystem::path& path, const No
         note(fmt::format("directions were {:.2g} off orthonormality and were made orthonormal", deviation));
 }
 
-void check_finite(const Volume& volume, const std::filesystem::path& path) {
+void check_values(const Volume& volume, const std::filesystem::path& path) {
     const auto bad = std::ranges::find_if(volume.values, [](float value) { return !std::isfinite(value); });
-    if (bad == volume.values.end()) return;
+    if (bad == volume.values.end()) {
+        const auto [low, high] = std::ranges::minmax(volume.values);
+        if (low == high)
+            throw InvalidInput({path.string(), fmt::format("is empty: every voxel is {}", low), "",
+                                "choose another file or export it again"});
+        return;
+    }
     const auto& size = volume.grid.size;
     const auto offset = bad - volume.values.begin();
     throw InvalidInput({path.string(),
                         fmt::format("voxel ({}, {}, {}) is {}", offset % size[0], offset / size[0] % size[1],
                                     offset / size[0] / size[1], *bad),
                         "finite values", "replace such voxels, by -1024 HU in CT"});
+}
+
+Volume volume_from(StoredImage image, const std::filesystem::path& path) {
+    if (image.layers != 1)
+        throw InvalidInput({path.string(), fmt::format("has {} values per voxel", image.layers), "1",
+                            "export one scalar volume, or read a label map with layers as labels"});
+    Volume volume{image.grid, float_values(image)};
+    check_values(volume, path);
+    return volume;
 }
 
 StoredImage read_image_file(const std::filesystem::path& path, const NoteSink& note,
@@ -178,20 +186,15 @@ Volume read_volume(const std::filesystem::path& path, const NoteSink& note, cons
     std::error_code none;
     if (!std::filesystem::exists(path, none))
         throw InvalidInput({path.string(), "no such file or folder", "", "check the path"});
-    Volume volume;
     try {
-        volume = std::filesystem::is_directory(path, none) || is_dicom(path)
-                     ? read_dicom(path, note, options)
-                     : volume_of(read_image_file(path, note, options), path);
+        if (!std::filesystem::is_directory(path, none) && !is_dicom(path))
+            return volume_from(read_image_file(path, note, options), path);
+        DicomImage image = read_dicom(path, note, options);
+        check_values(image.volume, path);
+        return std::move(image.volume);
     } catch (const std::bad_alloc&) {
         throw beyond_memory(path);
     }
-    check_finite(volume, path);
-    const auto [low, high] = std::ranges::minmax(volume.values);
-    if (low == high)
-        throw InvalidInput({path.string(), fmt::format("is empty: every voxel is {}", low), "",
-                            "choose another file or export it again"});
-    return volume;
 }
 
 void set_imaging_threads(int count) {

@@ -40,10 +40,28 @@ StoredImage read_vtk_image(const std::filesystem::path& path, const NoteSink& no
 StoredImage read_image_file(const std::filesystem::path& path, const NoteSink& note,
                             const ReadOptions& options);
 
-/// Reads a DICOM series of a folder or file; throws as read_volume() does, except for constant values.
-Volume read_dicom(const std::filesystem::path& path, const NoteSink& note, const ReadOptions& options);
+/// A DICOM series and what its headers say of its values.
+struct DicomImage {
+    Volume volume;
+    std::string modality;     ///< as in SeriesSummary
+    std::string stored_type;  ///< of its first file's voxels, "int16"
+};
 
-/// Reads a DICOM segmentation object; throws as read_label_map() does.
+/// Reads a DICOM series of a folder or file; throws as read_volume() does, except for constant values.
+DicomImage read_dicom(const std::filesystem::path& path, const NoteSink& note, const ReadOptions& options);
+
+/// Turns what a file stores into what read_volume() and read_label_map() return; throw as these do.
+Volume volume_from(StoredImage image, const std::filesystem::path& path);
+LabelMap label_map_from(StoredImage image, const std::filesystem::path& path, const NoteSink& note,
+                        Overlaps overlaps);
+
+/// Throws InvalidInput unless a volume's values are finite and not all the same.
+void check_values(const Volume& volume, const std::filesystem::path& path);
+
+/// Tells whether a DICOM file says that it is a segmentation object.
+bool is_dicom_segmentation(const std::filesystem::path& path);
+
+/// Reads a DICOM segmentation object; throws as read_label_map() does, except for an empty map.
 LabelMap read_dicom_segmentation(const std::filesystem::path& path, const NoteSink& note, Overlaps overlaps);
 
 /// ASCII letters in lower case; header fields and file endings are compared so.
@@ -75,8 +93,5 @@ InvalidInput beyond_memory(const std::filesystem::path& path);
 
 /// A grid's spacing and direction from its voxel axes: columns are the steps of i, j, k in P, mm.
 void set_axes(ImageGrid& grid, const Eigen::Matrix3d& axes);
-
-/// Throws InvalidInput naming the first voxel that is NaN or infinite.
-void check_finite(const Volume& volume, const std::filesystem::path& path);
 
 }  // namespace palpate::imaging

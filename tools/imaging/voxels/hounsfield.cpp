@@ -38,6 +38,10 @@ Mask threshold(const Volume& volume, double lower_hu, double upper_hu) {
     return mask;
 }
 
+bool holds_air(const Volume& volume) {
+    return std::ranges::any_of(volume.values, [](float value) { return value <= -500; });
+}
+
 double hounsfield_offset(const Volume& volume) {
     const std::size_t air = commonest_low_value(volume);
     const double offset = air > 0 && air < 14 ? 1000 : 1024;

@@ -36,6 +36,19 @@ struct ImportedMeshOptions {
 TetMesh read_imported_tetrahedra(const std::filesystem::path& path, const ImportedMeshOptions& options,
                                  const NoteSink& note = {});
 
+/// Tetrahedra as a file has them.
+struct UnrepairedTetrahedra {
+    TetMesh mesh;  ///< mm, LPS; some may be inverted, flat or there twice
+    std::map<std::string, std::int64_t> other_cells{};  ///< by kind: "triangle", "hexahedron"
+};
+
+/// Reads what read_imported_tetrahedra() reads and looks no further than its indices: nothing is mended but
+/// that unused nodes are left out, and of what that refuses only a file without tetrahedra and one that
+/// cannot be read.
+UnrepairedTetrahedra read_unrepaired_tetrahedra(const std::filesystem::path& path,
+                                                const ImportedMeshOptions& options,
+                                                const NoteSink& note = {});
+
 /// Fits an imported mesh into the label map of its patient: regions take value and colour of the label of
 /// their name, those without one a value that no label has, and `outside_labels` says what the map has beyond
 /// the surface. Throws InvalidInput if no region has a label's name.
@@ -46,5 +59,9 @@ void adopt_labels(TetMesh& mesh, const LabelMap& map);
 /// InvalidInput as that does, and for unreadable or unknown files.
 TriangleMesh read_imported_surface(const std::filesystem::path& path, const ImportedMeshOptions& options,
                                    const NoteSink& note = {});
+
+/// The same before anything is mended, and with points at the same place as the file has them.
+TriangleMesh read_unrepaired_surface(const std::filesystem::path& path, const ImportedMeshOptions& options,
+                                     const NoteSink& note = {});
 
 }  // namespace palpate::meshing

@@ -66,8 +66,8 @@ std::string stated_frame(vtkPolyData* data, const std::filesystem::path& path) {
 
 }  // namespace
 
-TriangleMesh read_imported_surface(const std::filesystem::path& path, const ImportedMeshOptions& options,
-                                   const NoteSink& note) {
+TriangleMesh read_unrepaired_surface(const std::filesystem::path& path, const ImportedMeshOptions& options,
+                                     const NoteSink& note) {
     const std::string culprit = path.string();
     const vtkSmartPointer<vtkPolyData> data = read_polygons(path);
     for (vtkCellArray* cells : {data->GetPolys(), data->GetStrips()})
@@ -97,7 +97,13 @@ TriangleMesh read_imported_surface(const std::filesystem::path& path, const Impo
         surface.triangles.push_back({static_cast<std::int32_t>(nodes[0]), static_cast<std::int32_t>(nodes[1]),
                                      static_cast<std::int32_t>(nodes[2])});
     }
-    return repaired_surface(joined_vertices(surface), culprit, note);
+    return surface;
+}
+
+TriangleMesh read_imported_surface(const std::filesystem::path& path, const ImportedMeshOptions& options,
+                                   const NoteSink& note) {
+    return repaired_surface(joined_vertices(read_unrepaired_surface(path, options, note)), path.string(),
+                            note);
 }
 
 }  // namespace palpate::meshing

@@ -25,6 +25,19 @@ FoundTetrahedra read_solids(const std::filesystem::path& path) {
                         "convert it, for example with meshio or Gmsh"});
 }
 
+void require_tetrahedra(const FoundTetrahedra& found, const std::string& culprit) {
+    if (found.tetrahedra.empty())
+        throw InvalidInput(
+            {culprit, "holds no tetrahedra" + (found.flat.empty() ? "" : ", but " + listed(found.flat)), "",
+             found.flat.contains("triangle") ? "a surface goes to 'palpate surface --surface-file'"
+                                             : "check how it was made"});
+}
+
+void mark_surface(TetMesh& mesh) {
+    mesh.outside_labels.assign(mesh.rest_positions.size(), -1);
+    for (const std::int32_t node : boundary_surface(mesh).nodes) mesh.outside_labels[node] = 0;
+}
+
 std::string place_of(const TetMesh& mesh, std::size_t t) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (const std::int32_t node : mesh.tetrahedra[t]) sum += mesh.rest_positions[node];
@@ -210,11 +223,7 @@ TetMesh read_imported_tetrahedra(const std::filesystem::path& path, const Import
             {culprit, "holds other solid cells: " + listed(found.solid),
              fmt::format("linear tetrahedra only (it has {})", found.tetrahedra.size()),
              "save it with linear tetrahedra (Gmsh: Mesh.ElementOrder = 1, Mesh.RecombineAll = 0)"});
-    if (found.tetrahedra.empty())
-        throw InvalidInput(
-            {culprit, "holds no tetrahedra" + (found.flat.empty() ? "" : ", but " + listed(found.flat)), "",
-             found.flat.contains("triangle") ? "a surface goes to 'palpate surface --surface-file'"
-                                             : "check how it was made"});
+    require_tetrahedra(found, culprit);
     if (!found.flat.empty() && note) note(culprit + ": ignored " + listed(found.flat));
 
     TetMesh mesh;
@@ -228,9 +237,23 @@ TetMesh read_imported_tetrahedra(const std::filesystem::path& path, const Import
     require_no_cracks(mesh, culprit);
     say(split_hinges(mesh), "nodes doubled where parts touch in a point or edge only");
     name_regions(mesh, found, options, culprit, note);
-    mesh.outside_labels.assign(mesh.rest_positions.size(), -1);
-    for (const std::int32_t node : boundary_surface(mesh).nodes) mesh.outside_labels[node] = 0;
+    mark_surface(mesh);
     return mesh;
+}
+
+UnrepairedTetrahedra read_unrepaired_tetrahedra(const std::filesystem::path& path,
+                                                const ImportedMeshOptions& options, const NoteSink& note) {
+    const std::string culprit = path.string();
+    FoundTetrahedra found = read_solids(path);
+    require_tetrahedra(found, culprit);
+    UnrepairedTetrahedra read{.mesh = {}, .other_cells = found.flat};
+    read.other_cells.insert(found.solid.begin(), found.solid.end());
+    if (const std::int64_t unused = take_used_nodes(found, read.mesh); unused > 0 && note)
+        note(fmt::format("{}: {} unused nodes left out", culprit, unused));
+    place(read.mesh.rest_positions, options, found.space, culprit, note);
+    name_regions(read.mesh, found, options, culprit, note);
+    mark_surface(read.mesh);
+    return read;
 }
 
 void adopt_labels(TetMesh& mesh, const LabelMap& map) {

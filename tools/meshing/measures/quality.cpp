@@ -62,7 +62,35 @@ double radius_ratio(const std::array<Eigen::Vector3d, 4>& p, double volume) {
     return 9 * volume / (surface * circumradius);
 }
 
+template <typename Cell>
+EdgeLengths edge_lengths(const std::vector<Eigen::Vector3d>& points, const std::vector<Cell>& cells) {
+    std::vector<std::array<std::int32_t, 2>> edges;
+    for (const Cell& cell : cells)
+        for (std::size_t a = 0; a < cell.size(); ++a)
+            for (std::size_t b = a + 1; b < cell.size(); ++b)
+                edges.push_back({std::min(cell[a], cell[b]), std::max(cell[a], cell[b])});
+    std::ranges::sort(edges);
+    const auto repeated = std::ranges::unique(edges);
+    edges.erase(repeated.begin(), repeated.end());
+    EdgeLengths lengths{.shortest = (points[edges[0][0]] - points[edges[0][1]]).norm()};
+    for (const auto& [a, b] : edges) {
+        const double length = (points[a] - points[b]).norm();
+        lengths.shortest = std::min(lengths.shortest, length);
+        lengths.longest = std::max(lengths.longest, length);
+        lengths.mean += length / static_cast<double>(edges.size());
+    }
+    return lengths;
+}
+
 }  // namespace
+
+EdgeLengths edge_lengths(const TetMesh& mesh) {
+    return edge_lengths(mesh.rest_positions, mesh.tetrahedra);
+}
+
+EdgeLengths edge_lengths(const TriangleMesh& surface) {
+    return edge_lengths(surface.vertices, surface.triangles);
+}
 
 TetShape tet_shape(const TetMesh& mesh, std::size_t t) {
     const auto p = corners_of(mesh, t);

@@ -71,6 +71,15 @@ MeshQuality measure(const TetMesh& mesh);
 /// Returns how far the dihedral angles of tetrahedron `t` stay from 0° and 180° at least, degrees.
 double flatness_deg(const TetMesh& mesh, std::size_t t);
 
+/// How long edges are, each counted once, mm.
+struct EdgeLengths {
+    double shortest = 0, mean = 0, longest = 0;
+};
+
+/// Measures the edges of a mesh of one cell or more. Cost: O(n log n).
+EdgeLengths edge_lengths(const TetMesh& mesh);
+EdgeLengths edge_lengths(const TriangleMesh& surface);
+
 /// Numbers the pieces of a mesh that are connected through faces: one entry per tetrahedron, pieces in order
 /// of their first tetrahedron.
 std::vector<std::int32_t> face_components(const TetMesh& mesh);
