@@ -35,6 +35,7 @@ ROOMS = {
     "stage_shapes": {"requests", "imaging", "meshing"},
     "stage_bodies": {"requests", "fem", "meshing"},
     "stage_cases": {"requests", "asset", "meshing", "obb"},
+    "inspection": {"stage_images", "stage_shapes", "stage_bodies", "asset", "draft"},
     "tissue": {"model"},
     "draft": {"model", "imaging", "tissue"},
     "case_builder": {"model", "asset", "cli", "imaging", "requests", "tissue", "json", "toml"},
@@ -51,7 +52,7 @@ ROOMS = {
     "session": {"model", "asset", "recording", "drawing", "json", "realtime", "collision", "haptics", "devices", "openigtlink"},
 }
 ROOMS["experiments"] = {"asset", "drawing", "cli", "session", "fem", "meshing", "obb", "cgal_peer"}  # measures both sides
-COMMANDS = {"model", "archive", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "case_builder", "cohort", "draft", "requests", "stage_images", "stage_shapes",
+COMMANDS = {"model", "archive", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "case_builder", "cohort", "draft", "inspection", "requests", "stage_images", "stage_shapes",
             "stage_bodies", "stage_cases", "seeds", "tissue", "json"}
 APPS = {"model", "asset", "recording", "cli", "realtime", "collision", "haptics", "devices", "openigtlink", "session", "json"}
 EXECUTABLES = {

@@ -249,9 +249,9 @@ int Command::parse(int argc, char** argv) {
     return ExitCode::usage;
 }
 
-void Command::emit(nlohmann::ordered_json result, const std::string& text, double seconds,
+void Command::emit(nlohmann::ordered_json result, const Session& session, double seconds,
                    StagedFile* json_file) const {
-    result["schema"] = "palpate." + text_.name + "/1";
+    result["schema"] = "palpate." + text_.name + (session.form.empty() ? "" : "." + session.form) + "/1";
     result["version"] = version();
     result["seconds"] = seconds;
     result["peak_memory_bytes"] = peak_memory_bytes();
@@ -260,8 +260,8 @@ void Command::emit(nlohmann::ordered_json result, const std::string& text, doubl
         json_file->commit();
     } else if (json_path_ == "-") {
         std::cout << result.dump(2) << '\n';
-    } else if (!text.empty()) {
-        std::cout << text;
+    } else if (!session.text.empty()) {
+        std::cout << session.text;
     } else {
         print_result(result);
     }
@@ -296,7 +296,7 @@ int Command::run(int argc, char** argv, const std::function<nlohmann::ordered_js
         if (!json_path_.empty() && json_path_ != "-") json_file.emplace(json_path_, force_);
         nlohmann::ordered_json result = job(session);
         session.progress.finish();
-        emit(std::move(result), session.text,
+        emit(std::move(result), session,
              std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
              json_file ? &*json_file : nullptr);
         std::cout.flush();

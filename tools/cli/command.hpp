@@ -64,6 +64,8 @@ struct Session {
     Progress progress;   ///< talks on stderr, silent with --quiet
     /// Set by a job whose result is worth printing though a contract is not met: exit code 4.
     std::optional<ErrorDetail> shortfall;
+    /// Set by a job whose result has several forms: "volume" makes its schema "palpate.<command>.volume/1".
+    std::string form;
     /// Set by a job that has something better for a person to read than lines "name value".
     std::string text;
 
@@ -129,7 +131,7 @@ class Command {
     Option remember(Parameter::Kind kind, Option option, const std::string& help, const std::string& key,
                     std::function<nlohmann::ordered_json()> value);
     int parse(int argc, char** argv);
-    void emit(nlohmann::ordered_json result, const std::string& text, double seconds,
+    void emit(nlohmann::ordered_json result, const Session& session, double seconds,
               StagedFile* json_file) const;
 
     CommandText text_;

@@ -1,71 +1,40 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "formats/asset/asset.hpp"
+#include "formats/model/errors.hpp"
 #include "tools/cli/command.hpp"
-#include "tools/cli/record_json.hpp"
-#include "tools/stages/body_result.hpp"
+#include "tools/inspection/file_kind.hpp"
+#include "tools/inspection/image_summary.hpp"
+#include "tools/inspection/part_summary.hpp"
+#include "tools/inspection/shape_summary.hpp"
 
 namespace {
 using namespace palpate;
-using Json = nlohmann::ordered_json;
+using inspection::FileKind;
 
-Json row_of(const RigidBody& body) {
-    return {{"name", body.name},
-            {"kind", "rigid"},
-            {"nodes", body.surface.vertices.size()},
-            {"tetrahedra", 0},
-            {"triangles", body.surface.triangles.size()},
-            {"surface_nodes", body.surface.vertices.size()},
-            {"fixed_nodes", 0},
-            {"contact_nodes", 0},
-            {"compliance_mb", 0.0},
-            {"obb_nodes", body.obb_tree.nodes.size()}};
+imaging::ImageKind kind_of_words(const std::string& words) {
+    if (words.empty()) return imaging::ImageKind::found_out;
+    if (words == "volume") return imaging::ImageKind::volume;
+    if (words == "labels") return imaging::ImageKind::labels;
+    throw UsageError({"--as", "'" + words + "'", "volume or labels", ""});
 }
 
-Json row_of(const DeformableBody& body) {
-    return {{"name", body.name},
-            {"kind", "deformable"},
-            {"nodes", body.mesh.rest_positions.size()},
-            {"tetrahedra", body.mesh.tetrahedra.size()},
-            {"triangles", body.boundary.surface.triangles.size()},
-            {"surface_nodes", body.boundary.nodes.size()},
-            {"fixed_nodes", body.fixed_nodes.size()},
-            {"contact_nodes", body.contact_nodes.size()},
-            {"compliance_mb", static_cast<double>(value_bytes(body.compliance)) * 1e-6},
-            {"obb_nodes", body.obb_tree.nodes.size()}};
-}
-
-void add_regions(Json& rows, const DeformableBody& body) {
-    for (std::size_t i = 0; i < body.materials.size(); ++i) {
-        const auto& [region, material] = body.materials[i];
-        double volume = 0;  // mm³
-        for (std::size_t t = 0; t < body.mesh.tetrahedra.size(); ++t)
-            if (body.mesh.regions[t] == region) volume += six_volume(body.mesh, t) / 6;
-        rows.push_back({{"body", body.name},
-                        {"region", body.mesh.region_names[i].name},
-                        {"label", region},
-                        {"youngs_modulus_kpa", material.youngs_modulus * 1e3},
-                        {"poissons_ratio", material.poissons_ratio},
-                        {"relaxation", relaxation_text(relaxation_of(body, region))},
-                        {"tetrahedra", std::ranges::count(body.mesh.regions, region)},
-                        {"volume_ml", volume * 1e-3}});
+inspection::Summary summary_of(const std::filesystem::path& file, const std::string& as) {
+    const imaging::ImageKind image_kind = kind_of_words(as);
+    const FileKind kind = inspection::kind_of_file(file);
+    if (kind != FileKind::image && !as.empty())
+        throw UsageError({"--as", "is for images", "", "leave it out"});
+    switch (kind) {
+        case FileKind::hdf5:
+            return inspection::summary_of_hdf5(file);
+        case FileKind::tetrahedra:
+            return inspection::summary_of_tetrahedra(file);
+        case FileKind::surface:
+            return inspection::summary_of_surface(file);
+        case FileKind::image:
+            break;
     }
-}
-
-Json row_of(const std::string& name, const DeformableBody& body) {
-    Json row{{"body", name},
-             {"element_order", stages::name_of(body.element_order)},
-             {"representation", stages::representation_of(body.compliance)}};
-    row.update(stages::to_json(body.certificate));
-    return row;
-}
-
-// Provenance is free text to the asset; what is JSON is shown as such.
-Json provenance_of(const std::string& text) {
-    const Json json = Json::parse(text, nullptr, false);
-    return json.is_discarded() ? Json(text) : json;
+    return inspection::summary_of_image(file, image_kind);
 }
 
 }  // namespace
@@ -73,26 +42,25 @@ Json provenance_of(const std::string& text) {
 int main(int argc, char** argv) {
     cli::Command command(
         {.name = "inspect",
-         .summary = "Summarises what is in an asset.",
-         .examples = {"palpate inspect liver.vtkhdf", "palpate inspect liver.vtkhdf --json -"},
-         .notes = "All digests are checked; 'palpate verify' checks the mechanics too."});
-    std::filesystem::path asset;
-    command.input("asset", asset, "asset (.vtkhdf)").required();
-    return command.run(argc, argv, [&](cli::Session&) {
-        const Case patient_case = asset::read_asset(asset);
-        Json bodies = Json::array(), regions = Json::array(), certificates = Json::array();
-        for (const RigidBody& body : patient_case.rigid_bodies) bodies.push_back(row_of(body));
-        for (const DeformableBody& body : patient_case.deformable_bodies) {
-            bodies.push_back(row_of(body));
-            add_regions(regions, body);
-            certificates.push_back(row_of(body.name, body));
-        }
-        return Json{{"name", patient_case.name},
-                    {"bytes", std::filesystem::file_size(asset)},
-                    {"bodies", bodies},
-                    {"regions", regions},
-                    {"certificates", certificates},
-                    {"haptics", cli::record_json(haptic_fields, patient_case.haptics)},
-                    {"provenance", provenance_of(patient_case.provenance)}};
+         .summary = "Summarises what is in an asset, a part of one, a mesh, a label map or a volume.",
+         .examples = {"palpate inspect liver.vtkhdf", "palpate inspect labels.seg.nrrd --json -"},
+         .notes =
+             "Reads images (NRRD, MetaImage, NIfTI, VTK image data, DICOM, DICOM SEG), tetrahedra (.vtu, "
+             ".vtk, "
+             ".msh, .mesh),\nsurfaces (.vtp, .vtk, .stl, .obj, .ply), parts (.obb.h5, .body.h5) and assets "
+             "(.vtkhdf), changes none and mends nothing.\nOf assets and parts all digests are checked; "
+             "'palpate verify' checks the mechanics too. An OBB tree belongs to the\nmesh, surface or body "
+             "with its surface digest. The schema of --json is palpate.inspect/1 for an asset, else\n"
+             "palpate.inspect.KIND/1: volume, labels, mesh, surface, obb_tree or body."});
+    std::filesystem::path file;
+    std::string as;
+    command.input("file", file, "file, or folder of DICOM slices").required();
+    command.option("--as", as, "what an image counts as: volume or labels; found out without it");
+    return command.run(argc, argv, [&](cli::Session& session) {
+        imaging::set_imaging_threads(session.threads);
+        inspection::Summary summary = summary_of(file, as);
+        session.form = summary.form;
+        session.text = summary.text;
+        return std::move(summary.json);
     });
 }

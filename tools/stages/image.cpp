@@ -11,16 +11,8 @@ namespace {
 
 using namespace imaging;
 
-nlohmann::ordered_json describe(const ImageGrid& grid) {
-    const auto numbers = [](const auto& v) { return std::vector<double>(v.data(), v.data() + v.size()); };
-    return {{"size", grid.size},
-            {"spacing_mm", numbers(grid.spacing)},
-            {"origin_mm", numbers(grid.origin)},
-            {"direction_columns", numbers(grid.direction)}};
-}
-
 nlohmann::ordered_json describe(const LabelMap& map) {
-    nlohmann::ordered_json result = {{"grid", describe(map.grid)},
+    nlohmann::ordered_json result = {{"grid", to_json(map.grid)},
                                      {"labels", nlohmann::ordered_json::array()}};
     std::vector<std::size_t> voxels(65536, 0);
     for (const std::uint16_t value : map.labels) ++voxels[value];
@@ -42,7 +34,30 @@ Overlaps overlaps_of(const std::string& text) {
     throw UsageError({"--overlaps", "'" + text + "'", "refuse, later or smaller", ""});
 }
 
+std::vector<double> numbers(const auto& v) {
+    return std::vector<double>(v.data(), v.data() + v.size());
+}
+
 }  // namespace
+
+nlohmann::ordered_json to_json(const ImageGrid& grid) {
+    return {{"size", grid.size},
+            {"spacing_mm", numbers(grid.spacing)},
+            {"origin_mm", numbers(grid.origin)},
+            {"direction_columns", numbers(grid.direction)}};
+}
+
+nlohmann::ordered_json to_json(const LabelStatistics& label) {
+    return {{"name", label.label.name},
+            {"value", label.label.value},
+            {"voxels", label.voxels},
+            {"volume_ml", label.volume_ml},
+            {"components", label.components},
+            {"box_min_mm", numbers(label.box.min())},
+            {"box_max_mm", numbers(label.box.max())},
+            {"centroid_mm", numbers(label.centroid)},
+            {"at_image_edge", label.at_image_edge}};
+}
 
 void check_request(const ImportRequest& request) {
     const auto require = [](bool fits, const char* option, const char* input_kind, const char* advice) {
@@ -85,7 +100,7 @@ nlohmann::ordered_json import_image(const ImportRequest& request, const ReadOpti
     const auto [low, high] = std::ranges::minmax(volume.values);
     progress("writing", 0.5);
     write_volume(file, volume);
-    return {{"grid", describe(volume.grid)}, {"lowest", low}, {"highest", high}};
+    return {{"grid", to_json(volume.grid)}, {"lowest", low}, {"highest", high}};
 }
 
 }  // namespace palpate::stages

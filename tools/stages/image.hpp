@@ -4,9 +4,16 @@
 
 #include "formats/model/progress.hpp"
 #include "tools/imaging/files/image_files.hpp"
+#include "tools/imaging/voxels/label_statistics.hpp"
 #include "tools/stages/requests/import_request.hpp"
 
 namespace palpate::stages {
+
+/// A grid: size, spacing and origin in mm, directions column by column; LPS.
+nlohmann::ordered_json to_json(const ImageGrid& grid);
+
+/// One label of a map: volume in ml, the box and the centroid of its voxel centres in LPS mm.
+nlohmann::ordered_json to_json(const imaging::LabelStatistics& label);
 
 /// Throws UsageError for what a request asks of an input that has no such thing, and unless it either lists
 /// or names an output. `overlaps` counts as asked for if it is not empty.
