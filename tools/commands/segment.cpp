@@ -12,6 +12,8 @@
 #include "tools/imaging/recipes/recipe_json.hpp"
 #include "tools/imaging/recipes/segmentation.hpp"
 #include "tools/imaging/voxels/label_statistics.hpp"
+#include "tools/report/pictures/preview.hpp"
+#include "tools/stages/image.hpp"
 #include "tools/stages/requests/segment_request.hpp"
 
 namespace {
@@ -85,18 +87,9 @@ std::string recipe_help() {
     return text;
 }
 
-json describe(const LabelMap& map, const std::vector<std::string>& notes) {
-    const auto numbers = [](const Eigen::Vector3d& v) { return json{v[0], v[1], v[2]}; };
-    json labels = json::array();
-    for (const LabelStatistics& label : label_statistics(map))
-        labels.push_back({{"name", label.label.name},
-                          {"value", label.label.value},
-                          {"voxels", label.voxels},
-                          {"volume_ml", label.volume_ml},
-                          {"components", label.components},
-                          {"box_min_mm", numbers(label.box.min())},
-                          {"box_max_mm", numbers(label.box.max())},
-                          {"centroid_mm", numbers(label.centroid)}});
+ordered_json describe(const LabelMap& map, const std::vector<std::string>& notes) {
+    ordered_json labels = ordered_json::array();
+    for (const LabelStatistics& label : label_statistics(map)) labels.push_back(stages::to_json(label));
     return {{"labels", labels}, {"notes", notes}};
 }
 
@@ -109,12 +102,14 @@ std::vector<StructureRecipe> structures_of(const stages::SegmentRequest& request
     return structures;
 }
 
-json run_segment(const stages::SegmentRequest& request, cli::Session& session) {
+ordered_json run_segment(const stages::SegmentRequest& request, cli::Session& session) {
     const std::vector<StructureRecipe> structures = structures_of(request);
     if (request.volume.empty() && request.labels.empty())
         throw UsageError({"--volume", "not given, nor --labels", "at least one of them", ""});
     set_imaging_threads(session.threads);
     auto staged = session.stage(request.output);
+    std::optional<cli::StagedFile> preview;
+    if (!request.preview.empty()) preview.emplace(request.preview, session.force);
     session.progress.step("reading", 0);
     std::vector<std::string> notes;
     const NoteSink note = [&](std::string_view text) {
@@ -133,6 +128,11 @@ json run_segment(const stages::SegmentRequest& request, cli::Session& session) {
         note);
     session.progress.step("writing", 0.9);
     write_label_map(staged.path(), map);
+    if (preview) {
+        preview->write_text(report::label_preview_png(map, volume ? &*volume : nullptr));
+        preview->commit();
+        spdlog::info("a picture of the structures is in {}", request.preview.string());
+    }
     staged.commit();
     return describe(map, notes);
 }

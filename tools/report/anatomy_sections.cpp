@@ -8,6 +8,7 @@
 
 #include "tools/report/html.hpp"
 #include "tools/report/pictures/scene.hpp"
+#include "tools/report/pictures/slice_targets.hpp"
 #include "tools/report/pictures/slices.hpp"
 #include "tools/report/sections.hpp"
 #include "tools/report/view_svg.hpp"
@@ -16,13 +17,6 @@ namespace palpate::report {
 namespace {
 
 using Eigen::Vector3d;
-
-struct Target {
-    Vector3d planes = Vector3d::Zero();  // where the three planes cross
-    Vector3d center = Vector3d::Zero();  // of the windows
-    double side = 100;                   // mm, of a window that shows the body and what is around it
-    std::string name;
-};
 
 Eigen::AlignedBox3d box_of(const std::vector<Vector3d>& points) {
     Eigen::AlignedBox3d box;
@@ -51,45 +45,7 @@ std::pair<std::string, Vector3d> smallest_region(const TetMesh& mesh) {
             smallest->second.second / smallest->second.first};
 }
 
-// One window for each label of the map, around it, with the planes through that voxel of it which is nearest
-// to its centroid: the centroid of a bent structure may lie outside it.
-std::vector<Target> targets_of(const LabelMap& map) {
-    struct Extent {
-        Vector3d sum = Vector3d::Zero();
-        std::int64_t voxels = 0;
-        Eigen::AlignedBox3d box;
-        Vector3d nearest = Vector3d::Zero();
-        double squared_distance = std::numeric_limits<double>::infinity();
-    };
-    std::map<std::uint16_t, Extent> extents;
-    const auto visit = [&](const auto& function) {
-        std::size_t offset = 0;
-        for (std::int32_t k = 0; k < map.grid.size[2]; ++k)
-            for (std::int32_t j = 0; j < map.grid.size[1]; ++j)
-                for (std::int32_t i = 0; i < map.grid.size[0]; ++i, ++offset)
-                    if (map.labels[offset] != 0)
-                        function(extents[map.labels[offset]], map.grid.point_of({1.0 * i, 1.0 * j, 1.0 * k}));
-    };
-    visit([](Extent& extent, const Vector3d& p) {
-        extent.sum += p;
-        ++extent.voxels;
-        extent.box.extend(p);
-    });
-    visit([](Extent& extent, const Vector3d& p) {
-        const double squared = (p - extent.sum / static_cast<double>(extent.voxels)).squaredNorm();
-        if (squared >= extent.squared_distance) return;
-        extent.squared_distance = squared;
-        extent.nearest = p;
-    });
-    std::vector<Target> targets;
-    for (const Label& label : map.names)
-        if (const auto found = extents.find(static_cast<std::uint16_t>(label.value)); found != extents.end())
-            targets.push_back({found->second.nearest, found->second.box.center(),
-                               1.3 * found->second.box.sizes().maxCoeff() + 10, label.name});
-    return targets;
-}
-
-Target target_of(const ReportInputs& inputs) {
+SliceTarget target_of(const ReportInputs& inputs) {
     const Case& c = inputs.patient_case;
     if (!c.deformable_bodies.empty()) {
         const DeformableBody& body = c.deformable_bodies.front();
@@ -108,26 +64,6 @@ Target target_of(const ReportInputs& inputs) {
             "the image"};
 }
 
-struct PlaneText {
-    std::string title, left, right, top, bottom;
-    int axis;            // of the plane's normal in LPS
-    std::string higher;  // where that axis points
-};
-
-PlaneText text_of(Plane plane) {
-    if (plane == Plane::axial) return {"Axial", "R", "L", "A", "P", 2, "S"};
-    if (plane == Plane::coronal) return {"Coronal", "R", "L", "S", "I", 1, "P"};
-    return {"Sagittal", "A", "P", "S", "I", 0, "L"};
-}
-
-// A round length of about a quarter of the window.
-double scale_bar_length(double side) {
-    const double decade = std::pow(10, std::floor(std::log10(side / 4)));
-    for (const double step : {5.0, 2.0})
-        if (step * decade <= side / 4) return step * decade;
-    return decade;
-}
-
 std::string outline_path(const SliceWindow& window, const TriangleMesh& surface) {
     std::string path;
     for (const auto& [a, b] : slice_outline(window, surface))
@@ -136,7 +72,7 @@ std::string outline_path(const SliceWindow& window, const TriangleMesh& surface)
 }
 
 std::string slice_svg(const ReportInputs& inputs, const SliceWindow& window) {
-    const PlaneText text = text_of(window.plane);
+    const PlaneText text = plane_text(window.plane);
     const int n = window.pixels;
     std::string svg = fmt::format(
         "<svg class=\"slice\" viewBox=\"0 0 {0} {0}\" role=\"img\" aria-label=\"{1} slice\">"
@@ -172,10 +108,10 @@ std::string legend(const ReportInputs& inputs) {
 }
 
 // Three planes through a target, side by side.
-std::string three_planes(const ReportInputs& inputs, const Target& target) {
+std::string three_planes(const ReportInputs& inputs, const SliceTarget& target) {
     std::string figures;
     for (const Plane plane : {Plane::axial, Plane::coronal, Plane::sagittal}) {
-        const PlaneText text = text_of(plane);
+        const PlaneText text = plane_text(plane);
         SliceWindow window{.plane = plane, .center = target.center, .side = target.side};
         const double at = window.center[text.axis] = target.planes[text.axis];
         figures += html::figure(slice_svg(inputs, window),
@@ -187,13 +123,13 @@ std::string three_planes(const ReportInputs& inputs, const Target& target) {
 // Every structure in planes of its own, the first ones if there are many.
 std::string structures(const ReportInputs& inputs) {
     constexpr std::size_t most = 8;
-    std::vector<Target> targets = targets_of(*inputs.labels);
+    std::vector<SliceTarget> targets = label_targets(*inputs.labels);
     std::string content;
     if (targets.size() > most)
         content = fmt::format("<p class=\"lead\">The first {} of {} structures are shown.</p>\n", most,
                               targets.size());
     targets.resize(std::min(targets.size(), most));
-    for (const Target& target : targets)
+    for (const SliceTarget& target : targets)
         content += "<h3>" + html::escaped(target.name) + "</h3>\n" + three_planes(inputs, target);
     return content;
 }
@@ -215,7 +151,7 @@ std::string slices_section(const ReportPage& page) {
             "<code>--labels labels.seg.nrrd</code> the contours.");
         return html::section("slices", "Slices", lead, content);
     }
-    const Target target = target_of(inputs);
+    const SliceTarget target = target_of(inputs);
     lead = fmt::format("Three planes through {}. Radiological display: the patient’s right is at the left.",
                        html::escaped(target.name));
     if (inputs.volume) {

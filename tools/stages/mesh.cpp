@@ -6,6 +6,7 @@
 #include <set>
 
 #include "formats/model/errors.hpp"
+#include "tools/imaging/voxels/label_statistics.hpp"
 #include "tools/meshing/contract/mesh_to_contract.hpp"
 #include "tools/meshing/files/imported_mesh.hpp"
 #include "tools/stages/mesh_result.hpp"
@@ -50,18 +51,11 @@ MeshSizing sizing_of(const MeshRequest& request, const LabelMap& map,
 
 // The names of the regions that have a voxel on the image's border: what lies beyond was not scanned.
 std::vector<std::string> regions_at_edge(const LabelMap& map, const std::vector<std::int32_t>& regions) {
-    const auto& size = map.grid.size;
-    std::set<std::int32_t> found;
-    std::size_t offset = 0;
-    for (std::int32_t k = 0; k < size[2]; ++k)
-        for (std::int32_t j = 0; j < size[1]; ++j)
-            for (std::int32_t i = 0; i < size[0]; ++i, ++offset)
-                if (i == 0 || j == 0 || k == 0 || i + 1 == size[0] || j + 1 == size[1] || k + 1 == size[2])
-                    found.insert(map.labels[offset]);
+    const std::vector<LabelStatistics> all = label_statistics(map);
     std::vector<std::string> names;
     for (const std::int32_t region : regions)
-        if (found.contains(region))
-            names.push_back(std::ranges::find(map.names, region, &Label::value)->name);
+        for (const LabelStatistics& label : all)
+            if (label.label.value == region && label.at_image_edge) names.push_back(label.label.name);
     return names;
 }
 
@@ -140,9 +134,9 @@ MadeMesh make_mesh(const MeshRequest& request, const ProgressCallback& progress,
                             fmt::format("the body has {} separate pieces", body.pieces), "1",
                             "keep the largest with 'palpate segment --keep-largest', or pass "
                             "--allow-components and hold each of them"});
-    require_met(body.checks, request.output.string(), body.next_step);
     body.result["checks"] = to_json(body.checks);
-    return {std::move(body.mesh), std::move(body.result)};
+    return {std::move(body.mesh), std::move(body.result),
+            shortfall_of(body.checks, request.output.string(), body.next_step)};
 }
 
 }  // namespace palpate::stages

@@ -73,13 +73,14 @@ Json to_json(const std::vector<MeshAttempt>& attempts) {
     return list;
 }
 
-void require_met(std::span<const ContractCheck> checks, const std::string& culprit,
-                 const std::string& next_step) {
+std::optional<ErrorDetail> shortfall_of(std::span<const ContractCheck> checks, const std::string& culprit,
+                                        const std::string& next_step) {
     std::string found;
     for (const ContractCheck& check : misses(checks))
         found += fmt::format("{}{} is {} (expected {})", found.empty() ? "" : "; ", what_text(check),
                              value_text(check), limit_text(check));
-    if (!found.empty()) throw QualityNotMet({culprit, found, "", next_step});
+    if (found.empty()) return std::nullopt;
+    return ErrorDetail{culprit, found, "", next_step};
 }
 
 }  // namespace palpate::stages

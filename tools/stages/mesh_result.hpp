@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <span>
 
+#include "formats/model/errors.hpp"
 #include "tools/meshing/contract/mesh_to_contract.hpp"
 
 namespace palpate::stages {
@@ -21,9 +23,9 @@ Json to_json(std::span<const meshing::ContractCheck> checks);
 /// What each attempt missed.
 Json to_json(const std::vector<meshing::MeshAttempt>& attempts);
 
-/// Throws QualityNotMet with every check that is not met, if there is one; `culprit` is the output,
-/// `next_step` what to do.
-void require_met(std::span<const meshing::ContractCheck> checks, const std::string& culprit,
-                 const std::string& next_step);
+/// Every check that is not met, if there is one, for QualityNotMet; `culprit` is the output, `next_step` what
+/// to do.
+std::optional<ErrorDetail> shortfall_of(std::span<const meshing::ContractCheck> checks,
+                                        const std::string& culprit, const std::string& next_step);
 
 }  // namespace palpate::stages

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <map>
 #include <vtkActor.h>
 #include <vtkActorCollection.h>
 #include <vtkCamera.h>
@@ -22,6 +23,8 @@
 #include <vtkSmartPointer.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkWindowToImageFilter.h>
+
+#include "tools/meshing/measures/tet_faces.hpp"
 
 namespace palpate::report {
 namespace {
@@ -128,6 +131,22 @@ void add_regions(vtkRenderer* renderer, const DeformableBody& body, double outer
     renderer->AddActor(surface_actor(positions, other, untouchable, opacity));
 }
 
+// The tetrahedra behind the middle of the mesh, whole ones.
+TetMesh back_half(const TetMesh& mesh, const ViewDirection& direction) {
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& p : mesh.rest_positions) box.extend(p);
+    TetMesh half;
+    half.rest_positions = mesh.rest_positions;
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+        for (const std::int32_t node : mesh.tetrahedra[t]) sum += mesh.rest_positions[node];
+        if ((sum / 4 - box.center()).dot(direction) > 0) continue;
+        half.tetrahedra.push_back(mesh.tetrahedra[t]);
+        half.regions.push_back(mesh.regions[t]);
+    }
+    return half;
+}
+
 constexpr int width = 760, height = 620;  // pixels of a picture
 constexpr int samples = 2;                // each way in a pixel: smooth edges, also of glassy layers
 
@@ -187,7 +206,7 @@ Eigen::Vector2d seen_at(vtkRenderer* renderer, const Eigen::Vector3d& p_P) {
 }
 
 std::vector<SceneView> draw(vtkRenderer* renderer, const std::vector<ViewDirection>& directions,
-                            const std::vector<Eigen::Vector3d>& marked = {}) {
+                            const std::vector<Eigen::Vector3d>& marked = {}, bool parallel = false) {
     vtkNew<vtkRenderWindow> window;
     window->SetOffScreenRendering(1);
     window->SetMultiSamples(0);
@@ -201,9 +220,10 @@ std::vector<SceneView> draw(vtkRenderer* renderer, const std::vector<ViewDirecti
         camera->SetFocalPoint(0, 0, 0);
         camera->SetPosition(from.x(), from.y(), from.z());
         camera->SetViewUp(0, 0, 1);
+        camera->SetParallelProjection(parallel);
         fit(renderer);
         window->Render();
-        SceneView view{grabbed(window), {}};
+        SceneView view{grabbed(window), {}, parallel ? 2 * camera->GetParallelScale() / height : 0};
         for (const Eigen::Vector3d& p : marked) view.marks.push_back(seen_at(renderer, p));
         views.push_back(std::move(view));
     }
@@ -249,6 +269,35 @@ std::vector<SceneView> tetrahedra_pictures(const DeformableBody& body,
         surface_actor(body.boundary.surface.vertices, body.boundary.surface.triangles, untouchable, 0.3));
     renderer->AddActor(actor_of(poly_data(solid.vertices, solid.triangles), red, 1));
     return draw(renderer, directions, centroids);
+}
+
+std::vector<SceneView> mesh_pictures(const TetMesh& mesh, const std::vector<ViewDirection>& directions,
+                                     bool cut) {
+    std::vector<SceneView> views;
+    for (const ViewDirection& direction : directions) {
+        const TetMesh shown = cut ? back_half(mesh, direction) : mesh;
+        std::map<std::int32_t, std::vector<Triangle>> faces;
+        for (const meshing::InterfaceFace& face : meshing::interface_faces(shown))
+            if (face.outer == 0) faces[face.inner].push_back(face.nodes);
+        vtkNew<vtkRenderer> renderer;
+        for (const auto& [region, triangles] : faces) {
+            const auto label = std::ranges::find(mesh.region_names, region, &Label::value);
+            const auto actor =
+                actor_of(poly_data(mesh.rest_positions, triangles),
+                         label != mesh.region_names.end() ? label->colour : default_label_colour(region), 1);
+            vtkProperty* property = actor->GetProperty();
+            property->SetInterpolationToFlat();
+            property->SetSpecular(0);
+            property->SetAmbient(0.45);
+            property->SetDiffuse(0.55);
+            property->EdgeVisibilityOn();
+            property->SetEdgeColor(0.12, 0.12, 0.14);
+            property->SetLineWidth(1);
+            renderer->AddActor(actor);
+        }
+        views.push_back(draw(renderer, {direction}, {}, true).front());
+    }
+    return views;
 }
 
 std::vector<SceneView> coloured_pictures(const TriangleMesh& surface,

@@ -16,6 +16,7 @@ using ViewDirection = Eigen::Vector3d;
 struct SceneView {
     Picture picture;
     std::vector<Eigen::Vector2d> marks;  ///< pixels from the picture's upper left corner
+    double mm_per_pixel = 0;             ///< of a view without perspective, else 0
 };
 
 /// Draws all bodies once from each direction: rigid ones bone-coloured and translucent, deformable ones with
@@ -32,6 +33,12 @@ std::vector<SceneView> body_pictures(const DeformableBody& body,
 std::vector<SceneView> tetrahedra_pictures(const DeformableBody& body,
                                            const std::vector<std::size_t>& tetrahedra,
                                            const std::vector<ViewDirection>& directions);
+
+/// Draws tetrahedra without perspective, once from each direction: their outer faces in the colours of their
+/// regions, with their edges. With `cut` those in front of the middle of the mesh are left out, so that the
+/// inside shows.
+std::vector<SceneView> mesh_pictures(const TetMesh& mesh, const std::vector<ViewDirection>& directions,
+                                     bool cut);
 
 /// Draws a surface with a value per triangle in the scale's colours; the mark is `marked` (p_P).
 std::vector<SceneView> coloured_pictures(const TriangleMesh& surface,

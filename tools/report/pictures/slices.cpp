@@ -105,6 +105,11 @@ GreyWindow grey_window(const Volume& volume) {
 }
 
 Picture slice_picture(const SliceWindow& window, const Volume* volume, const LabelMap* labels) {
+    return slice_picture(window, volume, labels, volume ? grey_window(*volume) : GreyWindow{});
+}
+
+Picture slice_picture(const SliceWindow& window, const Volume* volume, const LabelMap* labels,
+                      const GreyWindow& grey) {
     Picture picture{window.pixels, window.pixels, {}};
     picture.rgb.resize(picture.offset(0, window.pixels));
     const int n = window.pixels;
@@ -113,7 +118,6 @@ Picture slice_picture(const SliceWindow& window, const Volume* volume, const Lab
         return window.center + window.right() * (x + 0.5 - n / 2.0) * pixel +
                window.down() * (y + 0.5 - n / 2.0) * pixel;
     };
-    const GreyWindow grey = volume ? grey_window(*volume) : GreyWindow{};
     const float paper = 0.16F;  // behind labels without a volume
 
     std::vector<std::uint16_t> label(static_cast<std::size_t>(n) * static_cast<std::size_t>(n), 0);

@@ -38,8 +38,12 @@ struct GreyWindow {
 /// Chooses -250 ... 650 HU for a CT, the 1st ... 99th percentile for anything else.
 GreyWindow grey_window(const Volume& volume);
 
-/// Draws what the window shows, resampled in the patient frame, so grids may be oblique or flipped and need
-/// not agree: the volume in grey (nothing without one), labels tinted with a contour in their own colour.
+/// Draws what the window shows, grey as `grey` says, resampled in the patient frame, so grids may be oblique
+/// or flipped and need not agree: the volume in grey (nothing without one), labels tinted with a contour in
+/// their own colour.
+Picture slice_picture(const SliceWindow& window, const Volume* volume, const LabelMap* labels,
+                      const GreyWindow& grey);
+/// The same with the volume's grey_window().
 Picture slice_picture(const SliceWindow& window, const Volume* volume, const LabelMap* labels);
 
 /// Cuts a surface with the window's plane: segments in pixel coordinates, those within the window only.

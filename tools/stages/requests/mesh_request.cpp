@@ -149,6 +149,8 @@ void declare(cli::Command& command, MeshRequest& request) {
         .option("--attempts", request.attempts,
                 "meshes to make before the contract counts as missed, 1 or more")
         .range(1, 100);
+    command.output("--preview", request.preview,
+                   "picture of the mesh to write as well (.png), also where the contract is missed");
     command.output("-o,--output", request.output, "tetrahedra (.vtu), LPS mm").required();
 }
 

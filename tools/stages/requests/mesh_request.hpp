@@ -54,8 +54,9 @@ struct MeshRequest {
     std::vector<NearPlace> near;
     bool allow_components = false;  ///< of several separate pieces
     QualityContract contract;
-    int attempts = 4;              ///< meshes to make before the contract counts as missed
-    std::filesystem::path output;  ///< .vtu
+    int attempts = 4;               ///< meshes to make before the contract counts as missed
+    std::filesystem::path preview;  ///< picture of the result to write as well (.png)
+    std::filesystem::path output;   ///< .vtu
 };
 
 /// Binds the options of `palpate mesh`.

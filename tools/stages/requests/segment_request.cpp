@@ -42,6 +42,8 @@ void declare(cli::Command& command, SegmentRequest& request) {
     command.input("--recipes", request.recipes, "structures as JSON, before those of --structure");
     command.items("--structure", cli::item_list(request.structures, structure_from),
                   "one structure, 'name: recipe=... parameter=value ...'");
+    command.output("--preview", request.preview,
+                   "picture of the result to write as well (.png): slices with outlines");
     command.output("-o,--output", request.output, "label map (.seg.nrrd)").required();
 }
 

@@ -26,7 +26,8 @@ struct SegmentRequest {
     std::filesystem::path volume, labels;
     std::filesystem::path recipes;  ///< more structures as JSON, before `structures`
     std::vector<StructureRequest> structures;
-    std::filesystem::path output;  ///< .seg.nrrd
+    std::filesystem::path preview;  ///< picture of the result to write as well (.png)
+    std::filesystem::path output;   ///< .seg.nrrd
 };
 
 /// Binds the options of `palpate segment`.
