@@ -174,6 +174,12 @@ ObbTree obb_tree_from(const Hdf5File& file, const std::string& path) {
     return tree;
 }
 
+void require_palpate_group(const Hdf5File& file) {
+    if (!file.contains("/palpate"))
+        throw InvalidInput({file.name(), "is an HDF5 file, but not one of palpate's", "a group /palpate",
+                            "give an asset (.vtkhdf) or a part that palpate wrote"});
+}
+
 }  // namespace
 
 void write_header(Hdf5Writer& writer, const std::string& kind) {
@@ -185,14 +191,12 @@ void write_header(Hdf5Writer& writer, const std::string& kind) {
 }
 
 std::string header_kind(const Hdf5File& file) {
-    if (!file.contains("/palpate"))
-        throw InvalidInput({file.name(), "is an HDF5 file, but not one of palpate's", "a group /palpate",
-                            "give an asset (.vtkhdf) or a part that palpate wrote"});
+    require_palpate_group(file);
     return file.text_attribute("/palpate", "kind");
 }
 
 void check_header(const Hdf5File& file, const std::string& kind) {
-    const std::string found_kind = header_kind(file);
+    require_palpate_group(file);
     const auto found_schema = file.attribute<std::int32_t>("/palpate", "schema");
     if (found_schema > schema)
         throw InvalidInput({file.name(), "has schema " + std::to_string(found_schema),
@@ -201,6 +205,7 @@ void check_header(const Hdf5File& file, const std::string& kind) {
     if (found_schema != schema)
         throw InvalidInput({file.name(), "has schema " + std::to_string(found_schema), std::to_string(schema),
                             "make the file again with this palpate"});
+    const std::string found_kind = header_kind(file);
     if (found_kind != kind)
         throw InvalidInput(
             {file.name(), "is of kind '" + found_kind + "'", "'" + kind + "'",

@@ -32,8 +32,8 @@ bool has_ending(const std::string& ending, std::initializer_list<std::string_vie
 
 FileKind kind_of_file(const std::filesystem::path& path) {
     if (std::filesystem::is_directory(path)) return FileKind::image;
-    if (asset::is_hdf5(path)) return FileKind::hdf5;
     const std::string ending = meshing::extension_of(path), head = head_of(path);
+    if (asset::is_hdf5(path) || has_ending(ending, {".vtkhdf", ".h5"})) return FileKind::hdf5;
     if (ending == ".vtk" && head.find("POLYDATA") != std::string::npos) return FileKind::surface;
     if (ending == ".vtk" && head.find("UNSTRUCTURED_GRID") != std::string::npos) return FileKind::tetrahedra;
     if (has_ending(ending, {".vtu", ".msh", ".mesh"})) return FileKind::tetrahedra;

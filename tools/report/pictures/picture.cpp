@@ -55,7 +55,7 @@ void fill(Picture& onto, int x, int y, int width, int height, const Rgb& colour)
             std::copy_n(colour.data(), 3, onto.rgb.data() + onto.offset(column, row));
 }
 
-void write(Picture& onto, int x, int y, const std::string& text, int size, const Rgb& colour) {
+void write_words(Picture& onto, int x, int y, const std::string& text, int size, const Rgb& colour) {
     if (text.empty()) return;
     vtkNew<vtkTextProperty> face;
     face->SetFontFamilyToArial();

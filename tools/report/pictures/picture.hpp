@@ -36,7 +36,7 @@ Picture blank(int width, int height, const Rgb& colour);
 /// its upper left corner at (x, y); what lies beyond the border is left out. Text needs no display.
 void paste(Picture& onto, const Picture& picture, int x, int y);
 void fill(Picture& onto, int x, int y, int width, int height, const Rgb& colour);
-void write(Picture& onto, int x, int y, const std::string& text, int size, const Rgb& colour);
+void write_words(Picture& onto, int x, int y, const std::string& text, int size, const Rgb& colour);
 
 /// Encodes a picture as PNG and returns the file's bytes.
 std::string png_bytes(const Picture& picture);

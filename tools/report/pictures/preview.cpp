@@ -36,7 +36,7 @@ void draw_legend(Picture& page, int top, const std::vector<LegendRow>& rows) {
         const int x = gap + static_cast<int>(n) / lines * (page.width / columns),
                   y = top + static_cast<int>(n) % lines * line;
         fill(page, x, y, letters, letters, rgb_of(rows[n].label.colour));
-        write(page, x + 2 * gap, y, rows[n].label.name + "   " + rows[n].words, letters, ink);
+        write_words(page, x + 2 * gap, y, rows[n].label.name + "   " + rows[n].words, letters, ink);
     }
 }
 
@@ -44,7 +44,8 @@ void draw_legend(Picture& page, int top, const std::vector<LegendRow>& rows) {
 void draw_scale(Picture& picture, double mm_per_pixel, const Rgb& colour) {
     const double length = scale_bar_length(mm_per_pixel * picture.width);
     fill(picture, gap, picture.height - gap, static_cast<int>(length / mm_per_pixel), 3, colour);
-    write(picture, gap, picture.height - gap - line + 2, fmt::format("{:g} mm", length), letters, colour);
+    write_words(picture, gap, picture.height - gap - line + 2, fmt::format("{:g} mm", length), letters,
+                colour);
 }
 
 Picture slice_with_words(const SliceTarget& target, Plane plane, const Volume* volume, const LabelMap& map,
@@ -54,13 +55,13 @@ Picture slice_with_words(const SliceTarget& target, Plane plane, const Volume* v
     window.center[text.axis] = target.planes[text.axis];
     Picture picture = slice_picture(window, volume, &map, grey);
     const int n = window.pixels;
-    write(picture, gap, gap / 2,
-          fmt::format("{}, {} = {:.1f} mm", text.title, text.higher, target.planes[text.axis]), letters,
-          on_dark);
-    write(picture, gap / 2, n / 2, text.left, letters, on_dark);
-    write(picture, n - 2 * gap + 4, n / 2, text.right, letters, on_dark);
-    write(picture, n / 2, line + 4, text.top, letters, on_dark);
-    write(picture, n / 2, n - line, text.bottom, letters, on_dark);
+    write_words(picture, gap, gap / 2,
+                fmt::format("{}, {} = {:.1f} mm", text.title, text.higher, target.planes[text.axis]), letters,
+                on_dark);
+    write_words(picture, gap / 2, n / 2, text.left, letters, on_dark);
+    write_words(picture, n - 2 * gap + 4, n / 2, text.right, letters, on_dark);
+    write_words(picture, n / 2, line + 4, text.top, letters, on_dark);
+    write_words(picture, n / 2, n - line, text.bottom, letters, on_dark);
     draw_scale(picture, window.side / n, on_dark);
     return picture;
 }
@@ -88,7 +89,7 @@ std::string label_preview_png(const LabelMap& map, const Volume* volume) {
     draw_legend(page, gap, rows);
     int y = legend_height(rows.size(), width);
     for (const SliceTarget& target : targets) {
-        write(page, gap, y + 4, target.name, letters, ink);
+        write_words(page, gap, y + 4, target.name, letters, ink);
         int x = gap;
         for (const Plane plane : {Plane::axial, Plane::coronal, Plane::sagittal}) {
             paste(page, slice_with_words(target, plane, volume, map, grey), x, y + line);
@@ -114,16 +115,16 @@ std::string mesh_preview_png(const TetMesh& mesh) {
     const int width = views.front().picture.width, height = views.front().picture.height;
     const int page_width = 2 * width + 3 * gap, top = legend_height(rows.size(), page_width) + line;
     Picture page = blank(page_width, top + 2 * (height + line + gap), page_colour);
-    write(page, gap, gap / 2,
-          fmt::format("{} tetrahedra, edges {:.2g} to {:.2g} mm, {:.2g} mm on average",
-                      mesh.tetrahedra.size(), edges.shortest, edges.longest, edges.mean),
-          letters, ink);
+    write_words(page, gap, gap / 2,
+                fmt::format("{} tetrahedra, edges {:.2g} to {:.2g} mm, {:.2g} mm on average",
+                            mesh.tetrahedra.size(), edges.shortest, edges.longest, edges.mean),
+                letters, ink);
     draw_legend(page, gap + line, rows);
     for (std::size_t n = 0; n < views.size(); ++n) {
         const int x = gap + static_cast<int>(n % 2) * (width + gap),
                   y = top + static_cast<int>(n / 2) * (height + line + gap);
         draw_scale(views[n].picture, views[n].mm_per_pixel, ink);
-        write(page, x, y + 4, words[n], letters, ink);
+        write_words(page, x, y + 4, words[n], letters, ink);
         paste(page, views[n].picture, x, y + line);
     }
     return png_bytes(page);
