@@ -164,7 +164,7 @@ TEST(ManyApproaches, end_alike_however_many_threads_share_them) {
     meshing::write_surface(scratch / "shell.vtp", shell(40, 1));
     const auto run = [&](int threads) {
         cli::Session session{
-            .threads = threads, .progress = cli::Progress(true), .shortfall = {}, .text = {}};
+            .threads = threads, .progress = cli::Progress(true), .shortfall = {}, .form = {}, .text = {}};
         Options options;
         options.surfaces = {scratch / "shell.vtp"};
         options.approaches = 20;

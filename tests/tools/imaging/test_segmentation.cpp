@@ -156,6 +156,44 @@ TEST(Recipes, liver_takes_its_tumour_and_vessels_along_and_both_can_be_found_ins
     EXPECT_GT(true_vessels * 10, found * 6);  // a tube of three voxels is mostly border
 }
 
+// The phantom with a brighter ball in whatever lies there, within the liver alone if so asked.
+Phantom abdomen_with_ball(const Eigen::Vector3d& center, double radius, bool in_liver) {
+    Phantom abdomen = abdomen_phantom({.samples_per_axis = 2, .noise_hu = 15});
+    const ImageGrid& grid = abdomen.volume.grid;
+    std::size_t offset = 0;
+    for (int k = 0; k < grid.size[2]; ++k)
+        for (int j = 0; j < grid.size[1]; ++j)
+            for (int i = 0; i < grid.size[0]; ++i, ++offset)
+                if ((!in_liver || abdomen.truth.labels[offset] == 1) &&
+                    (grid.point_of(Eigen::Vector3d(i, j, k)) - center).norm() < radius)
+                    abdomen.volume.values[offset] += 60;
+    return abdomen;
+}
+
+const std::string lesioned_liver =
+    "liver: recipe=liver seeds=-14,-6,16;4,-8,0 neck_mm=4 gap_mm=4 lesion_seeds_mm=";
+
+TEST(Recipes, liver_takes_a_lesion_at_its_border_along_where_a_point_lies_in_it) {
+    const Phantom abdomen = abdomen_with_ball({-30, -6, -4}, 15, true);
+    LabelMap whole = abdomen.truth;
+    for (std::uint16_t& label : whole.labels) label = label == 2 ? 1 : label;
+    const auto found = [&](const std::string& structure) {
+        return dice(run(&abdomen.volume, nullptr, {structure}), "liver", whole, "liver");
+    };
+    const double without = found(lesioned_liver.substr(0, lesioned_liver.rfind(' '))),
+                 with = found(lesioned_liver + "-30,-6,-4");
+    EXPECT_GT(with, without + 0.05);
+    EXPECT_GT(with, coarse_dice);
+}
+
+TEST(Recipes, liver_refuses_lesions_that_lie_apart_from_it_or_run_out_of_it) {
+    const auto refusal = [&](const Phantom& abdomen, const std::string& lesion) {
+        return test::refusal_of<Error>([&] { run(&abdomen.volume, nullptr, {lesioned_liver + lesion}); });
+    };
+    EXPECT_SAYS(refusal(abdomen_with_ball({34, 20, 0}, 9, false), "34,20,0"), "lies apart from it");
+    EXPECT_SAYS(refusal(abdomen_phantom(), "34,20,0"), "ran out of it");
+}
+
 TEST(Recipes, liver_hardly_depends_on_where_the_seeds_are) {
     const Phantom abdomen = abdomen_phantom({.samples_per_axis = 2, .noise_hu = 15});
     const LabelMap map = run(&abdomen.volume, nullptr, {small_liver});

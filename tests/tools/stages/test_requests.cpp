@@ -85,12 +85,13 @@ TEST(Request, of_segment_survives_json_with_parameters_in_their_order) {
                            .labels = existing("l.nrrd"),
                            .recipes = existing("r.json"),
                            .structures = {},
+                           .preview = "seen.png",
                            .output = "out.seg.nrrd"};
     request.structures.push_back({.words = "", .name = "left, kidney", .recipe = "threshold"});
     request.structures.back().parameters = {
         {"smooth_mm", 1.5}, {"keep_largest", true}, {"center_mm", {1, 2.25, -3}}};
     request.structures.push_back({.words = "", .name = "[skull]", .recipe = "bone"});
-    expect_round_trip(request, 5);
+    expect_round_trip(request, 6);
     const auto read_again = read_json<SegmentRequest>(cli::to_request(request)).request;
     EXPECT_EQ(read_again.structures.at(0).parameters.dump(), request.structures[0].parameters.dump());
 }

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <fmt/format.h>
+#include <functional>
+#include <span>
 
 #include "formats/model/errors.hpp"
 #include "tools/imaging/recipes/job.hpp"
@@ -8,14 +11,38 @@
 namespace palpate::imaging {
 namespace {
 
+constexpr double apart_mm = 10;  // capsule and rim between a lesion and the tissue around it
+
+// The liver with the lesions around `seeds` (p_P, mm), each found as an organ of its own grey value.
+Mask with_lesions(const Mask& liver, const Job& job, std::span<const Eigen::Vector3d> seeds,
+                  const OrganParameters& parameters) {
+    Mask all = liver;
+    for (const Eigen::Vector3d& seed : seeds) {
+        const auto refused = [&](const std::string& why, const std::string& expected) {
+            return InvalidInput(
+                {job.culprit(),
+                 fmt::format("the lesion at {:.1f}, {:.1f}, {:.1f} mm {}", seed[0], seed[1], seed[2], why),
+                 expected, "move the point deeper into a lesion of the liver, or lower tolerance_hu"});
+        };
+        const Mask lesion =
+            organ(*job.volume, std::span(&seed, 1), parameters, job.culprit() + ", lesion", job.note);
+        if (lesion.count() > liver.count())
+            throw refused("ran out of it into its neighbours", "less than the liver without it");
+        if (intersect(dilate(lesion, apart_mm), liver).count() == 0)
+            throw refused("lies apart from it", fmt::format("at most {} mm between them", apart_mm));
+        std::ranges::transform(all.voxels, lesion.voxels, all.voxels.begin(), std::bit_or<std::uint8_t>());
+    }
+    return seeds.empty() ? liver : fill_holes(close(all, parameters.gap_mm));
+}
+
 Mask make_liver(const Job& job) {
     const Parameters& p = job.parameters;
     const OrganParameters parameters{.tolerance_hu = p.number("tolerance_hu"),
                                      .drift_hu = p.number("drift_hu"),
                                      .neck_mm = p.number("neck_mm"),
                                      .gap_mm = p.number("gap_mm")};
-    const Mask mask =
-        clip(organ(*job.volume, seed_points(job), parameters, job.culprit(), job.note), region_of(p));
+    const Mask found = organ(*job.volume, seed_points(job), parameters, job.culprit(), job.note);
+    const Mask mask = clip(with_lesions(found, job, p.points("lesion_seeds_mm"), parameters), region_of(p));
     const double ml = static_cast<double>(mask.count()) * mask.grid.voxel_volume() / cubic_mm_per_ml;
     if (ml > p.number("largest_ml"))
         throw InvalidInput(
@@ -42,6 +69,8 @@ Recipe liver_recipe() {
                not_negative},
               {"gap_mm", number, "mm", "4", "vessels, lesions and clefts below this radius are filled",
                not_negative},
+              {"lesion_seeds_mm", points, "mm", "",
+               "points x, y, z in lesions that reach its border, one in each (LPS); they become part of it"},
               {"largest_ml", number, "ml", "4000", "more than this is a leak", not_negative}},
              seed_parameters(),
              region_parameters(),
