@@ -26,7 +26,7 @@ Mask with_lesions(const Mask& liver, const Job& job, std::span<const Eigen::Vect
         };
         const Mask lesion =
             organ(*job.volume, std::span(&seed, 1), parameters, job.culprit() + ", lesion", job.note);
-        if (lesion.count() > liver.count())
+        if (subtract(lesion, liver).count() > liver.count())
             throw refused("ran out of it into its neighbours", "less than the liver without it");
         if (intersect(dilate(lesion, apart_mm), liver).count() == 0)
             throw refused("lies apart from it", fmt::format("at most {} mm between them", apart_mm));
