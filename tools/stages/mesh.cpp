@@ -51,11 +51,11 @@ MeshSizing sizing_of(const MeshRequest& request, const LabelMap& map,
 
 // The names of the regions that have a voxel on the image's border: what lies beyond was not scanned.
 std::vector<std::string> regions_at_edge(const LabelMap& map, const std::vector<std::int32_t>& regions) {
-    const std::vector<LabelStatistics> all = label_statistics(map);
+    const std::vector<Label> at_edge = labels_at_image_edge(map);
     std::vector<std::string> names;
     for (const std::int32_t region : regions)
-        for (const LabelStatistics& label : all)
-            if (label.label.value == region && label.at_image_edge) names.push_back(label.label.name);
+        if (const auto label = std::ranges::find(at_edge, region, &Label::value); label != at_edge.end())
+            names.push_back(label->name);
     return names;
 }
 

@@ -2,6 +2,7 @@
 #include "tools/imaging/voxels/label_statistics.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "tools/imaging/voxels/mask.hpp"
 
@@ -21,11 +22,23 @@ std::vector<Eigen::AlignedBox3i> index_boxes(const LabelMap& map) {
     return boxes;
 }
 
+bool at_edge(const Eigen::AlignedBox3i& box, const ImageGrid& grid) {
+    const Eigen::Vector3i last = Eigen::Vector3i(grid.size.data()).array() - 1;
+    return !box.isEmpty() && ((box.min().array() == 0).any() || (box.max().array() == last.array()).any());
+}
+
 }  // namespace
+
+std::vector<Label> labels_at_image_edge(const LabelMap& map) {
+    const std::vector<Eigen::AlignedBox3i> boxes = index_boxes(map);
+    std::vector<Label> found;
+    std::ranges::copy_if(map.names, std::back_inserter(found),
+                         [&](const Label& label) { return at_edge(boxes[label.value], map.grid); });
+    return found;
+}
 
 std::vector<LabelStatistics> label_statistics(const LabelMap& map) {
     const std::vector<Eigen::AlignedBox3i> boxes = index_boxes(map);
-    const Eigen::Vector3i last = Eigen::Vector3i(map.grid.size.data()).array() - 1;
     std::vector<LabelStatistics> all;
     for (const Label& label : map.names) {
         LabelStatistics statistics;
@@ -45,8 +58,7 @@ std::vector<LabelStatistics> label_statistics(const LabelMap& map) {
                     }
             statistics.centroid /= static_cast<double>(statistics.voxels);
             statistics.components = components_of(mask).sizes.size();
-            statistics.at_image_edge =
-                (box.min().array() == 0).any() || (box.max().array() == last.array()).any();
+            statistics.at_image_edge = at_edge(box, map.grid);
         }
         statistics.volume_ml = static_cast<double>(statistics.voxels) * map.grid.voxel_volume() / 1000;
         all.push_back(std::move(statistics));

@@ -21,4 +21,7 @@ struct LabelStatistics {
 /// One entry per name of the map, in its order. Cost: linear in voxels, and in each label's box.
 std::vector<LabelStatistics> label_statistics(const LabelMap& map);
 
+/// Those of the map's labels that have a voxel on the image's border, in its order. Cost: one pass.
+std::vector<Label> labels_at_image_edge(const LabelMap& map);
+
 }  // namespace palpate::imaging
