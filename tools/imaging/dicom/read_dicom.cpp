@@ -113,17 +113,21 @@ void require_one_plane(const DicomSeries& series, const std::filesystem::path& p
     }
 }
 
-// The slices of the chosen series in order of place, and their grid but for the distance of slices.
-std::pair<std::vector<DicomSlice>, ImageGrid> ordered_slices(const std::filesystem::path& path,
-                                                             const NoteSink& note, const ReadOptions& options,
-                                                             std::string& modality) {
+// The chosen series.
+struct OrderedSeries {
+    std::vector<DicomSlice> slices;  // in order of place
+    ImageGrid grid;                  // but for the distance of slices
+    std::string modality;
+};
+
+OrderedSeries ordered_series(const std::filesystem::path& path, const NoteSink& note,
+                             const ReadOptions& options) {
     const std::vector<DicomSeries> all = scan_dicom(path, note);
     DicomSeries series = choose_series(all, options, path, note);
     if (series.slices.size() < 2)
         throw InvalidInput({path.string(), "holds a single DICOM slice", "a series of 2 slices or more",
                             "name the folder that holds the whole series"});
     require_one_plane(series, path);
-    modality = series.summary.modality;
     const DicomSlice& first = series.slices.front();
     ImageGrid grid;
     grid.size = {first.size[0], first.size[1], static_cast<std::int32_t>(series.slices.size())};
@@ -134,15 +138,14 @@ std::pair<std::vector<DicomSlice>, ImageGrid> ordered_slices(const std::filesyst
     const Eigen::Vector3d normal = grid.direction.col(2);
     std::ranges::stable_sort(series.slices, {}, [&](const DicomSlice& s) { return normal.dot(*s.origin); });
     grid.origin = *series.slices.front().origin;
-    return {std::move(series.slices), grid};
+    return {std::move(series.slices), grid, series.summary.modality};
 }
 
 }  // namespace
 
 PlacedSeries read_dicom_places(const std::filesystem::path& path, const NoteSink& note,
                                const ReadOptions& options) {
-    std::string modality;
-    auto [slices, grid] = ordered_slices(path, note, options, modality);
+    auto [slices, grid, modality] = ordered_series(path, note, options);
     const double length = grid.direction.col(2).dot(*slices.back().origin - grid.origin);
     if (length > 0) grid.spacing[2] = length / static_cast<double>(slices.size() - 1);
     PlacedSeries series{grid, {}};
@@ -151,8 +154,7 @@ PlacedSeries read_dicom_places(const std::filesystem::path& path, const NoteSink
 }
 
 DicomImage read_dicom(const std::filesystem::path& path, const NoteSink& note, const ReadOptions& options) {
-    std::string modality;
-    const auto [slices, ordered_grid] = ordered_slices(path, note, options, modality);
+    const auto [slices, ordered_grid, modality] = ordered_series(path, note, options);
     if (note && modality != "CT")
         note(fmt::format("modality {}: values are not HU", modality.empty() ? "unknown" : modality));
     DicomImage image{.volume = {ordered_grid, {}}, .modality = modality, .stored_type = ""};
