@@ -67,9 +67,7 @@ Reference read_reference(const std::filesystem::path& path, const imaging::ReadO
             throw InvalidInput({slice.file, "cannot be read", "DICOM", "copy the file again"});
         DcmDataset& data = *file.getDataset();
         if (reference.slices.empty()) {
-            if (data.convertToUTF8().bad()) {
-                // Values stay in the character set of the file.
-            }
+            static_cast<void>(data.convertToUTF8());  // else values stay as the file has them
             take_study(reference, data, path);
         }
         ReferenceSlice found{value_of(data, DCM_SOPClassUID), value_of(data, DCM_SOPInstanceUID), 0,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <map>
 #include <sstream>
 
 #include "tools/archive/objects/segment_code_table.hpp"
@@ -18,17 +19,25 @@ std::string simple_name(std::string_view name) {
     return simple;
 }
 
-std::optional<Code> coded_type(const std::string& name) {
+std::map<std::string, Code> read_table() {
+    std::map<std::string, Code> codes;
     std::istringstream table{std::string(segment_code_table)};
     for (std::string line; std::getline(table, line);) {
+        if (line.starts_with('#')) continue;
         std::istringstream cells(line);
-        std::string listed, value, meaning;
-        std::getline(cells, listed, '\t');
+        std::string name, value, meaning;
+        std::getline(cells, name, '\t');
         std::getline(cells, value, '\t');
         std::getline(cells, meaning);
-        if (!line.starts_with('#') && simple_name(listed) == name) return Code{value, "SCT", meaning};
+        codes.emplace(simple_name(name), Code{value, "SCT", meaning});
     }
-    return std::nullopt;
+    return codes;
+}
+
+std::optional<Code> coded_type(const std::string& name) {
+    static const std::map<std::string, Code> codes = read_table();
+    const auto found = codes.find(name);
+    return found == codes.end() ? std::nullopt : std::optional(found->second);
 }
 
 // What is left of a name without the side, which is cut off before, behind or from "rib_left_3"'s middle.

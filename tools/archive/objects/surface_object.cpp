@@ -54,7 +54,6 @@ void write_surface_object(const std::filesystem::path& path, const TriangleMesh&
     if (filing.reference) add_instances(data, DCM_SourceInstanceSequence, *filing.reference);
     put(data, DCM_AcquisitionDateTime, "");
     put(data, DCM_BurnedInAnnotation, "NO");
-    put(data, DCM_RecognizableVisualFeatures, "NO");
     put(data, DCM_DocumentTitle, title);
     const SegmentCodes codes = codes_of(title);
     if (codes.known)

@@ -38,7 +38,7 @@ bool starts_as_text(std::string_view bytes) {
 }
 
 void search_file(const std::filesystem::path& file, const Machine& machine, Findings& findings) {
-    search_text(file.filename().string(), file.filename(), "its name", false, machine, findings);
+    search_text(file.filename().string(), file, "its name", false, machine, findings);
     if (imaging::is_dicom(file)) {
         if (!search_dicom(file, machine, findings)) throw unreadable(file, "is damaged DICOM");
         return;
