@@ -241,7 +241,7 @@ class Refusals(InspectCommand):
         self.refused(INVALID, self.folder / "other.h5", "other.h5")
 
     def test_misuse_of_as_is_told(self):
-        self.refused(USAGE, self.label_map(), "volume or labels", more=("--as", "mesh"))
+        self.refused(USAGE, self.label_map(), "{volume,labels}", more=("--as", "mesh"))
         write_block(self.folder / "block.vtu")
         self.refused(USAGE, self.folder / "block.vtu", "--as", more=("--as", "labels"))
 

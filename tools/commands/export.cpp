@@ -8,6 +8,7 @@
 #include "tools/archive/objects/segment_codes.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/imaging/files/label_names.hpp"
+#include "tools/inspection/file_kind.hpp"
 #include "tools/stages/surface.hpp"
 
 namespace {
@@ -21,19 +22,17 @@ const cli::CommandText text{
     .examples = {"palpate export labels.seg.nrrd --reference ct_series/ --identity -o labels.dcm",
                  "palpate export labels.seg.nrrd --label liver -o liver_stl.dcm"},
     .notes =
-        "A label map becomes a DICOM Segmentation, a surface (.vtp, .vtk, .stl, .obj, .ply) or the outline "
-        "of "
-        "one\n"
-        "label an Encapsulated STL; positions are LPS mm in both. Without --reference nothing leads to a "
-        "patient:\n"
-        "no name, id or date, and UIDs made from the content, so that equal input gives equal bytes. With it "
-        "the\n"
-        "object refers to study, series, slices and frame of reference of the series that it was made from, "
-        "whose\n"
-        "UIDs lead an archive's owner to the patient; with --identity it also has the patient's name, id, "
-        "birth\n"
-        "date and sex and the study's date, id and accession number, so that an archive files it there.\n"
-        "Segments are numbered from 1 in the order of their values."};
+        "A label map becomes a DICOM Segmentation; a surface (.vtp, .vtk, .stl, .obj, .ply) or the outline "
+        "of\n"
+        "one label becomes an Encapsulated STL. Positions are LPS mm in both. Without --reference nothing\n"
+        "leads to a patient: no name, id or date, and UIDs made from the content, so that equal input gives\n"
+        "equal bytes. With it the object refers to study, series, slices and frame of reference of the "
+        "series\n"
+        "that it was made from, whose UIDs lead an archive's owner to the patient; with --identity it also "
+        "has\n"
+        "the patient's name, id, birth date and sex and the study's date, id and accession number, so that "
+        "an\n"
+        "archive files it there. Segments are numbered from 1 in the order of their values."};
 
 struct ExportRequest {
     std::filesystem::path input, output, reference;
@@ -41,11 +40,6 @@ struct ExportRequest {
     std::string algorithm = "semiautomatic", algorithm_name = "palpate segment";
     bool identity = false;
 };
-
-bool is_surface(const std::filesystem::path& path) {
-    const std::string ending = path.extension().string();
-    return ending == ".vtp" || ending == ".stl" || ending == ".obj" || ending == ".ply" || ending == ".vtk";
-}
 
 nlohmann::ordered_json export_surface(const ExportRequest& request, const Filing& filing,
                                       const cli::StagedFile& staged, const imaging::NoteSink& note) {
@@ -96,7 +90,11 @@ nlohmann::ordered_json run_export(const ExportRequest& request, cli::Session& se
     if (request.identity && request.reference.empty())
         throw UsageError({"--identity", "is given without --reference", "both",
                           "name the folder of the series that the result was made from"});
-    if (!request.label.empty() && is_surface(request.input))
+    const inspection::FileKind kind = inspection::kind_of_file(request.input);
+    if (kind != inspection::FileKind::image && kind != inspection::FileKind::surface)
+        throw InvalidInput({request.input.string(), "is neither", "a label map or a closed surface",
+                            "export the label map that it was made from"});
+    if (!request.label.empty() && kind == inspection::FileKind::surface)
         throw UsageError({"--label", request.input.string() + " is a surface", "a label map", ""});
     cli::StagedFile staged = session.stage(request.output);
     const imaging::NoteSink note = [](std::string_view said) { spdlog::warn("{}", said); };
@@ -112,7 +110,7 @@ nlohmann::ordered_json run_export(const ExportRequest& request, cli::Session& se
         options.series = request.series;
         filing.reference = read_reference(request.reference, options, note);
     }
-    const bool surface = is_surface(request.input) || !request.label.empty();
+    const bool surface = kind == inspection::FileKind::surface || !request.label.empty();
     nlohmann::ordered_json result = surface ? export_surface(request, filing, staged, note)
                                             : export_labels(request, filing, staged, note);
     result["filed_beside"] = filing.reference ? "reference" : "nothing";

@@ -12,15 +12,7 @@ namespace {
 using namespace palpate;
 using inspection::FileKind;
 
-imaging::ImageKind kind_of_words(const std::string& words) {
-    if (words.empty()) return imaging::ImageKind::found_out;
-    if (words == "volume") return imaging::ImageKind::volume;
-    if (words == "labels") return imaging::ImageKind::labels;
-    throw UsageError({"--as", "'" + words + "'", "volume or labels", ""});
-}
-
 inspection::Summary summary_of(const std::filesystem::path& file, const std::string& as) {
-    const imaging::ImageKind image_kind = kind_of_words(as);
     const FileKind kind = inspection::kind_of_file(file);
     if (kind != FileKind::image && !as.empty())
         throw UsageError({"--as", "is for images", "", "leave it out"});
@@ -34,7 +26,8 @@ inspection::Summary summary_of(const std::filesystem::path& file, const std::str
         case FileKind::image:
             break;
     }
-    return inspection::summary_of_image(file, image_kind);
+    using enum imaging::ImageKind;
+    return inspection::summary_of_image(file, as.empty() ? found_out : as == "labels" ? labels : volume);
 }
 
 }  // namespace
@@ -55,7 +48,7 @@ int main(int argc, char** argv) {
     std::filesystem::path file;
     std::string as;
     command.input("file", file, "file, or folder of DICOM slices").required();
-    command.option("--as", as, "what an image counts as: volume or labels; found out without it");
+    command.option("--as", as, "what an image counts as; found out without it").one_of({"volume", "labels"});
     return command.run(argc, argv, [&](cli::Session& session) {
         imaging::set_imaging_threads(session.threads);
         inspection::Summary summary = summary_of(file, as);

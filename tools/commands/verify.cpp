@@ -160,16 +160,13 @@ int main(int argc, char** argv) {
          .notes =
              "An asset that cannot be read or is damaged gives exit code 3, a failed check on a readable one "
              "4.\n"
-             "Positive definiteness of a dense compliance is by Cholesky in double, which takes twice its "
-             "memory; a "
-             "hierarchical one is tried on contacts. With --privacy the mechanics are left out, and any "
-             "files and "
-             "folders\n"
-             "are searched for a patient's identity, dates, people, this machine's user and host, and paths; "
-             "a "
-             "finding\n"
-             "gives exit code 4. Its value is told by two characters and its length. Pixels are not looked "
-             "at."});
+             "Positive definiteness of a dense compliance is by Cholesky in double, which takes twice its\n"
+             "memory; a hierarchical one is tried on contacts. With --privacy the mechanics are left out, "
+             "and\n"
+             "files and folders are searched for a patient's identity, dates, people, this machine's user "
+             "and\n"
+             "host, and paths; a finding gives exit code 4. Of its value two characters and the length are\n"
+             "told. Pixels are not looked at."});
     std::vector<std::filesystem::path> files;
     bool privacy = false;
     std::int32_t columns = certificate_columns, loads = certificate_loads;
