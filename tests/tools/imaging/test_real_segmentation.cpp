@@ -6,6 +6,7 @@
 #include <random>
 
 #include "tests/tools/imaging/real_data.hpp"
+#include "tests/tools/imaging/run_recipes.hpp"
 #include "tools/imaging/files/image_files.hpp"
 #include "tools/imaging/recipes/segmentation.hpp"
 #include "tools/imaging/voxels/label_statistics.hpp"
@@ -15,19 +16,7 @@ namespace palpate {
 namespace {
 
 using namespace imaging;
-
-Mask mask_of(const LabelMap& map, const std::string& name) {
-    return imaging::mask_of(map, require_label(map, name, "test").value);
-}
-
-double dice(const Mask& a, const Mask& b) {
-    return 2 * static_cast<double>(intersect(a, b).count()) / static_cast<double>(a.count() + b.count());
-}
-
-LabelMap segmented(const Volume* volume, const LabelMap* prior, const std::string& text) {
-    const std::vector<StructureRecipe> structures{parse_structure(text)};
-    return segment(volume, prior, structures);
-}
+using namespace test;
 
 // "x,y,z;x,y,z;...": five points at least 8 mm inside.
 std::string random_seeds(const Mask& reference, unsigned seed) {
@@ -49,7 +38,7 @@ std::string random_seeds(const Mask& reference, unsigned seed) {
 void expect_liver(const Volume& volume, const Mask& reference, double least) {
     for (const unsigned seed : {1U, 2U}) {
         const std::string seeds = random_seeds(reference, seed);
-        const LabelMap map = segmented(&volume, nullptr, "liver: recipe=liver seeds=" + seeds);
+        const LabelMap map = run(&volume, nullptr, {"liver: recipe=liver seeds=" + seeds});
         EXPECT_GE(dice(mask_of(map, "liver"), reference), least) << seeds;
         EXPECT_EQ(label_statistics(map)[0].components, 1U);
     }
@@ -68,7 +57,7 @@ TEST(RealSegmentation, liver_in_a_slab_with_streaks_from_five_seeds) {
     REQUIRE_REAL_DATA(folder, "abdomen_dicom_ts20");
     const Volume volume = read_volume(folder / "dicom");
     const LabelMap prior = read_label_map(folder / "seg_totalseg.nii.gz");
-    const LabelMap reference = segmented(&volume, &prior, "liver: recipe=import label=5");
+    const LabelMap reference = run(&volume, &prior, {"liver: recipe=import label=5"});
     expect_liver(volume, mask_of(reference, "liver"), contrast_dice);
 }
 
@@ -83,17 +72,16 @@ TEST(RealSegmentation, bone_of_a_head_is_the_threshold_mask_without_its_head_res
     const Volume volume = read_volume(folder / "head_ct_cranium.nrrd");
     const LabelMap thresholded = read_label_map(folder / "head_ct_cranium_mask_bone.nrrd");
     const Mask reference =
-        mask_of(segmented(nullptr, &thresholded, "bone: recipe=import label=* keep_largest=yes"), "bone");
-    EXPECT_GE(dice(mask_of(segmented(&volume, nullptr, "bone: recipe=bone"), "bone"), reference), 0.95);
-    EXPECT_GE(
-        dice(mask_of(segmented(&volume, nullptr, "bone: recipe=bone threshold_hu=0"), "bone"), reference),
-        0.95);
+        mask_of(run(nullptr, &thresholded, {"bone: recipe=import label=* keep_largest=yes"}), "bone");
+    EXPECT_GE(dice(mask_of(run(&volume, nullptr, {"bone: recipe=bone"}), "bone"), reference), 0.95);
+    EXPECT_GE(dice(mask_of(run(&volume, nullptr, {"bone: recipe=bone threshold_hu=0"}), "bone"), reference),
+              0.95);
 }
 
 TEST(RealSegmentation, airway_of_a_head_is_one_passage_from_nose_to_larynx) {
     REQUIRE_REAL_DATA(file, "head_ct_headsq64/head_ct_headsq64.mhd");
     const Volume volume = read_volume(file);
-    const LabelMap map = segmented(&volume, nullptr, "airway: recipe=airway");
+    const LabelMap map = run(&volume, nullptr, {"airway: recipe=airway"});
     const LabelStatistics airway = label_statistics(map)[0];
     EXPECT_EQ(airway.components, 1U);
     // The nostrils lie near y = 170 mm, the last slice at z = 138 mm is in the larynx.

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +7,7 @@
 #include "tests/formats/scratch.hpp"
 #include "tests/tools/imaging/hand_written_images.hpp"
 #include "tests/tools/imaging/refusals.hpp"
+#include "tests/tools/imaging/run_recipes.hpp"
 #include "tools/imaging/files/image_files.hpp"
 #include "tools/imaging/files/label_names.hpp"
 #include "tools/imaging/recipes/recipe.hpp"
@@ -21,46 +21,11 @@ namespace palpate {
 namespace {
 
 using namespace imaging;
-
-double dice(const LabelMap& a, const std::string& name_a, const LabelMap& b, const std::string& name_b) {
-    const auto value_a = require_label(a, name_a, "a").value, value_b = require_label(b, name_b, "b").value;
-    std::size_t both = 0, sum = 0;
-    for (std::size_t i = 0; i < a.labels.size(); ++i) {
-        const bool in_a = a.labels[i] == value_a, in_b = b.labels[i] == value_b;
-        both += in_a && in_b;
-        sum += std::size_t{in_a} + std::size_t{in_b};
-    }
-    return 2.0 * static_cast<double>(both) / static_cast<double>(sum);
-}
-
-LabelMap run(const Volume* volume, const LabelMap* prior, const std::vector<std::string>& texts) {
-    std::vector<StructureRecipe> structures;
-    for (const std::string& text : texts) structures.push_back(parse_structure(text));
-    return segment(volume, prior, structures);
-}
+using namespace test;
 
 const std::vector<std::string> head_recipes{
     "skull: recipe=bone", "airway: recipe=airway seeds_mm=0,-5,-40 opening_mm=4",
     "wall: recipe=nasopharynx center_mm=0,-5,-40 radius_mm=20 thickness_mm=6"};
-
-struct Imaging {
-    std::string name;
-    PhantomOptions options;
-};
-
-std::vector<Imaging> imagings() {
-    const Eigen::Matrix3d turn =
-        Eigen::AngleAxisd(0.4, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
-    const Eigen::Matrix3d flip = Eigen::Vector3d(1, -1, 1).asDiagonal();
-    return {{"plain", {}},
-            {"flipped and oblique", {.direction = turn * flip}},
-            {"anisotropic", {.spacing = {1.5, 1.5, 3}}},
-            {"noise and partial volume", {.samples_per_axis = 2, .noise_hu = 25}}};
-}
-
-// Voxels of 2 mm on structures of 5 ... 12 mm: half a voxel at the surface already costs a tenth.
-constexpr double coarse_dice = 0.85;
-constexpr double thick_dice = 0.93;
 
 TEST(Recipes, find_skull_airway_and_wall_of_a_head_however_it_was_imaged) {
     for (const auto& [name, options] : imagings()) {
@@ -132,87 +97,6 @@ TEST(Recipes, import_keeps_the_labels_colour) {
         if (label.name == "liver") label.colour = {0.6F, 0.3F, 0.2F};
     const LabelMap map = run(&abdomen.volume, &abdomen.truth, {"organ: recipe=import label=liver"});
     EXPECT_EQ(map.names.at(0).colour, (std::array<float, 3>{0.6F, 0.3F, 0.2F}));
-}
-
-// Liver, tumour and vessels on a body twice life's smallness: the liver's balls and necks scale with it.
-const std::string small_liver = "liver: recipe=liver seeds=-14,-6,16;-30,-6,-4;4,-8,0 neck_mm=4 gap_mm=10";
-
-TEST(Recipes, liver_takes_its_tumour_and_vessels_along_and_both_can_be_found_inside) {
-    const Phantom abdomen = abdomen_phantom({.samples_per_axis = 2, .noise_hu = 15});
-    LabelMap whole = abdomen.truth;
-    for (std::uint16_t& label : whole.labels) label = label == 2 ? 1 : label;
-    EXPECT_GT(dice(run(&abdomen.volume, nullptr, {small_liver}), "liver", whole, "liver"), coarse_dice);
-    const LabelMap map = run(&abdomen.volume, nullptr,
-                             {small_liver, "tumour: recipe=tumour inside=liver seeds=-22,-10,4",
-                              "vessels: recipe=vessels inside=liver max_radius_mm=6 seeds=-12,6,-8"});
-    EXPECT_GT(dice(map, "tumour", abdomen.truth, "tumour"), coarse_dice);
-    EXPECT_EQ(label_statistics(map)[1].components, 1U);
-    std::size_t found = 0, true_vessels = 0;
-    for (std::size_t i = 0; i < map.labels.size(); ++i) {
-        found += map.labels[i] == 3;
-        true_vessels += map.labels[i] == 3 && abdomen.truth.labels[i] == 3;
-    }
-    EXPECT_GT(found, 50U);
-    EXPECT_GT(true_vessels * 10, found * 6);  // a tube of three voxels is mostly border
-}
-
-// The phantom with a brighter ball in whatever lies there, within the liver alone if so asked.
-Phantom abdomen_with_ball(const Eigen::Vector3d& center, double radius, bool in_liver) {
-    Phantom abdomen = abdomen_phantom({.samples_per_axis = 2, .noise_hu = 15});
-    const ImageGrid& grid = abdomen.volume.grid;
-    std::size_t offset = 0;
-    for (int k = 0; k < grid.size[2]; ++k)
-        for (int j = 0; j < grid.size[1]; ++j)
-            for (int i = 0; i < grid.size[0]; ++i, ++offset)
-                if ((!in_liver || abdomen.truth.labels[offset] == 1) &&
-                    (grid.point_of(Eigen::Vector3d(i, j, k)) - center).norm() < radius)
-                    abdomen.volume.values[offset] += 60;
-    return abdomen;
-}
-
-const std::string lesioned_liver =
-    "liver: recipe=liver seeds=-14,-6,16;4,-8,0 neck_mm=4 gap_mm=4 lesion_seeds_mm=";
-
-TEST(Recipes, liver_takes_a_lesion_at_its_border_along_where_a_point_lies_in_it) {
-    const Phantom abdomen = abdomen_with_ball({-30, -6, -4}, 15, true);
-    LabelMap whole = abdomen.truth;
-    for (std::uint16_t& label : whole.labels) label = label == 2 ? 1 : label;
-    const auto found = [&](const std::string& structure) {
-        return dice(run(&abdomen.volume, nullptr, {structure}), "liver", whole, "liver");
-    };
-    const double without = found(lesioned_liver.substr(0, lesioned_liver.rfind(' '))),
-                 with = found(lesioned_liver + "-30,-6,-4");
-    EXPECT_GT(with, without + 0.05);
-    EXPECT_GT(with, coarse_dice);
-}
-
-TEST(Recipes, liver_refuses_lesions_that_lie_apart_from_it_or_run_out_of_it) {
-    const auto refusal = [&](const Phantom& abdomen, const std::string& lesion) {
-        return test::refusal_of<Error>([&] { run(&abdomen.volume, nullptr, {lesioned_liver + lesion}); });
-    };
-    EXPECT_SAYS(refusal(abdomen_with_ball({34, 20, 0}, 9, false), "34,20,0"), "lies apart from it");
-    EXPECT_SAYS(refusal(abdomen_phantom(), "34,20,0"), "ran out of it");
-}
-
-TEST(Recipes, liver_hardly_depends_on_where_the_seeds_are) {
-    const Phantom abdomen = abdomen_phantom({.samples_per_axis = 2, .noise_hu = 15});
-    const LabelMap map = run(&abdomen.volume, nullptr, {small_liver});
-    for (const char* seeds : {"-10,-8,14", "-12,-2,12;-33,-8,-6", "-18,-6,-18;0,-8,4;-20,6,10;-30,-6,-8"}) {
-        const LabelMap other = run(&abdomen.volume, nullptr,
-                                   {"liver: recipe=liver neck_mm=4 gap_mm=10 seeds=" + std::string(seeds)});
-        EXPECT_GT(dice(map, "liver", other, "liver"), 0.97) << seeds;
-    }
-}
-
-TEST(Recipes, liver_is_found_however_it_was_imaged) {
-    for (const auto& [name, options] : imagings()) {
-        SCOPED_TRACE(name);
-        const Phantom abdomen = abdomen_phantom(options);
-        LabelMap whole = abdomen.truth;
-        for (std::uint16_t& label : whole.labels) label = label == 2 ? 1 : label;
-        const LabelMap map = run(&abdomen.volume, nullptr, {small_liver});
-        EXPECT_GT(dice(map, "liver", whole, "liver"), coarse_dice);
-    }
 }
 
 TEST(Recipes, bone_finds_a_threshold_clear_of_soft_tissue) {
