@@ -19,6 +19,8 @@ find_package(CLI11 2.1 REQUIRED)
 find_package(spdlog REQUIRED)
 find_package(fmt REQUIRED)
 find_package(nlohmann_json 3 REQUIRED)
+# toml++: files that people write; keeps line and column of every value for error messages.
+find_package(tomlplusplus 3 REQUIRED)
 
 # OpenIGTLink: the protocol by which trackers and 3D Slicer exchange poses; its C structures and CRC, and in
 # tests its own sockets as the peer. Debian's UseOpenIGTLink.cmake changes global flags (-fno-tree-vectorize,
@@ -30,8 +32,6 @@ set_target_properties(OpenIGTLink::OpenIGTLink PROPERTIES IMPORTED_LOCATION "${P
     INTERFACE_INCLUDE_DIRECTORIES "${PALPATE_OPENIGTLINK_INCLUDE}")
 
 if(PALPATE_TOOLS)
-    # toml++: case files; keeps line and column of every value for error messages.
-    find_package(tomlplusplus 3 REQUIRED)
     # ITK: the reference implementation of volume reading, DICOM geometry and segmentation filters.
     find_package(ITK 5.2 REQUIRED COMPONENTS
         ITKCommon ITKIOImageBase ITKIONRRD ITKIOMeta ITKZLIB

@@ -21,6 +21,7 @@ ROOMS = {
     "model": {"records"},
     "provenance": {"json"},
     "asset": {"model", "hdf5", "openssl", "threads"},
+    "toml_file": {"model", "toml"},
     "recording": {"model", "asset"},
     "imaging": {"model", "itk", "hdf5", "dcmtk", "vtk", "json"},  # HDF5 is one of ITK's own
     "archive": {"model", "asset", "imaging", "dcmtk", "hdf5", "zlib"},
@@ -38,7 +39,7 @@ ROOMS = {
     "inspection": {"stage_images", "stage_shapes", "stage_bodies", "asset", "draft"},
     "tissue": {"model"},
     "draft": {"model", "imaging", "tissue"},
-    "case_builder": {"model", "asset", "cli", "imaging", "requests", "tissue", "json", "toml"},
+    "case_builder": {"model", "asset", "cli", "imaging", "requests", "tissue", "toml_file", "json"},
     "cohort": {"model", "case_builder", "cli", "report", "json"},
     "seeds": {"model", "imaging", "vtk"},
     "hd_conformance": {"model", "devices", "json"},

@@ -6,13 +6,15 @@
 
 #include "formats/model/label_map.hpp"
 #include "formats/records/material.hpp"
-#include "tools/case_builder/table_reader.hpp"
+#include "formats/toml_file/table_reader.hpp"
 #include "tools/case_builder/toml_document.hpp"
 #include "tools/imaging/recipes/recipe.hpp"
 #include "tools/imaging/recipes/recipe_json.hpp"
 
 namespace palpate::case_builder {
 namespace {
+
+using toml_file::TableReader;
 
 using Kind = imaging::RecipeParameter::Kind;
 

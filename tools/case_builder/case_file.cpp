@@ -10,13 +10,15 @@
 #include "formats/model/errors.hpp"
 #include "formats/records/haptic_settings.hpp"
 #include "formats/records/quality_contract.hpp"
-#include "tools/case_builder/table_reader.hpp"
+#include "formats/toml_file/table_reader.hpp"
 #include "tools/case_builder/toml_document.hpp"
 #include "tools/imaging/recipes/recipe.hpp"
 #include "tools/tissue/tissue.hpp"
 
 namespace palpate::case_builder {
 namespace {
+
+using toml_file::TableReader;
 
 // Sets a number, a text or a flag of a request if the table has the key.
 template <typename T>

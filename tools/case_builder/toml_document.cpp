@@ -7,6 +7,7 @@
 
 #include "formats/model/errors.hpp"
 #include "formats/model/label_map.hpp"
+#include "formats/toml_file/parse_file.hpp"
 
 namespace palpate::case_builder {
 namespace {
@@ -89,15 +90,9 @@ void apply(const Override& override, toml::table& document) {
 }  // namespace
 
 toml::table read_toml(const std::filesystem::path& path, std::span<const Override> overrides) {
-    try {
-        toml::table document = toml::parse_file(path.string());
-        for (const Override& override : overrides) apply(override, document);
-        return document;
-    } catch (const toml::parse_error& error) {
-        const auto line = error.source().begin.line;
-        throw InvalidInput({line > 0 ? fmt::format("{}:{}", path.string(), line) : path.string(),
-                            std::string(error.description()), "", "see docs/case_file.md"});
-    }
+    toml::table document = toml_file::parse_file(path, "see docs/case_file.md");
+    for (const Override& override : overrides) apply(override, document);
+    return document;
 }
 
 }  // namespace palpate::case_builder

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -10,7 +10,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate::case_builder {
+namespace palpate::toml_file {
 
 /// Reads one table of a TOML file and remembers which keys it was asked for, so that the others can be
 /// refused. Everything throws InvalidInput naming file, line and key if a value is missing or has the wrong
@@ -87,4 +87,4 @@ class TableReader {
     std::set<std::string> known_;
 };
 
-}  // namespace palpate::case_builder
+}  // namespace palpate::toml_file

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/case_builder/table_reader.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/toml_file/table_reader.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "formats/model/label_map.hpp"
 
-namespace palpate::case_builder {
+namespace palpate::toml_file {
 
 TableReader::TableReader(const toml::table& table, std::string file, std::string where)
     : table_(table), file_(std::move(file)), where_(std::move(where)) {}
@@ -123,4 +123,4 @@ std::string TableReader::place_of(const std::string& key) const {
     return where_.empty() ? key : where_ + "." + key;
 }
 
-}  // namespace palpate::case_builder
+}  // namespace palpate::toml_file

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <string>
+#include <toml++/toml.h>
+
+namespace palpate::toml_file {
+
+/// Reads a TOML file. Throws InvalidInput naming file and line for a syntax error, with `next_step`.
+toml::table parse_file(const std::filesystem::path& path, const std::string& next_step);
+
+}  // namespace palpate::toml_file
