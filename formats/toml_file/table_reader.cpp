@@ -85,6 +85,15 @@ std::vector<TableReader> TableReader::tables(const std::string& key) {
     return readers;
 }
 
+const toml::array& TableReader::list(const std::string& key) {
+    known_.insert(key);
+    static const toml::array empty;
+    const toml::node* node = table_.get(key);
+    if (node == nullptr) return empty;
+    if (!node->is_array()) fail(*node, key, "has the wrong type", "a list");
+    return *node->as_array();
+}
+
 void TableReader::refuse_unknown() const {
     for (const auto& [key, node] : table_) {
         const std::string name(key.str());

@@ -61,6 +61,9 @@ class TableReader {
     /// The tables of an array of tables, [[key]]; none if it is absent.
     std::vector<TableReader> tables(const std::string& key);
 
+    /// The elements of an array of anything; none if it is absent.
+    const toml::array& list(const std::string& key);
+
     bool has(const std::string& key) const { return table_.contains(key); }
     const toml::table& raw() const { return table_; }
 

@@ -64,29 +64,6 @@ std::vector<Vector3d> held_points(const Case& patient_case, const HapticModel& m
     return points;
 }
 
-const TriangleMesh& mesh_of(const Case& patient_case, const HapticModel& model, std::size_t body) {
-    return body < model.rigid_count()
-               ? patient_case.rigid_bodies[body].surface
-               : patient_case.deformable_bodies[body - model.rigid_count()].boundary.surface;
-}
-
-// The triangles whose three vertices may move; all of a rigid body.
-std::vector<std::int32_t> free_triangles(const Case& patient_case, const HapticModel& model,
-                                         std::size_t body) {
-    const TriangleMesh& mesh = mesh_of(patient_case, model, body);
-    std::vector<bool> fixed(mesh.vertices.size(), false);
-    if (body >= model.rigid_count()) {
-        const DeformableBody& soft = patient_case.deformable_bodies[body - model.rigid_count()];
-        for (std::size_t v = 0; v < fixed.size(); ++v)
-            fixed[v] = std::ranges::binary_search(soft.fixed_nodes, soft.boundary.nodes[v]);
-    }
-    std::vector<std::int32_t> triangles;
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-        if (std::ranges::none_of(mesh.triangles[t], [&](std::int32_t v) { return fixed[v]; }))
-            triangles.push_back(static_cast<std::int32_t>(t));
-    return triangles;
-}
-
 TriangleCorners corners_of(const TriangleMesh& mesh, std::int32_t triangle) {
     const Triangle& t = mesh.triangles[triangle];
     return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
@@ -106,21 +83,51 @@ TouchTarget target_on(std::size_t body, std::int32_t triangle, const TriangleCor
 
 }  // namespace
 
+const TriangleMesh& surface_of(const Case& patient_case, std::size_t body) {
+    const std::size_t rigid = patient_case.rigid_bodies.size();
+    return body < rigid ? patient_case.rigid_bodies[body].surface
+                        : patient_case.deformable_bodies[body - rigid].boundary.surface;
+}
+
+std::vector<std::int32_t> free_triangles(const Case& patient_case, std::size_t body) {
+    const TriangleMesh& mesh = surface_of(patient_case, body);
+    const std::size_t rigid = patient_case.rigid_bodies.size();
+    std::vector<bool> fixed(mesh.vertices.size(), false);
+    if (body >= rigid) {
+        const DeformableBody& soft = patient_case.deformable_bodies[body - rigid];
+        for (std::size_t v = 0; v < fixed.size(); ++v)
+            fixed[v] = std::ranges::binary_search(soft.fixed_nodes, soft.boundary.nodes[v]);
+    }
+    std::vector<std::int32_t> triangles;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+        if (std::ranges::none_of(mesh.triangles[t], [&](std::int32_t v) { return fixed[v]; }))
+            triangles.push_back(static_cast<std::int32_t>(t));
+    return triangles;
+}
+
+std::optional<TouchTarget> touch_target_near(const Case& patient_case, const HapticModel& model,
+                                             std::size_t body, const Vector3d& place) {
+    const auto nearest = model.surface(body).closest_point(place, std::numeric_limits<double>::max());
+    TouchTarget target =
+        target_on(body, nearest->triangle, corners_of(surface_of(patient_case, body), nearest->triangle),
+                  nearest->point);
+    const auto clearance = clearance_at(model, target.place.point, target.place.normal);
+    if (!clearance) return std::nullopt;
+    target.place.clearance = *clearance;
+    return target;
+}
+
 TouchTarget choose_touch_target(const Case& patient_case, const HapticModel& model,
                                 const std::string& body_name, const std::optional<Vector3d>& near) {
     const std::size_t body = find_body(model, body_name);
-    const TriangleMesh& mesh = mesh_of(patient_case, model, body);
+    const TriangleMesh& mesh = surface_of(patient_case, body);
     const auto refuse = [&](const std::string& found, const std::string& next_step) {
         throw InvalidInput({model.body_name(body), found, "", next_step});
     };
     if (near) {
-        const auto nearest = model.surface(body).closest_point(*near, std::numeric_limits<double>::max());
-        TouchTarget target =
-            target_on(body, nearest->triangle, corners_of(mesh, nearest->triangle), nearest->point);
-        const auto clearance = clearance_at(model, target.place.point, target.place.normal);
-        if (!clearance) refuse("the tool does not fit at the point nearest to --target", "name another one");
-        target.place.clearance = *clearance;
-        return target;
+        const auto target = touch_target_near(patient_case, model, body, *near);
+        if (!target) refuse("the tool does not fit at the point nearest to --target", "name another one");
+        return *target;
     }
 
     const std::vector<Vector3d> held = held_points(patient_case, model, body);
@@ -129,7 +136,7 @@ TouchTarget choose_touch_target(const Case& patient_case, const HapticModel& mod
         double squared_distance;
     };
     std::vector<Candidate> candidates;
-    for (const std::int32_t triangle : free_triangles(patient_case, model, body)) {
+    for (const std::int32_t triangle : free_triangles(patient_case, body)) {
         const TriangleCorners t = corners_of(mesh, triangle);
         Candidate candidate{target_on(body, triangle, t, (t[0] + t[1] + t[2]) / 3),
                             std::numeric_limits<double>::max()};

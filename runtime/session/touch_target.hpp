@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "formats/model/body.hpp"
 #include "runtime/devices/hand_path.hpp"
@@ -17,6 +18,17 @@ struct TouchTarget {
     std::int32_t triangle = 0;  ///< of its surface
     devices::TouchPoint place;
 };
+
+/// The point of a body's surface (`body` as in HapticModel) that is nearest to `place` (p_P, mm), with how
+/// far the tool can back out of it; nothing if the tool does not fit there.
+std::optional<TouchTarget> touch_target_near(const Case& patient_case, const haptics::HapticModel& model,
+                                             std::size_t body, const Eigen::Vector3d& place);
+
+/// The surface of a body, as in HapticModel.
+const TriangleMesh& surface_of(const Case& patient_case, std::size_t body);
+
+/// The triangles of a body's surface none of whose vertices is fixed; all of a rigid body.
+std::vector<std::int32_t> free_triangles(const Case& patient_case, std::size_t body);
 
 /// Chooses where a script touches. `body_name` empty: the first deformable body, else the first rigid one.
 /// Without `near`: among the body's free triangles from which the tool can back out 5 mm (or, in a narrow

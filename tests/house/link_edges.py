@@ -51,6 +51,7 @@ ROOMS = {
     "openigtlink": {"model", "realtime", "haptics", "devices", "igtl"},
     "visual": {"model", "realtime", "vtk"},
     "session": {"model", "asset", "recording", "drawing", "json", "realtime", "collision", "haptics", "devices", "openigtlink"},
+    "training": {"model", "session", "toml_file", "json"},
 }
 ROOMS["experiments"] = {"asset", "drawing", "cli", "session", "fem", "meshing", "obb", "cgal_peer"}  # measures both sides
 COMMANDS = {"model", "archive", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "case_builder", "cohort", "draft", "inspection", "requests", "stage_images", "stage_shapes",
@@ -60,12 +61,12 @@ EXECUTABLES = {
     "palpate": {"cli", "model"},
     "palpate-touch": APPS,
     "palpate-doctor": APPS | {"doctor"},
-    "palpate-train": APPS | {"provenance", "visual"},
+    "palpate-train": APPS | {"provenance", "training", "visual"},
     "palpate-bench": {"experiments"},
 }
 HEAVY = {"itk", "cgal", "cholmod", "metis", "vtk"}
 LEAN = {"palpate_drawing", "palpate_provenance", "palpate_records", "palpate_model", "palpate_asset", "palpate_recording", "palpate_cli", "palpate_realtime", "palpate_collision",
-        "palpate_haptics", "palpate_devices", "palpate_openigtlink", "palpate_session", "palpate_doctor", "palpate-touch",
+        "palpate_haptics", "palpate_devices", "palpate_openigtlink", "palpate_session", "palpate_toml_file", "palpate_training", "palpate_doctor", "palpate-touch",
         "palpate-doctor"}
 # These two draw, so VTK is theirs; nothing else that is heavy.
 DRAWING = {"palpate_visual", "palpate-train"}

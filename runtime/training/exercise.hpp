@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace palpate::training {
+
+/// What a trainee is to do.
+enum class Task {
+    touch,  ///< press every place in turn, and hold
+    find,   ///< mark where the surface lies above a hidden region
+    guide,  ///< lead the tool through every gate in turn
+    trace,  ///< follow a line on the surface while pressing
+    free,   ///< whatever he likes
+};
+
+/// "touch", "find", "guide", "trace", "free", in their order.
+inline constexpr std::string_view task_names[] = {"touch", "find", "guide", "trace", "free"};
+
+inline constexpr std::string_view name_of(Task task) {
+    return task_names[static_cast<std::size_t>(task)];
+}
+
+/// An exercise as it lies on one patient.
+struct Exercise {
+    std::string name;         ///< in files: letters, digits, '-'
+    std::string title;        ///< for people
+    std::string instruction;  ///< a sentence or two, for people
+    Task task = Task::free;
+    double time_limit = 0;   ///< s; 0: none
+    double least_force = 0;  ///< N; less does not count as touching
+    double most_force = 0;   ///< N; more hurts
+    double tolerance = 0;    ///< mm, to either side of a place, a gate or a line
+    double hold = 0;         ///< touch: s that a place is to be pressed
+    /// touch: the places, in their order; find: the one above the region; guide: the gates; trace: points of
+    /// the line, densely. On the rest surface but for gates. p_P, mm.
+    std::vector<Eigen::Vector3d> places;
+    std::string region;  ///< find: what is hidden
+};
+
+/// Length of the line through the points, mm.
+double length_of(const std::vector<Eigen::Vector3d>& points);
+
+}  // namespace palpate::training

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/training/goals.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace palpate::training {
+namespace {
+
+using Eigen::Vector3d;
+
+void add_error(double error, Goals& goals) {
+    goals.errors += error;
+    goals.squared_errors += error * error;
+    ++goals.error_count;
+}
+
+void reach_next(const Exercise& exercise, Goals& goals) {
+    ++goals.reached;
+    goals.share = static_cast<double>(goals.reached) / static_cast<double>(exercise.places.size());
+    goals.reached_all = goals.reached == exercise.places.size();
+}
+
+// A press that never came to the mark that was due, nor stayed on the one before, is a miss.
+void follow_marks(const Exercise& exercise, const Moment& moment, bool touching, Goals& goals) {
+    const auto near = [&](std::size_t place) {
+        return place < exercise.places.size() && moment.touched &&
+               (*moment.touched - exercise.places[place]).norm() <= exercise.tolerance;
+    };
+    if (touching && !goals.was_touching) goals.was_astray = true;
+    if (!touching && goals.was_touching && goals.was_astray) ++goals.misses;
+    if (touching && (near(goals.reached) || (goals.reached > 0 && near(goals.reached - 1))))
+        goals.was_astray = false;
+    if (!touching || !near(goals.reached)) {
+        goals.held = 0;
+        return;
+    }
+    goals.held += moment.duration;
+    if (goals.held < exercise.hold) return;
+    add_error((*moment.touched - exercise.places[goals.reached]).norm(), goals);
+    goals.held = 0;
+    reach_next(exercise, goals);
+}
+
+void follow_gates(const Exercise& exercise, const Moment& moment, Goals& goals) {
+    const bool hurts = moment.force > exercise.most_force;
+    if (hurts && !goals.was_astray) ++goals.misses;
+    goals.was_astray = hurts;
+    const double distance = (moment.tool - exercise.places[goals.reached]).norm();
+    if (distance > exercise.tolerance) return;
+    add_error(distance, goals);
+    reach_next(exercise, goals);
+}
+
+struct LinePoint {
+    double along = 0;     // mm from the line's beginning
+    double distance = 0;  // mm
+};
+
+// The nearest point of the line between `from` and `to` (mm along it).
+LinePoint nearest_on_line(const std::vector<Vector3d>& line, const Vector3d& p, double from, double to) {
+    LinePoint best{.along = from, .distance = std::numeric_limits<double>::max()};
+    double along = 0;
+    for (std::size_t i = 1; i < line.size(); ++i) {
+        const Vector3d way = line[i] - line[i - 1];
+        const double length = way.norm();
+        const double least = std::max(0.0, from - along), most = std::min(length, to - along);
+        if (length > 0 && least <= most) {
+            const double at = std::clamp((p - line[i - 1]).dot(way) / length, least, most);
+            const double distance = (line[i - 1] + way * (at / length) - p).norm();
+            if (distance < best.distance) best = {.along = along + at, .distance = distance};
+        }
+        along += length;
+    }
+    return best;
+}
+
+void follow_line(const Exercise& exercise, const Moment& moment, bool touching, Goals& goals) {
+    if (!touching || !moment.touched) return;
+    const double length = length_of(exercise.places), reach = 2 * exercise.tolerance;
+    const LinePoint nearest =
+        nearest_on_line(exercise.places, *moment.touched, std::max(0.0, goals.line_reached - reach),
+                        std::min(length, goals.line_reached + reach));
+    const bool begun = goals.error_count > 0;
+    const bool astray = nearest.distance > exercise.tolerance;
+    if (astray && begun && !goals.was_astray) ++goals.misses;
+    goals.was_astray = astray;
+    if (begun || !astray) add_error(nearest.distance, goals);
+    if (astray) return;
+    goals.line_reached = std::max(goals.line_reached, nearest.along);
+    goals.share = goals.line_reached / length;
+    goals.reached_all = length - goals.line_reached <= exercise.tolerance;
+    if (goals.reached_all) goals.share = 1;
+}
+
+}  // namespace
+
+void follow(const Exercise& exercise, const Moment& moment, Goals& goals) {
+    if (goals.reached_all) return;
+    const bool touching = moment.force >= exercise.least_force;
+    if (touching && moment.touched) goals.last_touched = moment.touched;
+    switch (exercise.task) {
+        case Task::touch:
+            follow_marks(exercise, moment, touching, goals);
+            break;
+        case Task::guide:
+            follow_gates(exercise, moment, goals);
+            break;
+        case Task::trace:
+            follow_line(exercise, moment, touching, goals);
+            break;
+        case Task::find:
+        case Task::free:
+            break;
+    }
+    goals.was_touching = touching;
+}
+
+void mark(const Exercise& exercise, Goals& goals) {
+    if (exercise.task != Task::find || !goals.last_touched || goals.reached_all) return;
+    const double error = (*goals.last_touched - exercise.places.front()).norm();
+    add_error(error, goals);
+    if (error > exercise.tolerance) ++goals.misses;
+    goals.share = std::clamp(1 - (error - exercise.tolerance) / (2 * exercise.tolerance), 0.0, 1.0);
+    goals.reached = 1;
+    goals.reached_all = true;
+}
+
+}  // namespace palpate::training

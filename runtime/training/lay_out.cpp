@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/training/lay_out.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+#include <map>
+#include <random>
+
+#include "formats/model/arrays.hpp"
+#include "formats/model/errors.hpp"
+#include "formats/model/label_map.hpp"
+
+namespace palpate::training {
+namespace {
+
+using Eigen::Vector3d;
+using haptics::HapticModel;
+using session::TouchTarget;
+
+constexpr double least_depth = 0.3, most_depth = 4;  // mm
+constexpr double seen = 0.4;                         // least cosine between normals of places on one side
+constexpr double room = 3;                           // mm that the tool needs to come to a mark
+
+std::vector<std::int32_t> free_vertices(const Case& patient_case, std::size_t body) {
+    const TriangleMesh& surface = session::surface_of(patient_case, body);
+    std::vector<std::int32_t> vertices;
+    for (const std::int32_t triangle : session::free_triangles(patient_case, body))
+        vertices.insert(vertices.end(), surface.triangles[triangle].begin(),
+                        surface.triangles[triangle].end());
+    std::ranges::sort(vertices);
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    return vertices;
+}
+
+// Mesh nodes and volume of every region.
+struct RegionExtent {
+    double volume = 0;
+    std::vector<std::int32_t> nodes;
+};
+
+std::map<std::int32_t, RegionExtent> extents_of(const TetMesh& mesh) {
+    std::map<std::int32_t, RegionExtent> extents;
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+        const auto& [a, b, c, d] = mesh.tetrahedra[t];
+        const auto p = [&](std::int32_t node) { return mesh.rest_positions[node]; };
+        RegionExtent& extent = extents[mesh.regions[t]];
+        extent.volume += std::abs((p(b) - p(a)).cross(p(c) - p(a)).dot(p(d) - p(a))) / 6;
+        extent.nodes.insert(extent.nodes.end(), {a, b, c, d});
+    }
+    return extents;
+}
+
+HiddenRegion place_above(const Case& patient_case, std::size_t body, const std::string& name,
+                         const std::vector<std::int32_t>& nodes) {
+    const DeformableBody& soft = patient_case.deformable_bodies[body - patient_case.rigid_bodies.size()];
+    Vector3d middle = Vector3d::Zero();
+    for (const std::int32_t node : nodes) middle += soft.mesh.rest_positions[node];
+    middle /= static_cast<double>(nodes.size());
+    const auto& vertices = soft.boundary.surface.vertices;
+    HiddenRegion region{.name = name, .body = body, .above = middle};
+    double nearest = std::numeric_limits<double>::max();
+    for (const std::int32_t vertex : free_vertices(patient_case, body))
+        if (const double distance = (vertices[vertex] - middle).norm(); distance < nearest) {
+            nearest = distance;
+            region.above = vertices[vertex];
+        }
+    region.depth = std::numeric_limits<double>::max();
+    for (const std::int32_t node : nodes)
+        region.depth = std::min(region.depth, (soft.mesh.rest_positions[node] - region.above).norm());
+    return region;
+}
+
+std::optional<HiddenRegion> region_of(const ExerciseRecipe& recipe, const Case& patient_case) {
+    const std::vector<HiddenRegion> regions = hidden_regions(patient_case);
+    if (recipe.region.empty()) return regions.empty() ? std::nullopt : std::optional(regions.front());
+    std::vector<std::string> names;
+    for (const HiddenRegion& region : regions) {
+        if (region.name == recipe.region) return region;
+        names.push_back(region.name);
+    }
+    throw InvalidInput({recipe.written_at, "the case hides no region '" + recipe.region + "'", "",
+                        names.empty() ? "no body of it has more than one region"
+                                      : fmt::format("it hides '{}'", fmt::join(names, "', '"))});
+}
+
+// Places of the start's body that are on its side, in an order that the seed draws.
+std::vector<Vector3d> places_around(const Case& patient_case, const TouchTarget& start, double spread,
+                                    std::uint64_t seed) {
+    std::vector<Vector3d> places;
+    const TriangleMesh& surface = session::surface_of(patient_case, start.body);
+    for (const std::int32_t vertex : free_vertices(patient_case, start.body))
+        if ((surface.vertices[vertex] - start.place.point).norm() <= spread)
+            places.push_back(surface.vertices[vertex]);
+    std::mt19937_64 random(seed);
+    for (std::size_t i = places.size(); i > 1; --i) std::swap(places[i - 1], places[random() % i]);
+    return places;
+}
+
+// The place itself, if the tool comes to it from the side on which `normal` stands.
+std::optional<TouchTarget> reached(const Case& patient_case, const HapticModel& model, std::size_t body,
+                                   const Vector3d& place, const Vector3d& normal) {
+    auto target = session::touch_target_near(patient_case, model, body, place);
+    if (!target || target->place.clearance < room || target->place.normal.dot(normal) < seen)
+        return std::nullopt;
+    return target;
+}
+
+std::vector<Vector3d> draw_marks(const ExerciseRecipe& recipe, const Case& patient_case,
+                                 const HapticModel& model, const TouchTarget& start, double apart) {
+    const std::vector<Vector3d> candidates = places_around(patient_case, start, recipe.spread, recipe.seed);
+    const auto wanted = static_cast<std::size_t>(recipe.count);
+    // As far apart as the surface lets them be.
+    for (double distance = recipe.spread; distance >= apart; distance *= 0.8) {
+        std::vector<Vector3d> marks;
+        for (const Vector3d& candidate : candidates) {
+            const bool clear = std::ranges::all_of(
+                marks, [&](const Vector3d& mark) { return (mark - candidate).norm() >= distance; });
+            if (clear && reached(patient_case, model, start.body, candidate, start.place.normal))
+                marks.push_back(candidate);
+            if (marks.size() == wanted) return marks;
+        }
+    }
+    throw InvalidInput({recipe.written_at.empty() ? recipe.name : recipe.written_at,
+                        fmt::format("{} marks find no room within {} mm of the start", wanted, recipe.spread),
+                        "", "ask for fewer ('count'), a wider 'spread_mm', or write 'places_mm'"});
+}
+
+// Along the surface from the start, step by step, as long as the tool comes there.
+std::vector<Vector3d> walk(const Case& patient_case, const HapticModel& model, const TouchTarget& start,
+                           Vector3d way, double length) {
+    constexpr double step = 1;  // mm
+    std::vector<Vector3d> points;
+    Vector3d at = start.place.point;
+    for (double gone = step; gone <= length; gone += step) {
+        const auto next = reached(patient_case, model, start.body, at + step * way, start.place.normal);
+        if (!next || (next->place.point - at).norm() < 0.5 * step) break;
+        way = next->place.point - at;
+        way = (way - next->place.normal * next->place.normal.dot(way)).normalized();
+        at = next->place.point;
+        points.push_back(at);
+    }
+    return points;
+}
+
+std::vector<Vector3d> draw_line(const ExerciseRecipe& recipe, const Case& patient_case,
+                                const HapticModel& model, const TouchTarget& start) {
+    constexpr int directions = 8;
+    constexpr double shortest = 10;  // mm
+    std::vector<Vector3d> longest;
+    for (int i = 0; i < directions; ++i) {
+        const Eigen::AngleAxisd turn(M_PI * i / directions, start.place.normal);
+        const Vector3d way = turn * start.place.tangent;
+        std::vector<Vector3d> line = walk(patient_case, model, start, -way, recipe.spread);
+        std::ranges::reverse(line);
+        line.push_back(start.place.point);
+        const std::vector<Vector3d> other = walk(patient_case, model, start, way, recipe.spread);
+        line.insert(line.end(), other.begin(), other.end());
+        if (line.size() > longest.size()) longest = line;
+    }
+    if (length_of(longest) < shortest)
+        throw InvalidInput({recipe.written_at.empty() ? recipe.name : recipe.written_at,
+                            "a line finds no room at the start", "",
+                            "write 'places_mm', or start elsewhere"});
+    return longest;
+}
+
+double two_digits(double value) {
+    if (value <= 0) return value;
+    const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
+    return std::round(value / unit) * unit;
+}
+
+}  // namespace
+
+std::vector<HiddenRegion> hidden_regions(const Case& patient_case) {
+    std::vector<HiddenRegion> regions;
+    for (std::size_t i = 0; i < patient_case.deformable_bodies.size(); ++i) {
+        const DeformableBody& soft = patient_case.deformable_bodies[i];
+        const auto extents = extents_of(soft.mesh);
+        const auto main =
+            std::ranges::max_element(extents, {}, [](const auto& entry) { return entry.second.volume; });
+        for (const Label& label : soft.mesh.region_names)
+            if (const auto found = extents.find(label.value); found != extents.end() && found != main)
+                regions.push_back(place_above(patient_case, patient_case.rigid_bodies.size() + i, label.name,
+                                              found->second.nodes));
+    }
+    std::ranges::sort(regions, {}, &HiddenRegion::name);
+    return regions;
+}
+
+TouchTarget choose_start(const Case& patient_case, const HapticModel& model, const std::string& body_name,
+                         std::uint64_t seed) {
+    constexpr double nearest = 15, farthest = 35;  // mm
+    const TouchTarget usual = session::choose_touch_target(patient_case, model, body_name, std::nullopt);
+    const std::vector<HiddenRegion> regions = hidden_regions(patient_case);
+    const auto region = std::ranges::find(regions, usual.body, &HiddenRegion::body);
+    if (region == regions.end()) return usual;
+    const auto above = session::touch_target_near(patient_case, model, region->body, region->above);
+    if (!above) return usual;
+    for (const Vector3d& place : places_around(patient_case, *above, farthest, seed)) {
+        if ((place - region->above).norm() < nearest) continue;
+        if (const auto start = reached(patient_case, model, region->body, place, above->place.normal))
+            return *start;
+    }
+    return *above;
+}
+
+std::optional<Exercise> lay_out(const ExerciseRecipe& recipe, const Case& patient_case, HapticModel& model,
+                                const TouchTarget& start) {
+    const double radius = model.settings().tool_radius;
+    Exercise exercise{.name = recipe.name,
+                      .title = recipe.title,
+                      .instruction = recipe.instruction,
+                      .task = recipe.task,
+                      .time_limit = recipe.time_limit.value_or(0),
+                      .least_force = 0,
+                      .most_force = 0,
+                      .tolerance = recipe.tolerance.value_or(recipe.task == Task::find ? 10 : radius + 3),
+                      .hold = recipe.hold.value_or(0.5),
+                      .places = recipe.places,
+                      .region = recipe.region};
+    const auto usual_force = [&](double depth) {
+        return two_digits(
+            std::min(force_at_depth(model, start.place, depth), 0.8 * model.settings().max_force));
+    };
+    exercise.least_force = recipe.least_force ? *recipe.least_force : usual_force(least_depth);
+    exercise.most_force = recipe.most_force ? *recipe.most_force : usual_force(most_depth);
+    if (exercise.least_force >= exercise.most_force) exercise.least_force = exercise.most_force / 10;
+    if (recipe.task == Task::find) {
+        const auto region = region_of(recipe, patient_case);
+        if (!region) return std::nullopt;
+        exercise.region = region->name;
+        exercise.places = {region->above};
+    }
+    if (!exercise.places.empty()) return exercise;
+    if (recipe.task == Task::touch)
+        exercise.places = draw_marks(recipe, patient_case, model, start, 2 * exercise.tolerance);
+    if (recipe.task == Task::trace) exercise.places = draw_line(recipe, patient_case, model, start);
+    return exercise;
+}
+
+double force_at_depth(HapticModel& model, const devices::TouchPoint& place, double depth) {
+    constexpr int ticks = 300, steady = 100;
+    const double radius = model.settings().tool_radius;
+    const double outside = radius + std::min(room, place.clearance), deepest = radius - depth;
+    realtime::DeviceState state{};
+    TickResult result{};
+    model.reset();
+    for (int i = 0; i < ticks; ++i) {
+        const double way = std::min(1.0, static_cast<double>(i) / (ticks - steady));
+        state.position = array_of(place.point + place.normal * (outside + (deepest - outside) * way));
+        state.time = i * 0.001;
+        model.tick(state, result);
+    }
+    model.reset();
+    return Eigen::Map<const Vector3d>(result.force.data()).norm();
+}
+
+}  // namespace palpate::training

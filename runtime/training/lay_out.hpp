@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/model/body.hpp"
+#include "runtime/devices/hand_path.hpp"
+#include "runtime/haptics/haptic_model.hpp"
+#include "runtime/session/touch_target.hpp"
+#include "runtime/training/exercise.hpp"
+#include "runtime/training/exercise_file.hpp"
+
+namespace palpate::training {
+
+/// An enclosed region of a deformable body and where it is to be felt.
+struct HiddenRegion {
+    std::string name;
+    std::size_t body = 0;   ///< as in HapticModel
+    Eigen::Vector3d above;  ///< the vertex of the free surface nearest to its middle, p_P, mm
+    double depth = 0;       ///< mm, from there to the nearest node of it
+};
+
+/// The regions of deformable bodies that are not a body's largest, by name.
+std::vector<HiddenRegion> hidden_regions(const Case& patient_case);
+
+/// Where a hand starts so that there is something to feel: within 15 to 35 mm of the first hidden region's
+/// place, on its side of the body, not above it; drawn by `seed`. Without a hidden region, or where the tool
+/// does not fit, as choose_touch_target(). Throws as that.
+session::TouchTarget choose_start(const Case& patient_case, const haptics::HapticModel& model,
+                                  const std::string& body_name, std::uint64_t seed);
+
+/// Lays an exercise out on a patient, around the place where the hand starts. What the recipe leaves open:
+/// marks are drawn within `spread` of the start on the side that is seen from above it, at places that the
+/// tool reaches; a line goes along the surface through the start; the least force is what the tool makes 0.3
+/// mm deep there, the most 4 mm deep (no more than four fifths of what the case allows); tolerances are the
+/// tool's radius + 3 mm, 10 mm where something is to be found. Nothing for a search in a case that hides
+/// nothing. Throws InvalidInput naming the recipe for a region that the case has not, or a surface on which
+/// the marks or the line find no room. Presses with the model, which it resets: not beside a running tick.
+std::optional<Exercise> lay_out(const ExerciseRecipe& recipe, const Case& patient_case,
+                                haptics::HapticModel& model, const session::TouchTarget& start);
+
+/// The force (N) with which a place answers a tool whose surface is held `depth` mm below it. Resets the
+/// model.
+double force_at_depth(haptics::HapticModel& model, const devices::TouchPoint& place, double depth);
+
+}  // namespace palpate::training

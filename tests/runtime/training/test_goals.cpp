@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "runtime/training/goals.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace training;
+using Eigen::Vector3d;
+
+Exercise exercise_of(Task task, std::vector<Vector3d> places) {
+    return {.name = "x",
+            .title = "",
+            .instruction = "",
+            .task = task,
+            .time_limit = 0,
+            .least_force = 0.1,
+            .most_force = 1,
+            .tolerance = 2,
+            .hold = 0.5,
+            .places = std::move(places),
+            .region = ""};
+}
+
+// For `seconds`, in ticks of a millisecond.
+void stay(const Exercise& exercise, Goals& goals, double seconds, double force, const Vector3d& place) {
+    for (double t = 0; t < seconds - 1e-9; t += 0.001)
+        follow(exercise,
+               {.duration = 0.001,
+                .force = force,
+                .tool = place,
+                .touched = force > 0 ? std::optional(place) : std::nullopt},
+               goals);
+}
+
+TEST(Goals, marks_are_reached_in_their_order_after_being_held) {
+    const Exercise exercise = exercise_of(Task::touch, {{0, 0, 0}, {20, 0, 0}});
+    Goals goals;
+    stay(exercise, goals, 0.4, 0.5, {1, 0, 0});
+    stay(exercise, goals, 0.4, 0, {1, 0, 5});
+    EXPECT_EQ(goals.reached, 0U);  // not long enough
+    stay(exercise, goals, 0.6, 0.05, {1, 0, 0});
+    EXPECT_EQ(goals.reached, 0U);  // not hard enough
+    stay(exercise, goals, 0.6, 0.5, {1, 0, 0});
+    EXPECT_EQ(goals.reached, 1U);
+    EXPECT_DOUBLE_EQ(goals.share, 0.5);
+    EXPECT_DOUBLE_EQ(goals.errors, 1);
+    stay(exercise, goals, 0.1, 0, {1, 0, 5});
+    stay(exercise, goals, 0.6, 0.5, {20, 1.9, 0});
+    EXPECT_TRUE(goals.reached_all);
+    EXPECT_EQ(goals.misses, 0U);
+}
+
+TEST(Goals, a_press_beside_the_mark_is_one_miss) {
+    const Exercise exercise = exercise_of(Task::touch, {{0, 0, 0}, {20, 0, 0}});
+    Goals goals;
+    for (int i = 0; i < 2; ++i) {
+        stay(exercise, goals, 0.7, 0.5, {10, 0, 0});
+        stay(exercise, goals, 0.1, 0, {10, 0, 5});
+    }
+    EXPECT_EQ(goals.misses, 2U);
+    EXPECT_EQ(goals.reached, 0U);
+    stay(exercise, goals, 0.7, 0.5, {20, 0, 0});  // not yet its turn
+    EXPECT_EQ(goals.reached, 0U);
+}
+
+TEST(Goals, a_mark_beside_the_hidden_place_counts_less_the_farther_it_is) {
+    const Exercise exercise = exercise_of(Task::find, {{0, 0, 0}});
+    for (const auto& [distance, share, misses] :
+         {std::tuple(1.5, 1.0, 0U), std::tuple(4.0, 0.5, 1U), std::tuple(6.5, 0.0, 1U)}) {
+        Goals goals;
+        mark(exercise, goals);
+        EXPECT_FALSE(goals.reached_all) << "nothing has been touched";
+        stay(exercise, goals, 0.1, 0.5, {distance, 0, 0});
+        stay(exercise, goals, 0.1, 0, {30, 0, 9});
+        mark(exercise, goals);
+        EXPECT_TRUE(goals.reached_all);
+        EXPECT_DOUBLE_EQ(goals.share, share);
+        EXPECT_EQ(goals.misses, misses);
+        EXPECT_DOUBLE_EQ(goals.errors, distance);
+    }
+}
+
+TEST(Goals, gates_are_passed_in_their_order_and_pain_is_counted_once_each_time) {
+    const Exercise exercise = exercise_of(Task::guide, {{0, 0, 0}, {10, 0, 0}, {20, 0, 0}});
+    Goals goals;
+    stay(exercise, goals, 0.01, 0, {10, 0, 0});
+    EXPECT_EQ(goals.reached, 0U);
+    stay(exercise, goals, 0.01, 0, {0, 1, 0});
+    stay(exercise, goals, 0.1, 1.5, {5, 0, 0});
+    stay(exercise, goals, 0.1, 0.2, {5, 0, 0});
+    stay(exercise, goals, 0.1, 1.5, {5, 0, 0});
+    EXPECT_EQ(goals.misses, 2U);
+    stay(exercise, goals, 0.01, 0, {10, 0, 0});
+    stay(exercise, goals, 0.01, 0, {20, 0, 1});
+    EXPECT_TRUE(goals.reached_all);
+    EXPECT_NEAR(goals.errors, 2, 1e-12);
+}
+
+TEST(Goals, a_line_is_followed_from_its_beginning_and_cannot_be_cut_short) {
+    const Exercise exercise = exercise_of(Task::trace, {{0, 0, 0}, {10, 0, 0}, {20, 0, 0}, {30, 0, 0}});
+    Goals goals;
+    stay(exercise, goals, 0.1, 0.5, {15, 0, 0});
+    EXPECT_EQ(goals.share, 0);
+    EXPECT_EQ(goals.misses, 0U);  // not begun
+    for (double x = 0; x < 15; x += 0.1) stay(exercise, goals, 0.01, 0.5, {x, 1, 0});
+    EXPECT_NEAR(goals.share, 0.5, 0.01);
+    for (double x = 15; x < 20; x += 0.1) stay(exercise, goals, 0.01, 0.5, {x, 3, 0});
+    EXPECT_EQ(goals.misses, 1U);
+    EXPECT_NEAR(goals.share, 0.5, 0.01);
+    for (double x = 15; x < 28.5; x += 0.1) stay(exercise, goals, 0.01, 0.5, {x, 0, 0});
+    EXPECT_TRUE(goals.reached_all);
+    EXPECT_EQ(goals.share, 1);
+}
+
+}  // namespace
+}  // namespace palpate
