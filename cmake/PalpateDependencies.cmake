@@ -71,7 +71,7 @@ if(PALPATE_TOOLS OR PALPATE_VISUAL)
     find_package(VTK 9.1 REQUIRED COMPONENTS
         CommonCore CommonDataModel CommonTransforms FiltersCore FiltersGeneral FiltersGeometry FiltersModeling
         FiltersSources FiltersVerdict ImagingCore IOGeometry IOHDF IOImage IOLegacy IOXML
-        InteractionStyle RenderingAnnotation RenderingCore RenderingFreeType RenderingOpenGL2 RenderingUI
+        InteractionStyle RenderingAnnotation RenderingContext2D RenderingContextOpenGL2 RenderingCore RenderingFreeType RenderingOpenGL2 RenderingUI
         ChartsCore ViewsContext2D)
     # Xlib, which VTK draws through: asks whether a display answers, where VTK would abort.
     find_package(X11 REQUIRED)

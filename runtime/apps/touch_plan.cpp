@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "formats/model/errors.hpp"
+#include "runtime/apps/point_option.hpp"
 #include "runtime/devices/mounted_device.hpp"
 #include "runtime/devices/simulation.hpp"
 #include "runtime/session/hand_script.hpp"
@@ -17,17 +18,6 @@ namespace {
 using namespace devices;
 using namespace haptics;
 using namespace session;
-
-std::optional<Eigen::Vector3d> point_of(const char* option, const std::string& text) {
-    if (text.empty()) return std::nullopt;
-    std::istringstream stream(text);
-    Eigen::Vector3d p;
-    char comma = ',', other_comma = ',';
-    stream >> p[0] >> comma >> p[1] >> other_comma >> p[2];
-    if (!stream || comma != ',' || other_comma != ',' || stream.peek() != EOF)
-        throw UsageError({option, text, "x,y,z", ""});
-    return p;
-}
 
 // At least one tick, so that there is something to report.
 void require_positive(double seconds) {

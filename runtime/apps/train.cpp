@@ -9,9 +9,11 @@
 #include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
 #include "formats/provenance/cautions.hpp"
+#include "runtime/apps/point_option.hpp"
 #include "runtime/apps/servo_pulse.hpp"
 #include "runtime/apps/start_recording.hpp"
 #include "runtime/apps/tell_statuses.hpp"
+#include "runtime/apps/train_lesson.hpp"
 #include "runtime/devices/mounted_device.hpp"
 #include "runtime/devices/simulation.hpp"
 #include "runtime/haptics/drawn_creep.hpp"
@@ -20,6 +22,7 @@
 #include "runtime/session/session.hpp"
 #include "runtime/session/statistics_json.hpp"
 #include "runtime/session/touch_target.hpp"
+#include "runtime/training/lay_out.hpp"
 #include "runtime/visual/train_window.hpp"
 #include "tools/cli/command.hpp"
 
@@ -36,7 +39,8 @@ using Json = nlohmann::ordered_json;
 
 struct Options {
     std::filesystem::path asset, screenshot, record;
-    std::string size = "1280x720", script, body, scheme{usual_contact_method}, device, stream;
+    LessonOptions lesson;
+    std::string size = "1280x720", script, body, target, scheme{usual_contact_method}, device, stream;
     double seconds = 0, record_seconds = 300;
 };
 
@@ -130,10 +134,26 @@ struct Shown {
     double seconds = 0;
 };
 
+// Where the tool starts: where it is told to, in an exercise where something is to be felt, otherwise as
+// 'touch'.
+TouchTarget start_of(const Options& options, const Session& run) {
+    constexpr std::uint64_t seed = 1;
+    if (!options.target.empty())
+        return choose_touch_target(run.patient_case(), run.model(), options.body,
+                                   point_of("--target", options.target));
+    if (!options.script.empty() && options.lesson.exercise.empty())
+        return choose_touch_target(run.patient_case(), run.model(), options.body, std::nullopt);
+    return training::choose_start(run.patient_case(), run.model(), options.body, seed);
+}
+
 // Shows the run in the window until the user or the time ends it.
-Shown show(const Options& options, Session& run, TrainWindow& window, VisualFrame& frame, Felt& felt) {
+Shown show(const Options& options, Session& run, TrainWindow& window, VisualFrame& frame, Felt& felt,
+           TrainLesson& lesson) {
     constexpr auto shortest_frame = std::chrono::nanoseconds(1'000'000'000 / 60);
-    const Session::Sink take = [&](const TickResult& tick) { felt.add(tick); };
+    const Session::Sink take = [&](const TickResult& tick) {
+        felt.add(tick);
+        lesson.lesson().take(tick);
+    };
     TickRate rate;
     ServoPulse pulse;
     Shown shown;
@@ -151,6 +171,8 @@ Shown show(const Options& options, Session& run, TrainWindow& window, VisualFram
         frame.faults = run.recent_faults(tick.time);
         frame.statuses = run.statuses().recent(tick.time);
         frame.tick_rate_hz = rate.update(tick.tick);
+        for (const std::string& key : window.take_keys()) lesson.lesson().press(key);
+        frame.lesson = lesson.view(frame.force.norm());
         window.show(frame);
         run.visual_beat();
         run.guide(window.hand());
@@ -164,6 +186,7 @@ Shown show(const Options& options, Session& run, TrainWindow& window, VisualFram
     shown.seconds = elapsed();
     run.stop();
     run.pump(take);
+    lesson.lesson().close();
     return shown;
 }
 
@@ -183,7 +206,8 @@ Json train(const Options& options, cli::Session& session) {
     Session run({.asset = options.asset, .method = options.scheme, .stream = options.stream},
                 [](const std::string& sentence) { spdlog::warn("{}", sentence); });
     const Case& patient_case = run.patient_case();
-    const TouchPoint place = choose_touch_target(patient_case, run.model(), options.body, std::nullopt).place;
+    const TouchTarget target = start_of(options, run);
+    const TouchPoint& place = target.place;
     const Eigen::Vector3d start = start_outside(place, run.model().settings().tool_radius);
     WindowSettings window_settings{.width = width,
                                    .height = height,
@@ -193,6 +217,13 @@ Json train(const Options& options, cli::Session& session) {
     cli::end_softly_on_interrupt();
     run.hold(device.open(
         request_of(options, device.kind, run.model(), place, start, window_settings.sight.axes())));
+
+    std::vector<training::Exercise> exercises = lay_out_exercises(options.lesson, run, target);
+    TrainLesson lesson(options.lesson, std::move(exercises), run,
+                       {.case_name = patient_case.name,
+                        .trainee = options.lesson.trainee,
+                        .cautions = window_settings.cautions},
+                       !options.script.empty());
 
     session.progress.step("opening the window", 0.5);
     TrainWindow window(patient_case, window_settings);
@@ -205,7 +236,7 @@ Json train(const Options& options, cli::Session& session) {
 
     if (!options.record.empty()) start_recording(run, options.record, options.record_seconds, session);
     Felt felt;
-    const auto [frame_ns, seconds] = show(options, run, window, frame, felt);
+    const auto [frame_ns, seconds] = show(options, run, window, frame, felt, lesson);
     if (cli::interrupt_asked()) {
         spdlog::warn("interrupted: the force has gone to zero, only a recording is kept");
         throw cli::Interrupted();
@@ -233,7 +264,8 @@ Json train(const Options& options, cli::Session& session) {
                 {"penetration", {{"device_mm", felt.depth_peak}}},
                 {"device_travel_mm", felt.travel},
                 {"statuses", run.statuses().by_name()},
-                {"faults", run.faults_json()}};
+                {"faults", run.faults_json()},
+                {"attempts", lesson.attempts()}};
     if (const auto rows = run.recorded_rows())
         result["recording"] = {{"rows", *rows}, {"lost_rows", statistics.lost_records}};
     return result;
@@ -276,6 +308,13 @@ int main(int argc, char** argv) {
     command.option("--stream", options.stream,
                    "PORT or ADDRESS:PORT at which 3D Slicer and others see the session over OpenIGTLink");
     command.option("--scheme", options.scheme, "how contact is found: " + contact_method_names());
+    command.input("--exercises", options.lesson.exercises,
+                  "exercises of your own (.toml); those that every patient offers if not given");
+    command.option("--exercise", options.lesson.exercise, "begin with this one instead of the start page");
+    command.option("--trainee", options.lesson.trainee, "a pseudonym, under which attempts are kept");
+    command.option("--attempts", options.lesson.attempts,
+                   "folder in which attempts are kept; ~/.local/share/palpate/attempts if not given");
+    command.option("--target", options.target, "x,y,z: start at the surface point nearest to it", "mm");
     command.option("--body", options.body, "which body to start at; the first deformable one if not given");
     command.output("--record", options.record,
                    "every tick, for 'palpate touch --replay' (.h5); kept however the trainer ends");

@@ -46,6 +46,8 @@ class Session {
 
     const Case& patient_case() const noexcept { return case_; }
     const haptics::HapticModel& model() const noexcept { return model_; }
+    /// To try forces out before the session starts; whoever does resets it.
+    haptics::HapticModel& model() noexcept { return model_; }
 
     /// Takes devices, one for each tool, couples the model to what they bear and begins to listen for viewers
     /// of the stream. Once, before what follows. Throws as ServoLoop and LiveStream.

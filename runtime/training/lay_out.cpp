@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <random>
 
 #include "formats/model/arrays.hpp"
@@ -20,9 +21,9 @@ using Eigen::Vector3d;
 using haptics::HapticModel;
 using session::TouchTarget;
 
-constexpr double least_depth = 0.3, most_depth = 4;  // mm
-constexpr double seen = 0.4;                         // least cosine between normals of places on one side
-constexpr double room = 3;                           // mm that the tool needs to come to a mark
+constexpr double least_depth = 1, most_depth = 4;  // mm
+constexpr double seen = 0.4;                       // least cosine between normals of places on one side
+constexpr double room = 3;                         // mm that the tool needs to come to a mark
 
 std::vector<std::int32_t> free_vertices(const Case& patient_case, std::size_t body) {
     const TriangleMesh& surface = session::surface_of(patient_case, body);
@@ -145,24 +146,42 @@ std::vector<Vector3d> walk(const Case& patient_case, const HapticModel& model, c
     return points;
 }
 
-std::vector<Vector3d> draw_line(const ExerciseRecipe& recipe, const Case& patient_case,
-                                const HapticModel& model, const TouchTarget& start) {
-    constexpr int directions = 8;
-    constexpr double shortest = 10;  // mm
+// The longest line through a place, of several directions.
+std::vector<Vector3d> line_through(const Case& patient_case, const HapticModel& model,
+                                   const TouchTarget& middle, double spread) {
+    constexpr int directions = 6;
     std::vector<Vector3d> longest;
     for (int i = 0; i < directions; ++i) {
-        const Eigen::AngleAxisd turn(M_PI * i / directions, start.place.normal);
-        const Vector3d way = turn * start.place.tangent;
-        std::vector<Vector3d> line = walk(patient_case, model, start, -way, recipe.spread);
+        const Eigen::AngleAxisd turn(std::numbers::pi * i / directions, middle.place.normal);
+        const Vector3d way = turn * middle.place.tangent;
+        std::vector<Vector3d> line = walk(patient_case, model, middle, -way, spread);
         std::ranges::reverse(line);
-        line.push_back(start.place.point);
-        const std::vector<Vector3d> other = walk(patient_case, model, start, way, recipe.spread);
+        line.push_back(middle.place.point);
+        const std::vector<Vector3d> other = walk(patient_case, model, middle, way, spread);
         line.insert(line.end(), other.begin(), other.end());
         if (line.size() > longest.size()) longest = line;
     }
+    return longest;
+}
+
+std::vector<Vector3d> draw_line(const ExerciseRecipe& recipe, const Case& patient_case,
+                                const HapticModel& model, const TouchTarget& start) {
+    constexpr std::size_t most_tries = 30;
+    constexpr double shortest = 10;  // mm
+    std::vector<Vector3d> middles = places_around(patient_case, start, recipe.spread, recipe.seed);
+    middles.insert(middles.begin(), start.place.point);
+    middles.resize(std::min(middles.size(), most_tries));
+    std::vector<Vector3d> longest;
+    for (const Vector3d& place : middles) {
+        const auto middle = reached(patient_case, model, start.body, place, start.place.normal);
+        if (!middle) continue;
+        std::vector<Vector3d> line = line_through(patient_case, model, *middle, recipe.spread);
+        if (line.size() > longest.size()) longest = std::move(line);
+        if (length_of(longest) >= recipe.spread) return longest;
+    }
     if (length_of(longest) < shortest)
         throw InvalidInput({recipe.written_at.empty() ? recipe.name : recipe.written_at,
-                            "a line finds no room at the start", "",
+                            "a line finds no room near the start", "",
                             "write 'places_mm', or start elsewhere"});
     return longest;
 }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <sstream>
 #include <vtkActor2D.h>
 #include <vtkCellArray.h>
 #include <vtkCoordinate.h>
@@ -17,6 +16,7 @@
 
 #include "formats/records/fault.hpp"
 #include "formats/records/tick_result.hpp"
+#include "runtime/visual/cautions_text.hpp"
 
 namespace palpate::visual {
 namespace {
@@ -70,12 +70,6 @@ void make_bar(vtkActor2D* actor, vtkPoints* points, double opacity, vtkRenderer*
     renderer->AddActor2D(actor);
 }
 
-// Characters, of UTF-8.
-std::size_t length_of(const std::string& text) {
-    return static_cast<std::size_t>(std::ranges::count_if(
-        text, [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U; }));
-}
-
 void set_length(vtkPoints* points, double length) {
     points->SetNumberOfPoints(4);
     points->SetPoint(0, 0, 0, 0);
@@ -99,22 +93,6 @@ std::string notice_of(const VisualFrame& frame) {
     return notice;
 }
 
-std::string cautions_text(std::span<const std::string> cautions, std::size_t width) {
-    std::string text;
-    for (const std::string& caution : cautions) {
-        std::istringstream words(caution);
-        std::size_t used = 0;
-        text += text.empty() ? "" : "\n";
-        for (std::string word; words >> word;) {
-            const bool fits = used == 0 || used + 1 + length_of(word) <= width;
-            text += used == 0 ? "\u2022 " : fits ? " " : "\n   ";
-            used = (fits && used > 0 ? used + 1 : 0) + length_of(word);
-            text += word;
-        }
-    }
-    return text;
-}
-
 Overlay::Overlay(const std::string& title, double max_force, std::span<const std::string> cautions,
                  vtkRenderer* renderer)
     : max_force_(max_force) {
@@ -135,7 +113,8 @@ Overlay::Overlay(const std::string& title, double max_force, std::span<const std
     title_->SetInput(title.c_str());
     const std::string text = cautions_text(cautions, cautions_width);
     cautions_->SetInput(text.empty() ? "nothing is noted about how this case was made" : text.c_str());
-    cautions_->SetVisibility(!text.empty());
+    cautions_shown_ = !text.empty();
+    show_texts();
     help_->SetInput(help_text);
     help_->GetTextProperty()->SetOpacity(0.75);
 }
@@ -145,7 +124,8 @@ void Overlay::update(const VisualFrame& frame, double frames_per_second) {
     const double newtons = frame.force.norm();
     if (newtons > 0 && !was_touched_) {
         was_touched_ = true;
-        cautions_->VisibilityOff();
+        cautions_shown_ = false;
+        show_texts();
     }
     const double share = std::min(1.0, newtons / max_force_);
     set_length(bar_points_, bar_width * share);
@@ -163,11 +143,23 @@ void Overlay::update(const VisualFrame& frame, double frames_per_second) {
 }
 
 void Overlay::show_help(bool on) {
-    help_->SetVisibility(on);
+    help_shown_ = on;
+    show_texts();
 }
 
 void Overlay::turn_cautions() {
-    cautions_->SetVisibility(!cautions_->GetVisibility());
+    cautions_shown_ = !cautions_shown_;
+    show_texts();
+}
+
+void Overlay::make_room(bool for_page) {
+    page_shown_ = for_page;
+    show_texts();
+}
+
+void Overlay::show_texts() {
+    help_->SetVisibility(help_shown_ && !page_shown_);
+    cautions_->SetVisibility(cautions_shown_ && !page_shown_);
 }
 
 }  // namespace palpate::visual

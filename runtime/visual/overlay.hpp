@@ -17,10 +17,6 @@ namespace palpate::visual {
 /// force, a line each; empty where there is nothing to say.
 std::string notice_of(const VisualFrame& frame);
 
-/// What a case's cautions say, for the window: one below the other, in lines of at most `width` characters;
-/// empty where there are none.
-std::string cautions_text(std::span<const std::string> cautions, std::size_t width);
-
 /// The figures and key hints that lie over the scene. Texts are set anew five times a second: often enough to
 /// read, seldom enough to cost nothing.
 class Overlay {
@@ -32,10 +28,15 @@ class Overlay {
     void show_help(bool on);
     /// Shows the case's cautions, or hides them. They are shown from the start until something is touched.
     void turn_cautions();
+    /// Hides hints and cautions while a page lies over the scene.
+    void make_room(bool for_page);
 
   private:
+    void show_texts();
+
     double max_force_;  // N
     bool was_touched_ = false;
+    bool help_shown_ = true, cautions_shown_ = false, page_shown_ = false;
     std::chrono::steady_clock::time_point last_{};
     vtkNew<vtkTextActor> force_, figures_, title_, help_, notice_, cautions_;
     vtkNew<vtkPoints> bar_points_;

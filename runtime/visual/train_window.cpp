@@ -10,6 +10,7 @@
 #include <map>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
 #include <vtkNew.h>
@@ -20,6 +21,8 @@
 #include <vtkWindowToImageFilter.h>
 
 #include "formats/model/errors.hpp"
+#include "runtime/visual/lesson_panel.hpp"
+#include "runtime/visual/lesson_scene.hpp"
 #include "runtime/visual/overlay.hpp"
 #include "runtime/visual/scene.hpp"
 
@@ -61,6 +64,8 @@ struct TrainWindow::Parts {
           hand(window_settings.start),
           scene(patient_case, window_settings.sight, window_settings.rigid_budget, renderer, front),
           overlay(patient_case.name, patient_case.haptics.max_force, window_settings.cautions, front),
+          lesson_scene(renderer),
+          panel(front),
           tool_radius(patient_case.haptics.tool_radius),
           cut(window_settings.sight.blocked) {
         renderer->GradientBackgroundOn();
@@ -137,7 +142,7 @@ struct TrainWindow::Parts {
     void handle(unsigned long event) {
         switch (event) {
             case vtkCommand::LeftButtonPressEvent:
-                dragging = true;
+                if (!choose_on_page()) dragging = true;
                 break;
             case vtkCommand::LeftButtonReleaseEvent:
                 dragging = false;
@@ -166,8 +171,18 @@ struct TrainWindow::Parts {
         }
     }
 
+    // Whether the pointer was on a choice of a page, which is taken then.
+    bool choose_on_page() {
+        const int* at = interactor->GetEventPosition();
+        std::string choice = panel.choice_at(at[0], at[1]);
+        if (choice.empty()) return false;
+        keys.push_back(std::move(choice));
+        return true;
+    }
+
     void pointer_moved() {
         const int* now = interactor->GetEventPosition();
+        panel.hover(now[0], now[1]);
         const int* before = interactor->GetLastEventPosition();
         const double dx = now[0] - before[0], dy = now[1] - before[1];
         if (dragging) {
@@ -196,6 +211,8 @@ struct TrainWindow::Parts {
         if (key == "i") overlay.turn_cautions();
         if (key == "r") reset();
         if (key == "q" || key == "Escape") closed = true;
+        std::ranges::transform(key, key.begin(), [](unsigned char letter) { return std::tolower(letter); });
+        keys.push_back(key);
     }
 
     DisplayConnection display;
@@ -207,7 +224,10 @@ struct TrainWindow::Parts {
     vtkNew<vtkCallbackCommand> events;
     Scene scene;
     Overlay overlay;
-    double tool_radius;  // mm
+    LessonScene lesson_scene;
+    LessonPanel panel;
+    std::vector<std::string> keys;  // for take_keys()
+    double tool_radius;             // mm
     bool cut;
     bool rigid_shown = true;
     bool help_shown = true;
@@ -232,6 +252,9 @@ void TrainWindow::show(const VisualFrame& frame) {
     p.scene.show_inside(p.cut);
     p.set_clipping_range(frame.tool_position);
     p.overlay.update(frame, frames_per_second());
+    p.overlay.make_room(frame.lesson.page.has_value());
+    p.lesson_scene.update(frame.lesson);
+    p.panel.update(frame.lesson, frame.force.norm(), p.window->GetSize()[0], p.window->GetSize()[1]);
     p.window->Render();
     ++p.frames;
     const auto now = std::chrono::steady_clock::now();
@@ -247,6 +270,10 @@ bool TrainWindow::closed() const {
 
 Vector3d TrainWindow::hand() const {
     return parts_->hand;
+}
+
+std::vector<std::string> TrainWindow::take_keys() {
+    return std::exchange(parts_->keys, {});
 }
 
 std::int64_t TrainWindow::frames() const {

@@ -33,8 +33,11 @@ class TrainWindow {
     /// Handles what mouse and keyboard did, then draws one frame.
     void show(const VisualFrame& frame);
 
-    bool closed() const;               ///< Q, Escape or the window's own button
-    Eigen::Vector3d hand() const;      ///< where the hand is meant to be, p_P, mm
+    bool closed() const;           ///< Q, Escape or the window's own button
+    Eigen::Vector3d hand() const;  ///< where the hand is meant to be, p_P, mm
+    /// The keys that were pressed since the last call and mean nothing to the window, and the choices of a
+    /// page that were clicked: X11 names in lower case.
+    std::vector<std::string> take_keys();
     std::int64_t frames() const;       ///< drawn so far
     double frames_per_second() const;  ///< of the last second or so
 

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "runtime/visual/lesson_view.hpp"
+
 namespace palpate::visual {
 
 /// What the window shows at one moment, taken from the haptic thread's latest tick.
@@ -18,6 +20,7 @@ struct VisualFrame {
     std::uint32_t statuses = 0;  ///< TickStatus flags: what was unusual just now
     /// Of every surface vertex of every deformable body, mm.
     std::vector<std::vector<Eigen::Vector3f>> displacements;
+    LessonView lesson;  ///< of an exercise
 };
 
 }  // namespace palpate::visual

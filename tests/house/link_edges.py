@@ -51,7 +51,7 @@ ROOMS = {
     "openigtlink": {"model", "realtime", "haptics", "devices", "igtl"},
     "visual": {"model", "realtime", "vtk"},
     "session": {"model", "asset", "recording", "drawing", "json", "realtime", "collision", "haptics", "devices", "openigtlink"},
-    "training": {"model", "session", "toml_file", "json"},
+    "training": {"model", "asset", "session", "toml_file", "json"},
 }
 ROOMS["experiments"] = {"asset", "drawing", "cli", "session", "fem", "meshing", "obb", "cgal_peer"}  # measures both sides
 COMMANDS = {"model", "archive", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "case_builder", "cohort", "draft", "inspection", "requests", "stage_images", "stage_shapes",

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "formats/records/tick_result.hpp"
+#include "runtime/visual/cautions_text.hpp"
 #include "runtime/visual/overlay.hpp"
 
 namespace palpate {

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "runtime/training/attempt.hpp"
+
+namespace palpate::training {
+
+/// Who did what, when and with what.
+struct AttemptHead {
+    std::string trainee;  ///< a pseudonym: see is_pseudonym()
+    std::string when;     ///< of the end, UTC, "2026-03-01T09:30:00Z"
+    std::string case_name;
+    std::string device;
+    std::string scheme;   ///< the contact method's name
+    std::string version;  ///< of Palpate
+};
+
+/// Whether a text can stand for a trainee in names of files and in statements: 1 to 40 letters, digits, '-'
+/// and
+/// '_'.
+bool is_pseudonym(const std::string& text);
+
+/// An attempt as files and --json have it, "palpate.attempt/1": who, what, how it ended, the exercise as it
+/// lay on the patient, every metric by its name and unit. Metrics that are not defined are null.
+nlohmann::ordered_json attempt_json(const AttemptHead& head, const Attempt& attempt);
+
+/// The hand's way and force as CSV, one row every hundredth of a second: time_s, x_mm, y_mm, z_mm (frame P),
+/// force_n, depth_mm.
+std::string attempt_csv(const Attempt& attempt);
+
+/// The attempt as an xAPI 1.0.3 statement: actor an account of the pseudonym at urn-like home page
+/// https://palpate.invalid/trainee, verb "completed", "terminated" or "suspended" of ADL's vocabulary, object
+/// the exercise on that case, result with scaled score, completion and ISO 8601 duration. An id made from the
+/// content: the same attempt gives the same statement. Source: xAPI-Spec 1.0.3, part two.
+nlohmann::ordered_json xapi_statement(const AttemptHead& head, const Attempt& attempt);
+
+/// What is known of an earlier attempt.
+struct PastAttempt {
+    std::string when;
+    double score = 0;  ///< 0 to 100
+    double time = 0;   ///< s
+};
+
+/// A trainee's earlier attempts at an exercise on a case that have a score and were not cut short, by time:
+/// the .json files of a folder. Files that cannot be read or are something else are named to `tell` and left
+/// out. None if there is no such folder.
+std::vector<PastAttempt> read_history(const std::filesystem::path& folder, const std::string& case_name,
+                                      const std::string& exercise,
+                                      const std::function<void(const std::string&)>& tell);
+
+}  // namespace palpate::training

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/visual/lesson_panel.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <vtkAxis.h>
+#include <vtkCellArray.h>
+#include <vtkContextScene.h>
+#include <vtkDoubleArray.h>
+#include <vtkPen.h>
+#include <vtkPlot.h>
+#include <vtkPlotPoints.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataMapper2D.h>
+#include <vtkProperty2D.h>
+#include <vtkTable.h>
+#include <vtkTextProperty.h>
+
+namespace palpate::visual {
+namespace {
+
+constexpr double designed_height = 720;  // pixels, of the window that sizes here are meant for
+constexpr double page_height = 520, page_margin = 28, row_height = 30;
+constexpr double text_width = 640, chart_width = 420;  // a page has charts beside its text, or none
+constexpr double edge = 20;                            // of the window, left free below and beside a page
+constexpr double band_width = 320, band_height = 12;
+
+double scale_of(int height) {
+    return height / designed_height;
+}
+
+int font(double size, int height) {
+    return std::max(9, static_cast<int>(size * scale_of(height)));
+}
+
+void make_rectangle(vtkActor2D* actor, vtkPoints* points, double red, double green, double blue,
+                    double opacity, vtkRenderer* renderer) {
+    points->SetNumberOfPoints(4);
+    vtkNew<vtkCellArray> cells;
+    cells->InsertNextCell({0, 1, 2, 3});
+    vtkNew<vtkPolyData> data;
+    data->SetPoints(points);
+    data->SetPolys(cells);
+    vtkNew<vtkPolyDataMapper2D> mapper;
+    mapper->SetInputData(data);
+    actor->SetMapper(mapper);
+    actor->GetProperty()->SetColor(red, green, blue);
+    actor->GetProperty()->SetOpacity(opacity);
+    actor->VisibilityOff();
+    renderer->AddActor2D(actor);
+}
+
+void set_rectangle(vtkPoints* points, double left, double bottom, double right, double top) {
+    points->SetPoint(0, left, bottom, 0);
+    points->SetPoint(1, right, bottom, 0);
+    points->SetPoint(2, right, top, 0);
+    points->SetPoint(3, left, top, 0);
+    points->Modified();
+}
+
+void make_text(vtkTextActor* actor, bool centred, vtkRenderer* renderer) {
+    vtkTextProperty* text = actor->GetTextProperty();
+    text->SetFontFamilyToArial();
+    text->SetColor(0.93, 0.95, 0.97);
+    text->SetLineSpacing(1.3);
+    text->SetVerticalJustificationToTop();
+    if (centred) text->SetJustificationToCentered();
+    actor->VisibilityOff();
+    renderer->AddActor2D(actor);
+}
+
+void set_text(vtkTextActor* actor, const std::string& text, double x, double y, int size) {
+    actor->SetInput(text.c_str());
+    actor->SetPosition(x, y);
+    actor->GetTextProperty()->SetFontSize(size);
+    actor->SetVisibility(!text.empty());
+}
+
+void paint(vtkTextProperty* text, int size) {
+    text->SetColor(0.85, 0.88, 0.92);
+    text->SetFontSize(size);
+    text->SetBold(0);
+}
+
+vtkSmartPointer<vtkContextActor> chart_of(const LessonCurve& curve, double left, double bottom, double width,
+                                          double height, int font_size, vtkRenderer* renderer) {
+    vtkNew<vtkDoubleArray> x, y;
+    x->SetName("x");
+    y->SetName("y");
+    for (const double value : curve.x) x->InsertNextValue(value);
+    for (const double value : curve.y) y->InsertNextValue(value);
+    vtkNew<vtkTable> table;
+    table->AddColumn(x);
+    table->AddColumn(y);
+    vtkNew<vtkChartXY> chart;
+    chart->SetAutoSize(false);
+    chart->SetSize(vtkRectf(static_cast<float>(left), static_cast<float>(bottom), static_cast<float>(width),
+                            static_cast<float>(height)));
+    chart->SetTitle(curve.title);
+    paint(chart->GetTitleProperties(), font_size);
+    for (const auto& [axis, title] :
+         {std::pair(vtkAxis::BOTTOM, curve.x_title), {vtkAxis::LEFT, curve.y_title}}) {
+        vtkAxis* a = chart->GetAxis(axis);
+        a->SetTitle(title);
+        paint(a->GetTitleProperties(), font_size);
+        paint(a->GetLabelProperties(), font_size);
+        a->SetNotation(vtkAxis::PRINTF_NOTATION);
+        a->SetLabelFormat("%g");
+        a->GetPen()->SetColor(140, 150, 160);
+        a->GetGridPen()->SetColor(50, 58, 66);
+    }
+    vtkPlot* plot = chart->AddPlot(curve.points ? vtkChart::POINTS : vtkChart::LINE);
+    plot->SetInputData(table, 0, 1);
+    plot->SetColor(150, 220, 255, 255);
+    plot->SetWidth(2);
+    if (curve.limit && !curve.x.empty()) {
+        vtkNew<vtkDoubleArray> ends, limit;
+        ends->SetName("x");
+        limit->SetName("limit");
+        for (const double end : {curve.x.front(), curve.x.back()}) {
+            ends->InsertNextValue(end);
+            limit->InsertNextValue(*curve.limit);
+        }
+        vtkNew<vtkTable> line;
+        line->AddColumn(ends);
+        line->AddColumn(limit);
+        vtkPlot* limit_plot = chart->AddPlot(vtkChart::LINE);
+        limit_plot->SetInputData(line, 0, 1);
+        limit_plot->SetColor(255, 165, 60, 255);
+    }
+    if (curve.most_y) {
+        chart->GetAxis(vtkAxis::LEFT)->SetBehavior(vtkAxis::FIXED);
+        chart->GetAxis(vtkAxis::LEFT)->SetRange(0, *curve.most_y);
+    }
+    if (curve.points) {
+        chart->GetAxis(vtkAxis::BOTTOM)->SetBehavior(vtkAxis::FIXED);
+        chart->GetAxis(vtkAxis::BOTTOM)->SetRange(0, static_cast<double>(curve.x.size()) + 1);
+    }
+    auto actor = vtkSmartPointer<vtkContextActor>::New();
+    actor->GetScene()->AddItem(chart);
+    renderer->AddActor2D(actor);
+    actor->GetScene()->SetRenderer(renderer);
+    return actor;
+}
+
+// Everything that a page shows, as one text.
+std::string digest_of(const LessonPage& page, int width, int height) {
+    std::string text = fmt::format("{}x{}\n{}\n{}\n", width, height, page.title, page.text);
+    for (const auto& [name, value] : page.rows) text += name + "\t" + value + "\n";
+    for (const LessonChoice& choice : page.choices) text += choice.key + "\t" + choice.text + "\n";
+    for (const LessonCurve& curve : page.curves) text += fmt::format("{} {}\n", curve.title, curve.x.size());
+    return text;
+}
+
+}  // namespace
+
+LessonPanel::LessonPanel(vtkRenderer* renderer) : renderer_(renderer) {
+    make_rectangle(sheet_, sheet_points_, 0.04, 0.055, 0.07, 0.88, renderer);
+    make_rectangle(below_, below_points_, 0.45, 0.48, 0.52, 0.8, renderer);
+    make_rectangle(within_, within_points_, 0.35, 0.70, 0.95, 0.9, renderer);
+    make_rectangle(above_, above_points_, 0.95, 0.55, 0.15, 0.9, renderer);
+    make_rectangle(pointer_, pointer_points_, 1, 1, 1, 1, renderer);
+    for (vtkTextActor* actor : {instruction_.Get(), status_.Get(), warning_.Get()})
+        make_text(actor, true, renderer);
+    for (vtkTextActor* actor : {instruction_.Get(), status_.Get(), warning_.Get()}) {
+        actor->GetTextProperty()->SetBackgroundColor(0.05, 0.07, 0.09);
+        actor->GetTextProperty()->SetBackgroundOpacity(0.6);
+    }
+    warning_->GetTextProperty()->SetColor(1, 0.72, 0.3);
+    for (vtkTextActor* actor : {title_.Get(), text_.Get(), names_.Get(), values_.Get()})
+        make_text(actor, false, renderer);
+    title_->GetTextProperty()->BoldOn();
+    names_->GetTextProperty()->SetColor(0.65, 0.70, 0.76);
+}
+
+void LessonPanel::update(const LessonView& view, double force, int width, int height) {
+    const double scale = scale_of(height), middle = width / 2.0;
+    set_text(instruction_, view.instruction, middle, height - 14 * scale, font(18, height));
+    set_text(status_, view.status, middle, height - 46 * scale, font(18, height));
+    set_text(warning_, view.warning, middle, height - 104 * scale, font(20, height));
+    show_band(view, force, width, height);
+    if (view.page)
+        show_page(*view.page, width, height);
+    else
+        hide_page();
+}
+
+void LessonPanel::show_band(const LessonView& view, double force, int width, int height) {
+    const bool on = view.most_force > 0;
+    for (vtkActor2D* actor : {below_.Get(), within_.Get(), above_.Get(), pointer_.Get()})
+        actor->SetVisibility(on);
+    if (!on) return;
+    const double scale = scale_of(height);
+    const double left = width / 2.0 - scale * band_width / 2, whole = scale * band_width;
+    const double top = height - 82 * scale, bottom = top - scale * band_height;
+    // The band's upper end lies at two thirds of its width, whatever the force.
+    const auto at = [&](double newtons) {
+        return left + whole * std::min(1.0, newtons / (1.5 * view.most_force));
+    };
+    set_rectangle(below_points_, left, bottom, at(view.least_force), top);
+    set_rectangle(within_points_, at(view.least_force), bottom, at(view.most_force), top);
+    set_rectangle(above_points_, at(view.most_force), bottom, left + whole, top);
+    set_rectangle(pointer_points_, at(force) - 2 * scale, bottom - 5 * scale, at(force) + 2 * scale,
+                  top + 5 * scale);
+}
+
+void LessonPanel::hide_page() {
+    if (shown_.empty()) return;
+    shown_.clear();
+    sheet_->VisibilityOff();
+    for (vtkTextActor* actor : {title_.Get(), text_.Get(), names_.Get(), values_.Get()})
+        actor->VisibilityOff();
+    for (const auto& choice : choices_) renderer_->RemoveActor2D(choice);
+    for (const auto& chart : charts_) renderer_->RemoveActor2D(chart);
+    choices_.clear();
+    charts_.clear();
+    keys_.clear();
+    boxes_.clear();
+}
+
+void LessonPanel::show_page(const LessonPage& page, int width, int height) {
+    const std::string digest = digest_of(page, width, height);
+    if (digest == shown_) return;
+    hide_page();
+    shown_ = digest;
+    const double scale = scale_of(height), margin = scale * page_margin;
+    const double left = scale * edge, bottom = scale * edge, top = bottom + scale * page_height;
+    const double chart_left = left + scale * (page.rows.empty() ? text_width : text_width - 220);
+    const double right = page.curves.empty() ? left + scale * text_width : chart_left + scale * chart_width;
+    set_rectangle(sheet_points_, left, bottom, right, top);
+    sheet_->VisibilityOn();
+    set_text(title_, page.title, left + margin, top - margin, font(26, height));
+    double y = top - margin - 44 * scale;
+    set_text(text_, page.text, left + margin, y, font(16, height));
+    if (!page.text.empty())
+        y -= scale * 22 * static_cast<double>(1 + std::ranges::count(page.text, '\n')) + 12 * scale;
+
+    std::string names, values;
+    for (const auto& [name, value] : page.rows) {
+        names += (names.empty() ? "" : "\n") + name;
+        values += (values.empty() ? "" : "\n") + value;
+    }
+    set_text(names_, names, left + margin, y, font(15, height));
+    set_text(values_, values, left + margin + 190 * scale, y, font(15, height));
+
+    const double chart_height = 220 * scale;
+    for (std::size_t i = 0; i < page.curves.size(); ++i)
+        charts_.push_back(
+            chart_of(page.curves[i], chart_left, top - margin - static_cast<double>(i + 1) * chart_height,
+                     right - margin - chart_left, chart_height - 8 * scale, font(12, height), renderer_));
+
+    double choice_top = bottom + margin + scale * row_height * static_cast<double>(page.choices.size());
+    for (const LessonChoice& choice : page.choices) {
+        vtkNew<vtkTextActor> line;
+        make_text(line, false, renderer_);
+        line->GetTextProperty()->SetColor(1, 0.84, 0.35);
+        set_text(line, choice.text, left + margin, choice_top, font(17, height));
+        choices_.emplace_back(line);
+        keys_.push_back(choice.key);
+        boxes_.push_back({left, choice_top - scale * row_height, right, choice_top});
+        choice_top -= scale * row_height;
+    }
+}
+
+std::string LessonPanel::choice_at(int x, int y) const {
+    for (std::size_t i = 0; i < boxes_.size(); ++i)
+        if (x >= boxes_[i].left && x <= boxes_[i].right && y >= boxes_[i].bottom && y < boxes_[i].top)
+            return keys_[i];
+    return "";
+}
+
+void LessonPanel::hover(int x, int y) {
+    const std::string key = choice_at(x, y);
+    for (std::size_t i = 0; i < choices_.size(); ++i)
+        choices_[i]->GetTextProperty()->SetColor(1, keys_[i] == key ? 1 : 0.84, keys_[i] == key ? 1 : 0.35);
+}
+
+}  // namespace palpate::visual
