@@ -14,7 +14,8 @@ using namespace training;
 using namespace visual;
 
 constexpr double mark_share = 0.35;  // of the tolerance: how large a mark is drawn
-constexpr double least_mark = 1.2;   // mm
+constexpr double least_mark = 0.8;   // mm
+constexpr double line_share = 0.08;  // of the tolerance: the radius of a line
 
 std::string clock_of(double seconds) {
     const auto whole = static_cast<int>(std::max(0.0, seconds));
@@ -101,6 +102,7 @@ void show_places(const Exercise& exercise, const Goals& goals, bool afterwards, 
                 places[std::min(i + 1, places.size() - 1)] - places[i > 0 ? i - 1 : 0];
             view.marks.push_back({places[i], gates ? exercise.tolerance : radius, state,
                                   gates ? axis.normalized() : Eigen::Vector3d::Zero()});
+            if (gates && state == State::due && !afterwards) view.look_at = places[i];
         }
     }
     if (exercise.task == Task::find && afterwards) {
@@ -110,11 +112,15 @@ void show_places(const Exercise& exercise, const Goals& goals, bool afterwards, 
     }
     if (exercise.task == Task::trace) {
         view.line = places;
+        view.line_radius = line_share * exercise.tolerance;
         double along = 0;
         for (std::size_t i = 0; i < places.size() && along <= goals.line_reached && goals.share > 0; ++i) {
             view.line_done.push_back(places[i]);
             if (i + 1 < places.size()) along += (places[i + 1] - places[i]).norm();
         }
+        const Eigen::Vector3d& head = view.line_done.empty() ? places.front() : view.line_done.back();
+        if (!afterwards)
+            view.marks.push_back({head, 3 * view.line_radius, State::due, Eigen::Vector3d::Zero()});
     }
 }
 

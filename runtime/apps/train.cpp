@@ -172,6 +172,7 @@ Shown show(const Options& options, Session& run, TrainWindow& window, VisualFram
         frame.statuses = run.statuses().recent(tick.time);
         frame.tick_rate_hz = rate.update(tick.tick);
         for (const std::string& key : window.take_keys()) lesson.lesson().press(key);
+        if (const auto hand = lesson.hand(window.hand())) window.place_hand(*hand);
         frame.lesson = lesson.view(frame.force.norm());
         window.show(frame);
         run.visual_beat();

@@ -89,6 +89,25 @@ TrainLesson::TrainLesson(const LessonOptions& options, std::vector<Exercise> exe
         lesson_.go_away();
 }
 
+std::optional<Eigen::Vector3d> TrainLesson::hand(const Eigen::Vector3d& now) {
+    const bool back =
+        lesson_.phase() == Phase::counting_down && lesson_.exercises()[lesson_.chosen()].task == Task::guide;
+    if (!back) {
+        way_back_.clear();
+        return std::nullopt;
+    }
+    if (way_back_.empty()) {
+        const auto& gates = lesson_.exercises()[lesson_.chosen()].places;
+        const auto nearest = std::ranges::min_element(
+            gates, {}, [&](const Eigen::Vector3d& gate) { return (gate - now).norm(); });
+        way_back_.assign(std::make_reverse_iterator(nearest + 1), gates.rend());
+        way_back_.insert(way_back_.begin(), now);
+    }
+    constexpr double arrives_before = 0.5;  // s, before the attempt begins
+    const double share = 1 - (lesson_.seconds_to_begin() - arrives_before) / (countdown - arrives_before);
+    return point_along(way_back_, std::clamp(share, 0.0, 1.0) * length_of(way_back_));
+}
+
 void TrainLesson::keep(const Attempt& attempt) {
     const AttemptHead head{.trainee = setting_.trainee,
                            .when = now_utc(),

@@ -44,11 +44,16 @@ class TrainLesson {
 
     training::Lesson& lesson() { return lesson_; }
     visual::LessonView view(double force) const { return lesson_view(lesson_, setting_, force, history_); }
+    /// Where a hand that mouse and keyboard guide is to be while a guided passage counts down: on the way
+    /// back through its gates to the first. `now`: where it is, p_P, mm.
+    std::optional<Eigen::Vector3d> hand(const Eigen::Vector3d& now);
     /// All attempts so far, as attempt_json() has them.
     const nlohmann::ordered_json& attempts() const { return attempts_; }
 
   private:
     void keep(const training::Attempt& attempt);
+
+    std::vector<Eigen::Vector3d> way_back_;  // empty but while that countdown goes on
 
     std::filesystem::path folder_;
     LessonSetting setting_;

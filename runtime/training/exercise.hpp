@@ -43,4 +43,7 @@ struct Exercise {
 /// Length of the line through the points, mm.
 double length_of(const std::vector<Eigen::Vector3d>& points);
 
+/// The point so far (mm) along that line; its end beyond it. At least one point.
+Eigen::Vector3d point_along(const std::vector<Eigen::Vector3d>& points, double distance);
+
 }  // namespace palpate::training

@@ -230,17 +230,18 @@ TouchTarget choose_start(const Case& patient_case, const HapticModel& model, con
 std::optional<Exercise> lay_out(const ExerciseRecipe& recipe, const Case& patient_case, HapticModel& model,
                                 const TouchTarget& start) {
     const double radius = model.settings().tool_radius;
-    Exercise exercise{.name = recipe.name,
-                      .title = recipe.title,
-                      .instruction = recipe.instruction,
-                      .task = recipe.task,
-                      .time_limit = recipe.time_limit.value_or(0),
-                      .least_force = 0,
-                      .most_force = 0,
-                      .tolerance = recipe.tolerance.value_or(recipe.task == Task::find ? 10 : radius + 3),
-                      .hold = recipe.hold.value_or(0.5),
-                      .places = recipe.places,
-                      .region = recipe.region};
+    Exercise exercise{
+        .name = recipe.name,
+        .title = recipe.title,
+        .instruction = recipe.instruction,
+        .task = recipe.task,
+        .time_limit = recipe.time_limit.value_or(0),
+        .least_force = 0,
+        .most_force = 0,
+        .tolerance = recipe.tolerance.value_or(recipe.task == Task::find ? 10 : std::max(2.0, 1.5 * radius)),
+        .hold = recipe.hold.value_or(0.5),
+        .places = recipe.places,
+        .region = recipe.region};
     const auto usual_force = [&](double depth) {
         return two_digits(
             std::min(force_at_depth(model, start.place, depth), 0.8 * model.settings().max_force));

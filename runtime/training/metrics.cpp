@@ -9,8 +9,6 @@
 #include <unsupported/Eigen/FFT>
 #include <vector>
 
-#include "runtime/training/exercise.hpp"
-
 namespace palpate::training {
 namespace {
 
@@ -32,12 +30,6 @@ Spectrum spectrum_of(const std::vector<double>& values) {
 }
 
 }  // namespace
-
-double length_of(const std::vector<Vector3d>& points) {
-    double length = 0;
-    for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
-    return length;
-}
 
 double path_length(std::span<const Sample> samples) {
     double length = 0;

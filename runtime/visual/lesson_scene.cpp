@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 // Told apart by lightness too, for eyes that do not tell colours apart.
 const Rgb due_colour(255, 214, 64), waiting_colour(120, 150, 200), done_colour(90, 95, 100),
     truth_colour(240, 90, 200), line_colour(255, 214, 64), path_colour(150, 220, 255);
-constexpr double line_radius = 0.6, path_radius = 0.25;  // mm
+constexpr double path_radius = 0.25;  // mm
 
 Rgb colour_of(LessonMark::State state) {
     switch (state) {
@@ -108,8 +108,8 @@ void LessonScene::update(const LessonView& view) {
         if (tube) renderer_->AddActor(tube);
         shown = points;
     };
-    follow(view.line, line_, line_actor_, line_radius, line_colour);
-    follow(view.line_done, line_done_, done_actor_, 1.2 * line_radius, done_colour);
+    follow(view.line, line_, line_actor_, view.line_radius, line_colour);
+    follow(view.line_done, line_done_, done_actor_, 1.2 * view.line_radius, done_colour);
     follow(view.path, path_, path_actor_, path_radius, path_colour);
 }
 

@@ -47,6 +47,8 @@ struct LessonView {
     double least_force = 0, most_force = 0;  ///< N: the band that the force is to keep to; 0, 0: none
     std::vector<LessonMark> marks;
     std::vector<Eigen::Vector3d> line, line_done;  ///< p_P, mm
+    double line_radius = 0.5;                      ///< mm
+    std::optional<Eigen::Vector3d> look_at;        ///< what is due, for the endoscope, p_P, mm
     std::vector<Eigen::Vector3d> path;             ///< the hand's way, shown afterwards, p_P, mm
     std::optional<LessonPage> page;
 };

@@ -118,6 +118,10 @@ void Scene::show_rigid(bool on) {
     for (const auto& body : rigid_) body->SetVisibility(on);
 }
 
+void Scene::show_tool(bool on) {
+    for (const auto& part : {tool_, shaft_, device_}) part->SetVisibility(on);
+}
+
 void Scene::show_inside(bool on) {
     for (const auto& body : rigid_) body->GetProperty()->SetBackfaceCulling(!on);
     for (const SoftSurface& body : soft_) body.actor()->GetProperty()->SetBackfaceCulling(!on);

@@ -23,6 +23,8 @@ class Scene {
 
     void update(const VisualFrame& frame);
     void show_rigid(bool on);
+    /// Draws the tool, or leaves it out where the eye is in it.
+    void show_tool(bool on);
     /// Tells whether a cut may show bodies from inside; where none does, their far sides are not drawn.
     void show_inside(bool on);
 

@@ -21,6 +21,7 @@
 #include <vtkWindowToImageFilter.h>
 
 #include "formats/model/errors.hpp"
+#include "runtime/visual/endoscope.hpp"
 #include "runtime/visual/lesson_panel.hpp"
 #include "runtime/visual/lesson_scene.hpp"
 #include "runtime/visual/overlay.hpp"
@@ -123,6 +124,15 @@ struct TrainWindow::Parts {
                window->GetSize()[1];
     }
 
+    void look(const VisualFrame& frame) {
+        scene.show_tool(!endoscope.on());
+        if (endoscope.on())
+            endoscope.follow(frame.tool_position, frame.lesson.look_at, tool_radius,
+                             renderer->GetActiveCamera());
+        else
+            set_clipping_range(frame.tool_position);
+    }
+
     // With the cut on, whatever stands between eye and target or tool falls before the near plane.
     // Rasterisers clip there for nothing, where clipping in a shader costs a third of the frames.
     void set_clipping_range(const Vector3d& tool) {
@@ -210,6 +220,7 @@ struct TrainWindow::Parts {
         if (key == "h") overlay.show_help(help_shown = !help_shown);
         if (key == "i") overlay.turn_cautions();
         if (key == "r") reset();
+        if (key == "v") endoscope.turn(renderer->GetActiveCamera());
         if (key == "q" || key == "Escape") closed = true;
         std::ranges::transform(key, key.begin(), [](unsigned char letter) { return std::tolower(letter); });
         keys.push_back(key);
@@ -224,6 +235,7 @@ struct TrainWindow::Parts {
     vtkNew<vtkCallbackCommand> events;
     Scene scene;
     Overlay overlay;
+    Endoscope endoscope;
     LessonScene lesson_scene;
     LessonPanel panel;
     std::vector<std::string> keys;  // for take_keys()
@@ -250,7 +262,7 @@ void TrainWindow::show(const VisualFrame& frame) {
     if (p.closed) return;
     p.scene.update(frame);
     p.scene.show_inside(p.cut);
-    p.set_clipping_range(frame.tool_position);
+    p.look(frame);
     p.overlay.update(frame, frames_per_second());
     p.overlay.make_room(frame.lesson.page.has_value());
     p.lesson_scene.update(frame.lesson);
@@ -270,6 +282,10 @@ bool TrainWindow::closed() const {
 
 Vector3d TrainWindow::hand() const {
     return parts_->hand;
+}
+
+void TrainWindow::place_hand(const Vector3d& place) {
+    parts_->hand = place;
 }
 
 std::vector<std::string> TrainWindow::take_keys() {

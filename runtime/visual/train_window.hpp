@@ -35,6 +35,8 @@ class TrainWindow {
 
     bool closed() const;           ///< Q, Escape or the window's own button
     Eigen::Vector3d hand() const;  ///< where the hand is meant to be, p_P, mm
+    /// Moves the hand there (p_P, mm), as far as mouse and keyboard hold one.
+    void place_hand(const Eigen::Vector3d& place);
     /// The keys that were pressed since the last call and mean nothing to the window, and the choices of a
     /// page that were clicked: X11 names in lower case.
     std::vector<std::string> take_keys();
