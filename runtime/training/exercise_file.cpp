@@ -120,18 +120,17 @@ std::vector<ExerciseRecipe> standard_exercises() {
     touch.name = "touch";
     touch.task = Task::touch;
     touch.title = "Touch the marks";
-    touch.instruction = "Press each lit mark until it turns grey. Press gently.";
+    touch.instruction = "Press each yellow mark until it turns grey, with the force in the blue band";
     touch.time_limit = 180;
     find.name = "find";
     find.task = Task::find;
     find.title = "Find what is hidden";
-    find.instruction = "Something in here is harder than the rest. Feel for it, stay on it and press M.";
+    find.instruction = "Something in here is harder than the rest. Feel for it, stay on it, press M";
     find.time_limit = 300;
     trace.name = "trace";
     trace.task = Task::trace;
     trace.title = "Follow the line";
-    trace.instruction =
-        "Follow the line from its bright end, pressing steadily: the force stays in its band.";
+    trace.instruction = "Follow the line from the ball on, with the force in the blue band";
     trace.time_limit = 180;
     free.name = "free";
     free.task = Task::free;

@@ -23,7 +23,9 @@ using session::TouchTarget;
 
 constexpr double least_depth = 1, most_depth = 4;  // mm
 constexpr double seen = 0.4;                       // least cosine between normals of places on one side
-constexpr double room = 3;                         // mm that the tool needs to come to a mark
+constexpr double smooth =
+    0.9;                    // least cosine between a triangle's normal and that of the surface around a place
+constexpr double room = 3;  // mm that the tool needs to come to a mark
 
 std::vector<std::int32_t> free_vertices(const Case& patient_case, std::size_t body) {
     const TriangleMesh& surface = session::surface_of(patient_case, body);
@@ -100,12 +102,14 @@ std::vector<Vector3d> places_around(const Case& patient_case, const TouchTarget&
     return places;
 }
 
-// The place itself, if the tool comes to it from the side on which `normal` stands.
+// The place itself, if the tool comes to it from the side on which `normal` stands and it is not on an edge.
 std::optional<TouchTarget> reached(const Case& patient_case, const HapticModel& model, std::size_t body,
                                    const Vector3d& place, const Vector3d& normal) {
     auto target = session::touch_target_near(patient_case, model, body, place);
     if (!target || target->place.clearance < room || target->place.normal.dot(normal) < seen)
         return std::nullopt;
+    const Vector3d around = model.surface(body).pseudonormal(target->place.point);
+    if (around.dot(target->place.normal) < smooth) return std::nullopt;
     return target;
 }
 

@@ -8,7 +8,7 @@ using Eigen::Vector3d;
 
 constexpr double view_angle = 90;   // degrees
 constexpr double farthest = 400;    // mm
-constexpr double agility = 0.08;    // part of the turn that a frame makes
+constexpr double agility = 0.15;    // part of the turn that a frame makes
 constexpr double least_step = 0.2;  // mm, of a motion that has a direction
 
 }  // namespace

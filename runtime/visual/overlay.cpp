@@ -152,14 +152,15 @@ void Overlay::turn_cautions() {
     show_texts();
 }
 
-void Overlay::make_room(bool for_page) {
+void Overlay::make_room(bool for_page, bool for_exercise) {
     page_shown_ = for_page;
+    exercise_shown_ = for_exercise;
     show_texts();
 }
 
 void Overlay::show_texts() {
     help_->SetVisibility(help_shown_ && !page_shown_);
-    cautions_->SetVisibility(cautions_shown_ && !page_shown_);
+    cautions_->SetVisibility(cautions_shown_ && !page_shown_ && !exercise_shown_);
 }
 
 }  // namespace palpate::visual

@@ -28,15 +28,16 @@ class Overlay {
     void show_help(bool on);
     /// Shows the case's cautions, or hides them. They are shown from the start until something is touched.
     void turn_cautions();
-    /// Hides hints and cautions while a page lies over the scene.
-    void make_room(bool for_page);
+    /// Hides hints and cautions while a page lies over the scene, cautions while an exercise goes on.
+    void make_room(bool for_page, bool for_exercise);
 
   private:
     void show_texts();
 
     double max_force_;  // N
     bool was_touched_ = false;
-    bool help_shown_ = true, cautions_shown_ = false, page_shown_ = false;
+    bool help_shown_ = true, cautions_shown_ = false;
+    bool page_shown_ = false, exercise_shown_ = false;
     std::chrono::steady_clock::time_point last_{};
     vtkNew<vtkTextActor> force_, figures_, title_, help_, notice_, cautions_;
     vtkNew<vtkPoints> bar_points_;

@@ -264,7 +264,7 @@ void TrainWindow::show(const VisualFrame& frame) {
     p.scene.show_inside(p.cut);
     p.look(frame);
     p.overlay.update(frame, frames_per_second());
-    p.overlay.make_room(frame.lesson.page.has_value());
+    p.overlay.make_room(frame.lesson.page.has_value(), !frame.lesson.instruction.empty());
     p.lesson_scene.update(frame.lesson);
     p.panel.update(frame.lesson, frame.force.norm(), p.window->GetSize()[0], p.window->GetSize()[1]);
     p.window->Render();

@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Exercises of palpate-train in a real window: a good, a clumsy and an idle hand, keys and mouse."""
+
+import json
+import math
+import os
+import pathlib
+import shutil
+import subprocess
+import time
+import unittest
+
+from sample_asset import SampleAsset
+from test_train import NEEDED, TRAIN, XServer
+
+RADIUS = 1.5  # mm, of the sample's tool; the cube's free top is at z = 20 mm
+
+
+def pressing(places, depth, hold=0.8):
+    """A hand that presses place by place, straight down: rows t, x, y, z."""
+    rows, t = [], 0.0
+    for x, y, _ in places:
+        for dt, z in ((0.3, 20 + RADIUS + 4), (0.3, 20 + RADIUS - depth), (hold, 20 + RADIUS - depth), (0.3, 20 + RADIUS + 4)):
+            rows.append((t := t + dt, x, y, z))
+    return [(0, *rows[0][1:])] + rows
+
+
+def following(line, depth, aside=0.0):
+    """A hand that follows the line of places under steady depth."""
+    x, y, _ = line[0]
+    rows = [(0, x, y, 25), (0.5, x, y, 20 + RADIUS - depth)]
+    rows += [(1 + 1.5 * i, x, y + aside, 20 + RADIUS - depth) for i, (x, y, _) in enumerate(line)]
+    return rows
+
+
+@unittest.skipUnless(TRAIN.exists(), "PALPATE_VISUAL is off")
+@unittest.skipUnless(all(map(shutil.which, NEEDED)), "PALPATE: xvfb, xdotool, x11-apps or imagemagick is missing")
+class Exercises(SampleAsset):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.server = XServer().__enter__()
+        cls.addClassCleanup(cls.server.__exit__)
+
+    def setUp(self):
+        self.attempts = self.folder / self.id()
+
+    def command(self, *options):
+        return [TRAIN, self.asset, "--attempts", self.attempts, "--trainee", "T-1", "--json", "-", *map(str, options)]
+
+    def hand(self, rows):
+        path = self.folder / "hand.txt"
+        path.write_text("\n".join(" ".join(f"{value:.4f}" for value in row) for row in rows))
+        return path, rows[-1][0] + 0.5
+
+    def train(self, *options):
+        run = subprocess.run(
+            self.command(*options), capture_output=True, text=True, timeout=90, env=self.server.environment
+        )
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return json.loads(run.stdout)
+
+    def with_hand(self, exercise, rows, *options):
+        path, seconds = self.hand(rows)
+        (attempt,) = self.train("--exercise", exercise, "--script", path, "--seconds", seconds, *options)["attempts"]
+        return attempt
+
+    def laid_out(self, exercise, *options):
+        return self.with_hand(exercise, [(0, 50, 50, 50), (0.1, 50, 50, 50)], *options)["exercise"]
+
+    def x(self, *command):
+        run = subprocess.run([*map(str, command)], env=self.server.environment, check=True, capture_output=True, timeout=60)
+        return run.stdout.decode()
+
+    def open_window(self, *options):
+        process = subprocess.Popen(
+            self.command(*options),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            env=self.server.environment,
+        )
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        window = self.x("xdotool", "search", "--sync", "--onlyvisible", "--name", "Palpate: sample").split()[0]
+        self.x("xdotool", "windowfocus", "--sync", window)
+        self.x("xdotool", "mousemove", "--window", window, 640, 360)
+        time.sleep(0.5)
+        return process, window
+
+    def finish(self, process):
+        out, err = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 0, err)
+        return json.loads(out)["attempts"]
+
+    def small_marks(self):
+        path = self.folder / "marks.toml"
+        path.write_text(
+            'schema = 1\n[[exercise]]\nname = "touch"\ntask = "touch"\ntolerance_mm = 2\nhold_s = 0.4\n'
+            "most_force_n = 0.15\nleast_force_n = 0.005\ntime_limit_s = 60\n"
+            "places_mm = [[6, 6, 20], [14, 7, 20], [10, 14, 20]]\n"
+        )
+        return "--exercises", path
+
+    def test_a_good_hand_touches_all_marks_gently(self):
+        exercise = self.small_marks()
+        places = self.laid_out("touch", *exercise)["places_mm"]
+        attempt = self.with_hand("touch", pressing(places, 1), *exercise)
+        self.assertEqual(attempt["ending"], "all reached")
+        self.assertGreater(attempt["metrics"]["score"], 95)
+        self.assertEqual(attempt["metrics"]["misses"], 0)
+        self.assertLess(attempt["metrics"]["position_error_mm"], 1.5)
+
+    def test_a_clumsy_hand_hurts_and_misses(self):
+        exercise = self.small_marks()
+        places = self.laid_out("touch", *exercise)["places_mm"]
+        beside = [places[0], [13, 13, 20], places[1], [6, 13, 20], places[2]]
+        attempt = self.with_hand("touch", pressing(beside, 7), *exercise)
+        self.assertEqual(attempt["ending"], "all reached")
+        self.assertLess(attempt["metrics"]["score"], 60)
+        self.assertGreaterEqual(attempt["metrics"]["misses"], 2)
+        self.assertGreater(attempt["metrics"]["time_above_limit_s"], 1)
+
+    def test_an_idle_hand_gets_nothing(self):
+        for name in ("touch", "find", "trace"):
+            attempt = self.with_hand(name, [(0, 50, 50, 50), (1, 50, 50, 50)])
+            self.assertEqual(attempt["ending"], "cut short")
+            self.assertEqual(attempt["metrics"]["score"], 0, name)
+
+    def test_a_line_is_followed_by_a_steady_hand_and_not_by_one_beside_it(self):
+        path = self.folder / "line.toml"
+        path.write_text(
+            'schema = 1\n[[exercise]]\nname = "trace"\ntask = "trace"\ntolerance_mm = 2\n'
+            "places_mm = [[4, 6, 20], [10, 8, 20], [16, 6, 20]]\n"
+        )
+        exercise = "--exercises", path
+        line = self.laid_out("trace", *exercise)["places_mm"]
+        good = self.with_hand("trace", following(line, 1.5), *exercise)
+        self.assertEqual(good["ending"], "all reached")
+        self.assertGreater(good["metrics"]["score"], 90)
+        self.assertLess(good["metrics"]["position_error_mm"], 1)
+        astray = self.with_hand("trace", following(line, 1.5, aside=4), *exercise)
+        self.assertLess(astray["metrics"]["score"], 40)
+
+    def test_what_is_hidden_is_found_with_the_m_key(self):
+        (place,) = self.laid_out("find")["places_mm"]
+        path, _ = self.hand([(0, 10, 10, 26), (1, 10, 10, 20.5), (30, 10, 10, 20.5)])
+        for key in ("m", "e"):
+            process, _ = self.open_window("--exercise", "find", "--script", path)
+            time.sleep(1.5)
+            self.x("xdotool", "key", key)
+            time.sleep(0.5)
+            self.x("xdotool", "key", "q")
+            (attempt,) = self.finish(process)
+            if key == "e":
+                self.assertEqual((attempt["ending"], attempt["metrics"]["score"]), ("ended", 0))
+                continue
+            error = math.dist(place, (10, 10, 20))
+            self.assertEqual(attempt["ending"], "all reached")
+            self.assertAlmostEqual(attempt["metrics"]["position_error_mm"], error, delta=1)
+            expected = 100 * min(1, max(0, 1 - (error - 10) / 20))
+            self.assertAlmostEqual(attempt["metrics"]["score"], expected, delta=8)
+
+    def test_mouse_and_keys_lead_through_the_pages(self):
+        process, window = self.open_window()
+        # The choices stand from the lower left upwards, the last below: 'Look around first', then the exercises.
+        self.x("xdotool", "mousemove", "--window", window, 120, 720 - 20 - 28 - 30 - 15)  # free exploration
+        self.x("xdotool", "click", 1)
+        time.sleep(0.3)
+        self.x("xdotool", "key", "Return")  # begins at once
+        for _ in range(30):
+            self.x("xdotool", "key", "w")
+        for key in ("space", "space", "e", "Return", "Return", "n", "BackSpace", "q"):
+            self.x("xdotool", "key", key)
+            time.sleep(0.2)
+        attempts = self.finish(process)
+        self.assertEqual([attempt["exercise"]["name"] for attempt in attempts], ["free", "free"])
+        self.assertEqual([attempt["ending"] for attempt in attempts], ["ended", "ended"])
+        self.assertGreater(attempts[0]["metrics"]["peak_force_n"], 0.01)
+        self.assertIsNone(attempts[0]["metrics"]["score"])
+
+    def test_attempts_are_kept_and_a_closed_window_leaves_an_unfinished_one(self):
+        process, _ = self.open_window("--exercise", "touch")
+        time.sleep(4)
+        self.x("xdotool", "key", "q")
+        (attempt,) = self.finish(process)
+        self.assertEqual(attempt["ending"], "cut short")
+        kept = json.loads((self.attempts / "T-1" / attempt["file"]).read_text())
+        self.assertEqual(kept["metrics"], attempt["metrics"])
+        rows = (self.attempts / "T-1" / attempt["file"]).with_suffix(".csv").read_text().splitlines()
+        self.assertAlmostEqual(len(rows) / 100, attempt["metrics"]["time_s"], delta=0.2)
+        statement = json.loads((self.attempts / "T-1" / "statements.jsonl").read_text())
+        self.assertEqual(statement["actor"]["account"]["name"], "T-1")
+        self.assertEqual(statement["verb"]["id"], "http://adlnet.gov/expapi/verbs/suspended")
+
+    def test_attempts_that_cannot_be_kept_are_told_and_the_trainer_goes_on(self):
+        self.attempts.write_text("a file, not a folder")
+        path, seconds = self.hand([(0, 50, 50, 50), (0.3, 50, 50, 50)])
+        run = subprocess.run(
+            self.command("--exercise", "free", "--script", path, "--seconds", seconds),
+            capture_output=True,
+            text=True,
+            timeout=60,
+            env=self.server.environment,
+        )
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("not kept", run.stderr)
+
+    def test_misuse_is_refused_before_the_window_opens(self):
+        bad = self.folder / "bad.toml"
+        bad.write_text('schema = 1\n[[exercise]]\nname = "a"\ntask = "jump"\n')
+        for options, code, phrase in (
+            (("--trainee", "Jane Doe"), 2, "pseudonym"),
+            (("--exercise", "fnd"), 2, "touch, find, trace, free"),
+            (("--exercises", bad), 3, "bad.toml:4"),
+        ):
+            run = subprocess.run(
+                [TRAIN, self.asset, *map(str, options)], capture_output=True, text=True, env=self.server.environment
+            )
+            self.assertEqual(run.returncode, code, run.stderr)
+            self.assertIn(phrase, run.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
