@@ -215,6 +215,8 @@ Json train(const Options& options, cli::Session& session) {
                                    .start = start,
                                    .cautions = provenance::cautions_in(patient_case.provenance)};
     window_settings.sight = choose_sight(patient_case, place.point, place.normal);
+    for (std::size_t body = 0; body < run.model().body_count(); ++body)
+        window_settings.surfaces.push_back(&run.model().surface(body));
     cli::end_softly_on_interrupt();
     run.hold(device.open(
         request_of(options, device.kind, run.model(), place, start, window_settings.sight.axes())));
@@ -284,9 +286,11 @@ int main(int argc, char** argv) {
          .examples = {"palpate train case.vtkhdf",
                       "palpate train case.vtkhdf --script press --seconds 10 --screenshot press.png"},
          .notes =
-             "Mouse and keyboard move the hand: drag with the left button in the plane of view, turn the "
-             "wheel or press W and S for depth, step with the arrow keys. Drag with the right button to turn "
-             "the view; + and - zoom, C cuts the bodies open, B hides the rigid ones, I shows and hides "
+             "The mouse holds the tool: it hovers over the surface under the pointer, presses while the left "
+             "button is held and slides where it is dragged; the wheel or W and S then change how deep it "
+             "presses. Without a button W, S and the arrow keys step. Drag with the right button to turn the "
+             "view, with the middle one or Shift and left to shift it, with Ctrl and left to roll it; the "
+             "wheel, + and - zoom, C cuts the bodies open, B hides the rigid ones, I shows and hides "
              "how the case was made, R goes back to the start, H hides the hints, Q or Escape closes. The "
              "window needs an X display; on a machine "
              "without one use 'xvfb-run'.\n"

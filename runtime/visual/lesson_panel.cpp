@@ -269,6 +269,12 @@ std::string LessonPanel::choice_at(int x, int y) const {
     return "";
 }
 
+bool LessonPanel::covers(int x, int y) const {
+    double box[6];
+    sheet_points_->GetBounds(box);
+    return sheet_->GetVisibility() && x >= box[0] && x <= box[1] && y >= box[2] && y <= box[3];
+}
+
 void LessonPanel::hover(int x, int y) {
     const std::string key = choice_at(x, y);
     for (std::size_t i = 0; i < choices_.size(); ++i)

@@ -27,6 +27,8 @@ class LessonPanel {
 
     /// The key of the choice under a place of the window (pixels from its lower left); empty: none.
     std::string choice_at(int x, int y) const;
+    /// Whether a page lies over a place of the window.
+    bool covers(int x, int y) const;
     /// Lights up the choice under a place of the window.
     void hover(int x, int y);
 

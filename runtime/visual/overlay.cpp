@@ -23,8 +23,8 @@ namespace {
 
 constexpr double bar_width = 240, bar_height = 10;
 constexpr auto help_text =
-    "left drag  move the tool      wheel, W S  deeper, back      arrows  step\n"
-    "right drag  turn the view      + -  zoom      R  reset      Q  quit\n"
+    "left button  press      held, wheel or W S  deeper, back      W S, arrows  move the tool\n"
+    "right drag  turn      middle drag  move the view      wheel, + -  zoom      R  reset      Q  quit\n"
     "C  cut away      B  bone      I  about this case      H  help";
 constexpr std::size_t cautions_width = 64;  // characters
 constexpr double cautions_room = 460;       // pixels that so many take, mostly

@@ -8,7 +8,8 @@
 #include <chrono>
 #include <cmath>
 #include <map>
-#include <numbers>
+#include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vtkCallbackCommand.h>
@@ -25,7 +26,10 @@
 #include "runtime/visual/lesson_panel.hpp"
 #include "runtime/visual/lesson_scene.hpp"
 #include "runtime/visual/overlay.hpp"
+#include "runtime/visual/pointer_hand.hpp"
 #include "runtime/visual/scene.hpp"
+#include "runtime/visual/surface_under.hpp"
+#include "runtime/visual/view_control.hpp"
 
 namespace palpate::visual {
 namespace {
@@ -34,9 +38,9 @@ using Eigen::Vector3d;
 
 constexpr double view_angle_deg = 30;
 constexpr double step = 0.5;          // mm a key press
-constexpr double wheel_step = 1;      // mm a notch
+constexpr double wheel_depth = 0.5;   // mm a notch
 constexpr double zoom_step = 1.15;    // a key press
-constexpr double turn_deg = 0.35;     // a pixel
+constexpr double zoom_pixels = 20;    // of a drag that zooms by one step
 constexpr double clear_share = 0.04;  // of the field: what a cut leaves before the target
 constexpr double clear_radii = 3;     // tool radii that a cut leaves before the tool
 
@@ -57,12 +61,16 @@ struct DisplayConnection {
     Display* display;
 };
 
+// What moving the pointer does while a button is held.
+enum class Drag { none, turn, shift, roll, zoom };
+
 }  // namespace
 
 struct TrainWindow::Parts {
     Parts(const Case& patient_case, const WindowSettings& window_settings)
         : settings(window_settings),
-          hand(window_settings.start),
+          hand(window_settings.start, patient_case.haptics.tool_radius),
+          rigid_count(patient_case.rigid_bodies.size()),
           scene(patient_case, window_settings.sight, window_settings.rigid_budget, renderer, front),
           overlay(patient_case.name, patient_case.haptics.max_force, window_settings.cautions, front),
           lesson_scene(renderer),
@@ -88,6 +96,7 @@ struct TrainWindow::Parts {
         for (const unsigned long event :
              {vtkCommand::LeftButtonPressEvent, vtkCommand::LeftButtonReleaseEvent,
               vtkCommand::RightButtonPressEvent, vtkCommand::RightButtonReleaseEvent,
+              vtkCommand::MiddleButtonPressEvent, vtkCommand::MiddleButtonReleaseEvent,
               vtkCommand::MouseMoveEvent, vtkCommand::MouseWheelForwardEvent,
               vtkCommand::MouseWheelBackwardEvent, vtkCommand::KeyPressEvent, vtkCommand::ExitEvent})
             interactor->AddObserver(event, events);
@@ -96,7 +105,7 @@ struct TrainWindow::Parts {
     }
 
     void reset() {
-        hand = settings.start;
+        hand.put(settings.start);
         const Vector3d eye = settings.sight.eye(view_angle_deg);
         vtkCamera* camera = renderer->GetActiveCamera();
         camera->SetViewAngle(view_angle_deg);
@@ -105,23 +114,6 @@ struct TrainWindow::Parts {
         const Vector3d up = settings.sight.axes().col(1);
         camera->SetViewUp(up.data());
         camera->OrthogonalizeViewUp();
-    }
-
-    // Unit directions of the view: to the right, up, towards the eye.
-    std::array<Vector3d, 3> view_axes() {
-        vtkCamera* camera = renderer->GetActiveCamera();
-        camera->OrthogonalizeViewUp();
-        const Vector3d eye = -Vector3d(camera->GetDirectionOfProjection());
-        const Vector3d up = Vector3d(camera->GetViewUp());
-        return {up.cross(eye), up, eye};
-    }
-
-    // Millimetres in the view plane through the hand that one pixel spans.
-    double pixel_size() {
-        vtkCamera* camera = renderer->GetActiveCamera();
-        const double distance = std::abs((Vector3d(camera->GetPosition()) - hand).dot(view_axes()[2]));
-        return 2 * distance * std::tan(camera->GetViewAngle() * std::numbers::pi / 360) /
-               window->GetSize()[1];
     }
 
     void look(const VisualFrame& frame) {
@@ -141,7 +133,7 @@ struct TrainWindow::Parts {
         front->ResetCameraClippingRange();
         if (!cut) return;
         vtkCamera* camera = renderer->GetActiveCamera();
-        const Vector3d eye = view_axes()[2];
+        const Vector3d eye = view_axes(camera)[2];
         const auto distance = [&](const Vector3d& p) { return eye.dot(Vector3d(camera->GetPosition()) - p); };
         const double near = std::min(distance(settings.sight.target) - clear_share * settings.sight.field,
                                      distance(tool) - clear_radii * tool_radius);
@@ -152,25 +144,27 @@ struct TrainWindow::Parts {
     void handle(unsigned long event) {
         switch (event) {
             case vtkCommand::LeftButtonPressEvent:
-                if (!choose_on_page()) dragging = true;
+                if (!choose_on_page()) left_pressed();
                 break;
-            case vtkCommand::LeftButtonReleaseEvent:
-                dragging = false;
+            case vtkCommand::MiddleButtonPressEvent:
+                begin(Drag::shift);
                 break;
             case vtkCommand::RightButtonPressEvent:
-                turning = true;
+                begin(interactor->GetControlKey() ? Drag::zoom : Drag::turn);
                 break;
+            case vtkCommand::LeftButtonReleaseEvent:
+            case vtkCommand::MiddleButtonReleaseEvent:
             case vtkCommand::RightButtonReleaseEvent:
-                turning = false;
+                begin(Drag::none);
                 break;
             case vtkCommand::MouseMoveEvent:
                 pointer_moved();
                 break;
             case vtkCommand::MouseWheelForwardEvent:
-                hand -= view_axes()[2] * wheel_step;
+                wheel_turned(1);
                 break;
             case vtkCommand::MouseWheelBackwardEvent:
-                hand += view_axes()[2] * wheel_step;
+                wheel_turned(-1);
                 break;
             case vtkCommand::KeyPressEvent:
                 key_pressed(interactor->GetKeySym());
@@ -190,31 +184,89 @@ struct TrainWindow::Parts {
         return true;
     }
 
+    void left_pressed() {
+        if (interactor->GetShiftKey())
+            begin(Drag::shift);
+        else if (interactor->GetControlKey())
+            begin(Drag::roll);
+        else if (!endoscope.on())
+            press(true);
+    }
+
+    void press(bool on) {
+        const int* now = interactor->GetEventPosition();
+        if (on) hand.point({now[0], now[1]});
+        hand.press(on);
+    }
+
+    void begin(Drag what) {
+        drag = what;
+        hand.press(false);
+    }
+
     void pointer_moved() {
         const int* now = interactor->GetEventPosition();
         panel.hover(now[0], now[1]);
         const int* before = interactor->GetLastEventPosition();
         const double dx = now[0] - before[0], dy = now[1] - before[1];
-        if (dragging) {
-            const auto [right, up, eye] = view_axes();
-            hand += (right * dx + up * dy) * pixel_size();
-        } else if (turning) {
-            vtkCamera* camera = renderer->GetActiveCamera();
-            camera->Azimuth(-turn_deg * dx);
-            camera->Elevation(-turn_deg * dy);
-            camera->OrthogonalizeViewUp();
+        if (drag == Drag::none) {
+            if (!endoscope.on() && !panel.covers(now[0], now[1])) hand.point({now[0], now[1]});
+            return;
         }
+        vtkCamera* camera = renderer->GetActiveCamera();
+        if (drag == Drag::turn) turn_view(camera, dx, dy);
+        if (drag == Drag::shift) pan_view(camera, dx, dy, window->GetSize()[1]);
+        if (drag == Drag::roll) roll_view(camera, dx);
+        if (drag == Drag::zoom) camera->Dolly(std::pow(zoom_step, dy / zoom_pixels));
+        hand.view_changed();
+    }
+
+    void zoom(double steps) {
+        renderer->GetActiveCamera()->Dolly(std::pow(zoom_step, steps));
+        hand.view_changed();
+    }
+
+    void wheel_turned(double notches) {
+        if (hand.pressing())
+            hand.deepen(wheel_depth * notches);
+        else
+            zoom(notches);
+    }
+
+    // Takes the tool towards what is under the pointer.
+    void lead_hand() {
+        const auto now = std::chrono::steady_clock::now();
+        const double seconds = std::chrono::duration<double>(now - std::exchange(hand_led, now)).count();
+        const std::span<const collision::CollisionSurface* const> all = settings.surfaces;
+        const auto surfaces = rigid_shown ? all : all.subspan(rigid_count);
+        const PointerScene pointed{
+            .under = [&](const Eigen::Vector2d& pixel) -> std::optional<SeenPoint> {
+                const auto [near, far] = segment_under(renderer, pixel.x(), pixel.y());
+                return surface_under(surfaces, near, far, tool_radius);
+            },
+            .blocked = [&](const Vector3d& from,
+                           const Vector3d& to) { return is_blocked(surfaces, from, to, tool_radius); }};
+        hand.advance(seconds, pointed);
+    }
+
+    void move_by_key(const std::string& key) {
+        if (hand.pressing()) {
+            if (key == "w") hand.deepen(step);
+            if (key == "s") hand.deepen(-step);
+            return;
+        }
+        const auto [right, up, eye] = view_axes(renderer->GetActiveCamera());
+        const std::map<std::string, Vector3d> moves{{"Left", -right}, {"Right", right}, {"Up", up},
+                                                    {"Down", -up},    {"w", -eye},      {"s", eye}};
+        if (const auto move = moves.find(key); move != moves.end()) hand.move(step * move->second);
     }
 
     void key_pressed(const char* symbol) {
         std::string key = symbol ? symbol : "";
         if (key.size() == 1) key[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(key[0])));
-        const auto [right, up, eye] = view_axes();
-        const std::map<std::string, Vector3d> moves{{"Left", -right}, {"Right", right}, {"Up", up},
-                                                    {"Down", -up},    {"w", -eye},      {"s", eye}};
-        if (const auto move = moves.find(key); move != moves.end()) hand += step * move->second;
-        if (key == "plus" || key == "equal" || key == "KP_Add") renderer->GetActiveCamera()->Dolly(zoom_step);
-        if (key == "minus" || key == "KP_Subtract") renderer->GetActiveCamera()->Dolly(1 / zoom_step);
+        move_by_key(key);
+        if (key == "plus" || key == "equal" || key == "KP_Add") zoom(1);
+        if (key == "minus" || key == "KP_Subtract") zoom(-1);
         if (key == "c") cut = !cut;
         if (key == "b") scene.show_rigid(rigid_shown = !rigid_shown);
         if (key == "h") overlay.show_help(help_shown = !help_shown);
@@ -228,7 +280,8 @@ struct TrainWindow::Parts {
 
     DisplayConnection display;
     WindowSettings settings;
-    Vector3d hand;
+    PointerHand hand;
+    std::size_t rigid_count;
     vtkNew<vtkRenderer> renderer, front;
     vtkNew<vtkRenderWindow> window;
     vtkNew<vtkRenderWindowInteractor> interactor;
@@ -243,12 +296,11 @@ struct TrainWindow::Parts {
     bool cut;
     bool rigid_shown = true;
     bool help_shown = true;
-    bool dragging = false;
-    bool turning = false;
+    Drag drag = Drag::none;
     bool closed = false;
     std::int64_t frames = 0;
     double frame_seconds = 0;  // of a frame, averaged over some thirty
-    std::chrono::steady_clock::time_point last_frame{};
+    std::chrono::steady_clock::time_point last_frame{}, hand_led = std::chrono::steady_clock::now();
 };
 
 TrainWindow::TrainWindow(const Case& patient_case, const WindowSettings& settings)
@@ -260,6 +312,7 @@ void TrainWindow::show(const VisualFrame& frame) {
     Parts& p = *parts_;
     p.interactor->ProcessEvents();
     if (p.closed) return;
+    p.lead_hand();
     p.scene.update(frame);
     p.scene.show_inside(p.cut);
     p.look(frame);
@@ -281,11 +334,11 @@ bool TrainWindow::closed() const {
 }
 
 Vector3d TrainWindow::hand() const {
-    return parts_->hand;
+    return parts_->hand.place();
 }
 
 void TrainWindow::place_hand(const Vector3d& place) {
-    parts_->hand = place;
+    parts_->hand.put(place);
 }
 
 std::vector<std::string> TrainWindow::take_keys() {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "formats/model/body.hpp"
+#include "runtime/collision/collision_surface.hpp"
 #include "runtime/visual/sight.hpp"
 #include "runtime/visual/visual_frame.hpp"
 
@@ -18,6 +19,8 @@ struct WindowSettings {
     Eigen::Vector3d start = Eigen::Vector3d::Zero();  ///< where the hand is first, p_P, mm
     Sight sight{};                                    ///< where the eye is first
     std::vector<std::string> cautions{};              ///< what a certificate does not say of the case
+    /// The bodies' rest surfaces, as in HapticModel: what the pointer touches. They outlive the window.
+    std::vector<const collision::CollisionSurface*> surfaces{};
 };
 
 /// The trainer's window: draws the scene and turns mouse and keyboard into a place for the hand. One thread,

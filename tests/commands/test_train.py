@@ -13,6 +13,7 @@ import unittest
 from sample_asset import SampleAsset
 
 TRAIN = pathlib.Path(os.environ["PALPATE_BIN"]) / "palpate-train"
+ON_THE_ORGAN, BESIDE_THE_ORGAN = (760, 250), (150, 300)  # pixels of the first view
 NEEDED = ("Xvfb", "xdotool", "xwd", "convert")
 
 
@@ -77,7 +78,7 @@ class Train(SampleAsset):
         window = self.x("xdotool", "search", "--sync", "--onlyvisible", "--name", "Palpate: sample").split()[0]
         window = window.decode()
         self.x("xdotool", "windowfocus", "--sync", window)
-        self.x("xdotool", "mousemove", "--window", window, 640, 360)
+        self.x("xdotool", "mousemove", "--window", window, *BESIDE_THE_ORGAN)
         time.sleep(0.5)
         return process, window
 
@@ -86,11 +87,13 @@ class Train(SampleAsset):
         self.assertEqual(process.returncode, 0, err)
         return json.loads(out)
 
+    def screen(self, window):
+        """What the window shows, as xwd has it."""
+        return self.x("xwd", "-silent", "-id", window)
+
     def colours(self, window):
         """How many colours the window on the screen has."""
-        dump = subprocess.run(
-            ["xwd", "-silent", "-id", window], env=self.server.environment, capture_output=True, check=True
-        ).stdout
+        dump = self.screen(window)
         picture = self.folder / "window.png"
         subprocess.run(["convert", "xwd:-", f"png:{picture}"], input=dump, check=True)
         return self.colours_of(picture)
@@ -154,25 +157,71 @@ class Train(SampleAsset):
         self.assertEqual(replayed["replay"]["different_ticks"], 0)
         self.assertEqual(replayed["force_peak_n"], result["force_peak_n"])
 
-    def test_left_drag_moves_the_tool_and_right_drag_does_not(self):
-        travel = {}
-        for button in (1, 3):
-            process, _ = self.open_window()
-            self.x("xdotool", "mousedown", button)
-            for _ in range(10):
-                self.x("xdotool", "mousemove_relative", "--", -12, -12)
-                time.sleep(0.05)
-            self.x("xdotool", "mouseup", button)
-            time.sleep(0.3)
-            self.x("xdotool", "key", "Escape")
-            travel[button] = self.finish(process)["device_travel_mm"]
-        self.assertGreater(travel[1], 1)
-        self.assertEqual(travel[3], 0)
+    def drag(self, button, dx, dy, steps=10):
+        """Drags from where the pointer is, steps times dx, dy pixels."""
+        self.x("xdotool", "mousedown", button)
+        for _ in range(steps):
+            self.x("xdotool", "mousemove_relative", "--", dx, dy)
+            time.sleep(0.05)
+        time.sleep(0.7)
+        self.x("xdotool", "mouseup", button)
+        time.sleep(0.3)
 
-    def test_wheel_moves_in_depth_and_reset_brings_back(self):
+    def test_the_left_button_presses_and_drags_with_every_simulated_device(self):
+        for device in ([], ["--device", "touch"], ["--device", "desktop"], ["--device", "premium"]):
+            process, window = self.open_window(*device)
+            self.x("xdotool", "mousemove", "--window", window, *ON_THE_ORGAN)
+            time.sleep(0.7)
+            self.drag(1, 4, 2)
+            self.x("xdotool", "key", "q")
+            result = self.finish(process)
+            self.assertGreater(result["force_peak_n"], 0.02, device)
+            self.assertGreater(result["penetration"]["device_mm"], 1, device)
+            self.assertLess(result["penetration"]["device_mm"], 5, device)
+            self.assertNotIn("starts_inside", result["statuses"])
+
+    def test_the_wheel_presses_deeper_while_the_button_is_held(self):
+        depth = {}
+        for notches in (0, 4):  # half a millimetre each
+            process, window = self.open_window()
+            self.x("xdotool", "mousemove", "--window", window, *ON_THE_ORGAN)
+            self.x("xdotool", "mousedown", 1)
+            time.sleep(0.5)
+            for _ in range(notches):
+                self.x("xdotool", "click", 4)
+            time.sleep(1)
+            self.x("xdotool", "mouseup", 1)
+            self.x("xdotool", "key", "q")
+            depth[notches] = self.finish(process)["penetration"]["device_mm"]
+        self.assertAlmostEqual(depth[4] - depth[0], 2, delta=0.3)
+
+    def test_the_pointer_alone_touches_nothing(self):
+        process, window = self.open_window()
+        for x, y in ((500, 300), ON_THE_ORGAN, (800, 500)):
+            self.x("xdotool", "mousemove", "--window", window, x, y)
+            time.sleep(0.5)
+        self.x("xdotool", "key", "q")
+        result = self.finish(process)
+        self.assertGreater(result["device_travel_mm"], 1)
+        self.assertEqual(result["force_peak_n"], 0)
+
+    def test_what_moves_the_view_leaves_the_tool_where_it_is(self):
+        for button, modifier in ((3, None), (2, None), (1, "shift"), (1, "ctrl"), (3, "ctrl")):
+            process, window = self.open_window()
+            before = self.screen(window)
+            if modifier:
+                self.x("xdotool", "keydown", modifier)
+            self.drag(button, -8, -8)
+            if modifier:
+                self.x("xdotool", "keyup", modifier)
+            self.assertNotEqual(before, self.screen(window), (button, modifier))
+            self.x("xdotool", "key", "Escape")
+            self.assertEqual(self.finish(process)["device_travel_mm"], 0, (button, modifier))
+
+    def test_keys_step_and_reset_brings_back(self):
         process, _ = self.open_window()
-        for _ in range(5):  # a millimetre a notch, away from the organ
-            self.x("xdotool", "click", 5)
+        for _ in range(10):  # half a millimetre each, away from the organ
+            self.x("xdotool", "key", "s")
         time.sleep(0.5)
         self.x("xdotool", "key", "r")
         time.sleep(0.5)

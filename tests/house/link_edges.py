@@ -49,7 +49,7 @@ ROOMS = {
     "devices": {"model", "realtime"},
     "doctor": {"model", "realtime", "haptics", "devices", "json"},
     "openigtlink": {"model", "realtime", "haptics", "devices", "igtl"},
-    "visual": {"model", "realtime", "vtk"},
+    "visual": {"model", "collision", "realtime", "vtk"},
     "session": {"model", "asset", "recording", "drawing", "json", "realtime", "collision", "haptics", "devices", "openigtlink"},
     "training": {"model", "asset", "session", "toml_file", "json"},
 }

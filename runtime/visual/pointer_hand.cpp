@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/visual/pointer_hand.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace palpate::visual {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double usual_depth = 3;                                                         // mm, at least
+constexpr double depth_radii = 1.2;                                                       // of a larger tool
+constexpr double sink_speed = 15, lift_speed = 40, travel_speed = 150, slide_speed = 60;  // mm/s
+constexpr double longest_frame = 0.08;  // s: a slow picture must not make long steps
+constexpr double pixel_step = 5;        // between two places that are looked up
+constexpr int most_lookups = 48;        // a frame
+constexpr double shortest_jump = 8;     // mm between two neighbouring pixels: the surface ends between them
+
+double toward(double from, double to, double by) {
+    return std::clamp(to, from - by, from + by);
+}
+
+}  // namespace
+
+PointerHand::PointerHand(const Vector3d& start, double tool_radius)
+    : radius_(tool_radius), depth_(std::max(usual_depth, depth_radii * tool_radius)), place_(start) {}
+
+void PointerHand::point(const Vector2d& pixel) {
+    pointer_ = pixel;
+    led_ = seeking_ = true;
+}
+
+void PointerHand::press(bool on) {
+    pressed_ = on;
+    if (on) led_ = seeking_ = true;
+}
+
+void PointerHand::deepen(double by) {
+    depth_ = std::clamp(depth_ + by, least_depth, most_depth);
+}
+
+void PointerHand::move(const Vector3d& by) {
+    put(place_ + by);
+}
+
+void PointerHand::put(const Vector3d& place) {
+    place_ = place;
+    led_ = false;
+    view_changed();
+    anchor_.reset();
+}
+
+void PointerHand::view_changed() {
+    seeking_ = false;
+    reached_.reset();
+}
+
+Vector3d PointerHand::goal() const {
+    return anchor_->point + (radius_ + offset_) * anchor_->normal;
+}
+
+// No farther towards the eye than it must: a fiftieth of the way, or twice as much, ...
+void PointerHand::go_around(const SeenPoint& next, const PointerScene& scene) {
+    offset_ = hover;
+    const Vector3d above = next.point + (radius_ + hover) * next.normal;
+    Vector3d from = place_;
+    Vector3d from_eye = place_ + next.seen_from - next.point;
+    if (anchor_) {
+        from = anchor_->point + (radius_ + hover) * anchor_->normal;
+        from_eye = anchor_->seen_from;
+    }
+    std::vector<Vector3d> way;
+    if (scene.blocked(from, above))
+        for (const double share : {0.02, 0.04, 0.08, 0.16, 0.32, 0.64}) {
+            way = {above + share * (next.seen_from - above), from + share * (from_eye - from)};
+            if (!scene.blocked(way[1], way[0])) break;
+        }
+    detour_ = std::move(way);
+    if (anchor_) detour_.push_back(from);
+}
+
+void PointerHand::seek_next_pixel(const PointerScene& scene) {
+    if (reached_) {
+        const Vector2d way = pointer_ - *reached_;
+        *reached_ += way * std::min(1.0, pixel_step / way.norm());
+    } else {
+        reached_ = pointer_;
+    }
+    const auto next = scene.under(*reached_);
+    if (!next) return;
+    const Vector3d before = anchor_ ? anchor_->point : place_;
+    if ((next->point - before).norm() > std::max(shortest_jump, 3 * radius_)) {
+        if (*reached_ != pointer_) return;  // what is only passed is not gone into
+        go_around(*next, scene);
+    }
+    anchor_ = next;
+}
+
+void PointerHand::advance(double seconds, const PointerScene& scene) {
+    if (!led_) return;
+    if (!pressed_) offset_ = toward(offset_, hover, seconds * lift_speed);
+    double left = std::min(longest_frame, seconds);
+    for (int lookups = 0; lookups < most_lookups;) {
+        const bool underway = !detour_.empty();
+        if (underway || anchor_) {
+            const Vector3d next = underway ? detour_.back() : goal();
+            const double distance = (next - place_).norm();
+            const double needed = distance / (pressed_ && !underway ? slide_speed : travel_speed);
+            if (needed > left) {
+                place_ += (next - place_) * (left / needed);
+                return;
+            }
+            place_ = next;
+            left -= needed;
+            if (underway) {
+                detour_.pop_back();
+                continue;
+            }
+        }
+        if (!seeking_ || (reached_ && *reached_ == pointer_)) break;
+        seek_next_pixel(scene);
+        ++lookups;
+    }
+    if (!anchor_ || !detour_.empty()) return;
+    if (pressed_) offset_ = toward(offset_, -depth_, seconds * sink_speed);
+    place_ = goal();
+}
+
+}  // namespace palpate::visual
