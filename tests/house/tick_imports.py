@@ -37,7 +37,6 @@ TICK = {
         "contact/equilibrium/deformed_patch": "the part of a surface that tools are near",
         "contact/equilibrium/deformed_patch_creep": "what is left of earlier forces on it",
         "contact/god_object": "the tool that stays outside",
-        "contact/local_indentation": "what a sphere sinks in",
         "force_limiter": "force and slew limits",
         "haptic_tick": "one tick, from positions to forces",
         "passivity_observer": "no more energy out than in",
@@ -47,6 +46,7 @@ TICK = {
     },
     "formats/model/CMakeFiles/palpate_model.dir": {
         "compliance": "blocks and products of the compliance",
+        "local_indentation": "what a sphere sinks in",
     },
 }
 # Called through a virtual function, so that no symbol leads here: every object of a contact method but those that set

@@ -9,8 +9,8 @@
 #include <numeric>
 #include <utility>
 
+#include "formats/model/compliance_blocks.hpp"
 #include "formats/model/errors.hpp"
-#include "runtime/haptics/contact/compliance_blocks.hpp"
 #include "runtime/haptics/contact/contact_lcp.hpp"
 
 namespace palpate::haptics {

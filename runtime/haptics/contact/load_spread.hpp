@@ -8,18 +8,14 @@
 #include <vector>
 
 #include "formats/model/body.hpp"
+#include "formats/model/load_shares.hpp"
 
 namespace palpate::haptics {
 
-/// How a force on one vertex of a deformable surface is spread over its neighbours, and the displacements
-/// there averaged, so that contact does not feel the mesh; and the compliance of tissue against such forces.
-/// The derivation stands in load_spread.cpp.
+/// A body's load_shares(), and the compliance of tissue against forces so spread.
 class LoadSpread {
   public:
-    struct Share {
-        std::int32_t vertex = 0;
-        float weight = 0;
-    };
+    using Share = LoadShare;
 
     /// `blocks`: the compliance block of each surface vertex, -1 for one fixed or left out. Reads some
     /// thousands of blocks of C for each vertex.
@@ -27,11 +23,8 @@ class LoadSpread {
 
     /// Where a force on a vertex goes, and how much of each displacement counts there. Weights sum to
     /// freedom(): the part on vertices that give way.
-    std::span<const Share> shares(std::int32_t vertex) const noexcept {
-        return std::span(shares_).subspan(first_share_[vertex],
-                                          first_share_[vertex + 1] - first_share_[vertex]);
-    }
-    double freedom(std::int32_t vertex) const noexcept { return freedom_[vertex]; }
+    std::span<const Share> shares(std::int32_t vertex) const noexcept { return shares_.of(vertex); }
+    double freedom(std::int32_t vertex) const noexcept { return shares_.freedom[vertex]; }
 
     /// How far vertex a gives way per force on vertex b, both spread, if they are near; nothing if they are
     /// so far apart that spreading changes nothing.
@@ -47,19 +40,18 @@ class LoadSpread {
 
     /// R of the density that loads are spread with on the mean, mm; with what linear displacements between
     /// vertices add.
-    double radius() const noexcept { return radius_; }
+    double radius() const noexcept { return disc_.radius; }
     /// E / (1 - nu²) of the tissue at the surface, N/mm².
     double contact_modulus() const noexcept { return contact_modulus_; }
 
   private:
-    void add_shares(const DeformableBody& body, std::span<const std::int32_t> blocks, double reach);
-    void add_near(const DeformableBody& body, std::span<const std::int32_t> blocks, double reach);
+    void add_near(const DeformableBody& body, std::span<const std::int32_t> blocks);
 
-    double radius_ = 0, contact_modulus_ = 0;
-    std::vector<std::size_t> first_share_, first_near_;
-    std::vector<Share> shares_;
-    std::vector<float> freedom_;
+    SpreadDisc disc_;
+    double contact_modulus_ = 0;
+    LoadShares shares_;
     // By first vertex: those from it on that are near, ascending, and how it gives way to them.
+    std::vector<std::size_t> first_near_;
     std::vector<std::int32_t> near_;
     std::vector<Eigen::Matrix3f> near_blocks_;
 };

@@ -5,10 +5,10 @@
 #include <limits>
 #include <span>
 
+#include "formats/model/compliance_blocks.hpp"
+#include "formats/model/local_indentation.hpp"
 #include "runtime/collision/triangle_queries.hpp"
-#include "runtime/haptics/contact/compliance_blocks.hpp"
 #include "runtime/haptics/contact/load_spread.hpp"
-#include "runtime/haptics/contact/local_indentation.hpp"
 #include "tests/runtime/haptics/held_tool.hpp"
 
 namespace palpate {
@@ -21,7 +21,7 @@ class EquilibriumOracle {
     explicit EquilibriumOracle(const DeformableBody& body, std::int32_t body_index = 0)
         : body_(body),
           body_index_(body_index),
-          spread_(body, haptics::compliance_blocks(body)),
+          spread_(body, compliance_blocks(body)),
           compliance_(inverse(body)) {}
 
     /// Displacement of each surface vertex under the contacts of all tools and neighbours, mm.
@@ -59,9 +59,9 @@ class EquilibriumOracle {
             for (std::size_t i = 0; i < 3; ++i)
                 freedom += static_cast<double>(contact.force * contact.weights[i]) *
                            spread_.freedom(contact.vertices[i]) / press_of(result);
-        const double sunk = freedom * haptics::local_indentation(force.norm(), radius,
-                                                                 spread_.contact_modulus(), spread_.radius())
-                                          .depth;
+        const double sunk =
+            freedom *
+            local_indentation(force.norm(), radius, spread_.contact_modulus(), spread_.radius()).depth;
         return device + force / coupling + sunk * force.normalized();
     }
 
@@ -115,7 +115,7 @@ class EquilibriumOracle {
         for (int k = 1; k <= steps; ++k) {
             const double f = press * k / steps;
             const double depth =
-                haptics::local_indentation(f, radius, spread_.contact_modulus(), spread_.radius()).depth;
+                local_indentation(f, radius, spread_.contact_modulus(), spread_.radius()).depth;
             energy += (f - 0.5 * press / steps) * (depth - last);
             last = depth;
         }

@@ -5,9 +5,9 @@
 #include <numbers>
 #include <vector>
 
-#include "runtime/haptics/contact/compliance_blocks.hpp"
+#include "formats/model/compliance_blocks.hpp"
+#include "formats/model/local_indentation.hpp"
 #include "runtime/haptics/contact/load_spread.hpp"
-#include "runtime/haptics/contact/local_indentation.hpp"
 #include "tests/runtime/haptics/held_tool.hpp"
 
 namespace palpate {

@@ -7,7 +7,7 @@
 
 // Contact that keeps energy. A tool of spheres of radius r hangs on its virtual coupling of stiffness K from
 // the device at d; x is where it is, u the displacements of the bodies' surfaces, C their compliance against
-// loads spread over the surface (load_spread.cpp). A sphere pressed into tissue sinks in by s besides,
+// loads spread over the surface (load_shares.cpp). A sphere pressed into tissue sinks in by s besides,
 // against a potential U of the press alone (local_indentation.cpp), so that y = x + s is what meets the
 // surface. All come to rest where
 //     V = 1/2 K |x - d|² + 1/2 u . C^-1 u + U(s)    is least under    g_t = |y - q_t(u)| - r >= 0

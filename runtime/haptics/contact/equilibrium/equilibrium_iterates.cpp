@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "formats/model/local_indentation.hpp"
 #include "runtime/haptics/contact/equilibrium/contact_equilibrium.hpp"
-#include "runtime/haptics/contact/local_indentation.hpp"
 
 namespace palpate::haptics {
 namespace {

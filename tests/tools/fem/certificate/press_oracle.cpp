@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "formats/asset/asset.hpp"
-#include "runtime/haptics/contact/compliance_blocks.hpp"
+#include "formats/model/compliance_blocks.hpp"
 #include "tests/tools/fem/certificate/direct_press.hpp"
 
 namespace {
@@ -52,7 +52,7 @@ int main(int, char** argv) {
     const auto peak = nlohmann::json::parse(stream).at("peak");
     const DeformableBody& body = patient.deformable_bodies.at(0);
 
-    const haptics::LoadSpread spread(body, haptics::compliance_blocks(body));
+    const haptics::LoadSpread spread(body, compliance_blocks(body));
     std::vector<test::DirectContact> contacts;
     std::vector<bool> active;
     Eigen::VectorXd felt(peak["contacts"].size()), delta(felt.size());

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/haptics/contact/local_indentation.hpp"
+#include "formats/model/local_indentation.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 // By Hertz (1881) a force F sinks a sphere of radius r into a half-space by
 //     delta(F) = (9 F² / (16 E*² r))^(1/3),    E* = E / (1 - nu²).
-// Of that, a force spread with the density of load_spread.cpp lets the surface give way by c_R F, where
+// Of that, a force spread with the density of load_shares.cpp lets the surface give way by c_R F, where
 //     c_R = 1 / (pi E* R) int K(t)² dt = 0.76654 / (E* R),
 // K(t) = 48 J3(t) / t³ being the density's Hankel transform. While c_R F is small, the sphere touches the
 // surface so displaced in one place, and what it sinks in besides is
@@ -15,7 +15,7 @@
 // int K(t)² J0 J0 dt, s then stays between 0.107 and 0.142 R² / r up to 11 E* R³ / r. It is at its largest at
 // F = 0.370 E* R³ / r, and beyond that it is left there: 2 % of the depth at most.
 
-namespace palpate::haptics {
+namespace palpate {
 namespace {
 
 constexpr double spread_compliance = 0.76654;  // c_R E* R
@@ -35,4 +35,4 @@ LocalIndentation local_indentation(double force, double radius, double contact_m
     return {hertz - spread * f, force < largest ? 2 * hertz / (3 * f) - spread : 0};
 }
 
-}  // namespace palpate::haptics
+}  // namespace palpate

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/haptics/contact/compliance_blocks.hpp"
+#include "formats/model/compliance_blocks.hpp"
 
 #include <algorithm>
 #include <string>
 
 #include "formats/model/errors.hpp"
 
-namespace palpate::haptics {
+namespace palpate {
 
 std::vector<std::int32_t> compliance_blocks(const DeformableBody& body) {
     const std::int32_t nodes = node_count(body.compliance);
@@ -24,4 +24,4 @@ std::vector<std::int32_t> compliance_blocks(const DeformableBody& body) {
     return blocks;
 }
 
-}  // namespace palpate::haptics
+}  // namespace palpate

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-namespace palpate::haptics {
+namespace palpate {
 
 /// What a sphere sinks into tissue beyond what the spread load lets the surface give way: see
-/// load_spread.cpp.
+/// load_shares.cpp.
 struct LocalIndentation {
     double depth = 0;  ///< mm
     double slope = 0;  ///< of the depth by the force, mm/N
@@ -13,4 +13,4 @@ struct LocalIndentation {
 LocalIndentation local_indentation(double force, double radius, double contact_modulus,
                                    double spread_radius) noexcept;
 
-}  // namespace palpate::haptics
+}  // namespace palpate
