@@ -33,7 +33,15 @@ void check_case(const Case& patient_case, const std::string& where) {
             throw InvalidInput({where, "has two bodies '" + name + "'", "", "give each body its own name"});
     };
     for (const RigidBody& body : patient_case.rigid_bodies) claim(body.name);
-    for (const DeformableBody& body : patient_case.deformable_bodies) claim(body.name);
+    for (const DeformableBody& body : patient_case.deformable_bodies) {
+        claim(body.name);
+        if (body.feel && body.feel->tool_radius != patient_case.haptics.tool_radius)
+            throw InvalidInput(
+                {where + ": " + body.name,
+                 "says what is felt with a tool of " + std::to_string(body.feel->tool_radius) + " mm radius",
+                 std::to_string(patient_case.haptics.tool_radius) + " mm as in the haptic settings",
+                 "run 'palpate pack' again"});
+    }
 }
 
 Case read_case(const Hdf5File& file) {
@@ -44,6 +52,7 @@ Case read_case(const Hdf5File& file) {
     for (std::size_t i = 0; file.contains(deformable_path(i)); ++i) {
         DeformableBody body = read_condensed_body(file, deformable_path(i));
         body.obb_tree = read_obb_tree(file, deformable_path(i) + "/obb_tree", body.boundary.surface);
+        body.feel = read_feel(file, deformable_path(i) + "/feel", body);
         patient_case.deformable_bodies.push_back(std::move(body));
     }
     read_fields(file, "/palpate/haptics", haptic_fields, patient_case.haptics);
@@ -72,6 +81,7 @@ void write_asset(const std::filesystem::path& path, const Case& patient_case) {
         check_body(body, where + ": " + body.name);
         check_obb_tree(body.obb_tree, body.boundary.surface.triangles.size(),
                        where + ": " + body.name + "/obb_tree");
+        if (body.feel) check_feel(*body.feel, body, where + ": " + body.name + "/feel");
     }
 
     Hdf5Writer writer(path);
@@ -83,6 +93,7 @@ void write_asset(const std::filesystem::path& path, const Case& patient_case) {
         const DeformableBody& body = patient_case.deformable_bodies[i];
         write_condensed_body(writer, deformable_path(i), body, mechanics_digest(body));
         write_obb_tree(writer, deformable_path(i) + "/obb_tree", body.obb_tree, body.boundary.surface);
+        if (body.feel) write_feel(writer, deformable_path(i) + "/feel", *body.feel);
     }
     writer.group("/palpate/haptics");
     write_fields(writer, "/palpate/haptics", haptic_fields, patient_case.haptics);

@@ -250,6 +250,35 @@ ObbTree read_obb_tree(const Hdf5File& file, const std::string& path) {
     return tree;
 }
 
+void write_feel(Hdf5Writer& writer, const std::string& path, const Feel& feel) {
+    writer.group(path);
+    writer.attribute(path, "tool_radius", feel.tool_radius);
+    writer.attribute(path, "depth", feel.depth);
+    write_rows<float>(writer, path + "/stiffness", feel.stiffness, "N/mm");
+    writer.group(path + "/regions");
+    for (std::size_t i = 0; i < feel.regions.size(); ++i) {
+        const std::string region = path + "/regions/" + std::to_string(i);
+        writer.group(region);
+        write_fields(writer, region, felt_region_fields, feel.regions[i]);
+    }
+}
+
+std::optional<Feel> read_feel(const Hdf5File& file, const std::string& path, const DeformableBody& body) {
+    if (!file.contains(path)) return std::nullopt;
+    Feel feel{.tool_radius = file.attribute<double>(path, "tool_radius"),
+              .depth = file.attribute<double>(path, "depth"),
+              .stiffness = read_rows<float, float>(file, path + "/stiffness",
+                                                   static_cast<std::int64_t>(body.boundary.nodes.size())),
+              .regions = {}};
+    for (std::size_t i = 0;; ++i) {
+        const std::string region = path + "/regions/" + std::to_string(i);
+        if (!file.contains(region)) break;
+        read_fields(file, region, felt_region_fields, feel.regions.emplace_back());
+    }
+    check_feel(feel, body, file.name() + ": " + path);
+    return feel;
+}
+
 void write_rigid_body(Hdf5Writer& writer, const std::string& path, const RigidBody& body) {
     writer.group(path);
     writer.attribute(path, "name", body.name);

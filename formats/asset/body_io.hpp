@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <optional>
 #include <string>
 #include <type_traits>
 
@@ -26,6 +27,10 @@ ObbTree read_obb_tree(const Hdf5File& file, const std::string& path, const Trian
 /// The same over whichever surface has its digest.
 ObbTree read_obb_tree(const Hdf5File& file, const std::string& path);
 std::string surface_digest_of_obb_tree(const Hdf5File& file, const std::string& path);
+
+void write_feel(Hdf5Writer& writer, const std::string& path, const Feel& feel);
+/// What can be felt of a body that is otherwise read; none in a file without it.
+std::optional<Feel> read_feel(const Hdf5File& file, const std::string& path, const DeformableBody& body);
 
 void write_rigid_body(Hdf5Writer& writer, const std::string& path, const RigidBody& body);
 RigidBody read_rigid_body(const Hdf5File& file, const std::string& path);

@@ -253,6 +253,35 @@ void check_hierarchical(const HierarchicalCompliance& compliance, const std::str
     if (!walk.all_seen()) refuse(where, "has blocks that belong to nothing");
 }
 
+void check_feel(const Feel& feel, const DeformableBody& body, const std::string& where) {
+    for (const double length : {feel.tool_radius, feel.depth})
+        if (!(length > 0 && std::isfinite(length)))
+            refuse(where, "has a tool_radius or depth of " + std::to_string(length), "a positive number");
+    if (feel.stiffness.size() != body.boundary.nodes.size())
+        refuse(where + "/stiffness", std::to_string(feel.stiffness.size()) + " values",
+               std::to_string(body.boundary.nodes.size()));
+    for (std::size_t v = 0; v < feel.stiffness.size(); ++v) {
+        const bool touched = std::ranges::binary_search(body.contact_nodes, body.boundary.nodes[v]);
+        if (!std::isfinite(feel.stiffness[v]) || feel.stiffness[v] < 0 ||
+            (!touched && feel.stiffness[v] != 0))
+            refuse(where + "/stiffness",
+                   "entry " + std::to_string(v) + " is " + std::to_string(feel.stiffness[v]),
+                   touched ? "0 or more" : "0 where there is no contact node");
+    }
+    for (std::size_t i = 0; i < feel.regions.size(); ++i) {
+        const FeltRegion& felt = feel.regions[i];
+        const std::string region = where + "/regions/" + std::to_string(i);
+        if (const auto error = first_error(felt_region_fields, felt))
+            refuse(region, error->name + " " + error->found, error->expected);
+        if (!has_label(body.mesh.region_names, felt.region) ||
+            (i > 0 && felt.region <= feel.regions[i - 1].region))
+            refuse(region, "is of region " + std::to_string(felt.region), "regions of the body, ascending");
+        if (static_cast<std::size_t>(felt.vertex) >= feel.stiffness.size() ||
+            static_cast<float>(felt.stiffness) != feel.stiffness[felt.vertex])
+            refuse(region, "has another stiffness than its vertex");
+    }
+}
+
 void check_haptics(const HapticSettings& haptics, const std::string& where) {
     if (const auto error = haptics_error(haptics))
         refuse(where, error->name + " " + error->found, error->expected);

@@ -26,6 +26,10 @@ void check_hierarchical(const HierarchicalCompliance& compliance, const std::str
 /// the compliance).
 void check_body(const DeformableBody& body, const std::string& where);
 
+/// A stiffness for each surface vertex, finite, 0 where there is no contact node and not negative elsewhere;
+/// regions of the body, ascending, each at a vertex that has the stiffness it says. O(vertices).
+void check_feel(const Feel& feel, const DeformableBody& body, const std::string& where);
+
 /// Positive, finite settings.
 void check_haptics(const HapticSettings& haptics, const std::string& where);
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "formats/model/compliance.hpp"
+#include "formats/model/feel.hpp"
 #include "formats/model/obb_tree.hpp"
 #include "formats/model/tet_mesh.hpp"
 #include "formats/model/triangle_mesh.hpp"
@@ -55,7 +57,8 @@ struct DeformableBody {
                                               ///< all of the boundary nodes that are not fixed
     SurfaceCompliance compliance;             ///< over contact_nodes
     Certificate certificate;
-    ObbTree obb_tree;  ///< over boundary.surface at rest
+    ObbTree obb_tree;          ///< over boundary.surface at rest
+    std::optional<Feel> feel;  ///< with a case's tool; none of a body that is of no case yet
 };
 
 /// The relaxation of one region; empty if it does not relax.

@@ -5,6 +5,7 @@
 
 #include "formats/records/certificate.hpp"
 #include "formats/records/device_limits.hpp"
+#include "formats/records/felt_region.hpp"
 #include "formats/records/haptic_settings.hpp"
 #include "formats/records/material.hpp"
 #include "formats/records/quality_contract.hpp"
@@ -66,6 +67,7 @@ int main() {
                       {"material", rows_of<Material>(material_fields)},
                       {"relaxation", rows_of<RelaxationTerm>(relaxation_fields)},
                       {"certificate", rows_of<Certificate>(certificate_fields)},
+                      {"feel", rows_of<FeltRegion>(felt_region_fields)},
                       {"device_limits", rows_of<DeviceLimits>(device_limit_fields)},
                       {"tick", rows_of<Tick>(tick_fields)},
                       {"contact", rows_of<Contact>(contact_fields)},

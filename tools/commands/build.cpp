@@ -80,7 +80,13 @@ case_builder::StageRecord run(const Build& build, const case_builder::Stage& sta
 std::vector<case_builder::StageRecord> run_all(const Build& build) {
     std::filesystem::remove(case_builder::failure_page(build.paths));
     std::vector<case_builder::StageRecord> records;
-    for (const case_builder::Stage& stage : build.stages) records.push_back(run(build, stage));
+    for (const case_builder::Stage& stage : build.stages) {
+        records.push_back(run(build, stage));
+        // A stage that ran has said so itself.
+        if (const auto& record = records.back(); !record.ran)
+            for (const auto& warning : record.result.value("warnings", nlohmann::ordered_json::array()))
+                spdlog::warn("{}", warning.get<std::string>());
+    }
     return records;
 }
 

@@ -6,6 +6,7 @@
 #include "formats/asset/asset.hpp"
 #include "tools/cli/record_json.hpp"
 #include "tools/stages/body_result.hpp"
+#include "tools/stages/feel_result.hpp"
 
 namespace palpate::inspection {
 namespace {
@@ -73,18 +74,23 @@ Json certificate_row(const DeformableBody& body) {
 
 Json asset_json(const std::filesystem::path& asset) {
     const Case patient_case = asset::read_asset(asset);
-    Json bodies = Json::array(), regions = Json::array(), certificates = Json::array();
+    Json bodies = Json::array(), regions = Json::array(), certificates = Json::array(), feel = Json::array(),
+         felt = Json::array();
     for (const RigidBody& body : patient_case.rigid_bodies) bodies.push_back(row_of(body));
     for (const DeformableBody& body : patient_case.deformable_bodies) {
         bodies.push_back(row_of(body));
         add_regions(regions, body);
         certificates.push_back(certificate_row(body));
+        if (body.feel) feel.push_back(stages::feel_summary(body));
+        for (Json& row : stages::felt_rows(body)) felt.push_back(std::move(row));
     }
     return {{"name", patient_case.name},
             {"bytes", std::filesystem::file_size(asset)},
             {"bodies", bodies},
             {"regions", regions},
             {"certificates", certificates},
+            {"feel", feel},
+            {"felt", felt},
             {"haptics", cli::record_json(haptic_fields, patient_case.haptics)},
             {"provenance", provenance_of(patient_case.provenance)}};
 }

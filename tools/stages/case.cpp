@@ -8,6 +8,7 @@
 #include "formats/asset/parts.hpp"
 #include "formats/model/errors.hpp"
 #include "tools/cli/software.hpp"
+#include "tools/fem/feel/feel.hpp"
 #include "tools/meshing/files/mesh_files.hpp"
 #include "tools/obb/build_obb_tree.hpp"
 
@@ -94,7 +95,7 @@ DeformableBody read_deformable(const BodyFiles& files) {
 
 }  // namespace
 
-Case make_case(const PackRequest& request, const ProgressCallback& progress) {
+Case make_case(const PackRequest& request, int threads, const ProgressCallback& progress) {
     Case made{.name = request.name,
               .rigid_bodies = {},
               .deformable_bodies = {},
@@ -109,6 +110,10 @@ Case make_case(const PackRequest& request, const ProgressCallback& progress) {
     for (const BodyFiles& files : request.rigid) made.rigid_bodies.push_back(read_rigid(files));
     for (const BodyFiles& files : request.deformable)
         made.deformable_bodies.push_back(read_deformable(files));
+    for (DeformableBody& body : made.deformable_bodies) {
+        progress("press " + body.name + " all over", 0.3);
+        body.feel = fem::feel_of(body, made.haptics.tool_radius, threads);
+    }
     return made;
 }
 

@@ -6,10 +6,11 @@
 
 namespace palpate::stages {
 
-/// Joins the parts that a request names to a case, builds the OBB trees that it does not name, and states in
-/// the provenance the software's versions, what made the parts and what their meshes are like; writes
-/// nothing. Throws InvalidInput if a tree was built over another surface, if the provenance is no JSON or
-/// holds a path, and as what it reads with. Cost: build_obb_tree() of every body.
-Case make_case(const PackRequest& request, const ProgressCallback& progress);
+/// Joins the parts that a request names to a case, builds the OBB trees that it does not name, computes what
+/// can be felt of elastic bodies with the case's tool, and states in the provenance the software's versions,
+/// what made the parts and what their meshes are like; writes nothing. Throws InvalidInput if a tree was
+/// built over another surface, if the provenance is no JSON or holds a path, and as what it reads with. Cost:
+/// build_obb_tree() of every body, feel_of() of elastic ones.
+Case make_case(const PackRequest& request, int threads, const ProgressCallback& progress);
 
 }  // namespace palpate::stages
