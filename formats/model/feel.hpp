@@ -6,10 +6,6 @@
 
 namespace palpate {
 
-/// How deep the tool is pressed where the stiffness of a surface is stated, mm: as deep as `palpate touch`
-/// presses unless told otherwise.
-inline constexpr double feel_depth = 3;
-
 /// What can be felt of a body with one tool.
 struct Feel {
     double tool_radius = 0;  ///< mm

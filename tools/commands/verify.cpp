@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "formats/asset/asset.hpp"
 #include "formats/model/errors.hpp"
 #include "tools/archive/privacy/find_identity.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/fem/certificate/certificate.hpp"
+#include "tools/fem/feel/feel.hpp"
 #include "tools/fem/solvers/dense_kernels.hpp"
 
 namespace {
@@ -18,6 +21,8 @@ using Json = nlohmann::ordered_json;
 
 // float32 round-off of a box 1 m from the origin; far below what a hand or a tool radius could notice.
 constexpr double enclosure_limit_mm = 1e-4;
+// Round-off of float32 in what is stored and of another order of sums in what is solved again.
+constexpr double feel_limit = 1e-5;
 // Other columns than the certificate's own.
 constexpr std::uint64_t verify_seed = 90210;
 
@@ -74,7 +79,38 @@ void check_tree(Checks& checks, const std::string& name, const ObbTree& tree, co
                fmt::format("at most {:g}", enclosure_limit_mm));
 }
 
-void check_mechanics(Checks& checks, const DeformableBody& body, std::int32_t columns, std::int32_t loads) {
+// Largest relative difference of the surface's stiffness, and largest difference in what regions make of it.
+std::pair<double, double> feel_differences(const Feel& stored, const Feel& fresh) {
+    constexpr double all = 1;
+    if (stored.regions.size() != fresh.regions.size()) return {all, all};
+    double stiffness = std::abs(stored.depth / fresh.depth - 1), regions = 0;
+    for (std::size_t v = 0; v < fresh.stiffness.size(); ++v) {
+        const double here{fresh.stiffness[v]}, there{stored.stiffness[v]};
+        stiffness = std::max(stiffness, here > 0 ? std::abs(there / here - 1) : there);
+    }
+    for (std::size_t i = 0; i < fresh.regions.size(); ++i) {
+        const FeltRegion &here = fresh.regions[i], &there = stored.regions[i];
+        if (here.region != there.region) return {stiffness, all};
+        for (const double difference :
+             {contrast_of(there) - contrast_of(here), there.variation - here.variation,
+              there.depth - here.depth, there.stiffness_without / here.stiffness_without - 1})
+            regions = std::max(regions, std::abs(difference));
+    }
+    return {stiffness, regions};
+}
+
+void check_feel(Checks& checks, const DeformableBody& body, int threads) {
+    const Feel fresh = feel_of(body, body.feel->tool_radius, threads);
+    const auto [stiffness, regions] = feel_differences(*body.feel, fresh);
+    const std::string limit = fmt::format("at most {:g}", feel_limit);
+    checks.add(body.name, "stiffness under the tool, worst relative difference of a vertex pressed again",
+               stiffness <= feel_limit, stiffness, limit);
+    checks.add(body.name, "contrast, variation and depth of regions, worst difference computed again",
+               regions <= feel_limit, regions, limit);
+}
+
+void check_mechanics(Checks& checks, const DeformableBody& body, std::int32_t columns, std::int32_t loads,
+                     int threads) {
     const double limit = allowed_error(body.compliance);
     const auto add_error = [&](const std::string& what, double error) {
         checks.add(body.name, what, error <= limit, error, fmt::format("at most {:g}", limit));
@@ -94,6 +130,7 @@ void check_mechanics(Checks& checks, const DeformableBody& body, std::int32_t co
         add_error(fmt::format("residual of {} re-solved columns", columns), fresh.residual);
         add_error(fmt::format("displacements under {} re-solved contact loads", loads), fresh.load_error);
         add_error("the same, at the loaded nodes", fresh.contact_error);
+        if (body.feel) check_feel(checks, body, threads);
     } catch (const InvalidInput& error) {
         checks.add(body.name, "stiffness is positive definite", false, error.what(), "enough fixed nodes");
     }
@@ -114,7 +151,7 @@ Json verify(const std::filesystem::path& asset, std::int32_t columns, std::int32
         checks.add(body.name, "compliance, mesh, material and boundary belong together", true,
                    body.contact_nodes.size(), "contact nodes");
         check_tree(checks, body.name, body.obb_tree, body.boundary.surface);
-        check_mechanics(checks, body, columns, loads);
+        check_mechanics(checks, body, columns, loads, session.threads);
     }
     if (!checks.failed().empty())
         session.shortfall =

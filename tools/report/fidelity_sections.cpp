@@ -31,23 +31,6 @@ std::vector<WorstElement> worst_of(const TetMesh& mesh) {
     return worst;
 }
 
-std::vector<ViewDirection> directions() {
-    std::vector<ViewDirection> result;
-    for (const NamedDirection& view : view_directions()) result.push_back(view.direction);
-    return result;
-}
-
-std::string figures_of(const std::vector<SceneView>& views, const std::string& what,
-                       const std::vector<std::string>& mark_names) {
-    std::string figures;
-    for (std::size_t i = 0; i < views.size(); ++i) {
-        const NamedDirection& view = view_directions()[i];
-        figures += html::figure(view_svg(views[i], view.direction, what + " " + view.words, mark_names),
-                                "<b>" + html::escaped(what) + "</b> " + view.words);
-    }
-    return "<div class=\"two\">\n" + figures + "</div>\n";
-}
-
 std::string worst_of_body(const DeformableBody& body) {
     const std::vector<WorstElement> worst = worst_of(body.mesh);
     std::vector<std::size_t> tetrahedra;
@@ -88,6 +71,23 @@ const TriangleMesh* surface_of(const Case& patient_case, const std::string& name
 }
 
 }  // namespace
+
+std::vector<ViewDirection> directions() {
+    std::vector<ViewDirection> result;
+    for (const NamedDirection& view : view_directions()) result.push_back(view.direction);
+    return result;
+}
+
+std::string figures_of(const std::vector<SceneView>& views, const std::string& what,
+                       const std::vector<std::string>& mark_names) {
+    std::string figures;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        const NamedDirection& view = view_directions()[i];
+        figures += html::figure(view_svg(views[i], view.direction, what + " " + view.words, mark_names),
+                                "<b>" + html::escaped(what) + "</b> " + view.words);
+    }
+    return "<div class=\"two\">\n" + figures + "</div>\n";
+}
 
 std::string worst_section(const ReportPage& page) {
     const std::vector<MeasuredBody>& bodies = page.bodies;

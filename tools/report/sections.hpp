@@ -25,7 +25,7 @@ struct ReportPage {
 
 using SectionFunction = std::string(const ReportPage&);
 SectionFunction slices_section, bodies_section, mesh_section, contract_section, worst_section,
-    distances_section, mechanics_section, certificate_section, touch_section, stages_section,
+    distances_section, mechanics_section, felt_section, certificate_section, touch_section, stages_section,
     provenance_section;
 
 /// A part of the page: what the navigation shows, and what makes its HTML; "" leaves it out.
@@ -44,6 +44,7 @@ inline constexpr Section report_sections[] = {
     {"worst", "Worst elements", worst_section},
     {"distances", "Distances", distances_section},
     {"mechanics", "Materials", mechanics_section},
+    {"felt", "Felt", felt_section},
     {"certificate", "Certificate", certificate_section},
     {"touch", "Touch", touch_section},
     {"stages", "Stages", stages_section},
@@ -56,6 +57,12 @@ struct NamedDirection {
     std::string words;
 };
 const std::vector<NamedDirection>& view_directions();
+
+std::vector<ViewDirection> directions();
+
+/// Pictures of `what`, one from each of view_directions(), with names at their marks.
+std::string figures_of(const std::vector<SceneView>& views, const std::string& what,
+                       const std::vector<std::string>& mark_names);
 
 /// A coloured square beside a name.
 std::string swatch(const Label& label);

@@ -10,12 +10,16 @@
 #include <map>
 #include <optional>
 
+#include "formats/model/surface_walk.hpp"
 #include "tools/fem/feel/pressing.hpp"
 
 namespace palpate::fem {
 namespace {
 
 using Eigen::Vector3d;
+
+// Cosine between the normals of places that a hand slides over without turning round: 60 degrees.
+constexpr double same_side = 0.5;
 
 // The region of most volume: what the others are felt in.
 std::int32_t main_region(const TetMesh& mesh) {
@@ -143,11 +147,15 @@ std::optional<FeltRegion> felt_region(const DeformableBody& body, const Pressing
                               .variation = 0};
         if (!most || std::abs(contrast_of(felt)) > std::abs(contrast_of(*most))) most = felt;
     }
-    const Vector3d place = vertices[static_cast<std::size_t>(most->vertex)];
-    const double reach = 2 * most_distance(nodes, place);
+    const auto at = static_cast<std::size_t>(most->vertex);
+    const auto faces_alike = [&](std::int32_t v) {
+        return pressing.normals[static_cast<std::size_t>(v)].dot(pressing.normals[at]) > same_side;
+    };
     std::vector<double> nearby;
-    for (std::size_t v = 0; v < vertices.size(); ++v)
-        if (plain[v] > 0 && (vertices[v] - place).norm() < reach) nearby.push_back(plain[v]);
+    SurfaceWalk walk(body.boundary.surface);
+    for (const std::int32_t v :
+         walk.within(most->vertex, 2 * most_distance(nodes, vertices[at]), faces_alike))
+        if (plain[static_cast<std::size_t>(v)] > 0) nearby.push_back(plain[static_cast<std::size_t>(v)]);
     most->variation = variation_of(std::move(nearby));
     return most;
 }
@@ -189,10 +197,10 @@ void reshape(TetMesh& mesh, std::int32_t region, std::int32_t around,
 }  // namespace
 
 Feel feel_of(const DeformableBody& body, double tool_radius, int threads) {
-    const Pressing pressing = pressing_of(body, tool_radius, feel_depth);
+    const Pressing pressing = pressing_of(body, tool_radius, feel_depth(tool_radius));
     const std::vector<double> compliances = spread_compliances(body, pressing, threads);
     const double modulus = surface_contact_modulus(body);
-    Feel feel{.tool_radius = tool_radius, .depth = feel_depth, .stiffness = {}, .regions = {}};
+    Feel feel{.tool_radius = tool_radius, .depth = pressing.depth, .stiffness = {}, .regions = {}};
     for (std::size_t v = 0; v < compliances.size(); ++v)
         feel.stiffness.push_back(compliances[v] > 0
                                      ? static_cast<float>(pressed_stiffness(
