@@ -288,6 +288,23 @@ DeformableBody elastic_cube(int cells) {
     return body;
 }
 
+Feel made_up_feel(const DeformableBody& body, double tool_radius) {
+    Feel feel{.tool_radius = tool_radius, .depth = 3, .stiffness = {}, .regions = {}};
+    for (const std::int32_t node : body.boundary.nodes) {
+        const bool touched = std::ranges::binary_search(body.contact_nodes, node);
+        feel.stiffness.push_back(touched ? 0.05F + 0.001F * static_cast<float>(node % 10) : 0.0F);
+    }
+    const auto vertex = std::ranges::find_if(feel.stiffness, [](float k) { return k > 0; });
+    if (body.mesh.region_names.size() > 1)
+        feel.regions = {{.region = body.mesh.region_names[1].value,
+                         .vertex = static_cast<std::int32_t>(vertex - feel.stiffness.begin()),
+                         .depth = 4.5,
+                         .stiffness = static_cast<double>(*vertex),
+                         .stiffness_without = static_cast<double>(*vertex) / 1.5,
+                         .variation = 0.25}};
+    return feel;
+}
+
 Case sample_case(int cells) {
     Case patient_case;
     patient_case.name = "sample";
@@ -299,6 +316,8 @@ Case sample_case(int cells) {
     patient_case.deformable_bodies.push_back(elastic_cube(cells));
     patient_case.haptics = {
         .tool_radius = 1.5, .coupling_stiffness = 0.4, .max_force = 3.0, .max_force_rate = 0.25};
+    DeformableBody& wall = patient_case.deformable_bodies.front();
+    wall.feel = made_up_feel(wall, patient_case.haptics.tool_radius);
     patient_case.provenance = R"({"palpate":"0.1.0"})";
     return patient_case;
 }

@@ -36,6 +36,10 @@ DeformableBody with_hierarchical_compliance(DeformableBody body, int depth, doub
 /// An elastic cube of edge 20 mm held at z = 0, with kernel_compliance(), whose parts belong together.
 DeformableBody elastic_cube(int cells);
 
+/// A made-up stiffness of each contact node's vertex, 0.05 to 0.059 N/mm; the second region, if there is one,
+/// makes half as much again of the first.
+Feel made_up_feel(const DeformableBody& body, double tool_radius);
+
 /// A made-up patient: a rigid sphere "skull" beside the elastic cube "wall".
 Case sample_case(int cells = 2);
 

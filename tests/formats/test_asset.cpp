@@ -17,6 +17,7 @@
 #include "formats/asset/body_io.hpp"
 #include "formats/asset/hdf5/digest.hpp"
 #include "formats/asset/parts.hpp"
+#include "formats/asset/validate.hpp"
 #include "tests/formats/sample_case.hpp"
 #include "tests/formats/scratch.hpp"
 
@@ -96,6 +97,17 @@ void expect_same(const HierarchicalCompliance& a, const HierarchicalCompliance& 
                                    std::span(b.factors.get(), b.factor_count)));
 }
 
+void expect_same(const Feel& a, const Feel& b) {
+    EXPECT_EQ(a.tool_radius, b.tool_radius);
+    EXPECT_EQ(a.depth, b.depth);
+    EXPECT_EQ(a.stiffness, b.stiffness);
+    ASSERT_EQ(a.regions.size(), b.regions.size());
+    for (std::size_t i = 0; i < a.regions.size(); ++i)
+        for_each_field(felt_region_fields, [&](const auto& field) {
+            EXPECT_EQ(a.regions[i].*field.member, b.regions[i].*field.member) << field.name;
+        });
+}
+
 std::map<std::string, double> figures(const Certificate& certificate) {
     std::map<std::string, double> figures;
     for_each_field(certificate_fields, [&](const auto& field) {
@@ -124,6 +136,8 @@ void expect_same(const DeformableBody& a, const DeformableBody& b) {
         },
         a.compliance);
     EXPECT_EQ(figures(a.certificate), figures(b.certificate));
+    ASSERT_EQ(a.feel.has_value(), b.feel.has_value());
+    if (a.feel) expect_same(*a.feel, *b.feel);
 }
 
 TEST(Asset, reading_returns_what_was_written) {
@@ -154,8 +168,65 @@ TEST(Asset, may_hold_a_contact_surface_that_leaves_free_surface_out) {
     DeformableBody& body = written.deformable_bodies[0];
     std::erase_if(body.contact_nodes, [](std::int32_t node) { return node % 3 == 0; });
     body.compliance = sample::kernel_compliance(body.mesh, body.contact_nodes, 5.0, 1.0);
+    body.feel = sample::made_up_feel(body, written.haptics.tool_radius);
     write_asset(scratch / "case.vtkhdf", written);
     expect_same(read_asset(scratch / "case.vtkhdf").deformable_bodies[0], body);
+}
+
+TEST(Asset, of_a_case_without_feel_says_nothing_of_it) {
+    const Scratch scratch;
+    Case written = sample::sample_case(cells);
+    ASSERT_FALSE(written.deformable_bodies[0].feel->regions.empty());
+    written.deformable_bodies[0].feel.reset();
+    write_asset(scratch / "case.vtkhdf", written);
+    EXPECT_FALSE(read_asset(scratch / "case.vtkhdf").deformable_bodies[0].feel);
+    EXPECT_FALSE(Hdf5File(scratch / "case.vtkhdf").contains("/palpate/bodies/deformable/0/feel"));
+}
+
+TEST(Asset, refuses_a_feel_of_another_tool) {
+    const Scratch scratch;
+    Case other = sample::sample_case(cells);
+    other.haptics.tool_radius = 2;
+    EXPECT_THAT(refusal([&] { write_asset(scratch / "a", other); }),
+                HasSubstr("wall: says what is felt with a tool of 1.500000 mm radius (expected 2.000000 mm"));
+}
+
+// Whatever the digests say.
+TEST(Asset, refuses_a_feel_that_its_body_cannot_have_when_writing_and_when_reading) {
+    const Scratch scratch;
+    const DeformableBody body = sample::sample_case(cells).deformable_bodies[0];
+    const auto held = static_cast<std::size_t>(std::ranges::find(body.feel->stiffness, 0.0F) -
+                                               body.feel->stiffness.begin());
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const std::vector<std::pair<std::string, std::function<void(Feel&)>>> forgeries{
+        {"tool_radius or depth", [](Feel& f) { f.tool_radius = -1; }},
+        {"tool_radius or depth", [](Feel& f) { f.depth = std::numeric_limits<double>::infinity(); }},
+        {"feel/stiffness", [](Feel& f) { f.stiffness.pop_back(); }},
+        {"feel/stiffness: entry 97", [&](Feel& f) { f.stiffness[97] = nan; }},
+        {"feel/stiffness: entry 97", [](Feel& f) { f.stiffness[97] = -0.01F; }},
+        {"0 where there is no contact node", [&](Feel& f) { f.stiffness[held] = 0.01F; }},
+        {"is of region 3", [](Feel& f) { f.regions[0].region = 3; }},
+        {"region is 0", [](Feel& f) { f.regions[0].region = 0; }},
+        {"ascending", [](Feel& f) { f.regions.push_back(f.regions[0]); }},
+        {"another stiffness than its vertex", [](Feel& f) { f.regions[0].vertex = 98; }},
+        {"vertex is -1", [](Feel& f) { f.regions[0].vertex = -1; }},
+        {"another stiffness than its vertex", [](Feel& f) { f.regions[0].stiffness *= 1.01; }},
+        {"stiffness_without is 0", [](Feel& f) { f.regions[0].stiffness_without = 0; }},
+        {"depth is -0.5", [](Feel& f) { f.regions[0].depth = -0.5; }},
+        {"variation is nan", [&](Feel& f) { f.regions[0].variation = static_cast<double>(nan); }}};
+    for (const auto& [message, forge] : forgeries) {
+        Feel forged = *body.feel;
+        forge(forged);
+        EXPECT_THAT(refusal([&] { check_feel(forged, body, "feel"); }), HasSubstr(message));
+        {
+            Hdf5Writer writer(scratch / "forged.h5");
+            writer.group("/palpate");
+            write_feel(writer, "/palpate/feel", forged);
+            writer.finish("/palpate");
+        }
+        const Hdf5File file(scratch / "forged.h5");
+        EXPECT_NE(refusal([&] { read_feel(file, "/palpate/feel", body); }), "") << message;
+    }
 }
 
 TEST(Asset, may_hold_quadratic_elements) {

@@ -11,6 +11,7 @@
 #include "formats/model/errors.hpp"
 #include "formats/records/certificate.hpp"
 #include "formats/records/device_limits.hpp"
+#include "formats/records/felt_region.hpp"
 #include "formats/records/haptic_settings.hpp"
 #include "formats/records/material.hpp"
 #include "formats/records/quality_contract.hpp"
@@ -180,6 +181,24 @@ TEST(StatusCounts, the_closing_line_names_what_a_user_must_know_and_nothing_else
               "1 contact_unsolved (contacts contradict each other, as in a wedge: no body gives way); "
               "2 starts_inside (a tool is in a body, which is not felt until the tool has been clear of it); "
               "1 with a fault (the force was taken away: device_lost)");
+}
+
+TEST(FeltRegion, is_felt_where_a_hand_tells_its_contrast_its_surroundings_bear_it_and_a_device_renders_it) {
+    const auto verdict = [](double without, double with, double variation, double depth) {
+        return verdict_of({.region = 2,
+                           .vertex = 0,
+                           .depth = 1,
+                           .stiffness = with,
+                           .stiffness_without = without,
+                           .variation = variation},
+                          depth);
+    };
+    EXPECT_EQ(verdict(0.1, 0.13, 0.2, 3), FeltVerdict::felt);
+    EXPECT_EQ(verdict(0.1, 0.07, 0.2, 3), FeltVerdict::felt);  // softer
+    EXPECT_EQ(verdict(0.1, 0.114, 0, 10), FeltVerdict::too_faint);
+    EXPECT_EQ(verdict(0.1, 0.13, 0.31, 3), FeltVerdict::too_varied);
+    EXPECT_EQ(verdict(0.1, 0.13, 0.2, 1.9), FeltVerdict::too_weak);  // 0.057 N
+    EXPECT_STREQ(verdict_word(FeltVerdict::too_varied), "too varied");
 }
 
 }  // namespace

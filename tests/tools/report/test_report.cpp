@@ -226,6 +226,17 @@ TEST_F(ReportTest, distances_carry_a_scale_in_mm_and_the_farthest_place) {
         EXPECT_TRUE(contains(page, words)) << words;
 }
 
+TEST_F(ReportTest, what_can_be_felt_carries_a_scale_in_newtons_per_mm_and_a_verdict_on_each_region) {
+    const std::string page = full_page(), section = page.substr(page.find("<section id=\"felt\">"));
+    EXPECT_TRUE(contains(section, "✓</span> felt"));
+    EXPECT_TRUE(contains(section, "+50.0 %"));
+    EXPECT_TRUE(contains(section, " N/mm</text>"));
+    EXPECT_TRUE(contains(section, "a sphere of 1.5 mm radius, pressed 3 mm deep"));
+    Case silent = sample::sample_case(2);
+    silent.deformable_bodies.front().feel.reset();
+    EXPECT_FALSE(contains(html_report({.patient_case = silent}), "<section id=\"felt\">"));
+}
+
 TEST_F(ReportTest, a_shape_that_is_not_the_scans_says_so_whatever_the_provenance_holds) {
     EXPECT_TRUE(contains(full_page(),
                          "wall&lt;</b> was scanned supine and has the shape that gravity gives it "

@@ -32,15 +32,16 @@ Feel feel_of(const DeformableBody& body, double tool_radius, int threads);
 
 /// What would be felt of a region that were otherwise, where it is felt best as it is.
 struct FeltTrial {
-    std::string change;   ///< "2 times as stiff", "half as deep", "1.5 times as large", "a tool of 2.5 mm"
-    FeltRegion felt;      ///< with that change
-    FeltVerdict verdict;  ///< on it
+    std::string change;  ///< "2 times as stiff", "half as deep", "a tool of 2.5 mm radius"
+    FeltRegion felt;     ///< with that change
+    FeltVerdict verdict;
 };
 
 /// Tries a region that is twice as stiff (or soft, if it is softer than what is around it), half as deep, and
 /// half as large again, each with tissue moved between the regions of the same mesh by the tetrahedra's
-/// centroids, and a tool of half and of twice the radius (the latter unless it would need another disc).
-/// Cost: three times solved_compliances() of one vertex.
+/// centroids, and a tool of half and of twice the radius (the latter unless it would need another disc), all
+/// pressed as deep as it was. `felt` is of body.feel, which must be there. Cost: five solved_compliances() of
+/// one vertex.
 std::vector<FeltTrial> felt_trials(const DeformableBody& body, const FeltRegion& felt, int threads);
 
 }  // namespace palpate::fem
