@@ -289,7 +289,7 @@ DeformableBody elastic_cube(int cells) {
 }
 
 Feel made_up_feel(const DeformableBody& body, double tool_radius) {
-    Feel feel{.tool_radius = tool_radius, .depth = 3, .stiffness = {}, .regions = {}};
+    Feel feel{.tool_radius = tool_radius, .depth = 4, .stiffness = {}, .regions = {}};
     for (const std::int32_t node : body.boundary.nodes) {
         const bool touched = std::ranges::binary_search(body.contact_nodes, node);
         feel.stiffness.push_back(touched ? 0.05F + 0.001F * static_cast<float>(node % 10) : 0.0F);

@@ -231,7 +231,7 @@ TEST_F(ReportTest, what_can_be_felt_carries_a_scale_in_newtons_per_mm_and_a_verd
     EXPECT_TRUE(contains(section, "✓</span> felt"));
     EXPECT_TRUE(contains(section, "+50.0 %"));
     EXPECT_TRUE(contains(section, " N/mm</text>"));
-    EXPECT_TRUE(contains(section, "a sphere of 1.5 mm radius, pressed 3 mm deep"));
+    EXPECT_TRUE(contains(section, "a sphere of 1.5 mm radius, pressed 4 mm deep"));
     Case silent = sample::sample_case(2);
     silent.deformable_bodies.front().feel.reset();
     EXPECT_FALSE(contains(html_report({.patient_case = silent}), "<section id=\"felt\">"));
