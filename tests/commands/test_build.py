@@ -126,6 +126,20 @@ class Build(unittest.TestCase):
         self.change("youngs_modulus_kpa = 6.3", "youngs_modulus_kpa = 7")
         self.assertEqual(self.stages_run(), ["condense liver", "pack", "touch", "report"])
 
+    def test_what_cannot_be_felt_is_warned_of_by_every_build_with_what_to_try(self):
+        self.change("youngs_modulus_kpa = 30", "youngs_modulus_kpa = 6.6")
+        for attempt in ("run", "up to date"):
+            built = self.build_in(self.folder)
+            self.assertEqual(built.returncode, 0, built.stderr)
+            warnings = [line for line in built.stderr.splitlines() if "cannot be felt" in line]
+            self.assertEqual(len(warnings), 1, attempt)
+            for phrase in ("'tumour' of 'liver' cannot be felt with this tool", "where a hand tells 15 %", "; try it ",
+                           "half as deep", "2 times as stiff", "1.5 times as large", "a tool of 2 mm radius"):
+                self.assertIn(phrase, warnings[0])
+            pack = next(row for row in json.loads((self.folder / "result.json").read_text())["stages"] if row["stage"] == "pack")
+            self.assertEqual(pack["status"], attempt)
+            self.assertEqual([(row["region"], row["verdict"]) for row in pack["result"]["felt"]], [("tumour", "too faint")])
+
     def test_another_contact_surface_or_nodes_file_reruns_only_from_condensation_on(self):
         nodes = self.folder / "doe_john.txt"
         nodes.write_text("0\n")

@@ -36,6 +36,10 @@ class DemoCases(unittest.TestCase):
             verified = run(BIN / "palpate", "verify", asset, "--json", "-")
             self.assertEqual(verified.returncode, 0, verified.stdout)
 
+            inspected = json.loads(run(BIN / "palpate", "inspect", asset, "--json", "-").stdout)
+            self.assertEqual([(row["region"], row["verdict"]) for row in inspected["felt"]], [("tumour", "felt")])
+            self.assertTrue(any("'tumour' is made up" in caution for caution in inspected["provenance"]["build"]["cautions"]))
+
             seen = json.loads(run(VTK_SUMMARY, asset).stdout)
             self.assertEqual(len(seen["tetrahedra_of_region"]), 2, "organ and tumour")
             self.assertEqual(set(seen["cells_of_type"]), {"5", "10"}, "triangles and tetrahedra")

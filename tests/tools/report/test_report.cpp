@@ -207,9 +207,9 @@ TEST_F(ReportTest, pictures_show_something) {
             shaded += colours > 100;
         }
     // Slices through the case and its one label; all bodies, one deformable body, its worst elements, its
-    // distances.
-    EXPECT_EQ(pictures, 3U + 3U + 2U + 2U + 2U + 2U);
-    EXPECT_EQ(shaded, 6U);  // those in three dimensions, but for a cube in one flat colour
+    // distances, its stiffness.
+    EXPECT_EQ(pictures, 3U + 3U + 2U + 2U + 2U + 2U + 2U);
+    EXPECT_EQ(shaded, 8U);  // those in three dimensions, but for a cube in one flat colour
 }
 
 TEST_F(ReportTest, worst_elements_are_marked_with_their_angles) {
