@@ -46,7 +46,7 @@ TICK = {
     },
     "formats/model/CMakeFiles/palpate_model.dir": {
         "compliance": "blocks and products of the compliance",
-        "local_indentation": "what a sphere sinks in",
+        "contact/local_indentation": "what a sphere sinks in",
     },
 }
 # Called through a virtual function, so that no symbol leads here: every object of a contact method but those that set

@@ -72,16 +72,22 @@ Json certificate_row(const DeformableBody& body) {
     return row;
 }
 
+// What a tool meets on a body's surface, nothing where nothing gives way or is known.
+Json with_stiffness(Json row, const Json& feel) {
+    for (const char* figure : {"least_n_per_mm", "median_n_per_mm", "largest_n_per_mm"})
+        row[figure] = feel.is_null() ? Json() : feel.at(figure);
+    return row;
+}
+
 Json asset_json(const std::filesystem::path& asset) {
     const Case patient_case = asset::read_asset(asset);
-    Json bodies = Json::array(), regions = Json::array(), certificates = Json::array(), feel = Json::array(),
-         felt = Json::array();
-    for (const RigidBody& body : patient_case.rigid_bodies) bodies.push_back(row_of(body));
+    Json bodies = Json::array(), regions = Json::array(), certificates = Json::array(), felt = Json::array();
+    for (const RigidBody& body : patient_case.rigid_bodies)
+        bodies.push_back(with_stiffness(row_of(body), nullptr));
     for (const DeformableBody& body : patient_case.deformable_bodies) {
-        bodies.push_back(row_of(body));
+        bodies.push_back(with_stiffness(row_of(body), stages::feel_summary(body)));
         add_regions(regions, body);
         certificates.push_back(certificate_row(body));
-        if (body.feel) feel.push_back(stages::feel_summary(body));
         for (Json& row : stages::felt_rows(body)) felt.push_back(std::move(row));
     }
     return {{"name", patient_case.name},
@@ -89,7 +95,6 @@ Json asset_json(const std::filesystem::path& asset) {
             {"bodies", bodies},
             {"regions", regions},
             {"certificates", certificates},
-            {"feel", feel},
             {"felt", felt},
             {"haptics", cli::record_json(haptic_fields, patient_case.haptics)},
             {"provenance", provenance_of(patient_case.provenance)}};

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <utility>
 
-#include "formats/model/compliance_blocks.hpp"
+#include "formats/model/contact/compliance_blocks.hpp"
 #include "formats/model/errors.hpp"
 #include "runtime/haptics/contact/contact_lcp.hpp"
 

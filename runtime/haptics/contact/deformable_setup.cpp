@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a deformable body's contact allocates before the first tick.
-#include "formats/model/compliance_blocks.hpp"
+#include "formats/model/contact/compliance_blocks.hpp"
 #include "runtime/haptics/contact/deformable_contact.hpp"
 #include "runtime/haptics/contact/triangle_neighbours.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/haptics/contact/load_spread.hpp"
 
-#include "formats/model/surface_walk.hpp"
+#include "formats/model/contact/surface_walk.hpp"
 
 namespace palpate::haptics {
 namespace {

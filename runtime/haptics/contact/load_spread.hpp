@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "formats/model/body.hpp"
-#include "formats/model/load_shares.hpp"
+#include "formats/model/contact/load_shares.hpp"
 
 namespace palpate::haptics {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the published contact allocates before the first tick.
-#include "formats/model/compliance_blocks.hpp"
+#include "formats/model/contact/compliance_blocks.hpp"
 #include "runtime/haptics/methods/published_contact.hpp"
 
 namespace palpate::haptics {

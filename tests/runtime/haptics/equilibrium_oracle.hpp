@@ -5,8 +5,8 @@
 #include <limits>
 #include <span>
 
-#include "formats/model/compliance_blocks.hpp"
-#include "formats/model/local_indentation.hpp"
+#include "formats/model/contact/compliance_blocks.hpp"
+#include "formats/model/contact/local_indentation.hpp"
 #include "runtime/collision/triangle_queries.hpp"
 #include "runtime/haptics/contact/load_spread.hpp"
 #include "tests/runtime/haptics/held_tool.hpp"

@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "formats/model/compliance_blocks.hpp"
+#include "formats/model/contact/compliance_blocks.hpp"
 #include "runtime/haptics/contact/load_spread.hpp"
 #include "runtime/haptics/haptic_model.hpp"
 #include "tests/formats/sample_case.hpp"

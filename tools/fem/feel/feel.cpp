@@ -10,7 +10,7 @@
 #include <map>
 #include <optional>
 
-#include "formats/model/surface_walk.hpp"
+#include "formats/model/contact/surface_walk.hpp"
 #include "tools/fem/feel/pressing.hpp"
 
 namespace palpate::fem {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "formats/model/compliance_blocks.hpp"
-#include "formats/model/local_indentation.hpp"
-#include "formats/model/surface_walk.hpp"
+#include "formats/model/contact/compliance_blocks.hpp"
+#include "formats/model/contact/local_indentation.hpp"
+#include "formats/model/contact/surface_walk.hpp"
 #include "tools/fem/solvers/dense_kernels.hpp"
 #include "tools/fem/solvers/free_system.hpp"
 #include "tools/fem/solvers/panel_solver.hpp"

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "formats/model/load_shares.hpp"
+#include "formats/model/contact/load_shares.hpp"
 
 namespace palpate::fem {
 

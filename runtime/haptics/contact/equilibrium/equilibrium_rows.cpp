@@ -5,7 +5,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "formats/model/local_indentation.hpp"
+#include "formats/model/contact/local_indentation.hpp"
 #include "runtime/haptics/contact/equilibrium/contact_equilibrium.hpp"
 
 namespace palpate::haptics {

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "formats/asset/asset.hpp"
-#include "formats/model/compliance_blocks.hpp"
+#include "formats/model/contact/compliance_blocks.hpp"
 #include "tests/tools/fem/certificate/direct_press.hpp"
 
 namespace {

@@ -3,7 +3,7 @@
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
-#include "formats/model/compliance_blocks.hpp"
+#include "formats/model/contact/compliance_blocks.hpp"
 #include "runtime/haptics/haptic_model.hpp"
 #include "tests/tools/fem/blocks.hpp"
 #include "tests/tools/fem/certificate/direct_press.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "formats/model/local_indentation.hpp"
+#include "formats/model/contact/local_indentation.hpp"
 
 #include <algorithm>
 #include <cmath>

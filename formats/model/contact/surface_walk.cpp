@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "formats/model/surface_walk.hpp"
+#include "formats/model/contact/surface_walk.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

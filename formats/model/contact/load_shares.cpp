@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "formats/model/load_shares.hpp"
+#include "formats/model/contact/load_shares.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "formats/model/surface_walk.hpp"
+#include "formats/model/contact/surface_walk.hpp"
 
 // A point force on a mesh of tetrahedra meets the mesh's compliance, which grows as 1 / h and changes with
 // the place between nodes, not the tissue's. So a contact's force f is spread over a disc of radius R of some
