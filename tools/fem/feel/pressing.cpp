@@ -20,6 +20,9 @@ using Eigen::Vector3d;
 // R / a at which s(F) is largest: F = 0.3701 E* R³ / r and Hertz's F = 4/3 E* a³ / r.
 constexpr double disc_in_contact_radii = 1.533;
 
+// How much wider than the mesh's a disc may be: a vertex' cost grows as the fourth power.
+constexpr double widest_disc = 3;
+
 }  // namespace
 
 Pressing pressing_of(const DeformableBody& body, double tool_radius, double depth) {
@@ -29,8 +32,9 @@ Pressing pressing_of(const DeformableBody& body, double tool_radius, double dept
                       .blocks = compliance_blocks(body),
                       .shares = {},
                       .normals = vertex_shapes(body.boundary.surface).normals};
-    pressing.disc =
-        widened(spread_disc(body, pressing.blocks), disc_in_contact_radii * std::sqrt(tool_radius * depth));
+    const SpreadDisc of_mesh = spread_disc(body, pressing.blocks);
+    pressing.disc = widened(of_mesh, std::min(disc_in_contact_radii * std::sqrt(tool_radius * depth),
+                                              widest_disc * of_mesh.reach));
     pressing.shares = load_shares(body, pressing.blocks, pressing.disc.reach);
     return pressing;
 }
