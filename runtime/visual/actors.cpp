@@ -79,16 +79,6 @@ vtkSmartPointer<vtkActor> actor(vtkPolyData* data, const Rgb& colour) {
     return result;
 }
 
-vtkSmartPointer<vtkActor> solid_actor(vtkPolyData* data, const Rgb& colour, const Rgb& inside) {
-    auto result = actor(data, colour);
-    vtkNew<vtkProperty> back;
-    paint(back, inside);
-    back->SetAmbient(1);
-    back->SetDiffuse(0);
-    result->SetBackfaceProperty(back);
-    return result;
-}
-
 void set_colour(vtkActor* actor, const Rgb& colour) {
     paint(actor->GetProperty(), colour);
 }

@@ -22,9 +22,6 @@ void vertex_normals(std::span<const Eigen::Vector3f> positions, std::span<const 
 /// nearest to the eye first, so that software rendering shades little that something else covers.
 vtkSmartPointer<vtkPolyData> poly_data(const TriangleMesh& surface, const Eigen::Vector3d& toward_eye);
 
-/// Draws `data` in one colour; where a cut shows its inside, flat in another, like solid matter.
-vtkSmartPointer<vtkActor> solid_actor(vtkPolyData* data, const Rgb& colour, const Rgb& inside);
-
 /// Draws `data` in one colour.
 vtkSmartPointer<vtkActor> actor(vtkPolyData* data, const Rgb& colour);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <vtkArrowSource.h>
+#include <vtkLight.h>
 #include <vtkLineSource.h>
 #include <vtkNew.h>
 #include <vtkProperty.h>
@@ -13,19 +14,24 @@
 
 #include "runtime/visual/actors.hpp"
 #include "runtime/visual/display_copy.hpp"
+#include "runtime/visual/tissue_actor.hpp"
 
 namespace palpate::visual {
 namespace {
 
 using Eigen::Vector3d;
 
-const Rgb bone(232, 219, 192), cut_bone(174, 160, 130);
 const Rgb blue(90, 170, 235), white(245, 245, 245), steel(150, 160, 170);
 
 // Green for little, yellow for half, red for the largest force.
 Rgb force_colour(double share) {
     const auto s = static_cast<float>(share);
     return s < 0.5F ? Rgb(90 + 330 * s, 210, 90) : Rgb(255, 370 - 320 * s, 60);
+}
+
+// Of tissue: seen as grain in the first view, whatever its scale.
+double grain_of(const Sight& sight) {
+    return sight.field / 220;
 }
 
 vtkSmartPointer<vtkActor> ball(double radius, const Rgb& colour, int resolution) {
@@ -50,7 +56,7 @@ Scene::Scene(const Case& patient_case, const Sight& sight, std::int64_t rigid_bu
     // What is near and small comes first: software rendering then shades little that is covered later.
     add_tool(renderer, front);
     for (const DeformableBody& body : patient_case.deformable_bodies)
-        soft_.emplace_back(body, sight.toward_eye, renderer);
+        soft_.emplace_back(body, sight.toward_eye, grain_of(sight), renderer);
     add_rigid(patient_case, sight, rigid_budget, renderer);
 }
 
@@ -63,7 +69,8 @@ void Scene::add_rigid(const Case& patient_case, const Sight& sight, std::int64_t
         const double share = static_cast<double>(body.surface.triangles.size()) / all;
         const auto own_budget = std::max(1LL, std::llround(share * static_cast<double>(budget)));
         const TriangleMesh copy = display_copy(body.surface, own_budget, sight.target, sight.field / 2);
-        rigid_.push_back(solid_actor(poly_data(copy, sight.toward_eye), bone, cut_bone));
+        rigid_.push_back(
+            tissue_actor(poly_data(copy, sight.toward_eye), tissue_look(body.name), grain_of(sight)));
         renderer->AddActor(rigid_.back());
     }
 }

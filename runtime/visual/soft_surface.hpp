@@ -6,18 +6,19 @@
 #include <vtkPoints.h>
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
-#include <vtkUnsignedCharArray.h>
 
 #include "formats/model/body.hpp"
 #include "runtime/visual/actors.hpp"
 
 namespace palpate::visual {
 
-/// A deformable body as the eye sees it: its surface moves with the displacements and warms up where they
-/// are large; what lies over an enclosed region is tinted with that region's colour.
+/// A deformable body as the eye sees it: its surface moves with the displacements. It looks like its largest
+/// region throughout: what it encloses is to be found by touch.
 class SoftSurface {
   public:
-    SoftSurface(const DeformableBody& body, const Eigen::Vector3d& toward_eye, vtkRenderer* renderer);
+    /// `grain`: as of tissue_actor().
+    SoftSurface(const DeformableBody& body, const Eigen::Vector3d& toward_eye, double grain,
+                vtkRenderer* renderer);
 
     /// Moves the surface; one displacement (mm) per surface vertex.
     void deform(const std::vector<Eigen::Vector3f>& displacements);
@@ -26,12 +27,10 @@ class SoftSurface {
 
   private:
     std::vector<Eigen::Vector3f> rest_;
-    std::vector<Eigen::Vector3f> rest_colours_;  // 0 ... 255
     std::vector<Triangle> triangles_;
     bool displaced_ = false;
     vtkSmartPointer<vtkPoints> points_;
     vtkSmartPointer<vtkFloatArray> normals_;
-    vtkSmartPointer<vtkUnsignedCharArray> colours_;
     vtkSmartPointer<vtkActor> actor_;
 };
 

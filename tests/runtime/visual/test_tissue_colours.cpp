@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <string>
+#include <vector>
+
+#include "runtime/visual/tissue_colours.hpp"
+
+namespace palpate {
+namespace {
+
+using visual::Rgb;
+using visual::tissue_look;
+
+bool look_alike(const std::string& a, const std::string& b) {
+    return tissue_look(a).colour == tissue_look(b).colour;
+}
+
+TEST(TissueColours, are_those_of_the_structure_however_its_name_is_written) {
+    for (const char* name : {"Kidney", "kidney_left", "Left Kidney", "KIDNEYS"})
+        EXPECT_TRUE(look_alike(name, "kidney")) << name;
+    EXPECT_TRUE(look_alike("vertebrae_L1", "bone"));
+    EXPECT_TRUE(look_alike("rib_left_3", "skull"));
+    EXPECT_TRUE(look_alike("inferior_vena_cava", "portal_vein_and_splenic_vein"));
+    EXPECT_TRUE(look_alike("gluteus_maximus_right", "muscle"));
+}
+
+TEST(TissueColours, the_last_word_that_is_known_counts) {
+    EXPECT_TRUE(look_alike("liver tumour", "tumor"));
+    EXPECT_TRUE(look_alike("kidney_cyst_left", "cyst"));
+    EXPECT_TRUE(look_alike("lung_vessels", "vessel"));
+    EXPECT_FALSE(look_alike("gallbladder", "urinary_bladder"));
+    EXPECT_FALSE(look_alike("masseter", "mass"));
+    EXPECT_FALSE(look_alike("hippocampus", "hip"));
+}
+
+// Relative luminance, ITU-R BT.709, of colours taken as linear.
+float luminance(const Rgb& colour) {
+    return 0.2126F * colour[0] + 0.7152F * colour[1] + 0.0722F * colour[2];
+}
+
+TEST(TissueColours, neighbours_differ_in_lightness_for_eyes_that_tell_few_hues) {
+    constexpr float seen = 15;  // of 255
+    const std::vector<std::pair<std::string, std::string>> neighbours{
+        {"liver", "kidney"},  {"liver", "gallbladder"}, {"liver", "tumour"},
+        {"wall", "tumour"},   {"wall", "skull"},        {"gallbladder", "kidney"},
+        {"spleen", "kidney"}, {"muscle", "fat"},        {"liver", "lung"}};
+    for (const auto& [a, b] : neighbours)
+        EXPECT_GT(std::abs(luminance(tissue_look(a).colour) - luminance(tissue_look(b).colour)), seen)
+            << a << ", " << b;
+}
+
+TEST(TissueColours, unknown_names_get_muted_ones_of_their_own) {
+    EXPECT_TRUE(look_alike("structure_x", "structure_x"));
+    EXPECT_FALSE(look_alike("structure_x", "structure_y"));
+    for (const char* name : {"structure_x", "structure_y", "", "42"}) {
+        const Rgb colour = tissue_look(name).colour;
+        EXPECT_GE(colour.minCoeff(), 60) << name;
+        EXPECT_LE(colour.maxCoeff(), 240) << name;
+        EXPECT_LT(colour.maxCoeff() - colour.minCoeff(), 110) << name;
+    }
+}
+
+}  // namespace
+}  // namespace palpate
