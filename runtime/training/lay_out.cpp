@@ -56,6 +56,15 @@ std::map<std::int32_t, RegionExtent> extents_of(const TetMesh& mesh) {
     return extents;
 }
 
+// The surface vertex where a region changes the stiffness most, if the case says so.
+std::optional<std::int32_t> felt_vertex(const DeformableBody& body, const std::string& region) {
+    if (!body.feel) return std::nullopt;
+    for (const FeltRegion& felt : body.feel->regions)
+        for (const Label& label : body.mesh.region_names)
+            if (label.value == felt.region && label.name == region) return felt.vertex;
+    return std::nullopt;
+}
+
 HiddenRegion place_above(const Case& patient_case, std::size_t body, const std::string& name,
                          const std::vector<std::int32_t>& nodes) {
     const DeformableBody& soft = patient_case.deformable_bodies[body - patient_case.rigid_bodies.size()];
@@ -64,12 +73,13 @@ HiddenRegion place_above(const Case& patient_case, std::size_t body, const std::
     middle /= static_cast<double>(nodes.size());
     const auto& vertices = soft.boundary.surface.vertices;
     HiddenRegion region{.name = name, .body = body, .above = middle};
-    double nearest = std::numeric_limits<double>::max();
-    for (const std::int32_t vertex : free_vertices(patient_case, body))
-        if (const double distance = (vertices[vertex] - middle).norm(); distance < nearest) {
-            nearest = distance;
-            region.above = vertices[vertex];
-        }
+    if (const auto felt = felt_vertex(soft, name)) {
+        region.above = vertices[*felt];
+    } else {
+        const auto free = free_vertices(patient_case, body);
+        region.above = vertices[*std::ranges::min_element(
+            free, {}, [&](std::int32_t vertex) { return (vertices[vertex] - middle).norm(); })];
+    }
     region.depth = std::numeric_limits<double>::max();
     for (const std::int32_t node : nodes)
         region.depth = std::min(region.depth, (soft.mesh.rest_positions[node] - region.above).norm());

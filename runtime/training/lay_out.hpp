@@ -17,11 +17,12 @@ namespace palpate::training {
 struct HiddenRegion {
     std::string name;
     std::size_t body = 0;   ///< as in HapticModel
-    Eigen::Vector3d above;  ///< the vertex of the free surface nearest to its middle, p_P, mm
+    Eigen::Vector3d above;  ///< the surface vertex that feels it most, p_P, mm
     double depth = 0;       ///< mm, from there to the nearest node of it
 };
 
-/// The regions of deformable bodies that are not a body's largest, by name.
+/// The regions of deformable bodies that are not a body's largest, by name. Where a case does not say what
+/// can be felt, the free surface vertex nearest to a region's middle stands for the one that feels it most.
 std::vector<HiddenRegion> hidden_regions(const Case& patient_case);
 
 /// Where a hand starts so that there is something to feel: within 15 to 35 mm of the first hidden region's

@@ -29,6 +29,7 @@
 #include "runtime/visual/pointer_hand.hpp"
 #include "runtime/visual/scene.hpp"
 #include "runtime/visual/surface_under.hpp"
+#include "runtime/visual/tool_shadow.hpp"
 #include "runtime/visual/view_control.hpp"
 
 namespace palpate::visual {
@@ -41,6 +42,7 @@ constexpr double step = 0.5;          // mm a key press
 constexpr double wheel_depth = 0.5;   // mm a notch
 constexpr double zoom_step = 1.15;    // a key press
 constexpr double zoom_pixels = 20;    // of a drag that zooms by one step
+constexpr double shadow_share = 0.3;  // of the field: how far the tool's shadow falls
 constexpr double clear_share = 0.04;  // of the field: what a cut leaves before the target
 constexpr double clear_radii = 3;     // tool radii that a cut leaves before the tool
 
@@ -72,6 +74,7 @@ struct TrainWindow::Parts {
           hand(window_settings.start, patient_case.haptics.tool_radius),
           rigid_count(patient_case.rigid_bodies.size()),
           scene(patient_case, window_settings.sight, window_settings.rigid_budget, renderer, front),
+          shadow(renderer),
           overlay(patient_case.name, patient_case.haptics.max_force, window_settings.cautions, front),
           lesson_scene(renderer),
           panel(front),
@@ -233,12 +236,16 @@ struct TrainWindow::Parts {
             zoom(notches);
     }
 
+    // What is drawn, at rest.
+    std::span<const collision::CollisionSurface* const> touchable() const {
+        return std::span(settings.surfaces).subspan(rigid_shown ? 0 : rigid_count);
+    }
+
     // Takes the tool towards what is under the pointer.
     void lead_hand() {
         const auto now = std::chrono::steady_clock::now();
         const double seconds = std::chrono::duration<double>(now - std::exchange(hand_led, now)).count();
-        const std::span<const collision::CollisionSurface* const> all = settings.surfaces;
-        const auto surfaces = rigid_shown ? all : all.subspan(rigid_count);
+        const auto surfaces = touchable();
         const PointerScene pointed{
             .under = [&](const Eigen::Vector2d& pixel) -> std::optional<SeenPoint> {
                 const auto [near, far] = segment_under(renderer, pixel.x(), pixel.y());
@@ -287,6 +294,7 @@ struct TrainWindow::Parts {
     vtkNew<vtkRenderWindowInteractor> interactor;
     vtkNew<vtkCallbackCommand> events;
     Scene scene;
+    ToolShadow shadow;
     Overlay overlay;
     Endoscope endoscope;
     LessonScene lesson_scene;
@@ -314,6 +322,8 @@ void TrainWindow::show(const VisualFrame& frame) {
     if (p.closed) return;
     p.lead_hand();
     p.scene.update(frame);
+    p.shadow.update(frame.tool_position, drop_mark(p.touchable(), frame.tool_position, p.tool_radius,
+                                                   shadow_share * p.settings.sight.field));
     p.scene.show_inside(p.cut);
     p.look(frame);
     p.overlay.update(frame, frames_per_second());
