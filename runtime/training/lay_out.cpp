@@ -143,6 +143,31 @@ std::vector<Vector3d> draw_marks(const ExerciseRecipe& recipe, const Case& patie
                         "", "ask for fewer ('count'), a wider 'spread_mm', or write 'places_mm'"});
 }
 
+// The place nearest to the one above a region, on its side, that the tool reaches.
+std::optional<TouchTarget> reached_nearest(const Case& patient_case, const HapticModel& model,
+                                           const HiddenRegion& region) {
+    const TriangleMesh& surface = session::surface_of(patient_case, region.body);
+    const Vector3d outward = model.surface(region.body).pseudonormal(region.above);
+    std::vector<std::int32_t> vertices = free_vertices(patient_case, region.body);
+    std::ranges::sort(vertices, {}, [&](std::int32_t vertex) {
+        return (surface.vertices[vertex] - region.above).squaredNorm();
+    });
+    for (const std::int32_t vertex : vertices)
+        if (auto target = reached(patient_case, model, region.body, surface.vertices[vertex], outward))
+            return target;
+    return std::nullopt;
+}
+
+// Whether the tool goes straight from over one place to over another.
+bool is_clear_between(const HapticModel& model, const TouchTarget& from, const TouchTarget& to) {
+    const double radius = model.settings().tool_radius;
+    const Vector3d a = session::start_outside(from.place, radius),
+                   b = session::start_outside(to.place, radius);
+    for (std::size_t body = 0; body < model.body_count(); ++body)
+        if (model.surface(body).sweep_sphere(a, b, radius)) return false;
+    return true;
+}
+
 // Along the surface from the start, step by step, as long as the tool comes there.
 std::vector<Vector3d> walk(const Case& patient_case, const HapticModel& model, const TouchTarget& start,
                            Vector3d way, double length) {
@@ -226,17 +251,21 @@ std::vector<HiddenRegion> hidden_regions(const Case& patient_case) {
 
 TouchTarget choose_start(const Case& patient_case, const HapticModel& model, const std::string& body_name,
                          std::uint64_t seed) {
-    constexpr double nearest = 15, farthest = 35;  // mm
+    constexpr double nearest = 0.07, farthest = 0.16;  // of the body's extent
     const TouchTarget usual = session::choose_touch_target(patient_case, model, body_name, std::nullopt);
     const std::vector<HiddenRegion> regions = hidden_regions(patient_case);
     const auto region = std::ranges::find(regions, usual.body, &HiddenRegion::body);
     if (region == regions.end()) return usual;
-    const auto above = session::touch_target_near(patient_case, model, region->body, region->above);
+    const auto above = reached_nearest(patient_case, model, *region);
     if (!above) return usual;
-    for (const Vector3d& place : places_around(patient_case, *above, farthest, seed)) {
-        if ((place - region->above).norm() < nearest) continue;
-        if (const auto start = reached(patient_case, model, region->body, place, above->place.normal))
-            return *start;
+    Eigen::AlignedBox3d box;
+    for (const Vector3d& vertex : session::surface_of(patient_case, region->body).vertices)
+        box.extend(vertex);
+    const double extent = box.diagonal().norm();
+    for (const Vector3d& place : places_around(patient_case, *above, farthest * extent, seed)) {
+        if ((place - region->above).norm() < nearest * extent) continue;
+        const auto start = reached(patient_case, model, region->body, place, above->place.normal);
+        if (start && is_clear_between(model, *start, *above)) return *start;
     }
     return *above;
 }

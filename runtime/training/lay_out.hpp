@@ -25,9 +25,10 @@ struct HiddenRegion {
 /// can be felt, the free surface vertex nearest to a region's middle stands for the one that feels it most.
 std::vector<HiddenRegion> hidden_regions(const Case& patient_case);
 
-/// Where a hand starts so that there is something to feel: within 15 to 35 mm of the first hidden region's
-/// place, on its side of the body, not above it; drawn by `seed`. Without a hidden region, or where the tool
-/// does not fit, as choose_touch_target(). Throws as that.
+/// Where a hand starts so that there is something to feel: 7 to 16 % of the body's extent beside the first
+/// hidden region's place, on its side of the body and straight in reach of it; drawn by `seed`. Above the
+/// region itself where no such place is found; without a hidden region, or where the tool does not fit there,
+/// as choose_touch_target(). Throws as that.
 session::TouchTarget choose_start(const Case& patient_case, const haptics::HapticModel& model,
                                   const std::string& body_name, std::uint64_t seed);
 
