@@ -5,7 +5,8 @@
 record_tables.py PROGRAM [--check]
 
 PROGRAM is record_tables, built from formats/records. Between `<!-- haptics keys: generated -->` and `<!-- end -->`
-stands the table `haptics` as keys of a case file; `attributes` and `columns` are of assets and recordings.
+stands the table `haptics` as keys of a case file; `attributes` and `columns` are of assets and recordings,
+`definitions` of what is measured.
 """
 import argparse
 import json
@@ -15,7 +16,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-MARKED = re.compile(r"(<!-- (\w+) (keys|attributes|columns): generated -->\n).*?(<!-- end -->)", re.DOTALL)
+MARKED = re.compile(r"(<!-- (\w+) (keys|attributes|columns|definitions): generated -->\n).*?(<!-- end -->)", re.DOTALL)
 
 
 def cell(text):
@@ -57,7 +58,14 @@ def columns(rows):
         yield f"| `{row['name']}` | {row['type']} | {cell(meaning_of(row))} |"
 
 
-FORMS = {"keys": keys, "attributes": attributes, "columns": columns}
+def definitions(rows):
+    yield "| metric | unit | what |"
+    yield "|---|---|---|"
+    for row in rows:
+        yield f"| `{row['key']}` | {row['unit']} | {cell(row['meaning'])} |"
+
+
+FORMS = {"keys": keys, "attributes": attributes, "columns": columns, "definitions": definitions}
 
 
 def filled(text, tables):

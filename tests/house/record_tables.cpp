@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// record_tables: the tables of formats/records as JSON, for docs/ and the specifications.
+// record_tables: the tables of formats/records, and that of metrics, as JSON, for docs/ and the specifications.
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -10,6 +10,7 @@
 #include "formats/records/material.hpp"
 #include "formats/records/quality_contract.hpp"
 #include "formats/records/tick_result.hpp"
+#include "runtime/training/metrics.hpp"
 
 namespace {
 using namespace palpate;
@@ -71,6 +72,7 @@ int main() {
                       {"device_limits", rows_of<DeviceLimits>(device_limit_fields)},
                       {"tick", rows_of<Tick>(tick_fields)},
                       {"contact", rows_of<Contact>(contact_fields)},
+                      {"metrics", rows_of<training::Metrics>(training::metric_fields)},
                       {"faults", fault_rows()}}
                      .dump(1)
               << '\n';
