@@ -76,7 +76,7 @@ class Report(SampleAsset):
                           "--stages", stages, "-o", out)
         self.assertEqual(run.returncode, 0, run.stderr)
         page = self.parsed(out)
-        self.assertEqual(page.sections, ["slices", "bodies", "mesh", "contract", "worst", "distances", "mechanics", "certificate", "touch", "stages",
+        self.assertEqual(page.sections, ["slices", "bodies", "mesh", "contract", "worst", "distances", "mechanics", "felt", "certificate", "touch", "stages",
                                          "provenance"])
         for reference in page.references:
             self.assertTrue(reference.startswith(("data:", "#")), reference[:80])
