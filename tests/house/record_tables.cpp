@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// record_tables: the tables of formats/records, and that of metrics, as JSON, for docs/ and the specifications.
+// record_tables: the tables of formats/records, and that of metrics, as JSON, for docs/ and the
+// specifications.
 #include <iostream>
 #include <nlohmann/json.hpp>
 
