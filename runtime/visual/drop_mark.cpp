@@ -12,7 +12,8 @@ using Eigen::Vector3d;
 
 std::optional<DropMark> drop_mark(std::span<const CollisionSurface* const> surfaces, const Vector3d& tool,
                                   double radius, double reach) {
-    constexpr double lift_radii = 0.12;  // above the surface, which the picture has only nearly
+    constexpr double touching_radii = 1.03;  // what a tool in contact keeps of a rigid surface
+    constexpr double lift_radii = 0.12;      // above the surface, which the picture has only nearly
     const CollisionSurface* below = nullptr;
     std::optional<collision::ClosestPoint> nearest;
     for (const CollisionSurface* surface : surfaces) {
@@ -21,7 +22,8 @@ std::optional<DropMark> drop_mark(std::span<const CollisionSurface* const> surfa
         nearest = found;
         below = surface;
     }
-    if (!nearest || nearest->distance <= radius || !below->is_outside(tool, *nearest)) return std::nullopt;
+    if (!nearest || nearest->distance <= touching_radii * radius || !below->is_outside(tool, *nearest))
+        return std::nullopt;
 
     const Vector3d normal = (tool - nearest->point).normalized();
     const Vector3d across = normal.unitOrthogonal(), other = normal.cross(across);

@@ -16,6 +16,7 @@ constexpr double sink_speed = 15, lift_speed = 40, travel_speed = 150, slide_spe
 constexpr double longest_frame = 0.08;  // s: a slow picture must not make long steps
 constexpr double pixel_step = 5;        // between two places that are looked up
 constexpr int most_lookups = 48;        // a frame
+constexpr double shortest_rest = 0.2;   // s over a place that only a jump leads to
 constexpr double shortest_jump = 8;     // mm between two neighbouring pixels: the surface ends between them
 
 double toward(double from, double to, double by) {
@@ -30,6 +31,7 @@ PointerHand::PointerHand(const Vector3d& start, double tool_radius)
 void PointerHand::point(const Vector2d& pixel) {
     pointer_ = pixel;
     led_ = seeking_ = true;
+    rested_ = 0;
 }
 
 void PointerHand::press(bool on) {
@@ -49,6 +51,7 @@ void PointerHand::put(const Vector3d& place) {
     place_ = place;
     led_ = false;
     view_changed();
+    found_ = false;
     anchor_.reset();
 }
 
@@ -89,17 +92,24 @@ void PointerHand::seek_next_pixel(const PointerScene& scene) {
         reached_ = pointer_;
     }
     const auto next = scene.under(*reached_);
+    found_ = false;
     if (!next) return;
     const Vector3d before = anchor_ ? anchor_->point : place_;
     if ((next->point - before).norm() > std::max(shortest_jump, 3 * radius_)) {
-        if (*reached_ != pointer_) return;  // what is only passed is not gone into
+        // What is only passed is not gone into.
+        if (*reached_ != pointer_ || rested_ < shortest_rest) {
+            reached_.reset();
+            return;
+        }
         go_around(*next, scene);
     }
     anchor_ = next;
+    found_ = true;
 }
 
 void PointerHand::advance(double seconds, const PointerScene& scene) {
     if (!led_) return;
+    rested_ += seconds;
     if (!pressed_) offset_ = toward(offset_, hover, seconds * lift_speed);
     double left = std::min(longest_frame, seconds);
     for (int lookups = 0; lookups < most_lookups;) {
@@ -121,10 +131,11 @@ void PointerHand::advance(double seconds, const PointerScene& scene) {
         }
         if (!seeking_ || (reached_ && *reached_ == pointer_)) break;
         seek_next_pixel(scene);
+        if (!reached_) break;
         ++lookups;
     }
     if (!anchor_ || !detour_.empty()) return;
-    if (pressed_) offset_ = toward(offset_, -depth_, seconds * sink_speed);
+    if (pressed_ && (found_ || offset_ < hover)) offset_ = toward(offset_, -depth_, seconds * sink_speed);
     place_ = goal();
 }
 

@@ -19,8 +19,8 @@ struct PointerScene {
 
 /// The hand as the mouse holds it: it hovers over the surface under the pointer; while the button is held it
 /// sinks to a depth below that surface, along its inward normal, and slides where the pointer is dragged. It
-/// never jumps: between two pixels it goes over every surface between them, and around what stands in its
-/// way, towards the eye.
+/// never jumps: it goes over the surface between two pixels, and where that ends, to what the pointer rests
+/// on behind the edge, around what stands in its way, towards the eye.
 class PointerHand {
   public:
     static constexpr double hover = 2;                           ///< mm, of the tool over the surface
@@ -58,9 +58,11 @@ class PointerHand {
     bool led_ = false;       // by the pointer, not by keys
     bool seeking_ = false;   // what is under it, which a new view leaves until it moves again
     bool pressed_ = false;
+    double rested_ = 0;  // s, the pointer
     Eigen::Vector2d pointer_ = Eigen::Vector2d::Zero();
     std::optional<Eigen::Vector2d> reached_;  // the pixel of anchor_ or of nothing
     std::optional<SeenPoint> anchor_;
+    bool found_ = false;                   // anchor_ at the last pixel
     std::vector<Eigen::Vector3d> detour_;  // places before the goal, the last one first
 };
 

@@ -127,6 +127,33 @@ TEST_F(PointerHandTest, stays_where_it_is_when_the_pointer_leaves_the_body) {
     EXPECT_EQ(hand.place(), before);
 }
 
+TEST_F(PointerHandTest, a_button_pressed_beside_every_body_presses_nothing) {
+    PointerHand hand({0, 0, 60}, tool_radius);
+    hand.point(pixel_over(5, 0));
+    settle(hand);
+    hand.point(pixel_over(90, 0));
+    hand.press(true);
+    for (const Vector3d& place : settle(hand))
+        EXPECT_NEAR(place.norm(), 20 + tool_radius + PointerHand::hover, facets);
+}
+
+TEST_F(PointerHandTest, goes_behind_an_edge_only_where_the_pointer_rests) {
+    const TriangleMesh behind = sample::sphere_surface({45, 0, -30}, 20, 4);
+    surfaces_.emplace_back(behind, sample::median_tree(behind, 4), "ball behind");
+    PointerHand hand({0, 0, 60}, tool_radius);
+    hand.point(pixel_over(0, 0));
+    hand.press(true);
+    settle(hand);
+    for (int x = 0; x <= 45; ++x) {  // a pixel step a frame, without a rest
+        hand.point(pixel_over(x, 0));
+        hand.advance(frame_s, scene());
+    }
+    EXPECT_LT(hand.place().x(), 21);
+    EXPECT_GT(hand.place().z(), -5);
+    settle(hand);
+    EXPECT_NEAR((hand.place() - Vector3d(45, 0, -30)).norm(), 20 + tool_radius - hand.depth(), facets);
+}
+
 TEST_F(PointerHandTest, a_new_view_lets_it_rise_but_takes_it_nowhere) {
     PointerHand hand({0, 0, 60}, tool_radius);
     hand.point(pixel_over(5, 0));
