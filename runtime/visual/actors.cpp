@@ -21,6 +21,19 @@ void paint(vtkProperty* property, const Rgb& colour) {
     property->SetColor(colour[0] / 255, colour[1] / 255, colour[2] / 255);
 }
 
+Eigen::Matrix3d turned_to(const Vector3d& way) {
+    return Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitX(), way).toRotationMatrix();
+}
+
+void place(vtkActor* actor, const Vector3d& origin, const Eigen::Matrix3d& axes) {
+    vtkNew<vtkMatrix4x4> matrix;
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column) matrix->SetElement(row, column, axes(row, column));
+        matrix->SetElement(row, 3, origin[row]);
+    }
+    actor->SetUserMatrix(matrix);
+}
+
 }  // namespace
 
 void vertex_normals(std::span<const Eigen::Vector3f> positions, std::span<const Triangle> triangles,
@@ -84,14 +97,12 @@ void set_colour(vtkActor* actor, const Rgb& colour) {
 }
 
 void place_along(vtkActor* actor, const Eigen::Vector3d& origin, const Eigen::Vector3d& way, double scale) {
-    const Eigen::Matrix3d axes =
-        scale * Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), way).toRotationMatrix();
-    vtkNew<vtkMatrix4x4> matrix;
-    for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 3; ++column) matrix->SetElement(row, column, axes(row, column));
-        matrix->SetElement(row, 3, origin[row]);
-    }
-    actor->SetUserMatrix(matrix);
+    place(actor, origin, turned_to(way) * scale);
+}
+
+void stretch_between(vtkActor* actor, const Eigen::Vector3d& a, const Eigen::Vector3d& b, double width) {
+    const double length = (b - a).norm();
+    place(actor, a, turned_to((b - a) / length) * Vector3d(length, width, width).asDiagonal());
 }
 
 }  // namespace palpate::visual

@@ -30,4 +30,8 @@ void set_colour(vtkActor* actor, const Rgb& colour);
 /// Places what was modelled along the x axis: turned to `way` (unit), scaled, its origin at `origin`.
 void place_along(vtkActor* actor, const Eigen::Vector3d& origin, const Eigen::Vector3d& way, double scale);
 
+/// Stretches what was modelled along the x axis, 1 long and 1 wide, from `a` to `b` (mm), and makes it
+/// `width` (mm) wide.
+void stretch_between(vtkActor* actor, const Eigen::Vector3d& a, const Eigen::Vector3d& b, double width);
+
 }  // namespace palpate::visual

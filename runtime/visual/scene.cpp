@@ -4,10 +4,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vtkArrowSource.h>
-#include <vtkLight.h>
+#include <vtkCellArray.h>
 #include <vtkLineSource.h>
 #include <vtkNew.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
 #include <vtkProperty.h>
 #include <vtkSphereSource.h>
 #include <vtkTubeFilter.h>
@@ -41,6 +44,25 @@ vtkSmartPointer<vtkActor> ball(double radius, const Rgb& colour, int resolution)
     sphere->SetPhiResolution(resolution);
     sphere->Update();
     return actor(sphere->GetOutput(), colour);
+}
+
+// A coil along the x axis, 1 long and 1 wide.
+vtkSmartPointer<vtkActor> coil(const Rgb& colour) {
+    constexpr int turns = 7, steps = 14 * turns;
+    vtkNew<vtkPoints> points;
+    vtkNew<vtkCellArray> line;
+    line->InsertNextCell(steps + 1);
+    for (int i = 0; i <= steps; ++i) {
+        const double share = static_cast<double>(i) / steps, angle = 2 * std::numbers::pi * turns * share;
+        line->InsertCellPoint(points->InsertNextPoint(share, std::cos(angle) / 2, std::sin(angle) / 2));
+    }
+    vtkNew<vtkPolyData> data;
+    data->SetPoints(points);
+    data->SetLines(line);
+    auto result = actor(data, colour);
+    result->GetProperty()->LightingOff();
+    result->GetProperty()->SetLineWidth(2);
+    return result;
 }
 
 }  // namespace
@@ -101,14 +123,19 @@ void Scene::add_tool(vtkRenderer* renderer, vtkRenderer* front) {
     arrow_ = actor(arrow->GetOutput(), white);
     arrow_->GetProperty()->SetAmbient(0.4);
     for (const auto& part : {tool_, shaft_}) renderer->AddActor(part);
-    for (const auto& part : {device_, arrow_}) front->AddActor(part);
+    spring_ = coil(white);
+    for (const auto& part : {device_, arrow_, spring_}) front->AddActor(part);
 }
 
 void Scene::update(const VisualFrame& frame) {
+    constexpr double spring_share = 0.05;  // of the tool's radius: a shorter spring is not seen
     for (std::size_t i = 0; i < soft_.size(); ++i) soft_[i].deform(frame.displacements[i]);
     place_along(tool_, frame.tool_position, Vector3d::UnitX(), 1);
     place_along(device_, frame.device_position, Vector3d::UnitX(), 1);
     place_along(shaft_, frame.tool_position, shaft_way_, 1);
+    const bool stretched = (frame.device_position - frame.tool_position).norm() > spring_share * tool_radius_;
+    spring_->SetVisibility(stretched);
+    if (stretched) stretch_between(spring_, frame.tool_position, frame.device_position, 0.7 * tool_radius_);
 
     constexpr double felt = 0.01;  // N
     const double newtons = frame.force.norm();

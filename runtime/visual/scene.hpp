@@ -39,7 +39,7 @@ class Scene {
     Eigen::Vector3d shaft_way_;  // unit, from the tool to the hand
     std::vector<SoftSurface> soft_;
     std::vector<vtkSmartPointer<vtkActor>> rigid_;
-    vtkSmartPointer<vtkActor> tool_, shaft_, device_, arrow_;
+    vtkSmartPointer<vtkActor> tool_, shaft_, device_, arrow_, spring_;
 };
 
 }  // namespace palpate::visual
