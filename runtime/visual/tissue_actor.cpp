@@ -53,7 +53,7 @@ void roughen(vtkActor* actor, double grain, double wetness) {
     shader->AddVertexShaderReplacement(
         "//VTK::Normal::Impl", true,
         fmt::format("//VTK::Normal::Impl\n  tissueShadeVS = tissueShade;\n"
-                    "  tissuePlaceVS = vertexMC.xyz * {:.6f} + 9.0 * tissueShade;\n",
+                    "  tissuePlaceVS = vertexMC.xyz * {:.6f} + vec3(23.0, -17.0, 11.0) * tissueShade;\n",
                     1 / grain),
         false);
     shader->AddFragmentShaderReplacement(
