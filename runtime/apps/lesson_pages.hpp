@@ -6,7 +6,7 @@
 
 #include "runtime/training/attempt_record.hpp"
 #include "runtime/training/lesson.hpp"
-#include "runtime/visual/lesson_view.hpp"
+#include "runtime/visual/lesson/lesson_view.hpp"
 
 namespace palpate::apps {
 

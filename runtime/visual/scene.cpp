@@ -16,8 +16,8 @@
 #include <vtkTubeFilter.h>
 
 #include "runtime/visual/actors.hpp"
-#include "runtime/visual/display_copy.hpp"
-#include "runtime/visual/tissue_actor.hpp"
+#include "runtime/visual/bodies/display_copy.hpp"
+#include "runtime/visual/bodies/tissue_actor.hpp"
 
 namespace palpate::visual {
 namespace {

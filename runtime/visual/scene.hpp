@@ -7,8 +7,8 @@
 #include <vtkSmartPointer.h>
 
 #include "formats/model/body.hpp"
+#include "runtime/visual/bodies/soft_surface.hpp"
 #include "runtime/visual/sight.hpp"
-#include "runtime/visual/soft_surface.hpp"
 #include "runtime/visual/visual_frame.hpp"
 
 namespace palpate::visual {

@@ -23,14 +23,14 @@
 
 #include "formats/model/errors.hpp"
 #include "runtime/visual/endoscope.hpp"
-#include "runtime/visual/lesson_panel.hpp"
-#include "runtime/visual/lesson_scene.hpp"
+#include "runtime/visual/hand/pointer_hand.hpp"
+#include "runtime/visual/hand/surface_under.hpp"
+#include "runtime/visual/hand/view_control.hpp"
+#include "runtime/visual/lesson/lesson_panel.hpp"
+#include "runtime/visual/lesson/lesson_scene.hpp"
 #include "runtime/visual/overlay.hpp"
-#include "runtime/visual/pointer_hand.hpp"
 #include "runtime/visual/scene.hpp"
-#include "runtime/visual/surface_under.hpp"
 #include "runtime/visual/tool_shadow.hpp"
-#include "runtime/visual/view_control.hpp"
 
 namespace palpate::visual {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "runtime/visual/lesson_view.hpp"
+#include "runtime/visual/lesson/lesson_view.hpp"
 
 namespace palpate::visual {
 

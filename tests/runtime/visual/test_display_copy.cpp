@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "formats/model/errors.hpp"
-#include "runtime/visual/display_copy.hpp"
+#include "runtime/visual/bodies/display_copy.hpp"
 #include "tests/formats/sample_case.hpp"
 
 namespace palpate {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <vector>
 
-#include "runtime/visual/pointer_hand.hpp"
+#include "runtime/visual/hand/pointer_hand.hpp"
 #include "tests/formats/sample_case.hpp"
 
 namespace palpate {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/visual/tissue_colours.hpp"
+#include "runtime/visual/bodies/tissue_colours.hpp"
 
 namespace palpate {
 namespace {

@@ -3,52 +3,17 @@
 
 import json
 import os
-import pathlib
-import shutil
 import signal
 import subprocess
 import time
 import unittest
 
-from sample_asset import SampleAsset
+from x_server import TRAIN, TrainerCase
 
-TRAIN = pathlib.Path(os.environ["PALPATE_BIN"]) / "palpate-train"
 ON_THE_ORGAN, BESIDE_THE_ORGAN = (760, 250), (150, 300)  # pixels of the first view
-NEEDED = ("Xvfb", "xdotool", "xwd", "convert")
 
 
-class XServer:
-    """An Xvfb of our own; -noreset keeps it when its last client leaves."""
-
-    def __enter__(self):
-        reader, writer = os.pipe()
-        self.process = subprocess.Popen(
-            ["Xvfb", "-displayfd", str(writer), "-screen", "0", "1400x800x24", "-nolisten", "tcp", "-noreset"],
-            pass_fds=[writer],
-            stderr=subprocess.DEVNULL,
-        )
-        os.close(writer)
-        with os.fdopen(reader) as stream:
-            self.environment = dict(os.environ, DISPLAY=":" + stream.readline().strip())
-        return self
-
-    def __exit__(self, *_):
-        self.process.terminate()
-        self.process.wait()
-
-
-@unittest.skipUnless(TRAIN.exists(), "PALPATE_VISUAL is off")
-@unittest.skipUnless(all(map(shutil.which, NEEDED)), "PALPATE: xvfb, xdotool, x11-apps or imagemagick is missing")
-class Train(SampleAsset):
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        cls.server = XServer().__enter__()
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.server.__exit__()
-
+class Train(TrainerCase):
     def run_train(self, *options, environment=None):
         return subprocess.run(
             [TRAIN, *map(str, options)],
@@ -57,12 +22,6 @@ class Train(SampleAsset):
             timeout=60,
             env=environment or self.server.environment,
         )
-
-    def x(self, *command):
-        run = subprocess.run(
-            [*map(str, command)], env=self.server.environment, check=True, capture_output=True, timeout=60
-        )
-        return run.stdout
 
     def open_window(self, *options):
         """Starts the trainer and returns its process and the id of its window, which has the focus."""
@@ -75,10 +34,9 @@ class Train(SampleAsset):
         )
         self.addCleanup(process.communicate)
         self.addCleanup(process.kill)
-        window = self.x("xdotool", "search", "--sync", "--onlyvisible", "--name", "Palpate: sample").split()[0]
-        window = window.decode()
-        self.x("xdotool", "windowfocus", "--sync", window)
+        window = self.find_window()
         self.x("xdotool", "mousemove", "--window", window, *BESIDE_THE_ORGAN)
+        self.x("xdotool", "key", "BackSpace")  # leave the start page
         time.sleep(0.5)
         return process, window
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/visual/tissue_actor.hpp"
+#include "runtime/visual/bodies/tissue_actor.hpp"
 
 #include <fmt/format.h>
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/visual/lesson_scene.hpp"
+#include "runtime/visual/lesson/lesson_scene.hpp"
 
 #include <algorithm>
 #include <vtkCellArray.h>

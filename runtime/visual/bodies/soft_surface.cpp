@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/visual/soft_surface.hpp"
+#include "runtime/visual/bodies/soft_surface.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <string>
 #include <vtkPointData.h>
 
-#include "runtime/visual/tissue_actor.hpp"
+#include "runtime/visual/bodies/tissue_actor.hpp"
 
 namespace palpate::visual {
 namespace {

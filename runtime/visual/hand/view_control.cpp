@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/visual/view_control.hpp"
+#include "runtime/visual/hand/view_control.hpp"
 
 #include <Eigen/Geometry>
 #include <cmath>

@@ -3,15 +3,11 @@
 
 import json
 import math
-import os
-import pathlib
-import shutil
 import subprocess
 import time
 import unittest
 
-from sample_asset import SampleAsset
-from test_train import NEEDED, TRAIN, XServer
+from x_server import TRAIN, TrainerCase
 
 RADIUS = 1.5  # mm, of the sample's tool; the cube's free top is at z = 20 mm
 
@@ -33,15 +29,7 @@ def following(line, depth, aside=0.0):
     return rows
 
 
-@unittest.skipUnless(TRAIN.exists(), "PALPATE_VISUAL is off")
-@unittest.skipUnless(all(map(shutil.which, NEEDED)), "PALPATE: xvfb, xdotool, x11-apps or imagemagick is missing")
-class Exercises(SampleAsset):
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        cls.server = XServer().__enter__()
-        cls.addClassCleanup(cls.server.__exit__)
-
+class Exercises(TrainerCase):
     def setUp(self):
         self.attempts = self.folder / self.id()
 
@@ -68,10 +56,6 @@ class Exercises(SampleAsset):
     def laid_out(self, exercise, *options):
         return self.with_hand(exercise, [(0, 50, 50, 50), (0.1, 50, 50, 50)], *options)["exercise"]
 
-    def x(self, *command):
-        run = subprocess.run([*map(str, command)], env=self.server.environment, check=True, capture_output=True, timeout=60)
-        return run.stdout.decode()
-
     def open_window(self, *options):
         process = subprocess.Popen(
             self.command(*options),
@@ -82,9 +66,7 @@ class Exercises(SampleAsset):
         )
         self.addCleanup(process.communicate)
         self.addCleanup(process.kill)
-        window = self.x("xdotool", "search", "--sync", "--onlyvisible", "--name", "Palpate: sample").split()[0]
-        self.x("xdotool", "windowfocus", "--sync", window)
-        self.x("xdotool", "mousemove", "--window", window, 640, 360)
+        window = self.find_window()
         time.sleep(0.5)
         return process, window
 

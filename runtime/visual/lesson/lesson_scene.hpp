@@ -5,7 +5,7 @@
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
 
-#include "runtime/visual/lesson_view.hpp"
+#include "runtime/visual/lesson/lesson_view.hpp"
 
 namespace palpate::visual {
 

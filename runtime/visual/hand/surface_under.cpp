@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/visual/surface_under.hpp"
+#include "runtime/visual/hand/surface_under.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

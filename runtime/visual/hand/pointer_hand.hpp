@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "runtime/visual/surface_under.hpp"
+#include "runtime/visual/hand/surface_under.hpp"
 
 namespace palpate::visual {
 

@@ -12,7 +12,7 @@
 #include <vtkSmartPointer.h>
 #include <vtkTextActor.h>
 
-#include "runtime/visual/lesson_view.hpp"
+#include "runtime/visual/lesson/lesson_view.hpp"
 
 namespace palpate::visual {
 

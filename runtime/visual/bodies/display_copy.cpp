@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/visual/display_copy.hpp"
+#include "runtime/visual/bodies/display_copy.hpp"
 
 #include <algorithm>
 #include <cmath>

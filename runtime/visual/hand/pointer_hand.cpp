@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/visual/pointer_hand.hpp"
+#include "runtime/visual/hand/pointer_hand.hpp"
 
 #include <algorithm>
 #include <utility>

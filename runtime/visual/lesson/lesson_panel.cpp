@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/visual/lesson_panel.hpp"
+#include "runtime/visual/lesson/lesson_panel.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: Apache-2.0
+"""An X server of a test's own, in which the trainer's window is driven as a person would."""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import unittest
+
+sys.path.insert(0, f"{os.environ['PALPATE_SOURCE']}/tests/commands")
+from sample_asset import SampleAsset  # noqa: E402
+
+TRAIN = pathlib.Path(os.environ["PALPATE_BIN"]) / "palpate-train"
+NEEDED = ("Xvfb", "xdotool", "xwd", "convert")
+
+
+class XServer:
+    """An Xvfb of our own; -noreset keeps it when its last client leaves."""
+
+    def __enter__(self):
+        reader, writer = os.pipe()
+        self.process = subprocess.Popen(
+            ["Xvfb", "-displayfd", str(writer), "-screen", "0", "1400x800x24", "-nolisten", "tcp", "-noreset"],
+            pass_fds=[writer],
+            stderr=subprocess.DEVNULL,
+        )
+        os.close(writer)
+        with os.fdopen(reader) as stream:
+            self.environment = dict(os.environ, DISPLAY=":" + stream.readline().strip())
+        return self
+
+    def __exit__(self, *_):
+        self.process.terminate()
+        self.process.wait()
+
+
+@unittest.skipUnless(TRAIN.exists(), "PALPATE_VISUAL is off")
+@unittest.skipUnless(all(map(shutil.which, NEEDED)), "PALPATE: xvfb, xdotool, x11-apps or imagemagick is missing")
+class TrainerCase(SampleAsset):
+    """Gives its tests `server`, in whose display the trainer runs."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.server = XServer().__enter__()
+        cls.addClassCleanup(cls.server.__exit__)
+
+    def x(self, *command):
+        run = subprocess.run(
+            [*map(str, command)], env=self.server.environment, check=True, capture_output=True, timeout=60
+        )
+        return run.stdout
+
+    def find_window(self):
+        """The id of the trainer's window, which has the focus and the pointer in its middle."""
+        window = self.x("xdotool", "search", "--sync", "--onlyvisible", "--name", "Palpate: sample").split()[0]
+        window = window.decode()
+        self.x("xdotool", "windowfocus", "--sync", window)
+        self.x("xdotool", "mousemove", "--window", window, 640, 360)
+        return window
