@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vtkArrowSource.h>
@@ -18,6 +19,7 @@
 #include "runtime/visual/actors.hpp"
 #include "runtime/visual/bodies/display_copy.hpp"
 #include "runtime/visual/bodies/tissue_actor.hpp"
+#include "runtime/visual/region_surface.hpp"
 
 namespace palpate::visual {
 namespace {
@@ -80,6 +82,7 @@ Scene::Scene(const Case& patient_case, const Sight& sight, std::int64_t rigid_bu
     for (const DeformableBody& body : patient_case.deformable_bodies)
         soft_.emplace_back(body, sight.toward_eye, grain_of(sight), renderer);
     add_rigid(patient_case, sight, rigid_budget, renderer);
+    add_regions(patient_case, sight, front);
 }
 
 void Scene::add_rigid(const Case& patient_case, const Sight& sight, std::int64_t budget,
@@ -95,6 +98,25 @@ void Scene::add_rigid(const Case& patient_case, const Sight& sight, std::int64_t
             tissue_actor(poly_data(copy, sight.toward_eye), tissue_look(body.name), grain_of(sight)));
         renderer->AddActor(rigid_.back());
     }
+}
+
+void Scene::add_regions(const Case& patient_case, const Sight& sight, vtkRenderer* front) {
+    // Yellow, reddish purple, bluish green: told apart by colour-blind people too (Okabe, Ito 2008).
+    const std::array<Rgb, 3> colours{Rgb(240, 228, 66), Rgb(204, 121, 167), Rgb(0, 158, 115)};
+    for (const DeformableBody& body : patient_case.deformable_bodies)
+        for (const Label& label : enclosed_regions(body.mesh)) {
+            const auto surface = region_surface(body.mesh, label.value);
+            const Rgb& colour = colours[regions_.size() % colours.size()];
+            regions_.push_back(actor(poly_data(surface, sight.toward_eye), colour));
+            regions_.back()->GetProperty()->BackfaceCullingOn();
+            regions_.back()->VisibilityOff();
+            front->AddActor(regions_.back());
+            region_names_ += (region_names_.empty() ? "" : ", ") + label.name;
+        }
+}
+
+void Scene::show_regions(bool on) {
+    for (const auto& region : regions_) region->SetVisibility(on);
 }
 
 void Scene::add_tool(vtkRenderer* renderer, vtkRenderer* front) {
@@ -139,6 +161,7 @@ void Scene::update(const VisualFrame& frame) {
 
     constexpr double felt = 0.01;  // N
     const double newtons = frame.force.norm();
+    for (const auto& region : regions_) region->GetProperty()->SetOpacity(newtons > felt ? 0.3 : 0.6);
     arrow_->SetVisibility(newtons > felt);
     if (newtons <= felt) return;
     const double share = std::min(1.0, newtons / max_force_);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 #include <vtkActor.h>
 #include <vtkRenderer.h>
@@ -25,11 +26,18 @@ class Scene {
     void show_rigid(bool on);
     /// Draws the tool, or leaves it out where the eye is in it.
     void show_tool(bool on);
+    /// Shows what deformable bodies enclose, as translucent bodies seen through all others; hidden at first.
+    /// They keep their rest shape, for a compliance says nothing of a body's inside; while the surface over
+    /// them is displaced they are fainter.
+    void show_regions(bool on);
+    /// Their names, "tumour, cyst"; empty where nothing is enclosed.
+    const std::string& region_names() const { return region_names_; }
     /// Tells whether a cut may show bodies from inside; where none does, their far sides are not drawn.
     void show_inside(bool on);
 
   private:
     void add_rigid(const Case& patient_case, const Sight& sight, std::int64_t budget, vtkRenderer* renderer);
+    void add_regions(const Case& patient_case, const Sight& sight, vtkRenderer* front);
     void add_tool(vtkRenderer* renderer, vtkRenderer* front);
 
     double tool_radius_;         // mm
@@ -38,7 +46,8 @@ class Scene {
     double shaft_length_;        // mm
     Eigen::Vector3d shaft_way_;  // unit, from the tool to the hand
     std::vector<SoftSurface> soft_;
-    std::vector<vtkSmartPointer<vtkActor>> rigid_;
+    std::vector<vtkSmartPointer<vtkActor>> rigid_, regions_;
+    std::string region_names_;
     vtkSmartPointer<vtkActor> tool_, shaft_, device_, arrow_, spring_;
 };
 
