@@ -291,7 +291,8 @@ int main(int argc, char** argv) {
              "presses. Without a button W, S and the arrow keys step. Drag with the right button to turn the "
              "view, with the middle one or Shift and left to shift it, with Ctrl and left to roll it; the "
              "wheel, + and - zoom, C cuts the bodies open, B hides the rigid ones, I shows and hides "
-             "how the case was made, R goes back to the start, H hides the hints, Q or Escape closes. The "
+             "how the case was made, T shows what they enclose, P saves a picture in this folder, R goes "
+             "back to the start, H hides the hints, Q or Escape closes. The "
              "window needs an X display; on a machine "
              "without one use 'xvfb-run'.\n"
              "With --device " +

@@ -2,6 +2,7 @@
 #include "runtime/visual/overlay.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <vtkActor2D.h>
 #include <vtkCellArray.h>
@@ -13,6 +14,7 @@
 #include <vtkRenderer.h>
 #include <vtkTextActor.h>
 #include <vtkTextProperty.h>
+#include <vtkWindow.h>
 
 #include "formats/records/fault.hpp"
 #include "formats/records/tick_result.hpp"
@@ -25,33 +27,17 @@ constexpr double bar_width = 240, bar_height = 10;
 constexpr auto help_text =
     "left button  press      held, wheel or W S  deeper, back      W S, arrows  move the tool\n"
     "right drag  turn      middle drag  move the view      wheel, + -  zoom      R  reset      Q  quit\n"
-    "C  cut away      B  bone      I  about this case      H  help";
+    "C  cut away      B  bone      T  enclosed regions      P  picture      I  about this case      H  help";
 constexpr std::size_t cautions_width = 64;  // characters
-constexpr double cautions_room = 460;       // pixels that so many take, mostly
+constexpr double cautions_room = 460;       // pixels that so many take, mostly, at 1280x720
 
-void place(vtkTextActor* actor, double x, double y, int size, bool right, bool top, vtkRenderer* renderer) {
-    actor->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
-    actor->SetPosition(x, y);
-    vtkTextProperty* text = actor->GetTextProperty();
-    text->SetFontFamilyToArial();
-    text->SetFontSize(size);
-    text->SetColor(0.93, 0.95, 0.97);
-    text->SetLineSpacing(1.25);
-    text->SetBackgroundColor(0.05, 0.07, 0.09);
-    text->SetBackgroundOpacity(0.55);
-    if (right) text->SetJustificationToRight();
-    if (top) text->SetVerticalJustificationToTop();
-    renderer->AddActor2D(actor);
-}
-
-// So many pixels: lines that start below each other, at the right of a window of any size.
-void start_left_of_its_place(vtkTextActor* actor, double pixels) {
+// Lines that start below each other, at the right of a window of any size.
+void start_left_of_its_place(vtkTextActor* actor) {
     vtkNew<vtkCoordinate> right;
     right->SetCoordinateSystemToNormalizedViewport();
     right->SetValue(actor->GetPosition());
     actor->GetPositionCoordinate()->SetReferenceCoordinate(right);
     actor->GetPositionCoordinate()->SetCoordinateSystemToViewport();
-    actor->SetPosition(-pixels, 0);
 }
 
 void make_bar(vtkActor2D* actor, vtkPoints* points, double opacity, vtkRenderer* renderer) {
@@ -70,12 +56,12 @@ void make_bar(vtkActor2D* actor, vtkPoints* points, double opacity, vtkRenderer*
     renderer->AddActor2D(actor);
 }
 
-void set_length(vtkPoints* points, double length) {
+void set_size(vtkPoints* points, double length, double height) {
     points->SetNumberOfPoints(4);
     points->SetPoint(0, 0, 0, 0);
     points->SetPoint(1, length, 0, 0);
-    points->SetPoint(2, length, bar_height, 0);
-    points->SetPoint(3, 0, bar_height, 0);
+    points->SetPoint(2, length, height, 0);
+    points->SetPoint(3, 0, height, 0);
     points->Modified();
 }
 
@@ -93,23 +79,26 @@ std::string notice_of(const VisualFrame& frame) {
     return notice;
 }
 
+double display_scale(int width, int height) {
+    constexpr double smallest = 0.7;
+    return std::max(smallest, std::min(width / 1280.0, height / 720.0));
+}
+
 Overlay::Overlay(const std::string& title, double max_force, std::span<const std::string> cautions,
                  vtkRenderer* renderer)
-    : max_force_(max_force) {
-    vtkNew<vtkPoints> whole;
-    set_length(whole, bar_width);
-    set_length(bar_points_, 0);
-    make_bar(bar_frame_, whole, 0.3, renderer);
+    : renderer_(renderer), max_force_(max_force) {
+    make_bar(bar_frame_, whole_bar_points_, 0.3, renderer);
     make_bar(bar_, bar_points_, 1, renderer);
-    place(force_, 0.017, 0.975, 30, false, true, renderer);
-    place(figures_, 0.017, 0.865, 16, false, true, renderer);
-    place(title_, 0.983, 0.975, 18, true, true, renderer);
-    place(help_, 0.017, 0.025, 14, false, false, renderer);
-    place(notice_, 0.5, 0.86, 20, false, true, renderer);
+    place(force_, 0.017, 0.975, 30, false, true);
+    place(figures_, 0.017, 0.865, 16, false, true);
+    place(title_, 0.983, 0.975, 18, true, true);
+    place(help_, 0.017, 0.025, 14, false, false);
+    place(told_, 0.983, 0.025, 16, true, false);
+    place(notice_, 0.5, 0.86, 20, false, true);
     notice_->GetTextProperty()->SetJustificationToCentered();
     notice_->GetTextProperty()->SetColor(1, 0.75, 0.3);
-    place(cautions_, 0.983, 0.92, 14, false, true, renderer);
-    start_left_of_its_place(cautions_, cautions_room);
+    place(cautions_, 0.983, 0.92, 14, false, true);
+    start_left_of_its_place(cautions_);
     title_->SetInput(title.c_str());
     const std::string text = cautions_text(cautions, cautions_width);
     cautions_->SetInput(text.empty() ? "nothing is noted about how this case was made" : text.c_str());
@@ -119,8 +108,35 @@ Overlay::Overlay(const std::string& title, double max_force, std::span<const std
     help_->GetTextProperty()->SetOpacity(0.75);
 }
 
+void Overlay::place(vtkTextActor* actor, double x, double y, int size, bool right, bool top) {
+    actor->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
+    actor->SetPosition(x, y);
+    vtkTextProperty* text = actor->GetTextProperty();
+    text->SetFontFamilyToArial();
+    text->SetColor(0.93, 0.95, 0.97);
+    text->SetLineSpacing(1.25);
+    text->SetBackgroundColor(0.05, 0.07, 0.09);
+    text->SetBackgroundOpacity(0.55);
+    if (right) text->SetJustificationToRight();
+    if (top) text->SetVerticalJustificationToTop();
+    texts_.push_back({actor, size});
+    renderer_->AddActor2D(actor);
+}
+
+void Overlay::fit_window() {
+    const int* size = renderer_->GetVTKWindow()->GetSize();
+    const double scale = display_scale(size[0], size[1]);
+    if (scale == scale_) return;
+    scale_ = scale;
+    for (const SizedText& text : texts_)
+        text.actor->GetTextProperty()->SetFontSize(static_cast<int>(std::lround(scale * text.size)));
+    cautions_->SetPosition(-scale * cautions_room, 0);
+    set_size(whole_bar_points_, scale * bar_width, scale * bar_height);
+}
+
 void Overlay::update(const VisualFrame& frame, double frames_per_second) {
     using namespace std::chrono_literals;
+    fit_window();
     const double newtons = frame.force.norm();
     if (newtons > 0 && !was_touched_) {
         was_touched_ = true;
@@ -128,18 +144,25 @@ void Overlay::update(const VisualFrame& frame, double frames_per_second) {
         show_texts();
     }
     const double share = std::min(1.0, newtons / max_force_);
-    set_length(bar_points_, bar_width * share);
+    set_size(bar_points_, scale_ * bar_width * share, scale_ * bar_height);
     bar_->GetProperty()->SetColor(share < 0.5 ? 0.35 + 1.3 * share : 1,
                                   share < 0.5 ? 0.82 : 1.64 - 1.64 * share, 0.3);
     const auto now = std::chrono::steady_clock::now();
     if (now - last_ < 200ms) return;
     last_ = now;
+    told_->SetVisibility(now < told_until_);
     force_->SetInput(fmt::format("{:.2f} N", newtons).c_str());
     figures_->SetInput(fmt::format("depth {:.1f} mm\n{:.0f} ticks/s, {} overruns\n{:.0f} frames/s",
                                    std::max(0.0, frame.depth), frame.tick_rate_hz, frame.overruns,
                                    frames_per_second)
                            .c_str());
     notice_->SetInput(notice_of(frame).c_str());
+}
+
+void Overlay::tell(const std::string& sentence) {
+    told_->SetInput(sentence.c_str());
+    told_->VisibilityOn();
+    told_until_ = std::chrono::steady_clock::now() + std::chrono::seconds(4);
 }
 
 void Overlay::show_help(bool on) {

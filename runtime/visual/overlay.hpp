@@ -3,6 +3,7 @@
 #include <chrono>
 #include <span>
 #include <string>
+#include <vector>
 #include <vtkActor2D.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
@@ -17,6 +18,10 @@ namespace palpate::visual {
 /// force, a line each; empty where there is nothing to say.
 std::string notice_of(const VisualFrame& frame);
 
+/// How much larger texts and bars are than in a window of 1280x720 pixels: as the window, so that they take
+/// the same share of it; never so small that they cannot be read.
+double display_scale(int width, int height);
+
 /// The figures and key hints that lie over the scene. Texts are set anew five times a second: often enough to
 /// read, seldom enough to cost nothing.
 class Overlay {
@@ -30,17 +35,31 @@ class Overlay {
     void turn_cautions();
     /// Hides hints and cautions while a page lies over the scene, cautions while an exercise goes on.
     void make_room(bool for_page, bool for_exercise);
+    /// Says something for a few seconds.
+    void tell(const std::string& sentence);
 
   private:
     void show_texts();
+    void place(vtkTextActor* actor, double x, double y, int size, bool right, bool top);
+    void fit_window();
 
+    // A text's size in a window of 1280x720.
+    struct SizedText {
+        vtkTextActor* actor;
+        int size;  // points
+    };
+
+    vtkRenderer* renderer_;
+    std::vector<SizedText> texts_;
+    double scale_ = 0;
     double max_force_;  // N
     bool was_touched_ = false;
     bool help_shown_ = true, cautions_shown_ = false;
     bool page_shown_ = false, exercise_shown_ = false;
     std::chrono::steady_clock::time_point last_{};
-    vtkNew<vtkTextActor> force_, figures_, title_, help_, notice_, cautions_;
-    vtkNew<vtkPoints> bar_points_;
+    vtkNew<vtkTextActor> force_, figures_, title_, help_, notice_, cautions_, told_;
+    std::chrono::steady_clock::time_point told_until_{};
+    vtkNew<vtkPoints> bar_points_, whole_bar_points_;
     vtkNew<vtkActor2D> bar_, bar_frame_;
 };
 

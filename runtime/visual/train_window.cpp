@@ -29,6 +29,7 @@
 #include "runtime/visual/lesson/lesson_panel.hpp"
 #include "runtime/visual/lesson/lesson_scene.hpp"
 #include "runtime/visual/overlay.hpp"
+#include "runtime/visual/pictures.hpp"
 #include "runtime/visual/scene.hpp"
 #include "runtime/visual/tool_shadow.hpp"
 
@@ -73,6 +74,7 @@ struct TrainWindow::Parts {
         : settings(window_settings),
           hand(window_settings.start, patient_case.haptics.tool_radius),
           rigid_count(patient_case.rigid_bodies.size()),
+          case_name(patient_case.name),
           scene(patient_case, window_settings.sight, window_settings.rigid_budget, renderer, front),
           shadow(renderer),
           overlay(patient_case.name, patient_case.haptics.max_force, window_settings.cautions, front),
@@ -276,6 +278,8 @@ struct TrainWindow::Parts {
         if (key == "minus" || key == "KP_Subtract") zoom(-1);
         if (key == "c") cut = !cut;
         if (key == "b") scene.show_rigid(rigid_shown = !rigid_shown);
+        if (key == "t") turn_regions();
+        if (key == "p" || key == "F12") picture_asked = true;
         if (key == "h") overlay.show_help(help_shown = !help_shown);
         if (key == "i") overlay.turn_cautions();
         if (key == "r") reset();
@@ -283,6 +287,38 @@ struct TrainWindow::Parts {
         if (key == "q" || key == "Escape") closed = true;
         std::ranges::transform(key, key.begin(), [](unsigned char letter) { return std::tolower(letter); });
         keys.push_back(key);
+    }
+
+    void turn_regions() {
+        const std::string names = scene.region_names();
+        if (names.empty()) return overlay.tell("this case has no enclosed region");
+        regions_shown = !regions_shown;
+        scene.show_regions(regions_shown);
+        overlay.tell(regions_shown ? "seen through the surface, at rest: " + names : names + ": hidden");
+    }
+
+    void take_picture() {
+        picture_asked = false;
+        const auto path = free_picture_path(std::filesystem::current_path(), case_name);
+        try {
+            write_picture(path);
+            overlay.tell("picture: " + path.filename().string());
+        } catch (const SystemFailure& failure) {
+            overlay.tell(failure.what());
+        }
+    }
+
+    void write_picture(const std::filesystem::path& path) {
+        vtkNew<vtkWindowToImageFilter> grab;
+        grab->SetInput(window);
+        grab->ReadFrontBufferOff();
+        vtkNew<vtkPNGWriter> writer;
+        writer->SetInputConnection(grab->GetOutputPort());
+        writer->SetFileName(path.c_str());
+        writer->Write();
+        if (writer->GetErrorCode() != 0)
+            throw SystemFailure(
+                {path.string(), "the picture could not be written", "", "check free space and permissions"});
     }
 
     DisplayConnection display;
@@ -293,6 +329,7 @@ struct TrainWindow::Parts {
     vtkNew<vtkRenderWindow> window;
     vtkNew<vtkRenderWindowInteractor> interactor;
     vtkNew<vtkCallbackCommand> events;
+    std::string case_name;
     Scene scene;
     ToolShadow shadow;
     Overlay overlay;
@@ -304,6 +341,8 @@ struct TrainWindow::Parts {
     bool cut;
     bool rigid_shown = true;
     bool help_shown = true;
+    bool regions_shown = false;
+    bool picture_asked = false;
     Drag drag = Drag::none;
     bool closed = false;
     std::int64_t frames = 0;
@@ -331,6 +370,7 @@ void TrainWindow::show(const VisualFrame& frame) {
     p.lesson_scene.update(frame.lesson);
     p.panel.update(frame.lesson, frame.force.norm(), p.window->GetSize()[0], p.window->GetSize()[1]);
     p.window->Render();
+    if (p.picture_asked) p.take_picture();
     ++p.frames;
     const auto now = std::chrono::steady_clock::now();
     const double seconds = std::chrono::duration<double>(now - p.last_frame).count();
@@ -364,16 +404,7 @@ double TrainWindow::frames_per_second() const {
 }
 
 void TrainWindow::save_picture(const std::filesystem::path& path) {
-    vtkNew<vtkWindowToImageFilter> grab;
-    grab->SetInput(parts_->window);
-    grab->ReadFrontBufferOff();
-    vtkNew<vtkPNGWriter> writer;
-    writer->SetInputConnection(grab->GetOutputPort());
-    writer->SetFileName(path.c_str());
-    writer->Write();
-    if (writer->GetErrorCode() != 0)
-        throw SystemFailure(
-            {path.string(), "the picture could not be written", "", "check free space and permissions"});
+    parts_->write_picture(path);
 }
 
 }  // namespace palpate::visual

@@ -31,6 +31,7 @@ class Train(TrainerCase):
             stderr=subprocess.PIPE,
             text=True,
             env=self.server.environment,
+            cwd=self.folder,
         )
         self.addCleanup(process.communicate)
         self.addCleanup(process.kill)
@@ -59,6 +60,36 @@ class Train(TrainerCase):
     def colours_of(self, picture):
         counted = subprocess.run(["convert", picture, "-format", "%k", "info:"], capture_output=True, check=True)
         return int(counted.stdout)
+
+    def yellow_pixels(self, window):
+        ppm = subprocess.run(
+            ["convert", "xwd:-", "-depth", "8", "rgb:-"], input=self.screen(window), capture_output=True, check=True
+        ).stdout
+        return sum(
+            1 for r, g, b in zip(ppm[0::3], ppm[1::3], ppm[2::3]) if r > 120 and g > 100 and b < 0.6 * min(r, g)
+        )
+
+    def test_t_shows_and_hides_the_enclosed_tumour(self):
+        process, window = self.open_window()
+        counts = [self.yellow_pixels(window)]
+        for _ in range(2):
+            self.x("xdotool", "key", "t")
+            time.sleep(0.5)
+            counts.append(self.yellow_pixels(window))
+        self.x("xdotool", "key", "q")
+        self.finish(process)
+        self.assertGreater(counts[1], counts[0] + 500)
+        self.assertLess(counts[2], counts[0] + 100)
+
+    def test_p_writes_a_picture_of_the_window_beside_those_there_are(self):
+        process, _ = self.open_window("--size", "640x360")
+        for name in ("palpate-sample-1.png", "palpate-sample-2.png"):
+            self.x("xdotool", "key", "p")
+            time.sleep(1)
+            header = (self.folder / name).read_bytes()[:24]
+            self.assertEqual((int.from_bytes(header[16:20], "big"), int.from_bytes(header[20:24], "big")), (640, 360))
+        self.x("xdotool", "key", "q")
+        self.finish(process)
 
     def test_keys_drive_the_tool_into_the_organ_and_q_closes(self):
         process, window = self.open_window()

@@ -37,5 +37,13 @@ TEST(Overlay, breaks_cautions_between_words_and_counts_characters_not_bytes) {
               "\u2022 a\n   wordlongerthanthat\n   b");
 }
 
+TEST(Overlay, grows_with_the_window_and_stays_readable_in_a_small_one) {
+    EXPECT_EQ(visual::display_scale(1280, 720), 1);
+    EXPECT_EQ(visual::display_scale(3840, 2160), 3);
+    EXPECT_EQ(visual::display_scale(2560, 720), 1) << "a wide window is no higher";
+    EXPECT_EQ(visual::display_scale(1280, 1440), 1) << "nor has a high one room beside";
+    EXPECT_GT(14 * visual::display_scale(320, 240), 9) << "points";
+}
+
 }  // namespace
 }  // namespace palpate
