@@ -9,7 +9,7 @@
 namespace palpate::haptics {
 
 /// Finds the triangles across the edges of each, that from corner k to k + 1 at k; the triangle itself across
-/// an open edge. n log n.
+/// an open edge. Linear, where few triangles meet at a vertex.
 std::vector<std::array<std::int32_t, 3>> triangle_neighbours(const std::vector<Triangle>& triangles);
 
 }  // namespace palpate::haptics
