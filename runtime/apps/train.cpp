@@ -192,6 +192,7 @@ Shown show(const Options& options, Session& run, TrainWindow& window, VisualFram
 }
 
 Json train(const Options& options, cli::Session& session) {
+    const auto asked = Clock::now();
     const auto [width, height] = size_of(options.size);
     std::optional<cli::StagedFile> picture;
     if (!options.screenshot.empty()) picture.emplace(options.screenshot, session.force);
@@ -236,6 +237,7 @@ Json train(const Options& options, cli::Session& session) {
         frame.displacements.emplace_back(body.boundary.nodes.size());
     frame.device_position = frame.tool_position = start;
     window.show(frame);  // the first frame compiles shaders
+    const double first_frame_s = std::chrono::duration<double>(Clock::now() - asked).count();
 
     if (!options.record.empty()) start_recording(run, options.record, options.record_seconds, session);
     Felt felt;
@@ -256,6 +258,7 @@ Json train(const Options& options, cli::Session& session) {
     Json result{{"case", patient_case.name},
                 {"cautions", window_settings.cautions},
                 {"device", run.device_name()},
+                {"first_frame_s", first_frame_s},
                 {"frames", frame_ns.count()},
                 {"frames_per_second", static_cast<double>(frame_ns.count()) / seconds},
                 {"frame_ms", percentiles_json(frame_ns, 1e6)},

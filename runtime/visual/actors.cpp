@@ -11,11 +11,20 @@
 #include <vtkPoints.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
+#include <vtkShaderProperty.h>
 
 namespace palpate::visual {
 namespace {
 
 using Eigen::Vector3d;
+
+// VTK's shaders discard what is wholly transparent, and none of this is. Without that a rasteriser need not
+// wait for the shader before it writes depth: a tenth of a frame's time in software.
+constexpr auto discard_transparent =
+    "  if (gl_FragData[0].a <= 0.0)\n"
+    "    {\n"
+    "    discard;\n"
+    "    }\n";
 
 void paint(vtkProperty* property, const Rgb& colour) {
     property->SetColor(colour[0] / 255, colour[1] / 255, colour[2] / 255);
@@ -88,6 +97,7 @@ vtkSmartPointer<vtkActor> actor(vtkPolyData* data, const Rgb& colour) {
     auto result = vtkSmartPointer<vtkActor>::New();
     result->SetMapper(mapper);
     set_colour(result, colour);
+    result->GetShaderProperty()->AddFragmentShaderReplacement(discard_transparent, true, "", false);
     result->GetProperty()->SetAmbient(0.13);
     return result;
 }
