@@ -3,6 +3,11 @@
 
 #include <string_view>
 #include <system_error>
+#include <vtkNew.h>
+#include <vtkPNGWriter.h>
+#include <vtkWindowToImageFilter.h>
+
+#include "formats/model/errors.hpp"
 
 namespace palpate::visual {
 
@@ -16,6 +21,24 @@ std::filesystem::path free_picture_path(const std::filesystem::path& folder, con
         std::error_code nothing_to_see;
         if (!std::filesystem::exists(path, nothing_to_see)) return path;
     }
+}
+
+vtkSmartPointer<vtkImageData> grab_pixels(vtkRenderWindow* window) {
+    vtkNew<vtkWindowToImageFilter> grab;
+    grab->SetInput(window);
+    grab->ReadFrontBufferOff();
+    grab->Update();
+    return grab->GetOutput();
+}
+
+void write_picture(const std::filesystem::path& path, vtkImageData* pixels) {
+    vtkNew<vtkPNGWriter> writer;
+    writer->SetInputData(pixels);
+    writer->SetFileName(path.c_str());
+    writer->Write();
+    if (writer->GetErrorCode() != 0)
+        throw SystemFailure(
+            {path.string(), "the picture could not be written", "", "check free space and permissions"});
 }
 
 }  // namespace palpate::visual

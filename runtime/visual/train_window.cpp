@@ -7,6 +7,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <future>
 #include <map>
 #include <optional>
 #include <span>
@@ -14,12 +15,11 @@
 #include <utility>
 #include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
+#include <vtkImageData.h>
 #include <vtkNew.h>
-#include <vtkPNGWriter.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderWindowInteractor.h>
 #include <vtkRenderer.h>
-#include <vtkWindowToImageFilter.h>
 
 #include "formats/model/errors.hpp"
 #include "runtime/visual/endoscope.hpp"
@@ -82,9 +82,7 @@ struct TrainWindow::Parts {
           panel(front),
           tool_radius(patient_case.haptics.tool_radius),
           cut(window_settings.sight.blocked) {
-        renderer->GradientBackgroundOn();
-        renderer->SetBackground(0.07, 0.09, 0.11);
-        renderer->SetBackground2(0.20, 0.25, 0.30);
+        renderer->SetBackground(0.10, 0.13, 0.16);  // a gradient takes a twentieth of a frame
         window->SetNumberOfLayers(2);
         front->SetLayer(1);
         window->AddRenderer(renderer);
@@ -297,28 +295,25 @@ struct TrainWindow::Parts {
         overlay.tell(regions_shown ? "seen through the surface, at rest: " + names : names + ": hidden");
     }
 
+    // Compressing a large picture takes up to a second, for which the window must not stand still.
     void take_picture() {
         picture_asked = false;
-        const auto path = free_picture_path(std::filesystem::current_path(), case_name);
-        try {
-            write_picture(path);
-            overlay.tell("picture: " + path.filename().string());
-        } catch (const SystemFailure& failure) {
-            overlay.tell(failure.what());
-        }
+        if (picture.valid()) return overlay.tell("the last picture is still being written");
+        picture = std::async(std::launch::async,
+                             [path = free_picture_path(std::filesystem::current_path(), case_name),
+                              pixels = grab_pixels(window)]() -> std::string {
+                                 try {
+                                     write_picture(path, pixels);
+                                     return "picture: " + path.filename().string();
+                                 } catch (const SystemFailure& failure) {
+                                     return failure.what();
+                                 }
+                             });
     }
 
-    void write_picture(const std::filesystem::path& path) {
-        vtkNew<vtkWindowToImageFilter> grab;
-        grab->SetInput(window);
-        grab->ReadFrontBufferOff();
-        vtkNew<vtkPNGWriter> writer;
-        writer->SetInputConnection(grab->GetOutputPort());
-        writer->SetFileName(path.c_str());
-        writer->Write();
-        if (writer->GetErrorCode() != 0)
-            throw SystemFailure(
-                {path.string(), "the picture could not be written", "", "check free space and permissions"});
+    void tell_of_picture() {
+        using namespace std::chrono_literals;
+        if (picture.valid() && picture.wait_for(0s) == std::future_status::ready) overlay.tell(picture.get());
     }
 
     DisplayConnection display;
@@ -343,6 +338,7 @@ struct TrainWindow::Parts {
     bool help_shown = true;
     bool regions_shown = false;
     bool picture_asked = false;
+    std::future<std::string> picture;  // being written; what is to be said of it then
     Drag drag = Drag::none;
     bool closed = false;
     std::int64_t frames = 0;
@@ -371,6 +367,7 @@ void TrainWindow::show(const VisualFrame& frame) {
     p.panel.update(frame.lesson, frame.force.norm(), p.window->GetSize()[0], p.window->GetSize()[1]);
     p.window->Render();
     if (p.picture_asked) p.take_picture();
+    p.tell_of_picture();
     ++p.frames;
     const auto now = std::chrono::steady_clock::now();
     const double seconds = std::chrono::duration<double>(now - p.last_frame).count();
@@ -404,7 +401,7 @@ double TrainWindow::frames_per_second() const {
 }
 
 void TrainWindow::save_picture(const std::filesystem::path& path) {
-    parts_->write_picture(path);
+    write_picture(path, grab_pixels(parts_->window));
 }
 
 }  // namespace palpate::visual

@@ -103,6 +103,7 @@ class Train(TrainerCase):
         self.assertGreater(result["ticks"], 500)
         self.assertGreater(result["frames"], 5)
         self.assertGreater(result["frames_per_second"], 1)
+        self.assertGreater(result["first_frame_s"], 0)
         self.assertGreater(result["device_travel_mm"], 10)
         self.assertGreater(result["force_peak_n"], 0.01)
         self.assertNotIn("starts_inside", result["statuses"])
