@@ -290,9 +290,18 @@ struct TrainWindow::Parts {
     void turn_regions() {
         const std::string names = scene.region_names();
         if (names.empty()) return overlay.tell("this case has no enclosed region");
+        if (exercising) return overlay.tell("during an exercise they stay hidden");
         regions_shown = !regions_shown;
         scene.show_regions(regions_shown);
         overlay.tell(regions_shown ? "seen through the surface, at rest: " + names : names + ": hidden");
+    }
+
+    // Whoever is asked to find something is not shown where it is.
+    void see_exercise(bool goes_on) {
+        exercising = goes_on;
+        if (!exercising || !regions_shown) return;
+        regions_shown = false;
+        scene.show_regions(false);
     }
 
     // Compressing a large picture takes up to a second, for which the window must not stand still.
@@ -337,6 +346,7 @@ struct TrainWindow::Parts {
     bool rigid_shown = true;
     bool help_shown = true;
     bool regions_shown = false;
+    bool exercising = false;
     bool picture_asked = false;
     std::future<std::string> picture;  // being written; what is to be said of it then
     Drag drag = Drag::none;
@@ -362,6 +372,7 @@ void TrainWindow::show(const VisualFrame& frame) {
     p.scene.show_inside(p.cut);
     p.look(frame);
     p.overlay.update(frame, frames_per_second());
+    p.see_exercise(!frame.lesson.instruction.empty());
     p.overlay.make_room(frame.lesson.page.has_value(), !frame.lesson.instruction.empty());
     p.lesson_scene.update(frame.lesson);
     p.panel.update(frame.lesson, frame.force.norm(), p.window->GetSize()[0], p.window->GetSize()[1]);

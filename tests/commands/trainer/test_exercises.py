@@ -7,7 +7,7 @@ import subprocess
 import time
 import unittest
 
-from x_server import TRAIN, TrainerCase
+from x_server import TRAIN, TrainerCase, yellow_pixels
 
 RADIUS = 1.5  # mm, of the sample's tool; the cube's free top is at z = 20 mm
 
@@ -142,6 +142,17 @@ class Exercises(TrainerCase):
             self.assertAlmostEqual(attempt["metrics"]["position_error_mm"], error, delta=1)
             expected = 100 * min(1, max(0, 1 - (error - 10) / 20))
             self.assertAlmostEqual(attempt["metrics"]["score"], expected, delta=8)
+
+    def test_what_is_hidden_stays_so_while_it_is_searched(self):
+        path, _ = self.hand([(0, 10, 10, 26), (30, 10, 10, 26)])
+        process, window = self.open_window("--exercise", "find", "--script", path)
+        before = yellow_pixels(self.screen(window))
+        self.x("xdotool", "key", "t")
+        time.sleep(0.5)
+        after = yellow_pixels(self.screen(window))
+        self.x("xdotool", "key", "q")
+        self.finish(process)
+        self.assertLess(after, before + 100)
 
     def test_mouse_and_keys_lead_through_the_pages(self):
         process, window = self.open_window()

@@ -8,7 +8,7 @@ import subprocess
 import time
 import unittest
 
-from x_server import TRAIN, TrainerCase
+from x_server import TRAIN, TrainerCase, yellow_pixels
 
 ON_THE_ORGAN, BESIDE_THE_ORGAN = (760, 250), (150, 300)  # pixels of the first view
 
@@ -46,10 +46,6 @@ class Train(TrainerCase):
         self.assertEqual(process.returncode, 0, err)
         return json.loads(out)
 
-    def screen(self, window):
-        """What the window shows, as xwd has it."""
-        return self.x("xwd", "-silent", "-id", window)
-
     def colours(self, window):
         """How many colours the window on the screen has."""
         dump = self.screen(window)
@@ -61,21 +57,13 @@ class Train(TrainerCase):
         counted = subprocess.run(["convert", picture, "-format", "%k", "info:"], capture_output=True, check=True)
         return int(counted.stdout)
 
-    def yellow_pixels(self, window):
-        ppm = subprocess.run(
-            ["convert", "xwd:-", "-depth", "8", "rgb:-"], input=self.screen(window), capture_output=True, check=True
-        ).stdout
-        return sum(
-            1 for r, g, b in zip(ppm[0::3], ppm[1::3], ppm[2::3]) if r > 120 and g > 100 and b < 0.6 * min(r, g)
-        )
-
     def test_t_shows_and_hides_the_enclosed_tumour(self):
         process, window = self.open_window()
-        counts = [self.yellow_pixels(window)]
+        counts = [yellow_pixels(self.screen(window))]
         for _ in range(2):
             self.x("xdotool", "key", "t")
             time.sleep(0.5)
-            counts.append(self.yellow_pixels(window))
+            counts.append(yellow_pixels(self.screen(window)))
         self.x("xdotool", "key", "q")
         self.finish(process)
         self.assertGreater(counts[1], counts[0] + 500)

@@ -34,6 +34,12 @@ class XServer:
         self.process.wait()
 
 
+def yellow_pixels(dump):
+    """How many pixels of an X window's dump are as yellow as enclosed regions are drawn."""
+    rgb = subprocess.run(["convert", "xwd:-", "-depth", "8", "rgb:-"], input=dump, capture_output=True, check=True).stdout
+    return sum(1 for r, g, b in zip(rgb[0::3], rgb[1::3], rgb[2::3]) if r > 120 and g > 100 and b < 0.6 * min(r, g))
+
+
 @unittest.skipUnless(TRAIN.exists(), "PALPATE_VISUAL is off")
 @unittest.skipUnless(all(map(shutil.which, NEEDED)), "PALPATE: xvfb, xdotool, x11-apps or imagemagick is missing")
 class TrainerCase(SampleAsset):
@@ -50,6 +56,10 @@ class TrainerCase(SampleAsset):
             [*map(str, command)], env=self.server.environment, check=True, capture_output=True, timeout=60
         )
         return run.stdout
+
+    def screen(self, window):
+        """What the window shows, as xwd has it."""
+        return self.x("xwd", "-silent", "-id", window)
 
     def find_window(self):
         """The id of the trainer's window, which has the focus and the pointer in its middle."""
