@@ -94,8 +94,7 @@ void Scene::add_rigid(const Case& patient_case, const Sight& sight, std::int64_t
         const double share = static_cast<double>(body.surface.triangles.size()) / all;
         const auto own_budget = std::max(1LL, std::llround(share * static_cast<double>(budget)));
         const TriangleMesh copy = display_copy(body.surface, own_budget, sight.target, sight.field / 2);
-        rigid_.push_back(
-            tissue_actor(poly_data(copy, sight.toward_eye), tissue_look(body.name), grain_of(sight)));
+        rigid_.push_back(tissue_actor(poly_data(copy, sight.toward_eye), tissue_look(body.name)));
         renderer->AddActor(rigid_.back());
     }
 }

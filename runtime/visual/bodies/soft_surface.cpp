@@ -37,7 +37,7 @@ SoftSurface::SoftSurface(const DeformableBody& body, const Vector3d& toward_eye,
     const auto data = poly_data(body.boundary.surface, toward_eye);
     points_ = data->GetPoints();
     normals_ = vtkFloatArray::SafeDownCast(data->GetPointData()->GetNormals());
-    actor_ = tissue_actor(data, look_of(body), grain);
+    actor_ = grained_tissue_actor(data, look_of(body), grain);
     renderer->AddActor(actor_);
 }
 

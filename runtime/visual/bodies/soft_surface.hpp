@@ -16,7 +16,7 @@ namespace palpate::visual {
 /// region throughout: what it encloses is to be found by touch.
 class SoftSurface {
   public:
-    /// `grain`: as of tissue_actor().
+    /// `grain`: as of grained_tissue_actor().
     SoftSurface(const DeformableBody& body, const Eigen::Vector3d& toward_eye, double grain,
                 vtkRenderer* renderer);
 

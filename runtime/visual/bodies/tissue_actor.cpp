@@ -79,8 +79,7 @@ void roughen(vtkActor* actor, double grain, double wetness) {
 
 }  // namespace
 
-vtkSmartPointer<vtkActor> tissue_actor(vtkPolyData* data, const TissueLook& look, double grain) {
-    constexpr float damp = 0.3F;  // what is drier than this is plain
+vtkSmartPointer<vtkActor> tissue_actor(vtkPolyData* data, const TissueLook& look) {
     auto result = actor(data, look.colour);
     vtkProperty* front = result->GetProperty();
     front->SetAmbient(0.16);
@@ -95,8 +94,12 @@ vtkSmartPointer<vtkActor> tissue_actor(vtkPolyData* data, const TissueLook& look
     back->SetAmbient(1);
     back->SetDiffuse(0);
     result->SetBackfaceProperty(back);
-    if (look.wetness <= damp) return result;
+    return result;
+}
+
+vtkSmartPointer<vtkActor> grained_tissue_actor(vtkPolyData* data, const TissueLook& look, double grain) {
     add_shades(data, grain);
+    auto result = tissue_actor(data, look);
     auto* mapper = vtkOpenGLPolyDataMapper::SafeDownCast(result->GetMapper());
     mapper->SetVBOShiftScaleMethod(0);  // places stay in mm on their way to the shader
     mapper->MapDataArrayToVertexAttribute(shade_array, shade_array, vtkDataObject::FIELD_ASSOCIATION_POINTS);

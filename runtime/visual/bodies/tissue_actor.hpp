@@ -5,9 +5,13 @@
 
 namespace palpate::visual {
 
-/// Draws `data` as matter that looks so. What is wet is mottled, finely uneven and glistens, by functions of
-/// the place that need no texture coordinates; `grain` (mm) is the size of the finest spots. Adds an array to
-/// the points of `data` then. Where a cut shows the inside, that is flat and darker.
-vtkSmartPointer<vtkActor> tissue_actor(vtkPolyData* data, const TissueLook& look, double grain);
+/// Draws `data` as matter that looks so and glistens where it is wet. Where a cut shows the inside, that is
+/// flat and darker.
+vtkSmartPointer<vtkActor> tissue_actor(vtkPolyData* data, const TissueLook& look);
+
+/// The same, mottled and finely uneven, by functions of the place that need no texture coordinates; `grain`
+/// (mm) is the size of the finest spots. Adds an array to the points of `data`. For surfaces of few
+/// triangles: in software each one costs more with it.
+vtkSmartPointer<vtkActor> grained_tissue_actor(vtkPolyData* data, const TissueLook& look, double grain);
 
 }  // namespace palpate::visual
