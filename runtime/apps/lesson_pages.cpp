@@ -161,6 +161,8 @@ void show_doing(const Attempt& attempt, double force, LessonView& view) {
 LessonView lesson_view(const Lesson& lesson, const LessonSetting& setting, double force,
                        std::span<const PastAttempt> history) {
     LessonView view;
+    const bool begun = lesson.phase() == Phase::counting_down || lesson.phase() == Phase::doing;
+    view.hides_regions = begun && lesson.exercises()[lesson.chosen()].task != Task::free;
     switch (lesson.phase()) {
         case Phase::choosing:
             view.page = start_page(lesson, setting);

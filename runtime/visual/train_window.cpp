@@ -290,7 +290,7 @@ struct TrainWindow::Parts {
     void turn_regions() {
         const std::string names = scene.region_names();
         if (names.empty()) return overlay.tell("this case has no enclosed region");
-        if (exercising) return overlay.tell("during an exercise they stay hidden");
+        if (exercising) return overlay.tell("in this exercise they stay hidden");
         regions_shown = !regions_shown;
         scene.show_regions(regions_shown);
         overlay.tell(regions_shown ? "seen through the surface, at rest: " + names : names + ": hidden");
@@ -372,7 +372,7 @@ void TrainWindow::show(const VisualFrame& frame) {
     p.scene.show_inside(p.cut);
     p.look(frame);
     p.overlay.update(frame, frames_per_second());
-    p.see_exercise(!frame.lesson.instruction.empty());
+    p.see_exercise(frame.lesson.hides_regions);
     p.overlay.make_room(frame.lesson.page.has_value(), !frame.lesson.instruction.empty());
     p.lesson_scene.update(frame.lesson);
     p.panel.update(frame.lesson, frame.force.norm(), p.window->GetSize()[0], p.window->GetSize()[1]);

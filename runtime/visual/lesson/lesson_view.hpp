@@ -45,6 +45,7 @@ struct LessonView {
     std::string status;
     std::string warning;
     double least_force = 0, most_force = 0;  ///< N: the band that the force is to keep to; 0, 0: none
+    bool hides_regions = false;              ///< what bodies enclose must not be seen
     std::vector<LessonMark> marks;
     std::vector<Eigen::Vector3d> line, line_done;  ///< p_P, mm
     double line_radius = 0.5;                      ///< mm
