@@ -112,7 +112,9 @@ vtkSmartPointer<vtkContextActor> chart_of(const LessonCurve& curve, double left,
     vtkPlot* plot = chart->AddPlot(curve.points ? vtkChart::POINTS : vtkChart::LINE);
     plot->SetInputData(table, 0, 1);
     plot->SetColor(150, 220, 255, 255);
-    plot->SetWidth(2);
+    plot->SetWidth(static_cast<float>(font_size) / 6);
+    if (auto* points = vtkPlotPoints::SafeDownCast(plot))
+        points->SetMarkerSize(static_cast<float>(font_size) / 2);
     if (curve.limit && !curve.x.empty()) {
         vtkNew<vtkDoubleArray> ends, limit;
         ends->SetName("x");
@@ -127,6 +129,7 @@ vtkSmartPointer<vtkContextActor> chart_of(const LessonCurve& curve, double left,
         vtkPlot* limit_plot = chart->AddPlot(vtkChart::LINE);
         limit_plot->SetInputData(line, 0, 1);
         limit_plot->SetColor(255, 165, 60, 255);
+        limit_plot->SetWidth(static_cast<float>(font_size) / 6);
     }
     if (curve.most_y) {
         chart->GetAxis(vtkAxis::LEFT)->SetBehavior(vtkAxis::FIXED);
