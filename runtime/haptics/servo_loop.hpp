@@ -38,8 +38,9 @@ class ServoLoop {
     static constexpr std::int64_t period_ns = realtime::Servo::period_ns;
     /// So many periods late, or skipped at once, are the fault tick_late.
     static constexpr std::int64_t late_periods = 10;
-    /// So long after the last visual_beat() is the fault visual_stopped.
-    static constexpr std::int64_t visual_patience_ns = 500'000'000;
+    /// So long after the last visual_beat() is the fault visual_stopped: a window is dead then, not slow, as
+    /// one of 3840 by 2160 pixels is, of which software draws two or three a second. Force needs none of it.
+    static constexpr std::int64_t visual_patience_ns = 2'000'000'000;
 
     /// Takes one device for each of the model's tools and couples the model to what all of them bear. Ticks
     /// in `servo`, or if that is null in a PeriodicServo of its own. Throws InvalidInput if there are not as
