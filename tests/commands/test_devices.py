@@ -20,7 +20,7 @@ import openigtlink
 from device_run import (ASSET_REMOVED, BIN, DEVICE_LOST, FELT, PATIENCE, PRESS, RAMP, RAS, SLEW, TICK_LATE,
                         DeviceRun, wait_until)
 from test_record import kept
-from test_train import XServer
+from x_server import XServer
 
 
 class Devices(DeviceRun):

@@ -9,12 +9,11 @@ import tempfile
 import time
 import unittest
 
-from test_train import XServer
+from x_server import NEEDED, XServer
 
 BIN = pathlib.Path(os.environ["PALPATE_BIN"])
 PHANTOM = pathlib.Path(os.environ["PALPATE_BUILD"]) / "tests" / "phantom"
 DATA = pathlib.Path(os.environ.get("PALPATE_DATA", ""))
-NEEDED = ("Xvfb", "xdotool", "xwd", "convert")
 
 OK, FAILED, USAGE, INVALID = 0, 1, 2, 3
 STATUS_HEIGHT, MARGIN = 30, 26  # pixels, as in tools/seeds/layout.cpp

@@ -7,7 +7,7 @@ import subprocess
 import time
 import unittest
 
-from x_server import TRAIN, TrainerCase, yellow_pixels
+from trainer_case import TRAIN, TrainerCase, yellow_pixels
 
 RADIUS = 1.5  # mm, of the sample's tool; the cube's free top is at z = 20 mm
 

@@ -8,7 +8,7 @@ import subprocess
 import time
 import unittest
 
-from x_server import TRAIN, TrainerCase, yellow_pixels
+from trainer_case import TRAIN, TrainerCase, yellow_pixels
 
 ON_THE_ORGAN, BESIDE_THE_ORGAN = (760, 250), (150, 300)  # pixels of the first view
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An X server of a test's own, in which the trainer's window is driven as a person would."""
+"""The trainer in a display of its own, driven as a person would."""
 import os
 import pathlib
 import shutil
@@ -9,29 +9,9 @@ import unittest
 
 sys.path.insert(0, f"{os.environ['PALPATE_SOURCE']}/tests/commands")
 from sample_asset import SampleAsset  # noqa: E402
+from x_server import NEEDED, XServer  # noqa: E402
 
 TRAIN = pathlib.Path(os.environ["PALPATE_BIN"]) / "palpate-train"
-NEEDED = ("Xvfb", "xdotool", "xwd", "convert")
-
-
-class XServer:
-    """An Xvfb of our own; -noreset keeps it when its last client leaves."""
-
-    def __enter__(self):
-        reader, writer = os.pipe()
-        self.process = subprocess.Popen(
-            ["Xvfb", "-displayfd", str(writer), "-screen", "0", "1400x800x24", "-nolisten", "tcp", "-noreset"],
-            pass_fds=[writer],
-            stderr=subprocess.DEVNULL,
-        )
-        os.close(writer)
-        with os.fdopen(reader) as stream:
-            self.environment = dict(os.environ, DISPLAY=":" + stream.readline().strip())
-        return self
-
-    def __exit__(self, *_):
-        self.process.terminate()
-        self.process.wait()
 
 
 def yellow_pixels(dump):
