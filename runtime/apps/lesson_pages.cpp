@@ -46,48 +46,6 @@ int digits_of(const std::string& unit, const std::string& name) {
     return name != "tremor" && (unit == "mm" || unit == "s") ? 1 : 2;
 }
 
-LessonPage result_page(const Attempt& attempt, std::span<const PastAttempt> history) {
-    LessonPage page;
-    page.title = attempt.exercise().title + ": " + std::string(words_of(attempt.ending()));
-    const Metrics metrics = attempt.metrics();
-    for_each_field(metric_fields, [&](const auto& field) {
-        page.rows.emplace_back(title_of(field.name), value_of(metrics.*field.member, field.unit,
-                                                              digits_of(field.unit, field.name)));
-    });
-    LessonCurve force{.title = "Force",
-                      .x_title = "s",
-                      .y_title = "N",
-                      .x = {},
-                      .y = {},
-                      .limit = attempt.exercise().most_force,
-                      .most_y = {},
-                      .points = false};
-    for (const Sample& sample : attempt.samples()) {
-        force.x.push_back(sample.time);
-        force.y.push_back(sample.force);
-    }
-    page.curves.push_back(force);
-    if (!history.empty()) {
-        LessonCurve scores{.title = "Score",
-                           .x_title = "attempt",
-                           .y_title = "",
-                           .x = {},
-                           .y = {},
-                           .limit = {},
-                           .most_y = 105,
-                           .points = true};
-        for (const PastAttempt& past : history) {
-            scores.x.push_back(static_cast<double>(scores.x.size() + 1));
-            scores.y.push_back(past.score);
-        }
-        page.curves.push_back(scores);
-    }
-    page.choices = {{"return", "Enter   Once more"},
-                    {"space", "Space   Look at the way that the hand took"},
-                    {"backspace", "Backspace   Other exercises"}};
-    return page;
-}
-
 void show_places(const Exercise& exercise, const Goals& goals, bool afterwards, LessonView& view) {
     using State = LessonMark::State;
     const auto& places = exercise.places;
@@ -158,8 +116,50 @@ void show_doing(const Attempt& attempt, double force, LessonView& view) {
 
 }  // namespace
 
+LessonPage result_page(const Attempt& attempt, std::span<const PastAttempt> history) {
+    LessonPage page;
+    page.title = attempt.exercise().title + ": " + std::string(words_of(attempt.ending()));
+    const Metrics metrics = attempt.metrics();
+    for_each_field(metric_fields, [&](const auto& field) {
+        page.rows.emplace_back(title_of(field.name), value_of(metrics.*field.member, field.unit,
+                                                              digits_of(field.unit, field.name)));
+    });
+    LessonCurve force{.title = "Force",
+                      .x_title = "s",
+                      .y_title = "N",
+                      .x = {},
+                      .y = {},
+                      .limit = attempt.exercise().most_force,
+                      .most_y = {},
+                      .points = false};
+    for (const Sample& sample : attempt.samples()) {
+        force.x.push_back(sample.time);
+        force.y.push_back(sample.force);
+    }
+    page.curves.push_back(force);
+    if (!history.empty()) {
+        LessonCurve scores{.title = "Score",
+                           .x_title = "attempt",
+                           .y_title = "",
+                           .x = {},
+                           .y = {},
+                           .limit = {},
+                           .most_y = 105,
+                           .points = true};
+        for (const PastAttempt& past : history) {
+            scores.x.push_back(static_cast<double>(scores.x.size() + 1));
+            scores.y.push_back(past.score);
+        }
+        page.curves.push_back(scores);
+    }
+    page.choices = {{"return", "Enter   Once more"},
+                    {"space", "Space   Look at the way that the hand took"},
+                    {"backspace", "Backspace   Other exercises"}};
+    return page;
+}
+
 LessonView lesson_view(const Lesson& lesson, const LessonSetting& setting, double force,
-                       std::span<const PastAttempt> history) {
+                       const LessonPage& result) {
     LessonView view;
     const bool begun = lesson.phase() == Phase::counting_down || lesson.phase() == Phase::doing;
     view.hides_regions = begun && lesson.exercises()[lesson.chosen()].task != Task::free;
@@ -179,7 +179,7 @@ LessonView lesson_view(const Lesson& lesson, const LessonSetting& setting, doubl
             if (lesson.page_hidden())
                 view.status = "Space: back to the figures";
             else
-                view.page = result_page(*lesson.attempt(), history);
+                view.page = result;
             show_places(lesson.attempt()->exercise(), lesson.attempt()->goals(), true, view);
             for (const Sample& sample : lesson.attempt()->samples()) view.path.push_back(sample.position);
             break;

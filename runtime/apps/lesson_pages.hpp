@@ -16,9 +16,14 @@ struct LessonSetting {
     std::vector<std::string> cautions;  ///< of the case
 };
 
-/// What the window shows of a lesson. `force`: N, on the device; `history`: of the exercise that was chosen
-/// last, its newest attempt included.
-visual::LessonView lesson_view(const training::Lesson& lesson, const LessonSetting& setting, double force,
+/// The page after an attempt: metrics, force and the scores of `history`, its own included. Costs the
+/// attempt's metrics: once an attempt, not once a frame.
+visual::LessonPage result_page(const training::Attempt& attempt,
                                std::span<const training::PastAttempt> history);
+
+/// What the window shows of a lesson. `force`: N, on the device; `result`: of the attempt that is looked back
+/// at.
+visual::LessonView lesson_view(const training::Lesson& lesson, const LessonSetting& setting, double force,
+                               const visual::LessonPage& result);
 
 }  // namespace palpate::apps

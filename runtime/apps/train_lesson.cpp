@@ -2,7 +2,6 @@
 #include "runtime/apps/train_lesson.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <fmt/chrono.h>
 #include <fstream>
@@ -10,7 +9,6 @@
 #include <utility>
 
 #include "formats/model/errors.hpp"
-#include "formats/model/label_map.hpp"
 #include "runtime/training/lay_out.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/staged_file.hpp"
@@ -127,8 +125,9 @@ void TrainLesson::keep(const Attempt& attempt) {
     } catch (const std::exception& error) {
         spdlog::warn("the attempt is not kept: {}", error.what());
     }
-    history_ = read_history(folder_, head.case_name, attempt.exercise().name,
-                            [](const std::string& sentence) { spdlog::warn("{}", sentence); });
+    result_ =
+        result_page(attempt, read_history(folder_, head.case_name, attempt.exercise().name,
+                                          [](const std::string& sentence) { spdlog::warn("{}", sentence); }));
 }
 
 }  // namespace palpate::apps

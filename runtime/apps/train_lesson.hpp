@@ -43,7 +43,7 @@ class TrainLesson {
     TrainLesson& operator=(const TrainLesson&) = delete;
 
     training::Lesson& lesson() { return lesson_; }
-    visual::LessonView view(double force) const { return lesson_view(lesson_, setting_, force, history_); }
+    visual::LessonView view(double force) const { return lesson_view(lesson_, setting_, force, result_); }
     /// Where a hand that mouse and keyboard guide is to be while a guided passage counts down: on the way
     /// back through its gates to the first. `now`: where it is, p_P, mm.
     std::optional<Eigen::Vector3d> hand(const Eigen::Vector3d& now);
@@ -58,7 +58,7 @@ class TrainLesson {
     std::filesystem::path folder_;
     LessonSetting setting_;
     std::string device_, scheme_;
-    std::vector<training::PastAttempt> history_;
+    visual::LessonPage result_;  // of the last attempt
     nlohmann::ordered_json attempts_ = nlohmann::ordered_json::array();
     training::Lesson lesson_;
 };

@@ -143,9 +143,7 @@ std::vector<PastAttempt> read_history(const std::filesystem::path& folder, const
             if (json.at("case") != case_name || json.at("exercise").at("name") != exercise ||
                 json.at("ending") == words_of(Ending::cut_short) || score.is_null())
                 continue;
-            history.push_back({.when = json.at("when").get<std::string>(),
-                               .score = score.get<double>(),
-                               .time = json.at("metrics").at("time_s").get<double>()});
+            history.push_back({.when = json.at("when").get<std::string>(), .score = score.get<double>()});
         } catch (const std::exception&) {
             tell(entry.path().string() + " is not an attempt of Palpate's: left out of the history");
         }

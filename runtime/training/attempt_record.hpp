@@ -43,7 +43,6 @@ nlohmann::ordered_json xapi_statement(const AttemptHead& head, const Attempt& at
 struct PastAttempt {
     std::string when;
     double score = 0;  ///< 0 to 100
-    double time = 0;   ///< s
 };
 
 /// A trainee's earlier attempts at an exercise on a case that have a score and were not cut short, by time:

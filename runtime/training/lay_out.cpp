@@ -23,8 +23,8 @@ using session::TouchTarget;
 
 constexpr double least_depth = 1, most_depth = 4;  // mm
 constexpr double seen = 0.4;                       // least cosine between normals of places on one side
-constexpr double smooth =
-    0.9;                    // least cosine between a triangle's normal and that of the surface around a place
+// Least cosine between a triangle's normal and that of the surface around a place: 26 degrees, no edge.
+constexpr double smooth = 0.9;
 constexpr double room = 3;  // mm that the tool needs to come to a mark
 
 std::vector<std::int32_t> free_vertices(const Case& patient_case, std::size_t body) {

@@ -27,7 +27,8 @@ constexpr double bar_width = 240, bar_height = 10;
 constexpr auto help_text =
     "left button  press      held, wheel or W S  deeper, back      W S, arrows  move the tool\n"
     "right drag  turn      middle drag  move the view      wheel, + -  zoom      R  reset      Q  quit\n"
-    "C  cut away      B  bone      T  enclosed regions      P  picture      I  about this case      H  help";
+    "C  cut away      B  bone      T  enclosed regions      V  from the tip      P  picture      I  about "
+    "this case      H  help";
 constexpr std::size_t cautions_width = 64;  // characters
 constexpr double cautions_room = 460;       // pixels that so many take, mostly, at 1280x720
 
