@@ -6,13 +6,12 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
-#include <map>
 #include <numbers>
 #include <random>
 
 #include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
-#include "formats/model/label_map.hpp"
+#include "formats/model/regions.hpp"
 
 namespace palpate::training {
 namespace {
@@ -36,24 +35,6 @@ std::vector<std::int32_t> free_vertices(const Case& patient_case, std::size_t bo
     std::ranges::sort(vertices);
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     return vertices;
-}
-
-// Mesh nodes and volume of every region.
-struct RegionExtent {
-    double volume = 0;
-    std::vector<std::int32_t> nodes;
-};
-
-std::map<std::int32_t, RegionExtent> extents_of(const TetMesh& mesh) {
-    std::map<std::int32_t, RegionExtent> extents;
-    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
-        const auto& [a, b, c, d] = mesh.tetrahedra[t];
-        const auto p = [&](std::int32_t node) { return mesh.rest_positions[node]; };
-        RegionExtent& extent = extents[mesh.regions[t]];
-        extent.volume += std::abs((p(b) - p(a)).cross(p(c) - p(a)).dot(p(d) - p(a))) / 6;
-        extent.nodes.insert(extent.nodes.end(), {a, b, c, d});
-    }
-    return extents;
 }
 
 // The surface vertex where a region changes the stiffness most, if the case says so.
@@ -237,13 +218,9 @@ std::vector<HiddenRegion> hidden_regions(const Case& patient_case) {
     std::vector<HiddenRegion> regions;
     for (std::size_t i = 0; i < patient_case.deformable_bodies.size(); ++i) {
         const DeformableBody& soft = patient_case.deformable_bodies[i];
-        const auto extents = extents_of(soft.mesh);
-        const auto main =
-            std::ranges::max_element(extents, {}, [](const auto& entry) { return entry.second.volume; });
-        for (const Label& label : soft.mesh.region_names)
-            if (const auto found = extents.find(label.value); found != extents.end() && found != main)
-                regions.push_back(place_above(patient_case, patient_case.rigid_bodies.size() + i, label.name,
-                                              found->second.nodes));
+        for (const Label& label : enclosed_regions(soft.mesh))
+            regions.push_back(place_above(patient_case, patient_case.rigid_bodies.size() + i, label.name,
+                                          nodes_of_region(soft.mesh, label.value)));
     }
     std::ranges::sort(regions, {}, &HiddenRegion::name);
     return regions;

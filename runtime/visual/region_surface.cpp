@@ -6,17 +6,6 @@
 
 namespace palpate::visual {
 
-std::vector<Label> enclosed_regions(const TetMesh& mesh) {
-    std::map<std::int32_t, std::int64_t> tetrahedra;
-    for (const std::int32_t region : mesh.regions) ++tetrahedra[region];
-    const auto largest =
-        std::ranges::max_element(tetrahedra, {}, [](const auto& entry) { return entry.second; });
-    std::vector<Label> enclosed;
-    for (const Label& label : mesh.region_names)
-        if (tetrahedra.contains(label.value) && label.value != largest->first) enclosed.push_back(label);
-    return enclosed;
-}
-
 TriangleMesh region_surface(const TetMesh& mesh, std::int32_t region) {
     std::map<Triangle, Triangle> open;  // sorted corners -> the face
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {

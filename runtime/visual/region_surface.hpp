@@ -6,10 +6,6 @@
 
 namespace palpate::visual {
 
-/// The labels of all regions but the one with most tetrahedra: what an organ encloses, in the order of
-/// `mesh.region_names`.
-std::vector<Label> enclosed_regions(const TetMesh& mesh);
-
 /// The closed surface of a region at rest, oriented outwards: faces of its tetrahedra that no other
 /// tetrahedron of it shares. Empty for a region without tetrahedra. n log n in the region's tetrahedra.
 TriangleMesh region_surface(const TetMesh& mesh, std::int32_t region);

@@ -16,6 +16,7 @@
 #include <vtkSphereSource.h>
 #include <vtkTubeFilter.h>
 
+#include "formats/model/regions.hpp"
 #include "runtime/visual/actors.hpp"
 #include "runtime/visual/bodies/display_copy.hpp"
 #include "runtime/visual/bodies/tissue_actor.hpp"

@@ -3,10 +3,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <map>
 #include <string>
 #include <vtkPointData.h>
 
+#include "formats/model/regions.hpp"
 #include "runtime/visual/bodies/tissue_actor.hpp"
 
 namespace palpate::visual {
@@ -14,13 +14,6 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
-
-// The region with most tetrahedra is the organ, the others are what it encloses.
-std::int32_t main_region(const TetMesh& mesh) {
-    std::map<std::int32_t, std::int64_t> counts;
-    for (const std::int32_t region : mesh.regions) ++counts[region];
-    return std::ranges::max_element(counts, {}, [](const auto& entry) { return entry.second; })->first;
-}
 
 // By the region's name, or by the body's own where that tells nothing more.
 TissueLook look_of(const DeformableBody& body) {

@@ -2,6 +2,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "formats/model/regions.hpp"
 #include "runtime/visual/region_surface.hpp"
 
 namespace palpate {

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "formats/model/contact/surface_walk.hpp"
+#include "formats/model/regions.hpp"
 #include "tools/fem/feel/pressing.hpp"
 
 namespace palpate::fem {
@@ -20,13 +21,6 @@ using Eigen::Vector3d;
 
 // Cosine between the normals of places that a hand slides over without turning round: 60 degrees.
 constexpr double same_side = 0.5;
-
-// The region of most volume: what the others are felt in.
-std::int32_t main_region(const TetMesh& mesh) {
-    std::map<std::int32_t, double> volumes;
-    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) volumes[mesh.regions[t]] += six_volume(mesh, t);
-    return std::ranges::max_element(volumes, {}, [](const auto& entry) { return entry.second; })->first;
-}
 
 // The other region that shares most of this one's border, by area; none if it lies apart.
 std::optional<std::int32_t> surrounding_region(const TetMesh& mesh, std::int32_t region) {
@@ -54,15 +48,11 @@ std::optional<std::int32_t> surrounding_region(const TetMesh& mesh, std::int32_t
     return std::ranges::max_element(shared, {}, [](const auto& entry) { return entry.second; })->first;
 }
 
-std::vector<Vector3d> nodes_of_region(const TetMesh& mesh, std::int32_t region) {
-    std::vector<char> is_of(mesh.rest_positions.size(), 0);
-    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
-        if (mesh.regions[t] == region)
-            for (const std::int32_t node : mesh.tetrahedra[t]) is_of[static_cast<std::size_t>(node)] = 1;
-    std::vector<Vector3d> points;
-    for (std::size_t node = 0; node < is_of.size(); ++node)
-        if (is_of[node] != 0) points.push_back(mesh.rest_positions[node]);
-    return points;
+std::vector<Vector3d> positions_in(const TetMesh& mesh, std::int32_t region) {
+    std::vector<Vector3d> positions;
+    for (const std::int32_t node : nodes_of_region(mesh, region))
+        positions.push_back(mesh.rest_positions[node]);
+    return positions;
 }
 
 // Of the point of `points` with the least, or with the most distance to p.
@@ -125,7 +115,7 @@ std::optional<FeltRegion> felt_region(const DeformableBody& body, const Pressing
                                       const std::vector<float>& stiffness, std::int32_t region, int threads) {
     const auto around = surrounding_region(body.mesh, region);
     if (!around) return std::nullopt;
-    const std::vector<Vector3d> nodes = nodes_of_region(body.mesh, region);
+    const std::vector<Vector3d> nodes = positions_in(body.mesh, region);
     const std::vector<std::int32_t> near = nearest_vertices(body, pressing, nodes);
     if (near.empty()) return std::nullopt;
     DeformableBody without = uncondensed(body);
@@ -240,7 +230,7 @@ std::vector<FeltTrial> felt_trials(const DeformableBody& body, const FeltRegion&
     material.youngs_modulus *= softer ? 1 / stiffer : stiffer;
     solve(fmt::format("{:g} times as {}", stiffer, softer ? "soft" : "stiff"), felt.depth, other);
 
-    const std::vector<Vector3d> nodes = nodes_of_region(body.mesh, felt.region);
+    const std::vector<Vector3d> nodes = positions_in(body.mesh, felt.region);
     const Vector3d place = body.boundary.surface.vertices[static_cast<std::size_t>(felt.vertex)];
     const Vector3d nearest =
         *std::ranges::min_element(nodes, {}, [&](const Vector3d& p) { return (p - place).squaredNorm(); });

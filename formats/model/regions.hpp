@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "formats/model/tet_mesh.hpp"
+
+namespace palpate {
+
+/// The region of most volume: the organ, in which the others lie. The mesh must have a tetrahedron.
+std::int32_t main_region(const TetMesh& mesh);
+
+/// The labels of all other regions that occur, in the order of `mesh.region_names`.
+std::vector<Label> enclosed_regions(const TetMesh& mesh);
+
+/// The nodes of a region's tetrahedra, ascending.
+std::vector<std::int32_t> nodes_of_region(const TetMesh& mesh, std::int32_t region);
+
+}  // namespace palpate
