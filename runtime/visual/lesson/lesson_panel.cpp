@@ -16,21 +16,19 @@
 #include <vtkTable.h>
 #include <vtkTextProperty.h>
 
+#include "runtime/visual/overlay.hpp"
+
 namespace palpate::visual {
 namespace {
 
-constexpr double designed_height = 720;  // pixels, of the window that sizes here are meant for
+// Pixels in a window of 1280x720, see display_scale().
 constexpr double page_height = 520, page_margin = 28, row_height = 30;
 constexpr double text_width = 640, chart_width = 420;  // a page has charts beside its text, or none
 constexpr double edge = 20;                            // of the window, left free below and beside a page
 constexpr double band_width = 320, band_height = 12;
 
-double scale_of(int height) {
-    return height / designed_height;
-}
-
-int font(double size, int height) {
-    return std::max(9, static_cast<int>(size * scale_of(height)));
+int font(double size, double scale) {
+    return std::max(9, static_cast<int>(size * scale));
 }
 
 void make_rectangle(vtkActor2D* actor, vtkPoints* points, double red, double green, double blue,
@@ -177,10 +175,10 @@ LessonPanel::LessonPanel(vtkRenderer* renderer) : renderer_(renderer) {
 }
 
 void LessonPanel::update(const LessonView& view, double force, int width, int height) {
-    const double scale = scale_of(height), middle = width / 2.0;
-    set_text(instruction_, view.instruction, middle, height - 14 * scale, font(18, height));
-    set_text(status_, view.status, middle, height - 46 * scale, font(18, height));
-    set_text(warning_, view.warning, middle, height - 104 * scale, font(20, height));
+    const double scale = display_scale(width, height), middle = width / 2.0;
+    set_text(instruction_, view.instruction, middle, height - 14 * scale, font(18, scale));
+    set_text(status_, view.status, middle, height - 46 * scale, font(18, scale));
+    set_text(warning_, view.warning, middle, height - 104 * scale, font(20, scale));
     show_band(view, force, width, height);
     if (view.page)
         show_page(*view.page, width, height);
@@ -193,7 +191,7 @@ void LessonPanel::show_band(const LessonView& view, double force, int width, int
     for (vtkActor2D* actor : {below_.Get(), within_.Get(), above_.Get(), pointer_.Get()})
         actor->SetVisibility(on);
     if (!on) return;
-    const double scale = scale_of(height);
+    const double scale = display_scale(width, height);
     const double left = width / 2.0 - scale * band_width / 2, whole = scale * band_width;
     const double top = height - 82 * scale, bottom = top - scale * band_height;
     // The band's upper end lies at two thirds of its width, whatever the force.
@@ -226,15 +224,15 @@ void LessonPanel::show_page(const LessonPage& page, int width, int height) {
     if (digest == shown_) return;
     hide_page();
     shown_ = digest;
-    const double scale = scale_of(height), margin = scale * page_margin;
+    const double scale = display_scale(width, height), margin = scale * page_margin;
     const double left = scale * edge, bottom = scale * edge, top = bottom + scale * page_height;
     const double chart_left = left + scale * (page.rows.empty() ? text_width : text_width - 220);
     const double right = page.curves.empty() ? left + scale * text_width : chart_left + scale * chart_width;
     set_rectangle(sheet_points_, left, bottom, right, top);
     sheet_->VisibilityOn();
-    set_text(title_, page.title, left + margin, top - margin, font(26, height));
+    set_text(title_, page.title, left + margin, top - margin, font(26, scale));
     double y = top - margin - 44 * scale;
-    set_text(text_, page.text, left + margin, y, font(16, height));
+    set_text(text_, page.text, left + margin, y, font(16, scale));
     if (!page.text.empty())
         y -= scale * 22 * static_cast<double>(1 + std::ranges::count(page.text, '\n')) + 12 * scale;
 
@@ -243,21 +241,21 @@ void LessonPanel::show_page(const LessonPage& page, int width, int height) {
         names += (names.empty() ? "" : "\n") + name;
         values += (values.empty() ? "" : "\n") + value;
     }
-    set_text(names_, names, left + margin, y, font(15, height));
-    set_text(values_, values, left + margin + 190 * scale, y, font(15, height));
+    set_text(names_, names, left + margin, y, font(15, scale));
+    set_text(values_, values, left + margin + 190 * scale, y, font(15, scale));
 
     const double chart_height = 220 * scale;
     for (std::size_t i = 0; i < page.curves.size(); ++i)
         charts_.push_back(
             chart_of(page.curves[i], chart_left, top - margin - static_cast<double>(i + 1) * chart_height,
-                     right - margin - chart_left, chart_height - 8 * scale, font(12, height), renderer_));
+                     right - margin - chart_left, chart_height - 8 * scale, font(12, scale), renderer_));
 
     double choice_top = bottom + margin + scale * row_height * static_cast<double>(page.choices.size());
     for (const LessonChoice& choice : page.choices) {
         vtkNew<vtkTextActor> line;
         make_text(line, false, renderer_);
         line->GetTextProperty()->SetColor(1, 0.84, 0.35);
-        set_text(line, choice.text, left + margin, choice_top, font(17, height));
+        set_text(line, choice.text, left + margin, choice_top, font(17, scale));
         choices_.emplace_back(line);
         keys_.push_back(choice.key);
         boxes_.push_back({left, choice_top - scale * row_height, right, choice_top});

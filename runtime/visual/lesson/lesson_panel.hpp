@@ -17,7 +17,7 @@
 namespace palpate::visual {
 
 /// What an exercise writes over the scene: instruction, progress and force band while it runs, a page with
-/// figures, curves and choices otherwise. Sizes follow the window's height.
+/// figures, curves and choices otherwise. Sizes follow the window: display_scale().
 class LessonPanel {
   public:
     explicit LessonPanel(vtkRenderer* renderer);
