@@ -161,8 +161,7 @@ LessonPage result_page(const Attempt& attempt, std::span<const PastAttempt> hist
 LessonView lesson_view(const Lesson& lesson, const LessonSetting& setting, double force,
                        const LessonPage& result) {
     LessonView view;
-    const bool begun = lesson.phase() == Phase::counting_down || lesson.phase() == Phase::doing;
-    view.hides_regions = begun && lesson.exercises()[lesson.chosen()].task != Task::free;
+    view.hides_regions = lesson.exercising() && lesson.exercises()[lesson.chosen()].task != Task::free;
     switch (lesson.phase()) {
         case Phase::choosing:
             view.page = start_page(lesson, setting);

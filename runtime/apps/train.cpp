@@ -10,6 +10,7 @@
 #include "formats/model/errors.hpp"
 #include "formats/provenance/cautions.hpp"
 #include "runtime/apps/point_option.hpp"
+#include "runtime/apps/run_keys.hpp"
 #include "runtime/apps/servo_pulse.hpp"
 #include "runtime/apps/start_recording.hpp"
 #include "runtime/apps/tell_statuses.hpp"
@@ -148,7 +149,7 @@ TouchTarget start_of(const Options& options, const Session& run) {
 
 // Shows the run in the window until the user or the time ends it.
 Shown show(const Options& options, Session& run, TrainWindow& window, VisualFrame& frame, Felt& felt,
-           TrainLesson& lesson) {
+           TrainLesson& lesson, RunKeys& run_keys) {
     constexpr auto shortest_frame = std::chrono::nanoseconds(1'000'000'000 / 60);
     const Session::Sink take = [&](const TickResult& tick) {
         felt.add(tick);
@@ -171,7 +172,12 @@ Shown show(const Options& options, Session& run, TrainWindow& window, VisualFram
         frame.faults = run.recent_faults(tick.time);
         frame.statuses = run.statuses().recent(tick.time);
         frame.tick_rate_hz = rate.update(tick.tick);
-        for (const std::string& key : window.take_keys()) lesson.lesson().press(key);
+        for (const std::string& key : window.take_keys()) {
+            const std::string told = run_keys.press(key, lesson.lesson().exercising());
+            if (!told.empty()) window.tell(told);
+            lesson.lesson().press(key);
+        }
+        frame.recording = run_keys.recording();
         if (const auto hand = lesson.hand(window.hand())) window.place_hand(*hand);
         frame.lesson = lesson.view(frame.force.norm());
         window.show(frame);
@@ -241,7 +247,8 @@ Json train(const Options& options, cli::Session& session) {
 
     if (!options.record.empty()) start_recording(run, options.record, options.record_seconds, session);
     Felt felt;
-    const auto [frame_ns, seconds] = show(options, run, window, frame, felt, lesson);
+    RunKeys run_keys(run, options.record_seconds, session);
+    const auto [frame_ns, seconds] = show(options, run, window, frame, felt, lesson, run_keys);
     if (cli::interrupt_asked()) {
         spdlog::warn("interrupted: the force has gone to zero, only a recording is kept");
         throw cli::Interrupted();
@@ -271,7 +278,9 @@ Json train(const Options& options, cli::Session& session) {
                 {"device_travel_mm", felt.travel},
                 {"statuses", run.statuses().by_name()},
                 {"faults", run.faults_json()},
-                {"attempts", lesson.attempts()}};
+                {"attempts", lesson.attempts()},
+                {"recorded_by_key", run_keys.recordings()},
+                {"scheme", run.model().method().name}};
     if (const auto rows = run.recorded_rows())
         result["recording"] = {{"rows", *rows}, {"lost_rows", statistics.lost_records}};
     return result;
@@ -295,8 +304,10 @@ int main(int argc, char** argv) {
              "view, with the middle one or Shift and left to shift it, with Ctrl and left to roll it; the "
              "wheel, + and - zoom, C cuts the bodies open, B hides the rigid ones, I shows and hides "
              "how the case was made, T shows what they enclose, V looks from the tool's tip, P saves a "
-             "picture in this folder, R goes "
-             "back to the start, H hides the hints, Q or Escape closes. The "
+             "picture in this folder, O records every tick there from then on or stops, F "
+             "takes the next contact scheme, U takes a change of "
+             "the view back, R goes back to the start, H shows what the mouse does, Q or Escape closes; the "
+             "buttons below do the same. The "
              "window needs an X display; on a machine "
              "without one use 'xvfb-run'.\n"
              "With --device " +

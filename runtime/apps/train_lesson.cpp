@@ -77,8 +77,7 @@ TrainLesson::TrainLesson(const LessonOptions& options, std::vector<Exercise> exe
     : folder_((options.attempts.empty() ? usual_attempts_folder() : std::filesystem::path(options.attempts)) /
               options.trainee),
       setting_(std::move(setting)),
-      device_(run.device_name()),
-      scheme_(run.model().method().name),
+      run_(run),
       lesson_(std::move(exercises), run.patient_case(), scripted ? 0 : countdown,
               [this](const Attempt& attempt) { keep(attempt); }) {
     if (!options.exercise.empty())
@@ -110,8 +109,8 @@ void TrainLesson::keep(const Attempt& attempt) {
     const AttemptHead head{.trainee = setting_.trainee,
                            .when = now_utc(),
                            .case_name = setting_.case_name,
-                           .device = device_,
-                           .scheme = scheme_,
+                           .device = run_.device_name(),
+                           .scheme = std::string(run_.model().method().name),
                            .version = cli::version()};
     attempts_.push_back(attempt_json(head, attempt));
     try {

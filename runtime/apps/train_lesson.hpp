@@ -57,7 +57,7 @@ class TrainLesson {
 
     std::filesystem::path folder_;
     LessonSetting setting_;
-    std::string device_, scheme_;
+    const session::Session& run_;
     visual::LessonPage result_;  // of the last attempt
     nlohmann::ordered_json attempts_ = nlohmann::ordered_json::array();
     training::Lesson lesson_;

@@ -48,6 +48,9 @@ class HapticModel {
     /// running tick or detection.
     void reset() noexcept;
 
+    /// Numbers its ticks as if it had ticked as often as `before`. Not beside a running tick of either.
+    void count_on_from(const HapticModel& before) noexcept { tick_ = before.tick_; }
+
     /// Computes the forces for one state of each tool: finds contacts, solves them, limits the forces. Fills
     /// the results except tick_ns, wake_latency_ns and overruns. As many states and results as tools
     /// (asserted). Where a device has a fault, or with any of `faults` (Fault flags) all of them, the force

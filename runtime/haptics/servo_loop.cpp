@@ -5,6 +5,7 @@
 #include <chrono>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "formats/model/errors.hpp"
 #include "runtime/realtime/periodic_clock.hpp"
@@ -12,18 +13,27 @@
 namespace palpate::haptics {
 
 using namespace realtime;
+namespace {
+
+constexpr std::chrono::milliseconds patience(250);  // for a servo that has forces to take to zero
+
+}  // namespace
 
 ServoLoop::ServoLoop(HapticModel& model, std::span<Device* const> devices, Servo* servo,
                      std::size_t ring_capacity)
-    : model_(model),
+    : model_(&model),
       devices_(devices.begin(), devices.end()),
       servo_(servo ? *servo : own_servo_),
       states_(devices.size()),
       results_(devices.size()),
       outlet_(devices.size(), ring_capacity),
-      collision_([&model] { model.detect(); }) {
-    if (devices.size() != model.tool_count())
-        throw InvalidInput({"servo loop", std::to_string(devices.size()) + " devices",
+      collision_([this] { model_.load()->detect(); }) {
+    couple(model);
+}
+
+void ServoLoop::couple(HapticModel& model) const {
+    if (devices_.size() != model.tool_count())
+        throw InvalidInput({"servo loop", std::to_string(devices_.size()) + " devices",
                             std::to_string(model.tool_count()) + ", one for each tool", ""});
     std::vector<DeviceLimits> limits;
     for (const Device* device : devices_) limits.push_back(device->limits());
@@ -39,14 +49,26 @@ void ServoLoop::start() {
     servo_.start([this](const ServoTick& wake) { step(wake); });
     running_ = true;
     std::ranges::copy(servo_.setup(), std::back_inserter(statistics_.setup));
-    if (model_.method().can.needs_detection) collision_.start();
+    detecting_ = model_.load()->method().can.needs_detection;
+    if (detecting_) collision_.start();
+}
+
+bool ServoLoop::change_model(HapticModel& model) {
+    couple(model);
+    next_model_.store(&model);
+    const auto give_up = std::chrono::steady_clock::now() + patience;
+    while (next_model_.load() != nullptr && std::chrono::steady_clock::now() < give_up)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (next_model_.exchange(nullptr) != nullptr) return false;
+    if (model.method().can.needs_detection && !std::exchange(detecting_, true)) collision_.start();
+    return true;
 }
 
 void ServoLoop::stop() {
     if (!running_) return;
     running_ = false;
     stopping_.store(true);
-    const auto give_up = std::chrono::steady_clock::now() + std::chrono::milliseconds(250);
+    const auto give_up = std::chrono::steady_clock::now() + patience;
     while (!released_.load() && std::chrono::steady_clock::now() < give_up)
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     servo_.stop();
@@ -59,7 +81,7 @@ void ServoLoop::run_virtual(std::int64_t ticks, const std::function<void(const T
         step(wake(tick));
         for (const TickResult& result : results_) sink(result);
         if (tick * period_ns / CollisionLoop::period_ns > (tick - 1) * period_ns / CollisionLoop::period_ns)
-            model_.detect();
+            model_.load()->detect();
     }
     for (Device* device : devices_) device->write({0, 0, 0});
 }
@@ -81,7 +103,8 @@ std::uint32_t ServoLoop::faults_of(const ServoTick& wake, std::int64_t now_ns) n
     if (late || wake.overruns - statistics_.overruns >= late_periods) faults |= tick_late;
     const std::int64_t beat = visual_beat_ns_.load(std::memory_order_relaxed);
     if (beat != 0 && now_ns - beat > visual_patience_ns) faults |= visual_stopped;
-    if (stopping_.load(std::memory_order_relaxed)) faults |= servo_stopping;
+    if (stopping_.load(std::memory_order_relaxed) || next_model_.load(std::memory_order_relaxed) != nullptr)
+        faults |= servo_stopping;
     return faults;
 }
 
@@ -92,7 +115,7 @@ void ServoLoop::step(const ServoTick& wake) noexcept {
         states_[t] = devices_[t]->read(wake.time);
         states_[t].time = wake.time;
     }
-    model_.tick(states_, results_, faults_of(wake, begin));
+    model_.load(std::memory_order_relaxed)->tick(states_, results_, faults_of(wake, begin));
     for (std::size_t t = 0; t < devices_.size(); ++t) devices_[t]->write(results_[t].force);
     const std::int64_t tick_ns = monotonic_ns() - begin;
     for (std::size_t t = 0; t < devices_.size(); ++t) {
@@ -107,6 +130,17 @@ void ServoLoop::step(const ServoTick& wake) noexcept {
     statistics_.tick_ns.record(static_cast<std::uint64_t>(std::max<std::int64_t>(0, whole_ns)));
     statistics_.wake_latency_ns.record(static_cast<std::uint64_t>(wake.wake_latency_ns));
     if (stopping_.load(std::memory_order_relaxed)) count_stopping();
+    if (HapticModel* next = next_model_.load()) change_over(*next);
+}
+
+void ServoLoop::change_over(HapticModel& next) noexcept {
+    if (++ticks_changing_ <= ForceLimiter::ramp_ticks) return;
+    ticks_changing_ = 0;
+    next.count_on_from(*model_.load());
+    // Whoever asked may have given up meanwhile.
+    HapticModel* asked = &next;
+    HapticModel* before = model_.exchange(&next);
+    if (!next_model_.compare_exchange_strong(asked, nullptr)) model_.store(before);
 }
 
 // A hand that presses must not be dropped: the last force has gone to zero before the servo ends.

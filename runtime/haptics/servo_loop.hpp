@@ -59,6 +59,13 @@ class ServoLoop {
     /// not waited for longer than a quarter of a second.
     void stop();
 
+    /// While it runs: goes on with another model, coupled to the same devices. Takes the forces to zero as
+    /// for a fault, changes over between two ticks and returns; ticks are numbered on. Contact starts anew: a
+    /// body that a tool is in is not felt until the tool has been clear of it. False, and nothing is changed,
+    /// if the servo has not come so far within a quarter of a second. Throws InvalidInput if the model has
+    /// not as many tools.
+    bool change_model(HapticModel& model);
+
     /// Runs `ticks` ticks in the calling thread as fast as possible, the k-th, from 1 on, at `wake(k)`; by
     /// default one period after the other. A method that needs detection detects 30 times in a thousand
     /// ticks. `sink` gets each tool's result of each tick. Instead of start(): for tests and for runs that
@@ -88,8 +95,11 @@ class ServoLoop {
     void step(const realtime::ServoTick& wake) noexcept;
     std::uint32_t faults_of(const realtime::ServoTick& wake, std::int64_t now_ns) noexcept;
     void count_stopping() noexcept;
+    void change_over(HapticModel& next) noexcept;
+    void couple(HapticModel& model) const;
 
-    HapticModel& model_;
+    std::atomic<HapticModel*> model_;
+    std::atomic<HapticModel*> next_model_{nullptr};  // that change_model() waits for
     std::vector<realtime::Device*> devices_;
     realtime::PeriodicServo own_servo_;
     realtime::Servo& servo_;
@@ -102,8 +112,8 @@ class ServoLoop {
     std::atomic<std::uint32_t> faults_{no_fault};  // that other threads have told of
     std::atomic<std::int64_t> visual_beat_ns_{0};  // 0: never
     std::atomic<bool> stopping_{false}, released_{false};
-    int ticks_stopping_ = 0;  // the servo's
-    bool running_ = false;
+    int ticks_stopping_ = 0, ticks_changing_ = 0;  // the servo's
+    bool running_ = false, detecting_ = false;
 };
 
 }  // namespace palpate::haptics

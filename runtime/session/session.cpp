@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/session/session.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "formats/asset/asset.hpp"
+#include "formats/model/errors.hpp"
 
 namespace palpate::session {
 
@@ -13,7 +15,10 @@ Session::Session(SessionRequest request, std::function<void(const std::string&)>
     : request_(std::move(request)),
       tell_(std::move(tell)),
       case_(asset::load_asset(request_.asset)),
-      model_(case_, request_.method, request_.tool_count) {}
+      model_(models_
+                 .emplace_back(
+                     std::make_unique<haptics::HapticModel>(case_, request_.method, request_.tool_count))
+                 .get()) {}
 
 Session::~Session() {
     stop();
@@ -24,13 +29,13 @@ void Session::hold(devices::OpenDevices devices) {
     devices_.devices = std::move(devices.devices);
     devices_.servo = devices.servo;
     devices_.guide = std::move(devices.guide);
-    loop_.emplace(model_, held(), devices_.servo);
+    loop_.emplace(*model_, held(), devices_.servo);
     // Without a clock there is no time in which the asset could go.
     watch_.emplace(request_.virtual_clock ? std::filesystem::path() : request_.asset, *loop_,
                    [this](const std::string& sentence) {
                        if (tell_) tell_(sentence);
                    });
-    if (!request_.stream.empty()) stream_.emplace(request_.stream, case_, model_.tool_count());
+    if (!request_.stream.empty()) stream_.emplace(request_.stream, case_, model_->tool_count());
 }
 
 void Session::guide(const Eigen::Vector3d& place) {
@@ -38,7 +43,7 @@ void Session::guide(const Eigen::Vector3d& place) {
 }
 
 recording::RecordingHead Session::recording_head(const std::string& version) const {
-    return palpate::session::recording_head(request_.asset, case_, model_, held(),
+    return palpate::session::recording_head(request_.asset, case_, *model_, held(),
                                             request_.virtual_clock ? "virtual" : "real", version);
 }
 
@@ -54,6 +59,21 @@ void Session::start() {
         if (recorder_) std::filesystem::remove(recording_);  // it holds nothing
         throw;
     }
+}
+
+void Session::change_method(std::string_view name) {
+    if (name == model_->method().name) return;
+    const auto made =
+        std::ranges::find(models_, name, [](const auto& model) { return model->method().name; });
+    auto& model = made != models_.end() ? **made
+                                        : *models_.emplace_back(std::make_unique<haptics::HapticModel>(
+                                              case_, name, model_->tool_count()));
+    model.reset();
+    end_recording();
+    if (!loop_->change_model(model))
+        throw SystemFailure({"the servo", "has not changed its contact method within a quarter of a second",
+                             "1000 ticks a second", "check the device, then 'palpate doctor'"});
+    model_ = &model;
 }
 
 void Session::pump(const Sink& sink) {

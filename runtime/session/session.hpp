@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "formats/model/body.hpp"
@@ -31,7 +33,7 @@ struct SessionRequest {
 
 /// One run with a patient's model and the devices that touch it: haptic and collision loop, watch over
 /// faults, live stream, recording, statistics. Prepared in three steps, each of which throws what cannot be:
-/// made, hold(), and where wanted record_to(); after that only start() or run_virtual(), whose ticks pump()
+/// made, hold(), and where wanted record_to(); after that start() or run_virtual(), whose ticks pump()
 /// or the sink hand out. One thread, but where said otherwise.
 class Session {
   public:
@@ -45,9 +47,9 @@ class Session {
     ~Session();  ///< stops
 
     const Case& patient_case() const noexcept { return case_; }
-    const haptics::HapticModel& model() const noexcept { return model_; }
+    const haptics::HapticModel& model() const noexcept { return *model_; }
     /// To try forces out before the session starts; whoever does resets it.
-    haptics::HapticModel& model() noexcept { return model_; }
+    haptics::HapticModel& model() noexcept { return *model_; }
 
     /// Takes devices, one for each tool, couples the model to what they bear and begins to listen for viewers
     /// of the stream. Once, before what follows. Throws as ServoLoop and LiveStream.
@@ -59,12 +61,19 @@ class Session {
 
     /// What a recording of this session says of it. Throws as recording_head().
     recording::RecordingHead recording_head(const std::string& version) const;
-    /// Puts every tick into what make_recording() made with that head. Throws as RunRecorder.
+    /// Puts every tick from here on into what make_recording() made with that head, also while it runs.
+    /// Throws as RunRecorder.
     void record_to(const std::filesystem::path& recording);
+    /// Ends the recording; the ticks go on.
+    void end_recording() { recorder_.reset(); }
 
     /// Starts to tick against the clock; returns once the servo is set up. Throws as Servo::start(); an empty
     /// recording is removed then.
     void start();
+    /// While it runs against the clock: goes on with another contact method, as ServoLoop::change_model() has
+    /// it; a recording, which is of one method, ends. Earlier models stay, for others may look at their
+    /// surfaces. Throws as HapticModel does; SystemFailure if the servo does not tick.
+    void change_method(std::string_view name);
     /// Hands every result since the last call to watch, stream, recording and `sink`, in this thread.
     void pump(const Sink& sink);
     /// The latest result of a tool, beside pump().
@@ -94,7 +103,8 @@ class Session {
     SessionRequest request_;
     std::function<void(const std::string&)> tell_;
     Case case_;
-    haptics::HapticModel model_;
+    std::vector<std::unique_ptr<haptics::HapticModel>> models_;  // one for each method so far
+    haptics::HapticModel* model_;                                // that ticks
     devices::OpenDevices devices_;
     std::optional<haptics::ServoLoop> loop_;
     std::optional<RunWatch> watch_;

@@ -46,6 +46,8 @@ class Lesson {
     void close();
 
     Phase phase() const { return phase_; }
+    /// An attempt counts down, goes on or is paused.
+    bool exercising() const { return phase_ == Phase::counting_down || phase_ == Phase::doing; }
     const std::vector<Exercise>& exercises() const { return exercises_; }
     /// The exercise that was chosen last.
     std::size_t chosen() const { return chosen_; }

@@ -26,9 +26,9 @@ namespace {
 constexpr double bar_width = 240, bar_height = 10;
 constexpr auto help_text =
     "left button  press      held, wheel or W S  deeper, back      W S, arrows  move the tool\n"
-    "right drag  turn      middle drag  move the view      wheel, + -  zoom      R  reset      Q  quit\n"
-    "C  cut away      B  bone      T  enclosed regions      V  from the tip      P  picture      I  about "
-    "this case      H  help";
+    "right drag  turn      middle drag  move the view      wheel, + -  zoom";
+constexpr double help_opacity = 0.75;
+constexpr double above_buttons = 0.085;     // of the window's height
 constexpr std::size_t cautions_width = 64;  // characters
 constexpr double cautions_room = 460;       // pixels that so many take, mostly, at 1280x720
 
@@ -93,8 +93,8 @@ Overlay::Overlay(const std::string& title, double max_force, std::span<const std
     place(force_, 0.017, 0.975, 30, false, true);
     place(figures_, 0.017, 0.865, 16, false, true);
     place(title_, 0.983, 0.975, 18, true, true);
-    place(help_, 0.017, 0.025, 14, false, false);
-    place(told_, 0.983, 0.025, 16, true, false);
+    place(help_, 0.017, above_buttons, 14, false, false);
+    place(told_, 0.983, above_buttons, 16, true, false);
     place(notice_, 0.5, 0.86, 20, false, true);
     notice_->GetTextProperty()->SetJustificationToCentered();
     notice_->GetTextProperty()->SetColor(1, 0.75, 0.3);
@@ -106,7 +106,7 @@ Overlay::Overlay(const std::string& title, double max_force, std::span<const std
     cautions_shown_ = !text.empty();
     show_texts();
     help_->SetInput(help_text);
-    help_->GetTextProperty()->SetOpacity(0.75);
+    help_->GetTextProperty()->SetOpacity(help_opacity);
 }
 
 void Overlay::place(vtkTextActor* actor, double x, double y, int size, bool right, bool top) {
@@ -150,6 +150,7 @@ void Overlay::update(const VisualFrame& frame, double frames_per_second) {
                                   share < 0.5 ? 0.82 : 1.64 - 1.64 * share, 0.3);
     const auto now = std::chrono::steady_clock::now();
     if (now - last_ < 200ms) return;
+    fade_help(now);
     last_ = now;
     told_->SetVisibility(now < told_until_);
     force_->SetInput(fmt::format("{:.2f} N", newtons).c_str());
@@ -166,8 +167,22 @@ void Overlay::tell(const std::string& sentence) {
     told_until_ = std::chrono::steady_clock::now() + std::chrono::seconds(4);
 }
 
-void Overlay::show_help(bool on) {
-    help_shown_ = on;
+void Overlay::turn_help() {
+    help_shown_ = !help_shown_;
+    help_fades_ = false;
+    help_->GetTextProperty()->SetOpacity(help_opacity);
+    show_texts();
+}
+
+// Once it has been over the scene for long enough to be read.
+void Overlay::fade_help(std::chrono::steady_clock::time_point now) {
+    using Seconds = std::chrono::duration<double>;
+    constexpr Seconds whole(25), fading(4);
+    if (!help_fades_ || !help_shown_ || page_shown_ || last_ == decltype(last_){}) return;
+    help_seen_ += now - last_;
+    const double share = std::clamp((whole + fading - Seconds(help_seen_)) / fading, 0.0, 1.0);
+    help_->GetTextProperty()->SetOpacity(help_opacity * share);
+    help_shown_ = share > 0;
     show_texts();
 }
 

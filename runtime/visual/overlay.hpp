@@ -30,7 +30,9 @@ class Overlay {
             vtkRenderer* renderer);
 
     void update(const VisualFrame& frame, double frames_per_second);
-    void show_help(bool on);
+    /// Shows what the mouse does, or hides it. It is shown from the start and fades by itself.
+    void turn_help();
+    bool help_shown() const { return help_shown_; }
     /// Shows the case's cautions, or hides them. They are shown from the start until something is touched.
     void turn_cautions();
     /// Hides hints and cautions while a page lies over the scene, cautions while an exercise goes on.
@@ -40,6 +42,7 @@ class Overlay {
 
   private:
     void show_texts();
+    void fade_help(std::chrono::steady_clock::time_point now);
     void place(vtkTextActor* actor, double x, double y, int size, bool right, bool top);
     void fit_window();
 
@@ -55,6 +58,8 @@ class Overlay {
     double max_force_;  // N
     bool was_touched_ = false;
     bool help_shown_ = true, cautions_shown_ = false;
+    bool help_fades_ = true;  // until it is asked for
+    std::chrono::steady_clock::duration help_seen_{};
     bool page_shown_ = false, exercise_shown_ = false;
     std::chrono::steady_clock::time_point last_{};
     vtkNew<vtkTextActor> force_, figures_, title_, help_, notice_, cautions_, told_;

@@ -7,6 +7,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <future>
 #include <map>
 #include <optional>
@@ -22,6 +23,9 @@
 #include <vtkRenderer.h>
 
 #include "formats/model/errors.hpp"
+#include "runtime/visual/controls/button_bar.hpp"
+#include "runtime/visual/controls/free_path.hpp"
+#include "runtime/visual/controls/view_history.hpp"
 #include "runtime/visual/endoscope.hpp"
 #include "runtime/visual/hand/pointer_hand.hpp"
 #include "runtime/visual/hand/surface_under.hpp"
@@ -80,6 +84,7 @@ struct TrainWindow::Parts {
           overlay(patient_case.name, patient_case.haptics.max_force, window_settings.cautions, front),
           lesson_scene(renderer),
           panel(front),
+          buttons(front),
           tool_radius(patient_case.haptics.tool_radius),
           cut(window_settings.sight.blocked) {
         renderer->SetBackground(0.10, 0.13, 0.16);  // a gradient takes a twentieth of a frame
@@ -147,7 +152,7 @@ struct TrainWindow::Parts {
     void handle(unsigned long event) {
         switch (event) {
             case vtkCommand::LeftButtonPressEvent:
-                if (!choose_on_page()) left_pressed();
+                if (!click()) left_pressed();
                 break;
             case vtkCommand::MiddleButtonPressEvent:
                 begin(Drag::shift);
@@ -178,9 +183,13 @@ struct TrainWindow::Parts {
         }
     }
 
-    // Whether the pointer was on a choice of a page, which is taken then.
-    bool choose_on_page() {
+    // Whether the pointer was on a button or a choice of a page, which is pressed then.
+    bool click() {
         const int* at = interactor->GetEventPosition();
+        if (const std::string_view key = buttons.key_at(at[0], at[1]); !key.empty()) {
+            act_on(std::string(key));
+            return true;
+        }
         std::string choice = panel.choice_at(at[0], at[1]);
         if (choice.empty()) return false;
         keys.push_back(std::move(choice));
@@ -204,16 +213,18 @@ struct TrainWindow::Parts {
 
     void begin(Drag what) {
         drag = what;
+        if (what != Drag::none) keep_view();
         hand.press(false);
     }
 
     void pointer_moved() {
         const int* now = interactor->GetEventPosition();
         panel.hover(now[0], now[1]);
+        buttons.hover(now[0], now[1]);
         const int* before = interactor->GetLastEventPosition();
         const double dx = now[0] - before[0], dy = now[1] - before[1];
         if (drag == Drag::none) {
-            if (!endoscope.on() && !panel.covers(now[0], now[1])) hand.point({now[0], now[1]});
+            if (!endoscope.on() && !covered(now[0], now[1])) hand.point({now[0], now[1]});
             return;
         }
         vtkCamera* camera = renderer->GetActiveCamera();
@@ -224,7 +235,21 @@ struct TrainWindow::Parts {
         hand.view_changed();
     }
 
+    // Whether something to click on lies over the scene there.
+    bool covered(int x, int y) const { return panel.covers(x, y) || !buttons.key_at(x, y).empty(); }
+
+    void keep_view() {
+        if (!endoscope.on()) views.keep(renderer->GetActiveCamera(), std::chrono::steady_clock::now());
+    }
+
+    void undo_view() {
+        if (endoscope.on()) return;
+        if (!views.back(renderer->GetActiveCamera())) overlay.tell("this is the first view");
+        hand.view_changed();
+    }
+
     void zoom(double steps) {
+        keep_view();
         renderer->GetActiveCamera()->Dolly(std::pow(zoom_step, steps));
         hand.view_changed();
     }
@@ -272,19 +297,47 @@ struct TrainWindow::Parts {
         std::string key = symbol ? symbol : "";
         if (key.size() == 1) key[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(key[0])));
         move_by_key(key);
-        if (key == "plus" || key == "equal" || key == "KP_Add") zoom(1);
-        if (key == "minus" || key == "KP_Subtract") zoom(-1);
-        if (key == "c") cut = !cut;
-        if (key == "b") scene.show_rigid(rigid_shown = !rigid_shown);
-        if (key == "t") turn_regions();
-        if (key == "p" || key == "F12") picture_asked = true;
-        if (key == "h") overlay.show_help(help_shown = !help_shown);
-        if (key == "i") overlay.turn_cautions();
-        if (key == "r") reset();
-        if (key == "v") endoscope.turn(renderer->GetActiveCamera());
-        if (key == "q" || key == "Escape") closed = true;
         std::ranges::transform(key, key.begin(), [](unsigned char letter) { return std::tolower(letter); });
+        act_on(key);
+    }
+
+    // What a key means to the window; `key` is in lower case. Then it is the program's turn.
+    void act_on(const std::string& key) {
+        static const std::map<std::string, std::function<void(Parts&)>> acts{
+            {"c", [](Parts& p) { p.cut = !p.cut; }},
+            {"b", [](Parts& p) { p.scene.show_rigid(p.rigid_shown = !p.rigid_shown); }},
+            {"t", &Parts::turn_regions},
+            {"v", [](Parts& p) { p.endoscope.turn(p.renderer->GetActiveCamera()); }},
+            {"u", &Parts::undo_view},
+            {"r", &Parts::go_back},
+            {"p", [](Parts& p) { p.picture_asked = true; }},
+            {"f12", [](Parts& p) { p.picture_asked = true; }},
+            {"i", [](Parts& p) { p.overlay.turn_cautions(); }},
+            {"h", [](Parts& p) { p.overlay.turn_help(); }},
+            {"q", [](Parts& p) { p.closed = true; }},
+            {"escape", [](Parts& p) { p.closed = true; }},
+            {"plus", [](Parts& p) { p.zoom(1); }},
+            {"equal", [](Parts& p) { p.zoom(1); }},
+            {"kp_add", [](Parts& p) { p.zoom(1); }},
+            {"minus", [](Parts& p) { p.zoom(-1); }},
+            {"kp_subtract", [](Parts& p) { p.zoom(-1); }},
+        };
+        if (const auto act = acts.find(key); act != acts.end()) act->second(*this);
         keys.push_back(key);
+    }
+
+    void go_back() {
+        keep_view();
+        reset();
+    }
+
+    void light_buttons(const VisualFrame& frame) {
+        buttons.light("c", cut);
+        buttons.light("b", rigid_shown);
+        buttons.light("t", regions_shown);
+        buttons.light("v", endoscope.on());
+        buttons.light("o", frame.recording);
+        buttons.light("h", overlay.help_shown());
     }
 
     void turn_regions() {
@@ -309,7 +362,7 @@ struct TrainWindow::Parts {
         picture_asked = false;
         if (picture.valid()) return overlay.tell("the last picture is still being written");
         picture = std::async(std::launch::async,
-                             [path = free_picture_path(std::filesystem::current_path(), case_name),
+                             [path = free_path(std::filesystem::current_path(), case_name, ".png"),
                               pixels = grab_pixels(window)]() -> std::string {
                                  try {
                                      write_picture(path, pixels);
@@ -340,11 +393,12 @@ struct TrainWindow::Parts {
     Endoscope endoscope;
     LessonScene lesson_scene;
     LessonPanel panel;
+    ButtonBar buttons;
+    ViewHistory views;
     std::vector<std::string> keys;  // for take_keys()
     double tool_radius;             // mm
     bool cut;
     bool rigid_shown = true;
-    bool help_shown = true;
     bool regions_shown = false;
     bool exercising = false;
     bool picture_asked = false;
@@ -375,7 +429,10 @@ void TrainWindow::show(const VisualFrame& frame) {
     p.see_exercise(frame.lesson.hides_regions);
     p.overlay.make_room(frame.lesson.page.has_value(), !frame.lesson.instruction.empty());
     p.lesson_scene.update(frame.lesson);
-    p.panel.update(frame.lesson, frame.force.norm(), p.window->GetSize()[0], p.window->GetSize()[1]);
+    const int* size = p.window->GetSize();
+    p.panel.update(frame.lesson, frame.force.norm(), size[0], size[1]);
+    p.light_buttons(frame);
+    p.buttons.update(!frame.lesson.page, size[0], size[1]);
     p.window->Render();
     if (p.picture_asked) p.take_picture();
     p.tell_of_picture();
@@ -397,6 +454,10 @@ Vector3d TrainWindow::hand() const {
 
 void TrainWindow::place_hand(const Vector3d& place) {
     parts_->hand.put(place);
+}
+
+void TrainWindow::tell(const std::string& sentence) {
+    parts_->overlay.tell(sentence);
 }
 
 std::vector<std::string> TrainWindow::take_keys() {

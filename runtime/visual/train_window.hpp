@@ -40,8 +40,10 @@ class TrainWindow {
     Eigen::Vector3d hand() const;  ///< where the hand is meant to be, p_P, mm
     /// Moves the hand there (p_P, mm), as far as mouse and keyboard hold one.
     void place_hand(const Eigen::Vector3d& place);
-    /// The keys that were pressed since the last call and mean nothing to the window, and the choices of a
-    /// page that were clicked: X11 names in lower case.
+    /// Says something on the screen for a few seconds.
+    void tell(const std::string& sentence);
+    /// The keys that were pressed since the last call, by hand or by a click on a button or a page's choice:
+    /// X11 names in lower case. What is the window's own has been done already.
     std::vector<std::string> take_keys();
     std::int64_t frames() const;       ///< drawn so far
     double frames_per_second() const;  ///< of the last second or so

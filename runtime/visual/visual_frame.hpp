@@ -18,6 +18,7 @@ struct VisualFrame {
     std::int64_t overruns = 0;
     std::uint32_t faults = 0;    ///< Fault flags: why there is no force
     std::uint32_t statuses = 0;  ///< TickStatus flags: what was unusual just now
+    bool recording = false;      ///< every tick is being kept
     /// Of every surface vertex of every deformable body, mm.
     std::vector<std::vector<Eigen::Vector3f>> displacements;
     LessonView lesson;  ///< of an exercise

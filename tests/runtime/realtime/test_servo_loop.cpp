@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <thread>
 
+#include "formats/model/errors.hpp"
 #include "runtime/devices/guided_device.hpp"
 #include "runtime/devices/simulated_device.hpp"
 #include "runtime/haptics/servo_loop.hpp"
@@ -71,6 +72,48 @@ TEST(ServoLoop, published_schemes_detect_beside_the_ticks) {
     }
     loop.stop();
     EXPECT_GT(strongest, 0);
+}
+
+TEST(ServoLoop, changes_its_model_with_the_force_at_zero_and_counts_on) {
+    HapticModel first(sample::sample_case()), second(sample::sample_case(), "twice");
+    devices::GuidedDevice device({40, 10, 32}, {}, 200);
+    ServoLoop loop(first, device, 8192);
+    const auto go = [&](double z) {
+        device.set_target({40, 10, z});
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    };
+    loop.start();
+    go(24.5);
+    EXPECT_GT(loop.latest().read().force[2], 0);
+    ASSERT_TRUE(loop.change_model(second));
+    go(24.5);
+    EXPECT_EQ(loop.latest().read().force[2], 0) << "felt before it was clear of the body";
+    go(32);
+    go(24.5);
+    EXPECT_GT(loop.latest().read().force[2], 0);
+    loop.stop();
+
+    std::int64_t logged = 0;
+    double force = 0, largest_fall = 0;
+    bool changing = false;
+    TickResult record{};
+    while (loop.ring().pop(record)) {
+        EXPECT_EQ(record.tick, logged++);
+        largest_fall = std::max(largest_fall, force - record.force[2]);
+        force = record.force[2];
+        changing = changing || (record.faults & servo_stopping);
+    }
+    EXPECT_TRUE(changing);
+    EXPECT_LT(largest_fall, 0.2 * first.settings().max_force) << "of one tick: the ramp has 20 at least";
+}
+
+TEST(ServoLoop, stays_with_its_model_where_the_servo_does_not_tick) {
+    HapticModel first(sample::sample_case()), second(sample::sample_case(), "twice"),
+        of_two_tools(sample::sample_case(), usual_contact_method, 2);
+    RecordingDevice device;
+    ServoLoop loop(first, device, 64);
+    EXPECT_FALSE(loop.change_model(second));
+    EXPECT_THROW(loop.change_model(of_two_tools), InvalidInput);
 }
 
 TEST(TickOutlet, hands_over_a_tick_with_the_contacts_that_count_and_copies_no_others) {

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/apps/run_keys.hpp"
+
+#include <fmt/format.h>
+
+#include "runtime/apps/start_recording.hpp"
+#include "runtime/haptics/methods/contact_methods.hpp"
+#include "runtime/visual/controls/free_path.hpp"
+
+namespace palpate::apps {
+
+std::string RunKeys::press(std::string_view key, bool exercising) {
+    try {
+        if (key == "o") return turn_recording();
+        if (key == "f") return exercising ? "not while an exercise goes on" : take_next_method();
+    } catch (const std::exception& error) {
+        return error.what();
+    }
+    return "";
+}
+
+std::string RunKeys::turn_recording() {
+    if (const auto rows = run_.recorded_rows()) {
+        run_.end_recording();
+        return fmt::format("recorded {:.1f} s", 1e-3 * static_cast<double>(*rows) /
+                                                    static_cast<double>(run_.model().tool_count()));
+    }
+    const auto path = visual::free_path(".", run_.patient_case().name, ".h5");
+    start_recording(run_, path, seconds_, session_);
+    recordings_.push_back(path.filename());
+    return "recording: " + path.filename().string();
+}
+
+std::string RunKeys::take_next_method() {
+    const auto methods = haptics::contact_methods();
+    auto at = &run_.model().method() - methods.data();
+    do at = (at + 1) % std::ssize(methods);
+    while (methods[at].can.most_tools < run_.model().tool_count());
+    run_.change_method(methods[at].name);
+    return fmt::format("contact '{}': {}", methods[at].name, methods[at].sentence);
+}
+
+}  // namespace palpate::apps

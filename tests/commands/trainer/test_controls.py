@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The trainer's buttons and keys, in a real window of 1280x720 pixels."""
+
+import json
+import subprocess
+import time
+import unittest
+
+from trainer_case import TRAIN, TrainerCase, yellow_pixels
+
+BUTTON_ROW = 690  # pixels from the window's top
+
+
+class Controls(TrainerCase):
+    def open_window(self, *options):
+        process = subprocess.Popen(
+            [TRAIN, self.asset, "--json", "-", *map(str, options)],
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+            env=self.server.environment, cwd=self.folder)
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        window = self.find_window()
+        self.x("xdotool", "key", "BackSpace")  # leave the start page
+        time.sleep(0.5)
+        return process, window
+
+    def click(self, window, x, y=BUTTON_ROW):
+        self.x("xdotool", "mousemove", "--window", window, x, y, "click", 1)
+        time.sleep(0.6)
+
+    def finish(self, process):
+        out, err = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 0, err)
+        return json.loads(out)
+
+    def test_a_button_does_what_its_key_does_and_touches_nothing(self):
+        process, window = self.open_window()
+        inside = 195  # where its button lies
+        counts = [yellow_pixels(self.screen(window))]
+        for _ in range(2):
+            self.click(window, inside)
+            self.x("xdotool", "mousemove", "--window", window, 150, 300)
+            time.sleep(0.5)
+            counts.append(yellow_pixels(self.screen(window)))
+        self.x("xdotool", "key", "q")
+        result = self.finish(process)
+        self.assertGreater(counts[1], counts[0] + 500)
+        self.assertLess(counts[2], counts[0] + 100)
+        self.assertEqual(result["force_peak_n"], 0)
+
+    def test_u_takes_a_change_of_the_view_back(self):
+        process, window = self.open_window()
+        self.x("xdotool", "key", "h")  # hints fade by themselves, and figures change
+        self.x("xdotool", "mousemove", "--window", window, 150, 300)
+        time.sleep(0.5)
+        scene = lambda: self.part(window, "600x400+340+150")
+        before = scene()
+        self.x("xdotool", "mousedown", 3, "mousemove_relative", 60, 30)
+        time.sleep(0.3)
+        self.x("xdotool", "mouseup", 3)
+        time.sleep(0.3)
+        turned = scene()
+        self.x("xdotool", "key", "u")
+        time.sleep(0.5)
+        back = scene()
+        self.x("xdotool", "key", "q")
+        self.finish(process)
+        self.assertNotEqual(before, turned)
+        self.assertEqual(before, back)
+
+    def part(self, window, geometry):
+        run = subprocess.run(["convert", "xwd:-", "-crop", geometry, "+repage", "rgb:-"],
+                             input=self.screen(window), capture_output=True, check=True)
+        return run.stdout
+
+    def test_a_recording_begun_and_ended_by_a_key_replays(self):
+        process, _ = self.open_window()
+        time.sleep(0.5)
+        self.x("xdotool", "key", "o")
+        for _ in range(20):  # half a millimetre each, from 5 mm above the surface
+            self.x("xdotool", "key", "w")
+        time.sleep(0.5)
+        self.x("xdotool", "key", "o")
+        time.sleep(0.3)
+        self.x("xdotool", "key", "q")
+        result = self.finish(process)
+        self.assertEqual(result["recorded_by_key"], ["palpate-sample-1.h5"])
+        self.assertNotIn("recording", result)
+        touch = subprocess.run(
+            [TRAIN.with_name("palpate-touch"), self.asset, "--replay", self.folder / "palpate-sample-1.h5",
+             "--json", "-"], capture_output=True, text=True, timeout=60)
+        self.assertEqual(touch.returncode, 0, touch.stderr)
+        replay = json.loads(touch.stdout)
+        self.assertEqual(replay["replay"]["different_ticks"], 0)
+        self.assertGreater(replay["replay"]["ticks"], 300)
+        self.assertEqual(replay["force_peak_n"], result["force_peak_n"])
+        self.assertGreater(result["force_peak_n"], 0.01)
+
+    def test_f_takes_the_next_contact_scheme_and_the_tool_is_felt_with_it(self):
+        process, _ = self.open_window()
+        self.x("xdotool", "key", "o")
+        self.x("xdotool", "key", "f")  # of 'continuous', the last one, the next is the first
+        time.sleep(0.5)
+        for _ in range(20):  # half a millimetre each, from 5 mm above the surface
+            self.x("xdotool", "key", "w")
+        time.sleep(0.5)
+        self.x("xdotool", "key", "q")
+        result = self.finish(process)
+        self.assertEqual(result["scheme"], "single")
+        self.assertGreater(result["force_peak_n"], 0.01)
+        self.assertNotIn("recording", result, "a recording is of one scheme")
+
+
+if __name__ == "__main__":
+    unittest.main()
