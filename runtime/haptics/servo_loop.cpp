@@ -103,7 +103,8 @@ std::uint32_t ServoLoop::faults_of(const ServoTick& wake, std::int64_t now_ns) n
     if (late || wake.overruns - statistics_.overruns >= late_periods) faults |= tick_late;
     const std::int64_t beat = visual_beat_ns_.load(std::memory_order_relaxed);
     if (beat != 0 && now_ns - beat > visual_patience_ns) faults |= visual_stopped;
-    if (stopping_.load(std::memory_order_relaxed) || next_model_.load(std::memory_order_relaxed) != nullptr)
+    const bool changing = next_model_.load(std::memory_order_relaxed) != nullptr;
+    if (stopping_.load(std::memory_order_relaxed) || changing || std::exchange(model_is_new_, false))
         faults |= servo_stopping;
     return faults;
 }
@@ -140,7 +141,8 @@ void ServoLoop::change_over(HapticModel& next) noexcept {
     // Whoever asked may have given up meanwhile.
     HapticModel* asked = &next;
     HapticModel* before = model_.exchange(&next);
-    if (!next_model_.compare_exchange_strong(asked, nullptr)) model_.store(before);
+    model_is_new_ = next_model_.compare_exchange_strong(asked, nullptr);
+    if (!model_is_new_) model_.store(before);
 }
 
 // A hand that presses must not be dropped: the last force has gone to zero before the servo ends.

@@ -60,8 +60,8 @@ class ServoLoop {
     void stop();
 
     /// While it runs: goes on with another model, coupled to the same devices. Takes the forces to zero as
-    /// for a fault, changes over between two ticks and returns; ticks are numbered on. Contact starts anew: a
-    /// body that a tool is in is not felt until the tool has been clear of it. False, and nothing is changed,
+    /// for a fault, changes over between two ticks and returns; ticks are numbered on. Contact starts anew,
+    /// and the force comes back over half a second. False, and nothing is changed,
     /// if the servo has not come so far within a quarter of a second. Throws InvalidInput if the model has
     /// not as many tools.
     bool change_model(HapticModel& model);
@@ -112,7 +112,8 @@ class ServoLoop {
     std::atomic<std::uint32_t> faults_{no_fault};  // that other threads have told of
     std::atomic<std::int64_t> visual_beat_ns_{0};  // 0: never
     std::atomic<bool> stopping_{false}, released_{false};
-    int ticks_stopping_ = 0, ticks_changing_ = 0;  // the servo's
+    int ticks_stopping_ = 0, ticks_changing_ = 0;  // the servo's, as is the next
+    bool model_is_new_ = false;                    // since the last tick
     bool running_ = false, detecting_ = false;
 };
 
