@@ -102,10 +102,10 @@ class Controls(TrainerCase):
         process, _ = self.open_window()
         self.x("xdotool", "key", "o")
         self.x("xdotool", "key", "f")  # of 'continuous', the last one, the next is the first
-        time.sleep(0.5)
+        time.sleep(1.5)
         for _ in range(20):  # half a millimetre each, from 5 mm above the surface
             self.x("xdotool", "key", "w")
-        time.sleep(0.5)
+        time.sleep(1.5)
         self.x("xdotool", "key", "q")
         result = self.finish(process)
         self.assertEqual(result["scheme"], "single")
