@@ -24,6 +24,7 @@
 #include "runtime/session/statistics_json.hpp"
 #include "runtime/session/touch_target.hpp"
 #include "runtime/training/lay_out.hpp"
+#include "runtime/visual/inside/passage_sight.hpp"
 #include "runtime/visual/train_window.hpp"
 #include "tools/cli/command.hpp"
 
@@ -147,9 +148,9 @@ TouchTarget start_of(const Options& options, const Session& run) {
     return training::choose_start(run.patient_case(), run.model(), options.body, seed);
 }
 
-// Shows the run in the window until the user or the time ends it.
+// Shows the run in the window until the user or the time ends it. `held`: a person's hand turns the tool.
 Shown show(const Options& options, Session& run, TrainWindow& window, VisualFrame& frame, Felt& felt,
-           TrainLesson& lesson, RunKeys& run_keys) {
+           TrainLesson& lesson, RunKeys& run_keys, bool held) {
     constexpr auto shortest_frame = std::chrono::nanoseconds(1'000'000'000 / 60);
     const Session::Sink take = [&](const TickResult& tick) {
         felt.add(tick);
@@ -169,6 +170,7 @@ Shown show(const Options& options, Session& run, TrainWindow& window, VisualFram
         const TickResult& tick = run.latest();
         pulse.see(tick.tick);
         fill_frame(frame, tick, run.model(), creep);
+        if (held) frame.shaft = vector_of(tick.shaft);
         frame.faults = run.recent_faults(tick.time);
         frame.statuses = run.statuses().recent(tick.time);
         frame.tick_rate_hz = rate.update(tick.tick);
@@ -224,11 +226,19 @@ Json train(const Options& options, cli::Session& session) {
     window_settings.sight = choose_sight(patient_case, place.point, place.normal);
     for (std::size_t body = 0; body < run.model().body_count(); ++body)
         window_settings.surfaces.push_back(&run.model().surface(body));
+    if (window_settings.sight.blocked)
+        if (auto inside = choose_passage_sight(window_settings.surfaces, place.point, place.normal))
+            window_settings.sight = *std::move(inside);
     cli::end_softly_on_interrupt();
     run.hold(device.open(
         request_of(options, device.kind, run.model(), place, start, window_settings.sight.axes())));
 
     std::vector<training::Exercise> exercises = lay_out_exercises(options.lesson, run, target);
+    // What an exercise leads along is looked at closely too.
+    for (const training::Exercise& exercise : exercises)
+        if (exercise.task == training::Task::guide)
+            window_settings.sight.close_up.insert(window_settings.sight.close_up.end(),
+                                                  exercise.places.rbegin(), exercise.places.rend());
     TrainLesson lesson(options.lesson, std::move(exercises), run,
                        {.case_name = patient_case.name,
                         .trainee = options.lesson.trainee,
@@ -248,7 +258,8 @@ Json train(const Options& options, cli::Session& session) {
     if (!options.record.empty()) start_recording(run, options.record, options.record_seconds, session);
     Felt felt;
     RunKeys run_keys(run, options.record_seconds, session);
-    const auto [frame_ns, seconds] = show(options, run, window, frame, felt, lesson, run_keys);
+    const auto [frame_ns, seconds] =
+        show(options, run, window, frame, felt, lesson, run_keys, !device.kind.simulated);
     if (cli::interrupt_asked()) {
         spdlog::warn("interrupted: the force has gone to zero, only a recording is kept");
         throw cli::Interrupted();
@@ -269,6 +280,10 @@ Json train(const Options& options, cli::Session& session) {
                 {"frames", frame_ns.count()},
                 {"frames_per_second", static_cast<double>(frame_ns.count()) / seconds},
                 {"frame_ms", percentiles_json(frame_ns, 1e6)},
+                {"detail",
+                 {{"level", window.detail().level},
+                  {"levels", window.detail().levels},
+                  {"changes", window.detail().changes}}},
                 {"ticks", statistics.ticks},
                 {"overruns", statistics.overruns},
                 {"tick_us", percentiles_json(statistics.tick_ns, 1e3)},

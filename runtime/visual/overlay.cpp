@@ -135,7 +135,7 @@ void Overlay::fit_window() {
     set_size(whole_bar_points_, scale * bar_width, scale * bar_height);
 }
 
-void Overlay::update(const VisualFrame& frame, double frames_per_second) {
+void Overlay::update(const VisualFrame& frame, double frames_per_second, const ShownDetail& detail) {
     using namespace std::chrono_literals;
     fit_window();
     const double newtons = frame.force.norm();
@@ -154,9 +154,11 @@ void Overlay::update(const VisualFrame& frame, double frames_per_second) {
     last_ = now;
     told_->SetVisibility(now < told_until_);
     force_->SetInput(fmt::format("{:.2f} N", newtons).c_str());
-    figures_->SetInput(fmt::format("depth {:.1f} mm\n{:.0f} ticks/s, {} overruns\n{:.0f} frames/s",
+    const std::string level =
+        detail.levels > 0 ? fmt::format(", detail {} of {}", detail.level, detail.levels) : "";
+    figures_->SetInput(fmt::format("depth {:.1f} mm\n{:.0f} ticks/s, {} overruns\n{:.0f} frames/s{}",
                                    std::max(0.0, frame.depth), frame.tick_rate_hz, frame.overruns,
-                                   frames_per_second)
+                                   frames_per_second, level)
                            .c_str());
     notice_->SetInput(notice_of(frame).c_str());
 }

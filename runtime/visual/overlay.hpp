@@ -10,6 +10,7 @@
 #include <vtkRenderer.h>
 #include <vtkTextActor.h>
 
+#include "runtime/visual/detail/detail.hpp"
 #include "runtime/visual/visual_frame.hpp"
 
 namespace palpate::visual {
@@ -29,7 +30,7 @@ class Overlay {
     Overlay(const std::string& title, double max_force, std::span<const std::string> cautions,
             vtkRenderer* renderer);
 
-    void update(const VisualFrame& frame, double frames_per_second);
+    void update(const VisualFrame& frame, double frames_per_second, const ShownDetail& detail);
     /// Shows what the mouse does, or hides it. It is shown from the start and fades by itself.
     void turn_help();
     bool help_shown() const { return help_shown_; }

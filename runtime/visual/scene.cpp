@@ -18,8 +18,6 @@
 
 #include "formats/model/regions.hpp"
 #include "runtime/visual/actors.hpp"
-#include "runtime/visual/bodies/display_copy.hpp"
-#include "runtime/visual/bodies/tissue_actor.hpp"
 #include "runtime/visual/region_surface.hpp"
 
 namespace palpate::visual {
@@ -38,6 +36,13 @@ Rgb force_colour(double share) {
 // Of tissue: seen as grain in the first view, whatever its scale.
 double grain_of(const Sight& sight) {
     return sight.field / 220;
+}
+
+// Away from the line of sight, so that the tip is seen; in a passage beside the eye, where there is room.
+Vector3d shaft_way(const Sight& sight) {
+    const Vector3d aside =
+        sight.inside ? Vector3d(-0.2 * sight.axes().col(1)) : Vector3d(sight.toward_eye.unitOrthogonal());
+    return (sight.toward_eye + aside).normalized();
 }
 
 vtkSmartPointer<vtkActor> ball(double radius, const Rgb& colour, int resolution) {
@@ -75,9 +80,8 @@ Scene::Scene(const Case& patient_case, const Sight& sight, std::int64_t rigid_bu
     : tool_radius_(patient_case.haptics.tool_radius),
       max_force_(patient_case.haptics.max_force),
       arrow_length_(0.5 * sight.field),
-      shaft_length_(0.35 * sight.field),
-      // Away from the line of sight, so that the tip is seen.
-      shaft_way_((sight.toward_eye + sight.toward_eye.unitOrthogonal()).normalized()) {
+      shaft_length_(sight.inside ? 1.1 * (sight.eye() - sight.target).norm() : 0.35 * sight.field),
+      shaft_way_(shaft_way(sight)) {
     // What is near and small comes first: software rendering then shades little that is covered later.
     add_tool(renderer, front);
     for (const DeformableBody& body : patient_case.deformable_bodies)
@@ -94,9 +98,7 @@ void Scene::add_rigid(const Case& patient_case, const Sight& sight, std::int64_t
     for (const RigidBody& body : patient_case.rigid_bodies) {
         const double share = static_cast<double>(body.surface.triangles.size()) / all;
         const auto own_budget = std::max(1LL, std::llround(share * static_cast<double>(budget)));
-        const TriangleMesh copy = display_copy(body.surface, own_budget, sight.target, sight.field / 2);
-        rigid_.push_back(tissue_actor(poly_data(copy, sight.toward_eye), tissue_look(body.name)));
-        renderer->AddActor(rigid_.back());
+        rigid_.emplace_back(body, sight, own_budget, renderer);
     }
 }
 
@@ -154,16 +156,18 @@ void Scene::update(const VisualFrame& frame) {
     for (std::size_t i = 0; i < soft_.size(); ++i) soft_[i].deform(frame.displacements[i]);
     place_along(tool_, frame.tool_position, Vector3d::UnitX(), 1);
     place_along(device_, frame.device_position, Vector3d::UnitX(), 1);
-    place_along(shaft_, frame.tool_position, shaft_way_, 1);
-    const bool stretched = (frame.device_position - frame.tool_position).norm() > spring_share * tool_radius_;
+    place_along(shaft_, frame.tool_position, frame.shaft.isZero() ? shaft_way_ : frame.shaft, 1);
+    const bool stretched =
+        tool_shown_ && (frame.device_position - frame.tool_position).norm() > spring_share * tool_radius_;
     spring_->SetVisibility(stretched);
     if (stretched) stretch_between(spring_, frame.tool_position, frame.device_position, 0.7 * tool_radius_);
 
     constexpr double felt = 0.01;  // N
     const double newtons = frame.force.norm();
     for (const auto& region : regions_) region->GetProperty()->SetOpacity(newtons > felt ? 0.3 : 0.6);
-    arrow_->SetVisibility(newtons > felt);
-    if (newtons <= felt) return;
+    const bool pressed = tool_shown_ && newtons > felt;
+    arrow_->SetVisibility(pressed);
+    if (!pressed) return;
     const double share = std::min(1.0, newtons / max_force_);
     const Vector3d way = frame.force / newtons;
     // The root keeps small forces visible.
@@ -172,16 +176,22 @@ void Scene::update(const VisualFrame& frame) {
 }
 
 void Scene::show_rigid(bool on) {
-    for (const auto& body : rigid_) body->SetVisibility(on);
+    for (RigidSurface& body : rigid_) body.show(on);
 }
 
 void Scene::show_tool(bool on) {
+    tool_shown_ = on;
     for (const auto& part : {tool_, shaft_, device_}) part->SetVisibility(on);
 }
 
 void Scene::show_inside(bool on) {
-    for (const auto& body : rigid_) body->GetProperty()->SetBackfaceCulling(!on);
-    for (const SoftSurface& body : soft_) body.actor()->GetProperty()->SetBackfaceCulling(!on);
+    for (RigidSurface& body : rigid_) body.show_inside(on);
+    for (SoftSurface& body : soft_) body.show_inside(on);
+}
+
+void Scene::draw(const Detail& detail) {
+    for (RigidSurface& body : rigid_) body.show_fine(detail.fine_bodies);
+    for (SoftSurface& body : soft_) body.show_grain(detail.grain);
 }
 
 }  // namespace palpate::visual

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <string>
 #include <vector>
 #include <vtkActor.h>
@@ -8,7 +9,9 @@
 #include <vtkSmartPointer.h>
 
 #include "formats/model/body.hpp"
+#include "runtime/visual/bodies/rigid_surface.hpp"
 #include "runtime/visual/bodies/soft_surface.hpp"
+#include "runtime/visual/detail/detail.hpp"
 #include "runtime/visual/sight.hpp"
 #include "runtime/visual/visual_frame.hpp"
 
@@ -24,8 +27,10 @@ class Scene {
 
     void update(const VisualFrame& frame);
     void show_rigid(bool on);
-    /// Draws the tool, or leaves it out where the eye is in it.
+    /// Draws the tool and its force, or leaves them out where the eye is in it.
     void show_tool(bool on);
+    /// What of `renderer` is the tool.
+    std::array<vtkActor*, 2> tool_parts() const { return {tool_, shaft_}; }
     /// Shows what deformable bodies enclose, as translucent bodies seen through all others; hidden at first.
     /// They keep their rest shape, for a compliance says nothing of a body's inside; while the surface over
     /// them is displaced they are fainter.
@@ -34,6 +39,8 @@ class Scene {
     const std::string& region_names() const { return region_names_; }
     /// Tells whether a cut may show bodies from inside; where none does, their far sides are not drawn.
     void show_inside(bool on);
+    /// Draws bodies in that detail.
+    void draw(const Detail& detail);
 
   private:
     void add_rigid(const Case& patient_case, const Sight& sight, std::int64_t budget, vtkRenderer* renderer);
@@ -46,8 +53,10 @@ class Scene {
     double shaft_length_;        // mm
     Eigen::Vector3d shaft_way_;  // unit, from the tool to the hand
     std::vector<SoftSurface> soft_;
-    std::vector<vtkSmartPointer<vtkActor>> rigid_, regions_;
+    std::vector<RigidSurface> rigid_;
+    std::vector<vtkSmartPointer<vtkActor>> regions_;
     std::string region_names_;
+    bool tool_shown_ = true;
     vtkSmartPointer<vtkActor> tool_, shaft_, device_, arrow_, spring_;
 };
 

@@ -28,7 +28,7 @@ bool blocked_by(const TriangleMesh& mesh, const Eigen::Vector3d& a, const Eigen:
 
 }  // namespace
 
-Eigen::Vector3d Sight::eye(double view_angle_deg) const {
+Eigen::Vector3d Sight::eye() const {
     return focus + toward_eye * (field / 2 / std::tan(view_angle_deg * std::numbers::pi / 360));
 }
 
@@ -60,6 +60,8 @@ Sight choose_sight(const Case& patient_case, const Eigen::Vector3d& point, const
     else
         for (const Eigen::Vector3d& p : patient_case.rigid_bodies.front().surface.vertices) box.extend(p);
     sight.field = std::min(widest, 0.8 * box.sizes().maxCoeff());
+    sight.close_up = {point};
+    sight.close_up_radius = sight.field / 2;
     sight.focus = point + toward_body * (box.center() - point);
 
     const Eigen::Vector3d start = point + normal * clear_of_point;

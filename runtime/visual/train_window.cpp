@@ -26,10 +26,11 @@
 #include "runtime/visual/controls/button_bar.hpp"
 #include "runtime/visual/controls/free_path.hpp"
 #include "runtime/visual/controls/view_history.hpp"
-#include "runtime/visual/endoscope.hpp"
+#include "runtime/visual/detail/drawn_detail.hpp"
 #include "runtime/visual/hand/pointer_hand.hpp"
 #include "runtime/visual/hand/surface_under.hpp"
 #include "runtime/visual/hand/view_control.hpp"
+#include "runtime/visual/inside/endoscope.hpp"
 #include "runtime/visual/lesson/lesson_panel.hpp"
 #include "runtime/visual/lesson/lesson_scene.hpp"
 #include "runtime/visual/overlay.hpp"
@@ -42,7 +43,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double view_angle_deg = 30;
 constexpr double step = 0.5;          // mm a key press
 constexpr double wheel_depth = 0.5;   // mm a notch
 constexpr double zoom_step = 1.15;    // a key press
@@ -88,6 +88,8 @@ struct TrainWindow::Parts {
           tool_radius(patient_case.haptics.tool_radius),
           cut(window_settings.sight.blocked) {
         renderer->SetBackground(0.10, 0.13, 0.16);  // a gradient takes a twentieth of a frame
+        renderer->SetNearClippingPlaneTolerance(
+            0.002);  // of the far one: an eye in a passage is near its walls
         window->SetNumberOfLayers(2);
         front->SetLayer(1);
         window->AddRenderer(renderer);
@@ -114,9 +116,10 @@ struct TrainWindow::Parts {
 
     void reset() {
         hand.put(settings.start);
-        const Vector3d eye = settings.sight.eye(view_angle_deg);
+        endoscope.turn_off();
+        const Vector3d eye = settings.sight.eye();
         vtkCamera* camera = renderer->GetActiveCamera();
-        camera->SetViewAngle(view_angle_deg);
+        camera->SetViewAngle(settings.sight.view_angle_deg);
         camera->SetFocalPoint(settings.sight.focus.data());
         camera->SetPosition(eye.data());
         const Vector3d up = settings.sight.axes().col(1);
@@ -125,12 +128,10 @@ struct TrainWindow::Parts {
     }
 
     void look(const VisualFrame& frame) {
-        scene.show_tool(!endoscope.on());
-        if (endoscope.on())
-            endoscope.follow(frame.tool_position, frame.lesson.look_at, tool_radius,
-                             renderer->GetActiveCamera());
-        else
-            set_clipping_range(frame.tool_position);
+        const auto tool = scene.tool_parts();
+        scene.show_tool(!endoscope.fills_window());
+        endoscope.follow({frame.tool_position, frame.shaft, frame.lesson.look_at}, tool_radius, tool);
+        if (!endoscope.fills_window()) set_clipping_range(frame.tool_position);
     }
 
     // With the cut on, whatever stands between eye and target or tool falls before the near plane.
@@ -201,7 +202,7 @@ struct TrainWindow::Parts {
             begin(Drag::shift);
         else if (interactor->GetControlKey())
             begin(Drag::roll);
-        else if (!endoscope.on())
+        else if (!endoscope.fills_window())
             press(true);
     }
 
@@ -224,7 +225,7 @@ struct TrainWindow::Parts {
         const int* before = interactor->GetLastEventPosition();
         const double dx = now[0] - before[0], dy = now[1] - before[1];
         if (drag == Drag::none) {
-            if (!endoscope.on() && !covered(now[0], now[1])) hand.point({now[0], now[1]});
+            if (!endoscope.covers(now[0], now[1]) && !covered(now[0], now[1])) hand.point({now[0], now[1]});
             return;
         }
         vtkCamera* camera = renderer->GetActiveCamera();
@@ -239,11 +240,12 @@ struct TrainWindow::Parts {
     bool covered(int x, int y) const { return panel.covers(x, y) || !buttons.key_at(x, y).empty(); }
 
     void keep_view() {
-        if (!endoscope.on()) views.keep(renderer->GetActiveCamera(), std::chrono::steady_clock::now());
+        if (!endoscope.fills_window())
+            views.keep(renderer->GetActiveCamera(), std::chrono::steady_clock::now());
     }
 
     void undo_view() {
-        if (endoscope.on()) return;
+        if (endoscope.fills_window()) return;
         if (!views.back(renderer->GetActiveCamera())) overlay.tell("this is the first view");
         hand.view_changed();
     }
@@ -307,7 +309,7 @@ struct TrainWindow::Parts {
             {"c", [](Parts& p) { p.cut = !p.cut; }},
             {"b", [](Parts& p) { p.scene.show_rigid(p.rigid_shown = !p.rigid_shown); }},
             {"t", &Parts::turn_regions},
-            {"v", [](Parts& p) { p.endoscope.turn(p.renderer->GetActiveCamera()); }},
+            {"v", [](Parts& p) { p.endoscope.turn(); }},
             {"u", &Parts::undo_view},
             {"r", &Parts::go_back},
             {"p", [](Parts& p) { p.picture_asked = true; }},
@@ -390,7 +392,8 @@ struct TrainWindow::Parts {
     Scene scene;
     ToolShadow shadow;
     Overlay overlay;
-    Endoscope endoscope;
+    Endoscope endoscope{window, renderer};
+    DrawnDetail detail{window, renderer, &scene, settings.sight.field};
     LessonScene lesson_scene;
     LessonPanel panel;
     ButtonBar buttons;
@@ -425,7 +428,7 @@ void TrainWindow::show(const VisualFrame& frame) {
                                                    shadow_share * p.settings.sight.field));
     p.scene.show_inside(p.cut);
     p.look(frame);
-    p.overlay.update(frame, frames_per_second());
+    p.overlay.update(frame, frames_per_second(), detail());
     p.see_exercise(frame.lesson.hides_regions);
     p.overlay.make_room(frame.lesson.page.has_value(), !frame.lesson.instruction.empty());
     p.lesson_scene.update(frame.lesson);
@@ -440,6 +443,7 @@ void TrainWindow::show(const VisualFrame& frame) {
     const auto now = std::chrono::steady_clock::now();
     const double seconds = std::chrono::duration<double>(now - p.last_frame).count();
     p.last_frame = now;
+    if (p.frames > 1) p.detail.frame_took(seconds);
     if (p.frames == 2) p.frame_seconds = seconds;
     if (p.frames > 2) p.frame_seconds += (seconds - p.frame_seconds) / 30;
 }
@@ -470,6 +474,11 @@ std::int64_t TrainWindow::frames() const {
 
 double TrainWindow::frames_per_second() const {
     return parts_->frame_seconds > 0 ? 1 / parts_->frame_seconds : 0;
+}
+
+ShownDetail TrainWindow::detail() const {
+    const auto& control = parts_->detail.control();
+    return control ? ShownDetail{control->level(), control->levels(), control->changes()} : ShownDetail{};
 }
 
 void TrainWindow::save_picture(const std::filesystem::path& path) {

@@ -7,6 +7,7 @@
 
 #include "formats/model/body.hpp"
 #include "runtime/collision/collision_surface.hpp"
+#include "runtime/visual/detail/detail.hpp"
 #include "runtime/visual/sight.hpp"
 #include "runtime/visual/visual_frame.hpp"
 
@@ -47,6 +48,7 @@ class TrainWindow {
     std::vector<std::string> take_keys();
     std::int64_t frames() const;       ///< drawn so far
     double frames_per_second() const;  ///< of the last second or so
+    ShownDetail detail() const;
 
     /// Writes what the window shows as PNG. Throws SystemFailure if that fails.
     void save_picture(const std::filesystem::path& path);

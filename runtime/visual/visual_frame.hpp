@@ -12,8 +12,9 @@ namespace palpate::visual {
 struct VisualFrame {
     Eigen::Vector3d device_position = Eigen::Vector3d::Zero();  ///< p_P, mm
     Eigen::Vector3d tool_position = Eigen::Vector3d::Zero();    ///< p_P, mm
-    Eigen::Vector3d force = Eigen::Vector3d::Zero();            ///< on the device, frame P, N
-    double depth = 0;                                           ///< below the rest surface, mm
+    Eigen::Vector3d shaft = Eigen::Vector3d::Zero();  ///< unit, from the tip along the tool; zero: not known
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< on the device, frame P, N
+    double depth = 0;                                 ///< below the rest surface, mm
     double tick_rate_hz = 0;
     std::int64_t overruns = 0;
     std::uint32_t faults = 0;    ///< Fault flags: why there is no force

@@ -24,18 +24,28 @@ std::uint64_t cell_of(const Eigen::Vector3d& p, double distance, double coarsene
     return key;
 }
 
-// Merges the vertices of each cell into their mean; triangles that lose a corner vanish.
-TriangleMesh clustered(const TriangleMesh& surface, const Eigen::Vector3d& focus, double near,
-                       double coarseness) {
+// From the line, no less than `near`.
+double distance_to(const std::vector<Eigen::Vector3d>& line, const Eigen::Vector3d& p, double near) {
+    double nearest = (p - line.front()).squaredNorm();
+    for (std::size_t i = 1; i < line.size(); ++i) {
+        const Eigen::Vector3d way = line[i] - line[i - 1];
+        const double share = std::clamp((p - line[i - 1]).dot(way) / way.squaredNorm(), 0.0, 1.0);
+        nearest = std::min(nearest, (p - line[i - 1] - share * way).squaredNorm());
+    }
+    return std::max(near, std::sqrt(nearest));
+}
+
+// Merges the vertices of each cell into their mean; triangles that lose a corner vanish. `distances`: of the
+// vertices.
+TriangleMesh clustered(const TriangleMesh& surface, const std::vector<double>& distances, double coarseness) {
     std::unordered_map<std::uint64_t, std::int32_t> cluster_of_cell;
     cluster_of_cell.reserve(surface.vertices.size());
     std::vector<std::int32_t> cluster(surface.vertices.size()), members;
     TriangleMesh result;
     for (std::size_t i = 0; i < surface.vertices.size(); ++i) {
         const Eigen::Vector3d& p = surface.vertices[i];
-        const auto [entry, added] =
-            cluster_of_cell.try_emplace(cell_of(p, std::max(near, (p - focus).norm()), coarseness),
-                                        static_cast<std::int32_t>(members.size()));
+        const auto [entry, added] = cluster_of_cell.try_emplace(cell_of(p, distances[i], coarseness),
+                                                                static_cast<std::int32_t>(members.size()));
         cluster[i] = entry->second;
         if (added) {
             members.push_back(0);
@@ -55,17 +65,19 @@ TriangleMesh clustered(const TriangleMesh& surface, const Eigen::Vector3d& focus
 
 }  // namespace
 
-TriangleMesh display_copy(const TriangleMesh& surface, std::int64_t budget, const Eigen::Vector3d& focus,
-                          double near) {
+TriangleMesh display_copy(const TriangleMesh& surface, std::int64_t budget,
+                          const std::vector<Eigen::Vector3d>& focus, double near) {
     if (budget < 1)
         throw InvalidInput({"display copy", std::to_string(budget) + " triangles", "1 or more", ""});
     const auto fits = [&](const TriangleMesh& mesh) {
         return static_cast<std::int64_t>(mesh.triangles.size()) <= budget;
     };
     if (fits(surface)) return surface;
+    std::vector<double> distances;
+    for (const Eigen::Vector3d& p : surface.vertices) distances.push_back(distance_to(focus, p, near));
     // Finer steps would not be seen: cells come in powers of two.
     TriangleMesh copy;
-    for (double coarseness = 1.0 / 64; !fits(copy = clustered(surface, focus, near, coarseness));)
+    for (double coarseness = 1.0 / 64; !fits(copy = clustered(surface, distances, coarseness));)
         coarseness *= 1.4;
     return copy;
 }

@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
+#include <vector>
 
 #include "formats/model/triangle_mesh.hpp"
 
@@ -9,11 +10,11 @@ namespace palpate::visual {
 
 /// Reduces a surface to at most `budget` triangles, for the eye only: the haptic side keeps the whole
 /// surface. Detail is spent where the eye will be: vertices are merged within cells whose edge grows with the
-/// distance from `focus` (p_P, mm), so that the surface is whole near it and coarse far away, without cracks
-/// between. Thin walls far away may close. A surface within the budget comes back as it is. Throws
-/// InvalidInput for a budget below 1. Cost: 0.3 s for 350 000 triangles. Source: vertex clustering, Rossignac
-/// and Borrel 1993.
-TriangleMesh display_copy(const TriangleMesh& surface, std::int64_t budget, const Eigen::Vector3d& focus,
-                          double near);
+/// distance from `focus`, a line through one point or more (p_P, mm), so that the surface is whole near it
+/// and coarse far away, without cracks between; within `near` (mm) it does not grow. Thin walls far away may
+/// close. A surface within the budget comes back as it is. Throws InvalidInput for a budget below 1. Cost:
+/// 0.3 s for 350 000 triangles. Source: vertex clustering, Rossignac and Borrel 1993.
+TriangleMesh display_copy(const TriangleMesh& surface, std::int64_t budget,
+                          const std::vector<Eigen::Vector3d>& focus, double near);
 
 }  // namespace palpate::visual

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string>
 #include <vtkPointData.h>
+#include <vtkProperty.h>
 
 #include "formats/model/regions.hpp"
 #include "runtime/visual/bodies/tissue_actor.hpp"
@@ -30,8 +31,10 @@ SoftSurface::SoftSurface(const DeformableBody& body, const Vector3d& toward_eye,
     const auto data = poly_data(body.boundary.surface, toward_eye);
     points_ = data->GetPoints();
     normals_ = vtkFloatArray::SafeDownCast(data->GetPointData()->GetNormals());
-    actor_ = grained_tissue_actor(data, look_of(body), grain);
-    renderer->AddActor(actor_);
+    grained_ = grained_tissue_actor(data, look_of(body), grain);
+    plain_ = tissue_actor(data, look_of(body));
+    for (const auto& actor : {grained_, plain_}) renderer->AddActor(actor);
+    show_grain(true);
 }
 
 void SoftSurface::deform(const std::vector<Vector3f>& displacements) {
@@ -45,6 +48,15 @@ void SoftSurface::deform(const std::vector<Vector3f>& displacements) {
     vertex_normals(points, triangles_, {reinterpret_cast<Vector3f*>(normals_->GetPointer(0)), rest_.size()});
     points_->Modified();
     normals_->Modified();
+}
+
+void SoftSurface::show_grain(bool on) {
+    grained_->SetVisibility(on);
+    plain_->SetVisibility(!on);
+}
+
+void SoftSurface::show_inside(bool on) {
+    for (const auto& actor : {grained_, plain_}) actor->GetProperty()->SetBackfaceCulling(!on);
 }
 
 }  // namespace palpate::visual

@@ -23,7 +23,10 @@ class SoftSurface {
     /// Moves the surface; one displacement (mm) per surface vertex.
     void deform(const std::vector<Eigen::Vector3f>& displacements);
 
-    vtkActor* actor() const { return actor_; }
+    /// Draws the finest spots and their relief, or leaves them out.
+    void show_grain(bool on);
+    /// Whether a cut may show the body from inside.
+    void show_inside(bool on);
 
   private:
     std::vector<Eigen::Vector3f> rest_;
@@ -31,7 +34,7 @@ class SoftSurface {
     bool displaced_ = false;
     vtkSmartPointer<vtkPoints> points_;
     vtkSmartPointer<vtkFloatArray> normals_;
-    vtkSmartPointer<vtkActor> actor_;
+    vtkSmartPointer<vtkActor> grained_, plain_;  // of the same data; one is shown
 };
 
 }  // namespace palpate::visual

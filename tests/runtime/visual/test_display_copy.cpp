@@ -54,7 +54,7 @@ TEST(DisplayCopy, keeps_to_the_budget) {
     const TriangleMesh surface = head();
     for (const std::int64_t budget : {20'000, 3'000, 200}) {
         const auto count =
-            static_cast<std::int64_t>(display_copy(surface, budget, focus, near).triangles.size());
+            static_cast<std::int64_t>(display_copy(surface, budget, {focus}, near).triangles.size());
         EXPECT_LE(count, budget);
         EXPECT_GE(count, budget / 8);  // no more is thrown away than powers of two make
     }
@@ -62,27 +62,42 @@ TEST(DisplayCopy, keeps_to_the_budget) {
 
 TEST(DisplayCopy, a_surface_within_the_budget_comes_back_as_it_is) {
     const TriangleMesh surface = sample::sphere_surface(center, radius, 3);
-    const TriangleMesh copy = display_copy(surface, 512, focus, near);
+    const TriangleMesh copy = display_copy(surface, 512, {focus}, near);
     EXPECT_EQ(copy.triangles, surface.triangles);
     EXPECT_EQ(copy.vertices, surface.vertices);
 }
 
 TEST(DisplayCopy, is_fine_near_the_focus_and_coarse_far_from_it) {
     const TriangleMesh surface = head();
-    const TriangleMesh copy = display_copy(surface, 6'000, focus, near);
+    const TriangleMesh copy = display_copy(surface, 6'000, {focus}, near);
     const double original = mean_edge(surface, 0, 15);
     EXPECT_LT(mean_edge(copy, 0, 15), 1.2 * original);
     EXPECT_GT(mean_edge(copy, 100, 200), 2 * original);
 }
 
+TEST(DisplayCopy, is_as_fine_along_a_line_as_at_its_ends) {
+    const TriangleMesh surface = head();
+    const Eigen::Vector3d other_end = center + Eigen::Vector3d(radius, 0, 0);
+    const auto near_middle = [](const TriangleMesh& mesh) {
+        const Eigen::Vector3d middle = center + Eigen::Vector3d(1, 0, 1).normalized() * radius;
+        return std::ranges::count_if(mesh.vertices,
+                                     [&](const Eigen::Vector3d& p) { return (p - middle).norm() < 10; });
+    };
+    const auto whole = near_middle(surface);
+    const TriangleMesh along =
+        display_copy(surface, 8'000, {focus, focus + radius / 2 * Eigen::Vector3d::UnitX(), other_end}, near);
+    EXPECT_GT(near_middle(along), 0.9 * static_cast<double>(whole));
+    EXPECT_LT(near_middle(display_copy(surface, 8'000, {focus}, near)), 0.6 * static_cast<double>(whole));
+}
+
 TEST(DisplayCopy, stays_a_closed_head_facing_outwards) {
     const double exact = 4 * std::numbers::pi / 3 * radius * radius * radius;
-    const double got = volume(display_copy(head(), 6'000, focus, near));
+    const double got = volume(display_copy(head(), 6'000, {focus}, near));
     EXPECT_NEAR(got, exact, 0.05 * exact);  // merged vertices lie a little inside a convex surface
 }
 
 TEST(DisplayCopy, refuses_an_empty_budget) {
-    EXPECT_THROW(display_copy(head(), 0, focus, near), InvalidInput);
+    EXPECT_THROW(display_copy(head(), 0, {focus}, near), InvalidInput);
 }
 
 }  // namespace

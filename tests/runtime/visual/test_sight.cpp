@@ -29,8 +29,8 @@ TEST(Sight, looks_down_the_normal_but_past_the_tool) {
 
 TEST(Sight, eye_is_where_the_field_fills_the_view_angle) {
     const Sight sight = choose_sight(sample::sample_case(), on_top, upwards);
-    const double distance = (sight.eye(30) - sight.focus).norm();
-    EXPECT_NEAR(2 * distance * std::tan(std::numbers::pi / 12), sight.field, 1e-9);
+    const double distance = (sight.eye() - sight.focus).norm();
+    EXPECT_NEAR(2 * distance * std::tan(sight.view_angle_deg * std::numbers::pi / 360), sight.field, 1e-9);
 }
 
 TEST(Sight, a_free_surface_is_not_blocked) {

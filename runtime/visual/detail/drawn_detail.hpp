@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <span>
+#include <vtkNew.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+
+#include "runtime/visual/detail/coarse_pixels.hpp"
+#include "runtime/visual/detail/detail.hpp"
+#include "runtime/visual/detail/detail_control.hpp"
+#include "runtime/visual/scene.hpp"
+
+namespace palpate::visual {
+
+/// Draws a scene in as much detail as the machine has time for.
+class DrawnDetail {
+  public:
+    /// `field`: mm, height of what is seen. All outlive this.
+    DrawnDetail(vtkRenderWindow* window, vtkRenderer* renderer, Scene* scene, double field)
+        : window_(window), renderer_(renderer), scene_(scene), field_(field) {}
+
+    /// A frame has come `seconds` after the one before: the next has more, less or the same.
+    void frame_took(double seconds);
+
+    /// Level, levels and changes; nothing before the first frame.
+    const std::optional<DetailControl>& control() const { return control_; }
+
+  private:
+    void draw(const Detail& detail);
+
+    vtkRenderWindow* window_;
+    vtkRenderer* renderer_;
+    Scene* scene_;
+    double field_;
+    std::span<const Detail> levels_;
+    std::optional<DetailControl> control_;  // once there is an OpenGL renderer to ask for its name
+    vtkNew<CoarsePixels> coarse_pixels_;
+};
+
+}  // namespace palpate::visual

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/visual/inside/endoscope.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <vtkActorCollection.h>
+#include <vtkLightCollection.h>
+#include <vtkPropCollection.h>
+
+namespace palpate::visual {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double view_angle = 90;                     // degrees
+constexpr double farthest = 400;                      // mm
+constexpr double agility = 0.15;                      // part of the turn that a frame makes
+constexpr double least_step = 0.2;                    // mm, of a motion that has a direction
+constexpr double brightness = 1.25, half_light = 22;  // mm, at which half of it is left
+// Of the window: a corner's width, its height at most, and where it begins.
+constexpr double corner_width = 0.3, corner_height = 0.5, corner_margin = 0.017, corner_bottom = 0.1;
+
+void only_light(vtkRenderer* renderer, vtkLight* own, bool on) {
+    vtkLightCollection* lights = renderer->GetLights();
+    lights->InitTraversal();
+    while (vtkLight* light = lights->GetNextItem()) light->SetSwitch(!on);
+    if (on)
+        renderer->AddLight(own);
+    else
+        renderer->RemoveLight(own);
+    own->SwitchOn();
+}
+
+}  // namespace
+
+Endoscope::Endoscope(vtkRenderWindow* window, vtkRenderer* outside)
+    : window_(window), outside_(outside), window_lens_(outside), corner_lens_(corner_) {
+    camera_->SetViewAngle(view_angle);
+    light_->SetLightTypeToHeadlight();
+    light_->PositionalOn();
+    light_->SetConeAngle(180);
+    light_->SetIntensity(brightness);
+    light_->SetAttenuationValues(1, 0, 1 / (half_light * half_light));
+    corner_->SetBackground(0, 0, 0);
+    corner_->SetActiveCamera(camera_);
+    corner_->AddLight(light_);
+    corner_lens_.show(true);
+}
+
+void Endoscope::turn() {
+    if (place_ == Place::nowhere) {
+        fill_window();
+    } else if (place_ == Place::window) {
+        leave_window();
+        window_->AddRenderer(corner_);
+        place_ = Place::corner;
+    } else {
+        turn_off();
+    }
+}
+
+void Endoscope::turn_off() {
+    if (place_ == Place::window) leave_window();
+    if (place_ == Place::corner) {
+        window_->RemoveRenderer(corner_);
+        empty_corner();
+        shared_ = 0;
+    }
+    place_ = Place::nowhere;
+}
+
+void Endoscope::fill_window() {
+    camera_outside_ = outside_->GetActiveCamera();
+    forward_ = Vector3d(camera_outside_->GetDirectionOfProjection());
+    camera_->SetViewUp(camera_outside_->GetViewUp());
+    placed_ = false;
+    outside_->SetActiveCamera(camera_);
+    only_light(outside_, light_, true);
+    window_lens_.show(true);
+    place_ = Place::window;
+}
+
+void Endoscope::leave_window() {
+    outside_->SetActiveCamera(camera_outside_);
+    only_light(outside_, light_, false);
+    window_lens_.show(false);
+}
+
+bool Endoscope::covers(int x, int y) const {
+    if (place_ == Place::nowhere) return false;
+    if (place_ == Place::window) return true;
+    const int* origin = corner_->GetOrigin();
+    const int* size = corner_->GetSize();
+    return x >= origin[0] && x < origin[0] + size[0] && y >= origin[1] && y < origin[1] + size[1];
+}
+
+void Endoscope::look_along(const ScopePose& pose) {
+    if (!placed_) tip_ = pose.tip;
+    placed_ = true;
+    Vector3d way = pose.tip - tip_;
+    // What is drawn back goes on looking ahead.
+    if (way.dot(forward_) < 0) {
+        tip_ = pose.tip;
+        way.setZero();
+    }
+    if (pose.look_at) way = *pose.look_at - pose.tip;
+    if (!pose.shaft.isZero()) way = -pose.shaft;
+    if (way.norm() < least_step) return;
+    forward_ = (forward_ + agility * (way.normalized() - forward_)).normalized();
+    tip_ = pose.tip;
+}
+
+void Endoscope::fit_corner() {
+    const int* size = window_->GetSize();
+    const double side = std::min(corner_width * size[0], corner_height * size[1]);
+    const double right = 1 - corner_margin, top = corner_bottom + side / size[1];
+    corner_->SetViewport(right - side / size[0], corner_bottom, right, top);
+}
+
+// The same actors in another renderer, but those that the eye is in.
+void Endoscope::share_scene(std::span<vtkActor* const> hidden) {
+    const vtkMTimeType changed = outside_->GetViewProps()->GetMTime();
+    if (changed == shared_) return;
+    shared_ = changed;
+    empty_corner();
+    vtkActorCollection* scene = outside_->GetActors();
+    scene->InitTraversal();
+    while (vtkActor* actor = scene->GetNextActor())
+        if (std::ranges::find(hidden, actor) == hidden.end()) corner_->AddActor(actor);
+}
+
+void Endoscope::empty_corner() {
+    const vtkNew<vtkActorCollection> shown;
+    vtkActorCollection* actors = corner_->GetActors();
+    actors->InitTraversal();
+    while (vtkActor* actor = actors->GetNextActor()) shown->AddItem(actor);
+    shown->InitTraversal();
+    while (vtkActor* actor = shown->GetNextActor()) corner_->RemoveActor(actor);
+}
+
+void Endoscope::follow(const ScopePose& pose, double tool_radius, std::span<vtkActor* const> hidden) {
+    if (!on()) return;
+    look_along(pose);
+    const Vector3d ahead = pose.tip + forward_;
+    camera_->SetPosition(pose.tip.data());
+    camera_->SetFocalPoint(ahead.data());
+    camera_->OrthogonalizeViewUp();
+    camera_->SetClippingRange(0.3 * tool_radius, farthest);
+    if (place_ == Place::window) return window_lens_.fit();
+    fit_corner();
+    share_scene(hidden);
+    corner_lens_.fit();
+}
+
+}  // namespace palpate::visual

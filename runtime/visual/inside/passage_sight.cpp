@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/visual/inside/passage_sight.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace palpate::visual {
+namespace {
+
+using collision::CollisionSurface;
+using Eigen::Vector3d;
+using Surfaces = std::span<const CollisionSurface* const>;
+
+constexpr int directions = 1500;                // over the half space: 4 degrees apart
+constexpr double lens_radius = 1.5;             // mm
+constexpr double shortest = 15, farthest = 45;  // mm, of the way from the target to the eye
+constexpr double grazing_weight = 0.4;          // what a way along the wall counts of one straight off it
+constexpr double view_angle_deg = 70;
+constexpr double close_up_radius = 8;  // mm: half a nasal passage
+
+// The i-th of evenly spread directions with a positive third coordinate: a spiral by the golden angle.
+Vector3d spiral_direction(int i) {
+    const double height = 1 - (i + 0.5) / directions;
+    const double across = std::sqrt(1 - height * height);
+    const double turn = i * std::numbers::pi * (3 - std::sqrt(5.0));
+    return {across * std::cos(turn), across * std::sin(turn), height};
+}
+
+double free_way(Surfaces surfaces, const Vector3d& start, const Vector3d& way) {
+    double fraction = 1;
+    for (const CollisionSurface* surface : surfaces)
+        if (const auto contact = surface->sweep_sphere(start, start + farthest * way, lens_radius))
+            fraction = std::min(fraction, contact->fraction);
+    return fraction * farthest;
+}
+
+double room_at(Surfaces surfaces, const Vector3d& place) {
+    double room = farthest;
+    for (const CollisionSurface* surface : surfaces)
+        if (const auto nearest = surface->closest_point(place, room)) room = nearest->distance;
+    return room;
+}
+
+}  // namespace
+
+std::optional<Sight> choose_passage_sight(Surfaces surfaces, const Vector3d& point, const Vector3d& normal) {
+    const Vector3d start = point + 1.1 * lens_radius * normal;
+    const auto turn = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), normal);
+    double most = 0, longest = 0;
+    Vector3d toward_eye = normal;
+    for (int i = 0; i < directions; ++i) {
+        const Vector3d local = spiral_direction(i);
+        const Vector3d way = turn * local;
+        const double length = free_way(surfaces, start, way);
+        const double worth = length * (grazing_weight + (1 - grazing_weight) * local.z());
+        if (length < shortest || worth <= most) continue;
+        most = worth;
+        longest = length;
+        toward_eye = way;
+    }
+    if (longest == 0) return std::nullopt;
+
+    constexpr int steps = 16;
+    constexpr double nearest_share = 0.7;
+    Vector3d eye = start;
+    double widest = 0;
+    for (int i = 0; i <= steps; ++i) {
+        const double share = nearest_share + (1 - nearest_share) * i / steps;
+        const Vector3d place = start + share * longest * toward_eye;
+        if (const double room = room_at(surfaces, place); room >= widest) {
+            widest = room;
+            eye = place;
+        }
+    }
+    Sight sight;
+    sight.target = sight.focus = point;
+    sight.toward_eye = (eye - point).normalized();
+    sight.view_angle_deg = view_angle_deg;
+    sight.field = 2 * (eye - point).norm() * std::tan(view_angle_deg * std::numbers::pi / 360);
+    sight.inside = true;
+    sight.close_up = {eye, point};
+    sight.close_up_radius = close_up_radius;
+    return sight;
+}
+
+}  // namespace palpate::visual

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <functional>
+#include <gtest/gtest.h>
+
+#include "runtime/visual/detail/detail_control.hpp"
+
+namespace palpate {
+namespace {
+
+using visual::DetailControl;
+
+// Draws for so long, a frame of each level taking what `cost` says (s), 60 a second at most.
+void draw(DetailControl& control, double seconds, const std::function<double(int)>& cost) {
+    for (double gone = 0; gone < seconds;) {
+        const double frame = std::max(1.0 / 60, cost(control.level()));
+        control.take(frame);
+        gone += frame;
+    }
+}
+
+TEST(DetailControl, fast_frames_keep_everything) {
+    DetailControl control(4);
+    draw(control, 60, [](int) { return 0.02; });
+    EXPECT_EQ(control.level(), 4);
+    EXPECT_EQ(control.changes(), 0);
+}
+
+TEST(DetailControl, steps_down_before_30_frames_are_lost) {
+    DetailControl control(4);
+    draw(control, 1, [](int level) { return level == 4 ? 1 / 31.0 : 0.028; });
+    EXPECT_EQ(control.level(), 3);
+}
+
+TEST(DetailControl, finds_the_level_that_holds_30_frames_and_stays_there) {
+    DetailControl control(6);
+    draw(control, 10, [](int level) { return 0.012 * level; });
+    EXPECT_EQ(control.level(), 2);
+    draw(control, 600, [](int level) { return 0.012 * level; });
+    EXPECT_EQ(control.level(), 2);
+    EXPECT_LE(control.changes(), 6);
+}
+
+TEST(DetailControl, is_quickly_down_where_frames_are_far_too_slow) {
+    DetailControl control(6);
+    draw(control, 4, [](int level) { return 0.055 * level; });
+    EXPECT_LE(control.level(), 2);
+}
+
+TEST(DetailControl, a_machine_that_is_never_fast_enough_ends_at_the_least_and_tries_no_more) {
+    DetailControl control(3);
+    draw(control, 300, [](int) { return 0.2; });
+    EXPECT_EQ(control.level(), 1);
+    EXPECT_LE(control.changes(), 2);
+}
+
+TEST(DetailControl, goes_up_again_once_there_is_room) {
+    DetailControl control(4);
+    draw(control, 10, [](int) { return 0.05; });
+    EXPECT_EQ(control.level(), 1);
+    draw(control, 60, [](int) { return 0.017; });
+    EXPECT_EQ(control.level(), 4);
+}
+
+TEST(DetailControl, single_slow_frames_change_nothing) {
+    DetailControl control(4);
+    for (int i = 0; i < 3000; ++i) control.take(i % 7 == 0 ? 0.5 : 0.02);
+    EXPECT_EQ(control.changes(), 0);
+}
+
+TEST(DetailControl, the_first_frames_which_make_shaders_do_not_count) {
+    DetailControl control(2);
+    control.take(3);
+    control.take(1);
+    draw(control, 10, [](int) { return 0.02; });
+    EXPECT_EQ(control.changes(), 0);
+}
+
+TEST(DetailControl, tries_that_fail_are_made_less_and_less_often) {
+    DetailControl control(4);
+    const auto cost = [](int level) { return level == 4 ? 0.04 : 0.017; };
+    draw(control, 60, cost);
+    const auto in_the_first_minute = control.changes();
+    draw(control, 540, cost);
+    EXPECT_LE(in_the_first_minute, 11);
+    EXPECT_LE(control.changes() - in_the_first_minute, 14);
+}
+
+}  // namespace
+}  // namespace palpate
