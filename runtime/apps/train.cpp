@@ -3,8 +3,11 @@
 #include <charconv>
 #include <chrono>
 #include <optional>
+#include <span>
 #include <spdlog/spdlog.h>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
@@ -148,6 +151,14 @@ TouchTarget start_of(const Options& options, const Session& run) {
     return training::choose_start(run.patient_case(), run.model(), options.body, seed);
 }
 
+// From outside; where bodies stand between, from inside the passage if there is one.
+Sight sight_of(const Case& patient_case, const TouchPoint& place,
+               std::span<const collision::CollisionSurface* const> surfaces) {
+    const Sight outside = choose_sight(patient_case, place.point, place.normal);
+    if (!outside.blocked) return outside;
+    return choose_passage_sight(surfaces, place.point, place.normal).value_or(outside);
+}
+
 // Shows the run in the window until the user or the time ends it. `held`: a person's hand turns the tool.
 Shown show(const Options& options, Session& run, TrainWindow& window, VisualFrame& frame, Felt& felt,
            TrainLesson& lesson, RunKeys& run_keys, bool held) {
@@ -219,16 +230,15 @@ Json train(const Options& options, cli::Session& session) {
     const TouchTarget target = start_of(options, run);
     const TouchPoint& place = target.place;
     const Eigen::Vector3d start = start_outside(place, run.model().settings().tool_radius);
+    std::vector<const collision::CollisionSurface*> surfaces;
+    for (std::size_t body = 0; body < run.model().body_count(); ++body)
+        surfaces.push_back(&run.model().surface(body));
     WindowSettings window_settings{.width = width,
                                    .height = height,
                                    .start = start,
-                                   .cautions = provenance::cautions_in(patient_case.provenance)};
-    window_settings.sight = choose_sight(patient_case, place.point, place.normal);
-    for (std::size_t body = 0; body < run.model().body_count(); ++body)
-        window_settings.surfaces.push_back(&run.model().surface(body));
-    if (window_settings.sight.blocked)
-        if (auto inside = choose_passage_sight(window_settings.surfaces, place.point, place.normal))
-            window_settings.sight = *std::move(inside);
+                                   .sight = sight_of(patient_case, place, surfaces),
+                                   .cautions = provenance::cautions_in(patient_case.provenance),
+                                   .surfaces = surfaces};
     cli::end_softly_on_interrupt();
     run.hold(device.open(
         request_of(options, device.kind, run.model(), place, start, window_settings.sight.axes())));
@@ -318,7 +328,8 @@ int main(int argc, char** argv) {
              "presses. Without a button W, S and the arrow keys step. Drag with the right button to turn the "
              "view, with the middle one or Shift and left to shift it, with Ctrl and left to roll it; the "
              "wheel, + and - zoom, C cuts the bodies open, B hides the rigid ones, I shows and hides "
-             "how the case was made, T shows what they enclose, V looks from the tool's tip, P saves a "
+             "how the case was made, T shows what they enclose, V looks from the tool's tip, first in the whole "
+             "window, then in a corner of it, P saves a "
              "picture in this folder, O records every tick there from then on or stops, F "
              "takes the next contact scheme, U takes a change of "
              "the view back, R goes back to the start, H shows what the mouse does, Q or Escape closes; the "

@@ -17,7 +17,7 @@ struct Sight {
     bool blocked = false;                                    ///< a body stands between target and eye
     bool inside = false;  ///< the eye is in a passage, not outside the patient
     /// What is looked at closely: along a line of one point or more, p_P, mm, and so far around it, mm.
-    std::vector<Eigen::Vector3d> close_up{Eigen::Vector3d::Zero()};
+    std::vector<Eigen::Vector3d> close_up{};
     double close_up_radius = 50;
 
     Eigen::Vector3d eye() const;  ///< p_P, mm

@@ -202,7 +202,7 @@ struct TrainWindow::Parts {
             begin(Drag::shift);
         else if (interactor->GetControlKey())
             begin(Drag::roll);
-        else if (!endoscope.fills_window())
+        else if (const int* now = interactor->GetEventPosition(); !endoscope.covers(now[0], now[1]))
             press(true);
     }
 
@@ -276,7 +276,7 @@ struct TrainWindow::Parts {
         const PointerScene pointed{
             .under = [&](const Eigen::Vector2d& pixel) -> std::optional<SeenPoint> {
                 const auto [near, far] = segment_under(renderer, pixel.x(), pixel.y());
-                return surface_under(surfaces, near, far, tool_radius);
+                return surface_under(surfaces, near, far, tool_radius, cut);
             },
             .blocked = [&](const Vector3d& from,
                            const Vector3d& to) { return is_blocked(surfaces, from, to, tool_radius); }};

@@ -17,10 +17,12 @@ struct SeenPoint {
 };
 
 /// Finds what the line of sight `from`-`to` (p_P, mm) meets first, unless it comes out of a body there, as
-/// behind a cut. The normal is the mean over places up to `width` (mm) around, along both axes across the
-/// line, which belong to the same side: as a tool of that size meets the surface, not as one triangle lies.
+/// behind a cut; where `insides_drawn` is not set, it goes on through that, as the picture does. The normal
+/// is the mean over places up to `width` (mm) around, along both axes across the line, which belong to the
+/// same side: as a tool of that size meets the surface, not as one triangle lies.
 std::optional<SeenPoint> surface_under(std::span<const collision::CollisionSurface* const> surfaces,
-                                       const Eigen::Vector3d& from, const Eigen::Vector3d& to, double width);
+                                       const Eigen::Vector3d& from, const Eigen::Vector3d& to, double width,
+                                       bool insides_drawn = true);
 
 /// Whether a ball of `radius` (mm) on the way `from`-`to` (p_P, mm) meets a surface.
 bool is_blocked(std::span<const collision::CollisionSurface* const> surfaces, const Eigen::Vector3d& from,

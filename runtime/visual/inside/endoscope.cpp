@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double view_angle = 90;                     // degrees
-constexpr double farthest = 400;                      // mm
+constexpr double farthest_seen = 400;                 // mm
 constexpr double agility = 0.15;                      // part of the turn that a frame makes
 constexpr double least_step = 0.2;                    // mm, of a motion that has a direction
 constexpr double brightness = 1.25, half_light = 22;  // mm, at which half of it is left
@@ -145,7 +145,7 @@ void Endoscope::follow(const ScopePose& pose, double tool_radius, std::span<vtkA
     camera_->SetPosition(pose.tip.data());
     camera_->SetFocalPoint(ahead.data());
     camera_->OrthogonalizeViewUp();
-    camera_->SetClippingRange(0.3 * tool_radius, farthest);
+    camera_->SetClippingRange(0.3 * tool_radius, farthest_seen);
     if (place_ == Place::window) return window_lens_.fit();
     fit_corner();
     share_scene(hidden);

@@ -17,7 +17,7 @@ constexpr int directions = 1500;                // over the half space: 4 degree
 constexpr double lens_radius = 1.5;             // mm
 constexpr double shortest = 15, farthest = 45;  // mm, of the way from the target to the eye
 constexpr double grazing_weight = 0.4;          // what a way along the wall counts of one straight off it
-constexpr double view_angle_deg = 70;
+constexpr double wide_angle_deg = 70;
 constexpr double close_up_radius = 8;  // mm: half a nasal passage
 
 // The i-th of evenly spread directions with a positive third coordinate: a spiral by the golden angle.
@@ -77,8 +77,8 @@ std::optional<Sight> choose_passage_sight(Surfaces surfaces, const Vector3d& poi
     Sight sight;
     sight.target = sight.focus = point;
     sight.toward_eye = (eye - point).normalized();
-    sight.view_angle_deg = view_angle_deg;
-    sight.field = 2 * (eye - point).norm() * std::tan(view_angle_deg * std::numbers::pi / 360);
+    sight.view_angle_deg = wide_angle_deg;
+    sight.field = 2 * (eye - point).norm() * std::tan(wide_angle_deg * std::numbers::pi / 360);
     sight.inside = true;
     sight.close_up = {eye, point};
     sight.close_up_radius = close_up_radius;

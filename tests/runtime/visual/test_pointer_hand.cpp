@@ -196,5 +196,17 @@ TEST_F(PointerHandTest, the_nearest_of_several_bodies_is_under_the_pointer) {
     EXPECT_NEAR(seen->normal.z(), 1, 0.01);
 }
 
+TEST_F(PointerHandTest, a_line_of_sight_goes_on_through_insides_that_are_not_drawn) {
+    const TriangleMesh small = sample::sphere_surface({0, 0, 40}, 5, 3);
+    surfaces_.emplace_back(small, sample::median_tree(small, 4), "small ball");
+    const auto all = surfaces();
+    EXPECT_FALSE(surface_under(all, Vector3d::Zero(), {0, 0, 100}, tool_radius));
+    const auto seen = surface_under(all, Vector3d::Zero(), {0, 0, 100}, tool_radius, false);
+    ASSERT_TRUE(seen);
+    EXPECT_NEAR(seen->point.z(), 35, facets);
+    EXPECT_NEAR(seen->seen_from.z(), 20, facets);
+    EXPECT_FALSE(surface_under(all, Vector3d::Zero(), {0, 0, -100}, tool_radius, false));
+}
+
 }  // namespace
 }  // namespace palpate

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Views of palpate-train in a real window: the endoscope, whole and in a corner, and how much is drawn."""
+
+import json
+import subprocess
+import time
+import unittest
+
+from trainer_case import TRAIN, TrainerCase
+
+BESIDE_THE_CIRCLE, IN_THE_CIRCLE = (100, 360), (640, 200)  # of an endoscope that fills 1280x720 pixels
+# Of one in the window's corner: 360 pixels wide, 22 from the right edge and 72 from below.
+CORNER_OF_THE_CORNER, MIDDLE_OF_THE_CORNER = (903, 294), (1078, 468)
+
+
+class Views(TrainerCase):
+    def open_window(self):
+        process = subprocess.Popen(
+            [TRAIN, self.asset, "--json", "-"],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            env=self.server.environment,
+            cwd=self.folder,
+        )
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        window = self.find_window()
+        self.x("xdotool", "key", "BackSpace")  # leave the start page
+        time.sleep(0.5)
+        return process, window
+
+    def close(self, process):
+        self.x("xdotool", "key", "q")
+        out, err = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 0, err)
+        return json.loads(out)
+
+    def press(self, *keys):
+        for key in keys:
+            self.x("xdotool", "key", key)
+        time.sleep(0.7)
+
+    def pixels(self, window, *places):
+        """Red, green and blue of the window's pixels."""
+        rgb = subprocess.run(
+            ["convert", "xwd:-", "-depth", "8", "rgb:-"], input=self.screen(window), capture_output=True, check=True
+        ).stdout
+        self.assertEqual(len(rgb), 3 * 1280 * 720)
+        return [tuple(rgb[3 * (1280 * y + x) :][:3]) for x, y in places]
+
+    def test_v_shows_the_tip_s_view_whole_then_in_a_corner_then_not(self):
+        process, window = self.open_window()
+        places = BESIDE_THE_CIRCLE, CORNER_OF_THE_CORNER, MIDDLE_OF_THE_CORNER
+        outside = self.pixels(window, *places)
+        black = (0, 0, 0)
+        self.assertNotIn(black, outside)
+        self.press("v")
+        self.assertEqual(self.pixels(window, BESIDE_THE_CIRCLE), [black])
+        self.press("v")
+        beside, corner, middle = self.pixels(window, *places)
+        self.assertEqual(beside, outside[0])
+        self.assertEqual(corner, black)
+        self.press("v")
+        self.assertEqual(self.pixels(window, *places), outside)
+        self.close(process)
+
+    def test_the_tip_s_light_falls_on_what_is_near_it(self):
+        process, window = self.open_window()
+        self.press("v")  # looks where the view looked: at the organ
+        far = self.pixels(window, IN_THE_CIRCLE, (640, 360))
+        self.press(*8 * ["w"])  # half a millimetre each: nearer
+        near = self.pixels(window, IN_THE_CIRCLE, (640, 360))
+        self.close(process)
+        self.assertGreater(sum(near[1]), sum(far[1]))
+        self.assertGreater(sum(far[1]), 60)
+
+    def test_r_leaves_the_endoscope(self):
+        process, window = self.open_window()
+        outside = self.pixels(window, BESIDE_THE_CIRCLE, CORNER_OF_THE_CORNER)
+        for times in (1, 2):
+            self.press(*times * ["v"], "r")
+            self.assertEqual(self.pixels(window, BESIDE_THE_CIRCLE, CORNER_OF_THE_CORNER), outside)
+        self.close(process)
+
+    def test_how_much_is_drawn_is_told(self):
+        process, _ = self.open_window()
+        detail = self.close(process)["detail"]
+        self.assertGreaterEqual(detail["level"], 1)
+        self.assertLessEqual(detail["level"], detail["levels"])
+        self.assertGreaterEqual(detail["changes"], detail["levels"] != detail["level"])
+
+
+if __name__ == "__main__":
+    unittest.main()
