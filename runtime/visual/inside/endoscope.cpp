@@ -3,6 +3,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <functional>
+#include <vector>
 #include <vtkActorCollection.h>
 #include <vtkLightCollection.h>
 #include <vtkPropCollection.h>
@@ -31,6 +33,12 @@ void only_light(vtkRenderer* renderer, vtkLight* own, bool on) {
     own->SwitchOn();
 }
 
+void for_each_actor(vtkRenderer* renderer, const std::function<void(vtkActor*)>& act) {
+    vtkActorCollection* actors = renderer->GetActors();
+    actors->InitTraversal();
+    while (vtkActor* actor = actors->GetNextActor()) act(actor);
+}
+
 }  // namespace
 
 Endoscope::Endoscope(vtkRenderWindow* window, vtkRenderer* outside)
@@ -52,7 +60,8 @@ void Endoscope::turn() {
         fill_window();
     } else if (place_ == Place::window) {
         leave_window();
-        window_->AddRenderer(corner_);
+        if (!window_->HasRenderer(corner_)) window_->AddRenderer(corner_);
+        corner_->DrawOn();
         place_ = Place::corner;
     } else {
         turn_off();
@@ -61,11 +70,7 @@ void Endoscope::turn() {
 
 void Endoscope::turn_off() {
     if (place_ == Place::window) leave_window();
-    if (place_ == Place::corner) {
-        window_->RemoveRenderer(corner_);
-        empty_corner();
-        shared_ = 0;
-    }
+    corner_->DrawOff();
     place_ = Place::nowhere;
 }
 
@@ -117,25 +122,20 @@ void Endoscope::fit_corner() {
     corner_->SetViewport(right - side / size[0], corner_bottom, right, top);
 }
 
-// The same actors in another renderer, but those that the eye is in.
+// The same actors in another renderer, but those that the eye is in. Whatever leaves a renderer loses what it
+// has on the graphics card, so only what the scene has lost leaves this one.
 void Endoscope::share_scene(std::span<vtkActor* const> hidden) {
     const vtkMTimeType changed = outside_->GetViewProps()->GetMTime();
     if (changed == shared_) return;
     shared_ = changed;
-    empty_corner();
-    vtkActorCollection* scene = outside_->GetActors();
-    scene->InitTraversal();
-    while (vtkActor* actor = scene->GetNextActor())
+    std::vector<vtkActor*> lost;
+    for_each_actor(corner_, [&](vtkActor* actor) {
+        if (!outside_->HasViewProp(actor)) lost.push_back(actor);
+    });
+    for (vtkActor* actor : lost) corner_->RemoveActor(actor);
+    for_each_actor(outside_, [&](vtkActor* actor) {
         if (std::ranges::find(hidden, actor) == hidden.end()) corner_->AddActor(actor);
-}
-
-void Endoscope::empty_corner() {
-    const vtkNew<vtkActorCollection> shown;
-    vtkActorCollection* actors = corner_->GetActors();
-    actors->InitTraversal();
-    while (vtkActor* actor = actors->GetNextActor()) shown->AddItem(actor);
-    shown->InitTraversal();
-    while (vtkActor* actor = shown->GetNextActor()) corner_->RemoveActor(actor);
+    });
 }
 
 void Endoscope::follow(const ScopePose& pose, double tool_radius, std::span<vtkActor* const> hidden) {

@@ -50,7 +50,6 @@ class Endoscope {
     void leave_window();
     void look_along(const ScopePose& pose);
     void share_scene(std::span<vtkActor* const> hidden);
-    void empty_corner();
     void fit_corner();
 
     Place place_ = Place::nowhere;
