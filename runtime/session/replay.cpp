@@ -147,8 +147,8 @@ class Player {
 
 }  // namespace
 
-std::unique_ptr<HapticModel> model_of(const Recording& recording, const std::filesystem::path& file,
-                                      const std::filesystem::path& asset, const Case& patient_case) {
+void check_asset(const Recording& recording, const std::filesystem::path& file,
+                 const std::filesystem::path& asset) {
     const RecordingHead& head = recording.head;
     const std::string digest = asset::asset_digest(asset);
     if (digest != head.asset_digest)
@@ -156,6 +156,12 @@ std::unique_ptr<HapticModel> model_of(const Recording& recording, const std::fil
             {file.string(),
              "is of an asset of case '" + head.case_name + "' with SHA-256 " + head.asset_digest,
              digest + ", that of " + asset.string(), "replay it on the asset that was touched"});
+}
+
+std::unique_ptr<HapticModel> model_of(const Recording& recording, const std::filesystem::path& file,
+                                      const std::filesystem::path& asset, const Case& patient_case) {
+    check_asset(recording, file, asset);
+    const RecordingHead& head = recording.head;
     const ContactMethodEntry& method = find_contact_method(head.scheme, file.string() + ": scheme");
     auto model = std::make_unique<HapticModel>(patient_case, method.name, head.devices.size());
     std::vector<DeviceLimits> limits;

@@ -32,8 +32,12 @@ struct ReplayOutcome {
     double largest_difference = 0;  ///< N
 };
 
+/// Throws InvalidInput naming both if the recording in `file` is of another asset than the one in `asset`.
+void check_asset(const recording::Recording& recording, const std::filesystem::path& file,
+                 const std::filesystem::path& asset);
+
 /// A model as the recorded run had it, fresh. `asset`: the file that `patient_case` is from. Throws
-/// InvalidInput naming both if the recording is of another asset, or if it couples differently.
+/// as check_asset(), and InvalidInput if it couples differently.
 std::unique_ptr<haptics::HapticModel> model_of(const recording::Recording& recording,
                                                const std::filesystem::path& file,
                                                const std::filesystem::path& asset, const Case& patient_case);
