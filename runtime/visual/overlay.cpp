@@ -27,10 +27,13 @@ constexpr double bar_width = 240, bar_height = 10;
 constexpr auto help_text =
     "left button  press      held, wheel or W S  deeper, back      W S, arrows  move the tool\n"
     "right drag  turn      middle drag  move the view      wheel, + -  zoom";
+constexpr auto playback_help_text =
+    "Space  pause, go on      , .  slower, faster      arrows  step      Home, End      timeline  go there\n"
+    "right drag  turn      middle drag  move the view      wheel, + -  zoom";
 constexpr double help_opacity = 0.75;
-constexpr double above_buttons = 0.085;     // of the window's height
-constexpr std::size_t cautions_width = 64;  // characters
-constexpr double cautions_room = 460;       // pixels that so many take, mostly, at 1280x720
+constexpr double above_buttons = 0.085, above_timeline = 0.21;  // of the window's height
+constexpr std::size_t cautions_width = 64;                      // characters
+constexpr double cautions_room = 460;  // pixels that so many take, mostly, at 1280x720
 
 // Lines that start below each other, at the right of a window of any size.
 void start_left_of_its_place(vtkTextActor* actor) {
@@ -105,7 +108,6 @@ Overlay::Overlay(const std::string& title, double max_force, std::span<const std
     cautions_->SetInput(text.empty() ? "nothing is noted about how this case was made" : text.c_str());
     cautions_shown_ = !text.empty();
     show_texts();
-    help_->SetInput(help_text);
     help_->GetTextProperty()->SetOpacity(help_opacity);
 }
 
@@ -149,10 +151,14 @@ void Overlay::update(const VisualFrame& frame, double frames_per_second, const S
     bar_->GetProperty()->SetColor(share < 0.5 ? 0.35 + 1.3 * share : 1,
                                   share < 0.5 ? 0.82 : 1.64 - 1.64 * share, 0.3);
     const auto now = std::chrono::steady_clock::now();
-    if (now - last_ < 200ms) return;
+    filmed_ = frame.film_rate_hz.has_value();
+    if (now - last_ < 200ms && !filmed_) return;
     fade_help(now);
     last_ = now;
     told_->SetVisibility(now < told_until_);
+    help_->SetInput(frame.timeline ? playback_help_text : help_text);
+    for (vtkTextActor* text : {help_.Get(), told_.Get()})
+        text->SetPosition(text->GetPosition()[0], frame.timeline ? above_timeline : above_buttons);
     force_->SetInput(fmt::format("{:.2f} N", newtons).c_str());
     const std::string level =
         detail.levels > 0 ? fmt::format(", detail {} of {}", detail.level, detail.levels) : "";
@@ -200,7 +206,7 @@ void Overlay::make_room(bool for_page, bool for_exercise) {
 }
 
 void Overlay::show_texts() {
-    help_->SetVisibility(help_shown_ && !page_shown_);
+    help_->SetVisibility(help_shown_ && !page_shown_ && !filmed_);
     cautions_->SetVisibility(cautions_shown_ && !page_shown_ && !exercise_shown_);
 }
 

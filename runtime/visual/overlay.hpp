@@ -61,7 +61,7 @@ class Overlay {
     bool help_shown_ = true, cautions_shown_ = false;
     bool help_fades_ = true;  // until it is asked for
     std::chrono::steady_clock::duration help_seen_{};
-    bool page_shown_ = false, exercise_shown_ = false;
+    bool page_shown_ = false, exercise_shown_ = false, filmed_ = false;
     std::chrono::steady_clock::time_point last_{};
     vtkNew<vtkTextActor> force_, figures_, title_, help_, notice_, cautions_, told_;
     std::chrono::steady_clock::time_point told_until_{};

@@ -81,7 +81,13 @@ Scene::Scene(const Case& patient_case, const Sight& sight, std::int64_t rigid_bu
       max_force_(patient_case.haptics.max_force),
       arrow_length_(0.5 * sight.field),
       shaft_length_(sight.inside ? 1.1 * (sight.eye() - sight.target).norm() : 0.35 * sight.field),
-      shaft_way_(shaft_way(sight)) {
+      shaft_way_(shaft_way(sight)),
+      others_({.radius = tool_radius_,
+               .max_force = max_force_,
+               .arrow_length = arrow_length_,
+               .shaft_length = shaft_length_,
+               .shaft_way = shaft_way_},
+              renderer, front) {
     // What is near and small comes first: software rendering then shades little that is covered later.
     add_tool(renderer, front);
     for (const DeformableBody& body : patient_case.deformable_bodies)
@@ -154,6 +160,7 @@ void Scene::add_tool(vtkRenderer* renderer, vtkRenderer* front) {
 void Scene::update(const VisualFrame& frame) {
     constexpr double spring_share = 0.05;  // of the tool's radius: a shorter spring is not seen
     for (std::size_t i = 0; i < soft_.size(); ++i) soft_[i].deform(frame.displacements[i]);
+    others_.update(frame.other_tools);
     place_along(tool_, frame.tool_position, Vector3d::UnitX(), 1);
     place_along(device_, frame.device_position, Vector3d::UnitX(), 1);
     place_along(shaft_, frame.tool_position, frame.shaft.isZero() ? shaft_way_ : frame.shaft, 1);

@@ -12,6 +12,7 @@
 #include "runtime/visual/bodies/rigid_surface.hpp"
 #include "runtime/visual/bodies/soft_surface.hpp"
 #include "runtime/visual/detail/detail.hpp"
+#include "runtime/visual/playback/other_tools.hpp"
 #include "runtime/visual/sight.hpp"
 #include "runtime/visual/visual_frame.hpp"
 
@@ -52,6 +53,7 @@ class Scene {
     double arrow_length_;        // mm, of the largest force
     double shaft_length_;        // mm
     Eigen::Vector3d shaft_way_;  // unit, from the tool to the hand
+    OtherTools others_;
     std::vector<SoftSurface> soft_;
     std::vector<RigidSurface> rigid_;
     std::vector<vtkSmartPointer<vtkActor>> regions_;

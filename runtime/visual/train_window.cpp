@@ -35,6 +35,7 @@
 #include "runtime/visual/lesson/lesson_scene.hpp"
 #include "runtime/visual/overlay.hpp"
 #include "runtime/visual/pictures.hpp"
+#include "runtime/visual/playback/timeline.hpp"
 #include "runtime/visual/scene.hpp"
 #include "runtime/visual/tool_shadow.hpp"
 
@@ -85,6 +86,7 @@ struct TrainWindow::Parts {
           lesson_scene(renderer),
           panel(front),
           buttons(front),
+          timeline(front, interactor),
           tool_radius(patient_case.haptics.tool_radius),
           cut(window_settings.sight.blocked) {
         renderer->SetBackground(0.10, 0.13, 0.16);  // a gradient takes a twentieth of a frame
@@ -397,6 +399,7 @@ struct TrainWindow::Parts {
     LessonScene lesson_scene;
     LessonPanel panel;
     ButtonBar buttons;
+    Timeline timeline;
     ViewHistory views;
     std::vector<std::string> keys;  // for take_keys()
     double tool_radius;             // mm
@@ -428,14 +431,15 @@ void TrainWindow::show(const VisualFrame& frame) {
                                                    shadow_share * p.settings.sight.field));
     p.scene.show_inside(p.cut);
     p.look(frame);
-    p.overlay.update(frame, frames_per_second(), detail());
+    p.overlay.update(frame, frame.film_rate_hz.value_or(frames_per_second()), detail());
     p.see_exercise(frame.lesson.hides_regions);
     p.overlay.make_room(frame.lesson.page.has_value(), !frame.lesson.instruction.empty());
     p.lesson_scene.update(frame.lesson);
     const int* size = p.window->GetSize();
     p.panel.update(frame.lesson, frame.force.norm(), size[0], size[1]);
     p.light_buttons(frame);
-    p.buttons.update(!frame.lesson.page, size[0], size[1]);
+    p.buttons.update(!frame.lesson.page && !frame.film_rate_hz, size[0], size[1]);
+    p.timeline.update(frame.timeline);
     p.window->Render();
     if (p.picture_asked) p.take_picture();
     p.tell_of_picture();
@@ -468,6 +472,10 @@ std::vector<std::string> TrainWindow::take_keys() {
     return std::exchange(parts_->keys, {});
 }
 
+std::optional<double> TrainWindow::take_sought() {
+    return parts_->timeline.take_sought();
+}
+
 std::int64_t TrainWindow::frames() const {
     return parts_->frames;
 }
@@ -483,6 +491,10 @@ ShownDetail TrainWindow::detail() const {
 
 void TrainWindow::save_picture(const std::filesystem::path& path) {
     write_picture(path, grab_pixels(parts_->window));
+}
+
+void TrainWindow::add_to(Film& film) {
+    film.add(grab_pixels(parts_->window));
 }
 
 }  // namespace palpate::visual

@@ -2,12 +2,14 @@
 #pragma once
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "formats/model/body.hpp"
 #include "runtime/collision/collision_surface.hpp"
 #include "runtime/visual/detail/detail.hpp"
+#include "runtime/visual/playback/film.hpp"
 #include "runtime/visual/sight.hpp"
 #include "runtime/visual/visual_frame.hpp"
 
@@ -46,12 +48,16 @@ class TrainWindow {
     /// The keys that were pressed since the last call, by hand or by a click on a button or a page's choice:
     /// X11 names in lower case. What is the window's own has been done already.
     std::vector<std::string> take_keys();
+    /// Where the timeline was clicked last since the last call, 0 ... 1.
+    std::optional<double> take_sought();
     std::int64_t frames() const;       ///< drawn so far
     double frames_per_second() const;  ///< of the last second or so
     ShownDetail detail() const;
 
     /// Writes what the window shows as PNG. Throws SystemFailure if that fails.
     void save_picture(const std::filesystem::path& path);
+    /// Adds what the window shows to a film. Throws as Film::add().
+    void add_to(Film& film);
 
   private:
     struct Parts;

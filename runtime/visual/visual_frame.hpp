@@ -2,9 +2,11 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "runtime/visual/lesson/lesson_view.hpp"
+#include "runtime/visual/playback/playback_view.hpp"
 
 namespace palpate::visual {
 
@@ -22,7 +24,12 @@ struct VisualFrame {
     bool recording = false;      ///< every tick is being kept
     /// Of every surface vertex of every deformable body, mm.
     std::vector<std::vector<Eigen::Vector3f>> displacements;
-    LessonView lesson;  ///< of an exercise
+    LessonView lesson;                     ///< of an exercise
+    std::vector<OtherTool> other_tools;    ///< beside the held one
+    std::optional<TimelineView> timeline;  ///< of a recording that is looked at
+    /// Pictures a second of a film that keeps this one: what serves a user alone is left out, texts are not
+    /// held back.
+    std::optional<double> film_rate_hz;
 };
 
 }  // namespace palpate::visual
