@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
 #include <chrono>
 #include <spdlog/spdlog.h>
 #include <thread>
 #include <vector>
 
 #include "formats/model/errors.hpp"
+#include "runtime/apps/refuse_beside.hpp"
 #include "runtime/apps/servo_pulse.hpp"
 #include "runtime/apps/start_recording.hpp"
 #include "runtime/apps/tell_statuses.hpp"
@@ -145,7 +147,7 @@ int main(int argc, char** argv) {
     return command.run(argc, argv, [&](cli::Session& session) {
         options.seconds_given = given.seconds.given();
         if (given.replay.given())
-            refuse_beside_replay(command, {given.asset, given.log, given.curve, given.replay});
+            refuse_beside(command, "--replay", std::array{given.asset, given.log, given.curve, given.replay});
         refuse_idle_options(command, options);
         return touch(options, session);
     });

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/apps/touch_replay.hpp"
 
-#include <algorithm>
 #include <array>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -66,13 +65,6 @@ nlohmann::ordered_json replay_recording(const std::filesystem::path& file, const
     result.update(tool_json(records[0], patient_case, *model));
     if (records.size() > 1) result["second"] = tool_json(records[1], patient_case, *model);
     return result;
-}
-
-void refuse_beside_replay(const cli::Command& command, std::initializer_list<cli::Option> allowed) {
-    for (const cli::Parameter& parameter : command.parameters())
-        if (parameter.option.given() && std::ranges::find(allowed, parameter.option) == allowed.end())
-            throw UsageError({parameter.option.name(), "with --replay", "--log and --curve at most",
-                              "a recording says itself what the run was like"});
 }
 
 }  // namespace palpate::apps

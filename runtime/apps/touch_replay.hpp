@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
-#include <initializer_list>
 #include <nlohmann/json_fwd.hpp>
 
 #include "runtime/apps/touch_outputs.hpp"
 #include "tools/cli/command.hpp"
 
 namespace palpate::apps {
-
-/// Throws UsageError if the user gave any option but these, for a recording says itself what the run was
-/// like.
-void refuse_beside_replay(const cli::Command& command, std::initializer_list<cli::Option> allowed);
 
 /// Replays a recording of a run on `asset` and holds its forces against the recorded ones; sets
 /// session.shortfall if they differ. Throws InvalidInput if it is of another asset, damaged or too short.

@@ -12,6 +12,8 @@
 #include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
 #include "formats/provenance/cautions.hpp"
+#include "runtime/apps/playback/expert_ghost.hpp"
+#include "runtime/apps/playback/train_playback.hpp"
 #include "runtime/apps/point_option.hpp"
 #include "runtime/apps/run_keys.hpp"
 #include "runtime/apps/servo_pulse.hpp"
@@ -45,6 +47,7 @@ using Json = nlohmann::ordered_json;
 struct Options {
     std::filesystem::path asset, screenshot, record;
     LessonOptions lesson;
+    PlaybackOptions playback;
     std::string size = "1280x720", script, body, target, scheme{usual_contact_method}, device, stream;
     double seconds = 0, record_seconds = 300;
 };
@@ -161,7 +164,7 @@ Sight sight_of(const Case& patient_case, const TouchPoint& place,
 
 // Shows the run in the window until the user or the time ends it. `held`: a person's hand turns the tool.
 Shown show(const Options& options, Session& run, TrainWindow& window, VisualFrame& frame, Felt& felt,
-           TrainLesson& lesson, RunKeys& run_keys, bool held) {
+           TrainLesson& lesson, RunKeys& run_keys, const ExpertGhost* ghost, bool held) {
     constexpr auto shortest_frame = std::chrono::nanoseconds(1'000'000'000 / 60);
     const Session::Sink take = [&](const TickResult& tick) {
         felt.add(tick);
@@ -193,6 +196,7 @@ Shown show(const Options& options, Session& run, TrainWindow& window, VisualFram
         frame.recording = run_keys.recording();
         if (const auto hand = lesson.hand(window.hand())) window.place_hand(*hand);
         frame.lesson = lesson.view(frame.force.norm());
+        if (ghost) frame.other_tools = ghost->beside(lesson.lesson(), tick.time);
         window.show(frame);
         run.visual_beat();
         run.guide(window.hand());
@@ -226,6 +230,8 @@ Json train(const Options& options, cli::Session& session) {
     find_contact_method(options.scheme, "--scheme");
     Session run({.asset = options.asset, .method = options.scheme, .stream = options.stream},
                 [](const std::string& sentence) { spdlog::warn("{}", sentence); });
+    std::optional<ExpertGhost> ghost;
+    if (!options.playback.ghost.empty()) ghost.emplace(options.playback.ghost, options.asset);
     const Case& patient_case = run.patient_case();
     const TouchTarget target = start_of(options, run);
     const TouchPoint& place = target.place;
@@ -269,7 +275,8 @@ Json train(const Options& options, cli::Session& session) {
     Felt felt;
     RunKeys run_keys(run, options.record_seconds, session);
     const auto [frame_ns, seconds] =
-        show(options, run, window, frame, felt, lesson, run_keys, !device.kind.simulated);
+        show(options, run, window, frame, felt, lesson, run_keys, ghost ? &*ghost : nullptr,
+             !device.kind.simulated);
     if (cli::interrupt_asked()) {
         spdlog::warn("interrupted: the force has gone to zero, only a recording is kept");
         throw cli::Interrupted();
@@ -321,7 +328,8 @@ int main(int argc, char** argv) {
         {.name = "train",
          .summary = "Opens the trainer's window on an asset",
          .examples = {"palpate train case.vtkhdf",
-                      "palpate train case.vtkhdf --script press --seconds 10 --screenshot press.png"},
+                      "palpate train case.vtkhdf --script press --seconds 10 --screenshot press.png",
+                      "palpate train case.vtkhdf --play run.h5 --video run.ogv"},
          .notes =
              "The mouse holds the tool: it hovers over the surface under the pointer, presses while the left "
              "button is held and slides where it is dragged; the wheel or W and S then change how deep it "
@@ -344,9 +352,10 @@ int main(int argc, char** argv) {
              device_usages([](const DeviceKind& kind) { return kind.simulated; }, false) +
              " mouse and keyboard, or a script, hold a simulated device that gives way."});
     Options options;
-    command.input("asset", options.asset, "the case (.vtkhdf)").required();
-    command.option("--size", options.size, "WIDTHxHEIGHT of the window", "pixels");
-    command.option("--seconds", options.seconds, "close after this time; 0: when told to", "s");
+    const auto asset = command.input("asset", options.asset, "the case (.vtkhdf)").required();
+    const auto size = command.option("--size", options.size, "WIDTHxHEIGHT of the window", "pixels");
+    const auto seconds =
+        command.option("--seconds", options.seconds, "close after this time; 0: when told to", "s");
     command.option(
         "--script", options.script,
         "what the hand does instead of mouse and keyboard: press, slide, tremble, let-go, random or a "
@@ -363,10 +372,23 @@ int main(int argc, char** argv) {
                    "folder in which attempts are kept; ~/.local/share/palpate/attempts if not given");
     command.option("--target", options.target, "x,y,z: start at the surface point nearest to it", "mm");
     command.option("--body", options.body, "which body to start at; the first deformable one if not given");
-    command.output("--record", options.record,
-                   "every tick, for 'palpate touch --replay' (.h5); kept however the trainer ends");
+    command.output(
+        "--record", options.record,
+        "every tick, for --play and 'palpate touch --replay' (.h5); kept however the trainer ends");
     command.option("--record-seconds", options.record_seconds,
                    "how much of the end a recording holds: 46 MB a minute", "s");
-    command.output("--screenshot", options.screenshot, "picture of the window at the end (.png)");
-    return command.run(argc, argv, [&](cli::Session& session) { return train(options, session); });
+    const auto screenshot =
+        command.output("--screenshot", options.screenshot, "picture of the window at the end (.png)");
+    const auto check_playback =
+        declare_playback(command, options.playback, {asset, size, seconds, screenshot});
+    return command.run(argc, argv, [&](cli::Session& session) {
+        check_playback();
+        if (options.playback.play.empty()) return train(options, session);
+        return play_recording(options.playback,
+                              {.asset = options.asset,
+                               .size = size_of(options.size),
+                               .seconds = options.seconds,
+                               .screenshot = options.screenshot},
+                              session);
+    });
 }

@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: Apache-2.0
+"""palpate-train --play in a real window: a recorded run is shown as it was, sought in, filmed; a ghost beside one's own."""
+
+import json
+import math
+import signal
+import subprocess
+import time
+import unittest
+
+import h5py
+from ogg_theora import packets_of, read_theora
+from trainer_case import TRAIN, TrainerCase
+
+from sample_asset import TESTS  # found by trainer_case
+
+SIZE = 1280, 720
+MARGIN = 0.017  # of the window's width, to either side of the timeline
+TIMELINE = 720 - 80  # a place within it, pixels from above
+SECONDS = 3
+
+
+def pixels_like(dump, is_like):
+    rgb = subprocess.run(["convert", "xwd:-", "-depth", "8", "rgb:-"], input=dump, capture_output=True, check=True).stdout
+    return [i for i, pixel in enumerate(zip(rgb[0::3], rgb[1::3], rgb[2::3])) if is_like(*pixel)]
+
+
+def is_head(r, g, b):  # (1, 0.85, 0.3)
+    return r > 240 and 200 < g < 230 and 60 < b < 95
+
+
+def is_ghost(r, g, b):  # (255, 178, 60), shaded
+    return r > 120 and 0.6 * r < g < 0.8 * r and b < 0.35 * r
+
+
+class Playback(TrainerCase):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.run_file = cls.folder / "run.h5"
+        cls.touch("--script", "press", "--seconds", SECONDS, "--virtual-clock", "--record", cls.run_file)
+        with h5py.File(cls.run_file) as recorded:
+            count = recorded["count/ticks"][0]
+            cls.forces = recorded["ticks/force"][:count].tolist()
+            cls.contacts = recorded["ticks/contact_count"][:count].tolist()
+        cls.peak = max(range(count), key=lambda tick: math.hypot(*cls.forces[tick]))
+
+    @classmethod
+    def touch(cls, *options, asset=None):
+        subprocess.run([TRAIN.with_name("palpate-touch"), asset or cls.asset, *map(str, options)], check=True, capture_output=True)
+
+    def train(self, *options, expect=0):
+        run = subprocess.run([TRAIN, self.asset, "--json", "-", *map(str, options)], capture_output=True, text=True,
+                             timeout=120, env=self.server.environment, cwd=self.folder)
+        self.assertEqual(run.returncode, expect, run.stderr)
+        return json.loads(run.stdout) if expect == 0 else run.stderr
+
+    def open_window(self, *options):
+        process = subprocess.Popen([TRAIN, self.asset, "--json", "-", *map(str, options)], stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True, env=self.server.environment, cwd=self.folder)
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        window = self.find_window()
+        time.sleep(0.5)
+        return process, window
+
+    def finish(self, process):
+        self.x("xdotool", "key", "q")
+        out, err = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 0, err)
+        return json.loads(out)
+
+    def assert_as_recorded(self, result):
+        last = result["last"]
+        self.assertEqual(last["force_n"], self.forces[last["tick"]])
+        self.assertEqual(last["contacts"], self.contacts[last["tick"]])
+
+    def head(self, window):
+        """Where the timeline's head is, pixels from the left."""
+        columns = [i % SIZE[0] for i in pixels_like(self.screen(window), is_head)]
+        self.assertTrue(columns)
+        return sum(columns) / len(columns)
+
+    def place_of(self, tick):
+        """Where a tick of the run lies on the timeline, pixels from the left."""
+        return SIZE[0] * (MARGIN + (1 - 2 * MARGIN) * tick / (len(self.forces) - 1))
+
+    def test_it_pauses_where_one_clicks_and_shows_the_recorded_force_of_that_moment(self):
+        process, window = self.open_window("--play", self.run_file)
+        self.x("xdotool", "key", "space")
+        for tick in (self.peak, len(self.forces) // 10):
+            self.x("xdotool", "mousemove", "--window", window, round(self.place_of(tick)), TIMELINE)
+            self.x("xdotool", "click", 1)
+            time.sleep(0.6)
+            self.assertAlmostEqual(self.head(window), self.place_of(tick), delta=3)
+        self.x("xdotool", "mousemove", "--window", window, round(self.place_of(self.peak)) + 100, TIMELINE)
+        self.x("xdotool", "mousedown", 1)
+        self.x("xdotool", "mousemove", "--window", window, round(self.place_of(self.peak)), 100)  # dragged out of it
+        time.sleep(0.3)
+        self.x("xdotool", "mouseup", 1)
+        time.sleep(0.6)
+        result = self.finish(process)
+        self.assert_as_recorded(result)
+        self.assertEqual(result["schema"], "palpate.train.playback/1")
+        self.assertAlmostEqual(result["last"]["tick"], self.peak, delta=1.1 * len(self.forces) / SIZE[0] + 1)
+        self.assertGreater(math.hypot(*result["last"]["force_n"]), 0.01)
+        self.assertEqual((result["ticks"], result["missing_ticks"]), (1000 * SECONDS, 0))
+
+    def test_keys_stop_step_and_change_the_speed(self):
+        process, window = self.open_window("--play", self.run_file)
+        self.x("xdotool", "key", "space", "Home")
+        time.sleep(0.3)
+        self.x("xdotool", "key", "Right", "Right", "Right", "period", "period", "Left")
+        time.sleep(0.6)
+        result = self.finish(process)
+        self.assert_as_recorded(result)
+        self.assertEqual(result["speed"], 4)
+        self.assertEqual(result["last"]["tick"], 0)  # three steps of 0.1 s on, one of 0.4 s back
+
+    def test_it_goes_on_by_itself_to_the_end_and_no_servo_runs(self):
+        result = self.train("--play", self.run_file, "--speed", 4, "--seconds", SECONDS)
+        self.assert_as_recorded(result)
+        self.assertEqual(result["last"]["tick"], 1000 * SECONDS - 1)
+        self.assertGreater(result["shown_ticks"], 1)
+        self.assertLessEqual(result["force_peak_n"], math.hypot(*self.forces[self.peak]) + 1e-12)
+        self.assertNotIn("overruns", result)
+
+    def test_a_video_has_a_picture_for_each_moment_whatever_the_machine(self):
+        video = self.folder / "run.ogv"
+        options = ("--play", self.run_file, "--video", video, "--film-rate", 20, "--speed", 2, "--size", "330x250")
+        result = self.train(*options)
+        pictures = 1 + math.floor((1000 * SECONDS - 1) / 1000 * 20 / 2)
+        self.assertEqual(result["film"], {"pictures": pictures, "pictures_per_second": 20})
+        self.assertEqual(read_theora(video.read_bytes()), (330, 250, pictures, 20))
+        self.assertEqual(result["shown_ticks"], pictures)
+        self.assertIn("exists already", self.train(*options, expect=3))
+        self.train(*options, "--force")
+
+    def test_pictures_of_a_film_are_all_there_or_none(self):
+        folder = self.folder / "series"
+        options = ("--play", self.run_file, "--pictures", folder, "--film-rate", 4, "--size", "320x240")
+        result = self.train(*options)
+        names = sorted(path.name for path in folder.iterdir())
+        self.assertEqual(names, [f"{i:05}.png" for i in range(result["film"]["pictures"])])
+        self.assertEqual(len(names), 1 + math.floor((1000 * SECONDS - 1) / 1000 * 4))
+        self.assertNotEqual((folder / names[0]).read_bytes(), (folder / names[self.peak * 4 // 1000]).read_bytes())
+        self.assertIn("exists already", self.train(*options, "--force", expect=3))
+        self.assertEqual(len(list(folder.iterdir())), len(names))
+
+    def test_a_film_that_is_broken_off_leaves_nothing(self):
+        before = sorted(self.folder.iterdir())
+        process, _ = self.open_window("--play", self.run_file, "--speed", 0.125, "--film-rate", 120,
+                                      "--video", self.folder / "never.ogv", "--pictures", self.folder / "never")
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 130)
+        self.assertEqual(sorted(self.folder.iterdir()), before)
+
+    def test_films_of_one_recording_are_the_same(self):
+        films = []
+        for name in ("one.ogv", "two.ogv"):
+            self.train("--play", self.run_file, "--video", self.folder / name, "--film-rate", 10, "--size", "320x240")
+            films.append(packets_of((self.folder / name).read_bytes()))  # a stream's serial number is drawn at random
+        self.assertEqual(*films)
+
+    def test_a_ghost_presses_beside_one_that_stays_away(self):
+        far = self.folder / "far.txt"
+        far.write_text("0 60 60 60\n10 60 60 60\n")
+        counts = {}
+        for name, ghost in (("without", ()), ("with", ("--ghost", self.run_file))):
+            process, window = self.open_window("--script", far, *ghost)
+            counts[name] = len(pixels_like(self.screen(window), is_ghost))
+            self.finish(process)
+        self.assertGreater(counts["with"], counts["without"] + 200)
+
+    def test_a_ghost_is_played_back_too(self):
+        result = self.train("--play", self.run_file, "--ghost", self.run_file, "--speed", 4, "--seconds", 1)
+        first = self.contacts.index(next(count for count in self.contacts if count > 0))
+        self.assertAlmostEqual(result["ghost"]["begins_s"], max(0, (first + 1) / 1000 - 1), delta=0.0015)
+
+    def test_recordings_of_several_tools_show_the_one_that_is_asked_for(self):
+        file, hand = self.folder / "two.h5", self.folder / "hand.txt"
+        hand.write_text("0 60 60 60\n3 60 60 60\n")
+        self.touch("--script", "press", "--second", hand, "--seconds", 1, "--virtual-clock", "--record", file)
+        with h5py.File(file) as recorded:
+            forces = recorded["ticks/force"][:2000].reshape(-1, 2, 3)
+        for tool in (0, 1):
+            film = ("--video", self.folder / f"tool{tool}.ogv", "--film-rate", 20, "--size", "320x240")
+            result = self.train("--play", file, "--tool", tool, *film)
+            shown = [math.hypot(*forces[50 * picture][tool]) for picture in range(result["film"]["pictures"])]
+            self.assertAlmostEqual(result["force_peak_n"], max(shown), places=12)
+            self.assertEqual(result["force_peak_n"] > 0.01, tool == 0)
+        self.assertIn("tool 2", self.train("--play", file, "--tool", 2, expect=3))
+
+    def test_misuse_is_refused(self):
+        other, other_run = self.folder / "other.vtkhdf", self.folder / "other.h5"
+        subprocess.run([TESTS / "write_sample_case", other], check=True)
+        self.touch("--script", "press", "--seconds", 0.1, "--virtual-clock", "--record", other_run, asset=other)
+        for options, code, phrase in (
+            (("--play", other_run), 3, "is of an asset of case"),
+            (("--ghost", other_run), 3, "is of an asset of case"),
+            (("--play", self.asset), 3, "sample.vtkhdf"),
+            (("--play", self.run_file, "--script", "press"), 2, "--script"),
+            (("--play", self.run_file, "--speed", 9), 2, "--speed"),
+            (("--video", self.folder / "x.ogv"), 2, "--play"),
+            (("--ghost", self.folder / "nothing.h5"), 3, "nothing.h5"),
+        ):
+            self.assertIn(phrase, self.train(*options, expect=code))
+
+
+if __name__ == "__main__":
+    unittest.main()
