@@ -12,6 +12,7 @@
 #include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
 #include "formats/provenance/cautions.hpp"
+#include "runtime/apps/first_sight.hpp"
 #include "runtime/apps/playback/expert_ghost.hpp"
 #include "runtime/apps/playback/train_playback.hpp"
 #include "runtime/apps/point_option.hpp"
@@ -29,7 +30,6 @@
 #include "runtime/session/statistics_json.hpp"
 #include "runtime/session/touch_target.hpp"
 #include "runtime/training/lay_out.hpp"
-#include "runtime/visual/inside/passage_sight.hpp"
 #include "runtime/visual/train_window.hpp"
 #include "tools/cli/command.hpp"
 
@@ -154,14 +154,6 @@ TouchTarget start_of(const Options& options, const Session& run) {
     return training::choose_start(run.patient_case(), run.model(), options.body, seed);
 }
 
-// From outside; where bodies stand between, from inside the passage if there is one.
-Sight sight_of(const Case& patient_case, const TouchPoint& place,
-               std::span<const collision::CollisionSurface* const> surfaces) {
-    const Sight outside = choose_sight(patient_case, place.point, place.normal);
-    if (!outside.blocked) return outside;
-    return choose_passage_sight(surfaces, place.point, place.normal).value_or(outside);
-}
-
 // Shows the run in the window until the user or the time ends it. `held`: a person's hand turns the tool.
 Shown show(const Options& options, Session& run, TrainWindow& window, VisualFrame& frame, Felt& felt,
            TrainLesson& lesson, RunKeys& run_keys, const ExpertGhost* ghost, bool held) {
@@ -236,15 +228,12 @@ Json train(const Options& options, cli::Session& session) {
     const TouchTarget target = start_of(options, run);
     const TouchPoint& place = target.place;
     const Eigen::Vector3d start = start_outside(place, run.model().settings().tool_radius);
-    std::vector<const collision::CollisionSurface*> surfaces;
-    for (std::size_t body = 0; body < run.model().body_count(); ++body)
-        surfaces.push_back(&run.model().surface(body));
     WindowSettings window_settings{.width = width,
                                    .height = height,
                                    .start = start,
-                                   .sight = sight_of(patient_case, place, surfaces),
+                                   .sight = first_sight(patient_case, run.model(), place.point, place.normal),
                                    .cautions = provenance::cautions_in(patient_case.provenance),
-                                   .surfaces = surfaces};
+                                   .surfaces = surfaces_of(run.model())};
     cli::end_softly_on_interrupt();
     run.hold(device.open(
         request_of(options, device.kind, run.model(), place, start, window_settings.sight.axes())));
@@ -274,9 +263,8 @@ Json train(const Options& options, cli::Session& session) {
     if (!options.record.empty()) start_recording(run, options.record, options.record_seconds, session);
     Felt felt;
     RunKeys run_keys(run, options.record_seconds, session);
-    const auto [frame_ns, seconds] =
-        show(options, run, window, frame, felt, lesson, run_keys, ghost ? &*ghost : nullptr,
-             !device.kind.simulated);
+    const auto [frame_ns, seconds] = show(options, run, window, frame, felt, lesson, run_keys,
+                                          ghost ? &*ghost : nullptr, !device.kind.simulated);
     if (cli::interrupt_asked()) {
         spdlog::warn("interrupted: the force has gone to zero, only a recording is kept");
         throw cli::Interrupted();
@@ -336,7 +324,8 @@ int main(int argc, char** argv) {
              "presses. Without a button W, S and the arrow keys step. Drag with the right button to turn the "
              "view, with the middle one or Shift and left to shift it, with Ctrl and left to roll it; the "
              "wheel, + and - zoom, C cuts the bodies open, B hides the rigid ones, I shows and hides "
-             "how the case was made, T shows what they enclose, V looks from the tool's tip, first in the whole "
+             "how the case was made, T shows what they enclose, V looks from the tool's tip, first in the "
+             "whole "
              "window, then in a corner of it, P saves a "
              "picture in this folder, O records every tick there from then on or stops, F "
              "takes the next contact scheme, U takes a change of "

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "formats/model/arrays.hpp"
+#include "runtime/apps/first_sight.hpp"
 #include "runtime/session/touch_target.hpp"
 
 namespace palpate::apps {
@@ -41,10 +42,10 @@ visual::Sight RecordedScene::sight() const {
         Eigen::Vector3d point = Eigen::Vector3d::Zero();
         for (std::size_t i = 0; i < 3 && contact.vertices[i] >= 0; ++i)
             point += static_cast<double>(contact.weights[i]) * surface.vertices[contact.vertices[i]];
-        return visual::choose_sight(case_, point, normal_of(contact));
+        return first_sight(case_, model_, point, normal_of(contact));
     }
     const auto place = choose_touch_target(case_, model_, "", std::nullopt).place;
-    return visual::choose_sight(case_, place.point, place.normal);
+    return first_sight(case_, model_, place.point, place.normal);
 }
 
 const Tick& RecordedScene::fill(visual::VisualFrame& frame, double time) {

@@ -14,6 +14,7 @@
 #include "formats/asset/asset.hpp"
 #include "formats/model/arrays.hpp"
 #include "formats/provenance/cautions.hpp"
+#include "runtime/apps/first_sight.hpp"
 #include "runtime/apps/playback/expert_ghost.hpp"
 #include "runtime/apps/playback/film_output.hpp"
 #include "runtime/apps/playback/recorded_scene.hpp"
@@ -196,9 +197,8 @@ Json play_recording(const PlaybackOptions& options, const PlaybackWindow& shown,
                             .height = shown.size.second,
                             .start = vector_of(scene.track().front()->tool_position),
                             .sight = scene.sight(),
-                            .cautions = provenance::cautions_in(patient_case.provenance)};
-    for (std::size_t body = 0; body < model->body_count(); ++body)
-        settings.surfaces.push_back(&model->surface(body));
+                            .cautions = provenance::cautions_in(patient_case.provenance),
+                            .surfaces = surfaces_of(*model)};
     TrainWindow window(patient_case, settings);
     session.progress.finish();
     tell_what_is_missing(recording, scene.track(), options);
