@@ -167,12 +167,15 @@ class Playback(TrainerCase):
         far = self.folder / "far.txt"
         far.write_text("0 60 60 60\n10 60 60 60\n")
         pictures = {}
-        for name, ghost in (("without", ()), ("with", ("--ghost", self.run_file))):
+        exercise = ("--exercise", "touch", "--attempts", self.folder / "attempts")
+        ghost = ("--ghost", self.run_file)
+        for name, options in (("without", ()), ("freely", ghost), ("in an exercise", (*ghost, *exercise))):
             picture = self.folder / f"{name}.png"
-            self.train("--script", far, *ghost, "--seconds", 1, "--screenshot", picture)
+            self.train("--script", far, *options, "--seconds", 1, "--screenshot", picture)
             dump = subprocess.run(["convert", picture, "-depth", "8", "rgb:-"], capture_output=True, check=True).stdout
             pictures[name] = len(pixels_like(dump, is_ghost))
-        self.assertGreater(pictures["with"], pictures["without"] + 200)
+        for name in ("freely", "in an exercise"):
+            self.assertGreater(pictures[name], pictures["without"] + 200, name)
 
     def test_a_ghost_is_played_back_too(self):
         result = self.train("--play", self.run_file, "--ghost", self.run_file, "--speed", 4, "--seconds", 1)
