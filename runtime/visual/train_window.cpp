@@ -447,7 +447,8 @@ void TrainWindow::show(const VisualFrame& frame) {
     const auto now = std::chrono::steady_clock::now();
     const double seconds = std::chrono::duration<double>(now - p.last_frame).count();
     p.last_frame = now;
-    if (p.frames > 1) p.detail.frame_took(seconds);
+    // A film has time for everything.
+    if (p.frames > 1) p.detail.frame_took(frame.film_rate_hz ? 0 : seconds);
     if (p.frames == 2) p.frame_seconds = seconds;
     if (p.frames > 2) p.frame_seconds += (seconds - p.frame_seconds) / 30;
 }

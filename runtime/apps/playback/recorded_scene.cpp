@@ -52,6 +52,7 @@ const Tick& RecordedScene::fill(visual::VisualFrame& frame, double time) {
     const Tick& tick = tick_at(track_, time);
     frame.device_position = vector_of(tick.device_position);
     frame.tool_position = vector_of(tick.tool_position);
+    frame.shaft = vector_of(tick.shaft);
     frame.force = vector_of(tick.force);
     frame.depth = tick.depth;
     frame.overruns = tick.overruns;

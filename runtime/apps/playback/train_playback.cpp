@@ -67,13 +67,13 @@ class RecordingPlayer {
         const auto passed = [](Clock::time_point since) {
             return std::chrono::duration<double>(Clock::now() - since).count();
         };
-        while (!window_.closed() && !cli::interrupt_asked() && (seconds <= 0 || passed(began) < seconds)) {
+        do {
             show(false);
             std::this_thread::sleep_until(frame_began + shortest_frame);
             clock_.advance(passed(std::exchange(frame_began, Clock::now())));
             for (const std::string& key : window_.take_keys()) press(key);
             if (const auto share = window_.take_sought()) clock_.seek_share(*share);
-        }
+        } while (!window_.closed() && !cli::interrupt_asked() && (seconds <= 0 || passed(began) < seconds));
     }
 
     // From beginning to end.
@@ -81,6 +81,9 @@ class RecordingPlayer {
         const double whole = clock_.ends() - clock_.begins(), speed = clock_.speed();
         const auto pictures = 1 + static_cast<std::int64_t>(std::floor(whole * rate / speed));
         frame_.film_rate_hz = rate;
+        constexpr int unsteady = 3;  // of a window's first pictures, which choose how much detail there is
+        scene_.fill(frame_, clock_.time());
+        for (int picture = 0; picture < unsteady; ++picture) window_.show(frame_);
         for (std::int64_t picture = 0; picture < pictures; ++picture) {
             clock_.seek(clock_.begins() + static_cast<double>(picture) * speed / rate);
             show(true);
