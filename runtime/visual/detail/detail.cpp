@@ -6,17 +6,21 @@
 
 namespace palpate::visual {
 
-std::span<const Detail> detail_levels(bool hardware) {
-    static constexpr std::array levels{
-        Detail{.pixel = 4},
-        Detail{.pixel = 3},
-        Detail{.pixel = 2},
-        Detail{.pixel = 2, .fine_bodies = true},
-        Detail{.fine_bodies = true},
-        Detail{.fine_bodies = true, .grain = true},
-        Detail{.fine_bodies = true, .grain = true, .occlusion = true},
-    };
-    return std::span(levels).first(levels.size() - (hardware ? 0 : 1));
+std::vector<Detail> detail_levels(int window_height, bool hardware) {
+    constexpr int least_lines = 300;
+    std::vector<Detail> levels;
+    for (const int pixel : {7, 5, 4, 3})
+        if (window_height / pixel >= least_lines) levels.push_back({.pixel = pixel});
+    if (window_height / 2 >= least_lines) {
+        levels.push_back({.pixel = 2});
+        levels.push_back({.pixel = 2, .fine_bodies = true});
+    } else {
+        levels.push_back({});
+    }
+    levels.push_back({.fine_bodies = true});
+    levels.push_back({.fine_bodies = true, .grain = true});
+    if (hardware) levels.push_back({.fine_bodies = true, .grain = true, .occlusion = true});
+    return levels;
 }
 
 bool is_hardware(std::string_view opengl_renderer) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-#include <span>
 #include <string_view>
+#include <vector>
 
 namespace palpate::visual {
 
@@ -22,9 +22,10 @@ struct ShownDetail {
     std::int64_t changes = 0;  ///< of the level so far
 };
 
-/// The levels from the least to everything, what is missed least left out first. `hardware`: a graphics card
-/// draws, not the processor, for which ambient occlusion is too dear.
-std::span<const Detail> detail_levels(bool hardware);
+/// The levels from the least to everything, what is missed least left out first, for a window of so many
+/// pixels' height, of which 300 lines are drawn at least. `hardware`: a graphics card draws, not the
+/// processor, for which ambient occlusion is too dear.
+std::vector<Detail> detail_levels(int window_height, bool hardware);
 
 /// Tells whether that OpenGL renderer is a graphics card, by its name: Mesa's software renderers are
 /// llvmpipe, softpipe and SWR.

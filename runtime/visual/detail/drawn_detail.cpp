@@ -26,7 +26,7 @@ vtkSmartPointer<vtkRenderPass> occlusion_pass(double field) {
 
 void DrawnDetail::frame_took(double seconds) {
     if (!control_) {
-        levels_ = detail_levels(is_hardware(window_->ReportCapabilities()));
+        levels_ = detail_levels(window_->GetSize()[1], is_hardware(window_->ReportCapabilities()));
         control_.emplace(static_cast<int>(levels_.size()));
         draw(levels_.back());
         return;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
-#include <span>
+#include <vector>
 #include <vtkNew.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
@@ -33,7 +33,7 @@ class DrawnDetail {
     vtkRenderer* renderer_;
     Scene* scene_;
     double field_;
-    std::span<const Detail> levels_;
+    std::vector<Detail> levels_;
     std::optional<DetailControl> control_;  // once there is an OpenGL renderer to ask for its name
     vtkNew<CoarsePixels> coarse_pixels_;
 };

@@ -52,9 +52,11 @@ std::optional<Sight> choose_passage_sight(Surfaces surfaces, const Vector3d& poi
     Vector3d toward_eye = normal;
     for (int i = 0; i < directions; ++i) {
         const Vector3d local = spiral_direction(i);
+        const double weight = grazing_weight + (1 - grazing_weight) * local.z();
+        if (farthest * weight <= most) break;  // those that follow are more grazing still
         const Vector3d way = turn * local;
         const double length = free_way(surfaces, start, way);
-        const double worth = length * (grazing_weight + (1 - grazing_weight) * local.z());
+        const double worth = length * weight;
         if (length < shortest || worth <= most) continue;
         most = worth;
         longest = length;

@@ -3,6 +3,7 @@
 #include <functional>
 #include <gtest/gtest.h>
 
+#include "runtime/visual/detail/detail.hpp"
 #include "runtime/visual/detail/detail_control.hpp"
 
 namespace palpate {
@@ -84,6 +85,25 @@ TEST(DetailControl, tries_that_fail_are_made_less_and_less_often) {
     draw(control, 540, cost);
     EXPECT_LE(in_the_first_minute, 11);
     EXPECT_LE(control.changes() - in_the_first_minute, 14);
+}
+
+TEST(DetailLevels, end_with_everything_and_leave_lines_enough_to_see) {
+    for (const int height : {240, 720, 1080, 2160}) {
+        const auto levels = visual::detail_levels(height, false);
+        for (const visual::Detail& level : levels)
+            EXPECT_TRUE(level.pixel == 1 || height / level.pixel >= 300);
+        EXPECT_EQ(levels.back().pixel, 1);
+        EXPECT_TRUE(levels.back().grain && levels.back().fine_bodies);
+        EXPECT_FALSE(levels.back().occlusion) << "too dear for a processor";
+        EXPECT_TRUE(visual::detail_levels(height, true).back().occlusion);
+    }
+    EXPECT_GT(visual::detail_levels(2160, false).front().pixel,
+              visual::detail_levels(720, false).front().pixel);
+}
+
+TEST(DetailLevels, software_renderers_are_no_hardware) {
+    EXPECT_FALSE(visual::is_hardware("OpenGL renderer string:  llvmpipe (LLVM 15.0.6, 256 bits)"));
+    EXPECT_TRUE(visual::is_hardware("OpenGL renderer string:  Mesa Intel(R) UHD Graphics 620"));
 }
 
 }  // namespace
