@@ -23,8 +23,8 @@
 #include "runtime/apps/train_lesson.hpp"
 #include "runtime/devices/mounted_device.hpp"
 #include "runtime/devices/simulation.hpp"
-#include "runtime/haptics/drawn_creep.hpp"
 #include "runtime/session/device_list.hpp"
+#include "runtime/session/drawn_shape.hpp"
 #include "runtime/session/hand_script.hpp"
 #include "runtime/session/session.hpp"
 #include "runtime/session/statistics_json.hpp"
@@ -124,17 +124,13 @@ class TickRate {
     double rate_ = 0;
 };
 
-void fill_frame(VisualFrame& frame, const TickResult& tick, const HapticModel& model,
-                std::span<DrawnCreep> creep) {
+void fill_frame(VisualFrame& frame, const TickResult& tick, DrawnShape& shape) {
     frame.device_position = Eigen::Map<const Eigen::Vector3d>(tick.device_position.data());
     frame.tool_position = Eigen::Map<const Eigen::Vector3d>(tick.tool_position.data());
     frame.force = Eigen::Map<const Eigen::Vector3d>(tick.force.data());
     frame.depth = tick.depth;
     frame.overruns = tick.overruns;
-    for (std::size_t i = 0; i < frame.displacements.size(); ++i) {
-        model.surface_displacement(model.rigid_count() + i, tick, frame.displacements[i]);
-        if (model.method().can.creeps) creep[i].follow(tick.time, frame.displacements[i]);
-    }
+    shape.follow(tick, frame.displacements);
 }
 
 struct Shown {
@@ -165,17 +161,16 @@ Shown show(const Options& options, Session& run, TrainWindow& window, VisualFram
     TickRate rate;
     ServoPulse pulse;
     Shown shown;
-    std::vector<DrawnCreep> creep;
-    for (const DeformableBody& body : run.patient_case().deformable_bodies) creep.emplace_back(body);
+    DrawnShape shape(run.patient_case(), run.model());
     run.start();
     const auto began = Clock::now();
     auto frame_began = began;
     const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - began).count(); };
-    while (!window.closed() && !cli::interrupt_asked() &&
+    while (!window.closed() && !window.lost() && !cli::interrupt_asked() &&
            (options.seconds <= 0 || elapsed() < options.seconds)) {
         const TickResult& tick = run.latest();
         pulse.see(tick.tick);
-        fill_frame(frame, tick, run.model(), creep);
+        fill_frame(frame, tick, shape);
         if (held) frame.shaft = vector_of(tick.shaft);
         frame.faults = run.recent_faults(tick.time);
         frame.statuses = run.statuses().recent(tick.time);
@@ -266,9 +261,16 @@ Json train(const Options& options, cli::Session& session) {
     const auto [frame_ns, seconds] = show(options, run, window, frame, felt, lesson, run_keys,
                                           ghost ? &*ghost : nullptr, !device.kind.simulated);
     if (cli::interrupt_asked()) {
-        spdlog::warn("interrupted: the force has gone to zero, only a recording is kept");
+        spdlog::warn("interrupted: the force has gone to zero, recording and attempts alone are kept");
         throw cli::Interrupted();
     }
+    if (window.lost())
+        throw SystemFailure({.culprit = "DISPLAY",
+                             .found =
+                                 "display or window went away: the force has gone to zero, recording and "
+                                 "attempts alone are kept",
+                             .expected = "",
+                             .next_step = "start the trainer again where a display answers"});
     if (picture) {
         window.save_picture(picture->path());
         picture->commit();
