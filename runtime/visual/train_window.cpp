@@ -24,6 +24,7 @@
 
 #include "formats/model/errors.hpp"
 #include "runtime/visual/controls/button_bar.hpp"
+#include "runtime/visual/controls/display_loss.hpp"
 #include "runtime/visual/controls/free_path.hpp"
 #include "runtime/visual/controls/view_history.hpp"
 #include "runtime/visual/detail/drawn_detail.hpp"
@@ -114,6 +115,7 @@ struct TrainWindow::Parts {
             interactor->AddObserver(event, events);
         reset();
         interactor->Initialize();
+        survive_loss_of(window->GetGenericDisplayId());
     }
 
     void reset() {
@@ -419,12 +421,14 @@ struct TrainWindow::Parts {
 TrainWindow::TrainWindow(const Case& patient_case, const WindowSettings& settings)
     : parts_(std::make_unique<Parts>(patient_case, settings)) {}
 
-TrainWindow::~TrainWindow() = default;
+TrainWindow::~TrainWindow() {
+    if (lost()) static_cast<void>(parts_.release());
+}
 
 void TrainWindow::show(const VisualFrame& frame) {
     Parts& p = *parts_;
     p.interactor->ProcessEvents();
-    if (p.closed) return;
+    if (p.closed || lost()) return;
     p.lead_hand();
     p.scene.update(frame);
     p.shadow.update(frame.tool_position, drop_mark(p.touchable(), frame.tool_position, p.tool_radius,
@@ -455,6 +459,10 @@ void TrainWindow::show(const VisualFrame& frame) {
 
 bool TrainWindow::closed() const {
     return parts_->closed;
+}
+
+bool TrainWindow::lost() const {
+    return display_lost();
 }
 
 Vector3d TrainWindow::hand() const {
