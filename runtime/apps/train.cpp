@@ -14,6 +14,7 @@
 #include "formats/provenance/cautions.hpp"
 #include "runtime/apps/first_sight.hpp"
 #include "runtime/apps/playback/expert_ghost.hpp"
+#include "runtime/apps/playback/recorded_scene.hpp"
 #include "runtime/apps/playback/train_playback.hpp"
 #include "runtime/apps/point_option.hpp"
 #include "runtime/apps/run_keys.hpp"
@@ -48,7 +49,7 @@ struct Options {
     std::filesystem::path asset, screenshot, record;
     LessonOptions lesson;
     PlaybackOptions playback;
-    std::string size = "1280x720", script, body, target, scheme{usual_contact_method}, device, stream;
+    std::string size = "1280x720", script, second, body, target, scheme{usual_contact_method}, device, stream;
     double seconds = 0, record_seconds = 300;
 };
 
@@ -77,18 +78,20 @@ DeviceRequest request_of(const Options& options, const DeviceKind& device, const
                          const TouchPoint& place, const Eigen::Vector3d& start, const Eigen::Matrix3d& R_PD) {
     DeviceRequest request{.tools = {}, .limits = limits_asked_by(model.settings())};
     const std::array<double, 3> shaft = array_of(place.normal);
-    if (!device.simulated)
-        request.tools.push_back({.place = DevicePlace{start, R_PD}});
+    if (!device.simulated)  // several at one place, so that all reach what one does
+        request.tools.assign(model.tool_count(), HeldTool{.place = DevicePlace{start, R_PD}});
     else if (options.script.empty())
         request.tools.push_back({.place = DevicePlace{start, upright(place.normal)}, .shaft = shaft});
     else
         request.tools.push_back(scripted_tool(scripted_path(options, place, model.contact_radius()),
                                               is_made_to_measure(options.script) ? place.normal : anterior,
                                               shaft));
+    if (!options.second.empty())
+        request.tools.push_back(scripted_tool(recorded_path(options.second), anterior, shaft));
     return request;
 }
 
-// Everything felt since the start.
+// Everything felt since the start, and how far the first device went.
 struct Felt {
     double force_peak = 0;  // N
     double depth_peak = 0;  // mm
@@ -99,6 +102,7 @@ struct Felt {
         const Eigen::Vector3d position = vector_of(tick.device_position);
         force_peak = std::max(force_peak, vector_of(tick.force).norm());
         depth_peak = std::max(depth_peak, tick.depth);
+        if (tick.tool > 0) return;
         if (last_position) travel += (position - *last_position).norm();
         last_position = position;
     }
@@ -124,13 +128,17 @@ class TickRate {
     double rate_ = 0;
 };
 
-void fill_frame(VisualFrame& frame, const TickResult& tick, DrawnShape& shape) {
+// The tick of each tool, of which the first is shown as the one that is held.
+void fill_frame(VisualFrame& frame, std::span<const TickResult* const> ticks, DrawnShape& shape) {
+    const TickResult& tick = *ticks.front();
     frame.device_position = Eigen::Map<const Eigen::Vector3d>(tick.device_position.data());
     frame.tool_position = Eigen::Map<const Eigen::Vector3d>(tick.tool_position.data());
     frame.force = Eigen::Map<const Eigen::Vector3d>(tick.force.data());
     frame.depth = tick.depth;
     frame.overruns = tick.overruns;
-    shape.follow(tick, frame.displacements);
+    shape.follow(ticks, frame.displacements);
+    frame.other_tools.clear();
+    for (const TickResult* other : ticks.subspan(1)) frame.other_tools.push_back(other_tool_of(*other));
 }
 
 struct Shown {
@@ -161,16 +169,21 @@ Shown show(const Options& options, Session& run, TrainWindow& window, VisualFram
     TickRate rate;
     ServoPulse pulse;
     Shown shown;
-    DrawnShape shape(run.patient_case(), run.model());
+    std::vector<const TickResult*> ticks(run.model().tool_count());
+    const HapticModel* shaped_by = nullptr;
+    std::optional<DrawnShape> shape;  // anew with each contact method
     run.start();
     const auto began = Clock::now();
     auto frame_began = began;
     const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - began).count(); };
     while (!window.closed() && !window.lost() && !cli::interrupt_asked() &&
            (options.seconds <= 0 || elapsed() < options.seconds)) {
-        const TickResult& tick = run.latest();
+        for (std::size_t tool = 0; tool < ticks.size(); ++tool) ticks[tool] = &run.latest(tool);
+        const TickResult& tick = *ticks.front();
         pulse.see(tick.tick);
-        fill_frame(frame, tick, shape);
+        if (std::exchange(shaped_by, &run.model()) != &run.model())
+            shape.emplace(run.patient_case(), run.model());
+        fill_frame(frame, ticks, *shape);
         if (held) frame.shaft = vector_of(tick.shaft);
         frame.faults = run.recent_faults(tick.time);
         frame.statuses = run.statuses().recent(tick.time);
@@ -183,7 +196,9 @@ Shown show(const Options& options, Session& run, TrainWindow& window, VisualFram
         frame.recording = run_keys.recording();
         if (const auto hand = lesson.hand(window.hand())) window.place_hand(*hand);
         frame.lesson = lesson.view(frame.force.norm());
-        if (ghost) frame.other_tools = ghost->beside(lesson.lesson(), tick.time);
+        if (ghost)
+            for (const OtherTool& expert : ghost->beside(lesson.lesson(), tick.time))
+                frame.other_tools.push_back(expert);
         window.show(frame);
         run.visual_beat();
         run.guide(window.hand());
@@ -209,14 +224,15 @@ Json train(const Options& options, cli::Session& session) {
 
     session.progress.step("reading the case", 0);
     const DeviceChoice device = choose_device(options.device, "--device");
-    if (device.tool_count > 1)
-        throw UsageError({"--device", options.device, "one device",
-                          "the window shows one tool; 'palpate touch' takes several"});
     if (!device.kind.simulated && !options.script.empty())
         throw UsageError({"--script", "with --device " + options.device, "a simulated device", ""});
+    if (!device.kind.simulated && !options.second.empty())
+        throw UsageError({"--second", "with --device " + options.device, "a simulated device", ""});
     find_contact_method(options.scheme, "--scheme");
-    Session run({.asset = options.asset, .method = options.scheme, .stream = options.stream},
-                [](const std::string& sentence) { spdlog::warn("{}", sentence); });
+    const std::size_t tools = options.second.empty() ? device.tool_count : 2;
+    Session run(
+        {.asset = options.asset, .method = options.scheme, .tool_count = tools, .stream = options.stream},
+        [](const std::string& sentence) { spdlog::warn("{}", sentence); });
     std::optional<ExpertGhost> ghost;
     if (!options.playback.ghost.empty()) ghost.emplace(options.playback.ghost, options.asset);
     const Case& patient_case = run.patient_case();
@@ -351,7 +367,9 @@ int main(int argc, char** argv) {
         "--script", options.script,
         "what the hand does instead of mouse and keyboard: press, slide, tremble, let-go, random or a "
         "file as for 'touch'");
-    command.option("--device", options.device, device_usages([](const DeviceKind&) { return true; }, false));
+    command.option("--second", options.second,
+                   "what a second tool on the same bodies does: a file as for --script");
+    command.option("--device", options.device, device_usages([](const DeviceKind&) { return true; }, true));
     command.option("--stream", options.stream,
                    "PORT or ADDRESS:PORT at which 3D Slicer and others see the session over OpenIGTLink");
     command.option("--scheme", options.scheme, "how contact is found: " + contact_method_names());

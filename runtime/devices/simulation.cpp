@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A guided tool is the only one.
+// Of several guided tools mouse and keyboard hold the last.
 OpenDevices open_stiff_hands(const DeviceRequest& request) {
     OpenDevices open;
     for (const HeldTool& tool : request.tools) {

@@ -16,14 +16,21 @@ class DrawnShape {
   public:
     DrawnShape(const Case& patient_case, const haptics::HapticModel& model);
 
-    /// Writes where the contacts of a tick take each body, one displacement (mm) for each surface vertex:
-    /// HapticModel::surface_displacement(), and where the method lets tissue creep what the ticks followed
-    /// before left behind. Beside a running tick; linear in the surfaces.
-    void follow(const TickResult& tick, std::span<std::vector<Eigen::Vector3f>> displacements);
+    /// Writes where the contacts of all tools' ticks take each body, one displacement (mm) for each surface
+    /// vertex: HapticModel::surface_displacement(), and where the method lets tissue creep what the ticks
+    /// followed before left behind. Beside a running tick; linear in the surfaces.
+    void follow(std::span<const TickResult* const> ticks,
+                std::span<std::vector<Eigen::Vector3f>> displacements);
+    /// The same of one tool.
+    void follow(const TickResult& tick, std::span<std::vector<Eigen::Vector3f>> displacements) {
+        const TickResult* one = &tick;
+        follow({&one, 1}, displacements);
+    }
 
   private:
     const haptics::HapticModel& model_;
     std::vector<haptics::DrawnCreep> creep_;
+    std::vector<Eigen::Vector3f> of_one_tool_;
 };
 
 }  // namespace palpate::session
