@@ -2,10 +2,11 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <vector>
+#include <vtkActor.h>
+#include <vtkActorCollection.h>
 #include <vtkMapper.h>
 #include <vtkNew.h>
 #include <vtkPolyData.h>
-#include <vtkPolyDataMapper.h>
 #include <vtkRenderer.h>
 
 #include "formats/model/arrays.hpp"
@@ -70,7 +71,8 @@ class DisplayedSurface : public ::testing::Test {
             std::vector<Vector3f>(body.boundary.nodes.size(), Vector3f::Constant(9))};  // which must go
         vtkNew<vtkRenderer> renderer;
         visual::SoftSurface surface(patient_case.deformable_bodies[0], Vector3d::UnitZ(), 1, renderer);
-        auto* const data = vtkPolyData::SafeDownCast(surface.actor()->GetMapper()->GetInput());
+        auto* const data =
+            vtkPolyData::SafeDownCast(renderer->GetActors()->GetLastActor()->GetMapper()->GetInput());
         ASSERT_EQ(data->GetNumberOfPoints(), static_cast<vtkIdType>(body.boundary.nodes.size()));
 
         realtime::DeviceState state{};
