@@ -280,13 +280,8 @@ Json train(const Options& options, cli::Session& session) {
         spdlog::warn("interrupted: the force has gone to zero, recording and attempts alone are kept");
         throw cli::Interrupted();
     }
-    if (window.lost())
-        throw SystemFailure({.culprit = "DISPLAY",
-                             .found =
-                                 "display or window went away: the force has gone to zero, recording and "
-                                 "attempts alone are kept",
-                             .expected = "",
-                             .next_step = "start the trainer again where a display answers"});
+    if (window.lost()) spdlog::warn("the force has gone to zero, recording and attempts alone are kept");
+    window.require_display();
     if (picture) {
         window.save_picture(picture->path());
         picture->commit();

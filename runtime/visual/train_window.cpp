@@ -465,6 +465,14 @@ bool TrainWindow::lost() const {
     return display_lost();
 }
 
+void TrainWindow::require_display() const {
+    if (lost())
+        throw SystemFailure({.culprit = "DISPLAY",
+                             .found = "display or window went away",
+                             .expected = "",
+                             .next_step = "start again where a display answers"});
+}
+
 Vector3d TrainWindow::hand() const {
     return parts_->hand.place();
 }

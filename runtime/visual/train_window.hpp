@@ -41,6 +41,7 @@ class TrainWindow {
 
     bool closed() const;           ///< Q, Escape or the window's own button
     bool lost() const;             ///< its display went away, or another program took it
+    void require_display() const;  ///< throws SystemFailure if it is lost
     Eigen::Vector3d hand() const;  ///< where the hand is meant to be, p_P, mm
     /// Moves the hand there (p_P, mm), as far as mouse and keyboard hold one.
     void place_hand(const Eigen::Vector3d& place);

@@ -111,6 +111,7 @@ class RecordingPlayer {
         frame_.timeline->share = clock_.share();
         frame_.timeline->text = timeline_text(clock_, filmed);
         window_.show(frame_);
+        window_.require_display();
         ++frames_;
         shown_ticks_ += &tick != last_;
         last_ = &tick;
