@@ -11,15 +11,14 @@ CHROMIUM = shutil.which("chromium")
 QUIET = ("--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update", "--disable-sync",
          "--no-first-run")
 
-# What stands in the page by <img> or by an <image> of a drawing: the width, in pixels, in which it decodes; 0: it does not.
+# What stands in the page by <img> or by an <image> of a drawing: its width in pixels; 0: it is not there.
 JUDGE = """<script>
 addEventListener("load", async () => {
   const sources = [...document.querySelectorAll("img")].map(i => i.src)
     .concat([...document.querySelectorAll("svg image")].map(i => i.href.baseVal));
   const widths = await Promise.all(sources.map(async source => {
     const picture = new Image();
-    picture.src = source;
-    try { await picture.decode(); } catch (error) { return 0; }
+    await new Promise(done => { picture.onload = picture.onerror = done; picture.src = source; });
     return picture.naturalWidth;
   }));
   document.body.setAttribute("data-widths", JSON.stringify(widths));
