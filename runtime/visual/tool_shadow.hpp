@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <optional>
 #include <vtkActor.h>
 #include <vtkPoints.h>
@@ -17,6 +18,8 @@ class ToolShadow {
 
     /// `tool`: its centre, p_P, mm.
     void update(const Eigen::Vector3d& tool, const std::optional<DropMark>& mark);
+    /// What of the renderer is the shadow.
+    std::array<vtkActor*, 2> parts() const { return {shade_, lines_}; }
 
   private:
     vtkSmartPointer<vtkPoints> points_;  // of ring, foot, tool

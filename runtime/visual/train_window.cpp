@@ -132,9 +132,12 @@ struct TrainWindow::Parts {
     }
 
     void look(const VisualFrame& frame) {
-        const auto tool = scene.tool_parts();
+        const auto [tip, shaft] = scene.tool_parts();
+        const auto [shade, rim] = shadow.parts();
+        const std::array hidden{tip, shaft, shade, rim};
         scene.show_tool(!endoscope.fills_window());
-        endoscope.follow({frame.tool_position, frame.shaft, frame.lesson.look_at}, tool_radius, tool);
+        if (endoscope.fills_window()) shadow.update(frame.tool_position, std::nullopt);
+        endoscope.follow({frame.tool_position, frame.shaft, frame.lesson.look_at}, tool_radius, hidden);
         if (!endoscope.fills_window()) set_clipping_range(frame.tool_position);
     }
 

@@ -14,11 +14,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double view_angle = 90;                     // degrees
-constexpr double farthest_seen = 400;                 // mm
-constexpr double agility = 0.15;                      // part of the turn that a frame makes
-constexpr double least_step = 0.2;                    // mm, of a motion that has a direction
-constexpr double brightness = 1.25, half_light = 22;  // mm, at which half of it is left
+constexpr double view_angle = 90;                    // degrees
+constexpr double farthest_seen = 400;                // mm
+constexpr double agility = 0.15;                     // part of the turn that a frame makes
+constexpr double least_step = 0.2;                   // mm, of a motion that has a direction
+constexpr double brightness = 1.4, half_light = 30;  // mm, at which half of it is left
 // Of the window: a corner's width, its height at most, and where it begins.
 constexpr double corner_width = 0.3, corner_height = 0.5, corner_margin = 0.017, corner_bottom = 0.1;
 
@@ -82,6 +82,8 @@ void Endoscope::fill_window() {
     outside_->SetActiveCamera(camera_);
     only_light(outside_, light_, true);
     window_lens_.show(true);
+    background_ = Vector3d(outside_->GetBackground());
+    outside_->SetBackground(0, 0, 0);
     place_ = Place::window;
 }
 
@@ -89,6 +91,7 @@ void Endoscope::leave_window() {
     outside_->SetActiveCamera(camera_outside_);
     only_light(outside_, light_, false);
     window_lens_.show(false);
+    outside_->SetBackground(background_.data());
 }
 
 bool Endoscope::covers(int x, int y) const {

@@ -59,7 +59,8 @@ class Endoscope {
     vtkRenderer* outside_;
     vtkNew<vtkCamera> camera_;
     vtkNew<vtkLight> light_;
-    vtkSmartPointer<vtkCamera> camera_outside_;  // while the window is the endoscope's
+    vtkSmartPointer<vtkCamera> camera_outside_;  // while the window is the endoscope's, as the next
+    Eigen::Vector3d background_ = Eigen::Vector3d::Zero();
     LensShadow window_lens_;
     vtkNew<vtkRenderer> corner_;
     LensShadow corner_lens_;
