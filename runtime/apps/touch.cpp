@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "formats/model/errors.hpp"
-#include "runtime/apps/refuse_beside.hpp"
 #include "runtime/apps/servo_pulse.hpp"
 #include "runtime/apps/start_recording.hpp"
 #include "runtime/apps/tell_statuses.hpp"
@@ -20,6 +19,7 @@
 #include "runtime/session/session.hpp"
 #include "runtime/session/statistics_json.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/cli/refuse_beside.hpp"
 
 namespace palpate::apps {
 namespace {
@@ -147,7 +147,9 @@ int main(int argc, char** argv) {
     return command.run(argc, argv, [&](cli::Session& session) {
         options.seconds_given = given.seconds.given();
         if (given.replay.given())
-            refuse_beside(command, "--replay", std::array{given.asset, given.log, given.curve, given.replay});
+            cli::refuse_beside(command, "--replay",
+                               std::array{given.asset, given.log, given.curve, given.replay},
+                               "a recording says itself what the run was like");
         refuse_idle_options(command, options);
         return touch(options, session);
     });

@@ -18,10 +18,10 @@
 #include "runtime/apps/playback/expert_ghost.hpp"
 #include "runtime/apps/playback/film_output.hpp"
 #include "runtime/apps/playback/recorded_scene.hpp"
-#include "runtime/apps/refuse_beside.hpp"
 #include "runtime/session/playback/playback_clock.hpp"
 #include "runtime/session/replay.hpp"
 #include "runtime/visual/train_window.hpp"
+#include "tools/cli/refuse_beside.hpp"
 
 namespace palpate::apps {
 namespace {
@@ -176,7 +176,8 @@ std::function<void()> declare_playback(cli::Command& command, PlaybackOptions& o
                          .range(1, 120)
                          .needs(play));
     return [&command, play, beside] {
-        if (play.given()) refuse_beside(command, "--play", beside);
+        if (play.given())
+            cli::refuse_beside(command, "--play", beside, "a recording says itself what the run was like");
     };
 }
 
