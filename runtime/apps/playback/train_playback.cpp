@@ -13,6 +13,7 @@
 
 #include "formats/asset/asset.hpp"
 #include "formats/model/arrays.hpp"
+#include "formats/model/errors.hpp"
 #include "formats/provenance/cautions.hpp"
 #include "runtime/apps/first_sight.hpp"
 #include "runtime/apps/playback/expert_ghost.hpp"
@@ -73,7 +74,7 @@ class RecordingPlayer {
             clock_.advance(passed(std::exchange(frame_began, Clock::now())));
             for (const std::string& key : window_.take_keys()) press(key);
             if (const auto share = window_.take_sought()) clock_.seek_share(*share);
-        } while (!window_.closed() && !cli::interrupt_asked() && (seconds <= 0 || passed(began) < seconds));
+        } while (!ended() && (seconds <= 0 || passed(began) < seconds));
     }
 
     // From beginning to end.
@@ -87,7 +88,7 @@ class RecordingPlayer {
         for (std::int64_t picture = 0; picture < pictures; ++picture) {
             clock_.seek(clock_.begins() + static_cast<double>(picture) * speed / rate);
             show(true);
-            if (window_.closed() || cli::interrupt_asked()) throw cli::Interrupted();
+            if (ended()) throw cli::Interrupted();
             output.take(window_);
             progress.step("filming", static_cast<double>(picture + 1) / static_cast<double>(pictures));
         }
@@ -100,6 +101,16 @@ class RecordingPlayer {
     const Tick& last() const { return *last_; }        // shown
 
   private:
+    // By the user, or because there is no window any more.
+    bool ended() const {
+        if (window_.lost())
+            throw SystemFailure({.culprit = "DISPLAY",
+                                 .found = "display or window went away",
+                                 .expected = "",
+                                 .next_step = "start the trainer again where a display answers"});
+        return window_.closed() || cli::interrupt_asked();
+    }
+
     void press(const std::string& key) {
         if (key == "o" || key == "f") window_.tell("not while a recording is shown");
         clock_.press(key);

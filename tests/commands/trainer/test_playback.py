@@ -13,6 +13,7 @@ from ogg_theora import packets_of, read_theora
 from trainer_case import TRAIN, TrainerCase
 
 from sample_asset import TESTS  # found by trainer_case
+from x_server import XServer
 
 SIZE = 1280, 720
 MARGIN = 0.017  # of the window's width, to either side of the timeline
@@ -154,6 +155,23 @@ class Playback(TrainerCase):
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=30)
         self.assertEqual(process.returncode, 130)
+        self.assertEqual(sorted(self.folder.iterdir()), before)
+
+    def test_a_display_that_goes_away_ends_it_and_leaves_no_film(self):
+        before = sorted(self.folder.iterdir())
+        for film in ((), ("--speed", 0.125, "--video", self.folder / "never.ogv")):
+            with XServer() as server:
+                options = ("--json", "-", "--play", self.run_file, *map(str, film))
+                process = subprocess.Popen([TRAIN, self.asset, *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                           text=True, env=server.environment)
+                self.addCleanup(process.kill)
+                subprocess.run(["xdotool", "search", "--sync", "--onlyvisible", "--name", "Palpate: sample"],
+                               env=server.environment, check=True, capture_output=True, timeout=60)
+                time.sleep(0.5)
+                server.process.kill()
+                _, err = process.communicate(timeout=30)
+            self.assertEqual(process.returncode, 1, err)
+            self.assertIn("went away", err)
         self.assertEqual(sorted(self.folder.iterdir()), before)
 
     def test_films_of_one_recording_are_the_same(self):
