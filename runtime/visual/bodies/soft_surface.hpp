@@ -23,6 +23,8 @@ class SoftSurface {
     /// Moves the surface; one displacement (mm) per surface vertex.
     void deform(const std::vector<Eigen::Vector3f>& displacements);
 
+    /// As it is drawn now.
+    vtkActor* actor() const { return grained_->GetVisibility() != 0 ? grained_ : plain_; }
     /// Draws the finest spots and their relief, or leaves them out.
     void show_grain(bool on);
     /// Whether a cut may show the body from inside.
