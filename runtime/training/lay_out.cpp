@@ -286,17 +286,20 @@ double force_at_depth(HapticModel& model, const devices::TouchPoint& place, doub
     constexpr int ticks = 300, steady = 100;
     const double radius = model.settings().tool_radius;
     const double outside = radius + std::min(room, place.clearance), deepest = radius - depth;
-    realtime::DeviceState state{};
-    TickResult result{};
+    // Other tools are not there.
+    std::vector<realtime::DeviceState> states(model.tool_count(), {.faults = device_lost});
+    std::vector<TickResult> results(model.tool_count());
+    realtime::DeviceState& state = states.front();
+    state.faults = no_fault;
     model.reset();
     for (int i = 0; i < ticks; ++i) {
         const double way = std::min(1.0, static_cast<double>(i) / (ticks - steady));
         state.position = array_of(place.point + place.normal * (outside + (deepest - outside) * way));
         state.time = i * 0.001;
-        model.tick(state, result);
+        model.tick(states, results);
     }
     model.reset();
-    return Eigen::Map<const Vector3d>(result.force.data()).norm();
+    return vector_of(results.front().force).norm();
 }
 
 }  // namespace palpate::training

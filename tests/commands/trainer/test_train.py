@@ -119,6 +119,20 @@ class Train(TrainerCase):
             self.assertGreater(result["force_peak_n"], 0.01)
             self.assertLess(result["penetration"]["device_mm"], 3)  # the hand of 0.3 N/mm gives way
 
+    def test_a_second_tool_is_felt_shown_and_recorded_beside_the_first(self):
+        second, recording = self.folder / "second.txt", self.folder / "both.h5"
+        second.write_text("0 40 10 30\n0.5 40 10 24\n2 40 10 24\n")  # down onto the skull, beside the organ
+        options = [self.asset, "--script", "press", "--seconds", 2, "--json", "-", "--force"]
+        pictures = [self.folder / "alone.png", self.folder / "both.png"]
+        alone = self.run_train(*options, "--screenshot", pictures[0])
+        both = self.run_train(*options, "--screenshot", pictures[1], "--second", second, "--record", recording)
+        self.assertEqual((alone.returncode, both.returncode), (0, 0), both.stderr)
+        alone, both = json.loads(alone.stdout), json.loads(both.stdout)
+        self.assertGreater(both["force_peak_n"], 2 * alone["force_peak_n"], "bone is harder")
+        self.assertAlmostEqual(both["device_travel_mm"], alone["device_travel_mm"], delta=1)
+        self.assertEqual(both["recording"]["rows"] + both["recording"]["lost_rows"], 2 * both["ticks"])
+        self.assertNotEqual(pictures[0].read_bytes(), pictures[1].read_bytes())
+
     def test_what_the_hand_did_is_recorded_and_replays(self):
         recording = self.folder / "trained.h5"
         process, _ = self.open_window("--record", recording, "--record-seconds", 60)

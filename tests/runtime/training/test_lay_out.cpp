@@ -95,6 +95,11 @@ TEST_F(LayOut, forces_are_what_this_tissue_answers_and_those_of_the_file_go_befo
     EXPECT_EQ(lay_out(recipe, case_, model_, start_)->most_force, 0.25);
 }
 
+TEST_F(LayOut, a_press_is_of_the_first_tool_whether_there_are_others_or_not) {
+    haptics::HapticModel two(case_, haptics::usual_contact_method, 2);
+    EXPECT_EQ(force_at_depth(two, start_.place, 1), force_at_depth(model_, start_.place, 1));
+}
+
 TEST_F(LayOut, force_grows_with_depth_and_the_model_forgets_the_press) {
     const double shallow = force_at_depth(model_, start_.place, 1);
     const double deep = force_at_depth(model_, start_.place, 2);
