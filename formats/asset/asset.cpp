@@ -7,12 +7,15 @@
 
 #include "formats/asset/body_io.hpp"
 #include "formats/asset/hdf5/digest.hpp"
+#include "formats/asset/looks_io.hpp"
 #include "formats/asset/validate.hpp"
 #include "formats/asset/vtk_grid.hpp"
 #include "formats/model/errors.hpp"
 
 namespace palpate::asset {
 namespace {
+
+constexpr const char* scan_path = "/palpate/scan";
 
 std::string rigid_path(std::size_t i) {
     return "/palpate/bodies/rigid/" + std::to_string(i);
@@ -56,6 +59,7 @@ Case read_case(const Hdf5File& file) {
         patient_case.deformable_bodies.push_back(std::move(body));
     }
     read_fields(file, "/palpate/haptics", haptic_fields, patient_case.haptics);
+    patient_case.scan = read_scan(file, scan_path);
     patient_case.provenance = file.texts("/palpate/provenance", {}).front();
     check_case(patient_case, file.name());
     return patient_case;
@@ -83,6 +87,7 @@ void write_asset(const std::filesystem::path& path, const Case& patient_case) {
                        where + ": " + body.name + "/obb_tree");
         if (body.feel) check_feel(*body.feel, body, where + ": " + body.name + "/feel");
     }
+    if (patient_case.scan) check_scan(*patient_case.scan, where + ": scan");
 
     Hdf5Writer writer(path);
     write_header(writer, "case");
@@ -97,6 +102,7 @@ void write_asset(const std::filesystem::path& path, const Case& patient_case) {
     }
     writer.group("/palpate/haptics");
     write_fields(writer, "/palpate/haptics", haptic_fields, patient_case.haptics);
+    if (patient_case.scan) write_scan(writer, scan_path, *patient_case.scan);
     writer.texts("/palpate/provenance", {patient_case.provenance}, {});
     write_vtk_grid(writer, patient_case);
     writer.finish("/palpate");

@@ -6,6 +6,7 @@
 
 #include "formats/asset/hdf5/columns.hpp"
 #include "formats/asset/hdf5/digest.hpp"
+#include "formats/asset/looks_io.hpp"
 #include "formats/asset/validate.hpp"
 #include "formats/model/errors.hpp"
 
@@ -282,6 +283,7 @@ std::optional<Feel> read_feel(const Hdf5File& file, const std::string& path, con
 void write_rigid_body(Hdf5Writer& writer, const std::string& path, const RigidBody& body) {
     writer.group(path);
     writer.attribute(path, "name", body.name);
+    write_colour(writer, path, body.colour);
     write_rows<double>(writer, path + "/vertices", body.surface.vertices, "mm");
     write_rows<std::int32_t>(writer, path + "/triangles", body.surface.triangles);
     write_obb_tree(writer, path + "/obb_tree", body.obb_tree, body.surface);
@@ -291,6 +293,7 @@ RigidBody read_rigid_body(const Hdf5File& file, const std::string& path) {
     RigidBody body;
     body.name = file.text_attribute(path, "name");
     check_name(body.name, file.name() + ": " + path);
+    body.colour = read_colour(file, path);
     body.surface.vertices = read_rows<double, Eigen::Vector3d>(file, path + "/vertices");
     body.surface.triangles = read_rows<std::int32_t, Triangle>(file, path + "/triangles");
     check_surface(body.surface, file.name() + ": " + path);
@@ -320,6 +323,8 @@ void write_condensed_body(Hdf5Writer& writer, const std::string& path, const Def
     write_rows<std::int32_t>(writer, path + "/surface_nodes", body.boundary.nodes);
     write_rows<std::int32_t>(writer, path + "/surface_triangles", body.boundary.surface.triangles);
     write_rows<std::int32_t>(writer, path + "/contact_nodes", body.contact_nodes);
+    write_colour(writer, path, body.colour);
+    write_region_colours(writer, path, body.region_colours);
 
     writer.attribute(path, "element_order", static_cast<std::int32_t>(body.element_order));
     writer.group(path + "/compliance");
@@ -348,6 +353,8 @@ DeformableBody read_condensed_body(const Hdf5File& file, const std::string& path
     body.fixed_nodes = read_rows<std::int32_t, std::int32_t>(file, path + "/fixed_nodes");
     body.boundary = read_boundary(file, path, body.mesh);
     body.contact_nodes = read_rows<std::int32_t, std::int32_t>(file, path + "/contact_nodes");
+    body.colour = read_colour(file, path);
+    body.region_colours = read_region_colours(file, path);
     const auto element_order = file.attribute<std::int32_t>(path, "element_order");
     if (element_order != 1 && element_order != 2)
         file.refuse(path, "has element_order " + std::to_string(element_order),

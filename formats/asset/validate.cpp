@@ -116,6 +116,15 @@ void check_relaxation(const DeformableBody& body, const std::string& where) {
     }
 }
 
+void check_region_colours(const DeformableBody& body, const std::string& where) {
+    const std::vector<RegionColour>& colours = body.region_colours;
+    for (std::size_t i = 0; i < colours.size(); ++i)
+        if (!has_label(body.mesh.region_names, colours[i].region) ||
+            (i > 0 && colours[i].region <= colours[i - 1].region))
+            refuse(where, "has region " + std::to_string(colours[i].region),
+                   "regions of the body, ascending");
+}
+
 void check_boundary(const DeformableBody& body, const std::string& where) {
     const BoundarySurface boundary = boundary_surface(body.mesh);
     if (body.boundary.nodes != boundary.nodes ||
@@ -344,6 +353,7 @@ void check_body(const DeformableBody& body, const std::string& where) {
     check_mesh(body.mesh, where);
     check_materials(body, where + "/materials");
     check_relaxation(body, where + "/relaxation");
+    check_region_colours(body, where + "/drawn_regions");
     check_boundary(body, where);
     check_compliance(body, where + "/compliance");
     check_certificate(body.certificate, where + "/certificate");

@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "formats/model/colour.hpp"
 #include "formats/model/compliance.hpp"
 #include "formats/model/feel.hpp"
 #include "formats/model/obb_tree.hpp"
+#include "formats/model/scan.hpp"
 #include "formats/model/tet_mesh.hpp"
 #include "formats/model/triangle_mesh.hpp"
 #include "formats/records/certificate.hpp"
@@ -38,7 +40,8 @@ enum class ElementOrder : std::int32_t {
 struct RigidBody {
     std::string name;
     TriangleMesh surface;
-    ObbTree obb_tree;  ///< over `surface`
+    ObbTree obb_tree;                ///< over `surface`
+    std::optional<Colour> colour{};  ///< to be drawn in; without it, what its name suggests
 };
 
 /// An elastic body held at its fixed nodes, ready to be touched.
@@ -57,8 +60,10 @@ struct DeformableBody {
                                               ///< all of the boundary nodes that are not fixed
     SurfaceCompliance compliance;             ///< over contact_nodes
     Certificate certificate;
-    ObbTree obb_tree;          ///< over boundary.surface at rest
-    std::optional<Feel> feel;  ///< with a case's tool; none of a body that is of no case yet
+    ObbTree obb_tree;                ///< over boundary.surface at rest
+    std::optional<Feel> feel;        ///< with a case's tool; none of a body that is of no case yet
+    std::optional<Colour> colour{};  ///< to be drawn in; without it, what names suggest
+    std::vector<RegionColour> region_colours{};  ///< of regions that have their own, ascending
 };
 
 /// The relaxation of one region; empty if it does not relax.
@@ -75,6 +80,7 @@ struct Case {
     std::vector<RigidBody> rigid_bodies;
     std::vector<DeformableBody> deformable_bodies;
     HapticSettings haptics;
+    std::optional<Scan> scan{};
     std::string
         provenance;  ///< JSON: tool and library versions, options, input digests; no identity, no paths
 };

@@ -65,6 +65,20 @@ def write_tetrahedron_surface(path, x):
     path.write_text(grid("PolyData", points, "Polys", [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]))
 
 
+def write_volume(path, origin=(-19.2, -49.6, -40.0), spacing=(2.0, 2.0, 5.0), size=(60, 50, 30)):
+    """A volume turned about z whose value is 10 x + 4 y - 6 z - 300, in HU; returns its columns of direction."""
+    turn = numpy.deg2rad(20)
+    direction = numpy.array([[numpy.cos(turn), -numpy.sin(turn), 0], [numpy.sin(turn), numpy.cos(turn), 0], [0, 0, 1]])
+    k, j, i = numpy.indices(size[::-1])
+    place = numpy.array(origin) + numpy.stack([i, j, k], -1) * spacing @ direction.T
+    values = numpy.rint(place @ (10, 4, -6) - 300).astype("<i2")
+    steps = " ".join("({:.17g},{:.17g},{:.17g})".format(*direction[:, a] * spacing[a]) for a in range(3))
+    path.write_bytes((f"NRRD0004\ntype: int16\ndimension: 3\nspace: left-posterior-superior\nsizes: {' '.join(map(str, size))}\n"
+                      f"space directions: {steps}\nkinds: domain domain domain\nendian: little\nencoding: raw\n"
+                      f"space origin: ({','.join(map(str, origin))})\n\n").encode() + values.tobytes())
+    return direction
+
+
 class AssetCommand(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -154,6 +168,51 @@ class Pack(AssetCommand):
                                            "friction_sliding": 0.2, "shaft_length_mm": 30.0})
         self.assertEqual(seen["provenance"]["build"]["inputs"]["volume_sha256"], "abc")
         self.assertIn("HDF5", seen["provenance"]["software"]["libraries"])
+
+    def test_the_scan_is_cut_to_the_bodies_and_lies_where_the_volume_does(self):
+        direction = write_volume(self.parts / "volume.nrrd")
+        made = self.pack("--scan", self.parts / "volume.nrrd", "--json", "-")
+        self.assertEqual(made.returncode, OK, made.stderr)
+        seen = json.loads(run(BIN / "palpate-inspect", self.asset, "--json", "-").stdout)
+        self.assertEqual(seen["scan"], json.loads(made.stdout)["scan"])
+        self.assertEqual(seen["scan"]["values"], "HU")
+        numpy.testing.assert_allclose(seen["scan"]["spacing_mm"], (2, 2, 5), rtol=1e-12)
+        with h5py.File(self.asset) as file:
+            scan = file["palpate/scan"]
+            voxels, origin = scan["voxels"][...], scan["origin"][...]
+            numpy.testing.assert_allclose(scan["direction"][...], direction, atol=1e-9)
+            self.assertEqual(list(voxels.shape[::-1]), seen["scan"]["size"])
+            k, j, i = numpy.indices(voxels.shape)
+            place = origin + numpy.stack([i, j, k], -1) * scan["spacing"][...] @ scan["direction"][...].T
+        self.assertLessEqual(abs(voxels - (place @ (10, 4, -6) - 300)).max(), 0.51)
+        bodies = numpy.array([(0, 0, 0), (30, 0, 0), (0, 30, 0), (30, 30, 0), (0, 0, 30), (49, 0, 0), (40, 9, 0)]) @ direction
+        for axis in range(3):  # a margin of 10 mm and less than a voxel more, all of it in the volume
+            for side, ends in ((min, (bodies.min(0) - 10)), (max, (bodies.max(0) + 10))):
+                end = side((place @ direction)[..., axis].min(), (place @ direction)[..., axis].max())
+                self.assertLess(abs(end - ends[axis]), (2.01, 2.01, 5.01)[axis])
+        self.assertEqual(run(BIN / "palpate-verify", self.asset).returncode, OK)
+
+    def test_a_scan_beside_the_bodies_is_left_out_with_a_warning(self):
+        write_volume(self.parts / "volume.nrrd", origin=(500.0, 0.0, 0.0))
+        made = self.pack("--scan", self.parts / "volume.nrrd", "--json", "-")
+        self.assertEqual(made.returncode, OK, made.stderr)
+        self.assertIn("shows nothing of the bodies", made.stderr)
+        self.assertIsNone(json.loads(made.stdout)["scan"])
+        with h5py.File(self.asset) as file:
+            self.assertNotIn("scan", file["palpate"])
+
+    def test_colours_arrive_and_those_of_nothing_are_refused(self):
+        made = self.pack("--colour", "skull=#e2d3b4", "--colour", "wall:1=#CC766C")
+        self.assertEqual(made.returncode, OK, made.stderr)
+        with h5py.File(self.asset) as file:
+            self.assertEqual(file["palpate/bodies/rigid/0"].attrs["colour"], b"#e2d3b4")
+            wall = file["palpate/bodies/deformable/0"]
+            self.assertNotIn("colour", wall.attrs)
+            self.assertEqual((wall["drawn_regions"][...].tolist(), wall["drawn_colours"][...].tolist()), ([1], [b"#cc766c"]))
+        self.assertFails(self.pack("--force", "--colour", "brain=#000000"), INVALID, "colour of 'brain'")
+        self.assertFails(self.pack("--force", "--colour", "skull:1=#000000"), INVALID, "colour of 'skull'")
+        self.assertFails(self.pack("--force", "--colour", "wall:9=#000000"), INVALID, "colour of 'wall'")
+        self.assertFails(self.pack("--force", "--colour", "wall=red"), USAGE, "'red' is no colour")
 
     def test_no_path_of_the_machine_gets_into_the_asset(self):
         self.assertEqual(self.pack().returncode, OK)

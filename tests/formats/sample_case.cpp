@@ -305,6 +305,20 @@ Feel made_up_feel(const DeformableBody& body, double tool_radius) {
     return feel;
 }
 
+Scan made_up_scan() {
+    Scan scan;
+    scan.grid = {.size = {16, 9, 8},
+                 .spacing = {5, 4, 3.5},
+                 .origin = {-10, -8, -5},
+                 .direction = Eigen::AngleAxisd(0.1, Eigen::Vector3d(1, 2, 3).normalized()).matrix()};
+    scan.hounsfield = true;
+    for (int k = 0; k < scan.grid.size[2]; ++k)
+        for (int j = 0; j < scan.grid.size[1]; ++j)
+            for (int i = 0; i < scan.grid.size[0]; ++i)
+                scan.values.push_back(static_cast<std::int16_t>(40 * i + 20 * j + 10 * k - 300));
+    return scan;
+}
+
 Case sample_case(int cells) {
     Case patient_case;
     patient_case.name = "sample";
@@ -318,6 +332,10 @@ Case sample_case(int cells) {
         .tool_radius = 1.5, .coupling_stiffness = 0.4, .max_force = 3.0, .max_force_rate = 0.25};
     DeformableBody& wall = patient_case.deformable_bodies.front();
     wall.feel = made_up_feel(wall, patient_case.haptics.tool_radius);
+    patient_case.rigid_bodies.front().colour = Colour{226, 211, 180};
+    wall.colour = Colour{204, 118, 108};
+    wall.region_colours = {{.region = 1, .colour = {190, 100, 90}}};
+    patient_case.scan = made_up_scan();
     patient_case.provenance = R"({"palpate":"0.1.0"})";
     return patient_case;
 }

@@ -40,7 +40,11 @@ DeformableBody elastic_cube(int cells);
 /// makes half as much again of the first.
 Feel made_up_feel(const DeformableBody& body, double tool_radius);
 
-/// A made-up patient: a rigid sphere "skull" beside the elastic cube "wall".
+/// A made-up CT around the cube and the sphere, oblique: value = 40 i + 20 j + 10 k - 300, in HU.
+Scan made_up_scan();
+
+/// A made-up patient: a rigid sphere "skull" beside the elastic cube "wall", both in colours of their own,
+/// and the scan they were made from.
 Case sample_case(int cells = 2);
 
 }  // namespace palpate::sample

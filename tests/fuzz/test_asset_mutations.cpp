@@ -150,9 +150,14 @@ struct Outcome {
     int refused = 0;
 };
 
-// Looks at all of a compliance, as the runtime may: what a reader lets pass must hold for it.
-void use(const std::vector<DeformableBody>& bodies) {
-    for (const DeformableBody& body : bodies) {
+// Looks at all of compliances and scan, as the runtime may: what a reader lets pass must hold for it.
+void use(const Case& patient_case) {
+    if (const auto& scan = patient_case.scan) {
+        EXPECT_EQ(scan->values.size(), scan->grid.voxel_count());
+        scan->grid.index_of(
+            scan->grid.point_of(Eigen::Vector3d::Zero()));  // asserts an orthonormal direction
+    }
+    for (const DeformableBody& body : patient_case.deformable_bodies) {
         const std::int32_t nodes = node_count(body.compliance);
         std::vector<Eigen::Vector3f> moved(static_cast<std::size_t>(nodes), Eigen::Vector3f::Zero());
         std::vector<NodeForce> forces;
@@ -175,7 +180,7 @@ Outcome read_mutations(Form form, Digests digests, int count, unsigned seed) {
     for (int i = 0; i < count; ++i) {
         sample::write_bytes(path, mutator.next());
         try {
-            use(read_asset(path, digests).deformable_bodies);
+            use(read_asset(path, digests));
             ++outcome.read;
         } catch (const InvalidInput& error) {
             ++outcome.refused;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <set>
 
+#include "formats/model/colour.hpp"
 #include "formats/model/errors.hpp"
 #include "formats/records/haptic_settings.hpp"
 #include "formats/records/quality_contract.hpp"
@@ -124,6 +125,18 @@ void read_imported_file(TableReader& reader, const std::string& prefix,
     file = *path;
 }
 
+// colour = "#7a3a2f" of a body, or of a region of it
+void read_drawn_colour(TableReader& table, const std::string& body, const std::string& region,
+                       std::vector<stages::DrawnColour>& colours) {
+    const auto text = table.optional<std::string>("colour");
+    if (!text) return;
+    const auto colour = parse_colour(*text);
+    if (!colour)
+        table.fail(table.node("colour"), "colour", "is '" + *text + "'",
+                   "six hexadecimal digits of red, green and blue, such as \"#7a3a2f\"");
+    colours.push_back({body, region, *colour});
+}
+
 RigidSpec rigid(TableReader reader) {
     RigidSpec spec;
     spec.name = body_name(reader);
@@ -135,6 +148,7 @@ RigidSpec rigid(TableReader reader) {
     surface.isovalue = reader.optional<double>("isovalue_hu");
     read(reader, "max_triangles", surface.max_triangles);
     read(reader, "max_distance_mm", surface.max_distance);
+    read_drawn_colour(reader, spec.name, "", spec.colours);
     reader.refuse_unknown();
     return spec;
 }
@@ -217,6 +231,7 @@ void read_mechanics(TableReader& region, const std::string& label, DeformableSpe
 void read_region(TableReader& region, DeformableSpec& spec) {
     const auto label = region.required<std::string>("label");
     read_mechanics(region, label, spec);
+    read_drawn_colour(region, spec.name, label, spec.colours);
     const auto cell_size = region.positive("cell_size_mm");
     const auto mesh_region = region.optional<std::int64_t>("mesh_region");
     region.refuse_unknown();
@@ -246,6 +261,7 @@ DeformableSpec deformable(TableReader reader) {
     spec.condense.fixed = node_picks(reader, "fixed");
     spec.condense.contact = node_picks(reader, "contact");
     read_compliance(reader, spec.condense);
+    read_drawn_colour(reader, spec.name, "", spec.colours);
     for (TableReader region : reader.tables("region")) read_region(region, spec);
     if (spec.condense.materials.empty())
         reader.fail(reader.raw(), "region", "is missing", "[[deformable.region]] with a label");
@@ -302,6 +318,7 @@ CaseFile read_case_file(const std::filesystem::path& path, std::span<const Overr
     TableReader input = root.table("input");
     result.volume = input.path("volume");
     result.labels = input.path("labels");
+    read(input, "keep_scan", result.keep_scan);
     read_import_options(input, result);
     input.refuse_unknown();
     for (const TableReader& table : root.tables("structure")) result.structures.push_back(structure(table));

@@ -15,6 +15,7 @@
 #include "tools/stages/requests/condense_request.hpp"
 #include "tools/stages/requests/import_request.hpp"
 #include "tools/stages/requests/mesh_request.hpp"
+#include "tools/stages/requests/pack_request.hpp"
 #include "tools/stages/requests/segment_request.hpp"
 #include "tools/stages/requests/surface_request.hpp"
 
@@ -37,7 +38,8 @@ stages::StructureRequest structure_request(
 /// A rigid body: an imported surface, or the surface of a label, or of a grey isovalue near a label.
 struct RigidSpec {
     std::string name;
-    stages::SurfaceRequest surface;  ///< but for the volume, labels and output of the build
+    stages::SurfaceRequest surface;            ///< but for the volume, labels and output of the build
+    std::vector<stages::DrawnColour> colours;  ///< one, or none: what its name suggests
 };
 
 /// The preset of a region's material.
@@ -50,9 +52,10 @@ struct RegionTissue {
 /// that can be touched.
 struct DeformableSpec {
     std::string name;
-    stages::MeshRequest mesh;           ///< but for the labels and output of the build
-    stages::CondenseRequest condense;   ///< but for the mesh and output of the build
-    std::vector<RegionTissue> tissues;  ///< of the regions that name one
+    stages::MeshRequest mesh;                  ///< but for the labels and output of the build
+    stages::CondenseRequest condense;          ///< but for the mesh and output of the build
+    std::vector<RegionTissue> tissues;         ///< of the regions that name one
+    std::vector<stages::DrawnColour> colours;  ///< of body and regions that name one
 };
 
 /// A case file, schema 1: what to build for one patient. Paths are absolute or relative to the case file.
@@ -62,6 +65,7 @@ struct CaseFile {
     std::optional<std::filesystem::path> labels;       ///< label map that structures are imported from
     stages::ImportRequest volume_import;               ///< how to read it: series, gaps, frame
     stages::ImportRequest labels_import;               ///< how to read them: names, overlaps, frame
+    bool keep_scan = true;                             ///< the asset gets the volume too, reduced
     std::optional<std::filesystem::path> label_table;  ///< the file that has their names, if one has
     std::vector<StructureSpec> structures;
     std::vector<RigidSpec> rigid;

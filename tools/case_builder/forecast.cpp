@@ -59,7 +59,7 @@ std::int64_t peak_memory_forecast(const Stage& stage, const StageRunner& runner)
     else if (stage.command == "report")
         bytes += 350e6 + 40 * voxels(runner) + bytes_read(stage);
     else
-        bytes += 30e6 + 4 * bytes_read(stage);
+        bytes += 30e6 + 4 * bytes_read(stage) + (stage.request.contains("scan") ? 10 * voxels(runner) : 0);
     return static_cast<std::int64_t>(bytes);
 }
 

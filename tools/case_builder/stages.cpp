@@ -105,6 +105,7 @@ Stage pack_stage(const CaseFile& case_file, const BuildPaths& paths) {
     for (const RigidSpec& rigid : case_file.rigid) {
         request.rigid.push_back({rigid.name, paths.parts / (rigid.name + ".vtp"), {}});
         stage.inputs.push_back(request.rigid.back().body);
+        request.colours.insert(request.colours.end(), rigid.colours.begin(), rigid.colours.end());
     }
     for (const DeformableSpec& deformable : case_file.deformable) {
         request.deformable.push_back({deformable.name, paths.parts / (deformable.name + ".body.h5"), {}});
@@ -112,7 +113,10 @@ Stage pack_stage(const CaseFile& case_file, const BuildPaths& paths) {
             {deformable.name, paths.parts / ("mesh-" + deformable.name + ".json")});
         stage.inputs.push_back(request.deformable.back().body);
         stage.inputs.push_back(request.mesh_results.back().file);
+        request.colours.insert(request.colours.end(), deformable.colours.begin(), deformable.colours.end());
     }
+    if (case_file.volume && case_file.keep_scan)
+        stage.inputs.push_back(request.scan = paths.parts / "volume.nrrd");
     if (needs_labels(case_file))
         stage.inputs.push_back(request.notes.emplace_back(paths.parts / "segment.json"));
     stage.request = cli::to_request(request);

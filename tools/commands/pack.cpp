@@ -9,6 +9,7 @@
 #include "tools/fem/solvers/dense_kernels.hpp"
 #include "tools/stages/case.hpp"
 #include "tools/stages/feel_result.hpp"
+#include "tools/stages/image.hpp"
 
 using namespace palpate;
 
@@ -41,6 +42,8 @@ int main(int argc, char** argv) {
                   "What can be felt with the tool is computed and stored: the stiffness of the surface, and "
                   "what each\n"
                   "region makes of it; one that a hand cannot tell is warned of.\n"
+                  "A scan is for the eye: the trainer shows its slices and paints it on what is cut open. A "
+                  "head's shows the face.\n"
                   "The provenance in the asset is the software's versions and the JSON given; no paths."});
     stages::PackRequest request;
     declare(command, request);
@@ -55,7 +58,9 @@ int main(int argc, char** argv) {
             feel.push_back(stages::feel_summary(body));
             for (Json& row : stages::felt_rows(body)) felt.push_back(std::move(row));
         }
-        const std::vector<std::string> warnings = unfelt(patient_case, session.threads);
+        std::vector<std::string> warnings = unfelt(patient_case, session.threads);
+        if (!request.scan.empty() && !patient_case.scan)
+            warnings.push_back("the scan shows nothing of the bodies and is left out");
         for (const std::string& warning : warnings) spdlog::warn("{}", warning);
         session.progress.step("write the asset", 0.8);
         asset::write_asset(staged.path(), patient_case);
@@ -66,6 +71,7 @@ int main(int argc, char** argv) {
                     {"name", request.name},
                     {"rigid_bodies", patient_case.rigid_bodies.size()},
                     {"deformable_bodies", patient_case.deformable_bodies.size()},
+                    {"scan", stages::scan_json(patient_case.scan)},
                     {"bytes", size},
                     {"sha256", digest},
                     {"feel", feel},

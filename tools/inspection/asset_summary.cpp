@@ -7,6 +7,7 @@
 #include "tools/cli/record_json.hpp"
 #include "tools/stages/body_result.hpp"
 #include "tools/stages/feel_result.hpp"
+#include "tools/stages/image.hpp"
 
 namespace palpate::inspection {
 namespace {
@@ -96,6 +97,7 @@ Json asset_json(const std::filesystem::path& asset) {
             {"regions", regions},
             {"certificates", certificates},
             {"felt", felt},
+            {"scan", stages::scan_json(patient_case.scan)},
             {"haptics", cli::record_json(haptic_fields, patient_case.haptics)},
             {"provenance", provenance_of(patient_case.provenance)}};
 }

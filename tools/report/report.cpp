@@ -61,6 +61,11 @@ std::string key_figures(const ReportInputs& inputs, const std::vector<MeasuredBo
                                    {"Tetrahedra", whole(tetrahedra), ""},
                                    {"Contact nodes", whole(contact_nodes), ""},
                                    {"Rigid triangles", whole(triangles), ""}};
+    if (const auto& scan = inputs.patient_case.scan)
+        result.push_back(
+            {"Scan for the eye",
+             fmt::format("{} × {} × {}", scan->grid.size[0], scan->grid.size[1], scan->grid.size[2]),
+             "voxels"});
     if (!inputs.stages.empty()) {
         double seconds = 0;
         for (const StageRecord& stage : inputs.stages) seconds += stage.seconds;

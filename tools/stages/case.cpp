@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/stages/case.hpp"
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -9,6 +10,8 @@
 #include "formats/model/errors.hpp"
 #include "tools/cli/software.hpp"
 #include "tools/fem/feel/feel.hpp"
+#include "tools/imaging/files/image_files.hpp"
+#include "tools/imaging/voxels/scan_of.hpp"
 #include "tools/meshing/files/mesh_files.hpp"
 #include "tools/obb/build_obb_tree.hpp"
 
@@ -93,6 +96,36 @@ DeformableBody read_deformable(const BodyFiles& files) {
     return body;
 }
 
+// Where all bodies are, p_P, mm.
+std::vector<Eigen::Vector3d> points_of(const Case& made) {
+    std::vector<Eigen::Vector3d> points;
+    const auto add = [&](const std::vector<Eigen::Vector3d>& more) {
+        points.insert(points.end(), more.begin(), more.end());
+    };
+    for (const RigidBody& body : made.rigid_bodies) add(body.surface.vertices);
+    for (const DeformableBody& body : made.deformable_bodies) add(body.mesh.rest_positions);
+    return points;
+}
+
+void draw_in(const DrawnColour& drawn, Case& made) {
+    const std::string culprit = "colour of '" + drawn.body + "'";
+    const auto rigid = std::ranges::find(made.rigid_bodies, drawn.body, &RigidBody::name);
+    const auto soft = std::ranges::find(made.deformable_bodies, drawn.body, &DeformableBody::name);
+    if (rigid != made.rigid_bodies.end() && drawn.region.empty()) {
+        rigid->colour = drawn.colour;
+    } else if (soft != made.deformable_bodies.end() && drawn.region.empty()) {
+        soft->colour = drawn.colour;
+    } else if (soft != made.deformable_bodies.end()) {
+        const Label label = require_label(soft->mesh.region_names, drawn.region, culprit);
+        std::erase_if(soft->region_colours, [&](const RegionColour& r) { return r.region == label.value; });
+        soft->region_colours.push_back({label.value, drawn.colour});
+        std::ranges::sort(soft->region_colours, {}, &RegionColour::region);
+    } else {
+        throw InvalidInput({culprit, "names no body of the case that has it", "",
+                            "give the name of a body, and regions of elastic ones alone"});
+    }
+}
+
 }  // namespace
 
 Case make_case(const PackRequest& request, int threads, const ProgressCallback& progress) {
@@ -110,6 +143,11 @@ Case make_case(const PackRequest& request, int threads, const ProgressCallback& 
     for (const BodyFiles& files : request.rigid) made.rigid_bodies.push_back(read_rigid(files));
     for (const BodyFiles& files : request.deformable)
         made.deformable_bodies.push_back(read_deformable(files));
+    for (const DrawnColour& drawn : request.colours) draw_in(drawn, made);
+    if (!request.scan.empty()) {
+        progress("cut the scan to the bodies", 0.2);
+        made.scan = imaging::scan_of(imaging::read_volume(request.scan), points_of(made));
+    }
     for (DeformableBody& body : made.deformable_bodies) {
         progress("press " + body.name + " all over", 0.3);
         body.feel = fem::feel_of(body, made.haptics.tool_radius, threads);

@@ -47,6 +47,13 @@ nlohmann::ordered_json to_json(const ImageGrid& grid) {
             {"direction_columns", numbers(grid.direction)}};
 }
 
+nlohmann::ordered_json scan_json(const std::optional<Scan>& scan) {
+    if (!scan) return nullptr;
+    return {{"size", scan->grid.size},
+            {"spacing_mm", numbers(scan->grid.spacing)},
+            {"values", scan->hounsfield ? "HU" : "grey values"}};
+}
+
 nlohmann::ordered_json to_json(const LabelStatistics& label) {
     return {{"name", label.label.name},
             {"value", label.label.value},

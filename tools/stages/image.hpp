@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "formats/model/progress.hpp"
+#include "formats/model/scan.hpp"
 #include "tools/imaging/files/image_files.hpp"
 #include "tools/imaging/voxels/label_statistics.hpp"
 #include "tools/stages/requests/import_request.hpp"
@@ -11,6 +13,9 @@ namespace palpate::stages {
 
 /// A grid: size, spacing and origin in mm, directions column by column; LPS.
 nlohmann::ordered_json to_json(const ImageGrid& grid);
+
+/// What a case's scan is like: voxels along i, j, k, their size, what values are; null without one.
+nlohmann::ordered_json scan_json(const std::optional<Scan>& scan);
 
 /// One label of a map: volume in ml, the box and the centroid of its voxel centres in LPS mm.
 nlohmann::ordered_json to_json(const imaging::LabelStatistics& label);

@@ -126,6 +126,36 @@ TEST(CaseFile, a_region_may_relax_by_a_series_that_makes_sense) {
     }
 }
 
+TEST(CaseFile, colours_are_of_bodies_and_regions_and_written_as_in_the_web) {
+    const CaseFile file = read_case_file(written(minimal + R"(colour = "#c8b8A0"
+[[rigid]]
+name = "skull"
+colour = "#ffffff"
+)"));
+    ASSERT_EQ(file.deformable.at(0).colours.size(), 1U);
+    EXPECT_EQ(file.deformable[0].colours[0].body, "liver");
+    EXPECT_EQ(file.deformable[0].colours[0].region, "liver");
+    EXPECT_EQ(file.deformable[0].colours[0].colour, (Colour{0xc8, 0xb8, 0xa0}));
+    ASSERT_EQ(file.rigid.at(0).colours.size(), 1U);
+    EXPECT_EQ(file.rigid[0].colours[0].body, "skull");
+    EXPECT_EQ(file.rigid[0].colours[0].region, "");
+    std::string whole = minimal;
+    whole.insert(whole.find("mesh ="), "colour = \"#7a3a2f\"\n");
+    EXPECT_EQ(read_case_file(written(whole)).deformable.at(0).colours.at(0).region, "");
+    for (const char* wrong : {"\"red\"", "\"#12345\"", "\"#12345g\"", "7"}) {
+        const std::string found = message(minimal + "colour = " + wrong + "\n");
+        EXPECT_NE(found.find("case.toml:17"), std::string::npos) << found;
+        EXPECT_NE(found.find("'colour'"), std::string::npos) << found;
+    }
+}
+
+TEST(CaseFile, keeps_the_scan_unless_told_otherwise) {
+    EXPECT_TRUE(read_case_file(written(minimal)).keep_scan);
+    std::string text = minimal;
+    text.insert(text.find("labels ="), "keep_scan = false\n");
+    EXPECT_FALSE(read_case_file(written(text)).keep_scan);
+}
+
 TEST(CaseFile, a_posture_is_for_all_bodies_and_needs_densities) {
     const auto with = [](const std::string& posture, const std::string& region) {
         return minimal + region + "[posture]\n" + posture;

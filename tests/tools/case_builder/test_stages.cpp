@@ -136,6 +136,43 @@ TEST(Stages, rules_of_a_body_reach_condense_and_its_node_files_decide_about_a_re
     fs::remove_all(folder);
 }
 
+TEST(Stages, pack_gets_the_volume_for_the_eye_unless_the_case_keeps_it_out) {
+    CaseFile file;
+    file.rigid.resize(1);
+    file.rigid[0].surface.surface_file = "skull.stl";
+    const fs::path folder = "build", volume = folder / "parts" / "volume.nrrd";
+    const auto pack_of = [&] {
+        const std::vector<Stage> stages = stages_of(file, paths_in(folder));
+        return *std::ranges::find(stages, "pack", &Stage::name);
+    };
+    EXPECT_FALSE(pack_of().request.contains("scan"));
+    file.volume = "ct.nrrd";
+    EXPECT_EQ(pack_of().request["scan"], volume.string());
+    EXPECT_EQ(std::ranges::count(pack_of().inputs, volume), 1);
+    file.keep_scan = false;
+    EXPECT_FALSE(pack_of().request.contains("scan"));
+    EXPECT_EQ(std::ranges::count(pack_of().inputs, volume), 0);
+}
+
+TEST(Stages, colours_reach_pack_alone_so_that_a_change_condenses_nothing) {
+    CaseFile file;
+    file.rigid.resize(1);
+    file.rigid[0].surface.surface_file = "skull.stl";
+    file.deformable.resize(1);
+    const std::vector<Stage> plain = stages_of(file, paths_in("build"));
+    file.rigid[0].colours = {{"skull", "", {255, 0, 0}}};
+    file.deformable[0].colours = {{"wall", "tumour", {0, 0, 255}}};
+    const std::vector<Stage> coloured = stages_of(file, paths_in("build"));
+    EXPECT_EQ(
+        request_of(coloured, "pack")["colour"].dump(),
+        R"([{"body":"skull","colour":"#ff0000"},{"body":"wall","region":"tumour","colour":"#0000ff"}])");
+    for (std::size_t i = 0; i < plain.size(); ++i) {
+        if (plain[i].name != "pack") {
+            EXPECT_EQ(plain[i].request, coloured[i].request) << plain[i].name;
+        }
+    }
+}
+
 TEST(Stages, a_finished_asset_is_pressed_in_real_time_unless_the_clock_is_virtual) {
     CaseFile file;
     file.rigid.resize(1);

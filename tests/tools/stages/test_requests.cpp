@@ -183,11 +183,29 @@ TEST(Request, of_pack_survives_json) {
     request.deformable = {{"wall", "w.body.h5", ""}};
     request.haptics.tool_radius = 1.5;
     request.haptics.max_force_rate = 0.25;
+    request.scan = existing("volume.nrrd");
+    request.colours = {{"skull", "", {1, 2, 255}}, {"wall", "tumour: left", {0, 16, 160}}};
     request.mesh_results = {{"wall", "w=1.json"}};
     request.notes = {existing("import.json"), existing("segment.json")};
     request.provenance = existing("p.json");
     request.output = "out.vtkhdf";
-    expect_round_trip(request, 9);
+    expect_round_trip(request, 11);
+}
+
+TEST(Request, of_pack_takes_colours_of_bodies_and_of_regions) {
+    const auto read_colours = [](const std::string& word) {
+        return read<PackRequest>({"--name", "x", "-o", "x.vtkhdf", "--colour", word});
+    };
+    const DrawnColour body = read_colours("my liver=#7a3A2f").request.colours.at(0);
+    EXPECT_EQ(body.body, "my liver");
+    EXPECT_EQ(body.region, "");
+    EXPECT_EQ(body.colour, (Colour{0x7a, 0x3a, 0x2f}));
+    const DrawnColour region = read_colours("liver:tumour=left: a=#000001").request.colours.at(0);
+    EXPECT_EQ(region.body, "liver");
+    EXPECT_EQ(region.region, "tumour=left: a");
+    EXPECT_EQ(region.colour, (Colour{0, 0, 1}));
+    for (const char* word : {"liver", "=#000000", "liver=red", "liver=#00000", "liver="})
+        EXPECT_EQ(read_colours(word).code, cli::ExitCode::usage) << word;
 }
 
 TEST(Request, of_report_survives_json) {

@@ -36,6 +36,23 @@ NamedFile parse_mesh_result(const std::string& text) {
     return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
+Colour require_colour(const std::string& text, const std::string& culprit) {
+    const auto colour = parse_colour(text);
+    if (!colour) throw UsageError({culprit, "'" + text + "' is no colour", "such as #7a3a2f", ""});
+    return *colour;
+}
+
+DrawnColour parse_drawn_colour(const std::string& text) {
+    const auto equals = text.rfind('=');
+    if (equals == std::string::npos || equals == 0)
+        throw UsageError({"--colour " + text, "cannot be read", "BODY=#RRGGBB or BODY:REGION=#RRGGBB",
+                          "for example liver:tumour=#c8b8a0"});
+    const std::string name = text.substr(0, equals);
+    const auto colon = name.find(':');
+    return {name.substr(0, colon), colon == std::string::npos ? "" : name.substr(colon + 1),
+            require_colour(text.substr(equals + 1), "--colour " + text)};
+}
+
 }  // namespace
 
 void to_json(Json& json, const BodyFiles& files) {
@@ -57,6 +74,17 @@ void from_json(const Json& json, NamedFile& file) {
     file = {json.at("name"), json.at("file").get<std::string>()};
 }
 
+void to_json(Json& json, const DrawnColour& drawn) {
+    json = {{"body", drawn.body}};
+    if (!drawn.region.empty()) json["region"] = drawn.region;
+    json["colour"] = colour_text(drawn.colour);
+}
+
+void from_json(const Json& json, DrawnColour& drawn) {
+    cli::refuse_other_keys(json, {"body", "region", "colour"});
+    drawn = {json.at("body"), json.value("region", ""), require_colour(json.at("colour"), "colour")};
+}
+
 void declare(cli::Command& command, PackRequest& request) {
     command.option("--name", request.name, "name of the case; no patient's name").required();
     command.items(
@@ -66,6 +94,12 @@ void declare(cli::Command& command, PackRequest& request) {
     command.items("--deformable", cli::item_list(request.deformable, parse_deformable),
                   "elastic body: NAME=BODY.body.h5, likewise; repeat for more");
     cli::record_options(command, haptic_fields, request.haptics);
+    command.input(
+        "--scan", request.scan,
+        "volume that the bodies were made from, for the trainer to show: cut to their box and 10 mm "
+        "around it, reduced to 12 MB");
+    command.items("--colour", cli::item_list(request.colours, parse_drawn_colour),
+                  "BODY=#RRGGBB or BODY:REGION=#RRGGBB: what the trainer draws it in; repeat for more");
     command.items("--mesh-result", cli::item_list(request.mesh_results, parse_mesh_result),
                   "NAME=RESULT.json: what palpate mesh --json said of a body; repeat for more");
     command.input("--notes", request.notes,

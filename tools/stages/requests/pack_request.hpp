@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "formats/model/body.hpp"
+#include "formats/model/colour.hpp"
+#include "formats/records/haptic_settings.hpp"
 #include "tools/cli/command.hpp"
 
 namespace palpate::stages {
@@ -24,16 +25,28 @@ struct NamedFile {
     std::filesystem::path file;
 };
 
+/// What a body, or a region of one, is drawn in: "liver=#7a3a2f", "liver:tumour=#c8b8a0" or {"body": "liver",
+/// "region": "tumour", "colour": "#c8b8a0"}.
+struct DrawnColour {
+    std::string body;
+    std::string region;  ///< its label; empty: all of the body that has no colour of its own
+    Colour colour{};
+};
+
 void to_json(nlohmann::ordered_json& json, const BodyFiles& files);
 void from_json(const nlohmann::ordered_json& json, BodyFiles& files);
 void to_json(nlohmann::ordered_json& json, const NamedFile& file);
 void from_json(const nlohmann::ordered_json& json, NamedFile& file);
+void to_json(nlohmann::ordered_json& json, const DrawnColour& drawn);
+void from_json(const nlohmann::ordered_json& json, DrawnColour& drawn);
 
 /// What `palpate pack` is asked for.
 struct PackRequest {
     std::string name;  ///< of the case
     std::vector<BodyFiles> rigid, deformable;
     HapticSettings haptics;
+    std::filesystem::path scan;  ///< the volume that the bodies were made from, for the eye; may be empty
+    std::vector<DrawnColour> colours;
     std::vector<NamedFile> mesh_results;
     std::vector<std::filesystem::path> notes;  ///< results (.json) whose notes the asset keeps
     std::filesystem::path provenance;          ///< what made the parts (.json); may be empty
