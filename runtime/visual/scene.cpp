@@ -18,6 +18,7 @@
 
 #include "formats/model/regions.hpp"
 #include "runtime/visual/actors.hpp"
+#include "runtime/visual/bodies/tissue_colours.hpp"
 #include "runtime/visual/region_surface.hpp"
 
 namespace palpate::visual {
@@ -114,7 +115,8 @@ void Scene::add_regions(const Case& patient_case, const Sight& sight, vtkRendere
     for (const DeformableBody& body : patient_case.deformable_bodies)
         for (const Label& label : enclosed_regions(body.mesh)) {
             const auto surface = region_surface(body.mesh, label.value);
-            const Rgb& colour = colours[regions_.size() % colours.size()];
+            const Rgb colour =
+                chosen_colour(body, label.value).value_or(colours[regions_.size() % colours.size()]);
             regions_.push_back(actor(poly_data(surface, sight.toward_eye), colour));
             regions_.back()->GetProperty()->BackfaceCullingOn();
             regions_.back()->VisibilityOff();
@@ -180,6 +182,14 @@ void Scene::update(const VisualFrame& frame) {
     // The root keeps small forces visible.
     place_along(arrow_, frame.tool_position + way * tool_radius_, way, arrow_length_ * std::sqrt(share));
     set_colour(arrow_, force_colour(share));
+}
+
+std::vector<vtkActor*> Scene::bodies() const {
+    std::vector<vtkActor*> actors;
+    for (const RigidSurface& body : rigid_) actors.push_back(body.actor());
+    for (const SoftSurface& body : soft_)
+        for (vtkActor* actor : body.actors()) actors.push_back(actor);
+    return actors;
 }
 
 void Scene::show_rigid(bool on) {

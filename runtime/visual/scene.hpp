@@ -42,6 +42,8 @@ class Scene {
     void show_inside(bool on);
     /// Draws bodies in that detail.
     void draw(const Detail& detail);
+    /// What a cut may open.
+    std::vector<vtkActor*> bodies() const;
 
   private:
     void add_rigid(const Case& patient_case, const Sight& sight, std::int64_t budget, vtkRenderer* renderer);

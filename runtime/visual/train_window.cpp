@@ -37,6 +37,7 @@
 #include "runtime/visual/overlay.hpp"
 #include "runtime/visual/pictures.hpp"
 #include "runtime/visual/playback/timeline.hpp"
+#include "runtime/visual/scan/scan_view.hpp"
 #include "runtime/visual/scene.hpp"
 #include "runtime/visual/tool_shadow.hpp"
 
@@ -90,6 +91,7 @@ struct TrainWindow::Parts {
           timeline(front, interactor),
           tool_radius(patient_case.haptics.tool_radius),
           cut(window_settings.sight.blocked) {
+        if (patient_case.scan) scan.emplace(*patient_case.scan, scene.bodies(), renderer, front);
         renderer->SetBackground(0.10, 0.13, 0.16);  // a gradient takes a twentieth of a frame
         renderer->SetNearClippingPlaneTolerance(
             0.002);  // of the far one: an eye in a passage is near its walls
@@ -316,6 +318,7 @@ struct TrainWindow::Parts {
             {"c", [](Parts& p) { p.cut = !p.cut; }},
             {"b", [](Parts& p) { p.scene.show_rigid(p.rigid_shown = !p.rigid_shown); }},
             {"t", &Parts::turn_regions},
+            {"x", &Parts::turn_slices},
             {"v", [](Parts& p) { p.endoscope.turn(); }},
             {"u", &Parts::undo_view},
             {"r", &Parts::go_back},
@@ -344,6 +347,7 @@ struct TrainWindow::Parts {
         buttons.light("c", cut);
         buttons.light("b", rigid_shown);
         buttons.light("t", regions_shown);
+        buttons.light("x", scan && scan->shows_slice());
         buttons.light("v", endoscope.on());
         buttons.light("o", frame.recording);
         buttons.light("h", overlay.help_shown());
@@ -358,8 +362,15 @@ struct TrainWindow::Parts {
         overlay.tell(regions_shown ? "seen through the surface, at rest: " + names : names + ": hidden");
     }
 
+    void turn_slices() {
+        if (!scan) return overlay.tell("this case has no scan");
+        if (exercising) return overlay.tell("in this exercise it stays hidden");
+        scan->turn();
+    }
+
     // Whoever is asked to find something is not shown where it is.
     void see_exercise(bool goes_on) {
+        if (scan && goes_on != exercising) scan->hide(goes_on);
         exercising = goes_on;
         if (!exercising || !regions_shown) return;
         regions_shown = false;
@@ -406,6 +417,7 @@ struct TrainWindow::Parts {
     ButtonBar buttons;
     Timeline timeline;
     ViewHistory views;
+    std::optional<ScanView> scan;
     std::vector<std::string> keys;  // for take_keys()
     double tool_radius;             // mm
     bool cut;
@@ -438,6 +450,7 @@ void TrainWindow::show(const VisualFrame& frame) {
                                                    shadow_share * p.settings.sight.field));
     p.scene.show_inside(p.cut);
     p.look(frame);
+    if (p.scan) p.scan->follow(frame.tool_position, p.cut && !p.endoscope.fills_window());
     p.overlay.update(frame, frame.film_rate_hz.value_or(frames_per_second()), detail());
     p.see_exercise(frame.lesson.hides_regions);
     p.overlay.make_room(frame.lesson.page.has_value(), !frame.lesson.instruction.empty());

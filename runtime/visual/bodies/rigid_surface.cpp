@@ -15,7 +15,7 @@ RigidSurface::RigidSurface(const RigidBody& body, const Sight& sight, std::int64
     : sight_(sight),
       copy_(display_copy(body.surface, budget, sight.close_up, sight.close_up_radius)),
       fine_(poly_data(copy_, sight.toward_eye)),
-      actor_(tissue_actor(fine_, tissue_look(body.name))) {
+      actor_(tissue_actor(fine_, look_of(body))) {
     renderer->AddActor(actor_);
 }
 

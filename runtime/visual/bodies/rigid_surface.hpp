@@ -22,6 +22,7 @@ class RigidSurface {
     void show_fine(bool on);
     /// Whether a cut may show the body from inside.
     void show_inside(bool on);
+    vtkActor* actor() const { return actor_; }
 
   private:
     Sight sight_;

@@ -3,11 +3,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <string>
 #include <vtkPointData.h>
 #include <vtkProperty.h>
 
-#include "formats/model/regions.hpp"
 #include "runtime/visual/bodies/tissue_actor.hpp"
 
 namespace palpate::visual {
@@ -15,12 +13,6 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
-
-// By the region's name, or by the body's own where that tells nothing more.
-TissueLook look_of(const DeformableBody& body) {
-    const auto label = find_label(body.mesh.region_names, std::to_string(main_region(body.mesh)));
-    return tissue_look(label ? label->name : body.name);
-}
 
 }  // namespace
 

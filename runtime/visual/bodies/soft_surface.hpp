@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 #include <vtkFloatArray.h>
 #include <vtkPoints.h>
@@ -29,6 +30,8 @@ class SoftSurface {
     void show_grain(bool on);
     /// Whether a cut may show the body from inside.
     void show_inside(bool on);
+    /// All that ever draw it.
+    std::array<vtkActor*, 2> actors() const { return {grained_, plain_}; }
 
   private:
     std::vector<Eigen::Vector3f> rest_;

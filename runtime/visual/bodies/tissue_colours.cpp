@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <string>
 
+#include "formats/model/regions.hpp"
+
 namespace palpate::visual {
 namespace {
 
@@ -126,6 +128,10 @@ std::uint32_t hash_of(std::string_view text) {
     return hash;
 }
 
+Rgb rgb_of(const Colour& colour) {
+    return {static_cast<float>(colour[0]), static_cast<float>(colour[1]), static_cast<float>(colour[2])};
+}
+
 Rgb muted_colour(std::uint32_t hash) {
     const auto turn = static_cast<float>(hash % 360) / 360;
     const auto lightness = static_cast<float>(130 + hash / 360 % 60);
@@ -149,6 +155,26 @@ TissueLook tissue_look(std::string_view name) {
     };
     const Known& last = *std::ranges::max_element(known(), {}, end_of);
     return end_of(last) > 0 ? last.look : TissueLook{muted_colour(hash_of(words))};
+}
+
+std::optional<Rgb> chosen_colour(const DeformableBody& body, std::int32_t region) {
+    const auto chosen = std::ranges::find(body.region_colours, region, &RegionColour::region);
+    return chosen == body.region_colours.end() ? std::nullopt : std::optional(rgb_of(chosen->colour));
+}
+
+TissueLook look_of(const RigidBody& body) {
+    TissueLook look = tissue_look(body.name);
+    if (body.colour) look.colour = rgb_of(*body.colour);
+    return look;
+}
+
+TissueLook look_of(const DeformableBody& body) {
+    const std::int32_t main = main_region(body.mesh);
+    const auto label = find_label(body.mesh.region_names, std::to_string(main));
+    TissueLook look = tissue_look(label ? label->name : body.name);
+    if (body.colour) look.colour = rgb_of(*body.colour);
+    look.colour = chosen_colour(body, main).value_or(look.colour);
+    return look;
 }
 
 }  // namespace palpate::visual

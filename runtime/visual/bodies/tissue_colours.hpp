@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <optional>
 #include <string_view>
 
+#include "formats/model/body.hpp"
 #include "runtime/visual/actors.hpp"
 
 namespace palpate::visual {
@@ -18,5 +20,13 @@ struct TissueLook {
 /// open and laparoscopic operations, for no table of measured albedos covers them; neighbours differ in
 /// lightness too, so that they stay apart for eyes that tell few hues.
 TissueLook tissue_look(std::string_view name);
+
+/// The look of a body that is rigid, or of a deformable one by its region of most volume (by its own name
+/// where that has none): what the names suggest, in the colour that the asset asks for, if it does.
+TissueLook look_of(const RigidBody& body);
+TissueLook look_of(const DeformableBody& body);
+
+/// The colour that the asset asks for in a region.
+std::optional<Rgb> chosen_colour(const DeformableBody& body, std::int32_t region);
 
 }  // namespace palpate::visual

@@ -10,6 +10,7 @@ std::span<const WindowKey> window_keys() {
         {"c", "Cut", "cut away what hides the tool"},
         {"b", "Bone", "show or hide what does not give way"},
         {"t", "Inside", "show or hide what organs enclose, such as a tumour"},
+        {"x", "Slices", "the scan's slice through the tool: axial, coronal, sagittal, none"},
         {"v", "Tip", "look from the tool's tip, then in a corner too, then not"},
         {"u", "Undo", "the view before the last turn, shift or zoom"},
         {"r", "Start", "tool and view back to where they began"},

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "runtime/visual/bodies/tissue_colours.hpp"
+#include "tests/formats/sample_case.hpp"
 
 namespace palpate {
 namespace {
@@ -58,6 +59,27 @@ TEST(TissueColours, unknown_names_get_muted_ones_of_their_own) {
         EXPECT_LE(colour.maxCoeff(), 240) << name;
         EXPECT_LT(colour.maxCoeff() - colour.minCoeff(), 110) << name;
     }
+}
+
+TEST(TissueColours, that_an_asset_asks_for_go_before_those_of_names) {
+    Case patient_case = sample::sample_case(4);
+    RigidBody& skull = patient_case.rigid_bodies[0];
+    skull.colour = Colour{1, 2, 3};
+    EXPECT_EQ(visual::look_of(skull).colour, Rgb(1, 2, 3));
+    EXPECT_EQ(visual::look_of(skull).wetness, tissue_look("skull").wetness);
+    skull.colour.reset();
+    EXPECT_EQ(visual::look_of(skull).colour, tissue_look("skull").colour);
+
+    DeformableBody& wall = patient_case.deformable_bodies[0];
+    wall.colour = Colour{4, 5, 6};
+    wall.region_colours = {{1, {7, 8, 9}}, {2, {10, 11, 12}}};
+    EXPECT_EQ(visual::look_of(wall).colour, Rgb(7, 8, 9));  // region 1 is the larger one
+    EXPECT_EQ(visual::chosen_colour(wall, 2), Rgb(10, 11, 12));
+    wall.region_colours.clear();
+    EXPECT_EQ(visual::look_of(wall).colour, Rgb(4, 5, 6));
+    EXPECT_FALSE(visual::chosen_colour(wall, 2));
+    wall.colour.reset();
+    EXPECT_EQ(visual::look_of(wall).colour, tissue_look("tissue").colour);
 }
 
 }  // namespace

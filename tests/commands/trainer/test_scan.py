@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The scan in the trainer's window: slices through the tool, and what a cut lays open."""
+
+import json
+import subprocess
+import time
+import unittest
+
+from trainer_case import TRAIN, TrainerCase
+
+
+class ScanInTheWindow(TrainerCase):
+    def open_window(self):
+        process = subprocess.Popen(
+            [TRAIN, self.asset, "--json", "-"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+            env=self.server.environment, cwd=self.folder)
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        window = self.find_window()
+        self.x("xdotool", "key", "BackSpace")  # leave the start page
+        self.x("xdotool", "mousemove", "--window", window, 150, 300)
+        time.sleep(0.5)
+        self.x("xdotool", "key", "h")  # hints fade by themselves
+        return process, window
+
+    def press(self, key):
+        self.x("xdotool", "key", key)
+        time.sleep(0.8)
+
+    def finish(self, process):
+        self.x("xdotool", "key", "q")
+        out, err = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 0, err)
+        return json.loads(out)
+
+    def scene(self, window):
+        """The pixels between texts and buttons, as (r, g, b)."""
+        rgb = subprocess.run(["convert", "xwd:-", "-crop", "1280x500+0+120", "+repage", "-depth", "8", "rgb:-"],
+                             input=self.screen(window), capture_output=True, check=True).stdout
+        return list(zip(rgb[0::3], rgb[1::3], rgb[2::3]))
+
+    def greys(self, window):
+        return [r for r, g, b in self.scene(window) if r == g == b]
+
+    def test_x_goes_through_the_slices_whose_greys_are_the_scans(self):
+        process, window = self.open_window()
+        before = len(self.greys(window))
+        for plane in ("axial", "coronal", "sagittal"):
+            self.press("x")
+            greys = self.greys(window)
+            with self.subTest(plane):
+                self.assertGreater(len(greys), before + 2000)
+                self.assertGreater(len(set(greys)), 60)  # the scan's values rise all over
+        self.press("x")
+        self.assertLess(len(self.greys(window)), before + 200)
+        self.finish(process)
+
+
+if __name__ == "__main__":
+    unittest.main()
