@@ -8,9 +8,11 @@ import unittest
 
 from trainer_case import TRAIN, TrainerCase
 
-BESIDE_THE_CIRCLE, IN_THE_CIRCLE = (100, 360), (640, 360)  # of an endoscope that fills 1280x720 pixels
+BESIDE_THE_CIRCLE, IN_THE_CIRCLE = (1150, 690), (640, 360)  # of an endoscope that fills 1280x720 pixels
 # Of one in the window's corner: 360 pixels wide, 22 from the right edge and 72 from below.
 CORNER_OF_THE_CORNER, MIDDLE_OF_THE_CORNER = (903, 294), (1078, 468)
+BLACK = (0, 0, 0)
+DETAIL = 50  # of a channel's 255: what grain and edges may change of a pixel where more or less is drawn
 
 
 class Views(TrainerCase):
@@ -26,8 +28,11 @@ class Views(TrainerCase):
         self.addCleanup(process.communicate)
         self.addCleanup(process.kill)
         window = self.find_window()
-        self.x("xdotool", "key", "BackSpace")  # leave the start page
-        time.sleep(0.5)
+        for _ in range(100):
+            time.sleep(0.2)
+            if BLACK not in self.pixels(window, BESIDE_THE_CIRCLE, CORNER_OF_THE_CORNER):
+                break
+        self.press("BackSpace")  # leave the start page
         return process, window
 
     def close(self, process):
@@ -39,7 +44,7 @@ class Views(TrainerCase):
     def press(self, *keys):
         for key in keys:
             self.x("xdotool", "key", key)
-        time.sleep(0.7)
+        time.sleep(1)
 
     def pixels(self, window, *places):
         """Red, green and blue of the window's pixels."""
@@ -49,20 +54,25 @@ class Views(TrainerCase):
         self.assertEqual(len(rgb), 3 * 1280 * 720)
         return [tuple(rgb[3 * (1280 * y + x) :][:3]) for x, y in places]
 
+    def assertAlike(self, pixels, others):
+        for pixel, other in zip(pixels, others, strict=True):
+            for a, b in zip(pixel, other):
+                self.assertAlmostEqual(a, b, delta=DETAIL)
+
     def test_v_shows_the_tip_s_view_whole_then_in_a_corner_then_not(self):
         process, window = self.open_window()
         places = BESIDE_THE_CIRCLE, CORNER_OF_THE_CORNER, MIDDLE_OF_THE_CORNER
         outside = self.pixels(window, *places)
-        black = (0, 0, 0)
-        self.assertNotIn(black, outside)
+        self.assertNotIn(BLACK, outside)
         self.press("v")
-        self.assertEqual(self.pixels(window, BESIDE_THE_CIRCLE), [black])
+        self.assertEqual(self.pixels(window, BESIDE_THE_CIRCLE), [BLACK])
         self.press("v")
         beside, corner, middle = self.pixels(window, *places)
-        self.assertEqual(beside, outside[0])
-        self.assertEqual(corner, black)
+        self.assertAlike([beside], outside[:1])
+        self.assertEqual(corner, BLACK)
+        self.assertNotEqual(middle, BLACK)
         self.press("v")
-        self.assertEqual(self.pixels(window, *places), outside)
+        self.assertAlike(self.pixels(window, *places), outside)
         self.close(process)
 
     def test_the_tip_s_light_grows_fainter_with_distance(self):
@@ -80,7 +90,7 @@ class Views(TrainerCase):
         outside = self.pixels(window, BESIDE_THE_CIRCLE, CORNER_OF_THE_CORNER)
         for times in (1, 2):
             self.press(*times * ["v"], "r")
-            self.assertEqual(self.pixels(window, BESIDE_THE_CIRCLE, CORNER_OF_THE_CORNER), outside)
+            self.assertAlike(self.pixels(window, BESIDE_THE_CIRCLE, CORNER_OF_THE_CORNER), outside)
         self.close(process)
 
     def test_how_much_is_drawn_is_told(self):
