@@ -12,6 +12,7 @@
 #include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
 #include "formats/provenance/cautions.hpp"
+#include "runtime/apps/exercises/train_lesson.hpp"
 #include "runtime/apps/first_sight.hpp"
 #include "runtime/apps/playback/expert_ghost.hpp"
 #include "runtime/apps/playback/recorded_scene.hpp"
@@ -21,7 +22,6 @@
 #include "runtime/apps/servo_pulse.hpp"
 #include "runtime/apps/start_recording.hpp"
 #include "runtime/apps/tell_statuses.hpp"
-#include "runtime/apps/train_lesson.hpp"
 #include "runtime/devices/mounted_device.hpp"
 #include "runtime/devices/simulation.hpp"
 #include "runtime/session/device_list.hpp"
@@ -164,7 +164,7 @@ Shown show(const Options& options, Session& run, TrainWindow& window, VisualFram
     constexpr auto shortest_frame = std::chrono::nanoseconds(1'000'000'000 / 60);
     const Session::Sink take = [&](const TickResult& tick) {
         felt.add(tick);
-        lesson.lesson().take(tick);
+        lesson.take(tick);
     };
     TickRate rate;
     ServoPulse pulse;
@@ -189,9 +189,10 @@ Shown show(const Options& options, Session& run, TrainWindow& window, VisualFram
         frame.statuses = run.statuses().recent(tick.time);
         frame.tick_rate_hz = rate.update(tick.tick);
         for (const std::string& key : window.take_keys()) {
+            lesson.press(key, tick);
+            if (frame.lesson.takes_keys) continue;
             const std::string told = run_keys.press(key, lesson.lesson().exercising());
             if (!told.empty()) window.tell(told);
-            lesson.lesson().press(key);
         }
         frame.recording = run_keys.recording();
         if (const auto hand = lesson.hand(window.hand())) window.place_hand(*hand);
@@ -212,7 +213,7 @@ Shown show(const Options& options, Session& run, TrainWindow& window, VisualFram
     shown.seconds = elapsed();
     run.stop();
     run.pump(take);
-    lesson.lesson().close();
+    lesson.close();
     return shown;
 }
 
@@ -249,12 +250,13 @@ Json train(const Options& options, cli::Session& session) {
     run.hold(device.open(
         request_of(options, device.kind, run.model(), place, start, window_settings.sight.axes())));
 
-    std::vector<training::Exercise> exercises = lay_out_exercises(options.lesson, run, target);
+    std::vector<LaidOut> exercises = lay_out_exercises(options.lesson, run, target);
     // What an exercise leads along is looked at closely too.
-    for (const training::Exercise& exercise : exercises)
-        if (exercise.task == training::Task::guide)
+    for (const LaidOut& laid_out : exercises)
+        if (laid_out.exercise.task == training::Task::guide)
             window_settings.sight.close_up.insert(window_settings.sight.close_up.end(),
-                                                  exercise.places.rbegin(), exercise.places.rend());
+                                                  laid_out.exercise.places.rbegin(),
+                                                  laid_out.exercise.places.rend());
     TrainLesson lesson(options.lesson, std::move(exercises), run,
                        {.case_name = patient_case.name,
                         .trainee = options.lesson.trainee,

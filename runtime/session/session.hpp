@@ -18,7 +18,7 @@
 #include "runtime/haptics/servo_loop.hpp"
 #include "runtime/session/live_stream.hpp"
 #include "runtime/session/run_recorder.hpp"
-#include "runtime/session/run_watch.hpp"
+#include "runtime/session/watch/run_watch.hpp"
 
 namespace palpate::session {
 

@@ -97,6 +97,10 @@ void Attempt::mark_found() {
     if (goals_.reached_all) end(Ending::all_reached);
 }
 
+void Attempt::mark_border_point() {
+    if (!over() && !paused_) mark_border(exercise_, goals_);
+}
+
 void Attempt::end(Ending ending) {
     if (!over()) ending_ = ending;
 }
@@ -123,6 +127,7 @@ Metrics Attempt::metrics() const {
     if (const auto count = static_cast<double>(goals_.error_count); count > 0)
         m.position_error =
             exercise_.task == Task::trace ? std::sqrt(goals_.squared_errors / count) : goals_.errors / count;
+    m.border_error = border_error(exercise_, goals_);
     const bool has_way = exercise_.task != Task::find && goals_.share > 0 && m.path_length > 0;
     if (has_way)
         m.economy_of_motion = shortest_way(exercise_, goals_, samples_.front().position) / m.path_length;

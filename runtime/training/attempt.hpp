@@ -36,6 +36,8 @@ class Attempt {
     void pause(bool on);
     /// find: the answer, see mark() of goals.hpp.
     void mark_found();
+    /// find: a point of the border, see mark_border() of goals.hpp.
+    void mark_border_point();
     void end(Ending ending);
 
     const Exercise& exercise() const { return exercise_; }

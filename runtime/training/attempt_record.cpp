@@ -37,7 +37,8 @@ Json exercise_json(const Exercise& exercise) {
             {"tolerance_mm", exercise.tolerance},
             {"hold_s", exercise.hold},
             {"region", exercise.region},
-            {"places_mm", places_json(exercise.places)}};
+            {"places_mm", places_json(exercise.places)},
+            {"outline_mm", places_json(exercise.outline)}};
 }
 
 // A UUID made from a text: version 8, a rule of one's own (RFC 9562), here its SHA-256.
@@ -92,6 +93,7 @@ Json attempt_json(const AttemptHead& head, const Attempt& attempt) {
             {"version", head.version},
             {"exercise", exercise_json(attempt.exercise())},
             {"ending", words_of(attempt.ending())},
+            {"border_mm", places_json(attempt.goals().border)},
             {"metrics", measured}};
 }
 

@@ -26,7 +26,8 @@ struct AttemptHead {
 bool is_pseudonym(const std::string& text);
 
 /// An attempt as files and --json have it, "palpate.attempt/1": who, what, how it ended, the exercise as it
-/// lay on the patient, every metric by its name and unit. Metrics that are not defined are null.
+/// lay on the patient, the border's marks of a search, every metric by its name and unit. Metrics that are
+/// not defined are null.
 nlohmann::ordered_json attempt_json(const AttemptHead& head, const Attempt& attempt);
 
 /// The hand's way and force as CSV, one row every hundredth of a second: time_s, x_mm, y_mm, z_mm (frame P),

@@ -38,6 +38,8 @@ struct Exercise {
     /// the line, densely. On the rest surface but for gates. p_P, mm.
     std::vector<Eigen::Vector3d> places;
     std::string region;  ///< find: what is hidden
+    /// find: its outline on the rest surface, see region_outline(). p_P, mm.
+    std::vector<Eigen::Vector3d> outline = {};
 };
 
 /// Length of the line through the points, mm.

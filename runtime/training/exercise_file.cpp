@@ -5,6 +5,8 @@
 #include <cctype>
 #include <cmath>
 #include <fmt/format.h>
+#include <iterator>
+#include <utility>
 
 #include "formats/toml_file/parse_file.hpp"
 #include "formats/toml_file/table_reader.hpp"
@@ -115,28 +117,38 @@ std::vector<ExerciseRecipe> read_exercises(const std::filesystem::path& file) {
     return recipes;
 }
 
+std::string usual_instruction(Task task) {
+    switch (task) {
+        case Task::touch:
+            return "Press each yellow mark until it turns grey, with the force in the blue band";
+        case Task::find:
+            return "Feel for what is harder than the rest. K: a point of its border. Stay on it, press M";
+        case Task::guide:
+            return "Lead the tip through the rings, not against the wall. V: the view from the tip";
+        case Task::trace:
+            return "Follow the line from the ball on, with the force in the blue band";
+        case Task::free:
+            break;
+    }
+    return "Take your time. E ends and shows what you did.";
+}
+
 std::vector<ExerciseRecipe> standard_exercises() {
-    ExerciseRecipe touch, find, trace, free;
-    touch.name = "touch";
-    touch.task = Task::touch;
-    touch.title = "Touch the marks";
-    touch.instruction = "Press each yellow mark until it turns grey, with the force in the blue band";
-    touch.time_limit = 180;
-    find.name = "find";
-    find.task = Task::find;
-    find.title = "Find what is hidden";
-    find.instruction = "Something in here is harder than the rest. Feel for it, stay on it, press M";
-    find.time_limit = 300;
-    trace.name = "trace";
-    trace.task = Task::trace;
-    trace.title = "Follow the line";
-    trace.instruction = "Follow the line from the ball on, with the force in the blue band";
-    trace.time_limit = 180;
-    free.name = "free";
-    free.task = Task::free;
-    free.title = "Free exploration";
-    free.instruction = "Take your time. E ends and shows what you did.";
-    return {touch, find, trace, free};
+    std::vector<ExerciseRecipe> recipes;
+    const auto add = [&](Task task, std::string title, std::optional<double> time_limit) {
+        ExerciseRecipe recipe;
+        recipe.name = name_of(task);
+        recipe.title = std::move(title);
+        recipe.instruction = usual_instruction(task);
+        recipe.task = task;
+        recipe.time_limit = time_limit;
+        recipes.push_back(std::move(recipe));
+    };
+    add(Task::touch, "Touch the marks", 180);
+    add(Task::find, "Find what is hidden", 300);
+    add(Task::trace, "Follow the line", 180);
+    add(Task::free, "Free exploration", std::nullopt);
+    return recipes;
 }
 
 }  // namespace palpate::training

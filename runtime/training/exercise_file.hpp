@@ -22,11 +22,16 @@ struct ExerciseRecipe {
     double spread = 40;      ///< mm from the start: touch: places are drawn within; trace: half the line
     std::string region;      ///< find: empty: the first that another encloses
     std::string written_at;  ///< "exercises.toml:12"
+
+    bool operator==(const ExerciseRecipe&) const = default;
 };
 
 /// Reads `[[exercise]]` tables of a TOML file with `schema = 1`. Throws InvalidInput naming file, line and
 /// key for what cannot be, among it two exercises of one name and a file without any.
 std::vector<ExerciseRecipe> read_exercises(const std::filesystem::path& file);
+
+/// What a trainee reads who is given a task and no other words.
+std::string usual_instruction(Task task);
 
 /// The exercises that every patient offers, in the order of the start page.
 std::vector<ExerciseRecipe> standard_exercises();

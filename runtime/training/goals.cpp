@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "runtime/training/metrics.hpp"
+#include "runtime/training/region_outline.hpp"
+
 namespace palpate::training {
 namespace {
 
@@ -124,6 +127,18 @@ void mark(const Exercise& exercise, Goals& goals) {
     goals.share = std::clamp(1 - (error - exercise.tolerance) / (2 * exercise.tolerance), 0.0, 1.0);
     goals.reached = 1;
     goals.reached_all = true;
+}
+
+void mark_border(const Exercise& exercise, Goals& goals) {
+    if (exercise.task != Task::find || !goals.last_touched || goals.reached_all) return;
+    goals.border.push_back(*goals.last_touched);
+}
+
+double border_error(const Exercise& exercise, const Goals& goals) {
+    if (exercise.outline.empty() || goals.border.empty()) return not_defined;
+    double sum = 0;
+    for (const Vector3d& point : goals.border) sum += distance_to_outline(exercise.outline, point);
+    return sum / static_cast<double>(goals.border.size());
 }
 
 }  // namespace palpate::training

@@ -32,6 +32,7 @@ struct Goals {
     bool was_touching = false;  ///< at the last moment
     bool was_astray = false;    ///< beside the mark or the line, or above the force limit
     std::optional<Eigen::Vector3d> last_touched{};
+    std::vector<Eigen::Vector3d> border{};  ///< find: where the trainee says that it ends, p_P, mm
 };
 
 /// Follows what the tool did for one moment: see Task, and Metrics for errors and misses.
@@ -41,5 +42,12 @@ void follow(const Exercise& exercise, const Moment& moment, Goals& goals);
 /// falls linearly to 0 at three times the tolerance. Ends the search. Nothing before the first touch, and in
 /// other exercises.
 void mark(const Exercise& exercise, Goals& goals);
+
+/// find: the trainee says that the border of what is hidden lies below what he last touched; as often as he
+/// likes before the answer. Nothing before the first touch, after the answer, and in other exercises.
+void mark_border(const Exercise& exercise, Goals& goals);
+
+/// Mean distance of the border's marks from the outline, mm; not a number without either.
+double border_error(const Exercise& exercise, const Goals& goals);
 
 }  // namespace palpate::training

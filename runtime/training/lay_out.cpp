@@ -12,6 +12,7 @@
 #include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
 #include "formats/model/regions.hpp"
+#include "runtime/training/region_outline.hpp"
 
 namespace palpate::training {
 namespace {
@@ -46,15 +47,19 @@ std::optional<std::int32_t> felt_vertex(const DeformableBody& body, const std::s
     return std::nullopt;
 }
 
-HiddenRegion place_above(const Case& patient_case, std::size_t body, const std::string& name,
-                         const std::vector<std::int32_t>& nodes) {
-    const DeformableBody& soft = patient_case.deformable_bodies[body - patient_case.rigid_bodies.size()];
+const DeformableBody& soft_body(const Case& patient_case, std::size_t body) {
+    return patient_case.deformable_bodies[body - patient_case.rigid_bodies.size()];
+}
+
+HiddenRegion place_above(const Case& patient_case, std::size_t body, const Label& label) {
+    const DeformableBody& soft = soft_body(patient_case, body);
+    const std::vector<std::int32_t> nodes = nodes_of_region(soft.mesh, label.value);
     Vector3d middle = Vector3d::Zero();
     for (const std::int32_t node : nodes) middle += soft.mesh.rest_positions[node];
     middle /= static_cast<double>(nodes.size());
     const auto& vertices = soft.boundary.surface.vertices;
-    HiddenRegion region{.name = name, .body = body, .above = middle};
-    if (const auto felt = felt_vertex(soft, name)) {
+    HiddenRegion region{.name = label.name, .body = body, .label = label.value, .above = middle};
+    if (const auto felt = felt_vertex(soft, label.name)) {
         region.above = vertices[*felt];
     } else {
         const auto free = free_vertices(patient_case, body);
@@ -206,6 +211,34 @@ std::vector<Vector3d> draw_line(const ExerciseRecipe& recipe, const Case& patien
     return longest;
 }
 
+// Between the points of a line others, on the surface that is nearest to them.
+std::vector<Vector3d> along_surface(const std::vector<Vector3d>& points, const HapticModel& model) {
+    constexpr double apart = 1, farthest = 20;  // mm
+    std::vector<Vector3d> line{points.front()};
+    for (std::size_t i = 1; i < points.size(); ++i) {
+        const Vector3d way = points[i] - points[i - 1];
+        const double pieces = std::ceil(way.norm() / apart - 1e-6);
+        for (double piece = 1; piece < pieces; ++piece) {
+            const Vector3d between = points[i - 1] + way * (piece / pieces);
+            double reach = farthest;
+            Vector3d nearest = between;
+            for (std::size_t body = 0; body < model.body_count(); ++body)
+                if (const auto found = model.surface(body).closest_point(between, reach)) {
+                    reach = found->distance;
+                    nearest = found->point;
+                }
+            line.push_back(nearest);
+        }
+        line.push_back(points[i]);
+    }
+    return line;
+}
+
+double tolerance_of(const ExerciseRecipe& recipe, const HapticModel& model) {
+    if (recipe.tolerance) return *recipe.tolerance;
+    return recipe.task == Task::find ? 10 : std::max(2.0, 1.5 * model.settings().tool_radius);
+}
+
 double two_digits(double value) {
     if (value <= 0) return value;
     const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
@@ -219,8 +252,7 @@ std::vector<HiddenRegion> hidden_regions(const Case& patient_case) {
     for (std::size_t i = 0; i < patient_case.deformable_bodies.size(); ++i) {
         const DeformableBody& soft = patient_case.deformable_bodies[i];
         for (const Label& label : enclosed_regions(soft.mesh))
-            regions.push_back(place_above(patient_case, patient_case.rigid_bodies.size() + i, label.name,
-                                          nodes_of_region(soft.mesh, label.value)));
+            regions.push_back(place_above(patient_case, patient_case.rigid_bodies.size() + i, label));
     }
     std::ranges::sort(regions, {}, &HiddenRegion::name);
     return regions;
@@ -247,39 +279,47 @@ TouchTarget choose_start(const Case& patient_case, const HapticModel& model, con
     return *above;
 }
 
-std::optional<Exercise> lay_out(const ExerciseRecipe& recipe, const Case& patient_case, HapticModel& model,
-                                const TouchTarget& start) {
-    const double radius = model.settings().tool_radius;
-    Exercise exercise{
-        .name = recipe.name,
-        .title = recipe.title,
-        .instruction = recipe.instruction,
-        .task = recipe.task,
-        .time_limit = recipe.time_limit.value_or(0),
-        .least_force = 0,
-        .most_force = 0,
-        .tolerance = recipe.tolerance.value_or(recipe.task == Task::find ? 10 : std::max(2.0, 1.5 * radius)),
-        .hold = recipe.hold.value_or(0.5),
-        .places = recipe.places,
-        .region = recipe.region};
-    const auto usual_force = [&](double depth) {
-        return two_digits(
-            std::min(force_at_depth(model, start.place, depth), 0.8 * model.settings().max_force));
-    };
-    exercise.least_force = recipe.least_force ? *recipe.least_force : usual_force(least_depth);
-    exercise.most_force = recipe.most_force ? *recipe.most_force : usual_force(most_depth);
+std::optional<Exercise> lay_out_settled(const ExerciseRecipe& recipe, const Case& patient_case,
+                                        const HapticModel& model) {
+    Exercise exercise{.name = recipe.name,
+                      .title = recipe.title,
+                      .instruction = recipe.instruction,
+                      .task = recipe.task,
+                      .time_limit = recipe.time_limit.value_or(0),
+                      .least_force = *recipe.least_force,
+                      .most_force = *recipe.most_force,
+                      .tolerance = tolerance_of(recipe, model),
+                      .hold = recipe.hold.value_or(0.5),
+                      .places = recipe.places,
+                      .region = recipe.region};
     if (exercise.least_force >= exercise.most_force) exercise.least_force = exercise.most_force / 10;
+    if (recipe.task == Task::trace && !recipe.places.empty())
+        exercise.places = along_surface(recipe.places, model);
     if (recipe.task == Task::find) {
         const auto region = region_of(recipe, patient_case);
         if (!region) return std::nullopt;
         exercise.region = region->name;
         exercise.places = {region->above};
+        exercise.outline =
+            region_outline(soft_body(patient_case, region->body), region->label, region->above);
     }
-    if (!exercise.places.empty()) return exercise;
-    if (recipe.task == Task::touch)
-        exercise.places = draw_marks(recipe, patient_case, model, start, 2 * exercise.tolerance);
-    if (recipe.task == Task::trace) exercise.places = draw_line(recipe, patient_case, model, start);
     return exercise;
+}
+
+std::optional<Exercise> lay_out(const ExerciseRecipe& recipe, const Case& patient_case, HapticModel& model,
+                                const TouchTarget& start) {
+    ExerciseRecipe whole = recipe;
+    const auto usual_force = [&](double depth) {
+        return two_digits(
+            std::min(force_at_depth(model, start.place, depth), 0.8 * model.settings().max_force));
+    };
+    if (!whole.least_force) whole.least_force = usual_force(least_depth);
+    if (!whole.most_force) whole.most_force = usual_force(most_depth);
+    if (whole.places.empty() && recipe.task == Task::touch)
+        whole.places = draw_marks(recipe, patient_case, model, start, 2 * tolerance_of(recipe, model));
+    if (whole.places.empty() && recipe.task == Task::trace)
+        whole.places = draw_line(recipe, patient_case, model, start);
+    return lay_out_settled(whole, patient_case, model);
 }
 
 double force_at_depth(HapticModel& model, const devices::TouchPoint& place, double depth) {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,9 +18,10 @@ namespace palpate::training {
 /// An enclosed region of a deformable body and where it is to be felt.
 struct HiddenRegion {
     std::string name;
-    std::size_t body = 0;   ///< as in HapticModel
-    Eigen::Vector3d above;  ///< the surface vertex that feels it most, p_P, mm
-    double depth = 0;       ///< mm, from there to the nearest node of it
+    std::size_t body = 0;    ///< as in HapticModel
+    std::int32_t label = 0;  ///< of its tetrahedra
+    Eigen::Vector3d above;   ///< the surface vertex that feels it most, p_P, mm
+    double depth = 0;        ///< mm, from there to the nearest node of it
 };
 
 /// The regions of deformable bodies that are not a body's largest, by name. Where a case does not say what
@@ -42,6 +45,13 @@ session::TouchTarget choose_start(const Case& patient_case, const haptics::Hapti
 /// room. Presses with the model, which it resets: not beside a running tick.
 std::optional<Exercise> lay_out(const ExerciseRecipe& recipe, const Case& patient_case,
                                 haptics::HapticModel& model, const session::TouchTarget& start);
+
+/// Lays out a recipe that leaves nothing open: forces are given, and places where its task has any. Nothing
+/// for a search in a case that hides nothing. Between two written points of a line others are put, a
+/// millimetre apart, on the surface that is nearest to them. Throws as lay_out(). Reads the model's rest
+/// surfaces only: beside a running tick too.
+std::optional<Exercise> lay_out_settled(const ExerciseRecipe& recipe, const Case& patient_case,
+                                        const haptics::HapticModel& model);
 
 /// The force (N) with which a place answers a tool whose surface is held `depth` mm below it. Resets the
 /// model.

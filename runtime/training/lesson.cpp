@@ -1,9 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/training/lesson.hpp"
 
+#include <algorithm>
+#include <charconv>
+#include <system_error>
 #include <utility>
 
 namespace palpate::training {
+namespace {
+
+// Of a digit, or of a choice that has more than one; 0: none.
+std::size_t number_of(std::string_view key) {
+    std::size_t number = 0;
+    const char* end = key.data() + key.size();
+    const auto read = std::from_chars(key.data(), end, number);
+    return read.ec == std::errc{} && read.ptr == end ? number : 0;
+}
+
+}  // namespace
 
 Lesson::Lesson(std::vector<Exercise> exercises, const Case& patient_case, double countdown, Sink ended)
     : exercises_(std::move(exercises)),
@@ -24,6 +38,16 @@ void Lesson::go_away() {
     phase_ = Phase::away;
 }
 
+std::size_t Lesson::put(Exercise exercise) {
+    const auto same = std::ranges::find(exercises_, exercise.name, &Exercise::name);
+    const auto index = static_cast<std::size_t>(same - exercises_.begin());
+    if (same == exercises_.end())
+        exercises_.push_back(std::move(exercise));
+    else
+        *same = std::move(exercise);
+    return index;
+}
+
 void Lesson::begin() {
     attempt_.emplace(exercises_[chosen_], case_);
     phase_ = Phase::doing;
@@ -32,8 +56,7 @@ void Lesson::begin() {
 void Lesson::press(std::string_view key) {
     switch (phase_) {
         case Phase::choosing:
-            if (key.size() == 1 && key[0] >= '1' && key[0] <= '9')
-                choose(static_cast<std::size_t>(key[0] - '1'));
+            if (const std::size_t number = number_of(key); number > 0) choose(number - 1);
             if (key == "backspace") phase_ = Phase::away;
             break;
         case Phase::counting_down:
@@ -43,6 +66,7 @@ void Lesson::press(std::string_view key) {
         case Phase::doing:
             if (key == "space") attempt_->pause(!attempt_->paused());
             if (key == "m") attempt_->mark_found();
+            if (key == "k") attempt_->mark_border_point();
             if (key == "e" || key == "backspace") attempt_->end(Ending::ended);
             if (key == "n") {
                 attempt_->end(Ending::ended);

@@ -24,9 +24,11 @@ enum class Phase {
 };
 
 /// The way through the exercises: chooses, counts down, runs attempts, hands each to `ended` when it is over.
-/// Keys are X11 names in lower case: a digit chooses, "return" begins (again), "space" pauses and goes on,
-/// "m" answers a search, "e" ends, "n" does it anew, after it "space" hides the result page and shows it
-/// again, "backspace" goes to the start page and away from it. One thread. The case must outlive it.
+/// Keys are X11 names in lower case: a digit chooses (beyond 9 a
+/// page's number), "return" begins (again), "space" pauses and goes on,
+/// "m" answers a search, "k" sets a point of the border before, "e" ends, "n" does it anew, after it "space"
+/// hides the result page and shows it again, "backspace" goes to the start page and away from it. One thread.
+/// The case must outlive it.
 class Lesson {
   public:
     using Sink = std::function<void(const Attempt&)>;
@@ -36,8 +38,11 @@ class Lesson {
 
     /// Begins an exercise as if it had been chosen; `exercise` counts from 0.
     void choose(std::size_t exercise);
-    /// Leaves the start page without an exercise.
+    /// Leaves the start page, or whatever else is shown, without an exercise.
     void go_away();
+    /// Adds an exercise, or puts it in the place of the one of its name; returns its index. Not while an
+    /// attempt runs.
+    std::size_t put(Exercise exercise);
     /// A key, or a page's choice; others do nothing.
     void press(std::string_view key);
     /// Takes a tick of any tool. A press of the lowest device button answers a search.

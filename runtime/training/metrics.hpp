@@ -35,6 +35,7 @@ struct Metrics {
     double time_in_contact = 0;
     double time_above_limit = 0;
     double position_error = not_defined;
+    double border_error = not_defined;
     double misses = 0;
 };
 
@@ -66,6 +67,9 @@ inline constexpr std::tuple metric_fields{
           "above "
           "what is hidden; trace: root mean square distance from the line; guide: mean distance from the "
           "gates' middles"),
+    Field("border_error", &Metrics::border_error, "mm",
+          "find: mean distance of the border's marks from the outline of what is hidden, as it is seen from "
+          "straight above"),
     Field("misses", &Metrics::misses, "",
           "touch: presses beside the mark; find: marks beside it; trace: departures from the line; guide: "
           "times "

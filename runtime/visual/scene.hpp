@@ -42,7 +42,7 @@ class Scene {
     void show_inside(bool on);
     /// Draws bodies in that detail.
     void draw(const Detail& detail);
-    /// What a cut may open.
+    /// What draws the bodies, rigid and deformable.
     std::vector<vtkActor*> bodies() const;
 
   private:

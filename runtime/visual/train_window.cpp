@@ -34,6 +34,7 @@
 #include "runtime/visual/inside/endoscope.hpp"
 #include "runtime/visual/lesson/lesson_panel.hpp"
 #include "runtime/visual/lesson/lesson_scene.hpp"
+#include "runtime/visual/lesson/thumbnails.hpp"
 #include "runtime/visual/overlay.hpp"
 #include "runtime/visual/pictures.hpp"
 #include "runtime/visual/playback/timeline.hpp"
@@ -86,6 +87,7 @@ struct TrainWindow::Parts {
           shadow(renderer),
           overlay(patient_case.name, patient_case.haptics.max_force, window_settings.cautions, front),
           lesson_scene(renderer),
+          thumbnails(window, window_settings.sight),
           panel(front),
           buttons(front),
           timeline(front, interactor),
@@ -115,6 +117,7 @@ struct TrainWindow::Parts {
               vtkCommand::MouseMoveEvent, vtkCommand::MouseWheelForwardEvent,
               vtkCommand::MouseWheelBackwardEvent, vtkCommand::KeyPressEvent, vtkCommand::ExitEvent})
             interactor->AddObserver(event, events);
+        for (vtkActor* body : scene.bodies()) thumbnails.renderer()->AddActor(body);
         reset();
         interactor->Initialize();
         survive_loss_of(window->GetGenericDisplayId());
@@ -193,7 +196,7 @@ struct TrainWindow::Parts {
         }
     }
 
-    // Whether the pointer was on a button or a choice of a page, which is pressed then.
+    // Whether the pointer was on a button or on a page, whose choice is taken if it was on one.
     bool click() {
         const int* at = interactor->GetEventPosition();
         if (const std::string_view key = buttons.key_at(at[0], at[1]); !key.empty()) {
@@ -201,7 +204,7 @@ struct TrainWindow::Parts {
             return true;
         }
         std::string choice = panel.choice_at(at[0], at[1]);
-        if (choice.empty()) return false;
+        if (choice.empty()) return panel.covers(at[0], at[1]);
         keys.push_back(std::move(choice));
         return true;
     }
@@ -306,6 +309,7 @@ struct TrainWindow::Parts {
 
     void key_pressed(const char* symbol) {
         std::string key = symbol ? symbol : "";
+        if (page_takes_keys) return keys.push_back(key);
         if (key.size() == 1) key[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(key[0])));
         move_by_key(key);
         std::ranges::transform(key, key.begin(), [](unsigned char letter) { return std::tolower(letter); });
@@ -413,6 +417,7 @@ struct TrainWindow::Parts {
     Endoscope endoscope{window, renderer};
     DrawnDetail detail{window, renderer, &scene, settings.sight.field};
     LessonScene lesson_scene;
+    Thumbnails thumbnails;
     LessonPanel panel;
     ButtonBar buttons;
     Timeline timeline;
@@ -424,6 +429,7 @@ struct TrainWindow::Parts {
     bool rigid_shown = true;
     bool regions_shown = false;
     bool exercising = false;
+    bool page_takes_keys = false;
     bool picture_asked = false;
     std::future<std::string> picture;  // being written; what is to be said of it then
     Drag drag = Drag::none;
@@ -453,16 +459,19 @@ void TrainWindow::show(const VisualFrame& frame) {
     if (p.scan) p.scan->follow(frame.tool_position, p.cut && !p.endoscope.fills_window());
     p.overlay.update(frame, frame.film_rate_hz.value_or(frames_per_second()), detail());
     p.see_exercise(frame.lesson.hides_regions);
+    p.page_takes_keys = frame.lesson.takes_keys;
     p.overlay.make_room(frame.lesson.page.has_value(), !frame.lesson.instruction.empty());
     p.lesson_scene.update(frame.lesson);
     const int* size = p.window->GetSize();
-    p.panel.update(frame.lesson, frame.force.norm(), size[0], size[1]);
+    p.panel.update(frame.lesson, p.thumbnails, frame.force.norm(), size[0], size[1]);
     p.light_buttons(frame);
     p.buttons.update(!frame.lesson.page && !frame.film_rate_hz, size[0], size[1]);
     p.timeline.update(frame.timeline);
     p.window->Render();
     if (p.picture_asked) p.take_picture();
     p.tell_of_picture();
+    if (frame.lesson.page && p.frames > 0)  // the first frame is not to wait for them
+        p.thumbnails.take_next(*frame.lesson.page, display_scale(size[0], size[1]));
     ++p.frames;
     const auto now = std::chrono::steady_clock::now();
     const double seconds = std::chrono::duration<double>(now - p.last_frame).count();

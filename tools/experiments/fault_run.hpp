@@ -9,7 +9,7 @@
 
 #include "formats/model/body.hpp"
 #include "runtime/devices/device_model.hpp"
-#include "runtime/session/fault_log.hpp"
+#include "runtime/session/watch/fault_log.hpp"
 
 namespace palpate::experiments {
 

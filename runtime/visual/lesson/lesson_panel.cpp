@@ -3,18 +3,23 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <sstream>
 #include <vtkAxis.h>
 #include <vtkCellArray.h>
 #include <vtkContextScene.h>
 #include <vtkDoubleArray.h>
+#include <vtkFloatArray.h>
 #include <vtkPen.h>
 #include <vtkPlot.h>
 #include <vtkPlotPoints.h>
+#include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataMapper2D.h>
 #include <vtkProperty2D.h>
 #include <vtkTable.h>
 #include <vtkTextProperty.h>
+#include <vtkTexture.h>
+#include <vtkTexturedActor2D.h>
 
 #include "runtime/visual/overlay.hpp"
 
@@ -22,7 +27,10 @@ namespace palpate::visual {
 namespace {
 
 // Pixels in a window of 1280x720, see display_scale().
-constexpr double page_height = 520, page_margin = 28, row_height = 30;
+constexpr double page_height = 520, page_margin = 28, row_height = 30;  // the first is the least
+constexpr double title_height = 44, line_height = 22, figure_height = 20;
+constexpr double card_height = 74, card_share = 0.64;  // of a picture: how large it is on a card
+constexpr std::size_t card_letters = 28;
 constexpr double text_width = 640, chart_width = 420;  // a page has charts beside its text, or none
 constexpr double edge = 20;                            // of the window, left free below and beside a page
 constexpr double band_width = 320, band_height = 12;
@@ -145,12 +153,63 @@ vtkSmartPointer<vtkContextActor> chart_of(const LessonCurve& curve, double left,
 }
 
 // Everything that a page shows, as one text.
-std::string digest_of(const LessonPage& page, int width, int height) {
-    std::string text = fmt::format("{}x{}\n{}\n{}\n", width, height, page.title, page.text);
+std::string digest_of(const LessonPage& page, const Thumbnails& pictures, int width, int height) {
+    const auto shown = [&](const std::optional<LessonPicture>& picture) {
+        return picture ? static_cast<const void*>(pictures.picture_of(*picture)) : nullptr;
+    };
+    std::string text =
+        fmt::format("{}x{}\n{}\n{}\n{}\n", width, height, page.title, page.text, shown(page.picture));
     for (const auto& [name, value] : page.rows) text += name + "\t" + value + "\n";
-    for (const LessonChoice& choice : page.choices) text += choice.key + "\t" + choice.text + "\n";
+    for (const LessonChoice& choice : page.choices)
+        text += fmt::format("{}\t{}\t{}\n", choice.key, choice.text, shown(choice.picture));
     for (const LessonCurve& curve : page.curves) text += fmt::format("{} {}\n", curve.title, curve.x.size());
     return text;
+}
+
+std::size_t card_count(const LessonPage& page) {
+    return static_cast<std::size_t>(std::ranges::count_if(
+        page.choices, [](const LessonChoice& choice) { return choice.picture.has_value(); }));
+}
+
+// Of title, text and picture, in pixels of a window of 1280x720.
+double head_height(const LessonPage& page) {
+    double height = title_height;
+    if (!page.text.empty())
+        height += line_height * static_cast<double>(1 + std::ranges::count(page.text, '\n')) + 12;
+    return page.picture ? std::max(height, Thumbnails::height + 16.0) : height;
+}
+
+// How wide what stands beside a page's curves is, in the same.
+double text_part(const LessonPage& page) {
+    const double beside = page.picture ? Thumbnails::width + 14.0 : 0;
+    return page.rows.empty() ? text_width + beside : text_width - 220;
+}
+
+// In the same.
+struct PageSize {
+    double width, height;
+};
+
+PageSize size_of(const LessonPage& page) {
+    const std::size_t cards = card_count(page), card_rows = (cards + 1) / 2;
+    const double height = 2 * page_margin + head_height(page) +
+                          figure_height * static_cast<double>(page.rows.size()) +
+                          card_height * static_cast<double>(card_rows) +
+                          row_height * static_cast<double>(page.choices.size() - cards);
+    return {page.curves.empty() ? text_part(page) : text_part(page) + chart_width,
+            cards > 0 ? height : std::max(page_height, height)};
+}
+
+// In lines of so many letters.
+std::string wrapped(const std::string& text, std::size_t letters) {
+    std::string lines;
+    std::size_t used = 0;
+    std::istringstream words(text);
+    for (std::string word; words >> word; used += word.size() + 1) {
+        if (used > 0 && used + word.size() > letters) used = 0;
+        lines += (lines.empty() ? "" : used == 0 ? "\n" : " ") + word;
+    }
+    return lines;
 }
 
 }  // namespace
@@ -174,14 +233,15 @@ LessonPanel::LessonPanel(vtkRenderer* renderer) : renderer_(renderer) {
     names_->GetTextProperty()->SetColor(0.65, 0.70, 0.76);
 }
 
-void LessonPanel::update(const LessonView& view, double force, int width, int height) {
+void LessonPanel::update(const LessonView& view, const Thumbnails& pictures, double force, int width,
+                         int height) {
     const double scale = display_scale(width, height), middle = width / 2.0;
     set_text(instruction_, view.instruction, middle, height - 14 * scale, font(18, scale));
     set_text(status_, view.status, middle, height - 46 * scale, font(18, scale));
     set_text(warning_, view.warning, middle, height - 104 * scale, font(20, scale));
     show_band(view, force, width, height);
     if (view.page)
-        show_page(*view.page, width, height);
+        show_page(*view.page, pictures, width, height);
     else
         hide_page();
 }
@@ -213,29 +273,34 @@ void LessonPanel::hide_page() {
         actor->VisibilityOff();
     for (const auto& choice : choices_) renderer_->RemoveActor2D(choice);
     for (const auto& chart : charts_) renderer_->RemoveActor2D(chart);
+    for (const auto& picture : pictures_) renderer_->RemoveActor2D(picture);
+    pictures_.clear();
     choices_.clear();
     charts_.clear();
     keys_.clear();
     boxes_.clear();
 }
 
-void LessonPanel::show_page(const LessonPage& page, int width, int height) {
-    const std::string digest = digest_of(page, width, height);
+void LessonPanel::show_page(const LessonPage& page, const Thumbnails& pictures, int width, int height) {
+    const std::string digest = digest_of(page, pictures, width, height);
     if (digest == shown_) return;
     hide_page();
     shown_ = digest;
-    const double scale = display_scale(width, height), margin = scale * page_margin;
-    const double left = scale * edge, bottom = scale * edge, top = bottom + scale * page_height;
-    const double chart_left = left + scale * (page.rows.empty() ? text_width : text_width - 220);
-    const double right = page.curves.empty() ? left + scale * text_width : chart_left + scale * chart_width;
+    const PageSize size = size_of(page);
+    const double outside = 2 * edge * display_scale(width, height);
+    const double scale = std::min(
+        {display_scale(width, height), (width - outside) / size.width, (height - outside) / size.height});
+    const double margin = scale * page_margin, left = scale * edge, bottom = scale * edge;
+    const double right = left + scale * size.width, top = bottom + scale * size.height;
     set_rectangle(sheet_points_, left, bottom, right, top);
     sheet_->VisibilityOn();
     set_text(title_, page.title, left + margin, top - margin, font(26, scale));
-    double y = top - margin - 44 * scale;
-    set_text(text_, page.text, left + margin, y, font(16, scale));
-    if (!page.text.empty())
-        y -= scale * 22 * static_cast<double>(1 + std::ranges::count(page.text, '\n')) + 12 * scale;
+    set_text(text_, page.text, left + margin, top - margin - scale * title_height, font(16, scale));
+    if (page.picture)
+        show_picture(pictures.picture_of(*page.picture), right - margin - scale * Thumbnails::width,
+                     top - margin - scale * Thumbnails::height, scale);
 
+    const double y = top - margin - scale * head_height(page);
     std::string names, values;
     for (const auto& [name, value] : page.rows) {
         names += (names.empty() ? "" : "\n") + name;
@@ -244,23 +309,75 @@ void LessonPanel::show_page(const LessonPage& page, int width, int height) {
     set_text(names_, names, left + margin, y, font(15, scale));
     set_text(values_, values, left + margin + 190 * scale, y, font(15, scale));
 
-    const double chart_height = 220 * scale;
+    const double chart_left = left + scale * text_part(page), chart_height = 220 * scale;
     for (std::size_t i = 0; i < page.curves.size(); ++i)
         charts_.push_back(
             chart_of(page.curves[i], chart_left, top - margin - static_cast<double>(i + 1) * chart_height,
                      right - margin - chart_left, chart_height - 8 * scale, font(12, scale), renderer_));
 
-    double choice_top = bottom + margin + scale * row_height * static_cast<double>(page.choices.size());
+    const std::size_t cards = card_count(page);
+    const double card_width = (right - left - 2 * margin) / 2;
+    double choice_top =
+        bottom + margin + scale * row_height * static_cast<double>(page.choices.size() - cards);
+    std::size_t card = 0;
     for (const LessonChoice& choice : page.choices) {
-        vtkNew<vtkTextActor> line;
-        make_text(line, false, renderer_);
-        line->GetTextProperty()->SetColor(1, 0.84, 0.35);
-        set_text(line, choice.text, left + margin, choice_top, font(17, scale));
-        choices_.emplace_back(line);
-        keys_.push_back(choice.key);
-        boxes_.push_back({left, choice_top - scale * row_height, right, choice_top});
-        choice_top -= scale * row_height;
+        if (choice.picture) {
+            const Box box = card_box(card++, left + margin, y, card_width, scale * card_height);
+            show_picture(pictures.picture_of(*choice.picture), box.left, box.bottom, scale * card_share);
+            const double text_left = box.left + scale * (card_share * Thumbnails::width + 14);
+            show_choice(choice, wrapped(choice.text, card_letters), text_left, box.top, scale, box);
+        } else {
+            show_choice(choice, choice.text, left + margin, choice_top, scale,
+                        {left, choice_top - scale * row_height, right, choice_top});
+            choice_top -= scale * row_height;
+        }
     }
+}
+
+// Cards stand two in a row, from `top` down.
+LessonPanel::Box LessonPanel::card_box(std::size_t card, double left, double top, double width,
+                                       double height) {
+    const double x = left + width * static_cast<double>(card % 2),
+                 y = top - height * static_cast<double>(card / 2);
+    return {x, y - height, x + width, y};
+}
+
+void LessonPanel::show_choice(const LessonChoice& choice, const std::string& text, double x, double y,
+                              double scale, const Box& box) {
+    vtkNew<vtkTextActor> line;
+    make_text(line, false, renderer_);
+    line->GetTextProperty()->SetColor(1, 0.84, 0.35);
+    set_text(line, text, x, y, font(17, scale));
+    choices_.emplace_back(line);
+    keys_.push_back(choice.key);
+    boxes_.push_back(box);
+}
+
+void LessonPanel::show_picture(vtkImageData* pixels, double left, double bottom, double scale) {
+    if (pixels == nullptr) return;
+    vtkNew<vtkPoints> corners;
+    corners->SetNumberOfPoints(4);
+    set_rectangle(corners, left, bottom, left + scale * Thumbnails::width,
+                  bottom + scale * Thumbnails::height);
+    vtkNew<vtkFloatArray> places;  // in the picture
+    places->SetNumberOfComponents(2);
+    for (const auto& [x, y] : {std::pair(0, 0), {1, 0}, {1, 1}, {0, 1}}) places->InsertNextTuple2(x, y);
+    vtkNew<vtkCellArray> cells;
+    cells->InsertNextCell({0, 1, 2, 3});
+    vtkNew<vtkPolyData> data;
+    data->SetPoints(corners);
+    data->SetPolys(cells);
+    data->GetPointData()->SetTCoords(places);
+    vtkNew<vtkPolyDataMapper2D> mapper;
+    mapper->SetInputData(data);
+    vtkNew<vtkTexture> texture;
+    texture->SetInputData(pixels);
+    texture->InterpolateOn();
+    vtkNew<vtkTexturedActor2D> picture;
+    picture->SetMapper(mapper);
+    picture->SetTexture(texture);
+    renderer_->AddActor2D(picture);
+    pictures_.emplace_back(picture);
 }
 
 std::string LessonPanel::choice_at(int x, int y) const {

@@ -6,6 +6,7 @@
 #include <vtkActor2D.h>
 #include <vtkChartXY.h>
 #include <vtkContextActor.h>
+#include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
 #include <vtkRenderer.h>
@@ -13,6 +14,7 @@
 #include <vtkTextActor.h>
 
 #include "runtime/visual/lesson/lesson_view.hpp"
+#include "runtime/visual/lesson/thumbnails.hpp"
 
 namespace palpate::visual {
 
@@ -22,8 +24,9 @@ class LessonPanel {
   public:
     explicit LessonPanel(vtkRenderer* renderer);
 
-    /// `force` (N) is pointed at in the band; `width` and `height` are the window's, pixels.
-    void update(const LessonView& view, double force, int width, int height);
+    /// `pictures`: those of the page, as far as they are there; `force` (N) is pointed at in the band;
+    /// `width` and `height` are the window's, pixels.
+    void update(const LessonView& view, const Thumbnails& pictures, double force, int width, int height);
 
     /// The key of the choice under a place of the window (pixels from its lower left); empty: none.
     std::string choice_at(int x, int y) const;
@@ -33,18 +36,23 @@ class LessonPanel {
     void hover(int x, int y);
 
   private:
-    void show_page(const LessonPage& page, int width, int height);
-    void show_band(const LessonView& view, double force, int width, int height);
-    void hide_page();
-
     struct Box {
         double left, bottom, right, top;  // pixels
     };
+    static Box card_box(std::size_t card, double left, double top, double width, double height);
+    void show_page(const LessonPage& page, const Thumbnails& pictures, int width, int height);
+    void show_choice(const LessonChoice& choice, const std::string& text, double x, double y, double scale,
+                     const Box& box);
+    void show_picture(vtkImageData* pixels, double left, double bottom, double scale);
+    void show_band(const LessonView& view, double force, int width, int height);
+    void hide_page();
+
     vtkRenderer* renderer_;
     vtkNew<vtkTextActor> instruction_, status_, warning_, title_, text_, names_, values_;
     vtkNew<vtkPoints> sheet_points_, below_points_, within_points_, above_points_, pointer_points_;
     vtkNew<vtkActor2D> sheet_, below_, within_, above_, pointer_;
     std::vector<vtkSmartPointer<vtkTextActor>> choices_;
+    std::vector<vtkSmartPointer<vtkActor2D>> pictures_;
     std::vector<std::string> keys_;
     std::vector<Box> boxes_;
     std::vector<vtkSmartPointer<vtkContextActor>> charts_;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/visual/lesson/lesson_scene.hpp"
 
-#include <algorithm>
 #include <vtkCellArray.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
@@ -84,14 +83,10 @@ vtkSmartPointer<vtkActor> actor_of(const LessonMark& mark) {
     return glowing(tube->GetOutput(), colour_of(mark.state));
 }
 
-bool same(const LessonMark& a, const LessonMark& b) {
-    return a.place == b.place && a.radius == b.radius && a.state == b.state && a.axis == b.axis;
-}
-
 }  // namespace
 
 void LessonScene::update(const LessonView& view) {
-    if (!std::ranges::equal(view.marks, marks_, same)) {
+    if (view.marks != marks_) {
         for (const auto& mark : mark_actors_) renderer_->RemoveActor(mark);
         mark_actors_.clear();
         marks_ = view.marks;
@@ -111,6 +106,9 @@ void LessonScene::update(const LessonView& view) {
     follow(view.line, line_, line_actor_, view.line_radius, line_colour);
     follow(view.line_done, line_done_, done_actor_, 1.2 * view.line_radius, done_colour);
     follow(view.path, path_, path_actor_, path_radius, path_colour);
+    std::vector<Vector3d> outline = view.outline;
+    if (!outline.empty()) outline.push_back(outline.front());
+    follow(outline, outline_, outline_actor_, view.line_radius, truth_colour);
 }
 
 }  // namespace palpate::visual

@@ -20,9 +20,9 @@ class LessonScene {
   private:
     vtkRenderer* renderer_;
     std::vector<LessonMark> marks_;
-    std::vector<Eigen::Vector3d> line_, line_done_, path_;
+    std::vector<Eigen::Vector3d> line_, line_done_, path_, outline_;
     std::vector<vtkSmartPointer<vtkActor>> mark_actors_;
-    vtkSmartPointer<vtkActor> line_actor_, done_actor_, path_actor_;
+    vtkSmartPointer<vtkActor> line_actor_, done_actor_, path_actor_, outline_actor_;
 };
 
 }  // namespace palpate::visual

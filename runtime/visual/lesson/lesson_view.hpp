@@ -14,12 +14,26 @@ struct LessonMark {
     double radius = 2;                                ///< mm
     State state = State::waiting;                     ///< truth: what a search was for, shown afterwards
     Eigen::Vector3d axis = Eigen::Vector3d::Zero();   ///< of a gate, drawn as a ring about it; zero: a ball
+
+    bool operator==(const LessonMark&) const = default;
+};
+
+/// A small picture of the scene with an exercise's marks, from near enough to see them; without any, the
+/// first view.
+struct LessonPicture {
+    std::vector<LessonMark> marks{};
+    std::vector<Eigen::Vector3d> line{};  ///< p_P, mm
+    double line_radius = 0.5;             ///< mm
+    bool whole = false;                   ///< the whole case, from outside
+
+    bool operator==(const LessonPicture&) const = default;
 };
 
 /// A line of a page that can be chosen, by its key or with the mouse.
 struct LessonChoice {
-    std::string key;   ///< X11 name, lower case: "1", "return"
-    std::string text;  ///< with the key as people call it
+    std::string key;                         ///< X11 name, lower case: "1", "return"
+    std::string text;                        ///< with the key as people call it
+    std::optional<LessonPicture> picture{};  ///< beside it; such choices stand together, before the others
 };
 
 /// A curve on a page.
@@ -37,6 +51,7 @@ struct LessonPage {
     std::vector<std::pair<std::string, std::string>> rows;  ///< names and values
     std::vector<LessonCurve> curves;                        ///< two at most
     std::vector<LessonChoice> choices;
+    std::optional<LessonPicture> picture{};  ///< beside the title
 };
 
 /// What the window shows of an exercise.
@@ -49,9 +64,11 @@ struct LessonView {
     std::vector<LessonMark> marks;
     std::vector<Eigen::Vector3d> line, line_done;  ///< p_P, mm
     double line_radius = 0.5;                      ///< mm
-    std::optional<Eigen::Vector3d> look_at;        ///< what is due, for the endoscope, p_P, mm
-    std::vector<Eigen::Vector3d> path;             ///< the hand's way, shown afterwards, p_P, mm
+    std::vector<Eigen::Vector3d> outline;    ///< closed: of what a search is for, shown afterwards, p_P, mm
+    std::optional<Eigen::Vector3d> look_at;  ///< what is due, for the endoscope, p_P, mm
+    std::vector<Eigen::Vector3d> path;       ///< the hand's way, shown afterwards, p_P, mm
     std::optional<LessonPage> page;
+    bool takes_keys = false;  ///< every key goes to the page as X11 names it, none to the window
 };
 
 }  // namespace palpate::visual

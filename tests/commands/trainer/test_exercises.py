@@ -143,6 +143,25 @@ class Exercises(TrainerCase):
             expected = 100 * min(1, max(0, 1 - (error - 10) / 20))
             self.assertAlmostEqual(attempt["metrics"]["score"], expected, delta=8)
 
+    def test_a_border_is_marked_before_the_answer_and_held_against_the_outline(self):
+        path, _ = self.hand([(0, 10, 10, 26), (1, 10, 10, 20.5), (3, 10, 10, 20.5), (4, 4, 10, 20.5), (30, 4, 10, 20.5)])
+        process, _ = self.open_window("--exercise", "find", "--script", path)
+        time.sleep(0.8)
+        self.x("xdotool", "key", "k")
+        time.sleep(3.5)
+        self.x("xdotool", "key", "k")
+        self.x("xdotool", "key", "m")
+        time.sleep(0.5)
+        self.x("xdotool", "key", "k")  # too late
+        self.x("xdotool", "key", "q")
+        (attempt,) = self.finish(process)
+        outline = attempt["exercise"]["outline_mm"]
+        self.assertGreater(len(outline), 10)
+        self.assertEqual(len(attempt["border_mm"]), 2)
+        errors = [min(math.dist(point, place) for place in outline) for point in attempt["border_mm"]]
+        # The outline's points lie a millimetre apart.
+        self.assertAlmostEqual(attempt["metrics"]["border_error_mm"], sum(errors) / 2, delta=0.5)
+
     def test_what_is_hidden_stays_so_while_it_is_searched(self):
         path, _ = self.hand([(0, 10, 10, 26), (30, 10, 10, 26)])
         process, window = self.open_window("--exercise", "find", "--script", path)
@@ -156,8 +175,8 @@ class Exercises(TrainerCase):
 
     def test_mouse_and_keys_lead_through_the_pages(self):
         process, window = self.open_window()
-        # The choices stand from the lower left upwards, the last below: 'Look around first', then the exercises.
-        self.x("xdotool", "mousemove", "--window", window, 120, 720 - 20 - 28 - 30 - 15)  # free exploration
+        # From below: 'Look around first', 'Make an exercise', then exercises in two columns, the fourth at the right.
+        self.x("xdotool", "mousemove", "--window", window, 600, 720 - 20 - 28 - 2 * 30 - 37)  # free exploration
         self.x("xdotool", "click", 1)
         time.sleep(0.3)
         self.x("xdotool", "key", "Return")  # begins at once

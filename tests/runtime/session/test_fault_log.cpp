@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "runtime/session/fault_log.hpp"
+#include "runtime/session/watch/fault_log.hpp"
 
 namespace palpate {
 namespace {

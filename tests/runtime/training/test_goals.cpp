@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <gtest/gtest.h>
 
 #include "runtime/training/goals.hpp"
@@ -80,6 +81,25 @@ TEST(Goals, a_mark_beside_the_hidden_place_counts_less_the_farther_it_is) {
         EXPECT_EQ(goals.misses, misses);
         EXPECT_DOUBLE_EQ(goals.errors, distance);
     }
+}
+
+TEST(Goals, marks_of_a_border_err_by_their_distance_from_the_outline_until_the_answer) {
+    Exercise exercise = exercise_of(Task::find, {{5, 5, 0}});
+    exercise.outline = {{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}};
+    Goals goals;
+    mark_border(exercise, goals);
+    EXPECT_TRUE(std::isnan(border_error(exercise, goals))) << "nothing has been touched";
+    for (const Vector3d& place : {Vector3d(5, -1, 0), Vector3d(7, 5, 0), Vector3d(0, 5, 2)}) {
+        stay(exercise, goals, 0.1, 0.5, place);
+        mark_border(exercise, goals);
+    }
+    EXPECT_DOUBLE_EQ(border_error(exercise, goals), (1 + 3 + 2) / 3.0);
+    EXPECT_FALSE(goals.reached_all);
+    stay(exercise, goals, 0.1, 0.5, {5, 5, 0});
+    mark(exercise, goals);
+    mark_border(exercise, goals);
+    EXPECT_EQ(goals.border.size(), 3U);
+    EXPECT_EQ(goals.share, 1) << "the border does not change the answer";
 }
 
 TEST(Goals, gates_are_passed_in_their_order_and_pain_is_counted_once_each_time) {

@@ -67,6 +67,9 @@ TEST_F(LayOut, a_search_is_for_the_hidden_region_and_needs_one) {
     const auto exercise = lay_out(recipe, case_, model_, start_);
     EXPECT_EQ(exercise->region, "tumour");
     EXPECT_EQ(exercise->places.front(), hidden_regions(case_)[0].above);
+    for (const Vector3d& point : exercise->outline)
+        EXPECT_LT((point - exercise->places.front()).norm(), 20) << "around what is hidden";
+    EXPECT_GT(exercise->outline.size(), 5U);
     recipe.region = "tumor";
     EXPECT_THAT(sample::refusal([&] { lay_out(recipe, case_, model_, start_); }),
                 ::testing::HasSubstr("'tumour'"));
@@ -83,6 +86,21 @@ TEST_F(LayOut, a_line_runs_along_the_surface_and_keeps_off_its_edges) {
         EXPECT_GT(place.head<2>().minCoeff(), 0) << "on an edge";
         EXPECT_LT(place.head<2>().maxCoeff(), 20) << "on an edge";
     }
+}
+
+TEST_F(LayOut, points_of_a_written_line_are_joined_along_the_surface) {
+    ExerciseRecipe recipe = standard("trace");
+    // Over the cube's edge from its top to its side: straight on, the line would run through it.
+    recipe.places = {{10, 10, 20}, {20, 10, 10}};
+    const auto exercise = lay_out(recipe, case_, model_, start_);
+    EXPECT_GT(exercise->places.size(), 10U);
+    EXPECT_EQ(exercise->places.front(), recipe.places.front());
+    EXPECT_EQ(exercise->places.back(), recipe.places.back());
+    for (const Vector3d& place : exercise->places)
+        EXPECT_NEAR(std::max(place.x(), place.z()), 20, 1e-4) << place.transpose();
+    recipe.least_force = 0.01;
+    recipe.most_force = 0.2;
+    EXPECT_EQ(lay_out_settled(recipe, case_, model_)->places, exercise->places);
 }
 
 TEST_F(LayOut, forces_are_what_this_tissue_answers_and_those_of_the_file_go_before) {

@@ -108,6 +108,25 @@ TEST_F(LessonTest, key_or_device_button_answer_a_search_after_a_touch) {
     }
 }
 
+TEST_F(LessonTest, takes_exercises_that_are_made_on_the_way) {
+    EXPECT_EQ(lesson_.put(exercise("free", Task::free)), 2U);
+    EXPECT_EQ(lesson_.put(exercise("touch", Task::free)), 0U);
+    EXPECT_EQ(lesson_.exercises().size(), 3U);
+    lesson_.press("1");
+    lesson_.press("return");
+    EXPECT_EQ(lesson_.attempt()->exercise().task, Task::free);
+}
+
+TEST_F(LessonTest, k_sets_points_of_a_border_and_does_not_answer) {
+    lesson_.choose(1);
+    lesson_.press("return");
+    let_pass(0.1, 0, 0.5);
+    lesson_.press("k");
+    lesson_.press("k");
+    EXPECT_EQ(lesson_.phase(), Phase::doing);
+    EXPECT_EQ(lesson_.attempt()->goals().border.size(), 2U);
+}
+
 TEST_F(LessonTest, a_closed_window_cuts_an_attempt_short_and_hands_it_out) {
     lesson_.close();
     EXPECT_TRUE(endings_.empty());

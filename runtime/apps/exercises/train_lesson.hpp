@@ -6,10 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "runtime/apps/lesson_pages.hpp"
+#include "runtime/apps/exercises/lesson_pages.hpp"
 #include "runtime/session/session.hpp"
 #include "runtime/session/touch_target.hpp"
 #include "runtime/training/lesson.hpp"
+#include "runtime/training/teacher/exercise_editor.hpp"
 
 namespace palpate::apps {
 
@@ -25,25 +26,41 @@ struct LessonOptions {
 /// folder of that name here.
 std::filesystem::path usual_attempts_folder();
 
+/// An exercise as it was asked for and as it lies on the patient.
+struct LaidOut {
+    training::ExerciseRecipe recipe;
+    training::Exercise exercise;
+};
+
 /// Lays the exercises out on the session's patient, around `start`. Of the standard ones those that find no
 /// room on this patient are left out, and said; those of a file that cannot be are refused. After hold(),
 /// before the loops run. Throws as read_exercises(), lay_out(); UsageError for a pseudonym that is none or an
 /// exercise that is not there.
-std::vector<training::Exercise> lay_out_exercises(const LessonOptions& options, session::Session& run,
-                                                  const session::TouchTarget& start);
+std::vector<LaidOut> lay_out_exercises(const LessonOptions& options, session::Session& run,
+                                       const session::TouchTarget& start);
 
-/// The exercises of one run of the trainer, their attempts and the files that keep them.
+/// The exercises of one run of the trainer, their attempts and the files that keep them, and the making of
+/// new ones.
 class TrainLesson {
   public:
     /// `scripted`: a script holds the device, so that an exercise that is asked for begins at once, and no
     /// page is shown without one.
-    TrainLesson(const LessonOptions& options, std::vector<training::Exercise> exercises,
-                const session::Session& run, LessonSetting setting, bool scripted);
+    TrainLesson(const LessonOptions& options, std::vector<LaidOut> exercises, const session::Session& run,
+                LessonSetting setting, bool scripted);
     TrainLesson(const TrainLesson&) = delete;
     TrainLesson& operator=(const TrainLesson&) = delete;
 
-    training::Lesson& lesson() { return lesson_; }
-    visual::LessonView view(double force) const { return lesson_view(lesson_, setting_, force, result_); }
+    /// A key, or a page's choice, while `tick` is felt: "f2" begins to make an exercise on the start page,
+    /// and to change the chosen one while it counts down or is looked back at; see ExerciseEditor then, and
+    /// Lesson otherwise.
+    void press(const std::string& key, const TickResult& tick);
+    /// Takes a tick of any tool, see Lesson; while marks are set, a press of the lowest button sets one.
+    void take(const TickResult& tick);
+    const training::Lesson& lesson() const { return lesson_; }
+    /// Cuts an attempt short and keeps it.
+    void close() { lesson_.close(); }
+    /// `force`: N, on the device.
+    visual::LessonView view(double force) const;
     /// Where a hand that mouse and keyboard guide is to be while a guided passage counts down: on the way
     /// back through its gates to the first. `now`: where it is, p_P, mm.
     std::optional<Eigen::Vector3d> hand(const Eigen::Vector3d& now);
@@ -52,6 +69,9 @@ class TrainLesson {
 
   private:
     void keep(const training::Attempt& attempt);
+    void begin_to_edit();
+    void grant(training::Wish wish);
+    std::optional<training::Exercise> lay_out_draft();
 
     std::vector<Eigen::Vector3d> way_back_;  // empty but while that countdown goes on
 
@@ -61,6 +81,12 @@ class TrainLesson {
     visual::LessonPage result_;  // of the last attempt
     nlohmann::ordered_json attempts_ = nlohmann::ordered_json::array();
     training::Lesson lesson_;
+
+    std::vector<training::ExerciseRecipe> recipes_;  // of the lesson's exercises
+    std::filesystem::path exercise_file_;            // keeps what a teacher makes
+    std::optional<training::ExerciseEditor> editor_;
+    training::Exercise draft_;  // as the editor has it
+    bool button_ = false;       // at the last tick
 };
 
 }  // namespace palpate::apps

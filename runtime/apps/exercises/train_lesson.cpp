@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/apps/train_lesson.hpp"
+#include "runtime/apps/exercises/train_lesson.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -8,8 +8,12 @@
 #include <spdlog/spdlog.h>
 #include <utility>
 
+#include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
+#include "runtime/apps/exercises/editor_view.hpp"
+#include "runtime/apps/exercises/save_exercise.hpp"
 #include "runtime/training/lay_out.hpp"
+#include "runtime/training/touched_place.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/staged_file.hpp"
 
@@ -34,12 +38,19 @@ std::filesystem::path free_name(const std::filesystem::path& folder, std::string
     return path;
 }
 
-std::size_t index_of(const std::string& name, const std::vector<Exercise>& exercises) {
-    const auto found = std::ranges::find(exercises, name, &Exercise::name);
-    if (found != exercises.end()) return static_cast<std::size_t>(found - exercises.begin());
+std::size_t index_of(const std::string& name, const std::vector<LaidOut>& exercises) {
     std::string names;
-    for (const Exercise& exercise : exercises) names += (names.empty() ? "" : ", ") + exercise.name;
+    for (std::size_t i = 0; i < exercises.size(); ++i) {
+        if (exercises[i].recipe.name == name) return i;
+        names += (names.empty() ? "" : ", ") + exercises[i].recipe.name;
+    }
     throw UsageError({"--exercise", "no exercise '" + name + "'", names, ""});
+}
+
+std::vector<Exercise> exercises_of(const std::vector<LaidOut>& laid_out) {
+    std::vector<Exercise> exercises;
+    for (const LaidOut& each : laid_out) exercises.push_back(each.exercise);
+    return exercises;
 }
 
 }  // namespace
@@ -52,17 +63,17 @@ std::filesystem::path usual_attempts_folder() {
     return "palpate-attempts";
 }
 
-std::vector<Exercise> lay_out_exercises(const LessonOptions& options, session::Session& run,
-                                        const session::TouchTarget& start) {
+std::vector<LaidOut> lay_out_exercises(const LessonOptions& options, session::Session& run,
+                                       const session::TouchTarget& start) {
     if (!is_pseudonym(options.trainee))
         throw UsageError({"--trainee", "'" + options.trainee + "'", "1 to 40 letters, digits, '-' and '_'",
                           "a pseudonym, not a name"});
     const bool standard = options.exercises.empty();
-    std::vector<Exercise> exercises;
+    std::vector<LaidOut> exercises;
     for (const ExerciseRecipe& recipe : standard ? standard_exercises() : read_exercises(options.exercises)) {
         try {
             if (auto exercise = lay_out(recipe, run.patient_case(), run.model(), start))
-                exercises.push_back(std::move(*exercise));
+                exercises.push_back({recipe, std::move(*exercise)});
         } catch (const InvalidInput& error) {
             if (!standard) throw;
             spdlog::info("without the exercise '{}': {}", recipe.title, error.what());
@@ -72,18 +83,108 @@ std::vector<Exercise> lay_out_exercises(const LessonOptions& options, session::S
     return exercises;
 }
 
-TrainLesson::TrainLesson(const LessonOptions& options, std::vector<Exercise> exercises,
+TrainLesson::TrainLesson(const LessonOptions& options, std::vector<LaidOut> exercises,
                          const session::Session& run, LessonSetting setting, bool scripted)
     : folder_((options.attempts.empty() ? usual_attempts_folder() : std::filesystem::path(options.attempts)) /
               options.trainee),
       setting_(std::move(setting)),
       run_(run),
-      lesson_(std::move(exercises), run.patient_case(), scripted ? 0 : countdown,
-              [this](const Attempt& attempt) { keep(attempt); }) {
+      lesson_(exercises_of(exercises), run.patient_case(), scripted ? 0 : countdown,
+              [this](const Attempt& attempt) { keep(attempt); }),
+      exercise_file_(options.exercises.empty() ? usual_exercise_file(setting_.case_name)
+                                               : options.exercises) {
+    for (const LaidOut& exercise : exercises) recipes_.push_back(exercise.recipe);
     if (!options.exercise.empty())
-        lesson_.choose(index_of(options.exercise, lesson_.exercises()));
+        lesson_.choose(index_of(options.exercise, exercises));
     else if (scripted)
         lesson_.go_away();
+}
+
+void TrainLesson::press(const std::string& key, const TickResult& tick) {
+    if (!editor_) {
+        if (key == "f2")
+            begin_to_edit();
+        else
+            lesson_.press(key);
+        return;
+    }
+    const HandNow hand{.tool = vector_of(tick.tool_position),
+                       .force = vector_of(tick.force).norm(),
+                       .touched = touched_place(run_.patient_case(), tick)};
+    grant(editor_->press(key, hand));
+    if (editor_) draft_ = lay_out_draft().value_or(Exercise{});
+}
+
+void TrainLesson::begin_to_edit() {
+    if (lesson_.exercises().empty()) return;
+    const Exercise& chosen = lesson_.exercises()[lesson_.chosen()];
+    if (lesson_.phase() == Phase::counting_down || lesson_.phase() == Phase::looking_back) {
+        editor_.emplace(settled(recipes_[lesson_.chosen()], chosen));
+    } else if (lesson_.phase() == Phase::choosing) {
+        std::vector<std::string> taken;
+        for (const ExerciseRecipe& recipe : recipes_) taken.push_back(recipe.name);
+        ExerciseRecipe fresh;
+        fresh.task = Task::touch;
+        fresh.least_force = chosen.least_force;
+        fresh.most_force = chosen.most_force;
+        const auto exercise = lay_out_settled(fresh, run_.patient_case(), run_.model());
+        editor_.emplace(settled(fresh, *exercise), taken);
+    } else {
+        return;
+    }
+    lesson_.go_away();
+    draft_ = lay_out_draft().value_or(Exercise{});
+}
+
+std::optional<Exercise> TrainLesson::lay_out_draft() {
+    try {
+        auto exercise = lay_out_settled(editor_->recipe(), run_.patient_case(), run_.model());
+        if (!exercise) editor_->tell("nothing is hidden in this case");
+        return exercise;
+    } catch (const InvalidInput& error) {
+        editor_->tell(error.what());
+        return std::nullopt;
+    }
+}
+
+void TrainLesson::grant(Wish wish) {
+    if (wish == Wish::nothing) return;
+    if (wish == Wish::leave) {
+        editor_.reset();
+        lesson_.press("backspace");  // to the start page
+        return;
+    }
+    const ExerciseRecipe recipe = editor_->recipe();
+    const auto exercise = lay_out_draft();
+    if (!exercise) return;
+    try {
+        if (wish == Wish::save) {
+            save_exercise(exercise_file_, recipe);
+            editor_->tell("saved to " + exercise_file_.string());
+        }
+    } catch (const std::exception& error) {
+        editor_->tell(error.what());
+        return;
+    }
+    const std::size_t index = lesson_.put(*exercise);
+    recipes_.resize(lesson_.exercises().size());
+    recipes_[index] = recipe;
+    if (wish == Wish::save) return;
+    editor_.reset();
+    lesson_.choose(index);
+}
+
+void TrainLesson::take(const TickResult& tick) {
+    lesson_.take(tick);
+    if (tick.tool != 0) return;
+    const bool pressed = (tick.buttons & 1U) != 0;
+    if (pressed && !button_ && editor_ && !editor_->page_shown()) press("m", tick);
+    button_ = pressed;
+}
+
+visual::LessonView TrainLesson::view(double force) const {
+    if (editor_) return editor_view(*editor_, draft_, exercise_file_.filename().string());
+    return lesson_view(lesson_, setting_, force, result_);
 }
 
 std::optional<Eigen::Vector3d> TrainLesson::hand(const Eigen::Vector3d& now) {

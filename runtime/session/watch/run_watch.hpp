@@ -9,7 +9,7 @@
 #include "formats/records/status_counts.hpp"
 #include "runtime/haptics/servo_loop.hpp"
 #include "runtime/realtime/file_watch.hpp"
-#include "runtime/session/fault_log.hpp"
+#include "runtime/session/watch/fault_log.hpp"
 
 namespace palpate::session {
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/apps/lesson_pages.hpp"
+#include "runtime/apps/exercises/lesson_pages.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <utility>
 
+#include "runtime/apps/exercises/exercise_marks.hpp"
 #include "runtime/visual/cautions_text.hpp"
 
 namespace palpate::apps {
@@ -13,13 +15,16 @@ namespace {
 using namespace training;
 using namespace visual;
 
-constexpr double mark_share = 0.35;  // of the tolerance: how large a mark is drawn
-constexpr double least_mark = 0.8;   // mm
-constexpr double line_share = 0.08;  // of the tolerance: the radius of a line
-
 std::string clock_of(double seconds) {
     const auto whole = static_cast<int>(std::max(0.0, seconds));
     return fmt::format("{}:{:02}", whole / 60, whole % 60);
+}
+
+// As the exercise lies before it begins: what is hidden stays so.
+LessonPicture picture_of(const Exercise& exercise) {
+    LessonView view;
+    show_places(exercise, {}, false, view);
+    return {.marks = std::move(view.marks), .line = std::move(view.line), .line_radius = view.line_radius};
 }
 
 LessonPage start_page(const Lesson& lesson, const LessonSetting& setting) {
@@ -27,11 +32,14 @@ LessonPage start_page(const Lesson& lesson, const LessonSetting& setting) {
     page.title = setting.case_name;
     page.text = fmt::format("Trainee: {}", setting.trainee);
     page.text += "\n" + cautions_text(setting.cautions, 76);
+    page.picture = LessonPicture{.whole = true};
     int number = 0;
     for (const Exercise& exercise : lesson.exercises()) {
         ++number;
-        page.choices.push_back({fmt::format("{}", number), fmt::format("{}   {}", number, exercise.title)});
+        page.choices.push_back(
+            {std::to_string(number), fmt::format("{}   {}", number, exercise.title), picture_of(exercise)});
     }
+    page.choices.push_back({"f2", "F2   Make an exercise of your own"});
     page.choices.push_back({"backspace", "Backspace   Look around first, and come back"});
     return page;
 }
@@ -46,42 +54,6 @@ int digits_of(const std::string& unit, const std::string& name) {
     return name != "tremor" && (unit == "mm" || unit == "s") ? 1 : 2;
 }
 
-void show_places(const Exercise& exercise, const Goals& goals, bool afterwards, LessonView& view) {
-    using State = LessonMark::State;
-    const auto& places = exercise.places;
-    const double radius = std::max(least_mark, mark_share * exercise.tolerance);
-    if (exercise.task == Task::touch || exercise.task == Task::guide) {
-        const bool gates = exercise.task == Task::guide;
-        for (std::size_t i = 0; i < places.size(); ++i) {
-            const State state = i < goals.reached    ? State::done
-                                : i == goals.reached ? State::due
-                                                     : State::waiting;
-            const Eigen::Vector3d axis =
-                places[std::min(i + 1, places.size() - 1)] - places[i > 0 ? i - 1 : 0];
-            view.marks.push_back({places[i], gates ? exercise.tolerance : radius, state,
-                                  gates ? axis.normalized() : Eigen::Vector3d::Zero()});
-            if (gates && state == State::due && !afterwards) view.look_at = places[i];
-        }
-    }
-    if (exercise.task == Task::find && afterwards) {
-        view.marks.push_back({places.front(), radius, State::truth, Eigen::Vector3d::Zero()});
-        if (goals.last_touched && goals.reached > 0)
-            view.marks.push_back({*goals.last_touched, radius, State::due, Eigen::Vector3d::Zero()});
-    }
-    if (exercise.task == Task::trace) {
-        view.line = places;
-        view.line_radius = line_share * exercise.tolerance;
-        double along = 0;
-        for (std::size_t i = 0; i < places.size() && along <= goals.line_reached && goals.share > 0; ++i) {
-            view.line_done.push_back(places[i]);
-            if (i + 1 < places.size()) along += (places[i + 1] - places[i]).norm();
-        }
-        const Eigen::Vector3d& head = view.line_done.empty() ? places.front() : view.line_done.back();
-        if (!afterwards)
-            view.marks.push_back({head, 3 * view.line_radius, State::due, Eigen::Vector3d::Zero()});
-    }
-}
-
 std::string progress_of(const Exercise& exercise, const Goals& goals) {
     switch (exercise.task) {
         case Task::touch:
@@ -91,6 +63,7 @@ std::string progress_of(const Exercise& exercise, const Goals& goals) {
         case Task::trace:
             return fmt::format("{:.0f} %   ", 100 * goals.share);
         case Task::find:
+            return goals.border.empty() ? "" : fmt::format("{} border points   ", goals.border.size());
         case Task::free:
             break;
     }
@@ -154,6 +127,7 @@ LessonPage result_page(const Attempt& attempt, std::span<const PastAttempt> hist
     }
     page.choices = {{"return", "Enter   Once more"},
                     {"space", "Space   Look at the way that the hand took"},
+                    {"f2", "F2   Change this exercise"},
                     {"backspace", "Backspace   Other exercises"}};
     return page;
 }
@@ -168,7 +142,8 @@ LessonView lesson_view(const Lesson& lesson, const LessonSetting& setting, doubl
             break;
         case Phase::counting_down:
             view.instruction = lesson.exercises()[lesson.chosen()].instruction;
-            view.status = fmt::format("begins in {:.0f}   Enter: now", std::ceil(lesson.seconds_to_begin()));
+            view.status = fmt::format("begins in {:.0f}   Enter: now   F2: change it",
+                                      std::ceil(lesson.seconds_to_begin()));
             show_places(lesson.exercises()[lesson.chosen()], {}, false, view);
             break;
         case Phase::doing:

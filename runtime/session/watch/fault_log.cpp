@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/session/fault_log.hpp"
+#include "runtime/session/watch/fault_log.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>

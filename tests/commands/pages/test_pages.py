@@ -3,11 +3,13 @@
 import os
 import pathlib
 import subprocess
+import sys
 import tempfile
 import unittest
 
+sys.path.insert(0, f"{os.environ['PALPATE_SOURCE']}/tests/commands")
 import browser
-from small_cohort import SmallCohort
+from small_cohort import SmallCohort  # noqa: E402
 
 BIN = pathlib.Path(os.environ["PALPATE_BIN"])
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/session/run_watch.hpp"
+#include "runtime/session/watch/run_watch.hpp"
 
 #include <nlohmann/json.hpp>
 #include <utility>

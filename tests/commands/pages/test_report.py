@@ -6,8 +6,10 @@ import os
 import pathlib
 import shutil
 import subprocess
+import sys
 import unittest
 
+sys.path.insert(0, f"{os.environ['PALPATE_SOURCE']}/tests/commands")
 from sample_asset import SampleAsset
 
 BIN = pathlib.Path(os.environ["PALPATE_BIN"])

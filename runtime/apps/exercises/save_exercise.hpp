@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "runtime/training/exercise_file.hpp"
+
+namespace palpate::apps {
+
+/// The file in the current folder that keeps a case's exercises if no other is named: "CASE-exercises.toml".
+std::filesystem::path usual_exercise_file(const std::string& case_name);
+
+/// Puts an exercise into a file, a new one if there is none: see with_exercise(). The file appears whole, and
+/// only once read_exercises() has read the same recipe from it; otherwise the old one stays. Throws
+/// InvalidInput for a file that cannot be extended, SystemFailure if it cannot be written.
+void save_exercise(const std::filesystem::path& file, const training::ExerciseRecipe& recipe);
+
+}  // namespace palpate::apps
