@@ -323,9 +323,11 @@ void LessonPanel::show_page(const LessonPage& page, const Thumbnails& pictures, 
     for (const LessonChoice& choice : page.choices) {
         if (choice.picture) {
             const Box box = card_box(card++, left + margin, y, card_width, scale * card_height);
-            show_picture(pictures.picture_of(*choice.picture), box.left, box.bottom, scale * card_share);
-            const double text_left = box.left + scale * (card_share * Thumbnails::width + 14);
-            show_choice(choice, wrapped(choice.text, card_letters), text_left, box.top, scale, box);
+            const double picture_bottom = box.bottom + scale * 8;
+            show_picture(pictures.picture_of(*choice.picture), box.left, picture_bottom, scale * card_share);
+            show_choice(choice, wrapped(choice.text, card_letters),
+                        box.left + scale * (card_share * Thumbnails::width + 14),
+                        picture_bottom + scale * card_share * Thumbnails::height, scale, box);
         } else {
             show_choice(choice, choice.text, left + margin, choice_top, scale,
                         {left, choice_top - scale * row_height, right, choice_top});

@@ -17,6 +17,7 @@ using Eigen::Vector3d;
 constexpr double thumbnail_angle_deg = 30;
 constexpr double room_about_marks = 1.5;  // how much more than the marks themselves is seen
 constexpr double least_field = 0.25;      // of the first view's
+constexpr double whole_zoom = 1.4;        // VTK leaves room for a ball about the case
 constexpr double cut_before_marks = 0.1;  // of what is seen: how far before the marks a cut lies
 
 Eigen::AlignedBox3d box_of(const LessonPicture& picture) {
@@ -101,7 +102,11 @@ void Thumbnails::look_at(const LessonPicture& picture) {
     camera->SetPosition(eye.data());
     camera->SetViewUp(up.data());
     camera->OrthogonalizeViewUp();
-    if (picture.whole) return renderer_->ResetCamera();
+    if (picture.whole) {
+        renderer_->ResetCamera();
+        camera->Zoom(whole_zoom);
+        return;
+    }
     renderer_->ResetCameraClippingRange();
     if (!sight.blocked && !(near && sight.inside)) return;
     // What stands between the eye and the nearest of the marks is cut away, as in the window.

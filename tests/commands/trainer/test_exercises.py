@@ -146,9 +146,9 @@ class Exercises(TrainerCase):
     def test_a_border_is_marked_before_the_answer_and_held_against_the_outline(self):
         path, _ = self.hand([(0, 10, 10, 26), (1, 10, 10, 20.5), (3, 10, 10, 20.5), (4, 4, 10, 20.5), (30, 4, 10, 20.5)])
         process, _ = self.open_window("--exercise", "find", "--script", path)
-        time.sleep(0.8)
+        time.sleep(2.5)
         self.x("xdotool", "key", "k")
-        time.sleep(3.5)
+        time.sleep(3)
         self.x("xdotool", "key", "k")
         self.x("xdotool", "key", "m")
         time.sleep(0.5)

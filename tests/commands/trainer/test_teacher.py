@@ -9,7 +9,12 @@ import unittest
 
 from trainer_case import TRAIN, TrainerCase
 
-RADIUS = 1.5  # mm, of the sample's tool; the cube's free top is at z = 20 mm
+RADIUS = 1.5  # mm, of the sample's tool
+
+
+def outward(place):
+    """The normal of the side of the cube [0, 20]^3 mm on which a place lies."""
+    return [1 if abs(p - 20) < 0.01 else -1 if abs(p) < 0.01 else 0 for p in place]
 
 
 class Teacher(TrainerCase):
@@ -31,7 +36,7 @@ class Teacher(TrainerCase):
     def keys(self, *keys):
         for key in keys:
             self.x("xdotool", "key", key)
-            time.sleep(0.1)
+            time.sleep(0.3)  # a key is a page's or the window's as of the last frame
 
     def finish(self, process):
         out, err = process.communicate(timeout=30)
@@ -55,7 +60,7 @@ class Teacher(TrainerCase):
         self.press_and(window, 700, 290, "m")
         self.press_and(window, 740, 320, "m", "Delete")
         self.keys("space", "4", "plus", "plus")  # the page; the most force
-        self.keys("5", "plus", "7", "plus", "2", "BackSpace", "q", "Return")  # a title may have a q
+        self.keys("5", "plus", "7", "plus", "plus", "2", "BackSpace", "q", "Return")  # a title may have a q
         self.keys("t")  # tries it: three seconds, then it runs
         time.sleep(3.5)
         self.keys("e", "F2", "s")  # ended; changed once more; saved
@@ -66,17 +71,19 @@ class Teacher(TrainerCase):
         (file,) = self.own.glob("*.toml")
         (made,) = tomllib.loads(file.read_text())["exercise"]
         self.assertEqual((made["name"], made["task"], made["title"]), ("touch-1", "touch", "touch-q"))
-        self.assertEqual(made["time_limit_s"], 10)
+        self.assertEqual(made["time_limit_s"], 20)
         self.assertEqual(len(made["places_mm"]), 2)
         self.assertEqual(made["places_mm"], tried["exercise"]["places_mm"])
         for key in ("least_force_n", "most_force_n", "tolerance_mm", "hold_s", "title"):
             self.assertEqual(made[key], tried["exercise"][key], key)
 
         rows, t = [], 0.0
-        for x, y, z in made["places_mm"]:
-            self.assertAlmostEqual(z, 20, delta=0.01)
-            for dt, height in ((0.3, 4), (0.3, -2), (0.8, -2), (0.3, 4)):
-                rows.append(f"{(t := t + dt)} {x} {y} {20 + RADIUS + height}")
+        for place in made["places_mm"]:
+            normal = outward(place)
+            for dt, height in ((0.3, 15), (0.5, 4), (0.3, -2), (2, -2), (0.3, 4), (0.5, 15)):
+                t += dt
+                at = (p + (RADIUS + height) * n for p, n in zip(place, normal))
+                rows.append(" ".join(f"{value:.4f}" for value in (t, *at)))
         hand = self.own / "hand.txt"
         hand.write_text("\n".join(["0 " + rows[0].split(" ", 1)[1], *rows]))
         process, _ = self.start("--exercises", file, "--exercise", "touch-1", "--script", hand, "--seconds", t + 0.5)
@@ -106,8 +113,8 @@ class Teacher(TrainerCase):
         self.keys("m", "space")
         (self.own / "sample-exercises.toml").mkdir()
         self.keys("s")
+        time.sleep(1)
         (self.own / "sample-exercises.toml").rmdir()
-        time.sleep(0.5)
         self.assertEqual(list(self.own.glob("*.toml")), [])
         self.keys("s", "BackSpace", "q")
         self.finish(process)
