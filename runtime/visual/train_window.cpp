@@ -415,7 +415,7 @@ struct TrainWindow::Parts {
     ToolShadow shadow;
     Overlay overlay;
     Endoscope endoscope{window, renderer};
-    DrawnDetail detail{window, renderer, &scene, settings.sight.field};
+    DrawnDetail detail{window, renderer, &scene};
     LessonScene lesson_scene;
     Thumbnails thumbnails;
     LessonPanel panel;

@@ -14,10 +14,10 @@
 #include "formats/asset/asset.hpp"
 #include "formats/recording/recording_writer.hpp"
 #include "runtime/devices/dynamic_device.hpp"
-#include "runtime/session/watch/fault_log.hpp"
 #include "runtime/session/session.hpp"
 #include "runtime/session/statistics_json.hpp"
 #include "runtime/session/touch_target.hpp"
+#include "runtime/session/watch/fault_log.hpp"
 
 namespace palpate::experiments {
 namespace {

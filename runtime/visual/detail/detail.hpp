@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
 namespace palpate::visual {
@@ -10,9 +9,8 @@ namespace palpate::visual {
 struct Detail {
     int pixel = 1;  ///< window pixels that one drawn takes along each side
     bool fine_bodies =
-        false;               ///< rigid bodies as close to the whole as the budget allows, else a coarser copy
-    bool grain = false;      ///< the finest spots of tissue and their relief
-    bool occlusion = false;  ///< corners and hollows are darker
+        false;           ///< rigid bodies as close to the whole as the budget allows, else a coarser copy
+    bool grain = false;  ///< the finest spots of tissue and their relief
 };
 
 /// How much of the picture is drawn.
@@ -23,12 +21,7 @@ struct ShownDetail {
 };
 
 /// The levels from the least to everything, what is missed least left out first, for a window of so many
-/// pixels' height, of which 300 lines are drawn at least. `hardware`: a graphics card draws, not the
-/// processor, for which ambient occlusion is too dear.
-std::vector<Detail> detail_levels(int window_height, bool hardware);
-
-/// Tells whether that OpenGL renderer is a graphics card, by its name: Mesa's software renderers are
-/// llvmpipe, softpipe and SWR.
-bool is_hardware(std::string_view opengl_renderer);
+/// pixels' height, of which 300 lines are drawn at least.
+std::vector<Detail> detail_levels(int window_height);
 
 }  // namespace palpate::visual

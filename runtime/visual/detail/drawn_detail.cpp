@@ -1,32 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/visual/detail/drawn_detail.hpp"
 
-#include <vtkRenderStepsPass.h>
-#include <vtkSSAOPass.h>
-#include <vtkTranslucentPass.h>
-
 namespace palpate::visual {
-namespace {
-
-vtkSmartPointer<vtkRenderPass> occlusion_pass(double field) {
-    constexpr double reach_share = 0.03, bias_share = 0.0015;  // of the field
-    vtkNew<vtkRenderStepsPass> steps;
-    vtkNew<vtkTranslucentPass> translucent;
-    steps->SetTranslucentPass(translucent);
-    auto pass = vtkSmartPointer<vtkSSAOPass>::New();
-    pass->SetRadius(reach_share * field);
-    pass->SetBias(bias_share * field);
-    pass->SetKernelSize(64);
-    pass->BlurOn();
-    pass->SetDelegatePass(steps);
-    return pass;
-}
-
-}  // namespace
 
 void DrawnDetail::frame_took(double seconds) {
     if (!control_) {
-        levels_ = detail_levels(window_->GetSize()[1], is_hardware(window_->ReportCapabilities()));
+        levels_ = detail_levels(window_->GetSize()[1]);
         control_.emplace(static_cast<int>(levels_.size()));
         draw(levels_.back());
         return;
@@ -40,8 +19,6 @@ void DrawnDetail::draw(const Detail& detail) {
     if (detail.pixel > 1) {
         coarse_pixels_->set_size(detail.pixel);
         pass = coarse_pixels_;
-    } else if (detail.occlusion) {
-        pass = occlusion_pass(field_);
     }
     if (vtkRenderPass* before = renderer_->GetPass(); before != nullptr && before != pass)
         before->ReleaseGraphicsResources(window_);

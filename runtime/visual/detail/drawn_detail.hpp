@@ -16,9 +16,9 @@ namespace palpate::visual {
 /// Draws a scene in as much detail as the machine has time for.
 class DrawnDetail {
   public:
-    /// `field`: mm, height of what is seen. All outlive this.
-    DrawnDetail(vtkRenderWindow* window, vtkRenderer* renderer, Scene* scene, double field)
-        : window_(window), renderer_(renderer), scene_(scene), field_(field) {}
+    /// All outlive this.
+    DrawnDetail(vtkRenderWindow* window, vtkRenderer* renderer, Scene* scene)
+        : window_(window), renderer_(renderer), scene_(scene) {}
 
     /// A frame has come `seconds` after the one before: the next has more, less or the same.
     void frame_took(double seconds);
@@ -32,9 +32,8 @@ class DrawnDetail {
     vtkRenderWindow* window_;
     vtkRenderer* renderer_;
     Scene* scene_;
-    double field_;
     std::vector<Detail> levels_;
-    std::optional<DetailControl> control_;  // once there is an OpenGL renderer to ask for its name
+    std::optional<DetailControl> control_;  // once the window has its size
     vtkNew<CoarsePixels> coarse_pixels_;
 };
 
