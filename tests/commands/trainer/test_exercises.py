@@ -165,7 +165,10 @@ class Exercises(TrainerCase):
     def test_what_is_hidden_stays_so_while_it_is_searched(self):
         path, _ = self.hand([(0, 10, 10, 26), (30, 10, 10, 26)])
         process, window = self.open_window("--exercise", "find", "--script", path)
-        before = yellow_pixels(self.screen(window))
+        deadline = time.monotonic() + 20
+        while (before := yellow_pixels(self.screen(window))) == 0:  # the force's band is not drawn yet
+            self.assertLess(time.monotonic(), deadline, "nothing was drawn")
+            time.sleep(0.2)
         self.x("xdotool", "key", "t")
         time.sleep(0.5)
         after = yellow_pixels(self.screen(window))
