@@ -64,9 +64,13 @@ class Controls(TrainerCase):
         self.x("xdotool", "mouseup", 3)
         time.sleep(0.3)
         turned = scene()
-        self.assertNotEqual(before, turned)
+        def difference(one, other):
+            return sum(abs(a - b) for a, b in zip(one, other))
+
+        # Not to the bit: what detail there is time for may have changed meanwhile.
+        self.assertGreater(difference(before, turned), 0)
         self.x("xdotool", "key", "u")
-        self.wait_for(lambda: scene() == before)
+        self.wait_for(lambda: difference(before, scene()) < 0.3 * difference(before, turned))
         self.x("xdotool", "key", "q")
         self.finish(process)
 

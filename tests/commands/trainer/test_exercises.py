@@ -7,7 +7,7 @@ import subprocess
 import time
 import unittest
 
-from trainer_case import TRAIN, TrainerCase, yellow_pixels
+from trainer_case import TRAIN, TrainerCase, pixels, yellow_pixels
 
 RADIUS = 1.5  # mm, of the sample's tool; the cube's free top is at z = 20 mm
 
@@ -166,9 +166,10 @@ class Exercises(TrainerCase):
         path, _ = self.hand([(0, 10, 10, 26), (30, 10, 10, 26)])
         process, window = self.open_window("--exercise", "find", "--script", path)
         deadline = time.monotonic() + 20
-        while (before := yellow_pixels(self.screen(window))) == 0:  # the force's band is not drawn yet
+        while max(pixels(self.screen(window))) < 100:
             self.assertLess(time.monotonic(), deadline, "nothing was drawn")
             time.sleep(0.2)
+        before = yellow_pixels(self.screen(window))
         self.x("xdotool", "key", "t")
         time.sleep(0.5)
         after = yellow_pixels(self.screen(window))

@@ -50,7 +50,7 @@ class ScanInTheWindow(TrainerCase):
             greys = self.greys(window)
             with self.subTest(plane):
                 self.assertGreater(len(greys), before + 2000)
-                self.assertGreater(len(set(greys)), 60)  # the scan's values rise all over
+                self.assertGreater(len(set(greys)), 25)  # the scan's values rise all over
         self.press("x")
         self.assertLess(len(self.greys(window)), before + 200)
         self.finish(process)
