@@ -5,6 +5,7 @@ import pathlib
 import shutil
 import subprocess
 import sys
+import time
 import unittest
 
 sys.path.insert(0, f"{os.environ['PALPATE_SOURCE']}/tests/commands")
@@ -47,9 +48,13 @@ class TrainerCase(SampleAsset):
         return self.x("xwd", "-silent", "-id", window)
 
     def find_window(self):
-        """The id of the trainer's window, which has the focus and the pointer in its middle."""
+        """The id of the trainer's window, which is drawn and has the focus and the pointer in its middle."""
         window = self.x("xdotool", "search", "--sync", "--onlyvisible", "--name", "Palpate: sample").split()[0]
         window = window.decode()
+        deadline = time.monotonic() + 20
+        while max(pixels(self.screen(window))) < 100:
+            self.assertLess(time.monotonic(), deadline, "nothing was drawn")
+            time.sleep(0.2)
         self.x("xdotool", "windowfocus", "--sync", window)
         self.x("xdotool", "mousemove", "--window", window, 640, 360)
         return window
