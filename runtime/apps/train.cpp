@@ -257,7 +257,7 @@ Json train(const Options& options, cli::Session& session) {
             window_settings.sight.close_up.insert(window_settings.sight.close_up.end(),
                                                   laid_out.exercise.places.rbegin(),
                                                   laid_out.exercise.places.rend());
-    TrainLesson lesson(options.lesson, std::move(exercises), run,
+    TrainLesson lesson(options.lesson, exercises, run,
                        {.case_name = patient_case.name,
                         .trainee = options.lesson.trainee,
                         .cautions = window_settings.cautions},

@@ -83,7 +83,7 @@ std::vector<LaidOut> lay_out_exercises(const LessonOptions& options, session::Se
     return exercises;
 }
 
-TrainLesson::TrainLesson(const LessonOptions& options, std::vector<LaidOut> exercises,
+TrainLesson::TrainLesson(const LessonOptions& options, const std::vector<LaidOut>& exercises,
                          const session::Session& run, LessonSetting setting, bool scripted)
     : folder_((options.attempts.empty() ? usual_attempts_folder() : std::filesystem::path(options.attempts)) /
               options.trainee),

@@ -45,8 +45,8 @@ class TrainLesson {
   public:
     /// `scripted`: a script holds the device, so that an exercise that is asked for begins at once, and no
     /// page is shown without one.
-    TrainLesson(const LessonOptions& options, std::vector<LaidOut> exercises, const session::Session& run,
-                LessonSetting setting, bool scripted);
+    TrainLesson(const LessonOptions& options, const std::vector<LaidOut>& exercises,
+                const session::Session& run, LessonSetting setting, bool scripted);
     TrainLesson(const TrainLesson&) = delete;
     TrainLesson& operator=(const TrainLesson&) = delete;
 

@@ -339,8 +339,8 @@ void LessonPanel::show_page(const LessonPage& page, const Thumbnails& pictures, 
 // Cards stand two in a row, from `top` down.
 LessonPanel::Box LessonPanel::card_box(std::size_t card, double left, double top, double width,
                                        double height) {
-    const double x = left + width * static_cast<double>(card % 2),
-                 y = top - height * static_cast<double>(card / 2);
+    const std::size_t row = card / 2, column = card % 2;
+    const double x = left + width * static_cast<double>(column), y = top - height * static_cast<double>(row);
     return {x, y - height, x + width, y};
 }
 
