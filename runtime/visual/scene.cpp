@@ -6,20 +6,17 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <vtkArrowSource.h>
 #include <vtkCellArray.h>
-#include <vtkLineSource.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkProperty.h>
-#include <vtkSphereSource.h>
-#include <vtkTubeFilter.h>
 
 #include "formats/model/regions.hpp"
 #include "runtime/visual/actors.hpp"
 #include "runtime/visual/bodies/tissue_colours.hpp"
 #include "runtime/visual/region_surface.hpp"
+#include "runtime/visual/tools/tool_shapes.hpp"
 
 namespace palpate::visual {
 namespace {
@@ -44,15 +41,6 @@ Vector3d shaft_way(const Sight& sight) {
     const Vector3d aside =
         sight.inside ? Vector3d(-0.2 * sight.axes().col(1)) : Vector3d(sight.toward_eye.unitOrthogonal());
     return (sight.toward_eye + aside).normalized();
-}
-
-vtkSmartPointer<vtkActor> ball(double radius, const Rgb& colour, int resolution) {
-    vtkNew<vtkSphereSource> sphere;
-    sphere->SetRadius(radius);
-    sphere->SetThetaResolution(resolution);
-    sphere->SetPhiResolution(resolution);
-    sphere->Update();
-    return actor(sphere->GetOutput(), colour);
 }
 
 // A coil along the x axis, 1 long and 1 wide.
@@ -134,25 +122,8 @@ void Scene::add_tool(vtkRenderer* renderer, vtkRenderer* front) {
     device_ = ball(0.6 * tool_radius_, white, 10);
     device_->GetProperty()->SetRepresentationToWireframe();
 
-    vtkNew<vtkLineSource> axis;
-    axis->SetPoint1(0, 0, 0);
-    axis->SetPoint2(shaft_length_, 0, 0);
-    vtkNew<vtkTubeFilter> tube;
-    tube->SetInputConnection(axis->GetOutputPort());
-    tube->SetRadius(0.45 * tool_radius_);
-    tube->SetNumberOfSides(16);
-    tube->CappingOn();
-    tube->Update();
-    shaft_ = actor(tube->GetOutput(), steel);
-
-    vtkNew<vtkArrowSource> arrow;
-    arrow->SetShaftRadius(0.045);
-    arrow->SetTipRadius(0.11);
-    arrow->SetTipLength(0.3);
-    arrow->SetShaftResolution(16);
-    arrow->SetTipResolution(24);
-    arrow->Update();
-    arrow_ = actor(arrow->GetOutput(), white);
+    shaft_ = tool_shaft(tool_radius_, shaft_length_, steel);
+    arrow_ = force_arrow(1, white);
     arrow_->GetProperty()->SetAmbient(0.4);
     for (const auto& part : {tool_, shaft_}) renderer->AddActor(part);
     spring_ = coil(white);

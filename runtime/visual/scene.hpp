@@ -12,8 +12,8 @@
 #include "runtime/visual/bodies/rigid_surface.hpp"
 #include "runtime/visual/bodies/soft_surface.hpp"
 #include "runtime/visual/detail/detail.hpp"
-#include "runtime/visual/playback/other_tools.hpp"
 #include "runtime/visual/sight.hpp"
+#include "runtime/visual/tools/other_tools.hpp"
 #include "runtime/visual/visual_frame.hpp"
 
 namespace palpate::visual {

@@ -7,6 +7,7 @@
 
 #include "runtime/visual/lesson/lesson_view.hpp"
 #include "runtime/visual/playback/playback_view.hpp"
+#include "runtime/visual/tools/other_tool.hpp"
 
 namespace palpate::visual {
 

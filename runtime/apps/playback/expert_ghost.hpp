@@ -5,7 +5,7 @@
 
 #include "runtime/session/playback/recorded_track.hpp"
 #include "runtime/training/lesson.hpp"
-#include "runtime/visual/playback/playback_view.hpp"
+#include "runtime/visual/tools/other_tool.hpp"
 
 namespace palpate::apps {
 

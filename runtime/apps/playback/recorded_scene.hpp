@@ -6,7 +6,7 @@
 #include "runtime/haptics/haptic_model.hpp"
 #include "runtime/session/playback/recorded_surfaces.hpp"
 #include "runtime/session/playback/recorded_track.hpp"
-#include "runtime/visual/playback/playback_view.hpp"
+#include "runtime/visual/tools/other_tool.hpp"
 #include "runtime/visual/sight.hpp"
 #include "runtime/visual/visual_frame.hpp"
 

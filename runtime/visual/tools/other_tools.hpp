@@ -7,7 +7,7 @@
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
 
-#include "runtime/visual/playback/playback_view.hpp"
+#include "runtime/visual/tools/other_tool.hpp"
 
 namespace palpate::visual {
 

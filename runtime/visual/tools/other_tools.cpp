@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/visual/playback/other_tools.hpp"
+#include "runtime/visual/tools/other_tools.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <vtkArrowSource.h>
-#include <vtkLineSource.h>
-#include <vtkNew.h>
 #include <vtkProperty.h>
 #include <vtkShaderProperty.h>
-#include <vtkSphereSource.h>
-#include <vtkTubeFilter.h>
 
 #include "runtime/visual/actors.hpp"
+#include "runtime/visual/tools/tool_shapes.hpp"
 
 namespace palpate::visual {
 namespace {
@@ -30,41 +26,6 @@ void make_sieve(vtkActor* actor) {
         false);
 }
 
-vtkSmartPointer<vtkActor> sphere_of(double radius, const Rgb& colour) {
-    vtkNew<vtkSphereSource> sphere;
-    sphere->SetRadius(radius);
-    sphere->SetThetaResolution(20);
-    sphere->SetPhiResolution(20);
-    sphere->Update();
-    return actor(sphere->GetOutput(), colour);
-}
-
-// Along the x axis.
-vtkSmartPointer<vtkActor> shaft_of(const OtherToolLook& look, const Rgb& colour) {
-    vtkNew<vtkLineSource> axis;
-    axis->SetPoint1(0, 0, 0);
-    axis->SetPoint2(look.shaft_length, 0, 0);
-    vtkNew<vtkTubeFilter> tube;
-    tube->SetInputConnection(axis->GetOutputPort());
-    tube->SetRadius(0.4 * look.radius);
-    tube->SetNumberOfSides(12);
-    tube->CappingOn();
-    tube->Update();
-    return actor(tube->GetOutput(), colour);
-}
-
-// 1 long, along the x axis.
-vtkSmartPointer<vtkActor> arrow_of(double width, const Rgb& colour) {
-    vtkNew<vtkArrowSource> arrow;
-    arrow->SetShaftRadius(0.045 * width);
-    arrow->SetTipRadius(0.11 * width);
-    arrow->SetTipLength(0.3);
-    arrow->SetShaftResolution(12);
-    arrow->SetTipResolution(16);
-    arrow->Update();
-    return actor(arrow->GetOutput(), colour);
-}
-
 }  // namespace
 
 OtherTools::OtherTools(const OtherToolLook& look, vtkRenderer* renderer, vtkRenderer* front)
@@ -73,9 +34,9 @@ OtherTools::OtherTools(const OtherToolLook& look, vtkRenderer* renderer, vtkRend
 OtherTools::Actors OtherTools::make(bool ghost) const {
     const Rgb& colour = ghost ? ghost_colour : tool_colour;
     Actors actors{.ghost = ghost,
-                  .ball = sphere_of(look_.radius, colour),
-                  .shaft = shaft_of(look_, colour),
-                  .arrow = arrow_of(ghost ? ghost_arrow_width : 1, colour)};
+                  .ball = ball(look_.radius, colour, 20),
+                  .shaft = tool_shaft(look_.radius, look_.shaft_length, colour),
+                  .arrow = force_arrow(ghost ? ghost_arrow_width : 1, colour)};
     for (const auto& part : {actors.ball, actors.shaft, actors.arrow}) {
         part->GetProperty()->SetAmbient(0.4);
         part->GetProperty()->SetDiffuse(0.6);
