@@ -13,15 +13,8 @@ BUTTON_ROW = 690  # pixels from the window's top
 
 class Controls(TrainerCase):
     def open_window(self, *options):
-        process = subprocess.Popen(
-            [TRAIN, self.asset, "--json", "-", *map(str, options)],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-            env=self.server.environment, cwd=self.folder)
-        self.addCleanup(process.communicate)
-        self.addCleanup(process.kill)
-        window = self.find_window()
-        self.x("xdotool", "key", "BackSpace")  # leave the start page
-        time.sleep(0.5)
+        process, window = super().open_window(*options)
+        self.leave_start_page(window)
         return process, window
 
     def click(self, window, x, y=BUTTON_ROW):
@@ -35,11 +28,6 @@ class Controls(TrainerCase):
                 return
             time.sleep(0.5)
         self.fail("what was waited for did not come within ten seconds")
-
-    def finish(self, process):
-        out, err = process.communicate(timeout=30)
-        self.assertEqual(process.returncode, 0, err)
-        return json.loads(out)
 
     def test_a_button_does_what_its_key_does_and_touches_nothing(self):
         process, window = self.open_window()

@@ -43,12 +43,8 @@ class Ends(DeviceRun, TrainerCase):
         np.savetxt(hand, HELD)
         self.attempts = self.fresh("-attempts")
         recording = self.fresh(".h5")
-        process = subprocess.Popen(
-            [TRAIN, self.asset, "--exercise", "free", "--attempts", self.attempts, "--trainee", "T-1", "--script", hand,
-             "--record", recording, "--record-seconds", "60", *map(str, options)],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment or self.server.environment)
-        self.addCleanup(process.communicate)
-        self.addCleanup(process.kill)
+        process = self.launch("--exercise", "free", "--attempts", self.attempts, "--trainee", "T-1", "--script", hand,
+                              "--record", recording, "--record-seconds", 60, *options, environment=environment)
         self.wait_for_force(recording)
         return process, recording
 

@@ -33,8 +33,11 @@ class Exercises(TrainerCase):
     def setUp(self):
         self.attempts = self.folder / self.id()
 
+    def kept(self):
+        return "--attempts", self.attempts, "--trainee", "T-1"
+
     def command(self, *options):
-        return [TRAIN, self.asset, "--attempts", self.attempts, "--trainee", "T-1", "--json", "-", *map(str, options)]
+        return [TRAIN, self.asset, "--json", "-", *map(str, (*self.kept(), *options))]
 
     def hand(self, rows):
         path = self.folder / "hand.txt"
@@ -57,23 +60,10 @@ class Exercises(TrainerCase):
         return self.with_hand(exercise, [(0, 50, 50, 50), (0.1, 50, 50, 50)], *options)["exercise"]
 
     def open_window(self, *options):
-        process = subprocess.Popen(
-            self.command(*options),
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            env=self.server.environment,
-        )
-        self.addCleanup(process.communicate)
-        self.addCleanup(process.kill)
-        window = self.find_window()
-        time.sleep(0.5)
-        return process, window
+        return super().open_window(*self.kept(), *options)
 
     def finish(self, process):
-        out, err = process.communicate(timeout=30)
-        self.assertEqual(process.returncode, 0, err)
-        return json.loads(out)["attempts"]
+        return super().finish(process)["attempts"]
 
     def small_marks(self):
         path = self.folder / "marks.toml"

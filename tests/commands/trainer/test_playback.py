@@ -55,20 +55,9 @@ class Playback(TrainerCase):
         self.assertEqual(run.returncode, expect, run.stderr)
         return json.loads(run.stdout) if expect == 0 else run.stderr
 
-    def open_window(self, *options):
-        process = subprocess.Popen([TRAIN, self.asset, "--json", "-", *map(str, options)], stdout=subprocess.PIPE,
-                                   stderr=subprocess.PIPE, text=True, env=self.server.environment, cwd=self.folder)
-        self.addCleanup(process.communicate)
-        self.addCleanup(process.kill)
-        window = self.find_window()
-        time.sleep(0.5)
-        return process, window
-
-    def finish(self, process):
+    def close(self, process):
         self.x("xdotool", "key", "q")
-        out, err = process.communicate(timeout=30)
-        self.assertEqual(process.returncode, 0, err)
-        return json.loads(out)
+        return self.finish(process)
 
     def assert_as_recorded(self, result):
         last = result["last"]
@@ -100,7 +89,7 @@ class Playback(TrainerCase):
         time.sleep(0.3)
         self.x("xdotool", "mouseup", 1)
         time.sleep(0.6)
-        result = self.finish(process)
+        result = self.close(process)
         self.assert_as_recorded(result)
         self.assertEqual(result["schema"], "palpate.train.playback/1")
         self.assertAlmostEqual(result["last"]["tick"], self.peak, delta=1.1 * len(self.forces) / SIZE[0] + 1)
@@ -113,7 +102,7 @@ class Playback(TrainerCase):
         time.sleep(0.3)
         self.x("xdotool", "key", "Right", "Right", "Right", "period", "period", "Left")
         time.sleep(0.6)
-        result = self.finish(process)
+        result = self.close(process)
         self.assert_as_recorded(result)
         self.assertEqual(result["speed"], 4)
         self.assertEqual(result["last"]["tick"], 0)  # three steps of 0.1 s on, one of 0.4 s back
@@ -161,10 +150,7 @@ class Playback(TrainerCase):
         before = sorted(self.folder.iterdir())
         for film in ((), ("--speed", 0.125, "--video", self.folder / "never.ogv")):
             with XServer() as server:
-                options = ("--json", "-", "--play", self.run_file, *map(str, film))
-                process = subprocess.Popen([TRAIN, self.asset, *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                           text=True, env=server.environment)
-                self.addCleanup(process.kill)
+                process = self.launch("--play", self.run_file, *film, environment=server.environment)
                 subprocess.run(["xdotool", "search", "--sync", "--onlyvisible", "--name", "Palpate: sample"],
                                env=server.environment, check=True, capture_output=True, timeout=60)
                 time.sleep(0.5)

@@ -1,25 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """The scan in the trainer's window: slices through the tool, and what a cut lays open."""
 
-import json
 import subprocess
 import time
 import unittest
 
-from trainer_case import TRAIN, TrainerCase
+from trainer_case import TrainerCase
 
 
 class ScanInTheWindow(TrainerCase):
     def open_window(self):
-        process = subprocess.Popen(
-            [TRAIN, self.asset, "--json", "-"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-            env=self.server.environment, cwd=self.folder)
-        self.addCleanup(process.communicate)
-        self.addCleanup(process.kill)
-        window = self.find_window()
-        self.x("xdotool", "key", "BackSpace")  # leave the start page
-        self.x("xdotool", "mousemove", "--window", window, 150, 300)
-        time.sleep(0.5)
+        process, window = super().open_window()
+        self.leave_start_page(window)
         self.x("xdotool", "key", "h")  # hints fade by themselves
         return process, window
 
@@ -27,11 +19,9 @@ class ScanInTheWindow(TrainerCase):
         self.x("xdotool", "key", key)
         time.sleep(0.8)
 
-    def finish(self, process):
+    def close(self, process):
         self.x("xdotool", "key", "q")
-        out, err = process.communicate(timeout=30)
-        self.assertEqual(process.returncode, 0, err)
-        return json.loads(out)
+        return self.finish(process)
 
     def scene(self, window):
         """The pixels between texts and buttons, as (r, g, b)."""
@@ -53,7 +43,7 @@ class ScanInTheWindow(TrainerCase):
                 self.assertGreater(len(set(greys)), 25)  # the scan's values rise all over
         self.press("x")
         self.assertLess(len(self.greys(window)), before + 200)
-        self.finish(process)
+        self.close(process)
 
 
 if __name__ == "__main__":

@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """A teacher makes an exercise in a real window of palpate-train, by mouse and keys; a hand does it afterwards."""
 
-import json
-import subprocess
 import time
 import tomllib
 import unittest
 
-from trainer_case import TRAIN, TrainerCase
+from trainer_case import TrainerCase
 
 RADIUS = 1.5  # mm, of the sample's tool
 
@@ -23,12 +21,7 @@ class Teacher(TrainerCase):
         self.own.mkdir()
 
     def start(self, *options):
-        process = subprocess.Popen(
-            [TRAIN, self.asset, "--attempts", self.own / "attempts", "--json", "-", *map(str, options)],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-            env=self.server.environment, cwd=self.own)
-        self.addCleanup(process.communicate)
-        self.addCleanup(process.kill)
+        process = self.launch("--attempts", self.own / "attempts", *options, folder=self.own)
         window = self.find_window()
         time.sleep(1)  # the start page's pictures are taken
         return process, window
@@ -39,9 +32,7 @@ class Teacher(TrainerCase):
             time.sleep(0.3)  # a key is a page's or the window's as of the last frame
 
     def finish(self, process):
-        out, err = process.communicate(timeout=30)
-        self.assertEqual(process.returncode, 0, err)
-        return json.loads(out)["attempts"]
+        return super().finish(process)["attempts"]
 
     def press_and(self, window, x, y, *keys):
         """Presses the organ under a pixel, and keys meanwhile."""

@@ -10,10 +10,15 @@ import unittest
 
 from trainer_case import TRAIN, TrainerCase, yellow_pixels
 
-ON_THE_ORGAN, BESIDE_THE_ORGAN = (760, 250), (150, 300)  # pixels of the first view
+ON_THE_ORGAN = 760, 250  # pixels of the first view
 
 
 class Train(TrainerCase):
+    def open_window(self, *options):
+        process, window = super().open_window(*options)
+        self.leave_start_page(window)
+        return process, window
+
     def run_train(self, *options, environment=None):
         return subprocess.run(
             [TRAIN, *map(str, options)],
@@ -22,29 +27,6 @@ class Train(TrainerCase):
             timeout=60,
             env=environment or self.server.environment,
         )
-
-    def open_window(self, *options):
-        """Starts the trainer and returns its process and the id of its window, which has the focus."""
-        process = subprocess.Popen(
-            [TRAIN, self.asset, "--json", "-", *map(str, options)],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            env=self.server.environment,
-            cwd=self.folder,
-        )
-        self.addCleanup(process.communicate)
-        self.addCleanup(process.kill)
-        window = self.find_window()
-        self.x("xdotool", "mousemove", "--window", window, *BESIDE_THE_ORGAN)
-        self.x("xdotool", "key", "BackSpace")  # leave the start page
-        time.sleep(0.5)
-        return process, window
-
-    def finish(self, process):
-        out, err = process.communicate(timeout=30)
-        self.assertEqual(process.returncode, 0, err)
-        return json.loads(out)
 
     def colours(self, window):
         """How many colours the window on the screen has."""

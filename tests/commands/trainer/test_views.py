@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Views of palpate-train in a real window: the endoscope, whole and in a corner, and how much is drawn."""
 
-import json
-import subprocess
 import time
 import unittest
 
-from trainer_case import TRAIN, TrainerCase
+from trainer_case import TrainerCase, pixels
 
 BESIDE_THE_CIRCLE, IN_THE_CIRCLE = (1150, 690), (640, 360)  # of an endoscope that fills 1280x720 pixels
 # Of one in the window's corner: 360 pixels wide, 22 from the right edge and 72 from below.
@@ -17,29 +15,13 @@ DETAIL = 50  # of a channel's 255: what grain and edges may change of a pixel wh
 
 class Views(TrainerCase):
     def open_window(self):
-        process = subprocess.Popen(
-            [TRAIN, self.asset, "--json", "-"],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            env=self.server.environment,
-            cwd=self.folder,
-        )
-        self.addCleanup(process.communicate)
-        self.addCleanup(process.kill)
-        window = self.find_window()
-        for _ in range(100):
-            time.sleep(0.2)
-            if BLACK not in self.pixels(window, BESIDE_THE_CIRCLE, CORNER_OF_THE_CORNER):
-                break
+        process, window = super().open_window()
         self.press("BackSpace")  # leave the start page
         return process, window
 
     def close(self, process):
         self.x("xdotool", "key", "q")
-        out, err = process.communicate(timeout=30)
-        self.assertEqual(process.returncode, 0, err)
-        return json.loads(out)
+        return self.finish(process)
 
     def press(self, *keys):
         for key in keys:
@@ -48,9 +30,7 @@ class Views(TrainerCase):
 
     def pixels(self, window, *places):
         """Red, green and blue of the window's pixels."""
-        rgb = subprocess.run(
-            ["convert", "xwd:-", "-depth", "8", "rgb:-"], input=self.screen(window), capture_output=True, check=True
-        ).stdout
+        rgb = pixels(self.screen(window))
         self.assertEqual(len(rgb), 3 * 1280 * 720)
         return [tuple(rgb[3 * (1280 * y + x) :][:3]) for x, y in places]
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The trainer in a display of its own, driven as a person would."""
+import json
 import os
 import pathlib
 import shutil
@@ -12,6 +13,7 @@ sys.path.insert(0, f"{os.environ['PALPATE_SOURCE']}/tests/commands")
 from sample_asset import SampleAsset  # noqa: E402
 from x_server import NEEDED, XServer  # noqa: E402
 
+BESIDE_THE_ORGAN = 150, 300  # pixels of the sample's first view
 TRAIN = pathlib.Path(os.environ["PALPATE_BIN"]) / "palpate-train"
 
 
@@ -46,6 +48,33 @@ class TrainerCase(SampleAsset):
     def screen(self, window):
         """What the window shows, as xwd has it."""
         return self.x("xwd", "-silent", "-id", window)
+
+    def launch(self, *options, environment=None, folder=None):
+        """The trainer on the sample, its result going to its stdout; it does not outlive the test."""
+        process = subprocess.Popen(
+            [TRAIN, self.asset, "--json", "-", *map(str, options)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+            text=True, env=environment or self.server.environment, cwd=folder or self.folder)
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        return process
+
+    def open_window(self, *options):
+        """The trainer and its window, on the start page unless the options say otherwise."""
+        process = self.launch(*options)
+        window = self.find_window()
+        time.sleep(0.5)
+        return process, window
+
+    def leave_start_page(self, window):
+        self.x("xdotool", "mousemove", "--window", window, *BESIDE_THE_ORGAN)
+        self.x("xdotool", "key", "BackSpace")
+        time.sleep(0.5)
+
+    def finish(self, process):
+        """What the trainer printed, once it has ended in order."""
+        out, err = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 0, err)
+        return json.loads(out)
 
     def find_window(self):
         """The id of the trainer's window, which is drawn and has the focus and the pointer in its middle."""
