@@ -23,7 +23,6 @@ std::map<std::string, std::int64_t> StatusCounts::by_name() const {
 }
 
 std::uint32_t StatusCounts::recent(double time) const noexcept {
-    constexpr double reading_time = 2;  // s
     std::uint32_t flags = tick_ok;
     for (std::size_t i = 0; i < counts_.size(); ++i)
         if (counts_[i].ticks > 0 && time - counts_[i].last < reading_time) flags |= status_texts()[i].status;

@@ -9,6 +9,9 @@
 
 namespace palpate {
 
+/// For how long what is gone is still shown, so that an eye can read it, s.
+inline constexpr double reading_time = 2;
+
 /// How many ticks of a run had each flag of TickStatus, how many a fault, and when each flag was there last.
 class StatusCounts {
   public:
@@ -17,7 +20,7 @@ class StatusCounts {
 
     /// Name of each flag that was there at all, and the number of its ticks.
     std::map<std::string, std::int64_t> by_name() const;
-    /// Flags that were there within the last two seconds of `time` (s), for an eye to read.
+    /// Flags that were there within reading_time of `time` (s).
     std::uint32_t recent(double time) const noexcept;
     /// A sentence on the flags that a user must know of (StatusText::told) and on faults but the run's end,
     /// with counts; empty if there were none.

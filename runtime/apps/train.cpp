@@ -3,10 +3,7 @@
 #include <charconv>
 #include <chrono>
 #include <optional>
-#include <span>
 #include <spdlog/spdlog.h>
-#include <thread>
-#include <utility>
 #include <vector>
 
 #include "formats/model/arrays.hpp"
@@ -15,17 +12,15 @@
 #include "runtime/apps/exercises/train_lesson.hpp"
 #include "runtime/apps/first_sight.hpp"
 #include "runtime/apps/playback/expert_ghost.hpp"
-#include "runtime/apps/playback/recorded_scene.hpp"
 #include "runtime/apps/playback/train_playback.hpp"
 #include "runtime/apps/point_option.hpp"
 #include "runtime/apps/run_keys.hpp"
-#include "runtime/apps/servo_pulse.hpp"
 #include "runtime/apps/start_recording.hpp"
 #include "runtime/apps/tell_statuses.hpp"
+#include "runtime/apps/train_run.hpp"
 #include "runtime/devices/mounted_device.hpp"
 #include "runtime/devices/simulation.hpp"
 #include "runtime/session/device_list.hpp"
-#include "runtime/session/drawn_shape.hpp"
 #include "runtime/session/hand_script.hpp"
 #include "runtime/session/session.hpp"
 #include "runtime/session/statistics_json.hpp"
@@ -91,61 +86,6 @@ DeviceRequest request_of(const Options& options, const DeviceKind& device, const
     return request;
 }
 
-// Everything felt since the start, and how far the first device went.
-struct Felt {
-    double force_peak = 0;  // N
-    double depth_peak = 0;  // mm
-    double travel = 0;      // mm, of the device
-    std::optional<Eigen::Vector3d> last_position;
-
-    void add(const TickResult& tick) {
-        const Eigen::Vector3d position = vector_of(tick.device_position);
-        force_peak = std::max(force_peak, vector_of(tick.force).norm());
-        depth_peak = std::max(depth_peak, tick.depth);
-        if (tick.tool > 0) return;
-        if (last_position) travel += (position - *last_position).norm();
-        last_position = position;
-    }
-};
-
-// The tick rate over the last half second or more.
-class TickRate {
-  public:
-    double update(std::int64_t tick) {
-        const auto now = Clock::now();
-        const double seconds = std::chrono::duration<double>(now - since_).count();
-        if (seconds > 0.5) {
-            rate_ = static_cast<double>(tick - tick_) / seconds;
-            since_ = now;
-            tick_ = tick;
-        }
-        return rate_;
-    }
-
-  private:
-    Clock::time_point since_ = Clock::now();
-    std::int64_t tick_ = 0;
-    double rate_ = 0;
-};
-
-// The tick of each tool, of which the first is shown as the one that is held.
-void fill_frame(VisualFrame& frame, std::span<const TickResult* const> ticks, DrawnShape& shape) {
-    const TickResult& tick = *ticks.front();
-    frame.device_position = Eigen::Map<const Eigen::Vector3d>(tick.device_position.data());
-    frame.tool_position = Eigen::Map<const Eigen::Vector3d>(tick.tool_position.data());
-    frame.force = Eigen::Map<const Eigen::Vector3d>(tick.force.data());
-    frame.depth = tick.depth;
-    frame.overruns = tick.overruns;
-    shape.follow(ticks, frame.displacements);
-    frame.other_tools.clear();
-    for (const TickResult* other : ticks.subspan(1)) frame.other_tools.push_back(other_tool_of(*other));
-}
-
-struct Shown {
-    realtime::Histogram frame_ns;
-    double seconds = 0;
-};
-
 // Where the tool starts: where it is told to, in an exercise where something is to be felt, otherwise as
 // 'touch'.
 TouchTarget start_of(const Options& options, const Session& run) {
@@ -156,65 +96,6 @@ TouchTarget start_of(const Options& options, const Session& run) {
     if (!options.script.empty() && options.lesson.exercise.empty())
         return choose_touch_target(run.patient_case(), run.model(), options.body, std::nullopt);
     return training::choose_start(run.patient_case(), run.model(), options.body, seed);
-}
-
-// Shows the run in the window until the user or the time ends it. `held`: a person's hand turns the tool.
-Shown show(const Options& options, Session& run, TrainWindow& window, VisualFrame& frame, Felt& felt,
-           TrainLesson& lesson, RunKeys& run_keys, const ExpertGhost* ghost, bool held) {
-    constexpr auto shortest_frame = std::chrono::nanoseconds(1'000'000'000 / 60);
-    const Session::Sink take = [&](const TickResult& tick) {
-        felt.add(tick);
-        lesson.take(tick);
-    };
-    TickRate rate;
-    ServoPulse pulse;
-    Shown shown;
-    std::vector<const TickResult*> ticks(run.model().tool_count());
-    const HapticModel* shaped_by = nullptr;
-    std::optional<DrawnShape> shape;  // anew with each contact method
-    run.start();
-    const auto began = Clock::now();
-    auto frame_began = began;
-    const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - began).count(); };
-    while (!window.closed() && !window.lost() && !cli::interrupt_asked() &&
-           (options.seconds <= 0 || elapsed() < options.seconds)) {
-        for (std::size_t tool = 0; tool < ticks.size(); ++tool) ticks[tool] = &run.latest(tool);
-        const TickResult& tick = *ticks.front();
-        pulse.see(tick.tick);
-        if (std::exchange(shaped_by, &run.model()) != &run.model())
-            shape.emplace(run.patient_case(), run.model());
-        fill_frame(frame, ticks, *shape);
-        if (held) frame.shaft = vector_of(tick.shaft);
-        frame.faults = run.recent_faults(tick.time);
-        frame.statuses = run.statuses().recent(tick.time);
-        frame.tick_rate_hz = rate.update(tick.tick);
-        for (const std::string& key : window.take_keys()) {
-            lesson.press(key, tick);
-            if (frame.lesson.takes_keys) continue;
-            const std::string told = run_keys.press(key, lesson.lesson().exercising());
-            if (!told.empty()) window.tell(told);
-        }
-        frame.recording = run_keys.recording();
-        if (const auto hand = lesson.hand(window.hand())) window.place_hand(*hand);
-        frame.lesson = lesson.view(frame.force.norm());
-        if (ghost)
-            for (const OtherTool& expert : ghost->beside(lesson.lesson(), tick.time))
-                frame.other_tools.push_back(expert);
-        window.show(frame);
-        run.visual_beat();
-        run.guide(window.hand());
-        run.pump(take);
-        std::this_thread::sleep_until(frame_began + shortest_frame);
-        const auto now = Clock::now();
-        shown.frame_ns.record(
-            static_cast<std::uint64_t>(std::chrono::nanoseconds(now - frame_began).count()));
-        frame_began = now;
-    }
-    shown.seconds = elapsed();
-    run.stop();
-    run.pump(take);
-    lesson.close();
-    return shown;
 }
 
 Json train(const Options& options, cli::Session& session) {
@@ -274,10 +155,15 @@ Json train(const Options& options, cli::Session& session) {
     const double first_frame_s = std::chrono::duration<double>(Clock::now() - asked).count();
 
     if (!options.record.empty()) start_recording(run, options.record, options.record_seconds, session);
-    Felt felt;
     RunKeys run_keys(run, options.record_seconds, session);
-    const auto [frame_ns, seconds] = show(options, run, window, frame, felt, lesson, run_keys,
-                                          ghost ? &*ghost : nullptr, !device.kind.simulated);
+    const auto [frame_ns, seconds, felt] = run_in_window({.session = run,
+                                                          .window = window,
+                                                          .lesson = lesson,
+                                                          .keys = run_keys,
+                                                          .ghost = ghost ? &*ghost : nullptr,
+                                                          .shows_shaft = !device.kind.simulated,
+                                                          .seconds = options.seconds},
+                                                         frame);
     if (cli::interrupt_asked()) {
         spdlog::warn("interrupted: the force has gone to zero, recording and attempts alone are kept");
         throw cli::Interrupted();

@@ -10,26 +10,20 @@
 
 namespace palpate::session {
 
-/// The shape of a case's deformable bodies as a picture of a run shows it. For one thread; the model must
-/// outlive it.
+/// The shape of a case's deformable bodies as a picture of a run shows it. For one thread.
 class DrawnShape {
   public:
-    DrawnShape(const Case& patient_case, const haptics::HapticModel& model);
+    explicit DrawnShape(const Case& patient_case);
 
-    /// Writes where the contacts of all tools' ticks take each body, one displacement (mm) for each surface
-    /// vertex: HapticModel::surface_displacement(), and where the method lets tissue creep what the ticks
-    /// followed before left behind. Beside a running tick; linear in the surfaces.
-    void follow(std::span<const TickResult* const> ticks,
+    /// Writes where the contacts of all tools' ticks take each body at `time` (s), one displacement (mm) for
+    /// each surface vertex: HapticModel::surface_displacement(), and where the model's method lets tissue
+    /// creep what the ticks followed before left behind. `model` is that of the ticks, beside which it may
+    /// go on ticking. Linear in the surfaces for each tool.
+    void follow(const haptics::HapticModel& model, double time, std::span<const TickResult* const> ticks,
                 std::span<std::vector<Eigen::Vector3f>> displacements);
-    /// The same of one tool.
-    void follow(const TickResult& tick, std::span<std::vector<Eigen::Vector3f>> displacements) {
-        const TickResult* one = &tick;
-        follow({&one, 1}, displacements);
-    }
 
   private:
-    const haptics::HapticModel& model_;
-    std::vector<haptics::DrawnCreep> creep_;
+    std::vector<haptics::DrawnCreep> creep_;  // by body
     std::vector<Eigen::Vector3f> of_one_tool_;
 };
 

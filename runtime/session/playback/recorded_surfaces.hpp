@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "formats/model/body.hpp"
-#include "runtime/haptics/drawn_creep.hpp"
 #include "runtime/haptics/haptic_model.hpp"
+#include "runtime/session/drawn_shape.hpp"
 #include "runtime/session/playback/recorded_track.hpp"
 
 namespace palpate::session {
@@ -26,17 +26,16 @@ class RecordedSurfaces {
     void at(double time, std::span<std::vector<Eigen::Vector3f>> displacements);
 
   private:
-    void displace(double time, std::span<std::vector<Eigen::Vector3f>> displacements);
     void follow(double time, std::span<std::vector<Eigen::Vector3f>> displacements);
 
     const recording::Recording& recording_;
     const haptics::HapticModel& model_;
-    std::vector<RecordedTrack> tracks_;               // of the tools that have one
-    std::vector<haptics::DrawnCreep> fresh_, creep_;  // by body; empty where nothing creeps
-    double memory_;                                   // s
+    std::vector<RecordedTrack> tracks_;  // of the tools that have one
+    DrawnShape fresh_, shape_;           // before anything was followed, and now
+    double memory_;                      // s; 0 where nothing creeps
     double time_ = 0;
     bool followed_ = false;
-    std::vector<Eigen::Vector3f> of_one_tool_;
+    std::vector<TickResult> ticks_;  // that are shown
 };
 
 }  // namespace palpate::session

@@ -8,6 +8,7 @@
 
 #include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
+#include "formats/records/status_counts.hpp"
 #include "runtime/session/touch_target.hpp"
 
 namespace palpate::session {
@@ -54,7 +55,6 @@ double tick_rate_at(const RecordedTrack& track, double time) {
 }
 
 RecentFlags flags_until(const Recording& recording, double time) {
-    constexpr double reading_time = 2;  // s
     RecentFlags flags;
     const auto since = std::ranges::upper_bound(recording.ticks, time - reading_time, {}, &Tick::time);
     for (auto row = since; row != recording.ticks.end() && row->time <= time; ++row) {

@@ -39,7 +39,7 @@ struct RecentFlags {
     std::uint32_t statuses = tick_ok;
 };
 
-/// The flags of all tools' ticks in the two seconds that end at `time` (s). Linear in those ticks.
+/// The flags of all tools' ticks in the reading_time that ends at `time` (s). Linear in those ticks.
 RecentFlags flags_until(const recording::Recording& recording, double time);
 
 /// Least and largest force (N) in each of `columns` (1 or more) equal parts of the track's time. A part

@@ -13,7 +13,6 @@ RunWatch::RunWatch(const std::filesystem::path& asset, haptics::ServoLoop& loop,
 }
 
 std::uint32_t RunWatch::recent(double time) const {
-    constexpr double reading_time = 2;  // s
     std::uint32_t faults = no_fault;
     for (const FaultEvent& event : log_.events())
         if (time - event.until < reading_time) faults |= event.fault;

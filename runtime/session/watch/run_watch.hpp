@@ -28,7 +28,7 @@ class RunWatch {
         statuses_.add(result);
     }
 
-    /// Flags of the faults that were there within the last two seconds of `time` (s), for an eye to read.
+    /// Flags of the faults that were there within reading_time of `time` (s).
     std::uint32_t recent(double time) const;
     /// Of all tools' ticks.
     const StatusCounts& statuses() const { return statuses_; }

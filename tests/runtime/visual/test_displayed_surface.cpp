@@ -66,7 +66,7 @@ class DisplayedSurface : public ::testing::Test {
     void press_and_compare(const DeformableBody& body, double tolerance) {
         const Case patient_case = cube(body);
         haptics::HapticModel model(patient_case);
-        session::DrawnShape shape(patient_case, model);
+        session::DrawnShape shape(patient_case);
         std::vector<std::vector<Vector3f>> displacements{
             std::vector<Vector3f>(body.boundary.nodes.size(), Vector3f::Constant(9))};  // which must go
         vtkNew<vtkRenderer> renderer;
@@ -86,7 +86,8 @@ class DisplayedSurface : public ::testing::Test {
                               23 + 3 * std::cos(5 * t)};
             model.tick(state, tick);
             if (i % 16 != 0) continue;
-            shape.follow(tick, displacements);
+            const TickResult* ticks = &tick;
+            shape.follow(model, tick.time, {&ticks, 1}, displacements);
             surface.deform(displacements[0]);
             const std::vector<Vector3d> positions = expected(tick);
             several += tick.contact_count > 1;

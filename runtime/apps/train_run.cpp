@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/apps/train_run.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <iterator>
+#include <span>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "formats/model/arrays.hpp"
+#include "runtime/apps/playback/recorded_scene.hpp"
+#include "runtime/apps/servo_pulse.hpp"
+#include "runtime/session/drawn_shape.hpp"
+#include "tools/cli/command.hpp"
+
+namespace palpate::apps {
+namespace {
+
+using namespace visual;
+
+using Clock = std::chrono::steady_clock;
+
+// The tick rate over the last half second or more.
+class TickRate {
+  public:
+    double update(std::int64_t tick) {
+        const auto now = Clock::now();
+        const double seconds = std::chrono::duration<double>(now - since_).count();
+        if (seconds > 0.5) {
+            rate_ = static_cast<double>(tick - tick_) / seconds;
+            since_ = now;
+            tick_ = tick;
+        }
+        return rate_;
+    }
+
+  private:
+    Clock::time_point since_ = Clock::now();
+    std::int64_t tick_ = 0;
+    double rate_ = 0;
+};
+
+// What the run says of itself. `ticks`: of each tool, of which the first is shown as the one that is held.
+void fill_frame(const TrainRun& run, std::span<const TickResult* const> ticks, VisualFrame& frame) {
+    const TickResult& tick = *ticks.front();
+    frame.device_position = vector_of(tick.device_position);
+    frame.tool_position = vector_of(tick.tool_position);
+    frame.force = vector_of(tick.force);
+    frame.depth = tick.depth;
+    frame.overruns = tick.overruns;
+    if (run.shows_shaft) frame.shaft = vector_of(tick.shaft);
+    frame.faults = run.session.recent_faults(tick.time);
+    frame.statuses = run.session.statuses().recent(tick.time);
+    frame.recording = run.keys.recording();
+    frame.lesson = run.lesson.view(frame.force.norm());
+    frame.other_tools.clear();
+    for (const TickResult* other : ticks.subspan(1)) frame.other_tools.push_back(other_tool_of(*other));
+    if (run.ghost)
+        std::ranges::move(run.ghost->beside(run.lesson.lesson(), tick.time),
+                          std::back_inserter(frame.other_tools));
+}
+
+void take_keys(const TrainRun& run, const TickResult& tick, bool page_takes_them) {
+    for (const std::string& key : run.window.take_keys()) {
+        run.lesson.press(key, tick);
+        if (page_takes_them) continue;
+        const std::string told = run.keys.press(key, run.lesson.lesson().exercising());
+        if (!told.empty()) run.window.tell(told);
+    }
+}
+
+}  // namespace
+
+void Felt::add(const TickResult& tick) {
+    const Eigen::Vector3d position = vector_of(tick.device_position);
+    force_peak = std::max(force_peak, vector_of(tick.force).norm());
+    depth_peak = std::max(depth_peak, tick.depth);
+    if (tick.tool > 0) return;
+    if (last_position) travel += (position - *last_position).norm();
+    last_position = position;
+}
+
+TrainOutcome run_in_window(const TrainRun& run, VisualFrame& frame) {
+    constexpr auto shortest_frame = std::chrono::nanoseconds(1'000'000'000 / 60);
+    session::Session& session = run.session;
+    TrainOutcome outcome;
+    const session::Session::Sink take = [&](const TickResult& tick) {
+        outcome.felt.add(tick);
+        run.lesson.take(tick);
+    };
+    TickRate rate;
+    ServoPulse pulse;
+    session::DrawnShape shape(session.patient_case());
+    std::vector<const TickResult*> ticks(session.model().tool_count());
+    session.start();
+    const auto began = Clock::now();
+    auto frame_began = began;
+    const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - began).count(); };
+    while (!run.window.closed() && !run.window.lost() && !cli::interrupt_asked() &&
+           (run.seconds <= 0 || elapsed() < run.seconds)) {
+        take_keys(run, session.latest(), frame.lesson.takes_keys);
+        for (std::size_t tool = 0; tool < ticks.size(); ++tool) ticks[tool] = &session.latest(tool);
+        const TickResult& tick = *ticks.front();
+        pulse.see(tick.tick);
+        if (const auto hand = run.lesson.hand(run.window.hand())) run.window.place_hand(*hand);
+        frame.tick_rate_hz = rate.update(tick.tick);
+        shape.follow(session.model(), tick.time, ticks, frame.displacements);
+        fill_frame(run, ticks, frame);
+        run.window.show(frame);
+        session.visual_beat();
+        session.guide(run.window.hand());
+        session.pump(take);
+        std::this_thread::sleep_until(frame_began + shortest_frame);
+        const auto now = Clock::now();
+        outcome.frame_ns.record(
+            static_cast<std::uint64_t>(std::chrono::nanoseconds(now - frame_began).count()));
+        frame_began = now;
+    }
+    outcome.seconds = elapsed();
+    session.stop();
+    session.pump(take);
+    run.lesson.close();
+    return outcome;
+}
+
+}  // namespace palpate::apps
