@@ -5,11 +5,8 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <vtkActor2D.h>
-#include <vtkCellArray.h>
 #include <vtkCoordinate.h>
 #include <vtkPoints.h>
-#include <vtkPolyData.h>
-#include <vtkPolyDataMapper2D.h>
 #include <vtkProperty2D.h>
 #include <vtkRenderer.h>
 #include <vtkTextActor.h>
@@ -19,6 +16,7 @@
 #include "formats/records/fault.hpp"
 #include "formats/records/tick_result.hpp"
 #include "runtime/visual/cautions_text.hpp"
+#include "runtime/visual/quads.hpp"
 
 namespace palpate::visual {
 namespace {
@@ -45,28 +43,10 @@ void start_left_of_its_place(vtkTextActor* actor) {
 }
 
 void make_bar(vtkActor2D* actor, vtkPoints* points, double opacity, vtkRenderer* renderer) {
-    vtkNew<vtkCellArray> cells;
-    cells->InsertNextCell({0, 1, 2, 3});
-    vtkNew<vtkPolyData> data;
-    data->SetPoints(points);
-    data->SetPolys(cells);
-    vtkNew<vtkPolyDataMapper2D> mapper;
-    mapper->SetInputData(data);
-    actor->SetMapper(mapper);
-    actor->GetProperty()->SetColor(1, 1, 1);
-    actor->GetProperty()->SetOpacity(opacity);
+    make_quads(actor, points, Rgb(255, 255, 255), opacity, renderer);
     actor->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
     actor->SetPosition(0.017, 0.885);
-    renderer->AddActor2D(actor);
-}
-
-void set_size(vtkPoints* points, double length, double height) {
-    points->SetNumberOfPoints(4);
-    points->SetPoint(0, 0, 0, 0);
-    points->SetPoint(1, length, 0, 0);
-    points->SetPoint(2, length, height, 0);
-    points->SetPoint(3, 0, height, 0);
-    points->Modified();
+    actor->VisibilityOn();
 }
 
 }  // namespace
@@ -134,7 +114,7 @@ void Overlay::fit_window() {
     for (const SizedText& text : texts_)
         text.actor->GetTextProperty()->SetFontSize(static_cast<int>(std::lround(scale * text.size)));
     cautions_->SetPosition(-scale * cautions_room, 0);
-    set_size(whole_bar_points_, scale * bar_width, scale * bar_height);
+    set_quad(whole_bar_points_, 0, 0, 0, scale * bar_width, scale * bar_height);
 }
 
 void Overlay::update(const VisualFrame& frame, double frames_per_second, const ShownDetail& detail) {
@@ -147,7 +127,7 @@ void Overlay::update(const VisualFrame& frame, double frames_per_second, const S
         show_texts();
     }
     const double share = std::min(1.0, newtons / max_force_);
-    set_size(bar_points_, scale_ * bar_width * share, scale_ * bar_height);
+    set_quad(bar_points_, 0, 0, 0, scale_ * bar_width * share, scale_ * bar_height);
     bar_->GetProperty()->SetColor(share < 0.5 ? 0.35 + 1.3 * share : 1,
                                   share < 0.5 ? 0.82 : 1.64 - 1.64 * share, 0.3);
     const auto now = std::chrono::steady_clock::now();

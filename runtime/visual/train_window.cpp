@@ -2,13 +2,11 @@
 #include "runtime/visual/train_window.hpp"
 
 #include <Eigen/Geometry>
-#include <X11/Xlib.h>
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <functional>
-#include <future>
 #include <map>
 #include <optional>
 #include <span>
@@ -24,7 +22,7 @@
 
 #include "formats/model/errors.hpp"
 #include "runtime/visual/controls/button_bar.hpp"
-#include "runtime/visual/controls/display_loss.hpp"
+#include "runtime/visual/controls/display.hpp"
 #include "runtime/visual/controls/free_path.hpp"
 #include "runtime/visual/controls/view_history.hpp"
 #include "runtime/visual/detail/drawn_detail.hpp"
@@ -54,23 +52,6 @@ constexpr double zoom_pixels = 20;    // of a drag that zooms by one step
 constexpr double shadow_share = 0.3;  // of the field: how far the tool's shadow falls
 constexpr double clear_share = 0.04;  // of the field: what a cut leaves before the target
 constexpr double clear_radii = 3;     // tool radii that a cut leaves before the tool
-
-// A connection of our own: VTK aborts where no display answers, and a server that loses its last client
-// between a test and the window would start anew.
-struct DisplayConnection {
-    DisplayConnection() : display(XOpenDisplay(nullptr)) {
-        if (display == nullptr)
-            throw SystemFailure(
-                {.culprit = "DISPLAY",
-                 .found = "no X display answers, and the window needs one",
-                 .expected = "",
-                 .next_step = "log in to a desktop, set DISPLAY, or try 'xvfb-run palpate train ...'"});
-    }
-    DisplayConnection(const DisplayConnection&) = delete;
-    DisplayConnection& operator=(const DisplayConnection&) = delete;
-    ~DisplayConnection() { XCloseDisplay(display); }
-    Display* display;
-};
 
 // What moving the pointer does while a button is held.
 enum class Drag { none, turn, shift, roll, zoom };
@@ -154,12 +135,9 @@ struct TrainWindow::Parts {
         front->ResetCameraClippingRange();
         if (!cut) return;
         vtkCamera* camera = renderer->GetActiveCamera();
-        const Vector3d eye = view_axes(camera)[2];
-        const auto distance = [&](const Vector3d& p) { return eye.dot(Vector3d(camera->GetPosition()) - p); };
-        const double near = std::min(distance(settings.sight.target) - clear_share * settings.sight.field,
-                                     distance(tool) - clear_radii * tool_radius);
-        const double far = camera->GetClippingRange()[1];
-        camera->SetClippingRange(std::max(near, 1e-3 * far), far);
+        const Sight& sight = settings.sight;
+        clip_before(camera, std::min(depth_of(camera, sight.target) - clear_share * sight.field,
+                                     depth_of(camera, tool) - clear_radii * tool_radius));
     }
 
     void handle(unsigned long event) {
@@ -374,32 +352,10 @@ struct TrainWindow::Parts {
 
     // Whoever is asked to find something is not shown where it is.
     void see_exercise(bool goes_on) {
-        if (scan && goes_on != exercising) scan->hide(goes_on);
         exercising = goes_on;
         if (!exercising || !regions_shown) return;
         regions_shown = false;
         scene.show_regions(false);
-    }
-
-    // Compressing a large picture takes up to a second, for which the window must not stand still.
-    void take_picture() {
-        picture_asked = false;
-        if (picture.valid()) return overlay.tell("the last picture is still being written");
-        picture = std::async(std::launch::async,
-                             [path = free_path(std::filesystem::current_path(), case_name, ".png"),
-                              pixels = grab_pixels(window)]() -> std::string {
-                                 try {
-                                     write_picture(path, pixels);
-                                     return "picture: " + path.filename().string();
-                                 } catch (const SystemFailure& failure) {
-                                     return failure.what();
-                                 }
-                             });
-    }
-
-    void tell_of_picture() {
-        using namespace std::chrono_literals;
-        if (picture.valid() && picture.wait_for(0s) == std::future_status::ready) overlay.tell(picture.get());
     }
 
     DisplayConnection display;
@@ -431,7 +387,7 @@ struct TrainWindow::Parts {
     bool exercising = false;
     bool page_takes_keys = false;
     bool picture_asked = false;
-    std::future<std::string> picture;  // being written; what is to be said of it then
+    PictureWriter pictures;
     Drag drag = Drag::none;
     bool closed = false;
     std::int64_t frames = 0;
@@ -456,7 +412,10 @@ void TrainWindow::show(const VisualFrame& frame) {
                                                    shadow_share * p.settings.sight.field));
     p.scene.show_inside(p.cut);
     p.look(frame);
-    if (p.scan) p.scan->follow(frame.tool_position, p.cut && !p.endoscope.fills_window());
+    if (p.scan && frame.lesson.hides_regions)
+        p.scan->hide();
+    else if (p.scan)
+        p.scan->follow(frame.tool_position, p.cut && !p.endoscope.fills_window());
     p.overlay.update(frame, frame.film_rate_hz.value_or(frames_per_second()), detail());
     p.see_exercise(frame.lesson.hides_regions);
     p.page_takes_keys = frame.lesson.takes_keys;
@@ -468,8 +427,9 @@ void TrainWindow::show(const VisualFrame& frame) {
     p.buttons.update(!frame.lesson.page && !frame.film_rate_hz, size[0], size[1]);
     p.timeline.update(frame.timeline);
     p.window->Render();
-    if (p.picture_asked) p.take_picture();
-    p.tell_of_picture();
+    if (std::exchange(p.picture_asked, false))
+        p.overlay.tell(p.pictures.write(p.window, free_path(".", p.case_name, ".png")));
+    if (const auto told = p.pictures.outcome()) p.overlay.tell(*told);
     if (frame.lesson.page && p.frames > 0)  // the first frame is not to wait for them
         p.thumbnails.take_next(*frame.lesson.page, display_scale(size[0], size[1]));
     ++p.frames;

@@ -2,13 +2,13 @@
 #include "runtime/apps/exercises/save_exercise.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <iterator>
 #include <vector>
 
 #include "formats/model/errors.hpp"
 #include "runtime/training/teacher/exercise_text.hpp"
+#include "runtime/visual/controls/free_path.hpp"
 #include "tools/cli/staged_file.hpp"
 
 namespace palpate::apps {
@@ -16,10 +16,7 @@ namespace palpate::apps {
 using namespace training;
 
 std::filesystem::path usual_exercise_file(const std::string& case_name) {
-    std::string name = case_name;
-    std::ranges::replace_if(
-        name, [](unsigned char letter) { return letter >= 128 || std::isalnum(letter) == 0; }, '-');
-    return name + "-exercises.toml";
+    return visual::plain_name(case_name) + "-exercises.toml";
 }
 
 void save_exercise(const std::filesystem::path& file, const ExerciseRecipe& recipe) {

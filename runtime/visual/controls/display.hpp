@@ -3,6 +3,20 @@
 
 namespace palpate::visual {
 
+/// A connection of our own to the X display: VTK aborts where none answers, and a server that loses its last
+/// client between a test and the window would start anew.
+class DisplayConnection {
+  public:
+    /// Throws SystemFailure if no display answers.
+    DisplayConnection();
+    DisplayConnection(const DisplayConnection&) = delete;
+    DisplayConnection& operator=(const DisplayConnection&) = delete;
+    ~DisplayConnection();
+
+  private:
+    void* display_;  // a Display*, whose header has names for everything
+};
+
 /// From now on the process survives it where the X server of this display (a Display*) goes away, or the
 /// connection to it, or a window of ours that another program destroys. Xlib would end the process on the
 /// spot, with a force on the hand and nothing kept. Afterwards its calls do nothing. Once in a process, in

@@ -2,6 +2,7 @@
 #include "runtime/visual/hand/view_control.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -51,6 +52,15 @@ void pan_view(vtkCamera* camera, double dx, double dy, int window_height) {
     const Vector3d new_focus = focus + way, new_place = Vector3d(camera->GetPosition()) + way;
     camera->SetFocalPoint(new_focus.data());
     camera->SetPosition(new_place.data());
+}
+
+double depth_of(vtkCamera* camera, const Vector3d& place) {
+    return view_axes(camera)[2].dot(Vector3d(camera->GetPosition()) - place);
+}
+
+void clip_before(vtkCamera* camera, double depth) {
+    const double far = camera->GetClippingRange()[1];
+    camera->SetClippingRange(std::max(depth, 1e-3 * far), far);
 }
 
 }  // namespace palpate::visual

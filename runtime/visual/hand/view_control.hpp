@@ -20,4 +20,10 @@ void turn_view(vtkCamera* camera, double dx, double dy);
 void roll_view(vtkCamera* camera, double dx);
 void pan_view(vtkCamera* camera, double dx, double dy, int window_height);
 
+/// How far before the eye a place (p_P, mm) lies, along the way it looks, mm.
+double depth_of(vtkCamera* camera, const Eigen::Vector3d& place);
+
+/// Leaves out what lies nearer before the eye than that, mm; never so near that depth loses its precision.
+void clip_before(vtkCamera* camera, double depth);
+
 }  // namespace palpate::visual

@@ -14,7 +14,7 @@ namespace palpate::visual {
 /// between. Of some thousand directions over the wall it is the one along which a lens of 1.5 mm backs out
 /// farthest, steep ones before grazing ones, and of the way's farther part the place with most room, at most
 /// 45 mm away. Nothing where it backs out less than 15 mm. The same for the same surfaces. Cost: a sweep of
-/// each surface for each direction, some 20 ms for a skull.
+/// each surface for each direction.
 std::optional<Sight> choose_passage_sight(std::span<const collision::CollisionSurface* const> surfaces,
                                           const Eigen::Vector3d& point, const Eigen::Vector3d& normal);
 

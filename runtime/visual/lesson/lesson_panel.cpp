@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <sstream>
 #include <vtkAxis.h>
-#include <vtkCellArray.h>
 #include <vtkContextScene.h>
 #include <vtkDoubleArray.h>
 #include <vtkFloatArray.h>
@@ -15,13 +14,13 @@
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataMapper2D.h>
-#include <vtkProperty2D.h>
 #include <vtkTable.h>
 #include <vtkTextProperty.h>
 #include <vtkTexture.h>
 #include <vtkTexturedActor2D.h>
 
 #include "runtime/visual/overlay.hpp"
+#include "runtime/visual/quads.hpp"
 
 namespace palpate::visual {
 namespace {
@@ -37,31 +36,6 @@ constexpr double band_width = 320, band_height = 12;
 
 int font(double size, double scale) {
     return std::max(9, static_cast<int>(size * scale));
-}
-
-void make_rectangle(vtkActor2D* actor, vtkPoints* points, double red, double green, double blue,
-                    double opacity, vtkRenderer* renderer) {
-    points->SetNumberOfPoints(4);
-    vtkNew<vtkCellArray> cells;
-    cells->InsertNextCell({0, 1, 2, 3});
-    vtkNew<vtkPolyData> data;
-    data->SetPoints(points);
-    data->SetPolys(cells);
-    vtkNew<vtkPolyDataMapper2D> mapper;
-    mapper->SetInputData(data);
-    actor->SetMapper(mapper);
-    actor->GetProperty()->SetColor(red, green, blue);
-    actor->GetProperty()->SetOpacity(opacity);
-    actor->VisibilityOff();
-    renderer->AddActor2D(actor);
-}
-
-void set_rectangle(vtkPoints* points, double left, double bottom, double right, double top) {
-    points->SetPoint(0, left, bottom, 0);
-    points->SetPoint(1, right, bottom, 0);
-    points->SetPoint(2, right, top, 0);
-    points->SetPoint(3, left, top, 0);
-    points->Modified();
 }
 
 void make_text(vtkTextActor* actor, bool centred, vtkRenderer* renderer) {
@@ -215,11 +189,11 @@ std::string wrapped(const std::string& text, std::size_t letters) {
 }  // namespace
 
 LessonPanel::LessonPanel(vtkRenderer* renderer) : renderer_(renderer) {
-    make_rectangle(sheet_, sheet_points_, 0.04, 0.055, 0.07, 0.88, renderer);
-    make_rectangle(below_, below_points_, 0.45, 0.48, 0.52, 0.8, renderer);
-    make_rectangle(within_, within_points_, 0.35, 0.70, 0.95, 0.9, renderer);
-    make_rectangle(above_, above_points_, 0.95, 0.55, 0.15, 0.9, renderer);
-    make_rectangle(pointer_, pointer_points_, 1, 1, 1, 1, renderer);
+    make_quads(sheet_, sheet_points_, Rgb(10, 14, 18), 0.88, renderer);
+    make_quads(below_, below_points_, Rgb(115, 122, 133), 0.8, renderer);
+    make_quads(within_, within_points_, Rgb(89, 178, 242), 0.9, renderer);
+    make_quads(above_, above_points_, Rgb(242, 140, 38), 0.9, renderer);
+    make_quads(pointer_, pointer_points_, Rgb(255, 255, 255), 1, renderer);
     for (vtkTextActor* actor : {instruction_.Get(), status_.Get(), warning_.Get()})
         make_text(actor, true, renderer);
     for (vtkTextActor* actor : {instruction_.Get(), status_.Get(), warning_.Get()}) {
@@ -258,11 +232,11 @@ void LessonPanel::show_band(const LessonView& view, double force, int width, int
     const auto at = [&](double newtons) {
         return left + whole * std::min(1.0, newtons / (1.5 * view.most_force));
     };
-    set_rectangle(below_points_, left, bottom, at(view.least_force), top);
-    set_rectangle(within_points_, at(view.least_force), bottom, at(view.most_force), top);
-    set_rectangle(above_points_, at(view.most_force), bottom, left + whole, top);
-    set_rectangle(pointer_points_, at(force) - 2 * scale, bottom - 5 * scale, at(force) + 2 * scale,
-                  top + 5 * scale);
+    set_quad(below_points_, 0, left, bottom, at(view.least_force), top);
+    set_quad(within_points_, 0, at(view.least_force), bottom, at(view.most_force), top);
+    set_quad(above_points_, 0, at(view.most_force), bottom, left + whole, top);
+    set_quad(pointer_points_, 0, at(force) - 2 * scale, bottom - 5 * scale, at(force) + 2 * scale,
+             top + 5 * scale);
 }
 
 void LessonPanel::hide_page() {
@@ -292,7 +266,7 @@ void LessonPanel::show_page(const LessonPage& page, const Thumbnails& pictures, 
         {display_scale(width, height), (width - outside) / size.width, (height - outside) / size.height});
     const double margin = scale * page_margin, left = scale * edge, bottom = scale * edge;
     const double right = left + scale * size.width, top = bottom + scale * size.height;
-    set_rectangle(sheet_points_, left, bottom, right, top);
+    set_quad(sheet_points_, 0, left, bottom, right, top);
     sheet_->VisibilityOn();
     set_text(title_, page.title, left + margin, top - margin, font(26, scale));
     set_text(text_, page.text, left + margin, top - margin - scale * title_height, font(16, scale));
@@ -358,27 +332,18 @@ void LessonPanel::show_choice(const LessonChoice& choice, const std::string& tex
 void LessonPanel::show_picture(vtkImageData* pixels, double left, double bottom, double scale) {
     if (pixels == nullptr) return;
     vtkNew<vtkPoints> corners;
-    corners->SetNumberOfPoints(4);
-    set_rectangle(corners, left, bottom, left + scale * Thumbnails::width,
-                  bottom + scale * Thumbnails::height);
+    vtkNew<vtkTexturedActor2D> picture;
+    make_quads(picture, corners, Rgb(255, 255, 255), 1, renderer_);
+    set_quad(corners, 0, left, bottom, left + scale * Thumbnails::width, bottom + scale * Thumbnails::height);
     vtkNew<vtkFloatArray> places;  // in the picture
     places->SetNumberOfComponents(2);
     for (const auto& [x, y] : {std::pair(0, 0), {1, 0}, {1, 1}, {0, 1}}) places->InsertNextTuple2(x, y);
-    vtkNew<vtkCellArray> cells;
-    cells->InsertNextCell({0, 1, 2, 3});
-    vtkNew<vtkPolyData> data;
-    data->SetPoints(corners);
-    data->SetPolys(cells);
-    data->GetPointData()->SetTCoords(places);
-    vtkNew<vtkPolyDataMapper2D> mapper;
-    mapper->SetInputData(data);
+    vtkPolyDataMapper2D::SafeDownCast(picture->GetMapper())->GetInput()->GetPointData()->SetTCoords(places);
     vtkNew<vtkTexture> texture;
     texture->SetInputData(pixels);
     texture->InterpolateOn();
-    vtkNew<vtkTexturedActor2D> picture;
-    picture->SetMapper(mapper);
     picture->SetTexture(texture);
-    renderer_->AddActor2D(picture);
+    picture->VisibilityOn();
     pictures_.emplace_back(picture);
 }
 

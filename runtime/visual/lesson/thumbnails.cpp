@@ -9,6 +9,8 @@
 #include <vtkRendererCollection.h>
 #include <vtkUnsignedCharArray.h>
 
+#include "runtime/visual/hand/view_control.hpp"
+
 namespace palpate::visual {
 namespace {
 
@@ -110,11 +112,9 @@ void Thumbnails::look_at(const LessonPicture& picture) {
     renderer_->ResetCameraClippingRange();
     if (!sight.blocked && !(near && sight.inside)) return;
     // What stands between the eye and the nearest of the marks is cut away, as in the window.
-    double distance = sight.toward_eye.dot(eye - (near ? sight.focus : sight.target));
-    for (const LessonMark& mark : picture.marks)
-        distance = std::min(distance, sight.toward_eye.dot(eye - mark.place));
-    const double far = camera->GetClippingRange()[1];
-    camera->SetClippingRange(std::max(distance - cut_before_marks * sight.field, 1e-3 * far), far);
+    double depth = depth_of(camera, near ? sight.focus : sight.target);
+    for (const LessonMark& mark : picture.marks) depth = std::min(depth, depth_of(camera, mark.place));
+    clip_before(camera, depth - cut_before_marks * sight.field);
 }
 
 }  // namespace palpate::visual

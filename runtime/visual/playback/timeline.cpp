@@ -4,65 +4,27 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
-#include <vtkCellArray.h>
 #include <vtkCommand.h>
-#include <vtkPolyData.h>
-#include <vtkPolyDataMapper2D.h>
-#include <vtkProperty2D.h>
 #include <vtkRenderWindow.h>
 #include <vtkTextProperty.h>
 
 #include "runtime/visual/overlay.hpp"
+#include "runtime/visual/quads.hpp"
 
 namespace palpate::visual {
-namespace {
-
-// Draws quads, four points each, in pixels.
-void set_up_quads(vtkActor2D* actor, vtkPoints* points, const Eigen::Vector3d& colour, double opacity) {
-    vtkNew<vtkPolyData> data;
-    data->SetPoints(points);
-    vtkNew<vtkPolyDataMapper2D> mapper;
-    mapper->SetInputData(data);
-    actor->SetMapper(mapper);
-    actor->GetProperty()->SetColor(colour[0], colour[1], colour[2]);
-    actor->GetProperty()->SetOpacity(opacity);
-}
-
-void set_quad_count(vtkActor2D* actor, vtkPoints* points, vtkIdType count) {
-    points->SetNumberOfPoints(4 * count);
-    vtkNew<vtkCellArray> cells;
-    for (vtkIdType i = 0; i < count; ++i) cells->InsertNextCell({4 * i, 4 * i + 1, 4 * i + 2, 4 * i + 3});
-    auto* mapper = vtkPolyDataMapper2D::SafeDownCast(actor->GetMapper());
-    mapper->GetInput()->SetPolys(cells);
-}
-
-void set_quad(vtkPoints* points, vtkIdType quad, double left, double right, double low, double high) {
-    points->SetPoint(4 * quad, left, low, 0);
-    points->SetPoint(4 * quad + 1, right, low, 0);
-    points->SetPoint(4 * quad + 2, right, high, 0);
-    points->SetPoint(4 * quad + 3, left, high, 0);
-    points->Modified();
-}
-
-}  // namespace
 
 Timeline::Timeline(vtkRenderer* renderer, vtkRenderWindowInteractor* interactor)
     : renderer_(renderer), interactor_(interactor) {
-    set_up_quads(band_, band_points_, {0.05, 0.07, 0.09}, 0.7);
-    set_up_quads(curve_, curve_points_, {0.45, 0.78, 1}, 1);
-    set_up_quads(head_, head_points_, {1, 0.85, 0.3}, 1);
-    set_quad_count(band_, band_points_, 1);
-    set_quad_count(head_, head_points_, 1);
+    make_quads(band_, band_points_, Rgb(13, 18, 23), 0.7, renderer);
+    make_quads(curve_, curve_points_, Rgb(115, 199, 255), 1, renderer);
+    make_quads(head_, head_points_, Rgb(255, 217, 76), 1, renderer);
     vtkTextProperty* text = text_->GetTextProperty();
     text->SetFontFamilyToArial();
     text->SetColor(0.93, 0.95, 0.97);
     text->SetBackgroundColor(0.05, 0.07, 0.09);
     text->SetBackgroundOpacity(0.7);
-    for (vtkActor2D* part : {static_cast<vtkActor2D*>(band_), static_cast<vtkActor2D*>(curve_),
-                             static_cast<vtkActor2D*>(head_), static_cast<vtkActor2D*>(text_)}) {
-        part->VisibilityOff();
-        renderer->AddActor2D(part);
-    }
+    text_->VisibilityOff();
+    renderer->AddActor2D(text_);
     events_->SetClientData(this);
     events_->SetCallback([](vtkObject*, unsigned long event, void* self, void*) {
         static_cast<Timeline*>(self)->handle(event);
@@ -96,7 +58,7 @@ void Timeline::lay_out() {
     width_ = std::max(1.0, window_[0] - 2 * left_);
     bottom_ = scale * below;
     height_ = scale * height;
-    set_quad(band_points_, 0, left_, left_ + width_, bottom_, bottom_ + height_);
+    set_quad(band_points_, 0, left_, bottom_, left_ + width_, bottom_ + height_);
     text_->SetPosition(left_, bottom_ + height_ + scale * gap);
     text_->GetTextProperty()->SetFontSize(static_cast<int>(std::lround(scale * font)));
 }
@@ -113,7 +75,7 @@ void Timeline::draw_curve() {
         const Eigen::Vector2d& next = forces_[std::min(i + 1, forces_.size() - 1)];
         const double low = std::min(forces_[i][0], next[1]), high = std::max(forces_[i][1], next[0]);
         const double left = left_ + step * static_cast<double>(i);
-        set_quad(curve_points_, static_cast<vtkIdType>(i), left, left + step, bottom_ + pixels * low,
+        set_quad(curve_points_, static_cast<vtkIdType>(i), left, bottom_ + pixels * low, left + step,
                  bottom_ + std::max(pixels * high, pixels * low + thinnest));
     }
 }
@@ -135,7 +97,7 @@ void Timeline::update(const std::optional<TimelineView>& view) {
         draw_curve();
     }
     const double half = std::max(1.0, 0.02 * height_), at = left_ + view->share * width_;
-    set_quad(head_points_, 0, at - half, at + half, bottom_, bottom_ + height_);
+    set_quad(head_points_, 0, at - half, bottom_, at + half, bottom_ + height_);
     text_->SetInput(view->text.c_str());
 }
 

@@ -25,8 +25,7 @@ class ScanSampler {
   public:
     explicit ScanSampler(const ScanImage& image);
 
-    /// Samples the plane at so many points, by linear interpolation. Some milliseconds for a hundred
-    /// thousand.
+    /// Samples the plane at so many points, by linear interpolation. Linear in them.
     void sample(const ScanPlane& plane, int columns, int rows);
 
     vtkTexture* texture() const { return texture_; }

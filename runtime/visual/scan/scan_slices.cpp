@@ -39,15 +39,15 @@ void ScanSlices::turn() {
     sampled_.reset();
 }
 
-void ScanSlices::hide(bool hidden) {
-    hidden_ = hidden;
+void ScanSlices::hide() {
+    actor_->VisibilityOff();
+    text_.clear();
     sampled_.reset();
 }
 
 void ScanSlices::follow(const Eigen::Vector3d& tool) {
-    const bool shown = plane_ && !hidden_;
-    actor_->SetVisibility(shown);
-    if (!shown) return text_.clear();
+    if (!plane_) return hide();
+    actor_->VisibilityOn();
     const ScanPlane slice = slice_through(grid_, *plane_, tool);
     const double seen = 0.1 * grid_.spacing.minCoeff();
     if (sampled_ && (sampled_->corner - slice.corner).norm() < seen) return;

@@ -19,8 +19,8 @@ class ScanSlices {
 
     /// Goes on from none to axial, coronal, sagittal and back to none.
     void turn();
-    /// Draws none, whichever is on; or it again.
-    void hide(bool hidden);
+    /// Draws none, whichever is on, until it follows again.
+    void hide();
     /// Takes the slice to the tool, p_P, mm.
     void follow(const Eigen::Vector3d& tool);
     /// What is shown and where, slice_text(); empty if nothing is.
@@ -34,7 +34,6 @@ class ScanSlices {
     std::optional<SlicePlane> plane_;
     std::optional<ScanPlane> sampled_;  // of plane_
     std::string text_;
-    bool hidden_ = false;
 };
 
 }  // namespace palpate::visual

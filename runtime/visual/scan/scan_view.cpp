@@ -19,13 +19,14 @@ ScanView::ScanView(const Scan& scan, std::span<vtkActor* const> bodies, vtkRende
 
 void ScanView::follow(const Eigen::Vector3d& tool, bool cut) {
     slices_.follow(tool);
-    faces_.follow(renderer_, cut && !hidden_);
+    faces_.follow(renderer_, cut);
     show_text();
 }
 
-void ScanView::hide(bool hidden) {
-    hidden_ = hidden;
-    slices_.hide(hidden);
+void ScanView::hide() {
+    slices_.hide();
+    faces_.follow(renderer_, false);
+    show_text();
 }
 
 void ScanView::show_text() {

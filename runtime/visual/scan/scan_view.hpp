@@ -24,8 +24,8 @@ class ScanView {
     bool shows_slice() const { return !slices_.text().empty(); }
     /// Follows tool (p_P, mm) and camera, whose clipping range must be set. `cut`: the near plane is a cut's.
     void follow(const Eigen::Vector3d& tool, bool cut);
-    /// Takes slice and painted faces away, or gives them back, as where something is to be found without.
-    void hide(bool hidden);
+    /// Instead of follow(): takes slice and painted faces away, where something is to be found without.
+    void hide();
 
   private:
     void show_text();
@@ -35,7 +35,6 @@ class ScanView {
     ScanSlices slices_;
     CutFaces faces_;
     vtkNew<vtkTextActor> text_;
-    bool hidden_ = false;
 };
 
 }  // namespace palpate::visual
