@@ -6,8 +6,8 @@
 #include "runtime/haptics/haptic_model.hpp"
 #include "runtime/session/playback/recorded_surfaces.hpp"
 #include "runtime/session/playback/recorded_track.hpp"
-#include "runtime/visual/tools/other_tool.hpp"
 #include "runtime/visual/sight.hpp"
+#include "runtime/visual/tools/other_tool.hpp"
 #include "runtime/visual/visual_frame.hpp"
 
 namespace palpate::apps {
