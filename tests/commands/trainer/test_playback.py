@@ -43,7 +43,9 @@ class Playback(TrainerCase):
             count = recorded["count/ticks"][0]
             cls.forces = recorded["ticks/force"][:count].tolist()
             cls.contacts = recorded["ticks/contact_count"][:count].tolist()
+            positions = recorded["ticks/device_position"][:count].tolist()
         cls.peak = max(range(count), key=lambda tick: math.hypot(*cls.forces[tick]))
+        cls.pressed = positions[cls.peak]
 
     @classmethod
     def touch(cls, *options, asset=None):
@@ -76,7 +78,8 @@ class Playback(TrainerCase):
         return SIZE[0] * (MARGIN + (1 - 2 * MARGIN) * tick / (len(self.forces) - 1))
 
     def test_it_pauses_where_one_clicks_and_shows_the_recorded_force_of_that_moment(self):
-        process, window = self.open_window("--play", self.run_file)
+        # So slow that it is not over before the first key comes, however slow the machine.
+        process, window = self.open_window("--play", self.run_file, "--speed", 0.125)
         self.x("xdotool", "key", "space")
         for tick in (self.peak, len(self.forces) // 10):
             self.x("xdotool", "mousemove", "--window", window, round(self.place_of(tick)), TIMELINE)
@@ -97,14 +100,14 @@ class Playback(TrainerCase):
         self.assertEqual((result["ticks"], result["missing_ticks"]), (1000 * SECONDS, 0))
 
     def test_keys_stop_step_and_change_the_speed(self):
-        process, window = self.open_window("--play", self.run_file)
+        process, window = self.open_window("--play", self.run_file, "--speed", 0.125)
         self.x("xdotool", "key", "space", "Home")
         time.sleep(0.3)
         self.x("xdotool", "key", "Right", "Right", "Right", "period", "period", "Left")
         time.sleep(0.6)
         result = self.close(process)
         self.assert_as_recorded(result)
-        self.assertEqual(result["speed"], 4)
+        self.assertEqual(result["speed"], 0.5)
         self.assertEqual(result["last"]["tick"], 0)  # three steps of 0.1 s on, one of 0.4 s back
 
     def test_it_goes_on_by_itself_to_the_end_and_no_servo_runs(self):
@@ -168,11 +171,14 @@ class Playback(TrainerCase):
         self.assertEqual(*films)
 
     def test_a_ghost_presses_beside_one_that_stays_away(self):
-        far = self.folder / "far.txt"
+        far, near, held = self.folder / "far.txt", self.folder / "near.txt", self.folder / "held.h5"
         far.write_text("0 60 60 60\n10 60 60 60\n")
+        # It stays where it is seen: how much time has passed when the picture is taken is the machine's affair.
+        near.write_text("".join("{} {} {} {}\n".format(time, *self.pressed) for time in (0, 10)))
+        self.touch("--script", near, "--seconds", 1, "--virtual-clock", "--record", held)
         pictures = {}
         exercise = ("--exercise", "touch", "--attempts", self.folder / "attempts")
-        ghost = ("--ghost", self.run_file)
+        ghost = ("--ghost", held)
         for name, options in (("without", ()), ("freely", ghost), ("in an exercise", (*ghost, *exercise))):
             picture = self.folder / f"{name}.png"
             self.train("--script", far, *options, "--seconds", 1, "--screenshot", picture)
