@@ -8,6 +8,7 @@
 #include "formats/asset/body_io.hpp"
 #include "formats/asset/hdf5/digest.hpp"
 #include "formats/asset/looks_io.hpp"
+#include "formats/asset/owned_values.hpp"
 #include "formats/asset/validate.hpp"
 #include "formats/asset/vtk_grid.hpp"
 #include "formats/model/errors.hpp"
@@ -63,12 +64,6 @@ Case read_case(const Hdf5File& file) {
     patient_case.provenance = file.texts("/palpate/provenance", {}).front();
     check_case(patient_case, file.name());
     return patient_case;
-}
-
-template <typename T>
-void own(std::shared_ptr<const T>& values, std::size_t count) {
-    const auto copy = std::make_shared<std::vector<T>>(values.get(), values.get() + count);
-    values = std::shared_ptr<const T>(copy, copy->data());
 }
 
 }  // namespace
@@ -128,11 +123,11 @@ Case load_asset(const std::filesystem::path& path) {
     Case patient_case = read_asset(path);
     for (DeformableBody& body : patient_case.deformable_bodies) {
         if (auto* dense = std::get_if<DenseCompliance>(&body.compliance)) {
-            own(dense->entries, dense->dof_count() * dense->dof_count());
+            dense->entries = owned(dense->entries.get(), dense->dof_count() * dense->dof_count());
         } else {
             auto& blocks = std::get<HierarchicalCompliance>(body.compliance);
-            own(blocks.values, blocks.value_count);
-            own(blocks.factors, blocks.factor_count);
+            blocks.values = owned(blocks.values.get(), blocks.value_count);
+            blocks.factors = owned(blocks.factors.get(), blocks.factor_count);
         }
     }
     return patient_case;

@@ -18,7 +18,7 @@ class LoadSpread {
     using Share = LoadShare;
 
     /// `blocks`: the compliance block of each surface vertex, -1 for one fixed or left out. Reads some
-    /// thousands of blocks of C for each vertex.
+    /// thousands of blocks of C for each vertex, on all processors.
     LoadSpread(const DeformableBody& body, std::span<const std::int32_t> blocks);
 
     /// Where a force on a vertex goes, and how much of each displacement counts there. Weights sum to
@@ -45,7 +45,15 @@ class LoadSpread {
     double contact_modulus() const noexcept { return contact_modulus_; }
 
   private:
-    void add_near(const DeformableBody& body, std::span<const std::int32_t> blocks);
+    // Of a range of first vertices: how many are near each, these one after the other, and how each gives
+    // way.
+    struct NearBlocks {
+        std::vector<std::size_t> counts;
+        std::vector<std::int32_t> vertices;
+        std::vector<Eigen::Matrix3f> blocks;
+    };
+    NearBlocks near_blocks(const DeformableBody& body, std::span<const std::int32_t> blocks,
+                           std::int32_t first, std::int32_t last) const;
 
     SpreadDisc disc_;
     double contact_modulus_ = 0;
