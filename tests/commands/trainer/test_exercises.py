@@ -114,6 +114,29 @@ class Exercises(TrainerCase):
         astray = self.with_hand("trace", following(line, 1.5, aside=4), *exercise)
         self.assertLess(astray["metrics"]["score"], 40)
 
+    def test_a_tool_is_led_through_gates_unhurt_by_a_good_hand_and_not_by_one_that_scrapes_along(self):
+        gates = [(-4, 10, 24), (5, 6, 23), (12, 12, 23), (18, 10, 23), (26, 10, 22)]
+        path = self.folder / "scope.toml"
+        path.write_text(
+            'schema = 1\n[[exercise]]\nname = "scope"\ntask = "guide"\ntolerance_mm = 2\nmost_force_n = 0.05\n'
+            f"time_limit_s = 60\nplaces_mm = {[list(gate) for gate in gates]}\n"
+        )
+        exercise = "--exercises", path
+        through = [(i + 0.5, *gate) for i, gate in enumerate(gates)]
+        good = self.with_hand("scope", [(0, -8, 10, 26), *through], *exercise)
+        self.assertEqual(good["ending"], "all reached")
+        self.assertGreater(good["metrics"]["score"], 95)
+        self.assertEqual(good["metrics"]["peak_force_n"], 0)
+        # From each gate over the cube down into it, and up again to the next.
+        scraping = [row for i, (x, y, z) in enumerate(gates) for row in ((2 * i + 0.5, x, y, z), (2 * i + 1.5, x, y, 16))]
+        clumsy = self.with_hand("scope", [(0, -8, 10, 26), *scraping], *exercise)
+        self.assertEqual(clumsy["ending"], "all reached")
+        self.assertGreater(clumsy["metrics"]["peak_force_n"], 0.05)
+        self.assertGreater(clumsy["metrics"]["time_above_limit_s"], 1)
+        self.assertLess(clumsy["metrics"]["score"], 60)
+        idle = self.with_hand("scope", [(0, 50, 50, 50), (1, 50, 50, 50)], *exercise)
+        self.assertEqual((idle["ending"], idle["metrics"]["score"]), ("cut short", 0))
+
     def test_what_is_hidden_is_found_with_the_m_key(self):
         (place,) = self.laid_out("find")["places_mm"]
         path, _ = self.hand([(0, 10, 10, 26), (1, 10, 10, 20.5), (30, 10, 10, 20.5)])
