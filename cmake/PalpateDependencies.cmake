@@ -77,6 +77,11 @@ if(PALPATE_TOOLS OR PALPATE_VISUAL)
     # Xlib, which VTK draws through: asks whether a display answers, where VTK would abort.
     find_package(X11 REQUIRED)
 endif()
+if(PALPATE_VISUAL)
+    # OpenAL Soft: plays a tone whose pitch follows the force, through PulseAudio, PipeWire or ALSA, with a thread of its own
+    # and few libraries behind it (SDL would bring a window of its own); its wave backend writes a file in tests.
+    find_package(OpenAL REQUIRED)
+endif()
 
 if(PALPATE_TESTS)
     find_package(GTest REQUIRED)

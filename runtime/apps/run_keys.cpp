@@ -12,6 +12,7 @@ namespace palpate::apps {
 std::string RunKeys::press(std::string_view key, bool exercising) {
     try {
         if (key == "o") return turn_recording();
+        if (key == "a") sound_.turn();
         if (key == "f") return exercising ? "not while an exercise goes on" : take_next_method();
     } catch (const std::exception& error) {
         return error.what();

@@ -6,12 +6,13 @@
 #include <vector>
 
 #include "runtime/session/session.hpp"
+#include "runtime/sound/force_sound.hpp"
 #include "tools/cli/command.hpp"
 
 namespace palpate::apps {
 
-/// What keys of the trainer's window do to the run: O begins or ends a recording, F takes the next contact
-/// method.
+/// What keys of the trainer's window do to the run: O begins or ends a recording, A lets the force be heard,
+/// F takes the next contact method.
 class RunKeys {
   public:
     /// `seconds`: how much of its end a recording holds. Run and session must outlive this.
@@ -21,6 +22,7 @@ class RunKeys {
     /// Takes a key, X11 name in lower case. `exercising`: an attempt goes on, whose contact method must stay.
     /// What to tell the user; empty for keys that mean nothing here.
     std::string press(std::string_view key, bool exercising);
+    sound::ForceSound& sound() { return sound_; }
     /// Whether every tick is being kept, whoever began it.
     bool recording() const { return run_.recorded_rows().has_value(); }
     /// The recordings that were begun here.
@@ -33,6 +35,7 @@ class RunKeys {
     session::Session& run_;
     double seconds_;
     const cli::Session& session_;
+    sound::ForceSound sound_;
     std::vector<std::filesystem::path> recordings_;
 };
 

@@ -54,6 +54,8 @@ void fill_frame(const TrainRun& run, std::span<const TickResult* const> ticks, V
     frame.faults = run.session.recent_faults(tick.time);
     frame.statuses = run.session.statuses().recent(tick.time);
     frame.recording = run.keys.recording();
+    frame.audible = run.keys.sound().on();
+    run.keys.sound().follow(frame.force.norm());
     frame.lesson = run.lesson.view(frame.force.norm());
     frame.other_tools.clear();
     for (const TickResult* other : ticks.subspan(1)) frame.other_tools.push_back(other_tool_of(*other));

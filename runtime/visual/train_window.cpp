@@ -332,6 +332,7 @@ struct TrainWindow::Parts {
         buttons.light("x", scan && scan->shows_slice());
         buttons.light("v", endoscope.on());
         buttons.light("o", frame.recording);
+        buttons.light("a", frame.audible);
         buttons.light("h", overlay.help_shown());
     }
 

@@ -23,6 +23,7 @@ struct VisualFrame {
     std::uint32_t faults = 0;    ///< Fault flags: why there is no force
     std::uint32_t statuses = 0;  ///< TickStatus flags: what was unusual just now
     bool recording = false;      ///< every tick is being kept
+    bool audible = false;        ///< the force is heard
     /// Of every surface vertex of every deformable body, mm.
     std::vector<std::vector<Eigen::Vector3f>> displacements;
     LessonView lesson;                     ///< of an exercise

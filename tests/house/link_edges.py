@@ -50,6 +50,7 @@ ROOMS = {
     "doctor": {"model", "realtime", "haptics", "devices", "json"},
     "openigtlink": {"model", "realtime", "haptics", "devices", "igtl"},
     "visual": {"model", "collision", "realtime", "vtk"},
+    "sound": {"model", "openal"},
     "session": {"model", "asset", "recording", "drawing", "json", "realtime", "collision", "haptics", "devices", "openigtlink"},
     "training": {"model", "asset", "session", "toml_file", "json"},
 }
@@ -61,7 +62,7 @@ EXECUTABLES = {
     "palpate": {"cli", "model"},
     "palpate-touch": APPS,
     "palpate-doctor": APPS | {"doctor"},
-    "palpate-train": APPS | {"provenance", "training", "visual"},
+    "palpate-train": APPS | {"provenance", "sound", "training", "visual"},
     "palpate-bench": {"experiments"},
 }
 HEAVY = {"itk", "cgal", "cholmod", "metis", "vtk"}
@@ -75,7 +76,7 @@ FAMILIES = {
     "dcmtk": r"/libdcm|/libof(?:log|std)", "igtl": r"OpenIGTLink::",
     "itk": r"ITK|itk|gdcm", "cgal": r"CGAL", "vtk": r"VTK::|X11::", "cholmod": r"cholmod", "metis": r"libmetis",
     "lapack": r"lapacke|openblas", "cli11": r"CLI11::", "spdlog": r"spdlog", "fmt": r"fmt::", "json": r"nlohmann_json",
-    "toml": r"tomlplusplus", "threads": r"Threads::", "zlib": r"ZLIB::", "house": r"palpate_house",
+    "openal": r"OpenAL::", "toml": r"tomlplusplus", "threads": r"Threads::", "zlib": r"ZLIB::", "house": r"palpate_house",
 }
 FORBIDDEN_SONAMES = {"palpate-touch": r"libITK|libitk|libCGAL|libcholmod|libmetis|libvtk",
                      "palpate-doctor": r"libITK|libitk|libCGAL|libcholmod|libmetis|libvtk",

@@ -21,6 +21,7 @@
 #include "runtime/apps/playback/recorded_scene.hpp"
 #include "runtime/session/playback/playback_clock.hpp"
 #include "runtime/session/replay.hpp"
+#include "runtime/sound/force_sound.hpp"
 #include "runtime/visual/train_window.hpp"
 #include "tools/cli/refuse_beside.hpp"
 
@@ -113,11 +114,22 @@ class RecordingPlayer {
 
     void press(const std::string& key) {
         if (key == "o" || key == "f") window_.tell("not while a recording is shown");
+        if (key == "a") turn_sound();
         clock_.press(key);
+    }
+
+    void turn_sound() {
+        try {
+            sound_.turn();
+        } catch (const SystemFailure& error) {
+            window_.tell(error.what());
+        }
     }
 
     void show(bool filmed) {
         const Tick& tick = scene_.fill(frame_, clock_.time());
+        frame_.audible = sound_.on();
+        sound_.follow(clock_.runs() ? frame_.force.norm() : 0);
         if (ghost_) frame_.other_tools.push_back(ghost_->at(clock_.time() - demonstration_.begins));
         frame_.timeline->share = clock_.share();
         frame_.timeline->text = timeline_text(clock_, filmed);
@@ -135,6 +147,7 @@ class RecordingPlayer {
     VisualFrame& frame_;
     Demonstration demonstration_;
     PlaybackClock clock_;
+    sound::ForceSound sound_;
     std::int64_t frames_ = 0, shown_ticks_ = 0;
     double force_peak_ = 0;
     const Tick* last_ = nullptr;

@@ -16,6 +16,7 @@ std::span<const WindowKey> window_keys() {
         {"r", "Start", "tool and view back to where they began"},
         {"p", "Picture", "save a picture of the window in this folder"},
         {"o", "Record", "record every tick in this folder from now on, or stop"},
+        {"a", "Audio", "hear the force: the harder, the higher"},
         {"f", "Scheme", "find contact in the next way, published or ours"},
         {"i", "About", "how this case was made"},
         {"h", "Help", "show or hide what the mouse does"},
