@@ -81,6 +81,8 @@ if(PALPATE_VISUAL)
     # OpenAL Soft: plays a tone whose pitch follows the force, through PulseAudio, PipeWire or ALSA, with a thread of its own
     # and few libraries behind it (SDL would bring a window of its own); its wave backend writes a file in tests.
     find_package(OpenAL REQUIRED)
+    # GNU gettext: translators know its files, the C library reads them; msgfmt packs and checks them.
+    find_package(Gettext REQUIRED)
 endif()
 
 if(PALPATE_TESTS)

@@ -1,21 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/records/tick_result.hpp"
 
+#include "formats/records/shown_text.hpp"
+
 namespace palpate {
 
 std::span<const StatusText, status_count> status_texts() {
     static constexpr std::array<StatusText, status_count> texts{{
-        {force_limited, "force_limited", "the force was cut to the largest one", false},
-        {rate_limited, "rate_limited", "the force was kept from changing faster than it may", false},
-        {contacts_cut, "contacts_cut", "more points touch than a tick solves: the shallowest are left out",
-         true},
+        {force_limited, "force_limited", shown_text("the force was cut to the largest one"), false},
+        {rate_limited, "rate_limited", shown_text("the force was kept from changing faster than it may"),
+         false},
+        {contacts_cut, "contacts_cut",
+         shown_text("more points touch than a tick solves: the shallowest are left out"), true},
         {contact_unsolved, "contact_unsolved",
-         "contacts contradict each other, as in a wedge: no body gives way", true},
+         shown_text("contacts contradict each other, as in a wedge: no body gives way"), true},
         {starts_inside, "starts_inside",
-         "a tool is in a body, which is not felt until the tool has been clear of it", true},
-        {coming_back, "coming_back", "the force returns by and by after a fault", false},
+         shown_text("a tool is in a body, which is not felt until the tool has been clear of it"), true},
+        {coming_back, "coming_back", shown_text("the force returns by and by after a fault"), false},
         {energy_injected, "energy_injected",
-         "contact gave a hand more energy than it got: a damper takes it back", true},
+         shown_text("contact gave a hand more energy than it got: a damper takes it back"), true},
     }};
     return texts;
 }

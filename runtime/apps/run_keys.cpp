@@ -5,15 +5,19 @@
 
 #include "runtime/apps/start_recording.hpp"
 #include "runtime/haptics/methods/contact_methods.hpp"
+#include "runtime/texts/translated.hpp"
 #include "runtime/visual/controls/free_path.hpp"
 
 namespace palpate::apps {
+
+using texts::looked_up;
+using texts::translated;
 
 std::string RunKeys::press(std::string_view key, bool exercising) {
     try {
         if (key == "o") return turn_recording();
         if (key == "a") sound_.turn();
-        if (key == "f") return exercising ? "not while an exercise goes on" : take_next_method();
+        if (key == "f") return exercising ? translated("not while an exercise goes on") : take_next_method();
     } catch (const std::exception& error) {
         return error.what();
     }
@@ -23,13 +27,13 @@ std::string RunKeys::press(std::string_view key, bool exercising) {
 std::string RunKeys::turn_recording() {
     if (const auto rows = run_.recorded_rows()) {
         run_.end_recording();
-        return fmt::format("recorded {:.1f} s", 1e-3 * static_cast<double>(*rows) /
-                                                    static_cast<double>(run_.model().tool_count()));
+        return translated("recorded {:.1f} s",
+                          1e-3 * static_cast<double>(*rows) / static_cast<double>(run_.model().tool_count()));
     }
     const auto path = visual::free_path(".", run_.patient_case().name, ".h5");
     start_recording(run_, path, seconds_, session_);
     recordings_.push_back(path.filename());
-    return "recording: " + path.filename().string();
+    return translated("recording: {}", path.filename().string());
 }
 
 std::string RunKeys::take_next_method() {
@@ -38,7 +42,7 @@ std::string RunKeys::take_next_method() {
     do at = (at + 1) % std::ssize(methods);
     while (methods[at].can.most_tools < run_.model().tool_count());
     run_.change_method(methods[at].name);
-    return fmt::format("contact '{}': {}", methods[at].name, methods[at].sentence);
+    return translated("contact '{}': {}", methods[at].name, looked_up(methods[at].sentence.data()));
 }
 
 }  // namespace palpate::apps

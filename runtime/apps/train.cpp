@@ -25,6 +25,7 @@
 #include "runtime/session/session.hpp"
 #include "runtime/session/statistics_json.hpp"
 #include "runtime/session/touch_target.hpp"
+#include "runtime/texts/translated.hpp"
 #include "runtime/training/lay_out.hpp"
 #include "runtime/visual/train_window.hpp"
 #include "tools/cli/command.hpp"
@@ -213,6 +214,7 @@ Json train(const Options& options, cli::Session& session) {
 int main(int argc, char** argv) {
     using namespace palpate;
     using namespace palpate::apps;
+    texts::follow_the_desktop();
     cli::Command command(
         {.name = "train",
          .summary = "Opens the trainer's window on an asset",

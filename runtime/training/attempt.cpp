@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "formats/records/shown_text.hpp"
 #include "runtime/training/touched_place.hpp"
 
 namespace palpate::training {
@@ -27,17 +28,17 @@ double shortest_way(const Exercise& exercise, const Goals& goals, const Vector3d
 std::string_view words_of(Ending ending) {
     switch (ending) {
         case Ending::not_yet:
-            return "not yet";
+            return shown_text("not yet");
         case Ending::all_reached:
-            return "all reached";
+            return shown_text("all reached");
         case Ending::time_is_up:
-            return "time is up";
+            return shown_text("time is up");
         case Ending::ended:
-            return "ended";
+            return shown_text("ended");
         case Ending::cut_short:
             break;
     }
-    return "cut short";
+    return shown_text("cut short");
 }
 
 Attempt::Attempt(Exercise exercise, const Case& patient_case)

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/records/shown_text.hpp"
+
 namespace palpate::training {
 
 /// What a trainee is to do.
@@ -17,7 +19,8 @@ enum class Task {
 };
 
 /// "touch", "find", "guide", "trace", "free", in their order.
-inline constexpr std::string_view task_names[] = {"touch", "find", "guide", "trace", "free"};
+inline constexpr std::string_view task_names[] = {
+    shown_text("touch"), shown_text("find"), shown_text("guide"), shown_text("trace"), shown_text("free")};
 
 inline constexpr std::string_view name_of(Task task) {
     return task_names[static_cast<std::size_t>(task)];

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <utility>
 
+#include "formats/records/shown_text.hpp"
 #include "formats/toml_file/parse_file.hpp"
 #include "formats/toml_file/table_reader.hpp"
 
@@ -120,17 +121,19 @@ std::vector<ExerciseRecipe> read_exercises(const std::filesystem::path& file) {
 std::string usual_instruction(Task task) {
     switch (task) {
         case Task::touch:
-            return "Press each yellow mark until it turns grey, with the force in the blue band";
+            return shown_text("Press each yellow mark until it turns grey, with the force in the blue band");
         case Task::find:
-            return "Feel for what is harder than the rest. K: a point of its border. Stay on it, press M";
+            return shown_text(
+                "Feel for what is harder than the rest. K: a point of its border. Stay on it, press M");
         case Task::guide:
-            return "Lead the tip through the rings, not against the wall. V: the view from the tip";
+            return shown_text(
+                "Lead the tip through the rings, not against the wall. V: the view from the tip");
         case Task::trace:
-            return "Follow the line from the ball on, with the force in the blue band";
+            return shown_text("Follow the line from the ball on, with the force in the blue band");
         case Task::free:
             break;
     }
-    return "Take your time. E ends and shows what you did.";
+    return shown_text("Take your time. E ends and shows what you did.");
 }
 
 std::vector<ExerciseRecipe> standard_exercises() {
@@ -144,10 +147,10 @@ std::vector<ExerciseRecipe> standard_exercises() {
         recipe.time_limit = time_limit;
         recipes.push_back(std::move(recipe));
     };
-    add(Task::touch, "Touch the marks", 180);
-    add(Task::find, "Find what is hidden", 300);
-    add(Task::trace, "Follow the line", 180);
-    add(Task::free, "Free exploration", std::nullopt);
+    add(Task::touch, shown_text("Touch the marks"), 180);
+    add(Task::find, shown_text("Find what is hidden"), 300);
+    add(Task::trace, shown_text("Follow the line"), 180);
+    add(Task::free, shown_text("Free exploration"), std::nullopt);
     return recipes;
 }
 

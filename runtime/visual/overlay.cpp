@@ -14,20 +14,25 @@
 #include <vtkWindow.h>
 
 #include "formats/records/fault.hpp"
+#include "formats/records/shown_text.hpp"
 #include "formats/records/tick_result.hpp"
+#include "runtime/texts/translated.hpp"
 #include "runtime/visual/cautions_text.hpp"
 #include "runtime/visual/quads.hpp"
 
 namespace palpate::visual {
 namespace {
 
+using texts::looked_up;
+using texts::translated;
+
 constexpr double bar_width = 240, bar_height = 10;
-constexpr auto help_text =
+constexpr auto help_text = shown_text(
     "left button  press      held, wheel or W S  deeper, back      W S, arrows  move the tool\n"
-    "right drag  turn      middle drag  move the view      wheel, + -  zoom";
-constexpr auto playback_help_text =
+    "right drag  turn      middle drag  move the view      wheel, + -  zoom");
+constexpr auto playback_help_text = shown_text(
     "Space  pause, go on      , .  slower, faster      arrows  step      Home, End      timeline  go there\n"
-    "right drag  turn      middle drag  move the view      wheel, + -  zoom";
+    "right drag  turn      middle drag  move the view      wheel, + -  zoom");
 constexpr double help_opacity = 0.75;
 constexpr double above_buttons = 0.085, above_timeline = 0.21;  // of the window's height
 constexpr std::size_t cautions_width = 64;                      // characters
@@ -55,11 +60,12 @@ std::string notice_of(const VisualFrame& frame) {
     std::string notice;
     for (const FaultText& text : fault_texts())
         if ((frame.faults & text.fault) && text.fault != servo_stopping)
-            notice += fmt::format("{}force taken away: {}\n{}", notice.empty() ? "" : "\n", text.cause,
-                                  text.remedy);
+            notice += (notice.empty() ? "" : "\n") +
+                      translated("force taken away: {}", looked_up(text.cause)) + "\n" +
+                      std::string(looked_up(text.remedy));
     for (const StatusText& text : status_texts())
         if (text.told && (frame.statuses & text.status))
-            notice += fmt::format("{}{}", notice.empty() ? "" : "\n", text.meaning);
+            notice += fmt::format("{}{}", notice.empty() ? "" : "\n", looked_up(text.meaning));
     return notice;
 }
 
@@ -85,7 +91,8 @@ Overlay::Overlay(const std::string& title, double max_force, std::span<const std
     start_left_of_its_place(cautions_);
     title_->SetInput(title.c_str());
     const std::string text = cautions_text(cautions, cautions_width);
-    cautions_->SetInput(text.empty() ? "nothing is noted about how this case was made" : text.c_str());
+    cautions_->SetInput(
+        (text.empty() ? translated("nothing is noted about how this case was made") : text).c_str());
     cautions_shown_ = !text.empty();
     show_texts();
     help_->GetTextProperty()->SetOpacity(help_opacity);
@@ -136,15 +143,15 @@ void Overlay::update(const VisualFrame& frame, double frames_per_second, const S
     fade_help(now);
     last_ = now;
     told_->SetVisibility(now < told_until_);
-    help_->SetInput(frame.timeline ? playback_help_text : help_text);
+    help_->SetInput(looked_up(frame.timeline ? playback_help_text : help_text).data());
     for (vtkTextActor* text : {help_.Get(), told_.Get()})
         text->SetPosition(text->GetPosition()[0], frame.timeline ? above_timeline : above_buttons);
     force_->SetInput(fmt::format("{:.2f} N", newtons).c_str());
     const std::string level =
-        detail.levels > 0 ? fmt::format(", detail {} of {}", detail.level, detail.levels) : "";
-    figures_->SetInput(fmt::format("depth {:.1f} mm\n{:.0f} ticks/s, {} overruns\n{:.0f} frames/s{}",
-                                   std::max(0.0, frame.depth), frame.tick_rate_hz, frame.overruns,
-                                   frames_per_second, level)
+        detail.levels > 0 ? translated(", detail {} of {}", detail.level, detail.levels) : "";
+    figures_->SetInput(translated("depth {:.1f} mm\n{:.0f} ticks/s, {} overruns\n{:.0f} frames/s{}",
+                                  std::max(0.0, frame.depth), frame.tick_rate_hz, frame.overruns,
+                                  frames_per_second, level)
                            .c_str());
     notice_->SetInput(notice_of(frame).c_str());
 }

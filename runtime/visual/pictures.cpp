@@ -7,6 +7,7 @@
 #include <vtkWindowToImageFilter.h>
 
 #include "formats/model/errors.hpp"
+#include "runtime/texts/translated.hpp"
 
 namespace palpate::visual {
 
@@ -29,16 +30,16 @@ void write_picture(const std::filesystem::path& path, vtkImageData* pixels) {
 }
 
 std::string PictureWriter::write(vtkRenderWindow* window, const std::filesystem::path& path) {
-    if (writing_.valid()) return "the last picture is still being written";
+    if (writing_.valid()) return texts::translated("the last picture is still being written");
     writing_ = std::async(std::launch::async, [path, pixels = grab_pixels(window)]() -> std::string {
         try {
             write_picture(path, pixels);
-            return "picture: " + path.filename().string();
+            return texts::translated("picture: {}", path.filename().string());
         } catch (const SystemFailure& failure) {
             return failure.what();
         }
     });
-    return "writing " + path.filename().string();
+    return texts::translated("writing {}", path.filename().string());
 }
 
 std::optional<std::string> PictureWriter::outcome() {

@@ -21,6 +21,7 @@
 #include <vtkRenderer.h>
 
 #include "formats/model/errors.hpp"
+#include "runtime/texts/translated.hpp"
 #include "runtime/visual/controls/button_bar.hpp"
 #include "runtime/visual/controls/display.hpp"
 #include "runtime/visual/controls/free_path.hpp"
@@ -41,6 +42,8 @@
 #include "runtime/visual/tool_shadow.hpp"
 
 namespace palpate::visual {
+
+using texts::translated;
 namespace {
 
 using Eigen::Vector3d;
@@ -236,7 +239,7 @@ struct TrainWindow::Parts {
 
     void undo_view() {
         if (endoscope.fills_window()) return;
-        if (!views.back(renderer->GetActiveCamera())) overlay.tell("this is the first view");
+        if (!views.back(renderer->GetActiveCamera())) overlay.tell(translated("this is the first view"));
         hand.view_changed();
     }
 
@@ -338,16 +341,17 @@ struct TrainWindow::Parts {
 
     void turn_regions() {
         const std::string names = scene.region_names();
-        if (names.empty()) return overlay.tell("this case has no enclosed region");
-        if (exercising) return overlay.tell("in this exercise they stay hidden");
+        if (names.empty()) return overlay.tell(translated("this case has no enclosed region"));
+        if (exercising) return overlay.tell(translated("in this exercise they stay hidden"));
         regions_shown = !regions_shown;
         scene.show_regions(regions_shown);
-        overlay.tell(regions_shown ? "seen through the surface, at rest: " + names : names + ": hidden");
+        overlay.tell(regions_shown ? translated("seen through the surface, at rest: {}", names)
+                                   : translated("{}: hidden", names));
     }
 
     void turn_slices() {
-        if (!scan) return overlay.tell("this case has no scan");
-        if (exercising) return overlay.tell("in this exercise it stays hidden");
+        if (!scan) return overlay.tell(translated("this case has no scan"));
+        if (exercising) return overlay.tell(translated("in this exercise it stays hidden"));
         scan->turn();
     }
 

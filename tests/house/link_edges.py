@@ -49,8 +49,9 @@ ROOMS = {
     "devices": {"model", "realtime"},
     "doctor": {"model", "realtime", "haptics", "devices", "json"},
     "openigtlink": {"model", "realtime", "haptics", "devices", "igtl"},
-    "visual": {"model", "collision", "realtime", "vtk"},
+    "visual": {"model", "collision", "realtime", "texts", "vtk"},
     "sound": {"model", "openal"},
+    "texts": set(),
     "session": {"model", "asset", "recording", "drawing", "json", "realtime", "collision", "haptics", "devices", "openigtlink"},
     "training": {"model", "asset", "session", "toml_file", "json"},
 }
@@ -62,7 +63,7 @@ EXECUTABLES = {
     "palpate": {"cli", "model"},
     "palpate-touch": APPS,
     "palpate-doctor": APPS | {"doctor"},
-    "palpate-train": APPS | {"provenance", "sound", "training", "visual"},
+    "palpate-train": APPS | {"provenance", "sound", "texts", "training", "visual"},
     "palpate-bench": {"experiments"},
 }
 HEAVY = {"itk", "cgal", "cholmod", "metis", "vtk"}

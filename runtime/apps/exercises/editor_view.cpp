@@ -5,47 +5,53 @@
 #include <utility>
 
 #include "runtime/apps/exercises/exercise_marks.hpp"
+#include "runtime/texts/translated.hpp"
 
 namespace palpate::apps {
 namespace {
 
 using namespace training;
 using namespace visual;
+using texts::looked_up;
+using texts::translated;
 
 constexpr double point_radius = 1;  // mm, of a line's points
 
 std::pair<std::string, std::string> name_and_value(Setting setting, const ExerciseRecipe& recipe) {
     switch (setting) {
         case Setting::task:
-            return {"Task", std::string(name_of(recipe.task))};
+            return {translated("Task"), std::string(looked_up(name_of(recipe.task).data()))};
         case Setting::title:
-            return {"Title", recipe.title};
+            return {translated("Title"), recipe.title};
         case Setting::least_force:
-            return {"Touching from", fmt::format("{:g} N", *recipe.least_force)};
+            return {translated("Touching from"), fmt::format("{:g} N", *recipe.least_force)};
         case Setting::most_force:
-            return {"Most force", fmt::format("{:g} N", *recipe.most_force)};
+            return {translated("Most force"), fmt::format("{:g} N", *recipe.most_force)};
         case Setting::tolerance:
-            return {"Tolerance", fmt::format("{:g} mm", *recipe.tolerance)};
+            return {translated("Tolerance"), fmt::format("{:g} mm", *recipe.tolerance)};
         case Setting::hold:
-            return {"Held for", fmt::format("{:g} s", *recipe.hold)};
+            return {translated("Held for"), fmt::format("{:g} s", *recipe.hold)};
         case Setting::time_limit:
             break;
     }
-    return {"Time limit", recipe.time_limit ? fmt::format("{:g} s", *recipe.time_limit) : "none"};
+    return {translated("Time limit"),
+            recipe.time_limit ? fmt::format("{:g} s", *recipe.time_limit) : translated("none")};
 }
 
 std::string marks_of(const ExerciseRecipe& recipe) {
     if (recipe.task == Task::find || recipe.task == Task::free) return "";
-    const char* what = recipe.task == Task::guide ? "gates" : recipe.task == Task::trace ? "points" : "marks";
-    return fmt::format("{} {}", recipe.places.size(), what);
+    const std::size_t count = recipe.places.size();
+    return recipe.task == Task::guide   ? translated("{} gates", count)
+           : recipe.task == Task::trace ? translated("{} points", count)
+                                        : translated("{} marks", count);
 }
 
 LessonPage page_of(const ExerciseEditor& editor, const ExerciseRecipe& recipe, const std::string& file) {
     LessonPage page;
-    page.title = "Exercise " + recipe.name;
-    page.text = editor.typing()            ? "Type the title; Enter ends"
-                : editor.message().empty() ? "A digit chooses, + and - change"
-                                           : editor.message();
+    page.title = translated("Exercise {}", recipe.name);
+    page.text = editor.typing()            ? translated("Type the title; Enter ends")
+                : editor.message().empty() ? translated("A digit chooses, + and - change")
+                                           : std::string(looked_up(editor.message().c_str()));
     // While a title is typed, nothing else is to be chosen.
     const auto add = [&](const char* key, std::string text) {
         page.choices.push_back({editor.typing() ? "" : key, std::move(text)});
@@ -61,15 +67,15 @@ LessonPage page_of(const ExerciseEditor& editor, const ExerciseRecipe& recipe, c
         add(std::to_string(number).c_str(),
             fmt::format("{}{}   {}: {}{}", chosen ? "\u203a " : "   ", number, name, value, mark));
     }
-    add("plus", "+   More");
-    add("minus", "\u2212   Less");
+    add("plus", "+   " + translated("More"));
+    add("minus", "\u2212   " + translated("Less"));
     if (editor.chosen() == Setting::least_force || editor.chosen() == Setting::most_force)
-        add("f", "F   As felt now");
+        add("f", "F   " + translated("As felt now"));
     if (const std::string marks = marks_of(recipe); !marks.empty())
-        add("space", fmt::format("Space   To the organ, to set marks ({})", marks));
-    add("t", "T   Try it");
-    add("s", "S   Save to " + file);
-    add("backspace", "Backspace   Leave");
+        add("space", translated("Space") + "   " + translated("To the organ, to set marks ({})", marks));
+    add("t", "T   " + translated("Try it"));
+    add("s", "S   " + translated("Save to {}", file));
+    add("backspace", "Backspace   " + translated("Leave"));
     return page;
 }
 
@@ -87,10 +93,12 @@ LessonView editor_view(const ExerciseEditor& editor, const Exercise& draft, cons
         view.page = page_of(editor, recipe, file);
         return view;
     }
-    view.instruction = recipe.task == Task::guide ? "Lead the tip to where a gate is to be, press M"
-                                                  : "Touch the organ where a mark is to be, press M";
-    view.status = marks_of(recipe) + "   M sets, Delete takes the last back, Space: the settings";
-    view.warning = editor.message();
+    view.instruction = recipe.task == Task::guide
+                           ? translated("Lead the tip to where a gate is to be, press M")
+                           : translated("Touch the organ where a mark is to be, press M");
+    view.status =
+        marks_of(recipe) + "   " + translated("M sets, Delete takes the last back, Space: the settings");
+    view.warning = looked_up(editor.message().c_str());
     view.least_force = recipe.least_force.value_or(0);
     view.most_force = recipe.most_force.value_or(0);
     return view;

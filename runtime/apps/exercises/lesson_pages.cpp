@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "runtime/apps/exercises/exercise_marks.hpp"
+#include "runtime/texts/translated.hpp"
 #include "runtime/visual/cautions_text.hpp"
 
 namespace palpate::apps {
@@ -14,6 +15,8 @@ namespace {
 
 using namespace training;
 using namespace visual;
+using texts::looked_up;
+using texts::translated;
 
 std::string clock_of(double seconds) {
     const auto whole = static_cast<int>(std::max(0.0, seconds));
@@ -30,17 +33,18 @@ LessonPicture picture_of(const Exercise& exercise) {
 LessonPage start_page(const Lesson& lesson, const LessonSetting& setting) {
     LessonPage page;
     page.title = setting.case_name;
-    page.text = fmt::format("Trainee: {}", setting.trainee);
+    page.text = translated("Trainee: {}", setting.trainee);
     page.text += "\n" + cautions_text(setting.cautions, 76);
     page.picture = LessonPicture{.whole = true};
     int number = 0;
     for (const Exercise& exercise : lesson.exercises()) {
         ++number;
-        page.choices.push_back(
-            {std::to_string(number), fmt::format("{}   {}", number, exercise.title), picture_of(exercise)});
+        page.choices.push_back({std::to_string(number),
+                                fmt::format("{}   {}", number, looked_up(exercise.title.c_str())),
+                                picture_of(exercise)});
     }
-    page.choices.push_back({"f2", "F2   Make an exercise of your own"});
-    page.choices.push_back({"backspace", "Backspace   Look around first, and come back"});
+    page.choices.push_back({"f2", "F2   " + translated("Make an exercise of your own")});
+    page.choices.push_back({"backspace", "Backspace   " + translated("Look around first, and come back")});
     return page;
 }
 
@@ -57,13 +61,13 @@ int digits_of(const std::string& unit, const std::string& name) {
 std::string progress_of(const Exercise& exercise, const Goals& goals) {
     switch (exercise.task) {
         case Task::touch:
-            return fmt::format("mark {} of {}   ", goals.reached + 1, exercise.places.size());
+            return translated("mark {} of {}   ", goals.reached + 1, exercise.places.size());
         case Task::guide:
-            return fmt::format("gate {} of {}   ", goals.reached + 1, exercise.places.size());
+            return translated("gate {} of {}   ", goals.reached + 1, exercise.places.size());
         case Task::trace:
             return fmt::format("{:.0f} %   ", 100 * goals.share);
         case Task::find:
-            return goals.border.empty() ? "" : fmt::format("{} border points   ", goals.border.size());
+            return goals.border.empty() ? "" : translated("{} border points   ", goals.border.size());
         case Task::free:
             break;
     }
@@ -72,18 +76,18 @@ std::string progress_of(const Exercise& exercise, const Goals& goals) {
 
 void show_doing(const Attempt& attempt, double force, LessonView& view) {
     const Exercise& exercise = attempt.exercise();
-    view.instruction = exercise.instruction;
+    view.instruction = looked_up(exercise.instruction.c_str());
     view.status = progress_of(exercise, attempt.goals()) +
                   clock_of(exercise.time_limit > 0 ? exercise.time_limit - attempt.time() : attempt.time()) +
-                  "   Space pauses, E ends, N anew";
+                  "   " + translated("Space pauses, E ends, N anew");
     view.least_force = exercise.least_force;
     view.most_force = exercise.most_force;
     if (attempt.paused())
-        view.warning = "paused: Space goes on";
+        view.warning = translated("paused: Space goes on");
     else if (force > exercise.most_force)
-        view.warning = fmt::format("too hard: {:.2f} N, at most {:.2f} N", force, exercise.most_force);
+        view.warning = translated("too hard: {:.2f} N, at most {:.2f} N", force, exercise.most_force);
     else if (exercise.task == Task::trace && attempt.goals().was_astray && force >= exercise.least_force)
-        view.warning = "beside the line";
+        view.warning = translated("beside the line");
     show_places(exercise, attempt.goals(), false, view);
 }
 
@@ -91,13 +95,15 @@ void show_doing(const Attempt& attempt, double force, LessonView& view) {
 
 LessonPage result_page(const Attempt& attempt, std::span<const PastAttempt> history) {
     LessonPage page;
-    page.title = attempt.exercise().title + ": " + std::string(words_of(attempt.ending()));
+    page.title = std::string(looked_up(attempt.exercise().title.c_str())) + ": " +
+                 std::string(looked_up(words_of(attempt.ending()).data()));
     const Metrics metrics = attempt.metrics();
     for_each_field(metric_fields, [&](const auto& field) {
-        page.rows.emplace_back(title_of(field.name), value_of(metrics.*field.member, field.unit,
-                                                              digits_of(field.unit, field.name)));
+        page.rows.emplace_back(
+            looked_up(title_of(field.name).c_str()),
+            value_of(metrics.*field.member, field.unit, digits_of(field.unit, field.name)));
     });
-    LessonCurve force{.title = "Force",
+    LessonCurve force{.title = translated("Force"),
                       .x_title = "s",
                       .y_title = "N",
                       .x = {},
@@ -111,8 +117,8 @@ LessonPage result_page(const Attempt& attempt, std::span<const PastAttempt> hist
     }
     page.curves.push_back(force);
     if (!history.empty()) {
-        LessonCurve scores{.title = "Score",
-                           .x_title = "attempt",
+        LessonCurve scores{.title = translated("Score"),
+                           .x_title = translated("attempt"),
                            .y_title = "",
                            .x = {},
                            .y = {},
@@ -125,10 +131,10 @@ LessonPage result_page(const Attempt& attempt, std::span<const PastAttempt> hist
         }
         page.curves.push_back(scores);
     }
-    page.choices = {{"return", "Enter   Once more"},
-                    {"space", "Space   Look at the way that the hand took"},
-                    {"f2", "F2   Change this exercise"},
-                    {"backspace", "Backspace   Other exercises"}};
+    page.choices = {{"return", translated("Enter") + "   " + translated("Once more")},
+                    {"space", translated("Space") + "   " + translated("Look at the way that the hand took")},
+                    {"f2", "F2   " + translated("Change this exercise")},
+                    {"backspace", "Backspace   " + translated("Other exercises")}};
     return page;
 }
 
@@ -141,9 +147,9 @@ LessonView lesson_view(const Lesson& lesson, const LessonSetting& setting, doubl
             view.page = start_page(lesson, setting);
             break;
         case Phase::counting_down:
-            view.instruction = lesson.exercises()[lesson.chosen()].instruction;
-            view.status = fmt::format("begins in {:.0f}   Enter: now   F2: change it",
-                                      std::ceil(lesson.seconds_to_begin()));
+            view.instruction = looked_up(lesson.exercises()[lesson.chosen()].instruction.c_str());
+            view.status = translated("begins in {:.0f}   Enter: now   F2: change it",
+                                     std::ceil(lesson.seconds_to_begin()));
             show_places(lesson.exercises()[lesson.chosen()], {}, false, view);
             break;
         case Phase::doing:
@@ -151,7 +157,7 @@ LessonView lesson_view(const Lesson& lesson, const LessonSetting& setting, doubl
             break;
         case Phase::looking_back:
             if (lesson.page_hidden())
-                view.status = "Space: back to the figures";
+                view.status = translated("Space: back to the figures");
             else
                 view.page = result;
             show_places(lesson.attempt()->exercise(), lesson.attempt()->goals(), true, view);

@@ -12,6 +12,7 @@
 #include "formats/model/errors.hpp"
 #include "runtime/apps/exercises/editor_view.hpp"
 #include "runtime/apps/exercises/save_exercise.hpp"
+#include "runtime/texts/translated.hpp"
 #include "runtime/training/lay_out.hpp"
 #include "runtime/training/touched_place.hpp"
 #include "tools/cli/command.hpp"
@@ -139,7 +140,7 @@ void TrainLesson::begin_to_edit() {
 std::optional<Exercise> TrainLesson::lay_out_draft() {
     try {
         auto exercise = lay_out_settled(editor_->recipe(), run_.patient_case(), run_.model());
-        if (!exercise) editor_->tell("nothing is hidden in this case");
+        if (!exercise) editor_->tell(texts::translated("nothing is hidden in this case"));
         return exercise;
     } catch (const InvalidInput& error) {
         editor_->tell(error.what());
@@ -160,7 +161,7 @@ void TrainLesson::grant(Wish wish) {
     try {
         if (wish == Wish::save) {
             save_exercise(exercise_file_, recipe);
-            editor_->tell("saved to " + exercise_file_.string());
+            editor_->tell(texts::translated("saved to {}", exercise_file_.string()));
         }
     } catch (const std::exception& error) {
         editor_->tell(error.what());

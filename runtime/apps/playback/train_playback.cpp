@@ -22,6 +22,7 @@
 #include "runtime/session/playback/playback_clock.hpp"
 #include "runtime/session/replay.hpp"
 #include "runtime/sound/force_sound.hpp"
+#include "runtime/texts/translated.hpp"
 #include "runtime/visual/train_window.hpp"
 #include "tools/cli/refuse_beside.hpp"
 
@@ -42,9 +43,9 @@ std::string speed_text(double speed) {
 }
 
 std::string timeline_text(const PlaybackClock& clock, bool filmed) {
-    return fmt::format("{:.2f} of {:.2f} s    {} x{}", clock.time() - clock.begins(),
-                       clock.ends() - clock.begins(), speed_text(clock.speed()),
-                       clock.runs() || filmed ? "" : "    paused");
+    return texts::translated("{:.2f} of {:.2f} s    {} x{}", clock.time() - clock.begins(),
+                             clock.ends() - clock.begins(), speed_text(clock.speed()),
+                             clock.runs() || filmed ? "" : "    " + texts::translated("paused"));
 }
 
 // A recording in its window, frame by frame.
@@ -113,7 +114,7 @@ class RecordingPlayer {
     }
 
     void press(const std::string& key) {
-        if (key == "o" || key == "f") window_.tell("not while a recording is shown");
+        if (key == "o" || key == "f") window_.tell(texts::translated("not while a recording is shown"));
         if (key == "a") turn_sound();
         clock_.press(key);
     }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "formats/model/errors.hpp"
+#include "formats/records/shown_text.hpp"
 #include "runtime/haptics/methods/continuous_contact.hpp"
 #include "runtime/haptics/methods/published_contact.hpp"
 
@@ -18,24 +19,26 @@ using Face = PublishedContact::Face;
 constexpr ContactCapabilities of_published{.needs_detection = true, .most_tools = 1};
 
 constexpr std::array table{
-    ContactMethodEntry{"single", "is published: inside or outside at 30 Hz decides", of_published,
+    ContactMethodEntry{"single", shown_text("is published: inside or outside at 30 Hz decides"), of_published,
                        make_published<Tested::single, Face::kept>},
     ContactMethodEntry{
-        "twice", "is published: the same, with a second test of the last position between two detections",
+        "twice",
+        shown_text("is published: the same, with a second test of the last position between two detections"),
         of_published, make_published<Tested::twice, Face::kept>},
     ContactMethodEntry{"single-renewed",
-                       "is `single` read otherwise: every detection renews the face in contact", of_published,
-                       make_published<Tested::single, Face::renewed>},
-    ContactMethodEntry{"twice-renewed", "is `twice` read so", of_published,
+                       shown_text("is `single` read otherwise: every detection renews the face in contact"),
+                       of_published, make_published<Tested::single, Face::renewed>},
+    ContactMethodEntry{"twice-renewed", shown_text("is `twice` read so"), of_published,
                        make_published<Tested::twice, Face::renewed>},
-    ContactMethodEntry{"continuous",
-                       "is ours: every tick sweeps the tool from the last to the present position",
-                       {.has_radius = true,
-                        .spreads_loads = true,
-                        .sums_rigid_walls = true,
-                        .creeps = true,
-                        .keeps_energy = true},
-                       make_continuous},
+    ContactMethodEntry{
+        "continuous",
+        shown_text("is ours: every tick sweeps the tool from the last to the present position"),
+        {.has_radius = true,
+         .spreads_loads = true,
+         .sums_rigid_walls = true,
+         .creeps = true,
+         .keeps_energy = true},
+        make_continuous},
 };
 
 }  // namespace

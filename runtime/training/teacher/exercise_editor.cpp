@@ -9,6 +9,8 @@
 #include <iterator>
 #include <utility>
 
+#include "formats/records/shown_text.hpp"
+
 namespace palpate::training {
 namespace {
 
@@ -131,7 +133,7 @@ Wish ExerciseEditor::press(std::string_view key, const HandNow& hand) {
 void ExerciseEditor::press_on_organ(std::string_view key, const HandNow& hand) {
     if (key == "m") mark(hand);
     if (key == "delete") {
-        message_ = draft_.places.empty() ? "there is no mark" : "";
+        message_ = draft_.places.empty() ? shown_text("there is no mark") : "";
         if (!draft_.places.empty()) draft_.places.pop_back();
     }
 }
@@ -141,11 +143,11 @@ void ExerciseEditor::mark(const HandNow& hand) {
     if (draft_.task == Task::guide)
         draft_.places.push_back(four_decimals(hand.tool));
     else if (least_places(draft_.task) == 0)
-        message_ = "this task has no marks";
+        message_ = shown_text("this task has no marks");
     else if (hand.touched)
         draft_.places.push_back(four_decimals(*hand.touched));
     else
-        message_ = "touch the organ where the mark is to be";
+        message_ = shown_text("touch the organ where the mark is to be");
 }
 
 Wish ExerciseEditor::press_on_page(std::string_view key, const HandNow& hand) {
@@ -162,8 +164,8 @@ Wish ExerciseEditor::press_on_page(std::string_view key, const HandNow& hand) {
     if (key == "minus" || key == "kp_subtract" || key == "left") change(-1);
     if (key == "return" && chosen_ == Setting::title) typing_ = true;
     const bool of_force = chosen_ == Setting::least_force || chosen_ == Setting::most_force;
-    if (key == "f" && !of_force) message_ = "first choose one of the forces";
-    if (key == "f" && of_force && hand.force <= 0) message_ = "no force is felt";
+    if (key == "f" && !of_force) message_ = shown_text("first choose one of the forces");
+    if (key == "f" && of_force && hand.force <= 0) message_ = shown_text("no force is felt");
     if (key == "f" && of_force && hand.force > 0)
         set_force(stepped(hand.force, second_digit(hand.force), 0, least_settable));
     if (key == "t" && is_complete()) return Wish::attempt;
@@ -191,7 +193,7 @@ void ExerciseEditor::change(int ways) {
         case Setting::task:
             return change_task(ways);
         case Setting::title:
-            message_ = "Enter, and type it";
+            message_ = shown_text("Enter, and type it");
             return;
         case Setting::least_force:
             return set_force(
@@ -229,13 +231,14 @@ void ExerciseEditor::set_force(double newtons) {
     const double before = *std::exchange(force, newtons);
     if (*draft_.least_force < *draft_.most_force) return;
     force = before;
-    message_ = "the least force must stay below the most";
+    message_ = shown_text("the least force must stay below the most");
 }
 
 bool ExerciseEditor::is_complete() {
     const std::size_t needed = least_places(draft_.task);
     if (draft_.places.size() >= needed) return true;
-    message_ = fmt::format("set {} first: Space, then M", needed == 1 ? "a mark" : "two marks or more");
+    message_ = needed == 1 ? shown_text("set a mark first: Space, then M")
+                           : shown_text("set two marks or more first: Space, then M");
     return false;
 }
 

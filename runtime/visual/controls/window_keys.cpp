@@ -3,24 +3,27 @@
 
 #include <array>
 
+#include "formats/records/shown_text.hpp"
+
 namespace palpate::visual {
 
 std::span<const WindowKey> window_keys() {
     static constexpr auto table = std::to_array<WindowKey>({
-        {"c", "Cut", "cut away what hides the tool"},
-        {"b", "Bone", "show or hide what does not give way"},
-        {"t", "Inside", "show or hide what organs enclose, such as a tumour"},
-        {"x", "Slices", "the scan's slice through the tool: axial, coronal, sagittal, none"},
-        {"v", "Tip", "look from the tool's tip, then in a corner too, then not"},
-        {"u", "Undo", "the view before the last turn, shift or zoom"},
-        {"r", "Start", "tool and view back to where they began"},
-        {"p", "Picture", "save a picture of the window in this folder"},
-        {"o", "Record", "record every tick in this folder from now on, or stop"},
-        {"a", "Audio", "hear the force: the harder, the higher"},
-        {"f", "Scheme", "find contact in the next way, published or ours"},
-        {"i", "About", "how this case was made"},
-        {"h", "Help", "show or hide what the mouse does"},
-        {"q", "Quit", "close the window"},
+        {"c", shown_text("Cut"), shown_text("cut away what hides the tool")},
+        {"b", shown_text("Bone"), shown_text("show or hide what does not give way")},
+        {"t", shown_text("Inside"), shown_text("show or hide what organs enclose, such as a tumour")},
+        {"x", shown_text("Slices"),
+         shown_text("the scan's slice through the tool: axial, coronal, sagittal, none")},
+        {"v", shown_text("Tip"), shown_text("look from the tool's tip, then in a corner too, then not")},
+        {"u", shown_text("Undo"), shown_text("the view before the last turn, shift or zoom")},
+        {"r", shown_text("Start"), shown_text("tool and view back to where they began")},
+        {"p", shown_text("Picture"), shown_text("save a picture of the window in this folder")},
+        {"o", shown_text("Record"), shown_text("record every tick in this folder from now on, or stop")},
+        {"a", shown_text("Audio"), shown_text("hear the force: the harder, the higher")},
+        {"f", shown_text("Scheme"), shown_text("find contact in the next way, published or ours")},
+        {"i", shown_text("About"), shown_text("how this case was made")},
+        {"h", shown_text("Help"), shown_text("show or hide what the mouse does")},
+        {"q", shown_text("Quit"), shown_text("close the window")},
     });
     return table;
 }

@@ -7,9 +7,9 @@ namespace palpate::visual {
 
 /// A key that does something in the window whatever is going on, and the button that does the same.
 struct WindowKey {
-    std::string_view key;    ///< X11 name, lower case
-    std::string_view label;  ///< on its button
-    std::string_view tip;    ///< what it does, beside the button that the pointer rests on
+    std::string_view key;  ///< X11 name, lower case
+    const char* label;     ///< in English, on its button
+    const char* tip;       ///< in English, what it does, beside the button that the pointer rests on
 };
 
 /// All of them, in the order of their buttons. Help, tips and buttons follow this table; a new key is a line

@@ -8,6 +8,9 @@
 #include <fmt/format.h>
 #include <vector>
 
+#include "formats/records/shown_text.hpp"
+#include "runtime/texts/translated.hpp"
+
 namespace palpate::visual {
 namespace {
 
@@ -34,10 +37,12 @@ struct Axes {
 };
 
 const Axes& axes_of(SlicePlane plane) {
-    static const std::array<Axes, 3> axes{
-        {{"axial", "inferior", "superior", 2, Vector3d::UnitX(), -Vector3d::UnitY()},
-         {"coronal", "anterior", "posterior", 1, Vector3d::UnitX(), Vector3d::UnitZ()},
-         {"sagittal", "right", "left", 0, Vector3d::UnitY(), Vector3d::UnitZ()}}};
+    static const std::array<Axes, 3> axes{{{shown_text("axial"), shown_text("inferior"),
+                                            shown_text("superior"), 2, Vector3d::UnitX(), -Vector3d::UnitY()},
+                                           {shown_text("coronal"), shown_text("anterior"),
+                                            shown_text("posterior"), 1, Vector3d::UnitX(), Vector3d::UnitZ()},
+                                           {shown_text("sagittal"), shown_text("right"), shown_text("left"),
+                                            0, Vector3d::UnitY(), Vector3d::UnitZ()}}};
     return axes[static_cast<std::size_t>(plane)];
 }
 
@@ -56,7 +61,8 @@ ScanPlane slice_through(const ImageGrid& grid, SlicePlane plane, const Vector3d&
 std::string slice_text(SlicePlane plane, const ScanPlane& slice) {
     const Axes& axes = axes_of(plane);
     const double at = slice.corner[axes.across];
-    return fmt::format("{}, {:.1f} mm {}", axes.name, std::abs(at), at < 0 ? axes.below : axes.above);
+    return fmt::format("{}, {:.1f} mm {}", texts::looked_up(axes.name), std::abs(at),
+                       texts::looked_up(at < 0 ? axes.below : axes.above));
 }
 
 GreyWindow grey_window(const Scan& scan) {

@@ -36,8 +36,8 @@ TEST(WindowKeys, have_one_meaning_each_and_none_that_an_exercise_or_the_hand_has
                                      "space", "return", "backspace", "plus", "minus"};
     for (const visual::WindowKey& entry : visual::window_keys()) {
         EXPECT_TRUE(taken.insert(entry.key).second) << entry.key;
-        EXPECT_FALSE(entry.label.empty());
-        EXPECT_FALSE(entry.tip.empty());
+        EXPECT_FALSE(std::string_view(entry.label).empty());
+        EXPECT_FALSE(std::string_view(entry.tip).empty());
     }
 }
 
