@@ -13,7 +13,7 @@ constexpr auto domain = "palpate";
 }  // namespace
 
 void follow_the_desktop() {
-    std::setlocale(LC_MESSAGES, "");
+    std::setlocale(LC_MESSAGES, "");  // NOLINT(concurrency-mt-unsafe): before threads, as its comment asks
     std::error_code error;
     const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
     const auto catalogues = program.parent_path().parent_path() / "share/palpate/locale";
