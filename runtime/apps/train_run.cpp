@@ -55,7 +55,6 @@ void fill_frame(const TrainRun& run, std::span<const TickResult* const> ticks, V
     frame.statuses = run.session.statuses().recent(tick.time);
     frame.recording = run.keys.recording();
     frame.audible = run.keys.sound().on();
-    run.keys.sound().follow(frame.force.norm());
     frame.lesson = run.lesson.view(frame.force.norm());
     frame.other_tools.clear();
     for (const TickResult* other : ticks.subspan(1)) frame.other_tools.push_back(other_tool_of(*other));
@@ -111,6 +110,7 @@ TrainOutcome run_in_window(const TrainRun& run, VisualFrame& frame) {
         shape.follow(session.model(), tick.time, ticks, frame.displacements);
         fill_frame(run, ticks, frame);
         run.window.show(frame);
+        run.keys.sound().follow(frame.force.norm());
         session.visual_beat();
         session.guide(run.window.hand());
         session.pump(take);
