@@ -29,7 +29,8 @@ def extracted():
     call = ["xgettext", "--language=C++", "--from-code=UTF-8", "--keyword", "--keyword=translated", "--keyword=shown_text", "--add-location=file",
             "--sort-by-file", "--no-wrap", "--package-name=Palpate", "--output=-"]
     run = subprocess.run([*call, *map(str, sources), "-"], cwd=ROOT, input=metric_titles(), capture_output=True, text=True, check=True)
-    return re.sub(r'^"(POT-Creation-Date|PO-Revision-Date|Last-Translator|Language-Team|Report-Msgid-Bugs-To): .*\n', "", run.stdout, flags=re.MULTILINE)
+    texts = re.sub(r"\A(#.*\n)+", "# SPDX-License-Identifier: Apache-2.0\n", run.stdout)  # xgettext's form to fill in
+    return re.sub(r'^"(POT-Creation-Date|PO-Revision-Date|Last-Translator|Language-Team|Report-Msgid-Bugs-To): .*\n', "", texts, flags=re.MULTILINE)
 
 
 if __name__ == "__main__":
