@@ -29,8 +29,7 @@ void dress(vtkTextActor* actor, vtkRenderer* renderer) {
 
 ButtonBar::ButtonBar(vtkRenderer* renderer) : renderer_(renderer) {
     for (const WindowKey& entry : window_keys()) {
-        Button button{entry.key, std::string(texts::looked_up(entry.tip)),
-                      vtkSmartPointer<vtkTextActor>::New()};
+        Button button{entry.key, texts::looked_up(entry.tip), vtkSmartPointer<vtkTextActor>::New()};
         const char letter = static_cast<char>(std::toupper(static_cast<unsigned char>(entry.key.front())));
         // Blanks are the button's margin: a text's background ends with its letters.
         button.text->SetInput(fmt::format("  {}  {}  ", letter, texts::looked_up(entry.label)).c_str());
