@@ -29,8 +29,9 @@ def is_head(r, g, b):  # (1, 0.85, 0.3)
     return r > 240 and 200 < g < 230 and 60 < b < 95
 
 
-def is_ghost(r, g, b):  # (255, 178, 60), shaded
-    return r > 120 and 0.6 * r < g < 0.8 * r and b < 0.35 * r
+def is_ghost(r, g, b):
+    """(255, 178, 60), shaded, of which every other pixel is left out: half and half with the tissue where pixels are coarse."""
+    return r > 120 and 0.5 * r < g < r and r - b > 80
 
 
 class Playback(TrainerCase):
