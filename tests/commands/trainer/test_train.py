@@ -99,7 +99,8 @@ class Train(TrainerCase):
             result = json.loads(run.stdout)
             self.assertEqual(result["device"], "simulated desktop, scripted hand")
             self.assertGreater(result["force_peak_n"], 0.01)
-            self.assertLess(result["penetration"]["device_mm"], 3)  # the hand of 0.3 N/mm gives way
+            # As deep as the hand goes, with its tremor of 0.3 mm to either side; how it gives way is test_touch.py's.
+            self.assertLess(result["penetration"]["device_mm"], 3.3)
 
     def test_a_second_tool_is_felt_shown_and_recorded_beside_the_first(self):
         second, recording = self.folder / "second.txt", self.folder / "both.h5"
