@@ -68,16 +68,20 @@ def hidden(root, files, found):
         scope = tag.get("scope", "")
         if tag["kind"] in ("function", "prototype") and tag["path"].endswith(".hpp") and tag.get("scopeKind") == "namespace":
             declared[tag["name"], len(parameters(tag.get("signature", "()")))].add(tag["path"])
+    neighbours = collections.defaultdict(list)  # folder of a target -> its sources and their texts
+    for path in files:
+        if path.endswith(".cpp"):
+            neighbours[target_folder(root / path)].append((path, (root / path).read_text()))
     errors = []
     for tag in found:
         if tag["kind"] != "function" or not re.search(r"__anon\w+$", tag.get("scope", "")):
             continue
-        headers = declared.get((tag["name"], len(parameters(tag.get("signature", "()")))), ())
-        room = target_folder(root / tag["path"])
-        for path in files:
-            if path == tag["path"] or target_folder(root / path) != room or not path.endswith(".cpp"):
+        headers = declared.get((tag["name"], len(parameters(tag.get("signature", "()")))))
+        if not headers:
+            continue
+        for path, text in neighbours[target_folder(root / tag["path"])]:
+            if path == tag["path"]:
                 continue
-            text = (root / path).read_text()
             if any(f'"{header}"' in text for header in headers) and re.search(rf"(?<![\w.:>]){tag['name']}\(", text):
                 errors.append(f"{tag['path']}:{tag['line']}: {tag['name']} would hide the one that {path} means; rename it")
     return errors
