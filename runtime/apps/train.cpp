@@ -2,6 +2,8 @@
 // palpate train: the trainer's window beside the haptic loop.
 #include <charconv>
 #include <chrono>
+#include <future>
+#include <memory>
 #include <optional>
 #include <spdlog/spdlog.h>
 #include <vector>
@@ -113,18 +115,25 @@ Json train(const Options& options, cli::Session& session) {
         throw UsageError({"--second", "with --device " + options.device, "a simulated device", ""});
     find_contact_method(options.scheme, "--scheme");
     const std::size_t tools = options.second.empty() ? device.tool_count : 2;
-    Session run(
-        {.asset = options.asset, .method = options.scheme, .tool_count = tools, .stream = options.stream},
-        [](const std::string& sentence) { spdlog::warn("{}", sentence); });
+    // Reading and opening a window take about as long, and two processors do both at once.
+    auto reading = std::async(std::launch::async, [&] {
+        return std::make_unique<Session>(SessionRequest{.asset = options.asset,
+                                                        .method = options.scheme,
+                                                        .tool_count = tools,
+                                                        .stream = options.stream},
+                                         [](const std::string& sentence) { spdlog::warn("{}", sentence); });
+    });
+    auto opened =
+        open_window(width, height, texts::translated("reading {}", options.asset.filename().string()));
+    const std::unique_ptr<Session> read = reading.get();
+    Session& run = *read;
     std::optional<ExpertGhost> ghost;
     if (!options.playback.ghost.empty()) ghost.emplace(options.playback.ghost, options.asset);
     const Case& patient_case = run.patient_case();
     const TouchTarget target = start_of(options, run);
     const TouchPoint& place = target.place;
     const Eigen::Vector3d start = start_outside(place, run.model().settings().tool_radius);
-    WindowSettings window_settings{.width = width,
-                                   .height = height,
-                                   .start = start,
+    WindowSettings window_settings{.start = start,
                                    .sight = first_sight(patient_case, run.model(), place.point, place.normal),
                                    .cautions = provenance::cautions_in(patient_case.provenance),
                                    .surfaces = surfaces_of(run.model())};
@@ -145,8 +154,8 @@ Json train(const Options& options, cli::Session& session) {
                         .cautions = window_settings.cautions},
                        !options.script.empty());
 
-    session.progress.step("opening the window", 0.5);
-    TrainWindow window(patient_case, window_settings);
+    session.progress.step("filling the window", 0.5);
+    TrainWindow window(std::move(opened), patient_case, window_settings);
     session.progress.finish();
     VisualFrame frame;
     for (const DeformableBody& body : patient_case.deformable_bodies)

@@ -23,8 +23,8 @@
 #include "formats/model/errors.hpp"
 #include "runtime/texts/translated.hpp"
 #include "runtime/visual/controls/button_bar.hpp"
-#include "runtime/visual/controls/display.hpp"
 #include "runtime/visual/controls/free_path.hpp"
+#include "runtime/visual/controls/opened_window.hpp"
 #include "runtime/visual/controls/view_history.hpp"
 #include "runtime/visual/detail/drawn_detail.hpp"
 #include "runtime/visual/hand/pointer_hand.hpp"
@@ -62,8 +62,10 @@ enum class Drag { none, turn, shift, roll, zoom };
 }  // namespace
 
 struct TrainWindow::Parts {
-    Parts(const Case& patient_case, const WindowSettings& window_settings)
-        : settings(window_settings),
+    Parts(std::shared_ptr<OpenedWindow> opened_window, const Case& patient_case,
+          const WindowSettings& window_settings)
+        : opened(std::move(opened_window)),
+          settings(window_settings),
           hand(window_settings.start, patient_case.haptics.tool_radius),
           rigid_count(patient_case.rigid_bodies.size()),
           case_name(patient_case.name),
@@ -78,18 +80,9 @@ struct TrainWindow::Parts {
           tool_radius(patient_case.haptics.tool_radius),
           cut(window_settings.sight.blocked) {
         if (patient_case.scan) scan.emplace(*patient_case.scan, scene.bodies(), renderer, front);
-        renderer->SetBackground(0.10, 0.13, 0.16);  // a gradient takes a twentieth of a frame
         renderer->SetNearClippingPlaneTolerance(
             0.002);  // of the far one: an eye in a passage is near its walls
-        window->SetNumberOfLayers(2);
-        front->SetLayer(1);
-        window->AddRenderer(renderer);
-        window->AddRenderer(front);
-        window->SetSize(settings.width, settings.height);
         window->SetWindowName(("Palpate: " + patient_case.name).c_str());
-        window->SetMultiSamples(0);  // software rendering pays for every sample
-        interactor->SetRenderWindow(window);
-        interactor->SetInteractorStyle(nullptr);
         events->SetClientData(this);
         events->SetCallback([](vtkObject*, unsigned long event, void* self, void*) {
             static_cast<Parts*>(self)->handle(event);
@@ -103,8 +96,6 @@ struct TrainWindow::Parts {
             interactor->AddObserver(event, events);
         for (vtkActor* body : scene.bodies()) thumbnails.renderer()->AddActor(body);
         reset();
-        interactor->Initialize();
-        survive_loss_of(window->GetGenericDisplayId());
     }
 
     void reset() {
@@ -363,13 +354,13 @@ struct TrainWindow::Parts {
         scene.show_regions(false);
     }
 
-    DisplayConnection display;
+    std::shared_ptr<OpenedWindow> opened;
+    vtkRenderer *renderer = opened->renderer, *front = opened->front;
+    vtkRenderWindow* window = opened->window;
+    vtkRenderWindowInteractor* interactor = opened->interactor;
     WindowSettings settings;
     PointerHand hand;
     std::size_t rigid_count;
-    vtkNew<vtkRenderer> renderer, front;
-    vtkNew<vtkRenderWindow> window;
-    vtkNew<vtkRenderWindowInteractor> interactor;
     vtkNew<vtkCallbackCommand> events;
     std::string case_name;
     Scene scene;
@@ -400,8 +391,9 @@ struct TrainWindow::Parts {
     std::chrono::steady_clock::time_point last_frame{}, hand_led = std::chrono::steady_clock::now();
 };
 
-TrainWindow::TrainWindow(const Case& patient_case, const WindowSettings& settings)
-    : parts_(std::make_unique<Parts>(patient_case, settings)) {}
+TrainWindow::TrainWindow(std::shared_ptr<OpenedWindow> opened, const Case& patient_case,
+                         const WindowSettings& settings)
+    : parts_(std::make_unique<Parts>(std::move(opened), patient_case, settings)) {}
 
 TrainWindow::~TrainWindow() {
     if (lost()) static_cast<void>(parts_.release());

@@ -8,6 +8,7 @@
 
 #include "formats/model/body.hpp"
 #include "runtime/collision/collision_surface.hpp"
+#include "runtime/visual/controls/open_window.hpp"
 #include "runtime/visual/detail/detail.hpp"
 #include "runtime/visual/playback/film.hpp"
 #include "runtime/visual/sight.hpp"
@@ -16,8 +17,6 @@
 namespace palpate::visual {
 
 struct WindowSettings {
-    int width = 1280;                                 ///< pixels
-    int height = 720;                                 ///< pixels
     std::int64_t rigid_budget = 60'000;               ///< triangles of all rigid bodies on the screen
     Eigen::Vector3d start = Eigen::Vector3d::Zero();  ///< where the hand is first, p_P, mm
     Sight sight{};                                    ///< where the eye is first
@@ -30,8 +29,9 @@ struct WindowSettings {
 /// the one that made it; it never waits for another.
 class TrainWindow {
   public:
-    /// Opens the window. Throws SystemFailure if no X display answers.
-    TrainWindow(const Case& patient_case, const WindowSettings& settings);
+    /// Draws in a window of its own from now on.
+    TrainWindow(std::shared_ptr<OpenedWindow> opened, const Case& patient_case,
+                const WindowSettings& settings);
     TrainWindow(const TrainWindow&) = delete;
     TrainWindow& operator=(const TrainWindow&) = delete;
     ~TrainWindow();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `palpate <command> ...` runs `palpate-<command> ...` from the same folder.
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <string>
@@ -57,6 +58,10 @@ int main(int argc, char** argv) {
         std::cerr << '\n';
         return palpate::cli::ExitCode::usage;
     }
+    // Large arrays in huge pages also where the system gives them on request alone: a large case then opens
+    // in half the time. glibc reads this when a program begins, and no later.
+    // NOLINTNEXTLINE(concurrency-mt-unsafe): before there is a second thread
+    setenv("GLIBC_TUNABLES", "glibc.malloc.hugetlb=1", 0);
     execv(program.c_str(), argv + 1);
     std::perror(program.c_str());
     return palpate::cli::ExitCode::failed;

@@ -223,13 +223,14 @@ Json play_recording(const PlaybackOptions& options, const PlaybackWindow& shown,
     cli::end_softly_on_interrupt();
 
     session.progress.step("opening the window", 0.5);
-    WindowSettings settings{.width = shown.size.first,
-                            .height = shown.size.second,
-                            .start = vector_of(scene.track().front()->tool_position),
+    WindowSettings settings{.start = vector_of(scene.track().front()->tool_position),
                             .sight = scene.sight(),
                             .cautions = provenance::cautions_in(patient_case.provenance),
                             .surfaces = surfaces_of(*model)};
-    TrainWindow window(patient_case, settings);
+    const auto [width, height] = shown.size;
+    TrainWindow window(
+        open_window(width, height, texts::translated("reading {}", options.play.filename().string())),
+        patient_case, settings);
     session.progress.finish();
     tell_what_is_missing(recording, scene.track(), options);
     VisualFrame frame;
