@@ -51,21 +51,23 @@ const DeformableBody& soft_body(const Case& patient_case, std::size_t body) {
     return patient_case.deformable_bodies[body - patient_case.rigid_bodies.size()];
 }
 
-HiddenRegion place_above(const Case& patient_case, std::size_t body, const Label& label) {
+HiddenRegion hidden_region(const Case& patient_case, std::size_t body, const Label& label) {
     const DeformableBody& soft = soft_body(patient_case, body);
     const std::vector<std::int32_t> nodes = nodes_of_region(soft.mesh, label.value);
-    Vector3d middle = Vector3d::Zero();
-    for (const std::int32_t node : nodes) middle += soft.mesh.rest_positions[node];
-    middle /= static_cast<double>(nodes.size());
     const auto& vertices = soft.boundary.surface.vertices;
-    HiddenRegion region{.name = label.name, .body = body, .label = label.value, .above = middle};
-    if (const auto felt = felt_vertex(soft, label.name)) {
-        region.above = vertices[*felt];
-    } else {
+    std::optional<std::int32_t> near = felt_vertex(soft, label.name);
+    if (!near) {
+        Vector3d middle = Vector3d::Zero();
+        for (const std::int32_t node : nodes) middle += soft.mesh.rest_positions[node];
+        middle /= static_cast<double>(nodes.size());
         const auto free = free_vertices(patient_case, body);
-        region.above = vertices[*std::ranges::min_element(
-            free, {}, [&](std::int32_t vertex) { return (vertices[vertex] - middle).norm(); })];
+        near = *std::ranges::min_element(
+            free, {}, [&](std::int32_t vertex) { return (vertices[vertex] - middle).norm(); });
     }
+    HiddenRegion region{.name = label.name,
+                        .body = body,
+                        .label = label.value,
+                        .above = place_above(soft, label.value, vertices[*near])};
     region.depth = std::numeric_limits<double>::max();
     for (const std::int32_t node : nodes)
         region.depth = std::min(region.depth, (soft.mesh.rest_positions[node] - region.above).norm());
@@ -252,7 +254,7 @@ std::vector<HiddenRegion> hidden_regions(const Case& patient_case) {
     for (std::size_t i = 0; i < patient_case.deformable_bodies.size(); ++i) {
         const DeformableBody& soft = patient_case.deformable_bodies[i];
         for (const Label& label : enclosed_regions(soft.mesh))
-            regions.push_back(place_above(patient_case, patient_case.rigid_bodies.size() + i, label));
+            regions.push_back(hidden_region(patient_case, patient_case.rigid_bodies.size() + i, label));
     }
     std::ranges::sort(regions, {}, &HiddenRegion::name);
     return regions;

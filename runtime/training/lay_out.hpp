@@ -20,12 +20,13 @@ struct HiddenRegion {
     std::string name;
     std::size_t body = 0;    ///< as in HapticModel
     std::int32_t label = 0;  ///< of its tetrahedra
-    Eigen::Vector3d above;   ///< the surface vertex that feels it most, p_P, mm
+    Eigen::Vector3d above;   ///< on the surface straight above its middle, where it is felt; p_P, mm
     double depth = 0;        ///< mm, from there to the nearest node of it
 };
 
-/// The regions of deformable bodies that are not a body's largest, by name. Where a case does not say what
-/// can be felt, the free surface vertex nearest to a region's middle stands for the one that feels it most.
+/// The regions of deformable bodies that are not a body's largest, by name. Each is above on the side of the
+/// surface vertex that feels it most, see place_above(); where a case does not say what can be felt, the free
+/// vertex nearest to the region's middle stands for that.
 std::vector<HiddenRegion> hidden_regions(const Case& patient_case);
 
 /// Where a hand starts so that there is something to feel: 7 to 16 % of the body's extent beside the first

@@ -99,28 +99,61 @@ Vector3d mean_normal(const TriangleMesh& surface, const Vector3d& place, double 
     return sum.normalized();
 }
 
+// A region's nodes and the ball about their mean that holds them.
+struct Extent {
+    std::vector<Vector3d> nodes;
+    Vector3d middle = Vector3d::Zero();
+    double radius = 0;
+};
+
+Extent extent_of(const TetMesh& mesh, std::int32_t region) {
+    Extent extent;
+    for (const std::int32_t node : nodes_of_region(mesh, region))
+        extent.nodes.push_back(mesh.rest_positions[node]);
+    for (const Vector3d& node : extent.nodes)
+        extent.middle += node / static_cast<double>(extent.nodes.size());
+    for (const Vector3d& node : extent.nodes)
+        extent.radius = std::max(extent.radius, (node - extent.middle).norm());
+    return extent;
+}
+
+// As one sees it who looks straight down at a place; nothing where the surface about it has no side.
+std::optional<SeenSurface> seen_at(const TriangleMesh& surface, const Vector3d& place, double radius) {
+    const Vector3d up = mean_normal(surface, place, radius);
+    if (up.isZero()) return std::nullopt;
+    return SeenSurface(surface, place, up);
+}
+
 }  // namespace
 
-std::vector<Vector3d> region_outline(const DeformableBody& body, std::int32_t region, const Vector3d& above) {
-    const std::vector<std::int32_t> nodes = nodes_of_region(body.mesh, region);
-    const auto place = [&](std::int32_t node) { return body.mesh.rest_positions[node]; };
-    Vector3d middle = Vector3d::Zero();
-    for (const std::int32_t node : nodes) middle += place(node) / static_cast<double>(nodes.size());
-    double radius = 0;
-    for (const std::int32_t node : nodes) radius = std::max(radius, (place(node) - middle).norm());
-    const Vector3d up = mean_normal(body.boundary.surface, above, radius);
-    if (up.isZero()) return {};
+Vector3d place_above(const DeformableBody& body, std::int32_t region, const Vector3d& near) {
+    constexpr int most_rounds = 10;
+    constexpr double settled = 0.1;  // mm
+    const Extent extent = extent_of(body.mesh, region);
+    Vector3d place = near;
+    for (int round = 0; round < most_rounds; ++round) {
+        const auto seen = seen_at(body.boundary.surface, place, extent.radius);
+        const auto next = seen ? seen->below(seen->across(extent.middle).head<2>()) : std::nullopt;
+        if (!next) break;
+        const double moved = (*next - std::exchange(place, *next)).norm();
+        if (moved < settled) break;
+    }
+    return place;
+}
 
-    const SeenSurface surface(body.boundary.surface, above, up);
+std::vector<Vector3d> region_outline(const DeformableBody& body, std::int32_t region, const Vector3d& above) {
+    const Extent extent = extent_of(body.mesh, region);
+    const auto surface = seen_at(body.boundary.surface, above, extent.radius);
+    if (!surface) return {};
     std::vector<Vector2d> shadow;
-    for (const std::int32_t node : nodes) shadow.emplace_back(surface.across(place(node)).head<2>());
+    for (const Vector3d& node : extent.nodes) shadow.emplace_back(surface->across(node).head<2>());
     const std::vector<Vector2d> hull = convex_hull(std::move(shadow));
     std::vector<Vector3d> outline;
     for (std::size_t i = 0; i < hull.size(); ++i) {
         const Vector2d &from = hull[i], &to = hull[(i + 1) % hull.size()];
         const double pieces = std::ceil((to - from).norm() / outline_step);
         for (double piece = 0; piece < pieces; ++piece)
-            if (const auto point = surface.below(from + (to - from) * (piece / pieces)))
+            if (const auto point = surface->below(from + (to - from) * (piece / pieces)))
                 outline.push_back(*point);
     }
     return outline;

@@ -8,6 +8,13 @@
 
 namespace palpate::training {
 
+/// The place of a body's surface straight above the middle of a region, from `near` (p_P, mm, on the surface)
+/// on: where the area-weighted mean normal of the surface within the region's own radius runs through the
+/// mean of the region's nodes. Found by going to the point of the surface over the middle along the last
+/// place's normal until it moves by less than 0.1 mm, ten times at most. p_P, mm; `near` where the surface
+/// about it has no normal or the middle lies beyond the body's edge. Linear in the surface.
+Eigen::Vector3d place_above(const DeformableBody& body, std::int32_t region, const Eigen::Vector3d& near);
+
 /// Draws the outline of what lies below a surface onto it, as one sees it who looks straight down at `above`
 /// (p_P, mm, on the body's surface). The region's nodes are projected along n, the area-weighted mean normal
 /// of the surface within the region's own radius of `above`; the outline is their convex hull across n, in

@@ -6,7 +6,8 @@
 
 Each draw puts the demo's tumour, as large and as far below the capsule as pipelines/cases/liver.toml has it, somewhere else, and builds
 the organ twice: with it, and with the liver's own tissue in its place, so that mesh and shape are the same. blind_hand.py searches both.
-The place to be found is the one that the trainer's exercise 'find' asks for. Prints a row for each search and how many were right, and
+The place to be found is the point of the capsule below which the tumour was put: its normal runs through the tumour's middle, so that
+the trainer's exercise 'find' asks for the same. Prints a row for each search and how many were right, and
 leaves all in FOLDER, build/blind_search without it, where a second run builds nothing again.
 
 --calibrate does the same with draws that are not judged: what the hand's threshold and lengths are from.
@@ -64,7 +65,7 @@ def spread(surface, spacing=1.5):
 
 
 def draw(surface, others, random):
-    """A centre for the tumour: below a point of the front that is drawn evenly by area among those where the tumour fits.
+    """A centre for the tumour, and the point of the front below which it lies, drawn evenly by area among those where the tumour fits.
 
     It fits where the point is seen from the front and faces it within 60 degrees, no rigid body is within 20 mm, and the nearest capsule
     to a ball that is BELOW mm beneath the point is 1 to 3 mm away."""
@@ -84,7 +85,7 @@ def draw(surface, others, random):
         centre = point - normal * (RADIUS + BELOW)
         gap = np.linalg.norm(capsule - centre, axis=1).min() - RADIUS
         if 1 <= gap <= 3 and np.linalg.norm(others - point, axis=1).min() > 20:
-            return centre.round(1)
+            return centre.round(1), point
 
 
 def rigid_vertices(asset):
@@ -92,21 +93,20 @@ def rigid_vertices(asset):
         return np.concatenate([body["vertices"][:] for body in file["palpate/bodies/rigid"].values()])
 
 
-def truth(asset):
-    """Where the exercise 'find' would have it, and by how much it is stiffer there."""
+def told(asset):
+    """By how many per cent the tools say that it is stiffer where the tumour is felt most."""
     shown = subprocess.run([BIN / "palpate-inspect", asset, "--json", "-"], check=True, capture_output=True, text=True)
     (felt,) = json.loads(shown.stdout)["felt"]
-    return np.array(felt["place_mm"]), felt["contrast_percent"]
+    return felt["contrast_percent"]
 
 
-def judge(with_tumour, none):
+def judge(place, with_tumour, none):
     """A row: how far from the truth the hand was, and what it said of the same organ without a tumour."""
-    place, percent = truth(with_tumour)
-    row = {"told_percent": percent}
+    row = {"told_percent": told(with_tumour)}
     for key, asset in (("with", with_tumour), ("none", none)):
         with tempfile.TemporaryDirectory() as scratch:
             answer = search(Hand(BIN / "palpate-touch", asset, Path(scratch)), Surface.seen(asset))
-        row[key] = {"found": bool(answer.found), "contrast": round(float(answer.contrast), 3), "presses": answer.presses,
+        row[key] = {"found": bool(answer.found), "evidence": round(float(answer.evidence), 1), "contrast": round(float(answer.contrast), 3), "presses": answer.presses,
                     "off_mm": round(float(np.linalg.norm(answer.place - place)), 1)}
     row["right"] = row["with"]["found"] and row["with"]["off_mm"] <= NEAR
     row["right_none"] = not row["none"]["found"]
@@ -126,8 +126,8 @@ def main():
     random = np.random.default_rng(seed)
     rows = []
     for i in range(options.draws):
-        centre = draw(surface, others, random)
-        rows.append({"centre_mm": centre.tolist()} | judge(*pair(options.folder, f"{name}-{i}", centre)))
+        centre, place = draw(surface, others, random)
+        rows.append({"centre_mm": centre.tolist(), "place_mm": place.round(1).tolist()} | judge(place, *pair(options.folder, f"{name}-{i}", centre)))
         print(json.dumps(rows[-1]), flush=True)
     print(f"with a tumour: right in {sum(row['right'] for row in rows)} of {len(rows)};"
           f" without: right in {sum(row['right_none'] for row in rows)} of {len(rows)}")

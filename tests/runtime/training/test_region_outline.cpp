@@ -36,6 +36,22 @@ TEST(RegionOutline, of_a_ball_below_a_plane_is_a_circle_of_its_radius_on_it) {
     }
 }
 
+TEST(PlaceAbove, a_ball_is_over_its_middle_wherever_on_that_side_it_is_looked_for) {
+    const DeformableBody body = cube_with_a_ball();
+    for (const Vector3d& near : {Vector3d(10, 10, 20), Vector3d(13, 6, 20), Vector3d(7, 14, 20)})
+        EXPECT_LT((place_above(body, 2, near) - Vector3d(10, 10, 20)).norm(), 0.2);
+    EXPECT_LT((place_above(body, 2, {20, 13, 8}) - Vector3d(20, 10, 10)).norm(), 0.2);
+}
+
+TEST(PlaceAbove, a_ball_below_a_slope_is_where_the_slopes_normal_runs_through_its_middle) {
+    DeformableBody body = cube_with_a_ball();
+    // The upper side leans: z = 20 + (x - 10) / 2. Its nearest point to the middle is 20 / 5 from that over
+    // it.
+    for (Vector3d& vertex : body.boundary.surface.vertices)
+        if (vertex.z() == 20) vertex.z() += (vertex.x() - 10) / 2;
+    EXPECT_LT((place_above(body, 2, {10, 10, 20}) - Vector3d(6, 10, 18)).norm(), 0.3);
+}
+
 TEST(RegionOutline, lies_on_the_nearest_of_surfaces_that_lie_over_each_other) {
     DeformableBody body = cube_with_a_ball();
     const auto alone = region_outline(body, 2, {10, 10, 20});
