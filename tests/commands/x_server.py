@@ -10,10 +10,13 @@ NEEDED = ("Xvfb", "xdotool", "xwd", "convert")
 class XServer:
     """An Xvfb of our own; -noreset keeps it when its last client leaves."""
 
+    def __init__(self, size="1400x800"):
+        self.size = size  # pixels
+
     def __enter__(self):
         reader, writer = os.pipe()
         self.process = subprocess.Popen(
-            ["Xvfb", "-displayfd", str(writer), "-screen", "0", "1400x800x24", "-nolisten", "tcp", "-noreset"],
+            ["Xvfb", "-displayfd", str(writer), "-screen", "0", f"{self.size}x24", "-nolisten", "tcp", "-noreset"],
             pass_fds=[writer],
             stderr=subprocess.DEVNULL,
         )

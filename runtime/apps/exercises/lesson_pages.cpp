@@ -123,7 +123,7 @@ LessonPage result_page(const Attempt& attempt, std::span<const PastAttempt> hist
                            .x = {},
                            .y = {},
                            .limit = {},
-                           .most_y = 105,
+                           .most_y = 100,
                            .points = true};
         for (const PastAttempt& past : history) {
             scores.x.push_back(static_cast<double>(scores.x.size() + 1));

@@ -86,6 +86,7 @@ vtkSmartPointer<vtkContextActor> chart_of(const LessonCurve& curve, double left,
         paint(a->GetLabelProperties(), font_size);
         a->SetNotation(vtkAxis::PRINTF_NOTATION);
         a->SetLabelFormat("%g");
+        a->SetTickLabelAlgorithm(vtkAxis::TICK_WILKINSON_EXTENDED);  // by the font's size, not by pixels
         a->GetPen()->SetColor(140, 150, 160);
         a->GetGridPen()->SetColor(50, 58, 66);
     }
@@ -112,8 +113,13 @@ vtkSmartPointer<vtkContextActor> chart_of(const LessonCurve& curve, double left,
         limit_plot->SetWidth(static_cast<float>(font_size) / 6);
     }
     if (curve.most_y) {
-        chart->GetAxis(vtkAxis::LEFT)->SetBehavior(vtkAxis::FIXED);
-        chart->GetAxis(vtkAxis::LEFT)->SetRange(0, *curve.most_y);
+        vtkNew<vtkDoubleArray> ticks;
+        for (const double part : {0.0, 0.5, 1.0}) ticks->InsertNextValue(part * *curve.most_y);
+        vtkAxis* left_axis = chart->GetAxis(vtkAxis::LEFT);
+        left_axis->SetTickLabelAlgorithm(vtkAxis::TICK_SIMPLE);
+        left_axis->SetCustomTickPositions(ticks);
+        left_axis->SetBehavior(vtkAxis::FIXED);
+        left_axis->SetRange(0, 1.05 * *curve.most_y);  // so that a point there is whole
     }
     if (curve.points) {
         chart->GetAxis(vtkAxis::BOTTOM)->SetBehavior(vtkAxis::FIXED);

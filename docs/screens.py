@@ -1,0 +1,170 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Takes the pictures of the trainer's screens that docs/screens.md shows: the demo's cases in real windows of three sizes.
+
+    docs/screens.py [SCREEN ...]        (pipelines/demo.sh before it; all screens without a name)
+
+PALPATE_BIN has the programs, build/release/bin without it. Each screen is reached as a user would, by mouse and keys, in an X server
+of its own; software rendering leaves out detail in large windows, and the pictures show that.
+"""
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+SOURCE = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(SOURCE / "tests/commands"))
+from x_server import XServer  # noqa: E402
+
+BIN = Path(os.environ.get("PALPATE_BIN", SOURCE / "build/release/bin"))
+SIZES = ((1280, 720), (1920, 1080), (3840, 2160))  # pixels
+ON_THE_ORGAN = 0.52, 0.50  # of the window
+BESIDE_IT = 0.9, 0.2
+
+
+class Trainer:
+    """The trainer in a window, and a hand at mouse and keyboard. Places are shares of the window."""
+
+    def __init__(self, case, size, folder, *options):
+        self.size, self.server = size, XServer("{}x{}".format(*size)).__enter__()
+        command = [BIN / "palpate", "train", SOURCE / f"build/demo/{case}.vtkhdf", "--size", "{}x{}".format(*size), "--quiet",
+                   *map(str, options)]
+        self.process = subprocess.Popen(command, env=self.server.environment, cwd=folder, stdout=subprocess.DEVNULL)
+        self.window = self.x("xdotool", "search", "--sync", "--onlyvisible", "--name", f"Palpate: {case}").split()[0].decode()
+        self.x("xdotool", "windowfocus", "--sync", self.window)
+        self.point(*BESIDE_IT)
+        self.wait(4)
+
+    def x(self, *command):
+        return subprocess.run([*map(str, command)], env=self.server.environment, check=True, capture_output=True, timeout=60).stdout
+
+    def wait(self, seconds):
+        time.sleep(seconds * (1 if self.size[0] < 3840 else 2.5))
+
+    def point(self, x, y):
+        self.x("xdotool", "mousemove", "--window", self.window, int(x * self.size[0]), int(y * self.size[1]))
+
+    def keys(self, *keys):
+        for key in keys:
+            self.x("xdotool", "key", key)
+            self.wait(0.6)
+
+    def press(self, x, y, seconds=1.5):
+        """Presses the organ under a place and stays there."""
+        self.point(x, y)
+        self.wait(1.5)
+        self.x("xdotool", "mousedown", 1)
+        self.wait(seconds)
+
+    def let_go(self):
+        self.x("xdotool", "mouseup", 1)
+        self.wait(1)
+
+    def take(self, path):
+        dump = self.x("xwd", "-silent", "-id", self.window)
+        subprocess.run(["convert", "xwd:-", "-quality", "75", path], input=dump, check=True)
+
+    def close(self):
+        self.process.terminate()
+        self.process.wait()
+        self.server.__exit__()
+
+
+def train(case, size, folder):
+    return Trainer(case, size, folder, "--attempts", folder / "attempts")
+
+
+def start(size, folder):
+    return train("liver", size, folder)
+
+
+def press(size, folder):
+    trainer = train("liver", size, folder)
+    trainer.keys("BackSpace")
+    trainer.press(*ON_THE_ORGAN)
+    return trainer
+
+
+def touch(size, folder):
+    trainer = train("liver", size, folder)
+    trainer.keys("1")
+    trainer.wait(4)
+    return trainer
+
+
+def result(size, folder):
+    trainer = touch(size, folder)
+    for place in (ON_THE_ORGAN, (0.45, 0.55), (0.58, 0.45)):
+        trainer.press(*place)
+        trainer.let_go()
+    trainer.keys("e")
+    trainer.wait(1)
+    return trainer
+
+
+def found(size, folder):
+    trainer = train("liver", size, folder)
+    trainer.keys("2")
+    trainer.wait(4)
+    trainer.press(*ON_THE_ORGAN)
+    trainer.keys("m")
+    trainer.let_go()
+    trainer.keys("BackSpace")
+    return trainer
+
+
+def teacher(size, folder):
+    trainer = train("liver", size, folder)
+    trainer.keys("F2")
+    return trainer
+
+
+def scan(size, folder):
+    trainer = train("nasopharynx", size, folder)
+    trainer.keys("BackSpace", "c", "x")
+    trainer.wait(1)
+    return trainer
+
+
+def hidden(size, folder):
+    trainer = train("liver", size, folder)
+    trainer.keys("BackSpace", "t")
+    trainer.wait(1)
+    return trainer
+
+
+def endoscope(size, folder):
+    trainer = train("nasopharynx", size, folder)
+    trainer.keys("BackSpace", "v", "v")
+    trainer.wait(1)
+    return trainer
+
+
+def playback(size, folder):
+    recording = folder / "run.h5"
+    subprocess.run([BIN / "palpate", "touch", SOURCE / "build/demo/liver.vtkhdf", "--script", "slide", "--seconds", "6", "--virtual-clock",
+                    "--record", recording, "--quiet", "--force"], check=True, stdout=subprocess.DEVNULL)
+    trainer = Trainer("liver", size, folder, "--play", recording)
+    trainer.keys("space")
+    return trainer
+
+
+SCREENS = {screen.__name__: screen for screen in (start, press, touch, result, found, teacher, scan, hidden, endoscope, playback)}
+
+
+def main():
+    pictures = SOURCE / "docs/pictures/screens"
+    pictures.mkdir(exist_ok=True)
+    for name in sys.argv[1:] or SCREENS:
+        for size in SIZES:
+            with tempfile.TemporaryDirectory() as folder:
+                trainer = SCREENS[name](size, Path(folder))
+                trainer.take(pictures / f"{name}_{size[1]}.webp")
+                trainer.close()
+        print(name, flush=True)
+
+
+if __name__ == "__main__":
+    main()
