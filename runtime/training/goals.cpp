@@ -45,13 +45,24 @@ void follow_marks(const Exercise& exercise, const Moment& moment, bool touching,
     reach_next(exercise, goals);
 }
 
+// The tool is at this distance from the last gate.
+void come_closer(double distance, Goals& goals) {
+    if (distance >= goals.nearest) return;
+    goals.errors += distance - goals.nearest;
+    goals.squared_errors += distance * distance - goals.nearest * goals.nearest;
+    goals.nearest = distance;
+}
+
 void follow_gates(const Exercise& exercise, const Moment& moment, Goals& goals) {
     const bool hurts = moment.force > exercise.most_force;
     if (hurts && !goals.was_astray) ++goals.misses;
     goals.was_astray = hurts;
-    const double distance = (moment.tool - exercise.places[goals.reached]).norm();
+    const auto distance_to = [&](std::size_t gate) { return (moment.tool - exercise.places[gate]).norm(); };
+    if (goals.reached > 0) come_closer(distance_to(goals.reached - 1), goals);
+    const double distance = distance_to(goals.reached);
     if (distance > exercise.tolerance) return;
-    add_error(distance, goals);
+    const bool ends = goals.reached > 0 && goals.reached + 1 == exercise.places.size();
+    if (!ends) add_error(goals.nearest = distance, goals);
     reach_next(exercise, goals);
 }
 

@@ -24,6 +24,7 @@ struct Goals {
     std::size_t reached = 0;    ///< places, gates or marks so far
     double line_reached = 0;    ///< trace: mm from its beginning
     double held = 0;            ///< touch: s on the place that is due
+    double nearest = 0;         ///< guide: mm, how near the tool came to the last gate's middle
     std::size_t misses = 0;     ///< see Metrics
     double squared_errors = 0;  ///< mm^2, summed over error_count
     double errors = 0;          ///< mm, summed over error_count

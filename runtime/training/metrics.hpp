@@ -65,8 +65,9 @@ inline constexpr std::tuple metric_fields{
     Field("position_error", &Metrics::position_error, "mm",
           "touch: mean distance of the touched tissue from its mark; find: of the best mark from the place "
           "above "
-          "what is hidden; trace: root mean square distance from the line; guide: mean distance from the "
-          "gates' middles"),
+          "what is hidden; trace: root mean square distance from the line; guide: how near the tool came to "
+          "the "
+          "gates' middles, mean of all but the last, which ends the exercise"),
     Field("border_error", &Metrics::border_error, "mm",
           "find: mean distance of the border's marks from the outline of what is hidden, as it is seen from "
           "straight above"),

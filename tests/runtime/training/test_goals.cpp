@@ -115,7 +115,16 @@ TEST(Goals, gates_are_passed_in_their_order_and_pain_is_counted_once_each_time) 
     stay(exercise, goals, 0.01, 0, {10, 0, 0});
     stay(exercise, goals, 0.01, 0, {20, 0, 1});
     EXPECT_TRUE(goals.reached_all);
-    EXPECT_NEAR(goals.errors, 2, 1e-12);
+    EXPECT_NEAR(goals.errors, 1, 1e-12) << "of the first; the second was met, the last ends it";
+    EXPECT_EQ(goals.error_count, 2U);
+}
+
+TEST(Goals, a_gate_is_as_far_as_the_tool_came_to_its_middle_before_the_next) {
+    const Exercise exercise = exercise_of(Task::guide, {{0, 0, 0}, {10, 0, 0}, {20, 0, 0}});
+    Goals goals;
+    for (double x = -5; x < 25 && !goals.reached_all; x += 0.1) stay(exercise, goals, 0.001, 0, {x, 0.5, 0});
+    EXPECT_TRUE(goals.reached_all);
+    EXPECT_NEAR(goals.errors / static_cast<double>(goals.error_count), 0.5, 0.01);
 }
 
 TEST(Goals, a_line_is_followed_from_its_beginning_and_cannot_be_cut_short) {
