@@ -111,7 +111,6 @@ def found(size, folder):
     trainer.press(*ON_THE_ORGAN)
     trainer.keys("m")
     trainer.let_go()
-    trainer.keys("BackSpace")
     return trainer
 
 
@@ -156,12 +155,13 @@ SCREENS = {screen.__name__: screen for screen in (start, press, touch, result, f
 
 def main():
     pictures = SOURCE / "docs/pictures/screens"
-    pictures.mkdir(exist_ok=True)
     for name in sys.argv[1:] or SCREENS:
         for size in SIZES:
             with tempfile.TemporaryDirectory() as folder:
                 trainer = SCREENS[name](size, Path(folder))
-                trainer.take(pictures / f"{name}_{size[1]}.webp")
+                picture = pictures / str(size[1]) / f"{name}.webp"
+                picture.parent.mkdir(parents=True, exist_ok=True)
+                trainer.take(picture)
                 trainer.close()
         print(name, flush=True)
 

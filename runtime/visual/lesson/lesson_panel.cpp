@@ -2,6 +2,7 @@
 #include "runtime/visual/lesson/lesson_panel.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <sstream>
 #include <vtkAxis.h>
@@ -62,6 +63,22 @@ void paint(vtkTextProperty* text, int size) {
     text->SetBold(0);
 }
 
+// From 0 to `most` times `room`, with ticks at 1, 2 or 5 times a power of ten, five at most: VTK's own come
+// by pixels, and crowd in a large window.
+void show_from_zero(vtkAxis* axis, double most, double room, double least_step) {
+    if (most <= 0) most = 1;
+    const double power = std::pow(10, std::floor(std::log10(most / 5)));
+    double step = power;
+    for (const double factor : {2.0, 5.0, 10.0})
+        if (most / step > 5) step = factor * power;
+    step = std::max(step, least_step);
+    vtkNew<vtkDoubleArray> ticks;
+    for (double tick = 0; tick <= most * 1.001; tick += step) ticks->InsertNextValue(tick);
+    axis->SetCustomTickPositions(ticks);
+    axis->SetBehavior(vtkAxis::FIXED);
+    axis->SetRange(0, room * most);
+}
+
 vtkSmartPointer<vtkContextActor> chart_of(const LessonCurve& curve, double left, double bottom, double width,
                                           double height, int font_size, vtkRenderer* renderer) {
     vtkNew<vtkDoubleArray> x, y;
@@ -86,7 +103,6 @@ vtkSmartPointer<vtkContextActor> chart_of(const LessonCurve& curve, double left,
         paint(a->GetLabelProperties(), font_size);
         a->SetNotation(vtkAxis::PRINTF_NOTATION);
         a->SetLabelFormat("%g");
-        a->SetTickLabelAlgorithm(vtkAxis::TICK_WILKINSON_EXTENDED);  // by the font's size, not by pixels
         a->GetPen()->SetColor(140, 150, 160);
         a->GetGridPen()->SetColor(50, 58, 66);
     }
@@ -112,19 +128,15 @@ vtkSmartPointer<vtkContextActor> chart_of(const LessonCurve& curve, double left,
         limit_plot->SetColor(255, 165, 60, 255);
         limit_plot->SetWidth(static_cast<float>(font_size) / 6);
     }
-    if (curve.most_y) {
-        vtkNew<vtkDoubleArray> ticks;
-        for (const double part : {0.0, 0.5, 1.0}) ticks->InsertNextValue(part * *curve.most_y);
-        vtkAxis* left_axis = chart->GetAxis(vtkAxis::LEFT);
-        left_axis->SetTickLabelAlgorithm(vtkAxis::TICK_SIMPLE);
-        left_axis->SetCustomTickPositions(ticks);
-        left_axis->SetBehavior(vtkAxis::FIXED);
-        left_axis->SetRange(0, 1.05 * *curve.most_y);  // so that a point there is whole
-    }
-    if (curve.points) {
-        chart->GetAxis(vtkAxis::BOTTOM)->SetBehavior(vtkAxis::FIXED);
-        chart->GetAxis(vtkAxis::BOTTOM)->SetRange(0, static_cast<double>(curve.x.size()) + 1);
-    }
+    const auto largest = [](const std::vector<double>& values) {
+        return values.empty() ? 0 : *std::ranges::max_element(values);
+    };
+    show_from_zero(chart->GetAxis(vtkAxis::BOTTOM),
+                   curve.points ? static_cast<double>(curve.x.size()) + 1 : largest(curve.x), 1,
+                   curve.points ? 1 : 0);
+    // So that a point at the upper end is whole.
+    show_from_zero(chart->GetAxis(vtkAxis::LEFT),
+                   curve.most_y.value_or(std::max(largest(curve.y), curve.limit.value_or(0))), 1.05, 0);
     auto actor = vtkSmartPointer<vtkContextActor>::New();
     actor->GetScene()->AddItem(chart);
     renderer->AddActor2D(actor);
