@@ -8,6 +8,9 @@ import subprocess
 import time
 import unittest
 
+import h5py
+import numpy as np
+
 from trainer_case import TRAIN, TrainerCase, yellow_pixels
 
 ON_THE_ORGAN = 760, 250  # pixels of the first view
@@ -92,15 +95,22 @@ class Train(TrainerCase):
 
     def test_a_script_holds_a_simulated_device(self):
         for script in ("tremble", "let-go"):
+            recording = self.folder / f"{script}.h5"
             run = self.run_train(
-                self.asset, "--script", script, "--device", "desktop", "--seconds", "2", "--json", "-"
+                self.asset, "--script", script, "--device", "desktop", "--seconds", "2", "--json", "-", "--record", recording
             )
             self.assertEqual(run.returncode, 0, run.stderr)
             result = json.loads(run.stdout)
             self.assertEqual(result["device"], "simulated desktop, scripted hand")
             self.assertGreater(result["force_peak_n"], 0.01)
-            # As deep as the hand goes, with its tremor of 0.3 mm to either side; how it gives way is test_touch.py's.
-            self.assertLess(result["penetration"]["device_mm"], 3.3)
+            with h5py.File(recording) as recorded:
+                count = recorded["count/ticks"][0]
+                positions = recorded["ticks/device_position"][:count]
+                touching = recorded["ticks/contact_count"][:count] > 0
+            # From 5 mm outside the hand goes 3 mm deep and is there for most of the time; it gives way by 0.3 N/mm. The median,
+            # for a servo that other programs starve has moments without force.
+            depth = np.linalg.norm(positions - positions[0], axis=1) - 5
+            self.assertLess(np.median(depth[touching]), 2.95)
 
     def test_a_second_tool_is_felt_shown_and_recorded_beside_the_first(self):
         second, recording = self.folder / "second.txt", self.folder / "both.h5"
