@@ -27,11 +27,11 @@ BESIDE_IT = 0.9, 0.2
 class Trainer:
     """The trainer in a window, and a hand at mouse and keyboard. Places are shares of the window."""
 
-    def __init__(self, case, size, folder, *options):
-        self.size, self.server = size, XServer("{}x{}".format(*size)).__enter__()
-        command = [BIN / "palpate", "train", SOURCE / f"build/demo/{case}.vtkhdf", "--size", "{}x{}".format(*size), "--quiet",
-                   *map(str, options)]
-        self.process = subprocess.Popen(command, env=self.server.environment, cwd=folder, stdout=subprocess.DEVNULL)
+    def __init__(self, server, case, folder, *options):
+        self.server = server
+        self.size = tuple(map(int, server.size.split("x")))
+        command = [BIN / "palpate", "train", SOURCE / f"build/demo/{case}.vtkhdf", "--size", server.size, "--quiet", *map(str, options)]
+        self.process = subprocess.Popen(command, env=server.environment, cwd=folder, stdout=subprocess.DEVNULL)
         self.window = self.x("xdotool", "search", "--sync", "--onlyvisible", "--name", f"Palpate: {case}").split()[0].decode()
         self.x("xdotool", "windowfocus", "--sync", self.window)
         self.point(*BESIDE_IT)
@@ -69,33 +69,31 @@ class Trainer:
     def close(self):
         self.process.terminate()
         self.process.wait()
-        self.server.__exit__()
 
 
-def train(case, size, folder):
-    return Trainer(case, size, folder, "--attempts", folder / "attempts")
+def after(case, *keys, seconds=1):
+    """A screen that so many keys lead to, so many seconds later."""
+
+    def reach(server, folder):
+        trainer = Trainer(server, case, folder, "--attempts", folder / "attempts")
+        trainer.keys(*keys)
+        trainer.wait(seconds)
+        return trainer
+
+    return reach
 
 
-def start(size, folder):
-    return train("liver", size, folder)
+COUNTDOWN = 4  # s, of an exercise, and a little
 
 
-def press(size, folder):
-    trainer = train("liver", size, folder)
-    trainer.keys("BackSpace")
+def press(server, folder):
+    trainer = after("liver", "BackSpace")(server, folder)
     trainer.press(*ON_THE_ORGAN)
     return trainer
 
 
-def touch(size, folder):
-    trainer = train("liver", size, folder)
-    trainer.keys("1")
-    trainer.wait(4)
-    return trainer
-
-
-def result(size, folder):
-    trainer = touch(size, folder)
+def result(server, folder):
+    trainer = SCREENS["touch"](server, folder)
     for place in (ON_THE_ORGAN, (0.45, 0.55), (0.58, 0.45)):
         trainer.press(*place)
         trainer.let_go()
@@ -104,61 +102,43 @@ def result(size, folder):
     return trainer
 
 
-def found(size, folder):
-    trainer = train("liver", size, folder)
-    trainer.keys("2")
-    trainer.wait(4)
+def found(server, folder):
+    trainer = after("liver", "2", seconds=COUNTDOWN)(server, folder)
     trainer.press(*ON_THE_ORGAN)
     trainer.keys("m")
     trainer.let_go()
     return trainer
 
 
-def teacher(size, folder):
-    trainer = train("liver", size, folder)
-    trainer.keys("F2")
-    return trainer
-
-
-def scan(size, folder):
-    trainer = train("nasopharynx", size, folder)
-    trainer.keys("BackSpace", "c", "x")
-    trainer.wait(1)
-    return trainer
-
-
-def hidden(size, folder):
-    trainer = train("liver", size, folder)
-    trainer.keys("BackSpace", "t")
-    trainer.wait(1)
-    return trainer
-
-
-def endoscope(size, folder):
-    trainer = train("nasopharynx", size, folder)
-    trainer.keys("BackSpace", "v", "v")
-    trainer.wait(1)
-    return trainer
-
-
-def playback(size, folder):
+def playback(server, folder):
     recording = folder / "run.h5"
     subprocess.run([BIN / "palpate", "touch", SOURCE / "build/demo/liver.vtkhdf", "--script", "slide", "--seconds", "6", "--virtual-clock",
                     "--record", recording, "--quiet", "--force"], check=True, stdout=subprocess.DEVNULL)
-    trainer = Trainer("liver", size, folder, "--play", recording)
+    trainer = Trainer(server, "liver", folder, "--play", recording)
     trainer.keys("space")
     return trainer
 
 
-SCREENS = {screen.__name__: screen for screen in (start, press, touch, result, found, teacher, scan, hidden, endoscope, playback)}
+SCREENS = {
+    "start": after("liver"),
+    "press": press,
+    "touch": after("liver", "1", seconds=COUNTDOWN),
+    "result": result,
+    "found": found,
+    "teacher": after("liver", "F2"),
+    "scan": after("nasopharynx", "BackSpace", "c", "x"),
+    "hidden": after("liver", "BackSpace", "t"),
+    "endoscope": after("nasopharynx", "BackSpace", "v", "v"),
+    "playback": playback,
+}
 
 
 def main():
     pictures = SOURCE / "docs/pictures/screens"
     for name in sys.argv[1:] or SCREENS:
         for size in SIZES:
-            with tempfile.TemporaryDirectory() as folder:
-                trainer = SCREENS[name](size, Path(folder))
+            with tempfile.TemporaryDirectory() as folder, XServer("{}x{}".format(*size)) as server:
+                trainer = SCREENS[name](server, Path(folder))
                 picture = pictures / str(size[1]) / f"{name}.webp"
                 picture.parent.mkdir(parents=True, exist_ok=True)
                 trainer.take(picture)

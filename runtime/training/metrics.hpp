@@ -64,10 +64,8 @@ inline constexpr std::tuple metric_fields{
     Field("time_above_limit", &Metrics::time_above_limit, "s", "with more than the exercise's force limit"),
     Field("position_error", &Metrics::position_error, "mm",
           "touch: mean distance of the touched tissue from its mark; find: of the best mark from the place "
-          "above "
-          "what is hidden; trace: root mean square distance from the line; guide: how near the tool came to "
-          "the "
-          "gates' middles, mean of all but the last, which ends the exercise"),
+          "above what is hidden; trace: root mean square distance from the line; guide: how near the tool "
+          "came to the gates' middles, mean of all but the last, which ends the exercise"),
     Field("border_error", &Metrics::border_error, "mm",
           "find: mean distance of the border's marks from the outline of what is hidden, as it is seen from "
           "straight above"),

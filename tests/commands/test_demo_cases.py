@@ -89,7 +89,7 @@ class DemoCases(unittest.TestCase):
         gates = scope["places_mm"]
         outside = [p + away for p, away in zip(gates[0], (-6, -9, -6))]
         through = [(0.6 * (i + 1), *gate) for i, gate in enumerate(gates)]
-        scraping = [(1.4 * i + dt, x + aside, y, z) for i, (x, y, z) in enumerate(gates)  # into the septum at each gate
+        scraping = [(1.4 * i + dt, x + aside, y, z) for i, (x, y, z) in enumerate(gates)  # into what is beside each gate
                     for dt, aside in ((0.6, 0), (1.0, 12), (1.4, 0))]
         with XServer() as server:
             def lead(*rows):

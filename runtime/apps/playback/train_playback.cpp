@@ -211,6 +211,9 @@ Json play_recording(const PlaybackOptions& options, const PlaybackWindow& shown,
     if (!shown.screenshot.empty()) picture.emplace(shown.screenshot, session.force);
     FilmOutput film(options.video, options.pictures, options.film_rate, session);
 
+    const auto [width, height] = shown.size;
+    auto opened =
+        open_window(width, height, texts::translated("reading {}", options.play.filename().string()));
     session.progress.step("reading the recording", 0);
     const recording::Recording recording = recording::read_recording(options.play);
     check_asset(recording, options.play, shown.asset);
@@ -222,15 +225,12 @@ Json play_recording(const PlaybackOptions& options, const PlaybackWindow& shown,
     if (!options.ghost.empty()) ghost.emplace(options.ghost, shown.asset);
     cli::end_softly_on_interrupt();
 
-    session.progress.step("opening the window", 0.5);
+    session.progress.step("filling the window", 0.5);
     WindowSettings settings{.start = vector_of(scene.track().front()->tool_position),
                             .sight = scene.sight(),
                             .cautions = provenance::cautions_in(patient_case.provenance),
                             .surfaces = surfaces_of(*model)};
-    const auto [width, height] = shown.size;
-    TrainWindow window(
-        open_window(width, height, texts::translated("reading {}", options.play.filename().string())),
-        patient_case, settings);
+    TrainWindow window(std::move(opened), patient_case, settings);
     session.progress.finish();
     tell_what_is_missing(recording, scene.track(), options);
     VisualFrame frame;

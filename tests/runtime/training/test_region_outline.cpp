@@ -45,8 +45,8 @@ TEST(PlaceAbove, a_ball_is_over_its_middle_wherever_on_that_side_it_is_looked_fo
 
 TEST(PlaceAbove, a_ball_below_a_slope_is_where_the_slopes_normal_runs_through_its_middle) {
     DeformableBody body = cube_with_a_ball();
-    // The upper side leans: z = 20 + (x - 10) / 2. Its nearest point to the middle is 20 / 5 from that over
-    // it.
+    // The upper side leans: z = 20 + (x - 10) / 2. The perpendicular on it from (10, 10, 10) meets (6, 10,
+    // 18).
     for (Vector3d& vertex : body.boundary.surface.vertices)
         if (vertex.z() == 20) vertex.z() += (vertex.x() - 10) / 2;
     EXPECT_LT((place_above(body, 2, {10, 10, 20}) - Vector3d(6, 10, 18)).norm(), 0.3);
