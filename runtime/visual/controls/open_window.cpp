@@ -26,7 +26,7 @@ std::shared_ptr<OpenedWindow> open_window(int width, int height, const std::stri
 
     vtkNew<vtkTextActor> text;
     text->SetInput(sentence.c_str());
-    text->SetPosition(width / 2, height / 2);
+    text->SetPosition(width / 2.0, height / 2.0);
     text->GetTextProperty()->SetJustificationToCentered();
     text->GetTextProperty()->SetFontFamilyToArial();
     text->GetTextProperty()->SetColor(0.93, 0.95, 0.97);
