@@ -23,6 +23,9 @@ using Eigen::MatrixXd;
 
 constexpr std::int32_t largest_leaf = 32;  // nodes; halves and doubles of it took more bytes
 
+// Of the mean: a node behind held ones answers to no force but its own, and has this scale.
+constexpr double least_scale = 1e-4;
+
 // A block while it is made: split, of low rank, or dense.
 struct Part {
     std::vector<Part> parts;
@@ -121,14 +124,19 @@ class Compressor {
         std::shuffle(sample.begin(), sample.end(), std::mt19937_64(1));
         sample.resize(std::min<std::size_t>(sample.size(), std::size_t{2} * largest_leaf));
         const MatrixXd rows = rows_(sample);
+        std::vector<Eigen::Matrix3d> squared;
         double sum = 0;
         for (const std::int32_t node : result_.order) {
             const MatrixXd answers = rows.middleCols<3>(3 * Index{node});
-            const Eigen::Matrix3d squared = answers.transpose() * answers / static_cast<double>(rows.rows());
-            const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(squared);
+            squared.emplace_back(answers.transpose() * answers / static_cast<double>(rows.rows()));
+            sum += squared.back().trace() / 3;
+        }
+        const double floor = least_scale * least_scale * sum / result_.node_count;
+        for (Eigen::Matrix3d& one : squared) {
+            one.diagonal().array() += floor;
+            const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(one);
             scales_.push_back(axes.operatorSqrt());
             inverse_scales_.push_back(axes.operatorInverseSqrt());
-            sum += squared.trace() / 3;
         }
         entry_error_ = result_.accuracy / std::sqrt(sum / result_.node_count * (result_.depth + 1));
     }

@@ -72,6 +72,21 @@ TEST(Compression, takes_less_than_a_dense_compliance_and_ever_less_for_less_accu
     EXPECT_LT(static_cast<double>(finer), dense / 4);
 }
 
+// As a node whose neighbours are all held: it answers to its own force alone.
+TEST(Compression, keeps_a_node_behind_held_ones) {
+    MatrixXd C = known().C;
+    constexpr Index node = 7;
+    const Eigen::Matrix3d own = C.block<3, 3>(3 * node, 3 * node);
+    C.middleRows<3>(3 * node).setZero();
+    C.middleCols<3>(3 * node).setZero();
+    C.block<3, 3>(3 * node, 3 * node) = own;
+    const ComplianceRows rows = [&](std::span<const std::int32_t> nodes) {
+        return MatrixXd(C(test::dofs_of({nodes.begin(), nodes.end()}), Eigen::all));
+    };
+    const MatrixXd error = test::entries_of(compress(known().points, rows, 1e-3, 2, test::no_progress)) - C;
+    EXPECT_LT((error.rowwise().norm().array() / C.rowwise().norm().array()).maxCoeff(), 1e-3);
+}
+
 TEST(Compression, is_symmetric) {
     const MatrixXd stored = test::entries_of(known().compressed(1e-3, 1));
     // Single products of float32 factors; the sum's order does not depend on the side.
