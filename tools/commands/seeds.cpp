@@ -7,6 +7,7 @@
 
 #include "tools/cli/command.hpp"
 #include "tools/imaging/files/image_files.hpp"
+#include "tools/imaging/recipes/segmentation.hpp"
 #include "tools/seeds/seed_window.hpp"
 
 namespace {
@@ -57,7 +58,7 @@ ordered_json describe(const SeedWindowResult& result, const std::filesystem::pat
 // What the command line asks for.
 struct SeedsRequest {
     std::filesystem::path volume, seeds, output = "seed.mrk.json";
-    std::vector<std::string> labels;
+    std::vector<std::string> labels, structures;
     std::vector<double> window_level;
 };
 
@@ -69,6 +70,12 @@ void declare_seeds(cli::Command& command, SeedsRequest& request) {
         .option("--label", request.labels,
                 "a structure to place seeds in, up to nine [default: the output's name up to its first dot]")
         .one_value_each();  // the next word may be the volume
+    command
+        .option(
+            "--structure", request.structures,
+            "'NAME: recipe=...' as for 'segment', whose own result is shown in place of a preview; repeat "
+            "for more")
+        .one_value_each();
     command.input("--seeds", request.seeds, "seeds to start from (.mrk.json, .fcsv)");
     command
         .option("--window-level", request.window_level,
@@ -78,21 +85,55 @@ void declare_seeds(cli::Command& command, SeedsRequest& request) {
         .one_value_each(',');
 }
 
+// The label of each structure that seeds can be given to, in order.
+std::vector<std::string> seeded_labels(const std::vector<StructureRecipe>& structures) {
+    std::vector<std::string> labels;
+    for (const StructureRecipe& structure : structures)
+        if (takes_seeds(structure)) labels.push_back(structure.name);
+    if (labels.empty())
+        throw UsageError({"--structure", "no recipe of them takes seeds",
+                          "one that does, such as liver or grow-from-seeds", "see 'palpate segment --help'"});
+    return labels;
+}
+
+void check_inside(const ImageGrid& grid, std::span<const Seed> seeds, const std::string& culprit) {
+    for (const Seed& seed : seeds) {
+        const Eigen::Vector3i voxel = grid.index_of(seed.p_P).array().round().cast<int>();
+        if (!grid.contains(voxel[0], voxel[1], voxel[2]))
+            throw InvalidInput({culprit,
+                                fmt::format("the seed of '{}' at {:.1f}, {:.1f}, {:.1f} mm lies outside the "
+                                            "volume",
+                                            seed.label, seed.p_P[0], seed.p_P[1], seed.p_P[2]),
+                                "", "is it of this patient, and in LPS or RAS as the file says?"});
+    }
+}
+
 ordered_json run_seeds(SeedsRequest request, cli::Session& session) {
     const std::filesystem::path& output = request.output;
     if (!output.filename().string().ends_with(".mrk.json"))
         throw UsageError({"--output", output.string(), "a name that ends in .mrk.json", ""});
     for (const std::string& label : request.labels) check_label(label);
+    std::vector<StructureRecipe> structures;
+    for (const std::string& text : request.structures) structures.push_back(parse_structure(text));
+    if (!structures.empty()) {
+        if (!request.labels.empty())
+            throw UsageError({"--label", "given beside --structure", "one of them",
+                              "a structure has its label in its name"});
+        request.labels = seeded_labels(structures);
+    }
     session.stage(output);  // refuses now what could not be written after the clicking
     session.progress.step("reading", 0);
     const Volume volume =
         read_volume(request.volume, [](std::string_view text) { spdlog::warn("{}", text); });
     const std::vector<Seed> seeds = request.seeds.empty() ? std::vector<Seed>{} : read_seeds(request.seeds);
+    check_inside(volume.grid, seeds, request.seeds.string());
     if (request.labels.empty() && seeds.empty()) request.labels.push_back(structure_of(output));
-    SeedWindowSettings settings{.title = request.volume.filename().string(),
-                                .state = start_state(volume.grid, request.labels, seeds),
-                                .greys = greys_of(volume, request.window_level),
-                                .save = {}};
+    SeedWindowSettings settings{
+        .title = request.volume.filename().string(),
+        .state = start_state(volume.grid, request.labels, seeds),
+        .greys = greys_of(volume, request.window_level),
+        .save = {},
+        .growing = structures.empty() ? preview_growing(volume) : recipe_growing(volume, structures)};
     bool written = false;
     settings.save = [&](std::span<const Seed> placed) {
         cli::StagedFile staged(output, session.force || written);
@@ -116,13 +157,16 @@ int main(int argc, char** argv) {
              "Opens a window to click seeds into structures, and saves them for 'segment' and case files",
          .examples = {"palpate seeds volume.nrrd -o liver.mrk.json",
                       "palpate seeds volume.nrrd --label liver --label tumour -o organs.mrk.json",
+                      "palpate seeds ct.nrrd --structure 'liver: recipe=liver' -o liver.mrk.json",
                       "palpate segment --volume volume.nrrd --structure 'liver: recipe=grow-from-seeds "
                       "seeds_file=liver.mrk.json' -o labels.seg.nrrd"},
          .notes =
              "Three linked slices along the volume's own axes, patient's right at the left. A left click "
              "places a seed of\nthe active label; the region that grows from the seeds is drawn within a "
              "second, in preview: at coarser voxels\nthan 'segment' uses. Seeds of 'background' (key 0) stop "
-             "it where it leaks.\n\n"
+             "it where it leaks. With --structure it is what\n'segment' will make, after some seconds, or "
+             "why "
+             "it will refuse.\n\n"
              "Left click places a seed, right click removes the nearest, X or Delete the last, U undoes.\n"
              "Shift and left button, or the middle button, move the crosshair only. The wheel, arrow up and "
              "down scroll the\nslice under the pointer; forward is away from the viewer. 1 ... 9 choose a "

@@ -1,28 +1,86 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/seeds/growth.hpp"
 
+#include <algorithm>
 #include <utility>
+
+#include "formats/model/errors.hpp"
+#include "tools/imaging/recipes/recipe.hpp"
+#include "tools/imaging/voxels/grow_from_seeds.hpp"
 
 namespace palpate::seeds {
 namespace {
 
 using namespace imaging;
 
-Growth grow(const Volume& volume, const std::vector<Seed>& seeds) {
+Growth grow(const Growing& growing, const std::vector<Seed>& seeds) {
     Growth growth;
+    growth.block_mm = growing.block_mm;
     if (seeds.empty()) return growth;
-    growth.map = grow_from_seeds(volume, seeds, preview_parameters(volume.grid));
+    try {
+        growth.map = growing.labels_of(seeds);
+    } catch (const InvalidInput& refusal) {
+        growth.refused = refusal.what();
+        return growth;
+    }
     std::vector<std::size_t> voxels(growth.map.names.size() + 1, 0);  // labels count up from 1
     for (const std::uint16_t label : growth.map.labels) ++voxels[label];
     for (const Label& label : growth.map.names)
-        growth.volume_ml.push_back(static_cast<double>(voxels[label.value]) * volume.grid.voxel_volume() /
+        growth.volume_ml.push_back(static_cast<double>(voxels[label.value]) * growth.map.grid.voxel_volume() /
                                    1000);
     return growth;
 }
 
+// The places of a label's seeds, x, y, z one after the other.
+std::vector<double> numbers_of(std::span<const Seed> seeds, const std::string& label) {
+    std::vector<double> numbers;
+    for (const Seed& seed : seeds)
+        if (seed.label == label) numbers.insert(numbers.end(), seed.p_P.begin(), seed.p_P.end());
+    return numbers;
+}
+
+void give_seeds(StructureRecipe& structure, std::span<const Seed> seeds, const std::string& label,
+                const std::string& parameter) {
+    const Recipe* recipe = find_recipe(structure.recipe);
+    std::vector<double> numbers = numbers_of(seeds, label);
+    if (recipe != nullptr && find_parameter(*recipe, parameter) != nullptr && !numbers.empty())
+        structure.parameters[parameter] = std::move(numbers);
+}
+
+LabelMap segmented(const Volume& volume, std::vector<StructureRecipe> structures,
+                   std::span<const Seed> seeds) {
+    std::erase_if(structures, [&](StructureRecipe& structure) {
+        give_seeds(structure, seeds, structure.name, "seeds_mm");
+        give_seeds(structure, seeds, "background", "background_mm");
+        const Recipe* recipe = find_recipe(structure.recipe);
+        return recipe != nullptr && recipe->needs_seeds && !structure.parameters.contains("seeds_mm");
+    });
+    return structures.empty() ? LabelMap{} : segment(&volume, nullptr, structures);
+}
+
 }  // namespace
 
-GrowthWorker::GrowthWorker(const Volume& volume) : volume_(volume), thread_([this] { work(); }) {}
+Growing preview_growing(const Volume& volume) {
+    const GrowParameters parameters = preview_parameters(volume.grid);
+    return {[&volume, parameters](std::span<const Seed> seeds) {
+                return grow_from_seeds(volume, seeds, parameters);
+            },
+            parameters.spacing_mm};
+}
+
+Growing recipe_growing(const Volume& volume, std::vector<StructureRecipe> structures) {
+    return {[&volume, structures = std::move(structures)](std::span<const Seed> seeds) {
+                return segmented(volume, structures, seeds);
+            },
+            0};
+}
+
+bool takes_seeds(const StructureRecipe& structure) {
+    const Recipe* recipe = find_recipe(structure.recipe);
+    return recipe != nullptr && find_parameter(*recipe, "seeds_mm") != nullptr;
+}
+
+GrowthWorker::GrowthWorker(Growing growing) : growing_by_(std::move(growing)), thread_([this] { work(); }) {}
 
 GrowthWorker::~GrowthWorker() {
     {
@@ -68,7 +126,7 @@ void GrowthWorker::work() {
         std::shared_ptr<Growth> growth;
         std::exception_ptr failed;
         try {
-            growth = std::make_shared<Growth>(grow(volume_, request.seeds));
+            growth = std::make_shared<Growth>(grow(growing_by_, request.seeds));
             growth->seconds =
                 std::chrono::duration<double>(std::chrono::steady_clock::now() - request.asked).count();
         } catch (...) {

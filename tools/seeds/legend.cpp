@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <sstream>
 #include <vtkTextProperty.h>
 
 #include "tools/seeds/slice_pane.hpp"
@@ -18,7 +19,22 @@ constexpr auto help_text =
     "scroll the slice under the pointer\nmove the crosshair only\ncontrast and brightness\n"
     "grey windows for other tissues\nzoom, hide this help\nsave, quit";
 
-constexpr double edge = 16, help_indent = 170;  // pixels
+constexpr double edge = 16, help_indent = 170, help_height = 200;  // pixels
+constexpr std::size_t refusal_width = 76;                          // characters
+
+// Breaks a text at blanks into lines of at most `width` characters, where words are no longer.
+std::string wrapped(const std::string& text, std::size_t width) {
+    std::istringstream words(text);
+    std::string lines, line;
+    for (std::string word; words >> word;) {
+        if (!line.empty() && line.size() + 1 + word.size() > width) {
+            lines += line + '\n';
+            line.clear();
+        }
+        line += (line.empty() ? "" : " ") + word;
+    }
+    return lines + line;
+}
 
 std::string row_text(const SeedState& state, std::size_t number, const Growth* growth) {
     const std::string& label = state.labels[number];
@@ -57,6 +73,8 @@ Legend::Legend(const std::string& title, std::size_t labels) {
     }
     add(grey_, 14, renderer_);
     grey_->GetTextProperty()->SetColor(0.65, 0.72, 0.78);
+    add(refused_, 14, renderer_);
+    refused_->GetTextProperty()->SetColor(1, 0.62, 0.4);
     add(help_keys_, 14, renderer_);
     help_keys_->SetInput(help_keys);
     help_keys_->GetTextProperty()->BoldOn();
@@ -79,6 +97,7 @@ void Legend::update(const SeedState& state, const GreyPreset& grey, const Growth
     grey_->SetInput(
         fmt::format("grey window: {}, width {:.0f}, level {:.0f}", grey.name, grey.width, grey.level)
             .c_str());
+    refused_->SetInput(growth == nullptr ? "" : wrapped(growth->refused, refusal_width).c_str());
 }
 
 void Legend::toggle_help() {
@@ -90,7 +109,7 @@ void Legend::toggle_help() {
 void Legend::place(const Layout& layout, const Eigen::Vector2d& window_size) {
     set_viewport(renderer_, layout.legend, window_size);
     set_viewport(status_renderer_, layout.status, window_size);
-    constexpr double title_height = 44, help_height = 200, tallest_row = 30;
+    constexpr double title_height = 44, tallest_row = 30;
     constexpr std::size_t one_column = 5;  // labels that fit above the help on a small screen
     const Eigen::Vector2d size = layout.legend.size;
     title_->SetPosition(edge, size[1] - 14);
@@ -109,6 +128,7 @@ void Legend::place(const Layout& layout, const Eigen::Vector2d& window_size) {
         row.text->SetPosition(x + 34, y);
     }
     grey_->SetPosition(edge, top - static_cast<double>(lines) * row_height);
+    refused_->SetPosition(edge, help_height + 24);
     help_keys_->SetPosition(edge, 12);
     help_->SetPosition(edge + help_indent, 12);
     pointer_->SetPosition(edge, 8);

@@ -14,8 +14,9 @@
 
 namespace palpate::seeds {
 
-/// The window's texts: labels with their keys, colours, seeds and volumes, the grey window, the help, and the
-/// status line with the place under the pointer (left) and what happened last (right).
+/// The window's texts: labels with their keys, colours, seeds and volumes, the grey window, why nothing could
+/// be made of the seeds, the help, and the status line with the place under the pointer (left) and what
+/// happened last (right).
 class Legend {
   public:
     Legend(const std::string& title, std::size_t labels);
@@ -34,7 +35,7 @@ class Legend {
         vtkSmartPointer<vtkTextActor> key, text;
     };
     vtkNew<vtkRenderer> renderer_, status_renderer_;
-    vtkNew<vtkTextActor> title_, grey_, help_keys_, help_, pointer_, message_;
+    vtkNew<vtkTextActor> title_, grey_, refused_, help_keys_, help_, pointer_, message_;
     std::vector<Row> rows_;  // by label number
 };
 

@@ -19,13 +19,14 @@ std::string count_text(std::size_t seeds) {
 
 }  // namespace
 
-SeedEditor::SeedEditor(const Volume& volume, SeedState state, GreyScale greys, SaveSeeds save)
+SeedEditor::SeedEditor(const Volume& volume, SeedState state, GreyScale greys, SaveSeeds save,
+                       Growing growing)
     : volume_(volume),
       state_(std::move(state)),
       greys_(std::move(greys)),
       save_(std::move(save)),
       grey_(greys_.presets.front()),
-      worker_(volume) {
+      worker_(std::move(growing)) {
     if (!state_.seeds.empty()) grow();
 }
 
@@ -49,6 +50,7 @@ void SeedEditor::poll() {
     if (!grown) return;
     growth_ = grown;
     ++revision_;
+    if (!grown->refused.empty()) return say("nothing could be made of these seeds");
     if (grown->map.labels.empty()) return;
     ++growths_;
     longest_growth_ = std::max(longest_growth_, grown->seconds);

@@ -19,7 +19,7 @@ using SaveSeeds = std::function<std::string(std::span<const imaging::Seed>)>;
 class SeedEditor {
   public:
     /// Keeps a reference to `volume`. `greys` has at least one preset.
-    SeedEditor(const Volume& volume, SeedState state, GreyScale greys, SaveSeeds save);
+    SeedEditor(const Volume& volume, SeedState state, GreyScale greys, SaveSeeds save, Growing growing);
 
     void place(const Eigen::Vector3d& index);
     /// Removes the seed nearest to a continuous voxel index within `reach` (mm).

@@ -277,7 +277,7 @@ class SeedWindow {
 }  // namespace
 
 SeedWindowResult run_seed_window(const Volume& volume, const SeedWindowSettings& settings) {
-    SeedEditor editor(volume, settings.state, settings.greys, settings.save);
+    SeedEditor editor(volume, settings.state, settings.greys, settings.save, settings.growing);
     SeedWindow(volume, settings.title, editor, settings.greys).run();
     editor.finish();
     return {editor.state(), editor.growth(), editor.growths(), editor.longest_growth()};

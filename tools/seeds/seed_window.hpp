@@ -13,6 +13,7 @@ struct SeedWindowSettings {
     SeedState state;    ///< as start_state() makes it
     GreyScale greys;    ///< at least one preset
     SaveSeeds save;     ///< what it throws is shown, and the seeds stay unsaved
+    Growing growing;    ///< what is shown of the seeds
 };
 
 /// What the window leaves when it is closed.
@@ -25,7 +26,7 @@ struct SeedWindowResult {
 
 /// Opens the window and handles mouse and keyboard until it is closed (Q, Escape, its own button; a second
 /// time where seeds are unsaved). One thread draws, another grows. Throws SystemFailure if no X display
-/// answers, InvalidInput if a seed given lies outside the volume.
+/// answers.
 SeedWindowResult run_seed_window(const Volume& volume, const SeedWindowSettings& settings);
 
 }  // namespace palpate::seeds

@@ -65,13 +65,12 @@ SlicePicture slice_picture(const Volume& volume, const SliceView& view, std::int
     std::vector<std::uint16_t> shown(pixels);
     each_pixel(grid, view, slice,
                [&](std::size_t pixel, std::size_t voxel) { shown[pixel] = growth->map.labels[voxel]; });
-    const double block = imaging::preview_parameters(grid).spacing_mm;
     const auto radius = [&](int axis) {
-        return static_cast<int>(std::lround(block / grid.spacing[axis] / 2));
+        return static_cast<int>(std::lround(growth->block_mm / grid.spacing[axis] / 2));
     };
     for (const Label& label : growth->map.names) {
         const auto number = std::ranges::find(labels, label.name) - labels.begin();
-        if (std::ranges::find(shown, label.value) == shown.end()) continue;
+        if (number == std::ssize(labels) || std::ranges::find(shown, label.value) == shown.end()) continue;
         std::vector<float>& cover = picture.cover.at(static_cast<std::size_t>(number));
         cover.resize(pixels);
         std::ranges::transform(shown, cover.begin(),

@@ -3,6 +3,7 @@
 
 #include "formats/model/errors.hpp"
 #include "sample_data/phantoms.hpp"
+#include "tools/imaging/voxels/grow_from_seeds.hpp"
 #include "tools/seeds/growth.hpp"
 #include "tools/seeds/slice_picture.hpp"
 
@@ -16,7 +17,7 @@ const Seed in_liver{"liver", {10, 0, 0}};
 
 TEST(GrowthWorker, gives_the_growth_of_the_last_request) {
     const Phantom phantom = abdomen_phantom();
-    GrowthWorker worker(phantom.volume);
+    GrowthWorker worker(preview_growing(phantom.volume));
     EXPECT_FALSE(worker.busy());
     worker.request({{"spine", {0, 40, 0}}});
     worker.request({in_liver});
@@ -38,7 +39,7 @@ TEST(GrowthWorker, gives_the_growth_of_the_last_request) {
 
 TEST(GrowthWorker, of_no_seeds_is_empty) {
     const Phantom phantom = abdomen_phantom();
-    GrowthWorker worker(phantom.volume);
+    GrowthWorker worker(preview_growing(phantom.volume));
     worker.request({});
     worker.wait();
     const auto growth = worker.take();
@@ -46,20 +47,52 @@ TEST(GrowthWorker, of_no_seeds_is_empty) {
     EXPECT_TRUE(growth->map.labels.empty());
 }
 
-TEST(GrowthWorker, hands_on_what_growing_threw_and_goes_on) {
+TEST(GrowthWorker, tells_why_nothing_could_be_made_and_goes_on) {
     const Phantom phantom = abdomen_phantom();
-    GrowthWorker worker(phantom.volume);
+    GrowthWorker worker(preview_growing(phantom.volume));
     worker.request({{"liver", {1000, 0, 0}}});
     worker.wait();
-    EXPECT_THROW(worker.take(), InvalidInput);
+    const auto refused = worker.take();
+    ASSERT_TRUE(refused);
+    EXPECT_NE(refused->refused.find("liver"), std::string::npos) << refused->refused;
+    EXPECT_TRUE(refused->map.labels.empty());
     worker.request({in_liver});
     worker.wait();
     EXPECT_TRUE(worker.take());
 }
 
+TEST(GrowthWorker, hands_on_what_is_no_fault_of_the_seeds) {
+    GrowthWorker worker({[](std::span<const Seed>) -> LabelMap {
+        throw SystemFailure({"memory", "", "", ""});
+    }});
+    worker.request({in_liver});
+    worker.wait();
+    EXPECT_THROW(worker.take(), SystemFailure);
+}
+
+TEST(RecipeGrowing, makes_what_the_command_makes_of_the_same_seeds) {
+    const Phantom phantom = abdomen_phantom();
+    const Growing growing =
+        recipe_growing(phantom.volume, {parse_structure("bones: recipe=bone"),
+                                        parse_structure("liver: recipe=grow-from-seeds open_mm=2"),
+                                        parse_structure("spine: recipe=grow-from-seeds")});
+    const LabelMap shown = growing.labels_of(std::vector<Seed>{in_liver, {"background", {-20, 30, 0}}});
+    const LabelMap made = segment(
+        &phantom.volume, nullptr,
+        std::vector{
+            parse_structure("bones: recipe=bone"),
+            parse_structure("liver: recipe=grow-from-seeds seeds=10,0,0 background_mm=-20,30,0 open_mm=2")});
+    EXPECT_EQ(shown.labels, made.labels) << "without the spine, which has no seed";
+    EXPECT_EQ(shown.names.size(), 2U);
+    const LabelMap without =
+        recipe_growing(phantom.volume, {parse_structure("liver: recipe=grow-from-seeds")})
+            .labels_of(std::vector<Seed>{{"background", {-20, 30, 0}}});
+    EXPECT_TRUE(without.labels.empty());
+}
+
 TEST(SlicePicture, tints_what_has_grown_and_leaves_the_rest_grey) {
     const Phantom phantom = abdomen_phantom();
-    GrowthWorker worker(phantom.volume);
+    GrowthWorker worker(preview_growing(phantom.volume));
     worker.request({in_liver});
     worker.wait();
     const auto growth = worker.take();

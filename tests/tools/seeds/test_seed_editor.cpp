@@ -22,7 +22,8 @@ class SeedEditorTest : public testing::Test {
                           if (disk_full) throw SystemFailure({"a.mrk.json", "disk full", "", ""});
                           written.assign(seeds.begin(), seeds.end());
                           return std::string("a.mrk.json");
-                      }};
+                      },
+                      preview_growing(volume)};
 };
 
 TEST_F(SeedEditorTest, closes_at_once_without_unsaved_seeds) {

@@ -28,6 +28,8 @@ LabelMap race(const Job& job) {
                                 "add seeds=x,y,z;..., seeds_file=... or scribbles=..."});
         seeds.insert(seeds.end(), found.own.begin(), found.own.end());
         others.insert(others.end(), found.all.begin(), found.all.end());
+        for (const Eigen::Vector3d& point : parameters.points("background_mm"))
+            others.push_back({"background", point});
     }
     const auto place = [](const Seed& seed) { return std::array{seed.p_P[0], seed.p_P[1], seed.p_P[2]}; };
     std::set<std::array<double, 3>> claimed;
@@ -53,7 +55,8 @@ Recipe grow_from_seeds_recipe() {
             .parameters =
                 concatenated({{{"tolerance", number, "", fmt::format("{}", GrowParameters{}.tolerance),
                                 "it stops at grey values so many standard deviations off its seeds' mean",
-                                RecipeParameter::Range::positive}},
+                                RecipeParameter::Range::positive},
+                               {"background_mm", points, "mm", "", "points x, y, z outside it (LPS)"}},
                               seed_parameters(all_strokes),
                               region_parameters(),
                               cleaning_parameters()}),
