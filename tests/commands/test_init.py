@@ -3,10 +3,14 @@
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import tempfile
+import time
 import tomllib
 import unittest
+
+from x_server import NEEDED, XServer
 
 BIN = pathlib.Path(os.environ["PALPATE_BIN"])
 DATA = pathlib.Path(os.environ.get("PALPATE_DATA", ""))
@@ -77,10 +81,29 @@ class Init(unittest.TestCase):
         seen, report = self.assertBuilds("dicom.toml")
         self.assertIn("reaches the image’s edge", report)  # the slab ends in the liver
 
+    @unittest.skipUnless((DATA / "head_mr_ch2").is_dir(), "PALPATE_DATA: head_mr_ch2 is absent")
+    def test_a_brain_in_mri_builds_from_one_seed(self):
+        case = self.case("brain.toml", DATA / "head_mr_ch2" / "ch2.nii.gz", "--organ", "brain", "--approach", "superior",
+                         "--seed=25,40,30")
+        self.assertEqual(case["structure"][0]["recipe"], "organ")
+        seen, report = self.assertBuilds("brain.toml")
+        self.assertTrue(1400 < seen["regions"][0]["volume_ml"] < 1900, seen["regions"])
+        self.assertIn("✓ Verified", report)
+
+    @unittest.skipUnless((DATA / "abdomen_ct_totalseg3mm").is_dir(), "PALPATE_DATA: abdomen_ct_totalseg3mm is absent")
+    def test_any_organ_grows_against_seeds_around_it(self):
+        case = self.case("kidney_seeds.toml", DATA / "abdomen_ct_totalseg3mm" / "ct.nii.gz", "--organ", "left kidney",
+                         "--seed=85,-110,364", "--background-seed=60,-110,364", "--background-seed=85,-160,364")
+        structure, = case["structure"]
+        self.assertEqual(structure["recipe"], "grow-from-seeds")
+        self.assertEqual(structure["background_mm"], [60, -110, 364, 85, -160, 364])
+        self.assertEqual(case["deformable"][0]["name"], "left_kidney")
+
     def test_what_is_missing_is_asked_for(self):
         for arguments, code, phrase in (
                 ((self.volume, "-o", self.folder / "a.toml"), 2, "--seed"),
-                ((self.volume, "--organ", "spleen", "-o", self.folder / "a.toml"), 2, "label map"),
+                ((self.volume, "--organ", "spleen", "-o", self.folder / "a.toml"), 2, "in the spleen"),
+                ((self.volume, "--organ", "nasopharynx", "-o", self.folder / "a.toml"), 2, "behind the nose"),
                 ((self.labels, "--organ", "lever", "-o", self.folder / "a.toml"), 3, "liver"),
                 ((self.labels, "--approach", "up", "-o", self.folder / "a.toml"), 2, "anterior"),
                 ((self.labels, "-o", self.folder / "a.txt"), 2, ".toml")):
@@ -94,6 +117,56 @@ class Init(unittest.TestCase):
         there.write_text("mine")
         self.assertEqual(self.init(self.labels, "-o", there).returncode, 3)
         self.assertEqual(there.read_text(), "mine")
+
+
+@unittest.skipUnless(all(map(shutil.which, NEEDED)), "PALPATE: xvfb, xdotool, x11-apps or imagemagick is missing")
+@unittest.skipUnless((DATA / "head_ct_headsq64").is_dir(), "PALPATE_DATA: head_ct_headsq64 is absent")
+class InitWindow(unittest.TestCase):
+    """A head CT and nothing else: one click, and what comes of it can be touched."""
+
+    SIDE, HEIGHT = 204.8, 139.5  # mm, of the head's axial and of its sagittal slice, which is in the lower right quarter
+
+    def place(self, size, y, z):
+        """Where the sagittal slice shows a place (LPS, mm): panes as in tools/seeds/layout.cpp."""
+        status, gap, margin = 30, 2, 26
+        width, height = size[0] / 2, size[1] - status
+        top = round(height * self.SIDE / (self.SIDE + self.HEIGHT))
+        room = [(width - gap - 2 * margin, tall - gap - 2 * margin) for tall in (top, height - top)]
+        pixel = max(self.SIDE / min(w for w, _ in room), self.SIDE / room[0][1], self.HEIGHT / room[1][1])
+        return (round(width * 1.5 + (y - self.SIDE / 2) / pixel),
+                round(top + (height - top) / 2 - (z - self.HEIGHT / 2) / pixel))
+
+    def test_a_head_becomes_a_nasopharynx_by_one_click(self):
+        with XServer() as server, tempfile.TemporaryDirectory() as name:
+            case = pathlib.Path(name) / "head.toml"
+
+            def x(*command):
+                return subprocess.run([*map(str, command)], env=server.environment, check=True, capture_output=True,
+                                      text=True, timeout=60).stdout
+
+            init = subprocess.Popen([BIN / "palpate", "init", DATA / "head_ct_headsq64" / "head_ct_headsq64.mhd", "-o", case],
+                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=server.environment)
+            try:
+                window = x("xdotool", "search", "--sync", "--onlyvisible", "--name", "Palpate seeds").split()[0]
+                x("xdotool", "windowfocus", "--sync", window)
+                geometry = dict(line.split("=") for line in x("xdotool", "getwindowgeometry", "--shell", window).splitlines())
+                time.sleep(1)  # until it is drawn and listens
+                x("xdotool", "mousemove", "--window", window,
+                  *self.place((int(geometry["WIDTH"]), int(geometry["HEIGHT"])), 110, 58.7), "click", 1)
+                x("xdotool", "key", "s")
+                x("xdotool", "key", "q")
+                _, err = init.communicate(timeout=60)
+            finally:
+                init.kill()
+            self.assertEqual(init.returncode, 0, err)
+            self.assertIn("nasopharynx is looked for", err)
+            asset = case.with_suffix(".vtkhdf")
+            built = run(BIN / "palpate", "build", case, "-o", asset)
+            self.assertEqual(built.returncode, 0, built.stderr)
+            touched = run(BIN / "palpate", "touch", asset, "--virtual-clock", "--seconds", "3", "--json", "-", "--quiet")
+            self.assertGreater(json.loads(touched.stdout)["force_peak_n"], 0.02)
+            seen = json.loads(run(BIN / "palpate", "inspect", asset, "--json", "-").stdout)
+            self.assertTrue(any("soft-palate" in caution for caution in seen["provenance"]["build"]["cautions"]))
 
 
 if __name__ == "__main__":

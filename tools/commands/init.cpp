@@ -14,9 +14,10 @@
 #include "tools/cli/command.hpp"
 #include "tools/draft/anatomy.hpp"
 #include "tools/draft/case_draft.hpp"
+#include "tools/draft/scan_draft.hpp"
 #include "tools/imaging/files/image_files.hpp"
 #include "tools/imaging/files/label_names.hpp"
-#include "tools/imaging/recipes/segmentation.hpp"
+#include "tools/imaging/voxels/hounsfield.hpp"
 #include "tools/meshing/files/imported_mesh.hpp"
 #include "tools/meshing/measures/quality.hpp"
 
@@ -28,7 +29,7 @@ namespace fs = std::filesystem;
 struct InitRequest {
     fs::path input, output, seeds_file;
     std::string organ, label_names, approach = "anterior", series;
-    std::vector<std::string> seeds;
+    std::vector<std::string> seeds, background_seeds;
     bool labels = false;
     double contact_nodes = draft::Wishes{}.contact_nodes;
 };
@@ -85,53 +86,57 @@ draft::CaseDraft draft_of_mesh(const InitRequest& request, const draft::Wishes& 
     return found;
 }
 
-// Seeds in a window, if there is one and the person wants it.
-void place_seeds(InitRequest& request) {
+// Seeds in a window, which shows what the case will make of them, if there is one and the person wants it.
+void place_seeds(InitRequest& request, const draft::ScanRecipes& recipes) {
     if (std::getenv("DISPLAY") == nullptr)
         throw UsageError({"--seed", "none given, and there is no display to click one",
-                          "a point x,y,z (LPS, mm) inside the " + request.organ,
+                          "a point x,y,z (LPS, mm) in " + recipes.where,
                           "or --seeds-file with points of 3D Slicer or 'palpate seeds'"});
     request.seeds_file = fs::path(request.output).replace_extension(".mrk.json");
-    if (fs::exists(request.seeds_file)) return;
-    spdlog::info("click into the {}, save with S, leave with Q", request.organ);
+    if (fs::exists(request.seeds_file)) {
+        spdlog::info("seeds of {} are taken; remove it to place others", request.seeds_file.string());
+        return;
+    }
+    spdlog::info("click into {}; save with S, leave with Q", recipes.where);
     const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "palpate-seeds";
-    const auto child = case_builder::run_child(
-        program, {request.input.string(), "--label", request.organ, "-o", request.seeds_file.string()});
+    std::vector<std::string> arguments{request.input.string(), "-o", request.seeds_file.string()};
+    for (const std::string& structure : recipes.structures)
+        if (structure.starts_with(recipes.clicked + ":"))
+            arguments.insert(arguments.end(), {"--structure", structure});
+    const auto child = case_builder::run_child(program, arguments);
     if (child.exit_code != 0 || !fs::exists(request.seeds_file))
         throw InvalidInput({request.seeds_file.string(), "no seeds were saved", "one at least",
                             "run again and save with S, or give --seed"});
 }
 
-std::string joined(const std::vector<std::string>& words, const char* separator) {
-    return fmt::format("{}", fmt::join(words, separator));
+// What a scan is probably for.
+std::string proposed_organ(const Volume& volume, bool ct) {
+    if (!ct)
+        throw UsageError({"--organ", "none given, and nothing can be proposed where values are no HU", "",
+                          "say what is to be found, for example --organ brain"});
+    const std::string organ = draft::shows_head(volume) ? "nasopharynx" : "liver";
+    spdlog::info("{} is looked for; --organ says otherwise", organ);
+    return organ;
 }
 
 // A structure grown in the scan, as the case will grow it.
 draft::CaseDraft draft_of_volume(InitRequest request, const Volume& volume, draft::Wishes wishes,
                                  cli::Session& session) {
-    if (request.organ.empty()) request.organ = "liver";
-    if (request.organ != "liver")
-        throw UsageError({"--organ " + request.organ, "has no recipe that finds it from seeds alone", "liver",
-                          "give a label map that has it, or write its recipe into a case file by hand"});
-    if (request.seeds.empty() && request.seeds_file.empty()) place_seeds(request);
-    const std::string how = request.seeds.empty() ? "seeds_file=" + request.seeds_file.string()
-                                                  : "seeds=" + joined(request.seeds, ";");
-    const std::vector<StructureRecipe> structures{parse_structure("liver: recipe=liver " + how)};
-    LabelMap map = segment(
-        &volume, nullptr, structures,
-        [&](std::string_view, double done) { session.progress.step("finding the liver", 0.2 + 0.6 * done); },
+    const bool ct = holds_air(volume) || hounsfield_offset(volume) > 0;
+    if (wishes.organ.empty()) wishes.organ = proposed_organ(volume, ct);
+    if (request.seeds.empty() && request.seeds_file.empty())
+        place_seeds(request, draft::scan_recipes(wishes.organ, ct, false, Eigen::Vector3d::Zero()));
+    const draft::ScanSeeds seeds{
+        request.seeds, request.background_seeds, request.seeds_file,
+        request.seeds_file.empty() ? "" : path_from(request.output, request.seeds_file)};
+    draft::CaseDraft found = draft::draft_scan(
+        volume, ct, seeds, wishes, request.input.filename().string(),
+        [&](std::string_view name, double done) {
+            session.progress.step(fmt::format("finding {}", name), 0.2 + 0.6 * done);
+        },
         warn);
-    wishes.organ = "liver";
-    draft::CaseDraft found = draft_case(std::move(map), wishes, request.input.filename().string());
     found.input = fmt::format("volume = {}\n", path_from(request.output, request.input));
     if (!request.series.empty()) found.input += fmt::format("series = {}\n", draft::quoted(request.series));
-    std::string& recipe = found.structures.front().recipe;
-    recipe = "recipe = \"liver\"\n";
-    if (request.seeds.empty())
-        recipe += fmt::format("seeds_file = {}\n", path_from(request.output, request.seeds_file));
-    else
-        recipe += fmt::format("seeds_mm = [{}]\n", joined(request.seeds, ", "));
-    recipe += "keep_largest = true\n";
     return found;
 }
 
@@ -167,7 +172,8 @@ nlohmann::ordered_json run_init(const InitRequest& request, cli::Session& sessio
         "Look at it, then: palpate build {} -o {}\n",
         request.output.string(), found.name, found.volume_ml, found.cell_size, found.why_held,
         found.rigid.size(), request.output.string(), asset);
-    nlohmann::ordered_json regions = nlohmann::ordered_json::array();
+    nlohmann::ordered_json regions = nlohmann::ordered_json::array(), rigid = nlohmann::ordered_json::array();
+    for (const draft::DraftRigid& body : found.rigid) rigid.push_back(body.label);
     for (const draft::DraftRegion& region : found.regions)
         regions.push_back({{"label", region.label}, {"tissue", region.tissue}});
     return {{"case", request.output.string()},
@@ -176,7 +182,7 @@ nlohmann::ordered_json run_init(const InitRequest& request, cli::Session& sessio
             {"cell_size_mm", found.cell_size},
             {"held", found.why_held},
             {"regions", regions},
-            {"rigid", found.rigid}};
+            {"rigid", rigid}};
 }
 
 }  // namespace
@@ -186,24 +192,34 @@ int main(int argc, char** argv) {
         {.name = "init",
          .summary = "Drafts a case file that builds at once, from a scan, a label map or tetrahedra",
          .examples = {"palpate init totalseg.nii.gz --organ liver -o liver.toml",
-                      "palpate init ct_series/ --organ liver --seed -60,10,40 -o liver.toml"},
+                      "palpate init ct_series/ --organ liver --seed -60,10,40 -o liver.toml",
+                      "palpate init head_ct.nrrd --organ nasopharynx -o nasopharynx.toml",
+                      "palpate init mri.nii.gz --organ brain -o brain.toml"},
          .notes =
              "A label map (any that 'palpate import --labels' reads; TotalSegmentator's names are known) "
-             "gives the organ,\nits lesions and its neighbours. In a scan the liver is found from a seed "
-             "or three; without one, the seeds\nwindow opens where there is a display. Tetrahedra keep "
-             "their regions, in the unit in which they are as large\nas organs. The file says why each "
-             "thing is as it is; edit it and build."});
+             "gives the organ,\nits lesions and its neighbours. In a CT the liver is found from a seed in "
+             "it or three, the nasopharynx from one in\nthe air behind the nose; any other solid organ, and "
+             "a brain in MRI, from seeds in it or, where that leaks, against\nseeds around it "
+             "(--background-seed). Without seeds the window of 'palpate seeds' opens where there is a\n"
+             "display, and shows what the case will make of them. Tetrahedra keep their regions, in the unit "
+             "in which they are\nas large as organs. The file says why each thing is as it is; edit it and "
+             "build."});
     InitRequest request;
     command
         .input("input", request.input, "label map, CT volume, DICOM folder or tetrahedra (.msh, .mesh, .vtu)")
         .required();
     command.option("--organ", request.organ,
-                   "what gives way: a label, or 'liver' in a scan; the largest of known tissue without it");
+                   "what gives way: a label, or any name in a scan; without it the largest label of known "
+                   "tissue, in a CT the liver or a head's nasopharynx");
     command.flag("--labels", request.labels,
                  "the input is a label map, as DICOM SEG is; found out without it");
     command.option("--label-names", request.label_names, "names of labels, as 'palpate import' takes them");
     command.option("--series", request.series, "of a DICOM folder with several");
     command.option("--seed", request.seeds, "a point x,y,z inside the organ (LPS, mm); repeat for more")
+        .one_value_each();
+    command
+        .option("--background-seed", request.background_seeds,
+                "a point x,y,z outside the organ; repeat for more")
         .one_value_each();
     command.input("--seeds-file", request.seeds_file, "points of 3D Slicer or 'palpate seeds'");
     command.option("--approach", request.approach,

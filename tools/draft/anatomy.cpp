@@ -45,6 +45,7 @@ constexpr std::array words{
     Word{"tooth", Part::bone, ""},
     Word{"teeth", Part::bone, ""},
     Word{"spine", Part::bone, ""},
+    Word{"airway", Part::aside, ""},
     Word{"lung", Part::aside, ""},
     Word{"muscle", Part::aside, ""},
     Word{"gluteus", Part::aside, ""},

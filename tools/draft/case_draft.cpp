@@ -195,7 +195,7 @@ CaseDraft draft_case(LabelMap map, const Wishes& wishes, const std::string& culp
     draft.regions.insert(draft.regions.begin(), {organ.name, anatomy.tissue, 0});
     for (const Label& neighbour : neighbours_of(map, organ, wishes, volumes)) {
         draft.structures.push_back({neighbour.name, "beside it", ""});
-        draft.rigid.push_back(neighbour.name);
+        draft.rigid.push_back({neighbour.name});
     }
     return draft;
 }

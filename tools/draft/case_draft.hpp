@@ -24,6 +24,12 @@ struct DraftRegion {
     std::int32_t mesh_region = 0;  ///< its value in an imported mesh; 0: it comes from a label
 };
 
+/// A body that does not give way.
+struct DraftRigid {
+    std::string label;
+    bool by_grey_values = false;  ///< its surface is that of bone in the CT, finer than the label's
+};
+
 /// A case file before it is written.
 struct CaseDraft {
     std::string name;
@@ -31,11 +37,13 @@ struct CaseDraft {
     std::string mesh;     ///< the lines of the body's mesh
     std::string quality;  ///< the lines under [quality]
     std::vector<DraftStructure> structures;
-    std::vector<std::string> rigid;  ///< labels
+    std::vector<DraftRigid> rigid;
     std::vector<DraftRegion> regions;
     Eigen::Vector3d held_at =
         Eigen::Vector3d::Zero();  ///< p_P, mm: on the plane beyond which the body is held
     Eigen::Vector3d held_towards = Eigen::Vector3d::Zero();  ///< unit
+    std::vector<std::string>
+        held_by;  ///< labels that it is grown to, in place of that plane; empty: the plane
     std::string why_held;
     double volume_ml = 0, area_cm2 = 0;
     double cell_size = 0;    ///< mm

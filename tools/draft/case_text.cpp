@@ -27,6 +27,26 @@ std::string region_text(const DraftRegion& region) {
     return text;
 }
 
+std::string held_text(const CaseDraft& draft) {
+    if (draft.held_by.empty())
+        return fmt::format(
+            "# Held is {}:\n# what lies beyond this plane, a point and the way to go.\n"
+            "fixed = [{{ plane_mm = [{:.1f}, {:.1f}, {:.1f}, {:.3f}, {:.3f}, {:.3f}] }}]\n",
+            draft.why_held, draft.held_at.x(), draft.held_at.y(), draft.held_at.z(), draft.held_towards.x(),
+            draft.held_towards.y(), draft.held_towards.z());
+    std::string rules;
+    for (const std::string& label : draft.held_by)
+        rules += fmt::format("{}{{ touching = {} }}", rules.empty() ? "" : ", ", quoted(label));
+    return fmt::format("# Held is {}.\nfixed = [{}]\n", draft.why_held, rules);
+}
+
+std::string rigid_text(const DraftRigid& body) {
+    constexpr double bone_hu = 226;  // the recipe's own
+    return fmt::format("[[rigid]]\nname = {}\nlabel = {}\n{}\n", quoted(body_name(body.label)),
+                       quoted(body.label),
+                       body.by_grey_values ? fmt::format("isovalue_hu = {:.1f}\n", bone_hu) : "");
+}
+
 }  // namespace
 
 std::string quoted(const std::string& text) {
@@ -46,17 +66,12 @@ std::string case_text(const CaseDraft& draft) {
     for (const DraftStructure& structure : draft.structures)
         text += fmt::format("\n# {}\n[[structure]]\nname = {}\n{}", structure.why, quoted(structure.name),
                             structure.recipe);
-    text += fmt::format(
-        "\n[[deformable]]\nname = {}\n{}"
-        "# Held is {}:\n# what lies beyond this plane, a point and the way to go.\n"
-        "fixed = [{{ plane_mm = [{:.1f}, {:.1f}, {:.1f}, {:.3f}, {:.3f}, {:.3f}] }}]\n",
-        quoted(body_name(draft.name)), draft.mesh, draft.why_held, draft.held_at.x(), draft.held_at.y(),
-        draft.held_at.z(), draft.held_towards.x(), draft.held_towards.y(), draft.held_towards.z());
+    text += fmt::format("\n[[deformable]]\nname = {}\n{}{}", quoted(body_name(draft.name)), draft.mesh,
+                        held_text(draft));
     for (const DraftRegion& region : draft.regions) text += region_text(region);
     if (!draft.rigid.empty())
         text += "\n# Neighbours that do not give way; make one [[deformable]] if it should.\n";
-    for (const std::string& label : draft.rigid)
-        text += fmt::format("[[rigid]]\nname = {}\nlabel = {}\n\n", quoted(body_name(label)), quoted(label));
+    for (const DraftRigid& body : draft.rigid) text += rigid_text(body);
     text += fmt::format("{}[haptics]\ntool_radius_mm = {:g}\n", draft.rigid.empty() ? "\n" : "",
                         draft.tool_radius);
     if (!draft.quality.empty()) text += "\n" + draft.quality;

@@ -70,7 +70,8 @@ TEST(CaseDraft, takes_the_organ_with_its_lesions_and_what_lies_beside_it) {
     EXPECT_EQ(labels_of(draft), (std::vector<std::string>{"liver", "liver_tumor"}));
     EXPECT_EQ(draft.regions[0].tissue, "liver");
     EXPECT_LT(draft.regions[1].cell_size, draft.cell_size);
-    EXPECT_EQ(draft.rigid, (std::vector<std::string>{"kidney_right"}));
+    ASSERT_EQ(draft.rigid.size(), 1U);
+    EXPECT_EQ(draft.rigid[0].label, "kidney_right");
     ASSERT_EQ(draft.structures.size(), 3U);
     EXPECT_EQ(draft.structures[0].name, "liver_tumor");  // before the organ closes over it
     const std::string text = case_text(draft);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <gtest/gtest.h>
 
 #include "formats/model/errors.hpp"
@@ -93,6 +94,27 @@ TEST(Recipes, liver_is_found_however_it_was_imaged) {
         const LabelMap map = run(&abdomen.volume, nullptr, {small_liver});
         EXPECT_GT(dice(map, "liver", whole, "liver"), coarse_dice);
     }
+}
+
+// An image without air or HU, brighter `times` over.
+Volume as_mri(const Volume& ct, float times) {
+    Volume mri = ct;
+    for (float& value : mri.values) value = times * std::max(0.0F, value + 100);
+    return mri;
+}
+
+TEST(Recipes, organ_finds_in_mri_of_any_brightness_what_liver_finds_in_ct) {
+    const Phantom abdomen = abdomen_phantom({.samples_per_axis = 2, .noise_hu = 8});
+    const std::string small_organ =
+        "liver: recipe=organ seeds=-14,-6,16;-30,-6,-4;4,-8,0 neck_mm=4 gap_mm=10";
+    LabelMap whole = abdomen.truth;
+    for (std::uint16_t& label : whole.labels) label = label == 2 ? 1 : label;
+    EXPECT_EQ(run(&abdomen.volume, nullptr, {small_organ}).labels,
+              run(&abdomen.volume, nullptr, {small_liver}).labels);
+    const Volume dim = as_mri(abdomen.volume, 0.5F), bright = as_mri(abdomen.volume, 3);
+    const LabelMap found = run(&dim, nullptr, {small_organ});
+    EXPECT_GT(dice(found, "liver", whole, "liver"), coarse_dice);
+    EXPECT_EQ(run(&bright, nullptr, {small_organ}).labels, found.labels);
 }
 
 }  // namespace

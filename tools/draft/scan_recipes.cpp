@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/draft/scan_recipes.hpp"
+
+#include <fmt/format.h>
+#include <limits>
+
+#include "formats/model/errors.hpp"
+#include "tools/imaging/voxels/hounsfield.hpp"
+#include "tools/imaging/voxels/mask.hpp"
+
+namespace palpate::draft {
+namespace {
+
+// Posterior and lateral walls, tubal tori and roof lie within that of the middle of an adult's nasopharynx.
+constexpr double nasopharynx_radius_mm = 24;
+
+ScanRecipes nasopharynx(const Eigen::Vector3d& seed) {
+    return {
+        .organ = "nasopharynx",
+        .clicked = "airway",
+        .where = "the air behind the nose, above the soft palate",
+        .structures = {"skull: recipe=bone", "airway: recipe=airway",
+                       fmt::format("nasopharynx: recipe=nasopharynx air=airway thickness_mm=8 smoothing_mm=2 "
+                                   "center_mm={:.1f},{:.1f},{:.1f} radius_mm={:g}",
+                                   seed[0], seed[1], seed[2], nasopharynx_radius_mm)},
+        .tissue = "soft-palate",
+        .rigid = {"skull"},
+        .tool_radius = 1,  // its passages are narrow
+        .held_by = {"skull", "background"}};
+}
+
+ScanRecipes one_structure(const std::string& organ, const std::string& recipe) {
+    return {.organ = organ,
+            .clicked = organ,
+            .where = "the " + organ,
+            .structures = {organ + ": " + recipe},
+            .tissue = "",
+            .rigid = {},
+            .tool_radius = 0,
+            .held_by = {}};
+}
+
+}  // namespace
+
+ScanRecipes scan_recipes(const std::string& organ, bool ct, bool against_background,
+                         const Eigen::Vector3d& seed) {
+    if (organ == "nasopharynx") {
+        if (!ct)
+            throw UsageError({"--organ nasopharynx", "its wall is found between air and bone of a CT", "a CT",
+                              "or a label map of it"});
+        return nasopharynx(seed);
+    }
+    if (against_background)
+        return one_structure(organ,
+                             "recipe=grow-from-seeds open_mm=2 keep_largest=yes fill_holes=yes smooth_mm=2");
+    if (organ == "liver" && ct) return one_structure(organ, "recipe=liver keep_largest=yes");
+    // A brain's furrows are narrower than a tool.
+    return one_structure(organ, organ == "brain" ? "recipe=organ close_mm=6" : "recipe=organ");
+}
+
+bool shows_head(const Volume& volume) {
+    constexpr double tissue_above_hu = -300, apart_mm = 4;  // table and head rest come off
+    constexpr double largest_head_mm2 = 35'000;  // adults: heads have some 22 000, trunks 50 000 and more
+    const double offset = imaging::hounsfield_offset(volume);
+    const imaging::Mask tissue =
+        imaging::threshold(volume, tissue_above_hu + offset, std::numeric_limits<double>::infinity());
+    const imaging::Mask body = imaging::keep_largest(imaging::open(tissue, apart_mm));
+    const Eigen::Vector3d along = volume.grid.direction.row(2).cwiseAbs();
+    Eigen::Index axis = 0;
+    along.maxCoeff(&axis);
+    const double height = volume.grid.size[static_cast<std::size_t>(axis)] * volume.grid.spacing[axis];
+    return static_cast<double>(body.count()) * volume.grid.voxel_volume() / height < largest_head_mm2;
+}
+
+}  // namespace palpate::draft
