@@ -90,6 +90,21 @@ class Init(unittest.TestCase):
         self.assertTrue(1400 < seen["regions"][0]["volume_ml"] < 1900, seen["regions"])
         self.assertIn("✓ Verified", report)
 
+    @unittest.skipUnless((DATA / "mesh_sofa").is_dir(), "PALPATE_DATA: mesh_sofa is absent")
+    def test_what_a_surface_encloses_builds(self):
+        case = self.case("surface.toml", DATA / "mesh_sofa" / "liver-smooth.obj", "--organ", "liver")
+        self.assertEqual(case["input"]["labels"], "surface.seg.nrrd")
+        seen, _ = self.assertBuilds("surface.toml")
+        self.assertAlmostEqual(seen["regions"][0]["volume_ml"], 39.3, delta=0.2)
+
+    def test_a_surface_with_a_hole_is_refused_by_place(self):
+        hole = self.folder / "hole.obj"
+        hole.write_text("v 0 0 0\nv 90 0 0\nv 0 90 0\nv 0 0 90\nf 1 3 2\nf 1 2 4\nf 1 4 3\n")
+        made = self.init(hole, "-o", self.folder / "hole.toml")
+        self.assertEqual(made.returncode, 3)
+        self.assertIn("open edges", made.stderr)
+        self.assertEqual(list(self.folder.glob("hole.*")), [hole])
+
     @unittest.skipUnless((DATA / "abdomen_ct_totalseg3mm").is_dir(), "PALPATE_DATA: abdomen_ct_totalseg3mm is absent")
     def test_any_organ_grows_against_seeds_around_it(self):
         case = self.case("kidney_seeds.toml", DATA / "abdomen_ct_totalseg3mm" / "ct.nii.gz", "--organ", "left kidney",

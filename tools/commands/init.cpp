@@ -19,6 +19,7 @@
 #include "tools/imaging/files/label_names.hpp"
 #include "tools/imaging/voxels/hounsfield.hpp"
 #include "tools/meshing/files/imported_mesh.hpp"
+#include "tools/meshing/labels/voxelised.hpp"
 #include "tools/meshing/measures/quality.hpp"
 
 namespace {
@@ -60,18 +61,53 @@ draft::CaseDraft draft_of_labels(const InitRequest& request, LabelMap map, const
     return found;
 }
 
-bool is_mesh(const fs::path& file) {
-    constexpr std::array endings{".msh", ".mesh", ".vtu"};
+bool ends_with_one_of(const fs::path& file, std::span<const char* const> endings) {
     return std::ranges::find(endings, file.extension().string()) != endings.end();
+}
+
+bool is_mesh(const fs::path& file) {
+    return ends_with_one_of(file, std::array{".msh", ".mesh", ".vtu"});
+}
+
+bool is_surface(const fs::path& file) {
+    return ends_with_one_of(file, std::array{".stl", ".obj", ".ply", ".vtp"});
+}
+
+template <typename Points>
+double largest_extent(const Points& points) {
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& p : points) box.extend(p);
+    return box.sizes().maxCoeff();
+}
+
+// What a surface encloses becomes a label map beside the case file, fine enough to keep its shape.
+draft::CaseDraft draft_of_surface(InitRequest request, draft::Wishes wishes, cli::Session& session) {
+    constexpr double voxels_across = 160;
+    meshing::ImportedMeshOptions options;
+    options.unit =
+        draft::plausible_unit(largest_extent(read_unrepaired_surface(request.input, options).vertices));
+    const TriangleMesh surface = read_imported_surface(request.input, options, warn);
+    if (wishes.organ.empty()) wishes.organ = request.input.stem().string();
+    const double spacing =
+        std::max(0.1, std::round(10 * largest_extent(surface.vertices) / voxels_across) / 10);
+    LabelMap map = meshing::voxelised(surface, wishes.organ, spacing);
+    const fs::path labels = fs::path(request.output).replace_extension(".seg.nrrd");
+    cli::StagedFile staged = session.stage(labels);
+    write_label_map(staged.path(), map);
+    staged.commit();
+    spdlog::info("{}: what it encloses, in voxels of {:g} mm, is in {}", request.input.string(), spacing,
+                 labels.string());
+    request.input = labels;
+    draft::CaseDraft found = draft_of_labels(request, std::move(map), wishes);
+    found.structures.front().recipe = import_lines(found.name, false);  // nothing to clean
+    return found;
 }
 
 // The contract asks of an imported mesh what it has: nobody will make it finer.
 draft::CaseDraft draft_of_mesh(const InitRequest& request, const draft::Wishes& wishes) {
     meshing::ImportedMeshOptions options;
     const TetMesh as_numbered = read_imported_tetrahedra(request.input, options);
-    Eigen::AlignedBox3d box;
-    for (const Eigen::Vector3d& p : as_numbered.rest_positions) box.extend(p);
-    options.unit = draft::plausible_unit(box.sizes().maxCoeff());
+    options.unit = draft::plausible_unit(largest_extent(as_numbered.rest_positions));
     const TetMesh mesh = read_imported_tetrahedra(request.input, options, warn);
     draft::CaseDraft found =
         draft_case(mesh, wishes, request.organ.empty() ? request.input.stem().string() : request.organ);
@@ -146,6 +182,7 @@ draft::CaseDraft draft_of(const InitRequest& request, cli::Session& session) {
                                .contact_nodes = request.contact_nodes};
     session.progress.step("reading", 0);
     if (is_mesh(request.input)) return draft_of_mesh(request, wishes);
+    if (is_surface(request.input)) return draft_of_surface(request, wishes, session);
     const std::string name = request.input.filename().string();
     const bool labels = request.labels || name.ends_with(".seg.nrrd") || !request.label_names.empty();
     ReadOptions options;
@@ -190,23 +227,29 @@ nlohmann::ordered_json run_init(const InitRequest& request, cli::Session& sessio
 int main(int argc, char** argv) {
     cli::Command command(
         {.name = "init",
-         .summary = "Drafts a case file that builds at once, from a scan, a label map or tetrahedra",
+         .summary =
+             "Drafts a case file that builds at once, from a scan, a label map, tetrahedra or a surface",
          .examples = {"palpate init totalseg.nii.gz --organ liver -o liver.toml",
                       "palpate init ct_series/ --organ liver --seed -60,10,40 -o liver.toml",
                       "palpate init head_ct.nrrd --organ nasopharynx -o nasopharynx.toml",
-                      "palpate init mri.nii.gz --organ brain -o brain.toml"},
+                      "palpate init mri.nii.gz --organ brain -o brain.toml",
+                      "palpate init prostate.stl -o prostate.toml"},
          .notes =
              "A label map (any that 'palpate import --labels' reads; TotalSegmentator's names are known) "
              "gives the organ,\nits lesions and its neighbours. In a CT the liver is found from a seed in "
              "it or three, the nasopharynx from one in\nthe air behind the nose; any other solid organ, and "
              "a brain in MRI, from seeds in it or, where that leaks, against\nseeds around it "
              "(--background-seed). Without seeds the window of 'palpate seeds' opens where there is a\n"
-             "display, and shows what the case will make of them. Tetrahedra keep their regions, in the unit "
-             "in which they are\nas large as organs. The file says why each thing is as it is; edit it and "
+             "display, and shows what the case will make of them. Tetrahedra keep their regions; what a "
+             "closed "
+             "surface encloses\nbecomes a label map beside the case file; both in the unit in which they "
+             "are as large as organs. The file says why each thing is as it is; edit it and "
              "build."});
     InitRequest request;
     command
-        .input("input", request.input, "label map, CT volume, DICOM folder or tetrahedra (.msh, .mesh, .vtu)")
+        .input("input", request.input,
+               "label map, CT or MRI volume, DICOM folder, tetrahedra (.msh, .mesh, .vtu) or closed surface "
+               "(.stl, .obj, .ply, .vtp)")
         .required();
     command.option("--organ", request.organ,
                    "what gives way: a label, or any name in a scan; without it the largest label of known "
