@@ -295,6 +295,7 @@ void read_posture(TableReader& root, std::vector<DeformableSpec>& bodies) {
 void read_import_options(TableReader& input, CaseFile& result) {
     result.volume_import.series = input.text_or_number("series").value_or("");
     read(input, "accept_gaps", result.volume_import.accept_gaps);
+    read(input, "deface", result.volume_import.deface);
     read(input, "nifti_frame", result.volume_import.nifti_frame);
     result.labels_import.nifti_frame = result.volume_import.nifti_frame;
     if (const auto names = input.optional<std::string>("label_names")) {

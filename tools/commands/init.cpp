@@ -15,6 +15,7 @@
 #include "tools/draft/anatomy.hpp"
 #include "tools/draft/case_draft.hpp"
 #include "tools/draft/scan_draft.hpp"
+#include "tools/imaging/faces/face.hpp"
 #include "tools/imaging/files/image_files.hpp"
 #include "tools/imaging/files/label_names.hpp"
 #include "tools/imaging/voxels/hounsfield.hpp"
@@ -150,7 +151,7 @@ std::string proposed_organ(const Volume& volume, bool ct) {
     if (!ct)
         throw UsageError({"--organ", "none given, and nothing can be proposed where values are no HU", "",
                           "say what is to be found, for example --organ brain"});
-    const std::string organ = draft::shows_head(volume) ? "nasopharynx" : "liver";
+    const std::string organ = shows_head(volume) ? "nasopharynx" : "liver";
     spdlog::info("{} is looked for; --organ says otherwise", organ);
     return organ;
 }
@@ -158,7 +159,7 @@ std::string proposed_organ(const Volume& volume, bool ct) {
 // A structure grown in the scan, as the case will grow it.
 draft::CaseDraft draft_of_volume(InitRequest request, const Volume& volume, draft::Wishes wishes,
                                  cli::Session& session) {
-    const bool ct = holds_air(volume) || hounsfield_offset(volume) > 0;
+    const bool ct = is_ct(volume);
     if (wishes.organ.empty()) wishes.organ = proposed_organ(volume, ct);
     if (request.seeds.empty() && request.seeds_file.empty())
         place_seeds(request, draft::scan_recipes(wishes.organ, ct, false, Eigen::Vector3d::Zero()));

@@ -2,11 +2,8 @@
 #include "tools/draft/scan_recipes.hpp"
 
 #include <fmt/format.h>
-#include <limits>
 
 #include "formats/model/errors.hpp"
-#include "tools/imaging/voxels/hounsfield.hpp"
-#include "tools/imaging/voxels/mask.hpp"
 
 namespace palpate::draft {
 namespace {
@@ -56,20 +53,6 @@ ScanRecipes scan_recipes(const std::string& organ, bool ct, bool against_backgro
     if (organ == "liver" && ct) return one_structure(organ, "recipe=liver keep_largest=yes");
     // A brain's furrows are narrower than a tool.
     return one_structure(organ, organ == "brain" ? "recipe=organ close_mm=6" : "recipe=organ");
-}
-
-bool shows_head(const Volume& volume) {
-    constexpr double tissue_above_hu = -300, apart_mm = 4;  // table and head rest come off
-    constexpr double largest_head_mm2 = 35'000;  // adults: heads have some 22 000, trunks 50 000 and more
-    const double offset = imaging::hounsfield_offset(volume);
-    const imaging::Mask tissue =
-        imaging::threshold(volume, tissue_above_hu + offset, std::numeric_limits<double>::infinity());
-    const imaging::Mask body = imaging::keep_largest(imaging::open(tissue, apart_mm));
-    const Eigen::Vector3d along = volume.grid.direction.row(2).cwiseAbs();
-    Eigen::Index axis = 0;
-    along.maxCoeff(&axis);
-    const double height = volume.grid.size[static_cast<std::size_t>(axis)] * volume.grid.spacing[axis];
-    return static_cast<double>(body.count()) * volume.grid.voxel_volume() / height < largest_head_mm2;
 }
 
 }  // namespace palpate::draft

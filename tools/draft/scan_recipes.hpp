@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "formats/model/image_grid.hpp"
-
 namespace palpate::draft {
 
 /// How an organ is found in a scan: structures as `palpate segment` takes them, one of which a person clicks
@@ -27,8 +25,5 @@ struct ScanRecipes {
 /// UsageError for a nasopharynx in anything but a CT.
 ScanRecipes scan_recipes(const std::string& organ, bool ct, bool against_background,
                          const Eigen::Vector3d& seed);
-
-/// Tells whether a CT shows a head, whose sections are smaller than those of a trunk.
-bool shows_head(const Volume& volume);
 
 }  // namespace palpate::draft

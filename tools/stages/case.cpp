@@ -10,6 +10,7 @@
 #include "formats/model/errors.hpp"
 #include "tools/cli/software.hpp"
 #include "tools/fem/feel/feel.hpp"
+#include "tools/imaging/faces/face.hpp"
 #include "tools/imaging/files/image_files.hpp"
 #include "tools/imaging/voxels/scan_of.hpp"
 #include "tools/meshing/files/mesh_files.hpp"
@@ -61,6 +62,11 @@ Json read_mesh_results(const std::vector<NamedFile>& files) {
 }
 
 // What earlier stages told a person to look at; folders stay out of it.
+constexpr auto face_note =
+    "The scan kept in it shows a face, by which the patient can be known: before it is given away, build "
+    "with "
+    "input.deface = true, or with keep_scan = false.";
+
 Json read_notes(const std::vector<std::filesystem::path>& files) {
     Json notes = Json::array();
     for (const std::filesystem::path& file : files) {
@@ -134,11 +140,7 @@ Case make_case(const PackRequest& request, int threads, const ProgressCallback& 
               .deformable_bodies = {},
               .haptics = request.haptics,
               .provenance = ""};
-    made.provenance = Json{{"software", cli::software_versions()},
-                           {"build", read_provenance(request.provenance)},
-                           {"meshes", read_mesh_results(request.mesh_results)},
-                           {"notes", read_notes(request.notes)}}
-                          .dump();
+    Json notes = read_notes(request.notes);
     progress("read parts and build trees", 0);
     for (const BodyFiles& files : request.rigid) made.rigid_bodies.push_back(read_rigid(files));
     for (const BodyFiles& files : request.deformable)
@@ -146,12 +148,19 @@ Case make_case(const PackRequest& request, int threads, const ProgressCallback& 
     for (const DrawnColour& drawn : request.colours) draw_in(drawn, made);
     if (!request.scan.empty()) {
         progress("cut the scan to the bodies", 0.2);
-        made.scan = imaging::scan_of(imaging::read_volume(request.scan), points_of(made));
+        const Volume volume = imaging::read_volume(request.scan);
+        made.scan = imaging::scan_of(volume, points_of(made));
+        if (made.scan && imaging::shows_face(volume)) notes.push_back(face_note);
     }
     for (DeformableBody& body : made.deformable_bodies) {
         progress("press " + body.name + " all over", 0.3);
         body.feel = fem::feel_of(body, made.haptics.tool_radius, threads);
     }
+    made.provenance = Json{
+        {"software", cli::software_versions()},
+        {"build", read_provenance(request.provenance)},
+        {"meshes", read_mesh_results(request.mesh_results)},
+        {"notes", notes}}.dump();
     return made;
 }
 

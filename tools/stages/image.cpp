@@ -4,7 +4,9 @@
 #include <algorithm>
 
 #include "formats/model/errors.hpp"
+#include "tools/imaging/faces/face.hpp"
 #include "tools/imaging/files/label_names.hpp"
+#include "tools/imaging/voxels/hounsfield.hpp"
 
 namespace palpate::stages {
 namespace {
@@ -25,6 +27,16 @@ nlohmann::ordered_json describe(const LabelMap& map) {
              {"volume_ml", static_cast<double>(count) * map.grid.voxel_volume() / 1000}});
     }
     return result;
+}
+
+Volume defaced(Volume volume, const std::string& culprit, const NoteSink& note) {
+    if (!is_ct(volume))
+        throw InvalidInput(
+            {culprit, "its values are no HU, by which a face is told from bone and air", "a CT",
+             "leave the image out of what is given away, in a case file by keep_scan = false"});
+    if (shows_face(volume)) return without_face(volume);
+    if (note) note("no face was found in the volume, and nothing taken away");
+    return volume;
 }
 
 Overlaps overlaps_of(const std::string& text) {
@@ -76,6 +88,7 @@ void check_request(const ImportRequest& request) {
                    !labels && (std::filesystem::is_directory(request.input, none) || is_dicom(request.input));
     require(labels || request.label_names.empty(), "--label-names", "label maps", "add --labels");
     require(labels || request.overlaps.empty(), "--overlaps", "label maps", "add --labels");
+    require(!labels || !request.deface, "--deface", "images", "leave it out");
     require(dicom_image || request.series.empty(), "--series", "DICOM images", "leave it out");
     require(dicom_image || !request.accept_gaps, "--accept-gaps", "DICOM images", "leave it out");
     require(request.nifti_frame.empty() || is_nifti(request.input), "--nifti-frame", "NIfTI files",
@@ -103,7 +116,11 @@ nlohmann::ordered_json import_image(const ImportRequest& request, const ReadOpti
         write_label_map(file, map);
         return describe(map);
     }
-    const Volume volume = read_volume(request.input, note, options);
+    Volume volume = read_volume(request.input, note, options);
+    if (request.deface) {
+        progress("taking the face away", 0.3);
+        volume = defaced(std::move(volume), request.input.string(), note);
+    }
     const auto [low, high] = std::ranges::minmax(volume.values);
     progress("writing", 0.5);
     write_volume(file, volume);

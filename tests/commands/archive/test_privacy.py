@@ -14,6 +14,7 @@ from sample_asset import SampleAsset
 from test_import import COUNT, dicom_slice, metaimage, nifti, nrrd
 
 BIN = pathlib.Path(os.environ["PALPATE_BIN"])
+HEAD = pathlib.Path(os.environ.get("PALPATE_DATA", "")) / "head_ct_cranium" / "head_ct_cranium.nrrd"
 OK, USAGE, CONTRACT = 0, 2, 4
 PERSON = {"USER": "jane_roe", "LOGNAME": "jane_roe", "HOSTNAME": "theatre7.hospital"}
 SECRETS = ("jane_roe", "theatre7", "ROE^JANE", "PID-77123", "19610203", "1961-02-03", "roe@hospital", "/home/jane",
@@ -103,6 +104,24 @@ class Privacy(SampleAsset):
         result = subprocess.run([BIN / "palpate-verify", self.asset, self.asset], stderr=subprocess.PIPE, text=True)
         self.assertEqual(result.returncode, USAGE)
         self.assertIn("one asset", result.stderr)
+
+    @unittest.skipUnless(HEAD.exists(), f"no {HEAD}")
+    def test_a_face_is_found_in_volume_and_asset_until_it_is_taken_away(self):
+        home = self.folder / "head"
+        home.mkdir()
+        self.assertIn("its voxels: face", self.verify(HEAD, code=CONTRACT))
+        defaced = home / "defaced.nrrd"
+        subprocess.run([BIN / "palpate-import", HEAD, "--deface", "-o", defaced], check=True, capture_output=True)
+        self.verify(defaced, code=OK)
+        case = home / "case.toml"
+        case.write_text(f'schema = 1\nname = "head"\n[input]\nvolume = "{HEAD}"\n[[structure]]\nname = "skull"\nrecipe = "bone"\n'
+                        '[[rigid]]\nname = "skull"\nmax_triangles = 200000\n')
+        asset = home / "case.vtkhdf"
+        for stage in ("import volume", "segment", "surface skull", "pack"):
+            subprocess.run([BIN / "palpate-build", case, "-o", asset, "--stage", stage], check=True, capture_output=True)
+        self.assertIn("its voxels: face", self.verify(asset, code=CONTRACT))
+        seen = subprocess.run([BIN / "palpate-inspect", asset, "--json", "-"], check=True, capture_output=True, text=True).stdout
+        self.assertIn("shows a face", seen)
 
     @unittest.skipUnless(CHEST.exists(), f"no {CHEST}")
     def test_what_palpate_makes_of_a_scan_tells_nobody(self):

@@ -67,9 +67,10 @@ TEST(CaseFile, how_the_inputs_are_read_becomes_requests_of_import) {
         return read_case_file(written(text));
     };
     const CaseFile file =
-        with("series = 3\naccept_gaps = true\nlabel_names = \"totalsegmentator:v2/total\"\n");
+        with("series = 3\naccept_gaps = true\ndeface = true\nlabel_names = \"totalsegmentator:v2/total\"\n");
     EXPECT_EQ(file.volume_import.series, "3");
     EXPECT_TRUE(file.volume_import.accept_gaps);
+    EXPECT_TRUE(file.volume_import.deface);
     EXPECT_EQ(file.labels_import.label_names, "totalsegmentator:v2/total");
     EXPECT_FALSE(file.labels_import.accept_gaps);
     EXPECT_FALSE(file.label_table);

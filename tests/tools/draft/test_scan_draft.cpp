@@ -50,27 +50,5 @@ TEST(ScanRecipes, look_for_a_nasopharynx_in_a_ct_alone) {
                     .starts_with("liver: recipe=organ"));
 }
 
-// A body of elliptic sections, in air, on a table.
-Volume body(double half_width, double half_depth) {
-    Volume volume;
-    volume.grid = {.size = {100, 100, 20}, .spacing = {4, 4, 8}, .origin = {-198, -198, 0}};
-    for (int k = 0; k < 20; ++k)
-        for (int j = 0; j < 100; ++j)
-            for (int i = 0; i < 100; ++i) {
-                const Vector3d p = volume.grid.point_of(Vector3d(i, j, k));
-                const bool inside = std::hypot(p[0] / half_width, p[1] / half_depth) < 1;
-                volume.values.push_back(inside ? 40 : p[1] > 170 && p[1] < 180 ? 100 : -1000);
-            }
-    return volume;
-}
-
-TEST(ScanRecipes, tell_a_head_from_a_trunk_by_its_sections) {
-    EXPECT_TRUE(shows_head(body(75, 95)));
-    EXPECT_FALSE(shows_head(body(150, 105)));
-    Volume stored = body(75, 95);
-    for (float& value : stored.values) value += 1024;
-    EXPECT_TRUE(shows_head(stored)) << "as value + 1024";
-}
-
 }  // namespace
 }  // namespace palpate::draft

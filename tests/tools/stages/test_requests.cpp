@@ -74,10 +74,11 @@ TEST(Request, of_import_survives_json) {
                                     .series = "3",
                                     .accept_gaps = true,
                                     .nifti_frame = "qform",
+                                    .deface = true,
                                     .labels = true,
                                     .label_names = "5=liver,4=gallbladder",
                                     .overlaps = "smaller"},
-                      9);
+                      10);
 }
 
 TEST(Request, of_segment_survives_json_with_parameters_in_their_order) {

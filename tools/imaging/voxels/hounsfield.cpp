@@ -42,6 +42,10 @@ bool holds_air(const Volume& volume) {
     return std::ranges::any_of(volume.values, [](float value) { return value <= -500; });
 }
 
+bool is_ct(const Volume& volume) {
+    return holds_air(volume) || hounsfield_offset(volume) > 0;
+}
+
 double hounsfield_offset(const Volume& volume) {
     const std::size_t air = commonest_low_value(volume);
     const double offset = air > 0 && air < 14 ? 1000 : 1024;

@@ -10,6 +10,9 @@ Mask threshold(const Volume& volume, double lower_hu, double upper_hu);
 /// Whether a value is -500 or less, as air has in HU and little else.
 bool holds_air(const Volume& volume);
 
+/// Whether the values are a CT's: HU, or as far above them as hounsfield_offset() can tell.
+bool is_ct(const Volume& volume);
+
 /// How far the values of a CT probably lie above HU: 0 if one is negative, or unless soft tissue lies about
 /// the offset and little between it and air; else 1000 if the commonest value of the air (-1000 HU) lies
 /// below 14, and otherwise 1024, the usual one. The air decides no finer: old scanners have it
