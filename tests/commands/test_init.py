@@ -134,54 +134,83 @@ class Init(unittest.TestCase):
         self.assertEqual(there.read_text(), "mine")
 
 
+def pane_places(grid, window):
+    """Where a window of that size (pixels) shows a place (LPS, mm) in its axial and its sagittal slice, at first: as
+    tools/seeds/layout.cpp, for voxel axes that are the patient's."""
+    status, gap, margin = 30, 2, 26
+    wide, deep, tall = grid["extent_mm"]
+    middle = [o + (e - h) / 2 for o, e, h in zip(grid["origin_mm"], grid["extent_mm"], grid["spacing_mm"])]
+    width, height = window[0], window[1] - status
+
+    def share(first, second):
+        return min(max(first / (first + second), 0.42), 0.62)
+
+    left, top = round(width * share(wide, deep)), round(height * share(deep, tall))
+    panes = {"axial": (left, top, wide, deep), "coronal": (left, height - top, wide, tall),
+             "sagittal": (width - left, height - top, deep, tall)}
+    pixel = max(max(across / (w - gap - 2 * margin), down / (h - gap - 2 * margin)) for w, h, across, down in panes.values())
+    return {"axial": lambda p: (round(left / 2 + (p[0] - middle[0]) / pixel), round(top / 2 + (p[1] - middle[1]) / pixel)),
+            "sagittal": lambda p: (round(left + (width - left) / 2 + (p[1] - middle[1]) / pixel),
+                                   round(top + (height - top) / 2 - (p[2] - middle[2]) / pixel))}
+
+
 @unittest.skipUnless(all(map(shutil.which, NEEDED)), "PALPATE: xvfb, xdotool, x11-apps or imagemagick is missing")
-@unittest.skipUnless((DATA / "head_ct_headsq64").is_dir(), "PALPATE_DATA: head_ct_headsq64 is absent")
 class InitWindow(unittest.TestCase):
-    """A head CT and nothing else: one click, and what comes of it can be touched."""
+    """A scan and nothing else: one click, and what comes of it can be touched."""
 
-    SIDE, HEIGHT = 204.8, 139.5  # mm, of the head's axial and of its sagittal slice, which is in the lower right quarter
+    def x(self, *command):
+        return subprocess.run([*map(str, command)], env=self.server.environment, check=True, capture_output=True, text=True,
+                              timeout=60).stdout
 
-    def place(self, size, y, z):
-        """Where the sagittal slice shows a place (LPS, mm): panes as in tools/seeds/layout.cpp."""
-        status, gap, margin = 30, 2, 26
-        width, height = size[0] / 2, size[1] - status
-        top = round(height * self.SIDE / (self.SIDE + self.HEIGHT))
-        room = [(width - gap - 2 * margin, tall - gap - 2 * margin) for tall in (top, height - top)]
-        pixel = max(self.SIDE / min(w for w, _ in room), self.SIDE / room[0][1], self.HEIGHT / room[1][1])
-        return (round(width * 1.5 + (y - self.SIDE / 2) / pixel),
-                round(top + (height - top) / 2 - (z - self.HEIGHT / 2) / pixel))
+    def click_and_save(self, scan, case, pane, place):
+        """Runs init, clicks into a pane of its window, saves and leaves; what init said."""
+        grid = json.loads(run(BIN / "palpate", "inspect", scan, "--json", "-").stdout)["grid"]
+        init = subprocess.Popen([BIN / "palpate", "init", scan, "-o", case], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                text=True, env=self.server.environment)
+        self.addCleanup(init.communicate)
+        self.addCleanup(init.kill)
+        window = self.x("xdotool", "search", "--sync", "--onlyvisible", "--name", "Palpate seeds").split()[0]
+        self.x("xdotool", "windowfocus", "--sync", window)
+        shape = dict(line.split("=") for line in self.x("xdotool", "getwindowgeometry", "--shell", window).splitlines())
+        time.sleep(1)  # until it is drawn and listens
+        pixels = pane_places(grid, (int(shape["WIDTH"]), int(shape["HEIGHT"])))[pane](place)
+        self.x("xdotool", "mousemove", "--window", window, *pixels, "click", 1)
+        self.x("xdotool", "key", "s")
+        self.x("xdotool", "key", "q")
+        _, said = init.communicate(timeout=60)
+        self.assertEqual(init.returncode, 0, said)
+        return said
 
+    def assertFelt(self, case):
+        """Builds at once, and pushes back; what inspect says of the asset."""
+        asset = case.with_suffix(".vtkhdf")
+        built = run(BIN / "palpate", "build", case, "-o", asset)
+        self.assertEqual(built.returncode, 0, built.stderr)
+        touched = run(BIN / "palpate", "touch", asset, "--virtual-clock", "--seconds", "3", "--json", "-", "--quiet")
+        self.assertGreater(json.loads(touched.stdout)["force_peak_n"], 0.002)
+        return json.loads(run(BIN / "palpate", "inspect", asset, "--json", "-").stdout)
+
+    def setUp(self):
+        self.server = XServer().__enter__()
+        self.addCleanup(self.server.__exit__)
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    @unittest.skipUnless((DATA / "head_ct_headsq64").is_dir(), "PALPATE_DATA: head_ct_headsq64 is absent")
     def test_a_head_becomes_a_nasopharynx_by_one_click(self):
-        with XServer() as server, tempfile.TemporaryDirectory() as name:
-            case = pathlib.Path(name) / "head.toml"
+        case = self.folder / "head.toml"
+        said = self.click_and_save(DATA / "head_ct_headsq64" / "head_ct_headsq64.mhd", case, "sagittal", (0, 110, 58.7))
+        self.assertIn("nasopharynx is looked for", said)
+        seen = self.assertFelt(case)
+        self.assertTrue(any("soft-palate" in caution for caution in seen["provenance"]["build"]["cautions"]))
 
-            def x(*command):
-                return subprocess.run([*map(str, command)], env=server.environment, check=True, capture_output=True,
-                                      text=True, timeout=60).stdout
-
-            init = subprocess.Popen([BIN / "palpate", "init", DATA / "head_ct_headsq64" / "head_ct_headsq64.mhd", "-o", case],
-                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=server.environment)
-            try:
-                window = x("xdotool", "search", "--sync", "--onlyvisible", "--name", "Palpate seeds").split()[0]
-                x("xdotool", "windowfocus", "--sync", window)
-                geometry = dict(line.split("=") for line in x("xdotool", "getwindowgeometry", "--shell", window).splitlines())
-                time.sleep(1)  # until it is drawn and listens
-                x("xdotool", "mousemove", "--window", window,
-                  *self.place((int(geometry["WIDTH"]), int(geometry["HEIGHT"])), 110, 58.7), "click", 1)
-                x("xdotool", "key", "s")
-                x("xdotool", "key", "q")
-                _, err = init.communicate(timeout=60)
-            finally:
-                init.kill()
-            self.assertEqual(init.returncode, 0, err)
-            self.assertIn("nasopharynx is looked for", err)
-            asset = case.with_suffix(".vtkhdf")
-            built = run(BIN / "palpate", "build", case, "-o", asset)
-            self.assertEqual(built.returncode, 0, built.stderr)
-            touched = run(BIN / "palpate", "touch", asset, "--virtual-clock", "--seconds", "3", "--json", "-", "--quiet")
-            self.assertGreater(json.loads(touched.stdout)["force_peak_n"], 0.02)
-            seen = json.loads(run(BIN / "palpate", "inspect", asset, "--json", "-").stdout)
-            self.assertTrue(any("soft-palate" in caution for caution in seen["provenance"]["build"]["cautions"]))
+    @unittest.skipUnless((DATA / "abdomen_dicom_ts20").is_dir(), "PALPATE_DATA: abdomen_dicom_ts20 is absent")
+    def test_a_dicom_folder_becomes_a_liver_by_one_click(self):
+        case = self.folder / "abdomen.toml"
+        said = self.click_and_save(DATA / "abdomen_dicom_ts20" / "dicom", case, "axial", (-76, -166, 0))
+        self.assertIn("liver is looked for", said)
+        self.assertEqual([region["region"] for region in self.assertFelt(case)["regions"]], ["liver"])
 
 
 if __name__ == "__main__":
