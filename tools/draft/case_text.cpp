@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "tools/draft/case_draft.hpp"
+#include "tools/imaging/voxels/hounsfield.hpp"
 
 namespace palpate::draft {
 namespace {
@@ -41,10 +42,9 @@ std::string held_text(const CaseDraft& draft) {
 }
 
 std::string rigid_text(const DraftRigid& body) {
-    constexpr double bone_hu = 226;  // the recipe's own
-    return fmt::format("[[rigid]]\nname = {}\nlabel = {}\n{}\n", quoted(body_name(body.label)),
-                       quoted(body.label),
-                       body.by_grey_values ? fmt::format("isovalue_hu = {:.1f}\n", bone_hu) : "");
+    return fmt::format(
+        "[[rigid]]\nname = {}\nlabel = {}\n{}\n", quoted(body_name(body.label)), quoted(body.label),
+        body.by_grey_values ? fmt::format("isovalue_hu = {:.1f}\n", imaging::bone_from_hu) : "");
 }
 
 }  // namespace

@@ -61,12 +61,12 @@ Json read_mesh_results(const std::vector<NamedFile>& files) {
     return meshes;
 }
 
-// What earlier stages told a person to look at; folders stay out of it.
 constexpr auto face_note =
     "The scan kept in it shows a face, by which the patient can be known: before it is given away, build "
     "with "
     "input.deface = true, or with keep_scan = false.";
 
+// What earlier stages told a person to look at; folders stay out of it.
 Json read_notes(const std::vector<std::filesystem::path>& files) {
     Json notes = Json::array();
     for (const std::filesystem::path& file : files) {
@@ -148,9 +148,8 @@ Case make_case(const PackRequest& request, int threads, const ProgressCallback& 
     for (const DrawnColour& drawn : request.colours) draw_in(drawn, made);
     if (!request.scan.empty()) {
         progress("cut the scan to the bodies", 0.2);
-        const Volume volume = imaging::read_volume(request.scan);
-        made.scan = imaging::scan_of(volume, points_of(made));
-        if (made.scan && imaging::shows_face(volume)) notes.push_back(face_note);
+        made.scan = imaging::scan_of(imaging::read_volume(request.scan), points_of(made));
+        if (made.scan && imaging::shows_face(*made.scan)) notes.push_back(face_note);
     }
     for (DeformableBody& body : made.deformable_bodies) {
         progress("press " + body.name + " all over", 0.3);

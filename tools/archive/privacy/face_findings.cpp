@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
-
 #include "formats/asset/asset.hpp"
 #include "formats/model/errors.hpp"
 #include "tools/archive/privacy/searches.hpp"
@@ -10,23 +8,32 @@
 namespace palpate::archive {
 namespace {
 
-// The voxels of a file, as a volume; none if it holds none.
-Volume voxels_of(const std::filesystem::path& file) {
-    if (file.extension() != ".vtkhdf") return imaging::read_volume(file);
-    const Case patient_case = asset::read_asset(file);
-    if (!patient_case.scan || !patient_case.scan->hounsfield) return {};
-    return {patient_case.scan->grid, {patient_case.scan->values.begin(), patient_case.scan->values.end()}};
+// A face is the same in both of a NIfTI file's frames, whether they agree or not.
+Volume read_in_any_frame(const std::filesystem::path& file) {
+    imaging::ReadOptions options;
+    if (imaging::is_nifti(file)) options.nifti_frame = "sform";
+    try {
+        return imaging::read_volume(file);
+    } catch (const InvalidInput&) {
+        return imaging::read_volume(file, {}, options);
+    }
 }
 
 }  // namespace
 
-void search_face(const std::filesystem::path& file, Findings& findings) {
+void search_volume_face(const std::filesystem::path& file, Findings& findings) {
     try {
-        const Volume volume = voxels_of(file);
-        if (!volume.values.empty() && imaging::shows_face(volume))
+        if (imaging::shows_face(read_in_any_frame(file)))
             findings.push_back({file, "its voxels", "face", "soft tissue in front of a head's bone"});
-    } catch (const InvalidInput&) {
+    } catch (const InvalidInput& refusal) {
+        findings.push_back({file, "its voxels", "not looked at", refusal.detail().found});
     }
+}
+
+void search_asset_face(const std::filesystem::path& file, Findings& findings) {
+    const Case patient_case = asset::read_asset(file);
+    if (patient_case.scan && imaging::shows_face(*patient_case.scan))
+        findings.push_back({file, "its scan", "face", "soft tissue in front of a head's bone"});
 }
 
 }  // namespace palpate::archive

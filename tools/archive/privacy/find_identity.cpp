@@ -47,16 +47,16 @@ void search_file(const std::filesystem::path& file, const Machine& machine, Find
     const std::string_view view = bytes;
     if (view.starts_with("\x89HDF\r\n")) {
         if (!search_hdf5(file, machine, findings)) throw unreadable(file, "is damaged HDF5");
-        search_face(file, findings);
+        if (file.extension() == ".vtkhdf") search_asset_face(file, findings);
     } else if (imaging::is_nifti(file)) {
         search_nifti(view, file, machine, findings);
-        search_face(file, findings);
+        search_volume_face(file, findings);
     } else if (view.starts_with("NRRD")) {
         search_nrrd(view, file, machine, findings);
-        search_face(file, findings);
+        search_volume_face(file, findings);
     } else if (file.extension() == ".mha" || file.extension() == ".mhd") {
         search_metaimage(view, file, machine, findings);
-        search_face(file, findings);
+        search_volume_face(file, findings);
     } else if (const auto appended = view.find("<AppendedData");
                view.starts_with("<?xml") && appended != std::string_view::npos) {
         search_text(view.substr(0, appended), file, "", true, machine, findings);

@@ -36,8 +36,10 @@ void search_nrrd(std::string_view bytes, const std::filesystem::path& file, cons
 void search_metaimage(std::string_view bytes, const std::filesystem::path& file, const Machine& machine,
                       Findings& findings);
 
-/// Looks for a face in the voxels of a volume, or in the scan of an asset. What cannot be read as such has
-/// none.
-void search_face(const std::filesystem::path& file, Findings& findings);
+/// Looks for a face in the voxels of a volume; one that cannot be read is a finding, too.
+void search_volume_face(const std::filesystem::path& file, Findings& findings);
+
+/// Looks for a face in the scan of an asset; throws InvalidInput as read_asset() does.
+void search_asset_face(const std::filesystem::path& file, Findings& findings);
 
 }  // namespace palpate::archive

@@ -47,7 +47,8 @@ Recipe bone_recipe() {
     return {.name = "bone",
             .meaning = "the bone of the body, without table and head rest",
             .parameters = concatenated(
-                {{{"threshold_hu", number, "HU", "226", "bone is at least this dense; 0 finds it by itself"},
+                {{{"threshold_hu", number, "HU", fmt::format("{}", bone_from_hu),
+                   "bone is at least this dense; 0 finds it by itself"},
                   {"separation_mm", number, "mm", "4", "ball that cuts table and head rest off the body",
                    RecipeParameter::Range::not_negative}},
                  region_parameters(),

@@ -4,6 +4,9 @@
 
 namespace palpate::imaging {
 
+/// Adults' bone is at least this dense, HU; the lower end of the window that CT consoles call bone.
+inline constexpr double bone_from_hu = 226;
+
 /// Voxels of lower ... upper HU, both included.
 Mask threshold(const Volume& volume, double lower_hu, double upper_hu);
 
