@@ -44,9 +44,8 @@ std::string path_from(const fs::path& output, const fs::path& file) {
     return draft::quoted(fs::absolute(file).lexically_proximate(folder).string());
 }
 
-std::string import_lines(const std::string& label, bool organ) {
-    return fmt::format("recipe = \"import\"\nlabel = {}\n{}", draft::quoted(label),
-                       organ ? "close_mm = 3.0\nfill_holes = true\nkeep_largest = true\n" : "");
+std::string import_lines(const std::string& label, const std::string& cleaning) {
+    return fmt::format("recipe = \"import\"\nlabel = {}\n{}", draft::quoted(label), cleaning);
 }
 
 draft::CaseDraft draft_of_labels(const InitRequest& request, LabelMap map, const draft::Wishes& wishes) {
@@ -58,12 +57,17 @@ draft::CaseDraft draft_of_labels(const InitRequest& request, LabelMap map, const
                                                              ? path_from(request.output, request.label_names)
                                                              : draft::quoted(request.label_names));
     for (draft::DraftStructure& structure : found.structures)
-        structure.recipe = import_lines(structure.name, structure.name == found.name);
+        structure.recipe = import_lines(
+            structure.name,
+            structure.name == found.name ? "close_mm = 3.0\nfill_holes = true\nkeep_largest = true\n" : "");
     return found;
 }
 
 bool ends_with_one_of(const fs::path& file, std::span<const char* const> endings) {
-    return std::ranges::find(endings, file.extension().string()) != endings.end();
+    std::string ending = file.extension().string();
+    std::ranges::transform(ending, ending.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return std::ranges::find(endings, ending) != endings.end();
 }
 
 bool is_mesh(const fs::path& file) {
@@ -92,15 +96,20 @@ draft::CaseDraft draft_of_surface(InitRequest request, draft::Wishes wishes, cli
     const double spacing =
         std::max(0.1, std::round(10 * largest_extent(surface.vertices) / voxels_across) / 10);
     LabelMap map = meshing::voxelised(surface, wishes.organ, spacing);
+    const double whole_ml =
+        static_cast<double>(std::ranges::count(map.labels, 1)) * spacing * spacing * spacing / 1000;
     const fs::path labels = fs::path(request.output).replace_extension(".seg.nrrd");
     cli::StagedFile staged = session.stage(labels);
     write_label_map(staged.path(), map);
-    staged.commit();
     spdlog::info("{}: what it encloses, in voxels of {:g} mm, is in {}", request.input.string(), spacing,
                  labels.string());
     request.input = labels;
     draft::CaseDraft found = draft_of_labels(request, std::move(map), wishes);
-    found.structures.front().recipe = import_lines(found.name, false);  // nothing to clean
+    found.structures.front().recipe = import_lines(found.name, "keep_largest = true\n");
+    if (found.volume_ml < 0.99 * whole_ml)
+        spdlog::warn("{}: of its several pieces the largest is taken, {:.1f} of {:.1f} ml", labels.string(),
+                     found.volume_ml, whole_ml);
+    staged.commit();
     return found;
 }
 
@@ -139,7 +148,9 @@ void place_seeds(InitRequest& request, const draft::ScanRecipes& recipes) {
     std::vector<std::string> arguments{request.input.string(), "-o", request.seeds_file.string()};
     for (const std::string& structure : recipes.structures)
         if (structure.starts_with(recipes.clicked + ":"))
-            arguments.insert(arguments.end(), {"--structure", structure});
+            arguments.insert(arguments.end(),
+                             {"--structure", draft::with_points(structure, {}, request.background_seeds)});
+    if (!request.series.empty()) arguments.insert(arguments.end(), {"--series", request.series});
     const auto child = case_builder::run_child(program, arguments);
     if (child.exit_code != 0 || !fs::exists(request.seeds_file))
         throw InvalidInput({request.seeds_file.string(), "no seeds were saved", "one at least",
@@ -162,7 +173,8 @@ draft::CaseDraft draft_of_volume(InitRequest request, const Volume& volume, draf
     const bool ct = is_ct(volume);
     if (wishes.organ.empty()) wishes.organ = proposed_organ(volume, ct);
     if (request.seeds.empty() && request.seeds_file.empty())
-        place_seeds(request, draft::scan_recipes(wishes.organ, ct, false, Eigen::Vector3d::Zero()));
+        place_seeds(request, draft::scan_recipes(wishes.organ, ct, !request.background_seeds.empty(),
+                                                 Eigen::Vector3d::Zero()));
     const draft::ScanSeeds seeds{
         request.seeds, request.background_seeds, request.seeds_file,
         request.seeds_file.empty() ? "" : path_from(request.output, request.seeds_file)};
@@ -195,7 +207,21 @@ draft::CaseDraft draft_of(const InitRequest& request, cli::Session& session) {
     return draft_of_volume(request, std::get<Volume>(found.image), wishes, session);
 }
 
+// What is asked of an input that has no such thing, or cannot be written into a case.
+void check(const InitRequest& request) {
+    if (request.organ.find_first_of(":\n\r\t") != std::string::npos)
+        throw UsageError(
+            {"--organ", draft::quoted(request.organ), "a name without colons and line breaks", ""});
+    for (const auto& [option, points] :
+         {std::pair("--seed", &request.seeds), std::pair("--background-seed", &request.background_seeds)})
+        for (const std::string& point : *points) draft::check_point(point, option);
+    if (is_surface(request.input) && !(request.label_names.empty() && request.seeds.empty()))
+        throw UsageError({request.label_names.empty() ? "--seed" : "--label-names",
+                          "given with a surface, which encloses one organ", "", "leave it out"});
+}
+
 nlohmann::ordered_json run_init(const InitRequest& request, cli::Session& session) {
+    check(request);
     if (request.output.extension() != ".toml")
         throw UsageError({"--output", request.output.string(), "a name that ends in .toml", ""});
     set_imaging_threads(session.threads);
@@ -235,17 +261,21 @@ int main(int argc, char** argv) {
                       "palpate init head_ct.nrrd --organ nasopharynx -o nasopharynx.toml",
                       "palpate init mri.nii.gz --organ brain -o brain.toml",
                       "palpate init prostate.stl -o prostate.toml"},
-         .notes =
-             "A label map (any that 'palpate import --labels' reads; TotalSegmentator's names are known) "
-             "gives the organ,\nits lesions and its neighbours. In a CT the liver is found from a seed in "
-             "it or three, the nasopharynx from one in\nthe air behind the nose; any other solid organ, and "
-             "a brain in MRI, from seeds in it or, where that leaks, against\nseeds around it "
-             "(--background-seed). Without seeds the window of 'palpate seeds' opens where there is a\n"
-             "display, and shows what the case will make of them. Tetrahedra keep their regions; what a "
-             "closed "
-             "surface encloses\nbecomes a label map beside the case file; both in the unit in which they "
-             "are as large as organs. The file says why each thing is as it is; edit it and "
-             "build."});
+         .notes = "A label map (any that 'palpate import --labels' reads; TotalSegmentator's names are "
+                  "known) gives the organ,\n"
+                  "its lesions and its neighbours. In a CT the liver is found from a seed in it or three, "
+                  "the nasopharynx from\n"
+                  "one in the air behind the nose; any other solid organ, and a brain in MRI, from seeds in "
+                  "it or, where that\n"
+                  "leaks, against seeds around it (--background-seed, or points of 'background' in a file). "
+                  "Without seeds the\n"
+                  "window of 'palpate seeds' opens where there is a display, and shows what the case will "
+                  "make of them.\n"
+                  "Tetrahedra keep their regions; what a closed surface encloses becomes a label map beside "
+                  "the case file; both\n"
+                  "in the unit in which they are as large as organs. The file says why each thing is as it "
+                  "is; edit it and\n"
+                  "build."});
     InitRequest request;
     command
         .input("input", request.input,

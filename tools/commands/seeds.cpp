@@ -8,6 +8,7 @@
 #include "tools/cli/command.hpp"
 #include "tools/imaging/files/image_files.hpp"
 #include "tools/imaging/recipes/segmentation.hpp"
+#include "tools/imaging/voxels/seed_statistics.hpp"
 #include "tools/seeds/seed_window.hpp"
 
 namespace {
@@ -60,6 +61,7 @@ struct SeedsRequest {
     std::filesystem::path volume, seeds, output = "seed.mrk.json";
     std::vector<std::string> labels, structures;
     std::vector<double> window_level;
+    std::string series;
 };
 
 void declare_seeds(cli::Command& command, SeedsRequest& request) {
@@ -76,6 +78,8 @@ void declare_seeds(cli::Command& command, SeedsRequest& request) {
             "'NAME: recipe=...' as for 'segment', whose own result is shown in place of a preview; repeat "
             "for more")
         .one_value_each();
+    command.option("--series", request.series,
+                   "of a DICOM folder with several, as 'palpate import' takes it");
     command.input("--seeds", request.seeds, "seeds to start from (.mrk.json, .fcsv)");
     command
         .option("--window-level", request.window_level,
@@ -96,18 +100,6 @@ std::vector<std::string> seeded_labels(const std::vector<StructureRecipe>& struc
     return labels;
 }
 
-void check_inside(const ImageGrid& grid, std::span<const Seed> seeds, const std::string& culprit) {
-    for (const Seed& seed : seeds) {
-        const Eigen::Vector3i voxel = grid.index_of(seed.p_P).array().round().cast<int>();
-        if (!grid.contains(voxel[0], voxel[1], voxel[2]))
-            throw InvalidInput({culprit,
-                                fmt::format("the seed of '{}' at {:.1f}, {:.1f}, {:.1f} mm lies outside the "
-                                            "volume",
-                                            seed.label, seed.p_P[0], seed.p_P[1], seed.p_P[2]),
-                                "", "is it of this patient, and in LPS or RAS as the file says?"});
-    }
-}
-
 ordered_json run_seeds(SeedsRequest request, cli::Session& session) {
     const std::filesystem::path& output = request.output;
     if (!output.filename().string().ends_with(".mrk.json"))
@@ -123,10 +115,14 @@ ordered_json run_seeds(SeedsRequest request, cli::Session& session) {
     }
     session.stage(output);  // refuses now what could not be written after the clicking
     session.progress.step("reading", 0);
-    const Volume volume =
-        read_volume(request.volume, [](std::string_view text) { spdlog::warn("{}", text); });
+    set_imaging_threads(session.threads);
+    ReadOptions options;
+    options.series = request.series;
+    const Volume volume = read_volume(
+        request.volume, [](std::string_view text) { spdlog::warn("{}", text); }, options);
     const std::vector<Seed> seeds = request.seeds.empty() ? std::vector<Seed>{} : read_seeds(request.seeds);
-    check_inside(volume.grid, seeds, request.seeds.string());
+    for (const Seed& seed : seeds)
+        voxel_of_seed(volume.grid, seed.p_P, request.seeds.string() + ", '" + seed.label + "'");
     if (request.labels.empty() && seeds.empty()) request.labels.push_back(structure_of(output));
     SeedWindowSettings settings{
         .title = request.volume.filename().string(),

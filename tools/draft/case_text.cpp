@@ -53,7 +53,10 @@ std::string quoted(const std::string& text) {
     std::string escaped = "\"";
     for (const char c : text) {
         if (c == '"' || c == '\\') escaped += '\\';
-        escaped += c;
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+            escaped += fmt::format("\\u{:04x}", static_cast<unsigned char>(c));
+        else
+            escaped += c;
     }
     return escaped + '"';
 }

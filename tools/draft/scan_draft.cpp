@@ -2,9 +2,14 @@
 #include "tools/draft/scan_draft.hpp"
 
 #include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdlib>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <sstream>
 
+#include "formats/model/errors.hpp"
 #include "tools/imaging/recipes/segmentation.hpp"
 #include "tools/imaging/voxels/seeds.hpp"
 
@@ -35,11 +40,9 @@ std::string toml_lines(const StructureRecipe& structure, const std::string& seed
 // The structure that is clicked into, with its seeds.
 StructureRecipe seeded(const ScanRecipes& recipes, const ScanSeeds& seeds) {
     const std::string start = recipes.clicked + ":";
-    std::string text = *std::ranges::find_if(
+    const std::string text = *std::ranges::find_if(
         recipes.structures, [&](const std::string& structure) { return structure.starts_with(start); });
-    if (!seeds.inside.empty()) text += fmt::format(" seeds_mm={}", fmt::join(seeds.inside, ";"));
-    if (!seeds.outside.empty()) text += fmt::format(" background_mm={}", fmt::join(seeds.outside, ";"));
-    StructureRecipe structure = imaging::parse_structure(text);
+    StructureRecipe structure = imaging::parse_structure(with_points(text, seeds.inside, seeds.outside));
     if (seeds.file.empty()) return structure;
     structure.parameters["seeds_file"] = seeds.file.string();
     structure.order.emplace_back("seeds_file");
@@ -54,13 +57,48 @@ Eigen::Vector3d first_seed(const StructureRecipe& structure, const ScanSeeds& se
         .p_P;
 }
 
+// The text of each point without its blanks.
+std::string joined(const std::vector<std::string>& points) {
+    std::string text = fmt::format("{}", fmt::join(points, ";"));
+    std::erase_if(text, [](unsigned char c) { return std::isspace(c) != 0; });
+    return text;
+}
+
+bool has_background(const ScanSeeds& seeds) {
+    if (!seeds.outside.empty()) return true;
+    if (seeds.file.empty()) return false;
+    const std::vector<imaging::Seed> found = imaging::read_seeds(seeds.file);
+    return std::ranges::find(found, "background", &imaging::Seed::label) != found.end();
+}
+
 }  // namespace
+
+void check_point(const std::string& text, const std::string& option) {
+    std::istringstream stream(text);
+    int numbers = 0;
+    bool good = !text.ends_with(',');
+    for (std::string part; std::getline(stream, part, ','); ++numbers) {
+        char* end = nullptr;
+        good = good && std::isfinite(std::strtod(part.c_str(), &end)) && end != part.c_str() &&
+               std::string_view(end).find_first_not_of(' ') == std::string_view::npos;
+    }
+    if (!good || numbers != 3)
+        throw UsageError({option, "'" + text + "'", "x,y,z (LPS, mm)", "repeat the option for more points"});
+}
+
+std::string with_points(std::string structure, const std::vector<std::string>& inside,
+                        const std::vector<std::string>& outside) {
+    if (!inside.empty()) structure += " seeds_mm=" + joined(inside);
+    if (!outside.empty()) structure += " background_mm=" + joined(outside);
+    return structure;
+}
 
 CaseDraft draft_scan(const Volume& volume, bool ct, const ScanSeeds& seeds, const Wishes& wishes,
                      const std::string& culprit, const ProgressCallback& progress,
                      const imaging::NoteSink& note) {
+    const bool against_background = has_background(seeds);
     const auto recipes_for = [&](const Eigen::Vector3d& seed) {
-        return scan_recipes(wishes.organ, ct, !seeds.outside.empty(), seed);
+        return scan_recipes(wishes.organ, ct, against_background, seed);
     };
     const StructureRecipe clicked = seeded(recipes_for(Eigen::Vector3d::Zero()), seeds);
     const ScanRecipes recipes = recipes_for(first_seed(clicked, seeds));
@@ -72,7 +110,7 @@ CaseDraft draft_scan(const Volume& volume, bool ct, const ScanSeeds& seeds, cons
     found_wishes.organ = recipes.organ;
     CaseDraft draft =
         draft_case(imaging::segment(&volume, nullptr, structures, progress, note), found_wishes, culprit);
-    const std::string why = draft.structures.back().why;
+    const std::string why = std::ranges::find(draft.structures, recipes.organ, &DraftStructure::name)->why;
     draft.structures.clear();
     for (const StructureRecipe& structure : structures)
         draft.structures.push_back({structure.name,

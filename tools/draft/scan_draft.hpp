@@ -19,8 +19,16 @@ struct ScanSeeds {
     std::string file_in_case;    ///< how the case file names it
 };
 
+/// Throws UsageError naming `option` unless a text is three finite numbers between commas.
+void check_point(const std::string& text, const std::string& option);
+
+/// A structure's text with points inside and around it.
+std::string with_points(std::string structure, const std::vector<std::string>& inside,
+                        const std::vector<std::string>& outside);
+
 /// Drafts a case from a scan by segmenting it as the case will. `ct`: its values are HU, or lie a known
-/// offset above. Throws InvalidInput as segment(), read_seeds() and draft_case() do.
+/// offset above. A file with points of 'background' lets an organ grow against them. Throws InvalidInput as
+/// segment(), read_seeds() and draft_case() do, UsageError as scan_recipes().
 CaseDraft draft_scan(const Volume& volume, bool ct, const ScanSeeds& seeds, const Wishes& wishes,
                      const std::string& culprit, const ProgressCallback& progress,
                      const imaging::NoteSink& note);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/draft/scan_recipes.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <fmt/format.h>
 
 #include "formats/model/errors.hpp"
@@ -41,18 +43,24 @@ ScanRecipes one_structure(const std::string& organ, const std::string& recipe) {
 
 ScanRecipes scan_recipes(const std::string& organ, bool ct, bool against_background,
                          const Eigen::Vector3d& seed) {
-    if (organ == "nasopharynx") {
+    std::string known = organ;
+    std::ranges::transform(known, known.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (known == "nasopharynx") {
         if (!ct)
             throw UsageError({"--organ nasopharynx", "its wall is found between air and bone of a CT", "a CT",
                               "or a label map of it"});
+        if (against_background)
+            throw UsageError({"--organ nasopharynx", "is not grown against seeds around it", "",
+                              "leave out --background-seed and points of 'background'"});
         return nasopharynx(seed);
     }
     if (against_background)
         return one_structure(organ,
                              "recipe=grow-from-seeds open_mm=2 keep_largest=yes fill_holes=yes smooth_mm=2");
-    if (organ == "liver" && ct) return one_structure(organ, "recipe=liver keep_largest=yes");
+    if (known == "liver" && ct) return one_structure(organ, "recipe=liver keep_largest=yes");
     // A brain's furrows are narrower than a tool.
-    return one_structure(organ, organ == "brain" ? "recipe=organ close_mm=6" : "recipe=organ");
+    return one_structure(organ, known == "brain" ? "recipe=organ close_mm=6" : "recipe=organ");
 }
 
 }  // namespace palpate::draft

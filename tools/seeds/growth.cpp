@@ -2,6 +2,8 @@
 #include "tools/seeds/growth.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <utility>
 
 #include "formats/model/errors.hpp"
@@ -31,29 +33,37 @@ Growth grow(const Growing& growing, const std::vector<Seed>& seeds) {
     return growth;
 }
 
-// The places of a label's seeds, x, y, z one after the other.
-std::vector<double> numbers_of(std::span<const Seed> seeds, const std::string& label) {
-    std::vector<double> numbers;
-    for (const Seed& seed : seeds)
-        if (seed.label == label) numbers.insert(numbers.end(), seed.p_P.begin(), seed.p_P.end());
-    return numbers;
+std::string lower(std::string text) {
+    std::ranges::transform(text, text.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
 }
 
-void give_seeds(StructureRecipe& structure, std::span<const Seed> seeds, const std::string& label,
+// Gives a structure the places of the seeds that bear its name, whatever their case, or of all others.
+void give_seeds(StructureRecipe& structure, std::span<const Seed> seeds, bool own,
                 const std::string& parameter) {
     const Recipe* recipe = find_recipe(structure.recipe);
-    std::vector<double> numbers = numbers_of(seeds, label);
-    if (recipe != nullptr && find_parameter(*recipe, parameter) != nullptr && !numbers.empty())
-        structure.parameters[parameter] = std::move(numbers);
+    if (recipe == nullptr || find_parameter(*recipe, parameter) == nullptr) return;
+    std::vector<double> numbers;
+    for (const Seed& seed : seeds)
+        if ((lower(seed.label) == lower(structure.name)) == own)
+            numbers.insert(numbers.end(), seed.p_P.begin(), seed.p_P.end());
+    if (!numbers.empty()) structure.parameters[parameter] = std::move(numbers);
+}
+
+bool has_seeds(const StructureRecipe& structure) {
+    return std::ranges::any_of(std::array{"seeds_mm", "seeds_file", "scribbles"},
+                               [&](const char* name) { return structure.parameters.contains(name); });
 }
 
 LabelMap segmented(const Volume& volume, std::vector<StructureRecipe> structures,
                    std::span<const Seed> seeds) {
     std::erase_if(structures, [&](StructureRecipe& structure) {
-        give_seeds(structure, seeds, structure.name, "seeds_mm");
-        give_seeds(structure, seeds, "background", "background_mm");
+        give_seeds(structure, seeds, true, "seeds_mm");
+        give_seeds(structure, seeds, false,
+                   "background_mm");  // of them, segment() leaves out its rivals' own
         const Recipe* recipe = find_recipe(structure.recipe);
-        return recipe != nullptr && recipe->needs_seeds && !structure.parameters.contains("seeds_mm");
+        return recipe != nullptr && recipe->needs_seeds && !has_seeds(structure);
     });
     return structures.empty() ? LabelMap{} : segment(&volume, nullptr, structures);
 }

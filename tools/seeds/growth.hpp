@@ -29,8 +29,9 @@ struct Growing {
 /// `volume`.
 Growing preview_growing(const Volume& volume);
 
-/// By segment(), as the command will make them of the same seeds: of `structures` those that have a seed of
-/// their name or need none. Keeps a reference to `volume`.
+/// By segment(), as the command will make them of a file with the same seeds: of `structures` those that have
+/// a seed of their name or need none; grow-from-seeds takes seeds of other names for background. Keeps a
+/// reference to `volume`.
 Growing recipe_growing(const Volume& volume, std::vector<imaging::StructureRecipe> structures);
 
 /// Whether seeds can be given to a structure's recipe.

@@ -20,7 +20,7 @@ constexpr auto help_text =
     "grey windows for other tissues\nzoom, hide this help\nsave, quit";
 
 constexpr double edge = 16, help_indent = 170, help_height = 200;  // pixels
-constexpr std::size_t refusal_width = 76;                          // characters
+constexpr double character = 8;  // pixels, of a refusal's letters on average
 
 // Breaks a text at blanks into lines of at most `width` characters, where words are no longer.
 std::string wrapped(const std::string& text, std::size_t width) {
@@ -97,13 +97,22 @@ void Legend::update(const SeedState& state, const GreyPreset& grey, const Growth
     grey_->SetInput(
         fmt::format("grey window: {}, width {:.0f}, level {:.0f}", grey.name, grey.width, grey.level)
             .c_str());
-    refused_->SetInput(growth == nullptr ? "" : wrapped(growth->refused, refusal_width).c_str());
+    refusal_ = growth == nullptr ? "" : growth->refused;
+    show_help();
 }
 
 void Legend::toggle_help() {
-    const int shown = help_->GetVisibility();
-    help_->SetVisibility(!shown);
-    help_keys_->SetVisibility(!shown);
+    help_wanted_ = !help_wanted_;
+    show_help();
+}
+
+// A refusal takes the help's place.
+void Legend::show_help() {
+    const auto characters = static_cast<std::size_t>(std::max(20.0, (width_ - 2 * edge) / character));
+    refused_->SetInput(wrapped(refusal_, characters).c_str());
+    const bool shown = help_wanted_ && refusal_.empty();
+    help_->SetVisibility(shown);
+    help_keys_->SetVisibility(shown);
 }
 
 void Legend::place(const Layout& layout, const Eigen::Vector2d& window_size) {
@@ -128,7 +137,9 @@ void Legend::place(const Layout& layout, const Eigen::Vector2d& window_size) {
         row.text->SetPosition(x + 34, y);
     }
     grey_->SetPosition(edge, top - static_cast<double>(lines) * row_height);
-    refused_->SetPosition(edge, help_height + 24);
+    width_ = size[0];
+    show_help();
+    refused_->SetPosition(edge, 12);
     help_keys_->SetPosition(edge, 12);
     help_->SetPosition(edge + help_indent, 12);
     pointer_->SetPosition(edge, 8);

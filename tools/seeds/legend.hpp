@@ -31,12 +31,17 @@ class Legend {
     void place(const Layout& layout, const Eigen::Vector2d& window_size);
 
   private:
+    void show_help();
+
     struct Row {
         vtkSmartPointer<vtkTextActor> key, text;
     };
     vtkNew<vtkRenderer> renderer_, status_renderer_;
     vtkNew<vtkTextActor> title_, grey_, refused_, help_keys_, help_, pointer_, message_;
     std::vector<Row> rows_;  // by label number
+    std::string refusal_;
+    bool help_wanted_ = true;
+    double width_ = 0;  // pixels
 };
 
 }  // namespace palpate::seeds

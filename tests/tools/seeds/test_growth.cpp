@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <filesystem>
 #include <gtest/gtest.h>
 
 #include "formats/model/errors.hpp"
@@ -84,6 +85,18 @@ TEST(RecipeGrowing, makes_what_the_command_makes_of_the_same_seeds) {
             parse_structure("liver: recipe=grow-from-seeds seeds=10,0,0 background_mm=-20,30,0 open_mm=2")});
     EXPECT_EQ(shown.labels, made.labels) << "without the spine, which has no seed";
     EXPECT_EQ(shown.names.size(), 2U);
+    const auto folder = std::filesystem::temp_directory_path() / "palpate_recipe_growing";
+    std::filesystem::create_directories(folder);
+    const std::vector<Seed> seeds{{"Liver", {10, 0, 0}}, {"kidney", {-20, 30, 0}}};
+    write_seeds(folder / "two.mrk.json", seeds);
+    const std::string liver = "liver: recipe=grow-from-seeds open_mm=2";
+    EXPECT_EQ(
+        recipe_growing(phantom.volume, {parse_structure(liver)}).labels_of(seeds).labels,
+        segment(&phantom.volume, nullptr,
+                std::vector{parse_structure(liver + " seeds_file=" + (folder / "two.mrk.json").string())})
+            .labels)
+        << "names ignore case, and others compete";
+    std::filesystem::remove_all(folder);
     const LabelMap without =
         recipe_growing(phantom.volume, {parse_structure("liver: recipe=grow-from-seeds")})
             .labels_of(std::vector<Seed>{{"background", {-20, 30, 0}}});

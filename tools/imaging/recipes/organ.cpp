@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <limits>
+#include <span>
 
 #include "formats/model/errors.hpp"
 #include "tools/imaging/recipes/job.hpp"
@@ -16,30 +18,43 @@ namespace {
 // a CT of an organ: MRI has no scale of its own.
 constexpr double seeds_grey = 120;
 
-// The volume as a factor makes it have that value around the seeds.
-Volume scaled_to_seeds(const Volume& volume, std::span<const Eigen::Vector3d> seeds, const Job& job) {
-    constexpr double around_mm = 6;
-    for (const Eigen::Vector3d& seed : seeds) voxel_of_seed(volume.grid, seed, job.culprit());
-    std::vector<float> near = values_near(volume, seeds, around_mm);
-    const double grey = robust_statistics(near).mean;
-    if (!(grey > 0))
-        throw InvalidInput({job.culprit(), fmt::format("it is dark around the seeds ({:g})", grey),
-                            "tissue that gives signal", "move the seeds into the organ"});
-    Volume scaled = volume;
-    for (float& value : scaled.values) value *= static_cast<float>(seeds_grey / grey);
-    return scaled;
+// The middle grey value around the seeds. Throws InvalidInput if one lies where there is next to no signal.
+double grey_at(const Volume& volume, std::span<const Eigen::Vector3d> seeds, const Job& job) {
+    constexpr double around_mm = 6, least_share = 0.25;
+    std::vector<float> greys;
+    for (const Eigen::Vector3d& seed : seeds) {
+        voxel_of_seed(volume.grid, seed, job.culprit());
+        std::vector<float> near = values_near(volume, std::span(&seed, 1), around_mm);
+        greys.push_back(static_cast<float>(robust_statistics(near).mean));
+    }
+    std::vector<float> sorted = greys;
+    const double middle = robust_statistics(sorted).mean;
+    for (std::size_t n = 0; n < seeds.size(); ++n)
+        if (!(greys[n] > 0) || greys[n] < least_share * middle)
+            throw InvalidInput(
+                {job.culprit(),
+                 fmt::format("it is dark around seed {} ({:g})", point_text(seeds[n]), greys[n]),
+                 "tissue that gives signal",
+                 "move it into the organ (LPS mm; 3D Slicer shows RAS, x and y negated)"});
+    return middle;
 }
 
 Mask make_organ(const Job& job) {
     const Parameters& p = job.parameters;
     const std::vector<Eigen::Vector3d> seeds = seed_points(job);
-    const OrganParameters parameters{.tolerance_hu = p.number("tolerance"),
-                                     .drift_hu = p.number("drift"),
-                                     .neck_mm = p.number("neck_mm"),
-                                     .gap_mm = p.number("gap_mm")};
+    OrganParameters parameters{.tolerance_hu = p.number("tolerance"),
+                               .drift_hu = p.number("drift"),
+                               .neck_mm = p.number("neck_mm"),
+                               .gap_mm = p.number("gap_mm")};
     if (seeds.empty() || holds_air(*job.volume))
         return organ(*job.volume, seeds, parameters, job.culprit(), job.note);
-    return organ(scaled_to_seeds(*job.volume, seeds, job), seeds, parameters, job.culprit(), job.note);
+    parameters.per_hu = grey_at(*job.volume, seeds, job) / seeds_grey;
+    parameters.unit = "";
+    parameters.darkest_hu = 0;
+    parameters.brightest_hu = std::numeric_limits<double>::infinity();
+    Volume scaled = *job.volume;
+    for (float& value : scaled.values) value /= static_cast<float>(parameters.per_hu);
+    return organ(scaled, seeds, parameters, job.culprit(), job.note);
 }
 
 }  // namespace

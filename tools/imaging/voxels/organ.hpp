@@ -16,6 +16,8 @@ struct OrganParameters {
     double gap_mm;              ///< vessels, lesions and clefts below this radius are filled
     double darkest_hu = -50;    ///< a seed darker than this is a mistake
     double brightest_hu = 300;  ///< so is one brighter than this
+    double per_hu = 1;          ///< how much of the file's grey one HU is, where values are scaled
+    std::string unit = " HU";   ///< of the file's grey, for notes
 };
 
 /// Finds a solid organ, such as the liver in CT with contrast or without, from points inside it (p_P, mm).

@@ -38,10 +38,11 @@ OrganSeeds look_at_seeds(const Volume& volume, std::span<const Eigen::Vector3d> 
             means, [&](double other) { return std::abs(other - means[n]) <= p.drift_hu; });
         if (alike > 1 || points.size() < 3) continue;
         if (note)
-            note(fmt::format(
-                "{}: around seed {} it is {:.0f} HU, around the others {:.0f} HU; is it in a vessel "
-                "or another organ?",
-                culprit, point_text(points[n]), seeds.means[n], seeds.center));
+            note(
+                fmt::format("{}: around seed {} it is {:.0f}{}, around the others {:.0f}{}; is it in a "
+                            "vessel or another organ?",
+                            culprit, point_text(points[n]), seeds.means[n] * p.per_hu, p.unit,
+                            seeds.center * p.per_hu, p.unit));
         seeds.means[n] = std::nan("");
     }
     return seeds;

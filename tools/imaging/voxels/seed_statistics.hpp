@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tools/imaging only: what the grey values around seeds say about a structure.
+// What the grey values around seeds say about a structure.
 #pragma once
 #include <array>
 #include <span>
