@@ -8,6 +8,8 @@
 namespace palpate::archive {
 namespace {
 
+constexpr auto face = "soft tissue in front of a head's bone";
+
 // A face is the same in both of a NIfTI file's frames, whether they agree or not.
 Volume read_in_any_frame(const std::filesystem::path& file) {
     imaging::ReadOptions options;
@@ -24,16 +26,20 @@ Volume read_in_any_frame(const std::filesystem::path& file) {
 void search_volume_face(const std::filesystem::path& file, Findings& findings) {
     try {
         if (imaging::shows_face(read_in_any_frame(file)))
-            findings.push_back({file, "its voxels", "face", "soft tissue in front of a head's bone"});
+            findings.push_back({file, "its voxels", "face", face});
     } catch (const InvalidInput& refusal) {
-        findings.push_back({file, "its voxels", "not looked at", refusal.detail().found});
+        findings.push_back({file, "its voxels", "not looked at", shortened(refusal.detail().found)});
     }
 }
 
 void search_asset_face(const std::filesystem::path& file, Findings& findings) {
-    const Case patient_case = asset::read_asset(file);
-    if (patient_case.scan && imaging::shows_face(*patient_case.scan))
-        findings.push_back({file, "its scan", "face", "soft tissue in front of a head's bone"});
+    try {
+        const Case patient_case = asset::read_asset(file);
+        if (patient_case.scan && imaging::shows_face(*patient_case.scan))
+            findings.push_back({file, "its scan", "face", face});
+    } catch (const InvalidInput& refusal) {
+        findings.push_back({file, "its scan", "not looked at", shortened(refusal.detail().found)});
+    }
 }
 
 }  // namespace palpate::archive

@@ -39,7 +39,7 @@ void search_metaimage(std::string_view bytes, const std::filesystem::path& file,
 /// Looks for a face in the voxels of a volume; one that cannot be read is a finding, too.
 void search_volume_face(const std::filesystem::path& file, Findings& findings);
 
-/// Looks for a face in the scan of an asset; throws InvalidInput as read_asset() does.
+/// Looks for a face in the scan of an asset, likewise.
 void search_asset_face(const std::filesystem::path& file, Findings& findings);
 
 }  // namespace palpate::archive
