@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <utility>
 
 #include "formats/model/errors.hpp"
@@ -33,12 +32,6 @@ Growth grow(const Growing& growing, const std::vector<Seed>& seeds) {
     return growth;
 }
 
-std::string lower(std::string text) {
-    std::ranges::transform(text, text.begin(),
-                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-}
-
 // Gives a structure the places of the seeds that bear its name, whatever their case, or of all others.
 void give_seeds(StructureRecipe& structure, std::span<const Seed> seeds, bool own,
                 const std::string& parameter) {
@@ -46,7 +39,7 @@ void give_seeds(StructureRecipe& structure, std::span<const Seed> seeds, bool ow
     if (recipe == nullptr || find_parameter(*recipe, parameter) == nullptr) return;
     std::vector<double> numbers;
     for (const Seed& seed : seeds)
-        if ((lower(seed.label) == lower(structure.name)) == own)
+        if (same_label(seed.label, structure.name) == own)
             numbers.insert(numbers.end(), seed.p_P.begin(), seed.p_P.end());
     if (!numbers.empty()) structure.parameters[parameter] = std::move(numbers);
 }

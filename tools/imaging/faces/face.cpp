@@ -107,8 +107,7 @@ std::optional<Skull> skull_of(const Volume& hounsfield) {
 // Bone without table and head rest, closed over what lies between.
 Mask hull_of(const Volume& hounsfield) {
     constexpr double apart_mm = 4, gap_mm = 30, least_mm3 = 1000;
-    const Mask body = keep_largest(open(threshold(hounsfield, tissue_hu, any_hu), apart_mm));
-    const Mask bone = intersect(threshold(hounsfield, bone_from_hu, any_hu), dilate(body, apart_mm));
+    const Mask bone = bone_of_body(hounsfield, bone_from_hu, apart_mm);
     return close(drop_small(bone, least_mm3), gap_mm);
 }
 

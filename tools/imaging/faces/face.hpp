@@ -5,8 +5,8 @@
 
 namespace palpate::imaging {
 
-/// Tells whether a CT is of a head: over a fifth of its height and 20 mm at least, bone encloses 40 cm² or
-/// more of soft tissue in a section, as a skull does and ribs, pelvis and spine do not.
+/// Tells whether a CT is of a head: a skull takes a fifth of its height or more. A skull is where bone
+/// encloses 30 cm² or more of soft tissue in sections of 10 mm together, as ribs, pelvis and spine do not.
 bool shows_head(const Volume& volume);
 
 /// Tells whether a face can be made of a CT, a head's or one with a head in it: soft tissue in front of the

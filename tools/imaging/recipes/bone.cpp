@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <fmt/format.h>
-#include <limits>
 
 #include "tools/imaging/recipes/job.hpp"
 #include "tools/imaging/voxels/hounsfield.hpp"
@@ -9,8 +8,6 @@
 
 namespace palpate::imaging {
 namespace {
-
-constexpr double tissue_above_hu = -300;
 
 // Lowest threshold for bone that is clear of soft tissue: the median of the values of -20 ... 200 HU and
 // five of their deviations (median absolute deviation), at least 150 HU above.
@@ -22,14 +19,6 @@ double bone_threshold(const Volume& volume) {
     return grey.mean + std::max(150.0, 5 * grey.sigma);
 }
 
-// Voxels of `threshold_hu` or more in the body. The body is the largest piece of tissue after an opening by
-// `separation_mm`, which cuts it from table and head rest, and what lies within `separation_mm` of it.
-Mask bone(const Volume& volume, double threshold_hu, double separation_mm) {
-    constexpr double any = std::numeric_limits<double>::infinity();
-    const Mask body = keep_largest(open(threshold(volume, tissue_above_hu, any), separation_mm));
-    return intersect(threshold(volume, threshold_hu, any), dilate(body, separation_mm));
-}
-
 Mask make_bone(const Job& job) {
     const Parameters& p = job.parameters;
     double threshold_hu = p.number("threshold_hu");
@@ -37,7 +26,7 @@ Mask make_bone(const Job& job) {
         threshold_hu = bone_threshold(*job.volume);
         if (job.note) job.note(fmt::format("{}: threshold {:.0f} HU found", job.culprit(), threshold_hu));
     }
-    return bone(*job.volume, threshold_hu, p.number("separation_mm"));
+    return bone_of_body(*job.volume, threshold_hu, p.number("separation_mm"));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "formats/model/errors.hpp"
 #include "tools/imaging/recipes/job.hpp"
 #include "tools/imaging/voxels/hounsfield.hpp"
+#include "tools/imaging/voxels/organ_seeds.hpp"
 #include "tools/imaging/voxels/seed_statistics.hpp"
 
 namespace palpate::imaging {
@@ -20,11 +21,11 @@ constexpr double seeds_grey = 120;
 
 // The middle grey value around the seeds. Throws InvalidInput if one lies where there is next to no signal.
 double grey_at(const Volume& volume, std::span<const Eigen::Vector3d> seeds, const Job& job) {
-    constexpr double around_mm = 6, least_share = 0.25;
+    constexpr double least_share = 0.25;  // tissues of an MRI differ by less, its air by more
     std::vector<float> greys;
     for (const Eigen::Vector3d& seed : seeds) {
         voxel_of_seed(volume.grid, seed, job.culprit());
-        std::vector<float> near = values_near(volume, std::span(&seed, 1), around_mm);
+        std::vector<float> near = values_near(volume, std::span(&seed, 1), seed_radius_mm);
         greys.push_back(static_cast<float>(robust_statistics(near).mean));
     }
     std::vector<float> sorted = greys;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace palpate::imaging {
 namespace {
@@ -36,6 +37,12 @@ Mask threshold(const Volume& volume, double lower_hu, double upper_hu) {
     std::ranges::transform(volume.values, mask.voxels.begin(),
                            [&](float value) { return value >= lower_hu && value <= upper_hu; });
     return mask;
+}
+
+Mask bone_of_body(const Volume& volume, double threshold_hu, double separation_mm) {
+    constexpr double any = std::numeric_limits<double>::infinity(), tissue_above_hu = -300;
+    const Mask body = keep_largest(open(threshold(volume, tissue_above_hu, any), separation_mm));
+    return intersect(threshold(volume, threshold_hu, any), dilate(body, separation_mm));
 }
 
 bool holds_air(const Volume& volume) {

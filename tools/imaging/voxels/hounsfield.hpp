@@ -4,11 +4,16 @@
 
 namespace palpate::imaging {
 
-/// Adults' bone is at least this dense, HU; the lower end of the window that CT consoles call bone.
+/// Adults' bone is at least this dense, HU: the lower end of InVesalius' preset for it.
 inline constexpr double bone_from_hu = 226;
 
 /// Voxels of lower ... upper HU, both included.
 Mask threshold(const Volume& volume, double lower_hu, double upper_hu);
+
+/// Voxels of `threshold_hu` or more in the body. The body is the largest piece of tissue (-300 HU and more)
+/// after an opening by `separation_mm`, which cuts it from table and head rest, and what lies within
+/// `separation_mm` of it.
+Mask bone_of_body(const Volume& volume, double threshold_hu, double separation_mm);
 
 /// Whether a value is -500 or less, as air has in HU and little else.
 bool holds_air(const Volume& volume);

@@ -168,16 +168,17 @@ void write_seeds(const std::filesystem::path& path, std::span<const Seed> seeds)
         throw SystemFailure({path.string(), "could not be written", "", "check free space and permissions"});
 }
 
+bool same_label(const std::string& a, const std::string& b) {
+    return std::ranges::equal(
+        a, b, {}, [](unsigned char c) { return std::tolower(c); },
+        [](unsigned char c) { return std::tolower(c); });
+}
+
 std::vector<Seed> seeds_of(std::span<const Seed> seeds, const std::string& name, const std::string& culprit) {
-    const auto lower = [](std::string text) {
-        std::ranges::transform(text, text.begin(),
-                               [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-        return text;
-    };
     const auto matching = [&](const std::string Seed::*text) {
         std::vector<Seed> found;
         for (const Seed& seed : seeds)
-            if (lower(seed.*text) == lower(name)) found.push_back(seed);
+            if (same_label(seed.*text, name)) found.push_back(seed);
         return found;
     };
     std::vector<Seed> found = matching(&Seed::label);

@@ -28,6 +28,9 @@ std::vector<Seed> read_seeds(const std::filesystem::path& path);
 /// whole. Throws InvalidInput for another ending, SystemFailure if the file could not be written whole.
 void write_seeds(const std::filesystem::path& path, std::span<const Seed> seeds);
 
+/// Tells whether two labels are the same, ignoring case.
+bool same_label(const std::string& a, const std::string& b);
+
 /// Those of `seeds` whose label is `name` (ignoring case), or else those written so in their file, number
 /// included ("x-2"), or all if they share a single label.
 /// Throws InvalidInput naming `culprit` and the labels there are if neither holds.
