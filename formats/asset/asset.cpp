@@ -7,6 +7,7 @@
 
 #include "formats/asset/body_io.hpp"
 #include "formats/asset/hdf5/digest.hpp"
+#include "formats/asset/hdf5/signature.hpp"
 #include "formats/asset/looks_io.hpp"
 #include "formats/asset/owned_values.hpp"
 #include "formats/asset/validate.hpp"
@@ -66,20 +67,46 @@ Case read_case(const Hdf5File& file) {
     return patient_case;
 }
 
+// A wrong digest explains whatever else is wrong, so it is reported first.
+Case read_checked(const Hdf5File& file) {
+    auto checked = std::async(std::launch::async, [&] { file.check_digests("/palpate"); });
+    try {
+        Case patient_case = read_case(file);
+        checked.get();
+        return patient_case;
+    } catch (const InvalidInput&) {
+        if (checked.valid()) checked.get();
+        throw;
+    }
+}
+
+std::optional<std::string> signer_of(const Hdf5File& file) {
+    if (!file.has_attribute("/palpate", "signature")) return std::nullopt;
+    const Signature signature{file.text_attribute("/palpate", "signature"),
+                              file.text_attribute("/palpate", "public_key")};
+    if (!is_signed(file.text_attribute("/palpate", "manifest_sha256"), signature))
+        throw InvalidInput(
+            {file.name(), "has a signature that is false", "", "do not use it; ask who made it"});
+    return signature.public_key;
+}
+
 }  // namespace
 
-void write_asset(const std::filesystem::path& path, const Case& patient_case) {
+void write_asset(const std::filesystem::path& path, const Case& patient_case,
+                 const std::filesystem::path& private_key) {
     const std::string where = "case '" + patient_case.name + "'";
     check_case(patient_case, where);
     for (const RigidBody& body : patient_case.rigid_bodies) {
         check_name(body.name, where);
         check_surface(body.surface, where + ": " + body.name);
         check_obb_tree(body.obb_tree, body.surface.triangles.size(), where + ": " + body.name + "/obb_tree");
+        check_enclosure(body.obb_tree, body.surface, where + ": " + body.name + "/obb_tree");
     }
     for (const DeformableBody& body : patient_case.deformable_bodies) {
         check_body(body, where + ": " + body.name);
         check_obb_tree(body.obb_tree, body.boundary.surface.triangles.size(),
                        where + ": " + body.name + "/obb_tree");
+        check_enclosure(body.obb_tree, body.boundary.surface, where + ": " + body.name + "/obb_tree");
         if (body.feel) check_feel(*body.feel, body, where + ": " + body.name + "/feel");
     }
     if (patient_case.scan) check_scan(*patient_case.scan, where + ": scan");
@@ -100,27 +127,36 @@ void write_asset(const std::filesystem::path& path, const Case& patient_case) {
     if (patient_case.scan) write_scan(writer, scan_path, *patient_case.scan);
     writer.texts("/palpate/provenance", {patient_case.provenance}, {});
     write_vtk_grid(writer, patient_case);
-    writer.finish("/palpate");
+    writer.finish("/palpate", private_key);
 }
 
 Case read_asset(const std::filesystem::path& path, Digests digests) {
     const Hdf5File file(path);
     check_header(file, "case");
-    if (digests == Digests::skip) return read_case(file);
-    // A wrong digest explains whatever else is wrong, so it is reported first.
-    auto checked = std::async(std::launch::async, [&] { file.check_digests("/palpate"); });
-    try {
-        Case patient_case = read_case(file);
-        checked.get();
-        return patient_case;
-    } catch (const InvalidInput&) {
-        if (checked.valid()) checked.get();
-        throw;
-    }
+    return digests == Digests::skip ? read_case(file) : read_checked(file);
 }
 
-Case load_asset(const std::filesystem::path& path) {
-    Case patient_case = read_asset(path);
+Case read_asset(const std::filesystem::path& path, std::span<const std::string> trusted_keys) {
+    const Hdf5File file(path);
+    check_header(file, "case");
+    const auto signer = signer_of(file);
+    if (!signer)
+        throw InvalidInput({path.string(), "is not signed", "the signature of a trusted key",
+                            "ask who made it to sign it: 'palpate pack --sign'"});
+    if (std::ranges::find(trusted_keys, *signer) == trusted_keys.end())
+        throw InvalidInput({path.string(), "is signed by " + *signer, "a trusted key",
+                            "trust that key only if you know whose it is"});
+    return read_checked(file);
+}
+
+std::optional<std::string> signer_of(const std::filesystem::path& path) {
+    const Hdf5File file(path);
+    check_header(file, "case");
+    return signer_of(file);
+}
+
+Case load_asset(const std::filesystem::path& path, std::span<const std::string> trusted_keys) {
+    Case patient_case = trusted_keys.empty() ? read_asset(path) : read_asset(path, trusted_keys);
     for (DeformableBody& body : patient_case.deformable_bodies) {
         if (auto* dense = std::get_if<DenseCompliance>(&body.compliance)) {
             dense->entries = owned(dense->entries.get(), dense->dof_count() * dense->dof_count());

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
+#include <optional>
+#include <span>
 #include <string>
 
 #include "formats/model/body.hpp"
@@ -12,8 +14,10 @@ enum class Digests { check, skip };
 
 /// Writes a case as one asset (formats/asset/SPEC.md) that ParaView opens too. Not atomic by itself: callers
 /// write to a temporary name and rename. Throws InvalidInput if the parts do not belong together,
-/// SystemFailure if the file cannot be written whole.
-void write_asset(const std::filesystem::path& path, const Case& patient_case);
+/// SystemFailure if the file cannot be written whole. With a private key it is signed; throws as
+/// sign_manifest().
+void write_asset(const std::filesystem::path& path, const Case& patient_case,
+                 const std::filesystem::path& private_key = {});
 
 /// Reads and validates an asset. Shapes are checked against the file's size before anything is allocated,
 /// every index against its range, every number for finiteness; compliances are mapped, not copied, so the
@@ -21,9 +25,16 @@ void write_asset(const std::filesystem::path& path, const Case& patient_case);
 /// the file, the dataset and the remedy.
 Case read_asset(const std::filesystem::path& path, Digests digests = Digests::check);
 
+/// The same, of an asset that one of the keys (read_public_keys()) must have signed.
+Case read_asset(const std::filesystem::path& path, std::span<const std::string> trusted_keys);
+
+/// The key that an asset is signed by, and the signature holds; none if it is not signed. Digests are not
+/// checked. Throws InvalidInput if the file is no asset or its signature is false.
+std::optional<std::string> signer_of(const std::filesystem::path& path);
+
 /// Reads and validates an asset as read_asset() does, and copies it whole, for a loop that must not fall when
-/// the file is shortened or removed under it.
-Case load_asset(const std::filesystem::path& path);
+/// the file is shortened or removed under it. With keys, one of them must have signed it.
+Case load_asset(const std::filesystem::path& path, std::span<const std::string> trusted_keys = {});
 
 /// The digest of everything in an asset, as the file says it; read_asset() checks it. Throws InvalidInput if
 /// the file is no asset.

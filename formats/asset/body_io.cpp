@@ -242,6 +242,7 @@ ObbTree read_obb_tree(const Hdf5File& file, const std::string& path, const Trian
                             "run 'palpate obb' on the surface again"});
     ObbTree tree = obb_tree_from(file, path);
     check_obb_tree(tree, surface.triangles.size(), file.name() + ": " + path);
+    check_enclosure(tree, surface, file.name() + ": " + path);
     return tree;
 }
 

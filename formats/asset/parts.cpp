@@ -30,6 +30,7 @@ std::string kind_of(const std::filesystem::path& path) {
 void write_obb_part(const std::filesystem::path& path, const ObbTree& tree, const TriangleMesh& surface) {
     check_surface(surface, "surface");
     check_obb_tree(tree, surface.triangles.size(), "OBB tree");
+    check_enclosure(tree, surface, "OBB tree");
     Hdf5Writer writer(path);
     write_header(writer, "obb_tree");
     write_obb_tree(writer, tree_path, tree, surface);

@@ -41,7 +41,9 @@ void check_ascending(const std::vector<std::int32_t>& nodes, std::size_t node_co
 
 void check_points(const std::vector<Eigen::Vector3d>& points, const std::string& where) {
     for (std::size_t i = 0; i < points.size(); ++i)
-        if (!points[i].allFinite()) refuse(where, "point " + std::to_string(i) + " is not finite");
+        if (!(points[i].array().abs() <= farthest_coordinate).all())
+            refuse(where, "point " + std::to_string(i) + " is not finite or far from any patient",
+                   "coordinates up to " + std::to_string(static_cast<int>(farthest_coordinate)) + " mm");
 }
 
 void check_labels(const std::vector<Label>& labels, const std::string& where) {
@@ -248,8 +250,8 @@ void check_hierarchical(const HierarchicalCompliance& compliance, const std::str
     if (compliance.depth < 0 || compliance.depth > HierarchicalCompliance::deepest ||
         (std::int64_t{1} << compliance.depth) > std::max<std::int64_t>(1, compliance.node_count))
         refuse(where, "has depth " + std::to_string(compliance.depth));
-    if (!(compliance.accuracy > 0 && std::isfinite(compliance.accuracy)))
-        refuse(where, "has an accuracy that is not positive");
+    if (!(compliance.accuracy > 0 && compliance.accuracy <= HierarchicalCompliance::coarsest_accuracy))
+        refuse(where, "has an accuracy of " + std::to_string(compliance.accuracy), "above 0, 0.1 at most");
     std::vector<char> seen(nodes, 0);
     if (compliance.order.size() != nodes) refuse(where + "/order", "has another length than contact_nodes");
     for (const std::int32_t node : compliance.order)
@@ -346,6 +348,38 @@ void check_obb_tree(const ObbTree& tree, std::size_t triangle_count, const std::
         held += count;
     }
     if (held != triangle_count) refuse(where, "leaves out triangles");
+}
+
+void check_enclosure(const ObbTree& tree, const TriangleMesh& surface, const std::string& where) {
+    std::vector<std::int32_t> parent(tree.nodes.size(), -1);
+    for (std::size_t i = 0; i < tree.nodes.size(); ++i)
+        if (tree.nodes[i].count == 0) {
+            const auto child = static_cast<std::size_t>(tree.nodes[i].first);
+            parent[child] = parent[child + 1] = static_cast<std::int32_t>(i);
+        }
+    const auto check_box_around = [&](std::int32_t index, std::span<const std::int32_t> triangles) {
+        const ObbNode& box = tree.nodes[static_cast<std::size_t>(index)];
+        const Eigen::Matrix3d axes = box.axes.cast<double>();
+        const Eigen::Vector3d center = box.center.cast<double>(), half = box.half_extents.cast<double>();
+        double escape = 0;
+        for (const std::int32_t t : triangles)
+            for (const std::int32_t v : surface.triangles[t])
+                escape =
+                    std::max(escape, ((axes * (surface.vertices[v] - center)).cwiseAbs() - half).maxCoeff());
+        if (escape > farthest_escape)
+            refuse(where,
+                   "box " + std::to_string(index) + " leaves a triangle " + std::to_string(escape) +
+                       " mm outside",
+                   "boxes that enclose their triangles");
+    };
+    const std::span<const std::int32_t> order = tree.triangle_order;
+    for (std::size_t leaf = 0; leaf < tree.nodes.size(); ++leaf) {
+        const ObbNode& node = tree.nodes[leaf];
+        if (node.count == 0) continue;
+        const auto triangles =
+            order.subspan(static_cast<std::size_t>(node.first), static_cast<std::size_t>(node.count));
+        for (auto i = static_cast<std::int32_t>(leaf); i >= 0; i = parent[i]) check_box_around(i, triangles);
+    }
 }
 
 void check_body(const DeformableBody& body, const std::string& where) {

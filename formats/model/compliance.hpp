@@ -45,6 +45,8 @@ struct HierarchicalCompliance {
     static constexpr std::int32_t deepest = 20;     ///< levels that a reader takes
     static constexpr std::int32_t max_rank = 1024;  ///< that a product needs no allocation for
 
+    static constexpr double coarsest_accuracy = 0.1;
+
     std::int32_t node_count = 0;          ///< m
     std::int32_t depth = 0;               ///< level of the smallest clusters
     double accuracy = 0;                  ///< relative error of displacements that was asked for

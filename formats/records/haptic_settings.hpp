@@ -14,23 +14,35 @@ struct HapticSettings {
     double shaft_length = 0;
 };
 
+/// Twice what the strongest desktop devices have, 40 N and 15 to 50 N/mm, where a Touch bears 3.3 N and 0.5
+/// N/mm. A file that asks for more is wrong or means harm.
+inline constexpr double largest_max_force = 100, largest_max_force_rate = 100,
+                        largest_coupling_stiffness = 100;
+/// Larger than anything that goes into a patient, or slides on one.
+inline constexpr double largest_tool_radius = 50, longest_shaft = 1000, largest_friction = 5;
+
 /// What each is. Sliding friction is besides at most that at rest: haptics_error().
 inline constexpr std::tuple haptic_fields{
-    Field("tool_radius", &HapticSettings::tool_radius, "mm", "radius of the tool's tip", positive),
+    Field("tool_radius", &HapticSettings::tool_radius, "mm", "radius of the tool's tip",
+          Range{.least = 0, .most = largest_tool_radius, .ends_belong = false}),
     Field("coupling_stiffness", &HapticSettings::coupling_stiffness, "N/mm",
-          "virtual coupling, the spring from device to tool", positive),
-    Field("max_force", &HapticSettings::max_force, "N", "largest force on the hand", positive),
+          "virtual coupling, the spring from device to tool",
+          Range{.least = 0, .most = largest_coupling_stiffness, .ends_belong = false}),
+    Field("max_force", &HapticSettings::max_force, "N", "largest force on the hand",
+          Range{.least = 0, .most = largest_max_force, .ends_belong = false}),
     Field("max_force_rate", &HapticSettings::max_force_rate, "N/ms", "largest change of force in a tick",
-          positive),
+          Range{.least = 0, .most = largest_max_force_rate, .ends_belong = false}),
     Field("friction_at_rest", &HapticSettings::friction_at_rest, "",
           "Coulomb's law: force along the surface that a resting tool bears, as part of the one across it",
-          not_negative)
+          Range{.least = 0, .most = largest_friction})
         .since(2, 0.0),
     Field("friction_sliding", &HapticSettings::friction_sliding, "",
-          "the same of a sliding tool, at most that of a resting one", not_negative)
+          "the same of a sliding tool, at most that of a resting one",
+          Range{.least = 0, .most = largest_friction})
         .since(2, 0.0),
     Field("shaft_length", &HapticSettings::shaft_length, "mm",
-          "of the tool's shaft behind its tip, as thick as the tip; 0: only the tip is felt", not_negative)
+          "of the tool's shaft behind its tip, as thick as the tip; 0: only the tip is felt",
+          Range{.least = 0, .most = longest_shaft})
         .since(2, 0.0)};
 
 /// Returns what makes no sense of the settings; none if they are sound.

@@ -3,22 +3,36 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "formats/asset/asset.hpp"
+#include "formats/elasticity/plausible_compliance.hpp"
 #include "formats/model/errors.hpp"
 
 namespace palpate::session {
+namespace {
+
+// A model of a case whose compliances have been found to answer as their meshes do, meanwhile.
+std::unique_ptr<haptics::HapticModel> sound_model(const Case& patient_case, const SessionRequest& request) {
+    auto judged = std::async(std::launch::async, [&] {
+        for (const DeformableBody& body : patient_case.deformable_bodies)
+            elasticity::require_answers_of_mesh(body,
+                                                request.asset.string() + ": compliance of " + body.name);
+    });
+    auto model = std::make_unique<haptics::HapticModel>(patient_case, request.method, request.tool_count);
+    judged.get();
+    return model;
+}
+
+}  // namespace
 
 Session::Session(SessionRequest request, std::function<void(const std::string&)> tell)
     : request_(std::move(request)),
       tell_(std::move(tell)),
-      case_(asset::load_asset(request_.asset)),
-      model_(models_
-                 .emplace_back(
-                     std::make_unique<haptics::HapticModel>(case_, request_.method, request_.tool_count))
-                 .get()) {}
+      case_(asset::load_asset(request_.asset, request_.trusted_keys)),
+      model_(models_.emplace_back(sound_model(case_, request_)).get()) {}
 
 Session::~Session() {
     stop();

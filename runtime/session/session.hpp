@@ -28,7 +28,9 @@ struct SessionRequest {
     std::string method{haptics::usual_contact_method};  ///< a name of contact_methods()
     std::size_t tool_count = 1;
     bool virtual_clock = false;  ///< ticks as fast as possible; forces do not depend on the machine
-    std::string stream{};        ///< "PORT" or "ADDRESS:PORT" of a live stream; empty: none
+    std::vector<std::string> trusted_keys{};  ///< of read_public_keys(), one of which must have signed the
+                                              ///< asset; none: no signature is asked for
+    std::string stream{};                     ///< "PORT" or "ADDRESS:PORT" of a live stream; empty: none
 };
 
 /// One run with a patient's model and the devices that touch it: haptic and collision loop, watch over
@@ -39,8 +41,8 @@ class Session {
   public:
     using Sink = std::function<void(const TickResult&)>;
 
-    /// Reads the asset and prepares its model. `tell` gets a sentence for each fault when it begins. Throws
-    /// as load_asset() and HapticModel.
+    /// Reads the asset, prepares its model, and judges its compliances by its meshes. `tell` gets a sentence
+    /// for each fault when it begins. Throws as load_asset(), HapticModel and require_answers_of_mesh().
     explicit Session(SessionRequest request, std::function<void(const std::string&)> tell = {});
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;

@@ -59,6 +59,8 @@ INSTANTIATE_TEST_SUITE_P(
     Each, FaultyBody,
     ::testing::Values(
         Fault{"position_nan", [](auto& b) { b.mesh.rest_positions[3].y() = nan; }, "rest_positions: point 3"},
+        Fault{"position_far", [](auto& b) { b.mesh.rest_positions[3].y() = 1e6; },
+              "rest_positions: point 3 is not finite or far from any patient"},
         Fault{"tet_index_negative", [](auto& b) { b.mesh.tetrahedra[5][1] = -1; },
               "tetrahedra: entry 5 has index -1"},
         Fault{"tet_index_large", [](auto& b) { b.mesh.tetrahedra[5][1] = 125; },

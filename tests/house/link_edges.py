@@ -19,6 +19,7 @@ ROOMS = {
     "drawing": set(),
     "records": set(),
     "model": {"records"},
+    "elasticity": {"model"},
     "provenance": {"json"},
     "asset": {"model", "hdf5", "openssl", "threads"},
     "toml_file": {"model", "toml"},
@@ -27,7 +28,7 @@ ROOMS = {
     "archive": {"model", "asset", "imaging", "dcmtk", "hdf5", "zlib"},
     "meshing": {"model", "cgal", "vtk", "json"},
     "obb": {"model"},
-    "fem": {"model", "linear_algebra"},
+    "fem": {"model", "elasticity", "linear_algebra"},
     "linear_algebra": {"cholmod", "metis", "lapack"},
     "report": {"model", "asset", "drawing", "provenance", "meshing", "vtk", "json"},
     "cli": {"model", "drawing", "cli11", "spdlog", "json", "toml"},
@@ -52,7 +53,7 @@ ROOMS = {
     "visual": {"model", "collision", "realtime", "texts", "vtk"},
     "sound": {"model", "openal"},
     "texts": set(),
-    "session": {"model", "asset", "recording", "drawing", "json", "realtime", "collision", "haptics", "devices", "openigtlink"},
+    "session": {"model", "asset", "elasticity", "recording", "drawing", "json", "realtime", "collision", "haptics", "devices", "openigtlink"},
     "training": {"model", "asset", "session", "toml_file", "json"},
 }
 ROOMS["experiments"] = {"asset", "drawing", "cli", "session", "fem", "meshing", "obb", "cgal_peer"}  # measures both sides
@@ -67,7 +68,7 @@ EXECUTABLES = {
     "palpate-bench": {"experiments"},
 }
 HEAVY = {"itk", "cgal", "cholmod", "metis", "vtk"}
-LEAN = {"palpate_drawing", "palpate_provenance", "palpate_records", "palpate_model", "palpate_asset", "palpate_recording", "palpate_cli", "palpate_realtime", "palpate_collision",
+LEAN = {"palpate_drawing", "palpate_provenance", "palpate_records", "palpate_model", "palpate_elasticity", "palpate_asset", "palpate_recording", "palpate_cli", "palpate_realtime", "palpate_collision",
         "palpate_haptics", "palpate_devices", "palpate_openigtlink", "palpate_session", "palpate_toml_file", "palpate_training", "palpate_doctor", "palpate-touch",
         "palpate-doctor"}
 # These two draw, so VTK is theirs; nothing else that is heavy.

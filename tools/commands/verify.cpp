@@ -7,10 +7,14 @@
 #include <utility>
 
 #include "formats/asset/asset.hpp"
+#include "formats/asset/hdf5/signature.hpp"
+#include "formats/asset/validate.hpp"
+#include "formats/asset/vtk_grid.hpp"
 #include "formats/model/errors.hpp"
 #include "tools/archive/privacy/find_identity.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/fem/certificate/certificate.hpp"
+#include "tools/fem/certificate/claims.hpp"
 #include "tools/fem/feel/feel.hpp"
 #include "tools/fem/solvers/dense_kernels.hpp"
 
@@ -19,8 +23,6 @@ using namespace palpate;
 using namespace palpate::fem;
 using Json = nlohmann::ordered_json;
 
-// float32 round-off of a box 1 m from the origin; far below what a hand or a tool radius could notice.
-constexpr double enclosure_limit_mm = 1e-4;
 // Round-off of float32 in what is stored and of another order of sums in what is solved again.
 constexpr double feel_limit = 1e-5;
 // Other columns than the certificate's own.
@@ -46,38 +48,6 @@ class Checks {
     Json rows_ = Json::array();
     std::vector<std::string> failed_;
 };
-
-// Largest distance in mm by which a triangle's corner lies outside a box on the way to its leaf.
-double worst_escape(const ObbTree& tree, const TriangleMesh& surface) {
-    std::vector<std::int32_t> parent(tree.nodes.size(), -1);
-    for (std::size_t i = 0; i < tree.nodes.size(); ++i)
-        if (tree.nodes[i].count == 0) {
-            const auto child = static_cast<std::size_t>(tree.nodes[i].first);
-            parent[child] = parent[child + 1] = static_cast<std::int32_t>(i);
-        }
-    double worst = 0;
-    const auto check_box = [&](const ObbNode& box, const Triangle& triangle) {
-        for (const std::int32_t v : triangle) {
-            const Eigen::Vector3d offset = surface.vertices[v] - box.center.cast<double>();
-            const Eigen::Vector3d local = box.axes.cast<double>() * offset;
-            worst = std::max(worst, (local.cwiseAbs() - box.half_extents.cast<double>()).maxCoeff());
-        }
-    };
-    for (std::size_t leaf = 0; leaf < tree.nodes.size(); ++leaf)
-        for (std::int32_t k = 0; k < tree.nodes[leaf].count; ++k) {
-            const std::int32_t entry = tree.nodes[leaf].first + k;
-            const Triangle& triangle = surface.triangles[tree.triangle_order[entry]];
-            for (auto i = static_cast<std::int32_t>(leaf); i >= 0; i = parent[i])
-                check_box(tree.nodes[i], triangle);
-        }
-    return worst;
-}
-
-void check_tree(Checks& checks, const std::string& name, const ObbTree& tree, const TriangleMesh& surface) {
-    const double escape = worst_escape(tree, surface);
-    checks.add(name, "boxes enclose their triangles, mm outside", escape <= enclosure_limit_mm, escape,
-               fmt::format("at most {:g}", enclosure_limit_mm));
-}
 
 // Largest relative difference of the surface's stiffness, and largest difference in what regions make of it.
 std::pair<double, double> feel_differences(const Feel& stored, const Feel& fresh) {
@@ -130,27 +100,37 @@ void check_mechanics(Checks& checks, const DeformableBody& body, std::int32_t co
         add_error(fmt::format("residual of {} re-solved columns", columns), fresh.residual);
         add_error(fmt::format("displacements under {} re-solved contact loads", loads), fresh.load_error);
         add_error("the same, at the loaded nodes", fresh.contact_error);
+        for (const Claim& claim : recheck_claims(body))
+            checks.add(body.name, "the certificate's " + claim.figure + ", measured again", claim.holds,
+                       claim.found, claim.allowed);
         if (body.feel) check_feel(checks, body, threads);
     } catch (const InvalidInput& error) {
         checks.add(body.name, "stiffness is positive definite", false, error.what(), "enough fixed nodes");
     }
 }
 
-Json verify(const std::filesystem::path& asset, std::int32_t columns, std::int32_t loads,
-            cli::Session& session) {
+Json verify(const std::filesystem::path& asset, const std::vector<std::filesystem::path>& trusted,
+            std::int32_t columns, std::int32_t loads, cli::Session& session) {
     set_linear_algebra_threads(session.threads);
     session.progress.step("read and check digests", 0);
-    const Case patient_case = asset::read_asset(asset);
+    const auto keys = asset::read_public_keys(trusted);
+    const Case patient_case = keys.empty() ? asset::read_asset(asset) : asset::read_asset(asset, keys);
     Checks checks;
+    if (const auto signer = asset::signer_of(asset))
+        checks.add("asset",
+                   keys.empty() ? "signature holds, of a key that nobody vouched for here"
+                                : "signature holds, of a trusted key",
+                   true, *signer, "");
     checks.add("asset", "every digest and the manifest", true, std::filesystem::file_size(asset), "bytes");
-    checks.add("asset", "every index in range, every number finite", true, "", "");
-    for (const RigidBody& body : patient_case.rigid_bodies)
-        check_tree(checks, body.name, body.obb_tree, body.surface);
+    checks.add("asset", "every index in range, every number finite and plausible", true, "", "");
+    checks.add("asset", "boxes enclose their triangles, mm outside", true, "",
+               fmt::format("at most {:g}", asset::farthest_escape));
+    const auto shown = asset::vtk_grid_difference(asset, patient_case);
+    checks.add("asset", "what ParaView shows are the bodies", !shown, shown.value_or(""), "");
     for (const DeformableBody& body : patient_case.deformable_bodies) {
         session.progress.step("solve " + body.name + " again", 0.5);
         checks.add(body.name, "compliance, mesh, material and boundary belong together", true,
                    body.contact_nodes.size(), "contact nodes");
-        check_tree(checks, body.name, body.obb_tree, body.boundary.surface);
         check_mechanics(checks, body, columns, loads, session.threads);
     }
     if (!checks.failed().empty())
@@ -193,6 +173,7 @@ int main(int argc, char** argv) {
          .summary =
              "Rechecks everything that an asset claims, or searches any files for what tells a patient.",
          .examples = {"palpate verify liver.vtkhdf --columns 64 --json liver.verify.json",
+                      "palpate verify liver.vtkhdf --trusted our_lab.pub.pem",
                       "palpate verify --privacy liver.vtkhdf liver.html liver.parts/"},
          .notes =
              "An asset that cannot be read or is damaged gives exit code 3, a failed check on a readable one "
@@ -205,10 +186,13 @@ int main(int argc, char** argv) {
              "host, and paths; a finding gives exit code 4. Of its value two characters and the length are\n"
              "told. Pixels are not looked at."});
     std::vector<std::filesystem::path> files;
+    std::vector<std::filesystem::path> trusted;
     bool privacy = false;
     std::int32_t columns = certificate_columns, loads = certificate_loads;
     command.input("files", files, "asset (.vtkhdf); with --privacy any files and folders").required();
     command.flag("--privacy", privacy, "search for identity and place instead");
+    command.input("--trusted", trusted,
+                  "public keys (Ed25519, PEM), one of which must have signed the asset; repeat for more");
     command.option("--columns", columns, "columns of each compliance to solve again").range(1, 100000);
     command.option("--loads", loads, "random contact loads to solve again").range(1, 100000);
     return command.run(argc, argv, [&](cli::Session& session) {
@@ -216,6 +200,6 @@ int main(int argc, char** argv) {
         if (files.size() != 1)
             throw UsageError({"verify", fmt::format("{} files", files.size()), "one asset",
                               "verify them one by one, or search them with --privacy"});
-        return verify(files.front(), columns, loads, session);
+        return verify(files.front(), trusted, columns, loads, session);
     });
 }

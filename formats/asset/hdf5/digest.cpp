@@ -29,13 +29,7 @@ class Sha256 {
     std::string hexadecimal() {
         std::array<unsigned char, 32> digest{};
         if (EVP_DigestFinal_ex(context_.get(), digest.data(), nullptr) != 1) fail();
-        constexpr std::string_view digits = "0123456789abcdef";
-        std::string text;
-        for (const unsigned byte : digest) {
-            text += digits[byte >> 4];
-            text += digits[byte & 15U];
-        }
-        return text;
+        return to_hexadecimal(digest);
     }
 
   private:
@@ -53,6 +47,16 @@ std::string line(std::string_view name, const std::vector<T>& values) {
 }
 
 }  // namespace
+
+std::string to_hexadecimal(std::span<const unsigned char> bytes) {
+    constexpr std::string_view digits = "0123456789abcdef";
+    std::string text;
+    for (const unsigned byte : bytes) {
+        text += digits[byte >> 4];
+        text += digits[byte & 15U];
+    }
+    return text;
+}
 
 std::string sha256(std::span<const std::byte> bytes) {
     Sha256 hash;

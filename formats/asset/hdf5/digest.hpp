@@ -10,6 +10,9 @@
 
 namespace palpate::asset {
 
+/// Two lower-case hexadecimal digits a byte.
+std::string to_hexadecimal(std::span<const unsigned char> bytes);
+
 /// SHA-256 as 64 lower-case hexadecimal digits. About 2 GB/s where the CPU has SHA instructions.
 std::string sha256(std::span<const std::byte> bytes);
 std::string sha256(std::string_view text);

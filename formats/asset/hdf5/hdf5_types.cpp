@@ -12,7 +12,8 @@ std::string manifest_digest(const std::map<std::string, std::string>& manifest) 
 }
 
 bool in_manifest(std::string_view attribute) {
-    return attribute != "sha256" && attribute != "manifest_sha256";
+    return attribute != "sha256" && attribute != "manifest_sha256" && attribute != "signature" &&
+           attribute != "public_key";
 }
 
 }  // namespace palpate::asset

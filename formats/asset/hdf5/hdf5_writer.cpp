@@ -6,6 +6,7 @@
 #include <hdf5.h>
 
 #include "formats/asset/hdf5/digest.hpp"
+#include "formats/asset/hdf5/signature.hpp"
 #include "formats/model/errors.hpp"
 
 namespace palpate::asset {
@@ -207,8 +208,14 @@ void Hdf5Writer::write_attribute(const std::string& path, const std::string& nam
     if (in_manifest(name)) manifest_[path + '@' + name] = sha256(bytes);
 }
 
-void Hdf5Writer::finish(const std::string& path) {
-    attribute(path, "manifest_sha256", manifest_digest(manifest_));
+void Hdf5Writer::finish(const std::string& path, const std::filesystem::path& private_key) {
+    const std::string digest = manifest_digest(manifest_);
+    attribute(path, "manifest_sha256", digest);
+    if (!private_key.empty()) {
+        const Signature made = sign_manifest(digest, private_key);
+        attribute(path, "public_key", made.public_key);
+        attribute(path, "signature", made.signature);
+    }
     close();
 }
 

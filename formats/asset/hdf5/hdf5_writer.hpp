@@ -51,8 +51,9 @@ class Hdf5Writer {
 
     void group(const std::string& path);
 
-    /// Adds the manifest's digest to `path` as attribute `manifest_sha256` and closes the file.
-    void finish(const std::string& path);
+    /// Adds the manifest's digest to `path` as attribute `manifest_sha256`, with a key its signature too, and
+    /// closes the file. Throws as sign_manifest().
+    void finish(const std::string& path, const std::filesystem::path& private_key = {});
     /// Closes the file without a manifest.
     void close();
 

@@ -131,7 +131,7 @@ Json measure_cholmod(const DeformableBody& body, int threads) {
     const Cost cost = cost_of([&] {
         const double begin = now_seconds();
         const FreeSystem system = assemble_free_system(body, NodeOrder::as_numbered);
-        const LowerSparse& stiffness = system.stiffness;
+        const elasticity::LowerSparse& stiffness = system.stiffness;
         const std::vector<std::int64_t>& rows = system.contact_rows;
         const SparseCholesky factor(stiffness, Elimination::fill_reducing);
         factor_seconds = now_seconds() - begin;

@@ -61,7 +61,7 @@ inline DeformableBody moved(DeformableBody body, const Eigen::Vector3d& by) {
 
 /// A tool of 1 mm on 0.5 N/mm, with limits wide enough not to show.
 inline HapticSettings wide_limits() {
-    return {.tool_radius = 1, .coupling_stiffness = 0.5, .max_force = 1e3, .max_force_rate = 1e3};
+    return {.tool_radius = 1, .coupling_stiffness = 0.5, .max_force = 99, .max_force_rate = 99};
 }
 
 /// A rigid plate with its top at z = 0, from -20 to 20 mm along x and y.

@@ -70,8 +70,7 @@ class CreepingCube : public ::testing::Test {
         for (const Label& region : c.deformable_bodies[0].mesh.region_names)
             for (const RelaxationTerm& term : terms)
                 c.deformable_bodies[0].relaxation.push_back({region.value, term});
-        c.haptics = {
-            .tool_radius = 3, .coupling_stiffness = coupling, .max_force = 1e3, .max_force_rate = 1e3};
+        c.haptics = {.tool_radius = 3, .coupling_stiffness = coupling, .max_force = 99, .max_force_rate = 99};
         return c;
     }
 

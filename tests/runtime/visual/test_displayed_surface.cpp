@@ -32,8 +32,8 @@ class DisplayedSurface : public ::testing::Test {
         c.deformable_bodies.push_back(std::move(body));
         c.haptics = {.tool_radius = 3,
                      .coupling_stiffness = 0.5,
-                     .max_force = 1e3,
-                     .max_force_rate = 1e3,
+                     .max_force = 99,
+                     .max_force_rate = 99,
                      .friction_at_rest = 0.4,
                      .friction_sliding = 0.3};
         return c;

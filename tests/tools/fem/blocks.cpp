@@ -6,11 +6,9 @@
 #include <numeric>
 #include <random>
 
-#include "tools/fem/assembly/stiffness.hpp"
+#include "formats/elasticity/stiffness.hpp"
 
 namespace palpate::test {
-
-using namespace fem;
 
 TetMesh block_mesh(std::array<int, 3> cells, const Eigen::Vector3d& size) {
     TetMesh mesh;
@@ -116,14 +114,15 @@ DeformableBody held_block(std::array<int, 3> cells, const Eigen::Vector3d& size,
 
 std::vector<Eigen::Vector3d> node_positions(const DeformableBody& body) {
     std::vector<Eigen::Vector3d> positions = body.mesh.rest_positions;
-    for (const auto& [a, b] : discretise(body).edges)
+    for (const auto& [a, b] : elasticity::discretise(body).edges)
         positions.push_back(
             (positions[static_cast<std::size_t>(a)] + positions[static_cast<std::size_t>(b)]) / 2);
     return positions;
 }
 
 std::vector<std::int32_t> boundary_nodes(const DeformableBody& body) {
-    return discretise(body.mesh, body.element_order, boundary_surface(body.mesh).nodes).fixed_nodes;
+    return elasticity::discretise(body.mesh, body.element_order, boundary_surface(body.mesh).nodes)
+        .fixed_nodes;
 }
 
 Eigen::VectorXd sampled(const DeformableBody& body,
@@ -136,10 +135,11 @@ Eigen::VectorXd sampled(const DeformableBody& body,
 }
 
 Eigen::MatrixXd full_stiffness(const DeformableBody& body) {
-    const Discretisation discretisation = discretise(body);
+    const elasticity::Discretisation discretisation = elasticity::discretise(body);
     std::vector<std::int32_t> all(discretisation.node_count);
     std::iota(all.begin(), all.end(), 0);
-    const LowerSparse lower = assemble_stiffness(body.mesh, body.materials, discretisation, all);
+    const elasticity::LowerSparse lower =
+        elasticity::assemble_stiffness(body.mesh, body.materials, discretisation, all);
     const Eigen::MatrixXd dense(lower);
     return dense.selfadjointView<Eigen::Lower>();
 }

@@ -49,7 +49,7 @@ DeviceModel classical(double mass_kg, double damping) {
 
 // The wall as a tool feels it that touches a plate.
 Wall contact_wall(double stiffness) {
-    constexpr double unlimited = 1e9;
+    constexpr double unlimited = largest_max_force / 2;  // far above what is pressed here
     const HapticSettings settings{.tool_radius = 1,
                                   .coupling_stiffness = stiffness,
                                   .max_force = unlimited,

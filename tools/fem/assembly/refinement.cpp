@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "tools/fem/assembly/discretisation.hpp"
+#include "formats/elasticity/discretisation.hpp"
 
 namespace palpate::fem {
 namespace {
@@ -29,9 +29,10 @@ Parts inner_parts(const Octahedron& octahedron) {
     return parts;
 }
 
-std::vector<std::int32_t> refined_outside_labels(const TetMesh& mesh, const Discretisation& nodes) {
+std::vector<std::int32_t> refined_outside_labels(const TetMesh& mesh,
+                                                 const elasticity::Discretisation& nodes) {
     std::vector<std::int32_t> labels = mesh.outside_labels;
-    const auto on_boundary = boundary_edges(mesh);
+    const auto on_boundary = elasticity::boundary_edges(mesh);
     for (const auto& edge : nodes.edges)
         labels.push_back(std::ranges::binary_search(on_boundary, edge)
                              ? std::min(mesh.outside_labels[edge[0]], mesh.outside_labels[edge[1]])
@@ -42,7 +43,7 @@ std::vector<std::int32_t> refined_outside_labels(const TetMesh& mesh, const Disc
 }  // namespace
 
 TetMesh refine_uniformly(const TetMesh& mesh) {
-    const Discretisation nodes = discretise(mesh, ElementOrder::quadratic, {});
+    const elasticity::Discretisation nodes = elasticity::discretise(mesh, ElementOrder::quadratic, {});
     TetMesh refined;
     refined.region_names = mesh.region_names;
     refined.outside_names = mesh.outside_names;
@@ -52,7 +53,7 @@ TetMesh refine_uniformly(const TetMesh& mesh) {
     for (const auto& [a, b] : nodes.edges)
         refined.rest_positions.push_back((mesh.rest_positions[a] + mesh.rest_positions[b]) / 2);
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
-        const auto element = nodes_of_element(nodes, t);
+        const auto element = elasticity::nodes_of_element(nodes, t);
         const auto add = [&](const Parts& parts) {
             for (const auto& part : parts) {
                 refined.tetrahedra.push_back(

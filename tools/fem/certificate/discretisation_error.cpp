@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "tools/fem/assembly/discretisation.hpp"
+#include "formats/elasticity/discretisation.hpp"
 #include "tools/fem/assembly/refinement.hpp"
 #include "tools/fem/certificate/contact_loads.hpp"
 #include "tools/fem/solvers/free_system.hpp"
@@ -20,7 +20,8 @@ using Tractions = std::vector<Vector3d>;  // at each mesh node, N/mm², linear b
 // Forces on the discretisation's nodes that do the same work as the tractions: integrals over each triangle
 // of traction times shape function, by the integral of barycentric monomials, 2 A a! b! c! / (a + b + c +
 // 2)!.
-std::vector<Vector3d> consistent_forces(const DeformableBody& body, const Discretisation& discretisation,
+std::vector<Vector3d> consistent_forces(const DeformableBody& body,
+                                        const elasticity::Discretisation& discretisation,
                                         const Tractions& tractions) {
     std::map<std::array<std::int32_t, 2>, std::size_t> middle_of;
     for (std::size_t e = 0; e < discretisation.edges.size(); ++e)
@@ -54,7 +55,7 @@ std::vector<Vector3d> consistent_forces(const DeformableBody& body, const Discre
 // Work of each load on the displacement that it causes, N mm.
 std::vector<double> works(const DeformableBody& body, const std::vector<Tractions>& loads) {
     const FreeSystem system = assemble_free_system(body, NodeOrder::nested_dissection);
-    const Discretisation discretisation = discretise(body);
+    const elasticity::Discretisation discretisation = elasticity::discretise(body);
     Eigen::MatrixXd forces = Eigen::MatrixXd::Zero(system.stiffness.rows(), static_cast<Index>(loads.size()));
     for (std::size_t k = 0; k < loads.size(); ++k) {
         const std::vector<Vector3d> nodal = consistent_forces(body, discretisation, loads[k]);
@@ -74,7 +75,7 @@ DeformableBody enriched(const DeformableBody& body, std::vector<Tractions>& load
     richer.compliance = {};
     richer.element_order = ElementOrder::quadratic;
     if (body.element_order == ElementOrder::linear) return richer;
-    const Discretisation coarse = discretise(body);
+    const elasticity::Discretisation coarse = elasticity::discretise(body);
     richer.mesh = refine_uniformly(body.mesh);
     richer.boundary = boundary_surface(richer.mesh);
     richer.fixed_nodes = coarse.fixed_nodes;

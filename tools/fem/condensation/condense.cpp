@@ -26,8 +26,8 @@ using Eigen::Index;
 
 // The matrix with a column that is full below the diagonal: all later columns then fill in, and so stay
 // together in one dense block of the factor.
-LowerSparse with_full_column(const LowerSparse& matrix, Eigen::Index full) {
-    LowerSparse result(matrix.rows(), matrix.cols());
+elasticity::LowerSparse with_full_column(const elasticity::LowerSparse& matrix, Eigen::Index full) {
+    elasticity::LowerSparse result(matrix.rows(), matrix.cols());
     result.resizeNonZeros(matrix.nonZeros() + matrix.rows());
     const auto* outer = matrix.outerIndexPtr();
     std::int64_t cursor = 0;

@@ -8,10 +8,10 @@
 #include <fmt/format.h>
 #include <utility>
 
+#include "formats/elasticity/discretisation.hpp"
+#include "formats/elasticity/sound_tetrahedra.hpp"
 #include "formats/model/errors.hpp"
 #include "formats/model/label_map.hpp"
-#include "tools/fem/assembly/discretisation.hpp"
-#include "tools/fem/assembly/sound_tetrahedra.hpp"
 #include "tools/fem/solvers/free_system.hpp"
 
 namespace palpate::fem {
@@ -78,12 +78,12 @@ Vector3d gravity_in(const std::string& posture, const std::string& culprit) {
 std::vector<Vector3d> displacements_under(const DeformableBody& body,
                                           std::span<const RegionDensity> densities, const Vector3d& change) {
     const std::vector<double> density = density_of_tetrahedra(body.mesh, densities);
-    const Discretisation discretisation = discretise(body);
+    const elasticity::Discretisation discretisation = elasticity::discretise(body);
     const FreeSystem system = assemble_free_system(body, NodeOrder::nested_dissection);
     Eigen::MatrixXd loads = Eigen::MatrixXd::Zero(system.stiffness.rows(), 1);
     for (std::size_t t = 0; t < body.mesh.tetrahedra.size(); ++t) {
         const Vector3d weight = density[t] * six_volume(body.mesh, t) / 6 * change;
-        const auto nodes = nodes_of_element(discretisation, t);
+        const auto nodes = elasticity::nodes_of_element(discretisation, t);
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             const double share = nodes.size() == 4 ? 0.25 : i < 4 ? corner_share_of_10 : middle_share_of_10;
             const std::int32_t position = system.position_of_node[static_cast<std::size_t>(nodes[i])];
@@ -108,14 +108,14 @@ Sag move_at_rest(DeformableBody& body, std::span<const Vector3d> displacements) 
     for (std::size_t node = 0; node < before.size(); ++node)
         body.mesh.rest_positions[node] += displacements[node];
     for (std::size_t t = 0; t < body.mesh.tetrahedra.size(); ++t) {
-        if (!(element_quality(body.mesh, t) > smallest_element_quality))
+        if (!(elasticity::element_quality(body.mesh, t) > elasticity::smallest_element_quality))
             throw InvalidInput(
                 {fmt::format("tetrahedron {} of '{}'", t, body.name),
                  fmt::format("turns over in the new posture, where the body sags by up to {:.0f} mm",
                              sag.largest_displacement),
                  "a shape that linear tissue can have",
                  "check moduli and densities, or hold more nodes by 'fixed'"});
-        for (const auto& [a, b] : tetrahedron_edges) {
+        for (const auto& [a, b] : elasticity::tetrahedron_edges) {
             const auto first = static_cast<std::size_t>(body.mesh.tetrahedra[t][a]);
             const auto second = static_cast<std::size_t>(body.mesh.tetrahedra[t][b]);
             const double length = (before[second] - before[first]).norm();

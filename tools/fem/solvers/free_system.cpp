@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <fmt/format.h>
 
+#include "formats/elasticity/discretisation.hpp"
 #include "formats/model/errors.hpp"
-#include "tools/fem/assembly/discretisation.hpp"
 #include "tools/fem/solvers/ordering.hpp"
 
 namespace palpate::fem {
@@ -16,7 +16,7 @@ std::string name_of(const DeformableBody& body, const FreeSystem& system, std::i
     const auto node = static_cast<std::size_t>(found - system.position_of_node.begin());
     const auto& positions = body.mesh.rest_positions;
     if (node >= positions.size()) {
-        const auto [a, b] = discretise(body).edges[node - positions.size()];
+        const auto [a, b] = elasticity::discretise(body).edges[node - positions.size()];
         return fmt::format("the middle of nodes {} and {}", a, b);
     }
     const Eigen::Vector3d& p = positions[node];
@@ -26,15 +26,17 @@ std::string name_of(const DeformableBody& body, const FreeSystem& system, std::i
 }  // namespace
 
 FreeSystem assemble_free_system(const DeformableBody& body, NodeOrder order) {
-    const Discretisation discretisation = discretise(body);
+    const elasticity::Discretisation discretisation = elasticity::discretise(body);
     FreeSystem system;
     if (order == NodeOrder::as_numbered)
-        system.position_of_node = number_free_nodes(discretisation.node_count, discretisation.fixed_nodes);
+        system.position_of_node =
+            elasticity::number_free_nodes(discretisation.node_count, discretisation.fixed_nodes);
     else
         system.position_of_node = surface_last_ordering(discretisation, order == NodeOrder::surface_last
                                                                             ? body.contact_nodes
                                                                             : std::vector<std::int32_t>{});
-    system.stiffness = assemble_stiffness(body.mesh, body.materials, discretisation, system.position_of_node);
+    system.stiffness =
+        elasticity::assemble_stiffness(body.mesh, body.materials, discretisation, system.position_of_node);
     for (const std::int32_t node : body.contact_nodes)
         for (std::int64_t axis = 0; axis < 3; ++axis)
             system.contact_rows.push_back(3 * std::int64_t{system.position_of_node[node]} + axis);

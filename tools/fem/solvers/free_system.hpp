@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "formats/elasticity/stiffness.hpp"
 #include "formats/model/body.hpp"
-#include "tools/fem/assembly/stiffness.hpp"
 #include "tools/fem/solvers/sparse_cholesky.hpp"
 
 namespace palpate::fem {
@@ -18,7 +18,7 @@ enum class NodeOrder {
 
 /// The stiffness of a body's free nodes.
 struct FreeSystem {
-    LowerSparse stiffness;                       ///< lower triangle, 3n x 3n, N/mm
+    elasticity::LowerSparse stiffness;           ///< lower triangle, 3n x 3n, N/mm
     std::vector<std::int32_t> position_of_node;  ///< of each node of the discretisation; -1 for fixed ones
     std::vector<std::int64_t> contact_rows;      ///< row of x, y, z of contact node 0, then of 1, ...
 };

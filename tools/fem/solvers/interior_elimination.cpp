@@ -10,15 +10,16 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 // The rows and columns of a lower triangle that `rows` (ascending) lists.
-LowerSparse submatrix(const LowerSparse& matrix, const std::vector<std::int64_t>& rows) {
+elasticity::LowerSparse submatrix(const elasticity::LowerSparse& matrix,
+                                  const std::vector<std::int64_t>& rows) {
     std::vector<std::int64_t> renumbered(static_cast<std::size_t>(matrix.rows()), -1);
     for (std::size_t k = 0; k < rows.size(); ++k) renumbered[rows[k]] = static_cast<std::int64_t>(k);
     std::vector<Eigen::Triplet<double, std::int64_t>> entries;
     for (const std::int64_t column : rows)
-        for (LowerSparse::InnerIterator entry(matrix, column); entry; ++entry)
+        for (elasticity::LowerSparse::InnerIterator entry(matrix, column); entry; ++entry)
             if (const std::int64_t row = renumbered[entry.row()]; row >= 0)
                 entries.emplace_back(row, renumbered[column], entry.value());
-    LowerSparse result(static_cast<Index>(rows.size()), static_cast<Index>(rows.size()));
+    elasticity::LowerSparse result(static_cast<Index>(rows.size()), static_cast<Index>(rows.size()));
     result.setFromTriplets(entries.begin(), entries.end());
     return result;
 }

@@ -16,7 +16,7 @@ struct MetisGraph {
 };
 
 // METIS wants no node to be its own neighbour.
-MetisGraph without_loops(const NodeGraph& graph) {
+MetisGraph without_loops(const elasticity::NodeGraph& graph) {
     MetisGraph result;
     result.offsets.reserve(graph.offsets.size());
     result.neighbours.reserve(graph.neighbours.size());
@@ -92,7 +92,7 @@ std::vector<idx_t> postordered(const MetisGraph& graph, std::vector<idx_t> posit
 
 }  // namespace
 
-std::vector<std::int32_t> surface_last_ordering(const Discretisation& discretisation,
+std::vector<std::int32_t> surface_last_ordering(const elasticity::Discretisation& discretisation,
                                                 std::span<const std::int32_t> contact_nodes) {
     std::vector<std::int32_t> number(discretisation.node_count, 0);
     for (const std::int32_t node : discretisation.fixed_nodes) number[node] = -1;
@@ -101,7 +101,7 @@ std::vector<std::int32_t> surface_last_ordering(const Discretisation& discretisa
     for (std::int32_t& n : number)
         if (n >= 0) n = interior++;
 
-    MetisGraph graph = without_loops(node_graph(discretisation, number));
+    MetisGraph graph = without_loops(elasticity::node_graph(discretisation, number));
     const auto position = postordered(graph, nested_dissection(graph));
     for (std::int32_t& n : number)
         if (n >= 0) n = position[n];

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "tools/fem/assembly/discretisation.hpp"
+#include "formats/elasticity/discretisation.hpp"
 
 namespace palpate::fem {
 
@@ -13,7 +13,7 @@ namespace palpate::fem {
 /// count as interior wherever they lie. Returns each node's position, -1 for fixed nodes; contact node k is
 /// at position (number of interior nodes) + k. Deterministic. Source: Karypis & Kumar 1998 (METIS_NodeND);
 /// Liu 1986.
-std::vector<std::int32_t> surface_last_ordering(const Discretisation& discretisation,
+std::vector<std::int32_t> surface_last_ordering(const elasticity::Discretisation& discretisation,
                                                 std::span<const std::int32_t> contact_nodes);
 
 }  // namespace palpate::fem

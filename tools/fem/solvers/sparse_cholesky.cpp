@@ -35,7 +35,7 @@ struct SparseCholesky::Impl {
 namespace {
 
 // A view of the matrix for CHOLMOD, which does not write to it.
-cholmod_sparse view_of(const LowerSparse& matrix) {
+cholmod_sparse view_of(const elasticity::LowerSparse& matrix) {
     cholmod_sparse view{};
     view.nrow = static_cast<std::size_t>(matrix.rows());
     view.ncol = static_cast<std::size_t>(matrix.cols());
@@ -61,7 +61,7 @@ void require_success(const cholmod_common& common, const cholmod_factor* factor)
 
 }  // namespace
 
-SparseCholesky::SparseCholesky(const LowerSparse& matrix, Elimination elimination)
+SparseCholesky::SparseCholesky(const elasticity::LowerSparse& matrix, Elimination elimination)
     : impl_(std::make_unique<Impl>(elimination)) {
     cholmod_sparse view = view_of(matrix);
     impl_->factor = cholmod_l_analyze(&view, &impl_->common);
@@ -70,7 +70,7 @@ SparseCholesky::SparseCholesky(const LowerSparse& matrix, Elimination eliminatio
     require_success(impl_->common, impl_->factor);
 }
 
-FactorForecast SparseCholesky::forecast(const LowerSparse& matrix, Elimination elimination) {
+FactorForecast SparseCholesky::forecast(const elasticity::LowerSparse& matrix, Elimination elimination) {
     Impl impl(elimination);
     cholmod_sparse view = view_of(matrix);
     impl.factor = cholmod_l_analyze(&view, &impl.common);

@@ -5,7 +5,7 @@
 #include <memory>
 #include <span>
 
-#include "tools/fem/assembly/stiffness.hpp"
+#include "formats/elasticity/stiffness.hpp"
 
 namespace palpate::fem {
 
@@ -47,13 +47,13 @@ class SparseCholesky {
 
     /// Factorises the symmetric matrix given by its lower triangle; throws NotPositiveDefinite or, if
     /// memory runs out, std::bad_alloc.
-    SparseCholesky(const LowerSparse& matrix, Elimination elimination);
+    SparseCholesky(const elasticity::LowerSparse& matrix, Elimination elimination);
     ~SparseCholesky();
     SparseCholesky(SparseCholesky&&) noexcept;
     SparseCholesky& operator=(SparseCholesky&&) noexcept;
 
     /// Analyses the pattern alone.
-    static FactorForecast forecast(const LowerSparse& matrix, Elimination elimination);
+    static FactorForecast forecast(const elasticity::LowerSparse& matrix, Elimination elimination);
 
     /// Solves K x = b for all columns of b.
     Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;

@@ -11,8 +11,6 @@
 namespace palpate::test {
 namespace {
 
-using namespace fem;
-
 // Adds a force per area to the nodes of the faces on which all corners satisfy `condition`.
 Eigen::VectorXd face_forces(const ElasticSystem& system, const Condition& condition,
                             const std::function<Eigen::Vector3d(const Eigen::Vector3d& area)>& force_on) {
@@ -54,7 +52,7 @@ ElasticSystem elastic_system(TetMesh mesh, const Material& material, ElementOrde
 
 ElasticSystem elastic_system(DeformableBody body) {
     ElasticSystem system;
-    system.discretisation = discretise(body);
+    system.discretisation = elasticity::discretise(body);
     system.positions = body.mesh.rest_positions;
     for (const auto& [a, b] : system.discretisation.edges)
         system.positions.push_back(
@@ -62,7 +60,7 @@ ElasticSystem elastic_system(DeformableBody body) {
             2);
     std::vector<std::int32_t> all(system.positions.size());
     std::iota(all.begin(), all.end(), 0);
-    system.stiffness = assemble_stiffness(body.mesh, body.materials, system.discretisation, all);
+    system.stiffness = elasticity::assemble_stiffness(body.mesh, body.materials, system.discretisation, all);
     system.body = std::move(body);
     return system;
 }
@@ -102,15 +100,15 @@ Eigen::MatrixXd solve(const ElasticSystem& system, const Supports& supports, con
     std::vector<Eigen::Triplet<double, std::int64_t>> entries;
     entries.reserve(static_cast<std::size_t>(system.stiffness.nonZeros()));
     for (Eigen::Index column = 0; column < system.stiffness.outerSize(); ++column)
-        for (LowerSparse::InnerIterator entry(system.stiffness, column); entry; ++entry) {
+        for (elasticity::LowerSparse::InnerIterator entry(system.stiffness, column); entry; ++entry) {
             const Eigen::Index i = position[static_cast<std::size_t>(entry.row())];
             const Eigen::Index j = position[static_cast<std::size_t>(column)];
             if (i >= 0 && j >= 0) entries.emplace_back(i, j, entry.value());
         }
     const auto size = static_cast<Eigen::Index>(free.size());
-    LowerSparse K(size, size);
+    elasticity::LowerSparse K(size, size);
     K.setFromTriplets(entries.begin(), entries.end());
-    const Eigen::CholmodSupernodalLLT<LowerSparse, Eigen::Lower> factor(K);
+    const Eigen::CholmodSupernodalLLT<elasticity::LowerSparse, Eigen::Lower> factor(K);
     if (factor.info() != Eigen::Success) throw std::runtime_error("the supports leave the body loose");
 
     const Eigen::MatrixXd right = forces.colwise() - nodal_forces(system, known);

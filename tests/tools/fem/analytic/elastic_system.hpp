@@ -7,9 +7,9 @@
 #include <functional>
 #include <vector>
 
+#include "formats/elasticity/discretisation.hpp"
+#include "formats/elasticity/stiffness.hpp"
 #include "formats/model/body.hpp"
-#include "tools/fem/assembly/discretisation.hpp"
-#include "tools/fem/assembly/stiffness.hpp"
 
 namespace palpate::test {
 
@@ -20,9 +20,9 @@ using VectorField = std::function<Eigen::Vector3d(const Eigen::Vector3d&)>;
 /// All nodes of a body, middle nodes of edges among them, and the stiffness between them with nothing held.
 struct ElasticSystem {
     DeformableBody body;
-    fem::Discretisation discretisation;
-    Points positions;            ///< of every node, mm
-    fem::LowerSparse stiffness;  ///< 3n x 3n, N/mm
+    elasticity::Discretisation discretisation;
+    Points positions;                   ///< of every node, mm
+    elasticity::LowerSparse stiffness;  ///< 3n x 3n, N/mm
 
     Eigen::Index dof_count() const { return static_cast<Eigen::Index>(3 * positions.size()); }
 };

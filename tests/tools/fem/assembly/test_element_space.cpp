@@ -3,10 +3,10 @@
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
+#include "formats/elasticity/stiffness.hpp"
 #include "tests/tools/fem/blocks.hpp"
 #include "tests/tools/fem/compliances.hpp"
 #include "tools/fem/assembly/refinement.hpp"
-#include "tools/fem/assembly/stiffness.hpp"
 #include "tools/fem/certificate/certificate.hpp"
 #include "tools/fem/condensation/condense.hpp"
 
@@ -104,7 +104,7 @@ TEST(QuadraticTetrahedra, store_the_energy_of_quadratic_fields_that_a_hand_calcu
 
 // Displacements of the mesh nodes, taken to the middles of edges as the mean of both ends.
 Eigen::MatrixXd interpolation_to_middles(const DeformableBody& body) {
-    const Discretisation d = discretise(body.mesh, ElementOrder::quadratic, {});
+    const elasticity::Discretisation d = elasticity::discretise(body.mesh, ElementOrder::quadratic, {});
     const auto corners = static_cast<Eigen::Index>(3 * body.mesh.rest_positions.size());
     Eigen::MatrixXd P = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(3 * d.node_count), corners);
     P.topRows(corners).setIdentity();
@@ -135,7 +135,7 @@ TEST(LinearTetrahedra, are_never_softer_than_quadratic_ones_or_the_refined_mesh)
     };
     DeformableBody quadratic = body, refined = body;
     quadratic.element_order = ElementOrder::quadratic;
-    refined.fixed_nodes = discretise(quadratic).fixed_nodes;
+    refined.fixed_nodes = elasticity::discretise(quadratic).fixed_nodes;
     refined.mesh = refine_uniformly(body.mesh);
     const Eigen::MatrixXd C = compliance(body);
     for (const DeformableBody& larger : {quadratic, refined}) {
@@ -154,7 +154,7 @@ TEST_P(QuadraticTetrahedraBy, condense_to_the_compliance_of_dense_solves) {
     const DeformableBody body = prepared_body(two_material_block(ElementOrder::quadratic));
     const Eigen::MatrixXd C = GetParam().compliance(body);
     ASSERT_EQ(C.rows(), static_cast<Eigen::Index>(3 * body.contact_nodes.size()));
-    const Discretisation d = discretise(body);
+    const elasticity::Discretisation d = elasticity::discretise(body);
     for (const std::size_t k :
          {std::size_t{0}, body.contact_nodes.size() / 2, body.contact_nodes.size() - 1}) {
         Eigen::VectorXd force = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * d.node_count));

@@ -40,9 +40,9 @@ TEST(Factorisation, names_the_edge_where_the_stiffness_is_not_positive_definite)
     body.element_order = ElementOrder::quadratic;
     const std::size_t corners = body.mesh.rest_positions.size();
     const FreeSystem system = assemble_free_system(body, NodeOrder::as_numbered);
-    std::size_t edge = discretise(body).edges.size() - 1;
+    std::size_t edge = elasticity::discretise(body).edges.size() - 1;
     while (system.position_of_node[corners + edge] < 0) --edge;
-    const auto [a, b] = discretise(body).edges[edge];
+    const auto [a, b] = elasticity::discretise(body).edges[edge];
     const std::string message =
         refusal(body, corners + edge, NodeOrder::nested_dissection, Elimination::as_given);
     EXPECT_NE(message.find("not positive definite at the middle of nodes " + std::to_string(a) + " and " +

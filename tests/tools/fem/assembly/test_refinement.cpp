@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 #include <map>
 
+#include "formats/elasticity/discretisation.hpp"
+#include "formats/elasticity/sound_tetrahedra.hpp"
 #include "tests/tools/fem/blocks.hpp"
-#include "tools/fem/assembly/discretisation.hpp"
 #include "tools/fem/assembly/refinement.hpp"
-#include "tools/fem/assembly/sound_tetrahedra.hpp"
 
 namespace palpate {
 namespace {
@@ -51,7 +51,7 @@ TEST(Refinement, every_diagonal_cuts_the_octahedron_into_parts_of_equal_volume) 
         // The shortest diagonal is the one along the squeezed axis, and four parts share it.
         int sharing = 0;
         for (std::size_t t = 4; t < 8; ++t)
-            for (const auto& [a, b] : tetrahedron_edges) {
+            for (const auto& [a, b] : elasticity::tetrahedron_edges) {
                 const Eigen::Vector3d edge =
                     refined.rest_positions[static_cast<std::size_t>(refined.tetrahedra[t][a])] -
                     refined.rest_positions[static_cast<std::size_t>(refined.tetrahedra[t][b])];
@@ -64,7 +64,7 @@ TEST(Refinement, every_diagonal_cuts_the_octahedron_into_parts_of_equal_volume) 
 
 TEST(Refinement, keeps_old_nodes_and_numbers_middles_as_the_quadratic_discretisation) {
     const TetMesh mesh = jittered_block(), refined = refine_uniformly(mesh);
-    const Discretisation d = discretise(mesh, ElementOrder::quadratic, {});
+    const elasticity::Discretisation d = elasticity::discretise(mesh, ElementOrder::quadratic, {});
     ASSERT_EQ(refined.rest_positions.size(), d.node_count);
     for (std::size_t node = 0; node < mesh.rest_positions.size(); ++node)
         EXPECT_EQ(refined.rest_positions[node], mesh.rest_positions[node]);
@@ -113,7 +113,7 @@ TEST(Refinement, does_not_wear_tetrahedra_thin_when_repeated) {
     const auto worst = [](const TetMesh& of) {
         double quality = 1;
         for (std::size_t t = 0; t < of.tetrahedra.size(); ++t)
-            quality = std::min(quality, element_quality(of, t));
+            quality = std::min(quality, elasticity::element_quality(of, t));
         return quality;
     };
     const TetMesh once = refine_uniformly(mesh);

@@ -4,7 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
-#include "tools/fem/assembly/stiffness.hpp"
+#include "formats/elasticity/stiffness.hpp"
 #include "tools/fem/solvers/sparse_cholesky.hpp"
 
 namespace palpate::test {
@@ -27,9 +27,11 @@ DirectContact spread_over(const DeformableBody& body, const haptics::LoadSpread&
 
 Eigen::MatrixXd direct_compliance(const DeformableBody& body, const std::vector<DirectContact>& contacts,
                                   double coupling_stiffness) {
-    const Discretisation discretisation = discretise(body);
-    const auto position = number_free_nodes(discretisation.node_count, discretisation.fixed_nodes);
-    const LowerSparse K = assemble_stiffness(body.mesh, body.materials, discretisation, position);
+    const elasticity::Discretisation discretisation = elasticity::discretise(body);
+    const auto position =
+        elasticity::number_free_nodes(discretisation.node_count, discretisation.fixed_nodes);
+    const elasticity::LowerSparse K =
+        elasticity::assemble_stiffness(body.mesh, body.materials, discretisation, position);
     Eigen::MatrixXd loads = Eigen::MatrixXd::Zero(K.rows(), static_cast<Eigen::Index>(contacts.size()));
     for (std::size_t k = 0; k < contacts.size(); ++k)
         for (std::size_t i = 0; i < contacts[k].nodes.size(); ++i) {

@@ -4,10 +4,10 @@
 #include <limits>
 #include <numbers>
 
+#include "formats/elasticity/discretisation.hpp"
+#include "formats/elasticity/sound_tetrahedra.hpp"
 #include "formats/model/errors.hpp"
 #include "tests/tools/fem/blocks.hpp"
-#include "tools/fem/assembly/discretisation.hpp"
-#include "tools/fem/assembly/sound_tetrahedra.hpp"
 
 namespace palpate {
 namespace {
@@ -31,7 +31,7 @@ Eigen::Vector3d direction(double in_plane, double out_of_plane) {
 
 ErrorDetail refusal(const TetMesh& mesh) {
     try {
-        fem::discretise(mesh, ElementOrder::linear, {});
+        discretise(mesh, ElementOrder::linear, {});
     } catch (const InvalidInput& error) {
         return error.detail();
     }
@@ -41,7 +41,7 @@ ErrorDetail refusal(const TetMesh& mesh) {
 TEST(SoundTetrahedra, quality_is_one_for_a_regular_tetrahedron_at_any_size) {
     for (const double size : {1e-3, 1.0, 1e3})
         EXPECT_NEAR(
-            fem::element_quality(
+            element_quality(
                 single({Eigen::Vector3d{0, 0, 0}, {size, size, 0}, {size, 0, size}, {0, size, size}}), 0),
             1, 1e-14);
 }

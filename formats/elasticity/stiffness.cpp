@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fem/assembly/stiffness.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/elasticity/stiffness.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate::fem {
+namespace palpate::elasticity {
 namespace {
 
 struct Lame {
@@ -195,4 +195,4 @@ LowerSparse assemble_stiffness(const TetMesh& mesh, std::span<const RegionMateri
     return stiffness;
 }
 
-}  // namespace palpate::fem
+}  // namespace palpate::elasticity

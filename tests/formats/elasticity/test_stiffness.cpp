@@ -4,14 +4,14 @@
 #include <gtest/gtest.h>
 #include <random>
 
+#include "formats/elasticity/stiffness.hpp"
 #include "formats/model/errors.hpp"
 #include "tests/tools/fem/blocks.hpp"
-#include "tools/fem/assembly/stiffness.hpp"
 
 namespace palpate {
 namespace {
 
-using namespace fem;
+using namespace elasticity;
 
 const Material tissue{.youngs_modulus = 6e-3, .poissons_ratio = 0.45};
 const std::array<Eigen::Vector3d, 4> corner_points{

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/SparseCore>
 #include <array>
@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "formats/elasticity/discretisation.hpp"
 #include "formats/model/body.hpp"
-#include "tools/fem/assembly/discretisation.hpp"
 
-namespace palpate::fem {
+namespace palpate::elasticity {
 
 /// Sparse symmetric matrix by its lower triangle, 64-bit indices.
 using LowerSparse = Eigen::SparseMatrix<double, Eigen::ColMajor, std::int64_t>;
@@ -37,4 +37,4 @@ LowerSparse assemble_stiffness(const TetMesh& mesh, std::span<const RegionMateri
 std::vector<std::int32_t> number_free_nodes(std::size_t node_count,
                                             std::span<const std::int32_t> fixed_nodes);
 
-}  // namespace palpate::fem
+}  // namespace palpate::elasticity

@@ -1,11 +1,11 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fem/assembly/discretisation.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/elasticity/discretisation.hpp"
 
 #include <algorithm>
 
-#include "tools/fem/assembly/sound_tetrahedra.hpp"
+#include "formats/elasticity/sound_tetrahedra.hpp"
 
-namespace palpate::fem {
+namespace palpate::elasticity {
 namespace {
 
 using Edge = std::array<std::int32_t, 2>;
@@ -115,4 +115,4 @@ NodeGraph node_graph(const Discretisation& discretisation, std::span<const std::
     return graph;
 }
 
-}  // namespace palpate::fem
+}  // namespace palpate::elasticity

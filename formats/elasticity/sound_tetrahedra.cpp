@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fem/assembly/sound_tetrahedra.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/elasticity/sound_tetrahedra.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "formats/model/errors.hpp"
 
-namespace palpate::fem {
+namespace palpate::elasticity {
 namespace {
 
 const Eigen::Vector3d& corner(const TetMesh& mesh, std::size_t t, std::size_t c) {
@@ -52,4 +52,4 @@ void require_sound_tetrahedra(const TetMesh& mesh) {
         if (!(element_quality(mesh, t) > smallest_element_quality)) throw refusal(mesh, t);
 }
 
-}  // namespace palpate::fem
+}  // namespace palpate::elasticity

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 #include "formats/model/body.hpp"
 
-namespace palpate::fem {
+namespace palpate::elasticity {
 
 /// The corners at the ends of each edge of a tetrahedron, in the order of a 10-node element's middle nodes.
 /// It is the order of VTK's quadratic tetrahedron and of CalculiX' C3D10.
@@ -52,4 +52,4 @@ struct NodeGraph {
 /// be 0 ... n-1, each once.
 NodeGraph node_graph(const Discretisation& discretisation, std::span<const std::int32_t> position_of_node);
 
-}  // namespace palpate::fem
+}  // namespace palpate::elasticity

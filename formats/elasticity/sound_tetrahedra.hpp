@@ -1,8 +1,8 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "formats/model/tet_mesh.hpp"
 
-namespace palpate::fem {
+namespace palpate::elasticity {
 
 /// Quality at or below which a tetrahedron makes no element. Solves lose digits as 1e-16 / quality (measured:
 /// one interior element of a block squeezed onto a face, an edge or a corner), so this one leaves the 1e-10
@@ -19,4 +19,4 @@ double element_quality(const TetMesh& mesh, std::size_t t);
 /// are not numbers included), naming it, its nodes, its place, its quality and the remedy.
 void require_sound_tetrahedra(const TetMesh& mesh);
 
-}  // namespace palpate::fem
+}  // namespace palpate::elasticity

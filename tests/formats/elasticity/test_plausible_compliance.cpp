@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cstring>
+#include <functional>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "formats/elasticity/plausible_compliance.hpp"
+#include "formats/model/errors.hpp"
+#include "tests/formats/sample_case.hpp"
+#include "tests/runtime/elastic_cube.hpp"
+
+namespace palpate {
+namespace {
+
+using elasticity::require_answers_of_mesh;
+
+constexpr int cells = 4;
+constexpr int draws = 20;  // of the random load
+
+// A row of C as a forger changes it: the matrix stays symmetric, so that no other check can see it.
+void scale_row(float* entries, std::size_t n, std::size_t row, float factor) {
+    for (std::size_t k = 0; k < n; ++k) {
+        entries[row * n + k] *= factor;
+        entries[k * n + row] *= factor;
+    }
+}
+
+DeformableBody with_entries(DeformableBody body, const std::function<void(float*, std::size_t)>& change) {
+    auto& dense = std::get<DenseCompliance>(body.compliance);
+    const std::size_t n = dense.dof_count();
+    const std::shared_ptr<float[]> entries(new float[n * n]);
+    std::memcpy(entries.get(), dense.entries.get(), n * n * sizeof(float));
+    change(entries.get(), n);
+    dense.entries = std::shared_ptr<const float>(entries, entries.get());
+    return body;
+}
+
+DeformableBody cube() {
+    return sample::true_elastic_cube(cells);
+}
+
+TEST(PlausibleCompliance, of_a_true_inverse_is_taken_whatever_the_load) {
+    const DeformableBody dense = cube(), blocks = sample::with_hierarchical_compliance(cube(), 3, 1e-3);
+    for (int draw = 0; draw < draws; ++draw) {
+        EXPECT_NO_THROW(require_answers_of_mesh(dense, "dense"));
+        EXPECT_NO_THROW(require_answers_of_mesh(blocks, "blocks"));
+    }
+}
+
+struct Forgery {
+    const char* name;
+    std::function<DeformableBody()> make;
+};
+
+void PrintTo(const Forgery& forgery, std::ostream* stream) {
+    *stream << forgery.name;
+}
+
+class ForgedCompliance : public ::testing::TestWithParam<Forgery> {};
+
+TEST_P(ForgedCompliance, is_refused_whatever_the_load) {
+    const DeformableBody body = GetParam().make();
+    for (int draw = 0; draw < draws; ++draw)
+        EXPECT_THROW(require_answers_of_mesh(body, "forged"), InvalidInput) << draw;
+}
+
+DeformableBody scaled(float factor) {
+    return with_entries(cube(), [=](float* entries, std::size_t n) {
+        for (std::size_t k = 0; k < n * n; ++k) entries[k] *= factor;
+    });
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, ForgedCompliance,
+                         ::testing::Values(Forgery{"twice_as_soft", [] { return scaled(2); }},
+                                           Forgery{"half_as_soft", [] { return scaled(0.5F); }},
+                                           Forgery{"a_third_stiffer", [] { return scaled(0.75F); }},
+                                           Forgery{"one_entry_huge",
+                                                   [] {
+                                                       return with_entries(cube(), [](float* e, std::size_t) {
+                                                           e[0] = 1e30F;
+                                                       });
+                                                   }},
+                                           Forgery{"a_stiff_node",
+                                                   [] {
+                                                       return with_entries(
+                                                           cube(), [](float* entries, std::size_t n) {
+                                                               for (std::size_t axis = 0; axis < 3; ++axis)
+                                                                   scale_row(entries, n, 30 + axis, 0.1F);
+                                                           });
+                                                   }},
+                                           Forgery{"an_organ_that_is_held_elsewhere",
+                                                   [] {
+                                                       DeformableBody body = cube();
+                                                       body.fixed_nodes.resize(body.fixed_nodes.size() / 2);
+                                                       return body;
+                                                   }},
+                                           Forgery{"another_modulus",
+                                                   [] {
+                                                       DeformableBody body = cube();
+                                                       for (RegionMaterial& region : body.materials)
+                                                           region.material.youngs_modulus *= 1.5;
+                                                       return body;
+                                                   }},
+                                           Forgery{"another_place_of_a_node",
+                                                   [] {
+                                                       DeformableBody body = cube();
+                                                       for (Eigen::Vector3d& p : body.mesh.rest_positions)
+                                                           p *= 1.5;
+                                                       return body;
+                                                   }}),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST(PlausibleCompliance, says_which_node_moves_otherwise) {
+    try {
+        require_answers_of_mesh(scaled(2), "liver.vtkhdf: compliance of liver");
+        FAIL() << "nothing was thrown";
+    } catch (const InvalidInput& error) {
+        EXPECT_THAT(error.what(),
+                    ::testing::HasSubstr("liver.vtkhdf: compliance of liver: moves contact node"));
+        EXPECT_THAT(error.what(), ::testing::HasSubstr("build the case again"));
+    }
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/fem/certificate/claims.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "tools/fem/certificate/certificate.hpp"
+#include "tools/fem/certificate/discretisation_error.hpp"
+
+namespace palpate::fem {
+namespace {
+
+constexpr double part = 0.01;  // other kernels, other orders of sums
+// What products in float32 may differ by from one processor to another; never more than what is claimed, so
+// that nothing passes for exact.
+constexpr double float_rounding = 5e-7;
+
+Claim at_most(const char* figure, double claimed, double found) {
+    const double limit = claimed + std::max(part * claimed, std::min(claimed, float_rounding));
+    return {figure, claimed, found, fmt::format("at most {:g}", claimed), found <= limit};
+}
+
+Claim at_least(const char* figure, double claimed, double found) {
+    return {figure, claimed, found, fmt::format("at least {:g}", claimed),
+            found >= claimed - part * std::abs(claimed)};
+}
+
+Claim about(const char* figure, double claimed, double found) {
+    return {figure, claimed, found, fmt::format("{:g}", claimed),
+            std::abs(found - claimed) <= part * std::abs(claimed)};
+}
+
+Claim equal(const char* figure, double claimed, double found) {
+    return {figure, claimed, found, fmt::format("{:g}", claimed), found == claimed};
+}
+
+}  // namespace
+
+std::vector<Claim> recheck_claims(const DeformableBody& body) {
+    const Certificate& claimed = body.certificate;
+    const Certificate found = certify(body, certificate_sample(body));
+    std::vector<Claim> claims{
+        equal("sampled_columns", claimed.sampled_columns, found.sampled_columns),
+        equal("sampled_loads", claimed.sampled_loads, found.sampled_loads),
+        equal("free_dofs", static_cast<double>(claimed.free_dofs), static_cast<double>(found.free_dofs)),
+        at_most("residual", claimed.residual, found.residual),
+        at_most("asymmetry", claimed.asymmetry, found.asymmetry),
+        at_most("reciprocity", claimed.reciprocity, found.reciprocity),
+        at_most("load_error", claimed.load_error, found.load_error),
+        at_most("contact_error", claimed.contact_error, found.contact_error),
+        about("smallest_eigenvalue", claimed.smallest_eigenvalue, found.smallest_eigenvalue),
+        about("largest_eigenvalue", claimed.largest_eigenvalue, found.largest_eigenvalue),
+        about("condition_number", claimed.condition_number, found.condition_number),
+        at_least("smallest_patch_eigenvalue", claimed.smallest_patch_eigenvalue,
+                 found.smallest_patch_eigenvalue)};
+    if (claimed.discretisation_error >= 0)
+        claims.push_back(
+            about("discretisation_error", claimed.discretisation_error, estimate_discretisation_error(body)));
+    return claims;
+}
+
+}  // namespace palpate::fem
