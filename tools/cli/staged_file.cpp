@@ -10,6 +10,8 @@
 #include <cstring>
 #include <fcntl.h>
 #include <fstream>
+#include <regex>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <system_error>
 #include <thread>
@@ -62,36 +64,131 @@ int claim_slot(const std::string& path) {
     return -1;
 }
 
+[[noreturn]] void fail(const std::filesystem::path& target, const std::string& what, int error) {
+    throw SystemFailure({.culprit = target.string(),
+                         .found = what + ": " + std::generic_category().message(error),
+                         .expected = "",
+                         .next_step = "check free space and permissions of its folder"});
+}
+
 void flush_to_disk(const std::filesystem::path& path, const std::filesystem::path& target) {
     const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
     const bool flushed = file >= 0 && fsync(file) == 0;
     const int error = errno;
     if (file >= 0) close(file);
-    if (!flushed)
-        throw SystemFailure({.culprit = target.string(),
-                             .found = "could not be written: " + std::generic_category().message(error),
-                             .expected = "",
-                             .next_step = "check free space and permissions of its folder"});
+    if (!flushed) fail(target, "could not be written", error);
+}
+
+// Who holds this lock on a staged file is still at work on it, on this machine or another that shares the
+// folder. The system lets go of it with the process, however that ends.
+bool lock(int file) {
+    struct flock whole {};
+    whole.l_type = F_WRLCK;
+    whole.l_whence = SEEK_SET;
+    return fcntl(file, F_OFD_SETLK, &whole) == 0;
+}
+
+// Removes what killed processes left staged in a folder. Where it cannot be locked, as on some network file
+// systems, nobody can tell whether its process lives, and it stays.
+void remove_orphans(const std::filesystem::path& folder) {
+    static const std::regex staged(R"(\.part\d+-.*)");
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+        if (!std::regex_match(entry.path().filename().string(), staged) || !entry.is_regular_file(ignored) ||
+            entry.is_symlink(ignored))
+            continue;
+        const int file = open(entry.path().c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
+        if (file < 0) continue;
+        if (lock(file)) unlink(entry.path().c_str());
+        close(file);
+    }
+}
+
+// Creates a staged file and locks it. Another process may take it for an orphan before it is locked; then
+// again.
+int create_locked(const std::filesystem::path& staged, const std::filesystem::path& target) {
+    for (;;) {
+        const int file = open(staged.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+        if (file < 0) fail(target, "could not be written", errno);
+        struct stat status {};
+        if (!lock(file) || (fstat(file, &status) == 0 && status.st_nlink > 0)) return file;
+        close(file);
+    }
+}
+
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+    return file.has_parent_path() ? file.parent_path() : ".";
+}
+
+// The file that a target names, links followed, also to what is not there yet.
+std::filesystem::path followed(std::filesystem::path target) {
+    constexpr int most_links = 40;  // as Linux
+    for (int links = 0; std::filesystem::is_symlink(target); ++links) {
+        if (links == most_links)
+            throw InvalidInput(
+                {target.string(), "is a link that leads to itself", "a file name", "remove the link"});
+        target = folder_of(target) / std::filesystem::read_symlink(target);
+    }
+    return target;
+}
+
+// Throws unless a target is a file, a pipe or nothing yet; says whether it is a pipe.
+bool require_file_or_pipe(const std::filesystem::path& target) {
+    const auto refuse = [&](const std::string& found) {
+        throw InvalidInput({target.string(), found, "a file name or a pipe", "name the file to write"});
+    };
+    if (target == "-") refuse("is no file; /dev/stdout is, where it is a pipe");
+    using std::filesystem::file_type;
+    std::error_code error;
+    switch (std::filesystem::status(target, error).type()) {
+        case file_type::directory:
+            refuse("is a folder");
+            break;
+        case file_type::character:
+        case file_type::block:
+            refuse("is a device");
+            break;
+        case file_type::socket:
+            refuse("is a socket");
+            break;
+        case file_type::fifo:
+            return true;
+        default:
+            break;
+    }
+    return false;
+}
+
+// Hands a finished file to whoever reads a pipe.
+void copy_into_pipe(const std::filesystem::path& staged, const std::filesystem::path& pipe) {
+    std::ifstream from(staged, std::ios::binary);
+    std::ofstream to(pipe, std::ios::binary);
+    if (std::filesystem::file_size(staged) > 0) to << from.rdbuf();
+    to.close();
+    if (!to) fail(pipe, "could not be written", errno);
 }
 
 }  // namespace
 
-StagedFile::StagedFile(std::filesystem::path target, bool replace) : target_(std::move(target)) {
-    const std::filesystem::path folder = target_.has_parent_path() ? target_.parent_path() : ".";
-    if (std::filesystem::is_directory(target_))
-        throw InvalidInput({target_.string(), "is a folder", "a file name", "name the file to write"});
-    if (!replace && std::filesystem::exists(target_))
-        throw InvalidInput({target_.string(), "exists already", "", "choose another name or pass --force"});
+StagedFile::StagedFile(const std::filesystem::path& target, bool replace)
+    : is_pipe_(require_file_or_pipe(target)), target_(is_pipe_ ? target : followed(target)) {
+    if (!replace && !is_pipe_ && std::filesystem::exists(target_))
+        throw InvalidInput({target.string(), "exists already", "", "choose another name or pass --force"});
+    const std::filesystem::path folder =
+        is_pipe_ ? std::filesystem::temp_directory_path() : folder_of(target_);
     if (!std::filesystem::is_directory(folder))
-        throw InvalidInput({target_.string(), "its folder does not exist", "",
-                            "make it first: mkdir -p " + folder.string()});
+        throw InvalidInput(
+            {target.string(), "its folder does not exist", "", "make it first: mkdir -p " + folder.string()});
+    remove_orphans(folder);
     temporary_ = folder / (temporary_prefix() + target_.filename().string());
     slot_ = claim_slot(temporary_.string());
+    held_ = create_locked(temporary_, target_);
 }
 
 StagedFile::~StagedFile() {
     std::error_code ignored;
     std::filesystem::remove(temporary_, ignored);
+    close(held_);
     if (slot_ >= 0) slots[slot_].used.store(false);
 }
 
@@ -105,9 +202,10 @@ void StagedFile::write_text(const std::string& text) const {
 }
 
 void StagedFile::commit() {
+    if (is_pipe_) return copy_into_pipe(temporary_, target_);
     flush_to_disk(temporary_, target_);
     std::filesystem::rename(temporary_, target_);
-    flush_to_disk(target_.has_parent_path() ? target_.parent_path() : ".", target_);
+    flush_to_disk(folder_of(target_), target_);
 }
 
 std::string with_final_names(std::string message) {
@@ -122,6 +220,8 @@ void remove_staged_files_on_interrupt() {
     action.sa_handler = remove_and_exit;
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
+    // At a quota a write fails, and says so, instead of ending the process.
+    std::signal(SIGXFSZ, SIG_IGN);
     // The terminal was closed; but nohup has the signal ignored, and that stays.
     struct sigaction hang_up {};
     sigaction(SIGHUP, nullptr, &hang_up);

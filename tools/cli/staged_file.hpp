@@ -7,12 +7,14 @@
 namespace palpate::cli {
 
 /// An output that appears whole or not at all: written under a temporary name in the target's folder, flushed
-/// to disk and renamed by commit(), removed otherwise, also on SIGINT and SIGTERM.
+/// to disk and renamed by commit(), removed otherwise, also on SIGINT and SIGTERM; what a killed process left
+/// there is removed by the next one that writes into the folder. A link is followed: what it leads to is
+/// replaced. A pipe, such as a FIFO or /dev/stdout before another command, gets the finished file's bytes.
 class StagedFile {
   public:
     /// Throws InvalidInput if `target` exists and `replace` is false, if its folder is missing, or if it is a
-    /// folder itself.
-    StagedFile(std::filesystem::path target, bool replace);
+    /// folder, a device or a socket; SystemFailure if nothing can be written there.
+    StagedFile(const std::filesystem::path& target, bool replace);
     StagedFile(const StagedFile&) = delete;
     StagedFile& operator=(const StagedFile&) = delete;
     ~StagedFile();
@@ -27,9 +29,11 @@ class StagedFile {
     void commit();
 
   private:
+    bool is_pipe_;
     std::filesystem::path target_;
     std::filesystem::path temporary_;
     int slot_ = -1;
+    int held_ = -1;  ///< locks the temporary file while this lives
 };
 
 /// Puts final names into a message in the place of temporary ones.

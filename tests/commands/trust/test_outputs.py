@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where a command may write, and that an output appears whole or not at all."""
+import os
+import pathlib
+import shutil
+import signal
+import socket
+import stat
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+sys.path.insert(0, "..")
+import test_asset_commands as assets  # noqa: E402
+
+BIN, OK, FAILED, INVALID = assets.BIN, assets.OK, assets.FAILED, assets.INVALID
+
+
+class Outputs(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        assets.write_tetrahedron_surface(self.folder / "skull.vtp", 40)
+
+    def obb(self, output, *arguments, **options):
+        return assets.run(BIN / "palpate-obb", self.folder / "skull.vtp", "-o", output, *arguments, **options)
+
+    def written(self):
+        made = self.folder / "reference.obb.h5"
+        self.assertEqual(self.obb(made, "--quiet").returncode, OK)
+        return made.read_bytes()
+
+    def assertRefused(self, output, kind, *arguments):
+        before = os.lstat(output)
+        for force in ((), ("--force",)):
+            refused = self.obb(output, *force, *arguments)
+            self.assertEqual(refused.returncode, INVALID, refused.stderr)
+            self.assertIn(f"{output}: {kind}", refused.stderr)
+        self.assertEqual(stat.S_IFMT(os.lstat(output).st_mode), stat.S_IFMT(before.st_mode))
+
+    def staged(self, folder=None):
+        return sorted(p.name for p in (folder or self.folder).iterdir() if p.name.startswith(".part"))
+
+    def test_a_device_a_folder_and_a_socket_are_refused_by_their_kind(self):
+        self.assertRefused("/dev/null", "is a device")
+        self.assertRefused(self.folder, "is a folder")
+        path = self.folder / "socket"
+        with socket.socket(socket.AF_UNIX) as listening:
+            listening.bind(str(path))
+            self.assertRefused(path, "is a socket")
+        self.assertEqual(self.staged(), [])
+
+    def test_a_link_to_a_device_is_refused(self):
+        link = self.folder / "nothing.obb.h5"
+        link.symlink_to("/dev/null")
+        self.assertRefused(link, "is a device")
+
+    def test_a_dash_is_no_file(self):
+        refused = self.obb("-", cwd=self.folder)
+        self.assertEqual(refused.returncode, INVALID, refused.stderr)
+        self.assertIn("/dev/stdout", refused.stderr)
+        self.assertFalse((self.folder / "-").exists())
+
+    def test_a_pipe_gets_the_whole_file(self):
+        expected, pipe = self.written(), self.folder / "pipe.obb.h5"
+        os.mkfifo(pipe)
+        got = []
+        reader = threading.Thread(target=lambda: got.append(pipe.read_bytes()))
+        reader.start()
+        made = self.obb(pipe)
+        reader.join(timeout=60)
+        self.assertEqual((made.returncode, got), (OK, [expected]), made.stderr)
+        self.assertTrue(stat.S_ISFIFO(pipe.stat().st_mode))
+
+    def test_standard_output_may_be_a_pipe(self):
+        made = subprocess.run([BIN / "palpate-obb", self.folder / "skull.vtp", "-o", "/dev/stdout", "--quiet", "--json",
+                               self.folder / "result.json"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=60)
+        self.assertEqual((made.returncode, made.stdout), (OK, self.written()), made.stderr)
+
+    def test_what_a_link_leads_to_is_replaced_whole(self):
+        elsewhere = self.folder / "elsewhere"
+        elsewhere.mkdir()
+        file, link = elsewhere / "tree.obb.h5", self.folder / "link.obb.h5"
+        link.symlink_to(file)
+        self.assertEqual(self.obb(link).returncode, OK)  # which is not there yet
+        self.assertEqual(self.obb(link).returncode, INVALID)
+        file.write_text("old")
+        self.assertEqual(self.obb(link, "--force").returncode, OK)
+        self.assertTrue(link.is_symlink())
+        self.assertEqual(file.read_bytes(), self.written())
+        self.assertEqual(self.staged(elsewhere), [])
+
+    def test_a_circle_of_links_is_refused(self):
+        (self.folder / "a.obb.h5").symlink_to(self.folder / "b.obb.h5")
+        (self.folder / "b.obb.h5").symlink_to(self.folder / "a.obb.h5")
+        self.assertEqual(self.obb(self.folder / "a.obb.h5").returncode, INVALID)
+
+    def test_what_a_killed_process_left_is_removed_by_the_next_and_what_lives_is_not(self):
+        # Held up at its output, a pipe that nobody reads, the process has its JSON staged.
+        pipe = self.folder / "pipe.obb.h5"
+        os.mkfifo(pipe)
+        running = subprocess.Popen([BIN / "palpate-obb", self.folder / "skull.vtp", "-o", pipe, "--quiet", "--json",
+                                    self.folder / "result.json"])
+        self.addCleanup(running.wait)
+        self.addCleanup(running.kill)
+        staged = f".part{running.pid}-result.json"
+        end = time.monotonic() + 60
+        while self.staged() != [staged] and time.monotonic() < end:
+            time.sleep(0.02)
+        self.assertEqual(self.obb(self.folder / "one.obb.h5").returncode, OK)
+        self.assertEqual(self.staged(), [staged])
+        running.send_signal(signal.SIGKILL)
+        running.wait()
+        self.assertEqual(self.staged(), [staged])
+        self.assertEqual(self.obb(self.folder / "two.obb.h5").returncode, OK)
+        self.assertEqual(self.staged(), [])
+
+    def test_a_file_of_another_that_looks_staged_is_kept(self):
+        for name in (".party-plan", ".part-of-mine", "part1-x"):
+            (self.folder / name).write_text("mine")
+        self.assertEqual(self.obb(self.folder / "one.obb.h5").returncode, OK)
+        for name in (".party-plan", ".part-of-mine", "part1-x"):
+            self.assertEqual((self.folder / name).read_text(), "mine")
+
+    def assertFailsAndKeeps(self, earlier, made):
+        self.assertEqual(made.returncode, FAILED, made.stderr)
+        self.assertIn("could not be written", made.stderr)
+        self.assertEqual(earlier.read_text(), "earlier")
+        self.assertEqual(self.staged(earlier.parent), [])
+
+    def test_a_quota_leaves_the_earlier_file(self):
+        earlier = self.folder / "tree.obb.h5"
+        earlier.write_text("earlier")
+        limited = subprocess.run(["sh", "-c", 'ulimit -f 1; exec "$0" "$@"', BIN / "palpate-obb", self.folder / "skull.vtp", "-o",
+                                  earlier, "--force"], text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=60)
+        self.assertFailsAndKeeps(earlier, limited)
+
+    @unittest.skipUnless(os.geteuid() == 0, "mounting a small disk needs root")
+    def test_a_full_disk_leaves_the_earlier_file(self):
+        disk = self.folder / "disk"
+        disk.mkdir()
+        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=4k", "none", disk], stderr=subprocess.PIPE, text=True)
+        if mounted.returncode != 0:
+            self.skipTest(f"no small disk can be mounted: {mounted.stderr.strip()}")
+        self.addCleanup(subprocess.run, ["umount", disk], check=True)
+        earlier = disk / "tree.obb.h5"
+        earlier.write_text("earlier")
+        self.assertFailsAndKeeps(earlier, self.obb(earlier, "--force"))
+
+    @unittest.skipUnless(os.geteuid() == 0, "giving up rights needs root")
+    def test_a_folder_that_must_not_be_written_to_is_named(self):
+        locked = self.folder / "locked"
+        locked.mkdir()
+        os.chmod(self.folder, 0o755)
+        earlier = locked / "tree.obb.h5"
+        earlier.write_text("earlier")
+        os.chmod(locked, 0o555)
+        refused = self.obb(earlier, "--force", user="nobody", extra_groups=[])
+        os.chmod(locked, 0o755)
+        self.assertFailsAndKeeps(earlier, refused)
+        self.assertIn("Permission denied", refused.stderr)
+
+    @unittest.skipUnless(shutil.which("strace"), "strace is not installed")
+    def test_a_power_cut_finds_the_old_file_or_the_new_one(self):
+        # Content before the name, the name before success: in this order, to the disk.
+        trace, output = self.folder / "trace", self.folder / "tree.obb.h5"
+        traced = subprocess.run(["strace", "-f", "-y", "-e", "trace=fsync,rename", "-o", trace, BIN / "palpate-obb",
+                                 self.folder / "skull.vtp", "-o", output], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        if "ptrace" in traced.stderr:
+            self.skipTest("processes must not be traced here")
+        calls = [line.split(maxsplit=1)[1] for line in trace.read_text().splitlines() if "(" in line]
+        named = [i for i, call in enumerate(calls) if call.startswith("rename(") and call.split('"')[3] == str(output)]
+        self.assertEqual(len(named), 1, calls)
+        kept = lambda call, path: call.startswith("fsync(") and f"<{path}>" in call and call.endswith("= 0")
+        staged = calls[named[0]].split('"')[1]
+        self.assertTrue(any(kept(call, staged) for call in calls[:named[0]]), calls)
+        self.assertTrue(any(kept(call, self.folder) for call in calls[named[0]:]), calls)
+
+
+if __name__ == "__main__":
+    unittest.main()
