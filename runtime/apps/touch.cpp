@@ -5,6 +5,7 @@
 #include <thread>
 #include <vector>
 
+#include "formats/asset/hdf5/signature.hpp"
 #include "formats/model/errors.hpp"
 #include "runtime/apps/servo_pulse.hpp"
 #include "runtime/apps/start_recording.hpp"
@@ -50,13 +51,16 @@ void run_in_real_time(Session& run, double seconds, const Session::Sink& take) {
 
 Json touch(const TouchOptions& options, cli::Session& session) {
     TouchOutputs outputs(options.log, options.curve, session);
-    if (!options.replay.empty()) return replay_recording(options.replay, options.asset, outputs, session);
+    const auto trusted = asset::read_public_keys(options.trusted);
+    if (!options.replay.empty())
+        return replay_recording(options.replay, options.asset, trusted, outputs, session);
     const DeviceChoice device = choose_device(options.device, "--device");
     refuse_contradictions(options, device);
     Session run({.asset = options.asset,
                  .method = options.scheme,
                  .tool_count = tools_of(options, device),
                  .virtual_clock = options.virtual_clock,
+                 .trusted_keys = trusted,
                  .stream = options.stream},
                 [](const std::string& sentence) { spdlog::warn("{}", sentence); });
     const Case& patient_case = run.patient_case();

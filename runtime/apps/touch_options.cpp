@@ -7,6 +7,9 @@ namespace palpate::apps {
 
 TouchHandles declare(cli::Command& command, TouchOptions& options) {
     const cli::Option asset = command.input("asset", options.asset, "the case (.vtkhdf)").required();
+    command.input(
+        "--trusted", options.trusted,
+        "public keys (Ed25519, PEM): load the asset only if one of them has signed it; repeat for more");
     command.option("--script", options.script,
                    "what the hand does: press, slide, tremble, let-go, random or a file");
     command.option("--column", options.column,

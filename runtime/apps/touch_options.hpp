@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "runtime/haptics/haptic_model.hpp"
 #include "tools/cli/command.hpp"
@@ -15,6 +16,7 @@ struct TouchOptions {
     std::filesystem::path asset, log, curve, record, replay;
     std::string script = "press", body, target, second, scheme{haptics::usual_contact_method}, device, shaft,
                 stream;
+    std::vector<std::filesystem::path> trusted;
     double seconds = 10, depth = 3, speed = 20, record_seconds = 300;
     std::uint64_t seed = 1;
     std::optional<std::size_t> column;

@@ -24,9 +24,11 @@ std::string force_text(const std::array<double, 3>& f) {
 }  // namespace
 
 nlohmann::ordered_json replay_recording(const std::filesystem::path& file, const std::filesystem::path& asset,
-                                        TouchOutputs& outputs, cli::Session& session) {
+                                        std::span<const std::string> trusted_keys, TouchOutputs& outputs,
+                                        cli::Session& session) {
     const recording::Recording recording = recording::read_recording(file);
-    const Case patient_case = asset::read_asset(asset);
+    const Case patient_case =
+        trusted_keys.empty() ? asset::read_asset(asset) : asset::read_asset(asset, trusted_keys);
     const auto model = model_of(recording, file, asset, patient_case);
     std::vector<RunRecord> records = outputs.records_of(*model);
     StatusCounts statuses;

@@ -8,6 +8,7 @@
 #include <spdlog/spdlog.h>
 #include <vector>
 
+#include "formats/asset/hdf5/signature.hpp"
 #include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
 #include "formats/provenance/cautions.hpp"
@@ -45,6 +46,7 @@ using Json = nlohmann::ordered_json;
 
 struct Options {
     std::filesystem::path asset, screenshot, record;
+    std::vector<std::filesystem::path> trusted;
     LessonOptions lesson;
     PlaybackOptions playback;
     std::string size = "1280x720", script, second, body, target, scheme{usual_contact_method}, device, stream;
@@ -115,11 +117,13 @@ Json train(const Options& options, cli::Session& session) {
         throw UsageError({"--second", "with --device " + options.device, "a simulated device", ""});
     find_contact_method(options.scheme, "--scheme");
     const std::size_t tools = options.second.empty() ? device.tool_count : 2;
+    const auto trusted = asset::read_public_keys(options.trusted);
     // Reading and opening a window take about as long, and two processors do both at once.
     auto reading = std::async(std::launch::async, [&] {
         return std::make_unique<Session>(SessionRequest{.asset = options.asset,
                                                         .method = options.scheme,
                                                         .tool_count = tools,
+                                                        .trusted_keys = trusted,
                                                         .stream = options.stream},
                                          [](const std::string& sentence) { spdlog::warn("{}", sentence); });
     });
@@ -257,6 +261,9 @@ int main(int argc, char** argv) {
     const auto size = command.option("--size", options.size, "WIDTHxHEIGHT of the window", "pixels");
     const auto seconds =
         command.option("--seconds", options.seconds, "close after this time; 0: when told to", "s");
+    command.input(
+        "--trusted", options.trusted,
+        "public keys (Ed25519, PEM): load the asset only if one of them has signed it; repeat for more");
     command.option(
         "--script", options.script,
         "what the hand does instead of mouse and keyboard: press, slide, tremble, let-go, random or a "
@@ -289,6 +296,7 @@ int main(int argc, char** argv) {
         if (options.playback.play.empty()) return train(options, session);
         return play_recording(options.playback,
                               {.asset = options.asset,
+                               .trusted_keys = asset::read_public_keys(options.trusted),
                                .size = size_of(options.size),
                                .seconds = options.seconds,
                                .screenshot = options.screenshot},

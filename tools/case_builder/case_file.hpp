@@ -71,6 +71,7 @@ struct CaseFile {
     std::vector<RigidSpec> rigid;
     std::vector<DeformableSpec> deformable;
     HapticSettings haptics;
+    std::filesystem::path sign;  ///< private key that signs the asset; of the command line, not of the file
     QualityContract quality;
     int attempts = stages::MeshRequest{}.attempts;  ///< to keep the contract
 };

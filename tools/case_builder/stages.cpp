@@ -119,6 +119,7 @@ Stage pack_stage(const CaseFile& case_file, const BuildPaths& paths) {
         stage.inputs.push_back(request.scan = paths.parts / "volume.nrrd");
     if (needs_labels(case_file))
         stage.inputs.push_back(request.notes.emplace_back(paths.parts / "segment.json"));
+    if (!case_file.sign.empty()) stage.inputs.push_back(request.sign = case_file.sign);
     stage.request = cli::to_request(request);
     return stage;
 }

@@ -119,7 +119,7 @@ nlohmann::ordered_json forecast(const Build& build, const std::string& name) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    std::filesystem::path case_path, volume, labels, parts, output;
+    std::filesystem::path case_path, volume, labels, parts, sign, output;
     std::vector<std::string> settings;
     std::string stage_name;
     bool virtual_clock = false, forecast_only = false;
@@ -139,6 +139,7 @@ int main(int argc, char** argv) {
     command.input("--labels", labels, "label map to use instead of the case file's input.labels");
     command.output("-o,--output", output, "asset (.vtkhdf)").required();
     command.output("--parts", parts, "folder for intermediate results; OUTPUT.parts by default");
+    command.input("--sign", sign, "private key (Ed25519, PEM) to sign the asset with");
     command.option("--set", settings,
                    "KEY=VALUE that goes before the case file's own; again for another key");
     const cli::Option stage_option =
@@ -156,6 +157,7 @@ int main(int argc, char** argv) {
         case_builder::CaseFile case_file = case_builder::read_case_file(case_path, overrides);
         if (!volume.empty()) case_file.volume = volume;
         if (!labels.empty()) case_file.labels = labels;
+        case_file.sign = sign;
         case_builder::check_case_file(case_path, case_file, overrides);
         if (stage_name.empty())
             for (const std::string& doubt : case_builder::doubts_of(case_file)) spdlog::warn("{}", doubt);

@@ -63,7 +63,7 @@ int main(int argc, char** argv) {
             warnings.push_back("the scan shows nothing of the bodies and is left out");
         for (const std::string& warning : warnings) spdlog::warn("{}", warning);
         session.progress.step("write the asset", 0.8);
-        asset::write_asset(staged.path(), patient_case);
+        asset::write_asset(staged.path(), patient_case, request.sign);
         const std::string digest = asset::sha256_file(staged.path());
         const auto size = std::filesystem::file_size(staged.path());
         staged.commit();

@@ -82,6 +82,7 @@ Json with_stiffness(Json row, const Json& feel) {
 
 Json asset_json(const std::filesystem::path& asset) {
     const Case patient_case = asset::read_asset(asset);
+    const auto signer = asset::signer_of(asset);
     Json bodies = Json::array(), regions = Json::array(), certificates = Json::array(), felt = Json::array();
     for (const RigidBody& body : patient_case.rigid_bodies)
         bodies.push_back(with_stiffness(row_of(body), nullptr));
@@ -98,6 +99,7 @@ Json asset_json(const std::filesystem::path& asset) {
             {"certificates", certificates},
             {"felt", felt},
             {"scan", stages::scan_json(patient_case.scan)},
+            {"signed_by", signer ? Json(*signer) : Json()},
             {"haptics", cli::record_json(haptic_fields, patient_case.haptics)},
             {"provenance", provenance_of(patient_case.provenance)}};
 }

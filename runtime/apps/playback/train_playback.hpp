@@ -23,6 +23,8 @@ struct PlaybackOptions {
 /// What else of that command line counts while a recording is shown.
 struct PlaybackWindow {
     std::filesystem::path asset;
+    std::vector<std::string>
+        trusted_keys;                  ///< one of which must have signed it; none: no signature is asked for
     std::pair<int, int> size;          ///< pixels
     double seconds = 0;                ///< s, after which it closes; 0: when told to
     std::filesystem::path screenshot;  ///< at the end; empty: none

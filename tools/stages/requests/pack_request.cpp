@@ -105,6 +105,8 @@ void declare(cli::Command& command, PackRequest& request) {
     command.input("--notes", request.notes,
                   "result of import or segment (.json) whose notes the asset keeps; repeat for more");
     command.input("--provenance", request.provenance, "what made the parts (.json)");
+    command.input("--sign", request.sign,
+                  "private key (Ed25519, PEM) to sign the asset with, for those who load what they trust");
     command.output("-o,--output", request.output, "asset (.vtkhdf)").required();
 }
 

@@ -45,6 +45,7 @@ struct PackRequest {
     std::string name;  ///< of the case
     std::vector<BodyFiles> rigid, deformable;
     HapticSettings haptics;
+    std::filesystem::path sign;  ///< private key (PEM); empty: the asset is not signed
     std::filesystem::path scan;  ///< the volume that the bodies were made from, for the eye; may be empty
     std::vector<DrawnColour> colours;
     std::vector<NamedFile> mesh_results;
