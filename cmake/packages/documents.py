@@ -5,6 +5,7 @@
 The copyright file sums up the SPDX lines of the folders that the package is compiled from.
 """
 import argparse
+import email.utils
 import gzip
 import os
 import re
@@ -19,6 +20,8 @@ from docs.generator import commands, manual  # noqa: E402
 SPDX_LINE = re.compile(rb"SPDX-License-Identifier: (\S+)")
 # SPDX's name -> Debian's, and its file of the text.
 DEBIAN = {"Apache-2.0": ("Apache-2.0", "Apache-2.0"), "GPL-3.0-or-later": ("GPL-3+", "GPL-3")}
+MAINTAINER = "The Palpate authors <maintainers@palpate.invalid>"
+AUTHORS = "2026 the Palpate authors"
 HEAD = """Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
 Upstream-Name: Palpate
 Upstream-Contact: The Palpate authors
@@ -55,10 +58,24 @@ def copyright_file(sources):
     text = HEAD
     for licence, names in sorted(by_licence.items()):
         files = "\n ".join(names)
-        text += f"\nFiles: {files}\nCopyright: The Palpate authors\nLicense: {DEBIAN[licence][0]}\n"
+        text += f"\nFiles: {files}\nCopyright: {AUTHORS}\nLicense: {DEBIAN[licence][0]}\n"
     for licence in sorted(by_licence):
         short, file = DEBIAN[licence]
         text += f"\nLicense: {short}\n The whole text is in /usr/share/common-licenses/{file}.\n"
+    return text
+
+
+def changelog(version):
+    """CHANGELOG.md as Debian writes one; what is not released yet is the version that is packed."""
+    path = ROOT / "CHANGELOG.md"
+    date = email.utils.formatdate(int(os.environ.get("SOURCE_DATE_EPOCH", path.stat().st_mtime)))
+    text = ""
+    for release in re.split(r"^## ", path.read_text(), flags=re.MULTILINE)[1:]:
+        title, _, body = release.partition("\n")
+        number, suite = (version, "UNRELEASED") if title == "Unreleased" else (title.split()[0], "bookworm")
+        lines = [re.sub(r"^### (.*)", r"[ \1 ]", line).replace("- ", "* ", line.startswith("- ")) for line in body.strip().splitlines()]
+        changes = "\n".join(f"  {line}".rstrip() for line in lines)
+        text += f"palpate ({number}) {suite}; urgency=medium\n\n{changes}\n\n -- {MAINTAINER}  {date}\n\n"
     return text
 
 
@@ -71,13 +88,14 @@ def write_packed(path, text):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("package")
+    parser.add_argument("version")
     parser.add_argument("--share", type=Path, required=True, help="folder to write below")
     parser.add_argument("--programs", type=Path, required=True, help="folder of all programs")
     parser.add_argument("--sources", nargs="+", required=True, help="folders that the package is compiled from")
     parser.add_argument("--commands", nargs="*", default=[], help="programs in the package")
     arguments = parser.parse_args()
     documents = arguments.share / "doc" / arguments.package
-    write_packed(documents / "changelog.gz", (ROOT / "CHANGELOG.md").read_text())
+    write_packed(documents / "changelog.gz", changelog(arguments.version))
     (documents / "copyright").write_text(copyright_file(arguments.sources))
     for program in arguments.commands:
         page = manual.page(ROOT, arguments.programs, program)
