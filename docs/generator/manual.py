@@ -71,8 +71,8 @@ def page_of_command(programs, program):
 
 
 def page_of_palpate(root, programs):
-    """Of the program that runs the commands: all of them, in whichever package they come."""
-    names = commands.command_names(root)
+    """Of the program that runs the commands: all that are built, in whichever package they come."""
+    names = [name for name in commands.command_names(root) if (programs / f"palpate-{name}").exists()]
     listed = [line for name in names for line in (
         ".TP", f"{bold(f'palpate {name}')}", plain(commands.help_of(programs, name).summary.rstrip(".") + "."))]
     of_all = commands.help_of(programs, names[0]).notes.rpartition("\n\n")[2]  # on units and exit codes
