@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# `cpack` in a build folder makes a Debian package of each install component, and a list of all that they are and stand on
-# (SPDX). A file is installed for one component, so no two packages own one. docs/packages.md tells more.
+# `cpack` in a build folder makes a Debian package of each install component, and a bill of all that they are and stand
+# on (SPDX). A file is installed for one component, so no two packages own one. docs/packages.md tells more.
 set(CPACK_GENERATOR DEB)
 set(CPACK_VERBATIM_VARIABLES ON)
 set(CPACK_PACKAGE_NAME palpate)
@@ -26,8 +26,8 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 function(palpate_package component)
     cmake_parse_arguments(arg "" "NAME;SUMMARY;DESCRIPTION;SECTION" "SOURCES;DEPENDS;RECOMMENDS;SUGGESTS" ${ARGN})
     get_property(commands GLOBAL PROPERTY PALPATE_COMMANDS_OF_${component})
-    string(JOIN "\" \"" words ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/cmake/packages/documents.py ${arg_NAME} ${PROJECT_VERSION}
-           --programs ${CMAKE_BINARY_DIR}/bin --sources ${arg_SOURCES} --commands ${commands})
+    string(JOIN "\" \"" words ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/cmake/packages/documents.py ${arg_NAME}
+           ${PROJECT_VERSION} --programs ${CMAKE_BINARY_DIR}/bin --sources ${arg_SOURCES} --commands ${commands})
     install(CODE "execute_process(COMMAND \"${words}\" --share \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/share\"
                                   COMMAND_ERROR_IS_FATAL ANY)" COMPONENT ${component})
     string(TOUPPER ${component} COMPONENT)
@@ -66,6 +66,6 @@ if(PALPATE_TOOLS)
         DESCRIPTION "Segments a volume, fills organs with tetrahedra, condenses their stiffness
 into one file, checks and reports it, for one patient or for many."
         DEPENDS "${same_runtime}" python3
-        RECOMMENDS snakemake xvfb libgl1-mesa-dri SUGGESTS palpate-trainer slurm-client)
+        RECOMMENDS snakemake xvfb SUGGESTS palpate-trainer slurm-client)
 endif()
 include(CPack)

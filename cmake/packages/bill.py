@@ -14,11 +14,13 @@ import subprocess
 import sys
 import uuid
 from pathlib import Path
+from urllib.parse import quote
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 sys.dont_write_bytecode = True
 import debian  # noqa: E402
 
+AUTHORS = "Organization: The Palpate authors"
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -28,6 +30,10 @@ def identifier(name):
 
 def relation(one, kind, other):
     return {"spdxElementId": identifier(one), "relationshipType": kind, "relatedSpdxElement": identifier(other)}
+
+
+def utc(second):
+    return datetime.datetime.fromtimestamp(second, datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
 
 
 def described(control, licence, supplier, **more):
@@ -43,15 +49,16 @@ def of_debian(control, licences):
     source = control.get("Source", name).partition(" ")[0]
     file = Path(f"/usr/share/doc/{name}/copyright")
     licence = licences.of(source, file.read_text(errors="replace")) if file.exists() else "NOASSERTION"
-    purl = f"pkg:deb/debian/{name}@{control['Version'].replace(':', '%3A').replace('+', '%2B')}?arch={control['Architecture']}"
+    purl = f"pkg:deb/debian/{quote(name)}@{quote(control['Version'])}?arch={control['Architecture']}"
     return described(control, licence, "Organization: Debian", externalRefs=[
         {"referenceCategory": "PACKAGE-MANAGER", "referenceType": "purl", "referenceLocator": purl}])
 
 
 def of_ours(archive, control, licences):
     text = debian.in_package(archive, f"usr/share/doc/{control['Package']}/copyright")
-    return described(control, licences.of("palpate", text), "Organization: The Palpate authors", packageFileName=archive.name,
-                     checksums=[{"algorithm": "SHA256", "checksumValue": hashlib.sha256(archive.read_bytes()).hexdigest()}])
+    digest = hashlib.sha256(archive.read_bytes()).hexdigest()
+    return described(control, licences.of("palpate", text), AUTHORS, packageFileName=archive.name,
+                     checksums=[{"algorithm": "SHA256", "checksumValue": digest}])
 
 
 def build_packages():
@@ -84,27 +91,26 @@ def bill(archives):
     licences = debian.Licences()
     ours = {}
     for archive in archives:
-        control = debian.stanzas(subprocess.run(["dpkg-deb", "-f", archive], check=True, capture_output=True, text=True).stdout)[0]
+        told = subprocess.run(["dpkg-deb", "-f", archive], check=True, capture_output=True, text=True).stdout
+        control = debian.stanzas(told)[0]
         ours[control["Package"]] = (archive, control)
     known = debian.installed() | {name: control for name, (_, control) in ours.items()}
     needed = dependencies(ours, known)
     built_with = [name for name in build_packages() if name in known]
     version = next(iter(ours.values()))[1]["Version"]
-    packages = [described({"Package": "palpate", "Version": version}, "Apache-2.0 AND GPL-3.0-or-later",
-                          "Organization: The Palpate authors")]
+    packages = [described({"Package": "palpate", "Version": version}, "Apache-2.0 AND GPL-3.0-or-later", AUTHORS)]
     packages += [of_ours(*ours[name], licences) if name in ours else of_debian(known[name], licences)
                  for name in sorted({*needed, *built_with})]
-    relations = [{"spdxElementId": "SPDXRef-DOCUMENT", "relationshipType": "DESCRIBES", "relatedSpdxElement": identifier(name)}
-                 for name in sorted(ours)]
+    relations = [relation("DOCUMENT", "DESCRIBES", name) for name in sorted(ours)]
     relations += [relation(name, "GENERATED_FROM", "palpate") for name in sorted(ours)]
     relations += [relation(name, "BUILD_DEPENDENCY_OF", "palpate") for name in built_with]
     relations += [relation(name, "DEPENDS_ON", other) for name in sorted(needed) for other in needed[name]]
     second = int(os.environ.get("SOURCE_DATE_EPOCH", max(archive.stat().st_mtime for archive in archives)))
     digest = hashlib.sha256(json.dumps(packages).encode()).hexdigest()
-    return {"spdxVersion": "SPDX-2.3", "dataLicense": "CC0-1.0", "SPDXID": "SPDXRef-DOCUMENT", "name": f"palpate-{version}",
+    return {"spdxVersion": "SPDX-2.3", "dataLicense": "CC0-1.0", "SPDXID": identifier("DOCUMENT"),
+            "name": f"palpate-{version}",
             "documentNamespace": f"urn:uuid:{uuid.uuid5(uuid.NAMESPACE_OID, digest)}",
-            "creationInfo": {"created": datetime.datetime.fromtimestamp(second, datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"),
-                             "creators": ["Organization: The Palpate authors", f"Tool: palpate-bill-{version}"]},
+            "creationInfo": {"created": utc(second), "creators": [AUTHORS, f"Tool: palpate-bill-{version}"]},
             "packages": packages, "relationships": relations,
             "hasExtractedLicensingInfos": [{"licenseId": name, "name": name, "extractedText": text.strip()}
                                            for name, text in sorted(licences.texts.items())]}

@@ -4,10 +4,10 @@ import re
 import subprocess
 from pathlib import Path
 
-# Debian's short names, in lower case, where they are not SPDX's.
-SPDX = {"expat": "MIT", "artistic": "Artistic-1.0"}
-SPDX |= {name.lower(): name for name in ("MIT", "BSD-2-Clause", "BSD-3-Clause", "ISC", "Zlib", "Apache-2.0", "BSL-1.0", "CC0-1.0", "curl",
-                                         "FTL", "MPL-1.1", "MPL-2.0", "X11", "FSFAP", "FSFUL", "FSFULLR")}
+# Debian's short names, which it writes in lower and upper case, and SPDX's.
+SAME = ("MIT", "BSD-2-Clause", "BSD-3-Clause", "ISC", "Zlib", "Apache-2.0", "BSL-1.0", "CC0-1.0", "curl", "FTL",
+        "MPL-1.1", "MPL-2.0", "X11", "FSFAP", "FSFUL", "FSFULLR")
+SPDX = {name.lower(): name for name in SAME} | {"expat": "MIT", "artistic": "Artistic-1.0"}
 GNU = re.compile(r"(a?gpl|lgpl|gfdl)-(\d)(\.\d)?(\+?)")
 
 
@@ -19,15 +19,16 @@ def stanzas(text):
 
 def installed():
     """{name: its stanza} of this machine's packages, by what they provide as well."""
-    status = [each for each in stanzas(Path("/var/lib/dpkg/status").read_text()) if each["Status"].endswith(" installed")]
+    every = stanzas(Path("/var/lib/dpkg/status").read_text())
+    status = [each for each in every if each["Status"].endswith(" installed")]
     provided = {name: each for each in status for name, _ in relations(each.get("Provides", ""))}
     return provided | {each["Package"]: each for each in status}
 
 
 def relations(field):
     """[(name, alternatives)] of a field such as Depends; the versions are left out."""
-    clauses = [[re.match(r"[\w.+-]+", word.strip())[0] for word in clause.split("|")] for clause in field.split(",") if clause.strip()]
-    return [(names[0], names[1:]) for names in clauses]
+    clauses = (re.findall(r"(?:^|\|)\s*([\w.+-]+)", clause) for clause in field.split(","))
+    return [(names[0], names[1:]) for names in clauses if names]
 
 
 def in_package(archive, path):

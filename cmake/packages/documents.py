@@ -73,8 +73,9 @@ def changelog(version):
     for release in re.split(r"^## ", path.read_text(), flags=re.MULTILINE)[1:]:
         title, _, body = release.partition("\n")
         number, suite = (version, "UNRELEASED") if title == "Unreleased" else (title.split()[0], "bookworm")
-        lines = [re.sub(r"^### (.*)", r"[ \1 ]", line).replace("- ", "* ", line.startswith("- ")) for line in body.strip().splitlines()]
-        changes = "\n".join(f"  {line}".rstrip() for line in lines)
+        marked = re.sub(r"^### (.*)", r"[ \1 ]", body.strip(), flags=re.MULTILINE)
+        marked = re.sub(r"^- ", "* ", marked, flags=re.MULTILINE)
+        changes = "\n".join(f"  {line}".rstrip() for line in marked.splitlines())
         text += f"palpate ({number}) {suite}; urgency=medium\n\n{changes}\n\n -- {MAINTAINER}  {date}\n\n"
     return text
 

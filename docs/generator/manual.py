@@ -47,10 +47,10 @@ def options(listed):
 
 def head(program, programs):
     """The title line, with the program's version and its own date."""
-    version = subprocess.run([programs / program, "--version"], capture_output=True, text=True, check=True).stdout.split()[1]
+    told = subprocess.run([programs / program, "--version"], capture_output=True, text=True, check=True).stdout
     second = int(os.environ.get("SOURCE_DATE_EPOCH", (programs / program).stat().st_mtime))
     day = datetime.datetime.fromtimestamp(second, datetime.timezone.utc).date()
-    return f'.TH {plain(program.upper())} 1 {day} "Palpate {version}" Palpate'
+    return f'.TH {plain(program.upper())} 1 {day} "{told.strip().title()}" Palpate'
 
 
 def sections(*parts):
@@ -78,9 +78,9 @@ def page_of_palpate(root, programs):
     of_all = commands.help_of(programs, names[0]).notes.rpartition("\n\n")[2]  # on units and exit codes
     return head("palpate", programs) + "\n" + sections(
         ("NAME", [r"palpate \- turns a patient's CT or MRI into an organ that a hand can feel"]),
-        ("SYNOPSIS", [r"\fBpalpate\fR \fIcommand\fR [\fIoptions\fR]", ".br", r"\fBpalpate\fR \fIcommand\fR \fB\-\-help\fR"]),
-        ("DESCRIPTION", ["Runs a command, each of which is a program with a manual page of its own. Those that are not",
-                         "installed come with the packages palpate\\-tools and palpate\\-trainer.", ".PP", plain(of_all)]),
+        ("SYNOPSIS", [r"\fBpalpate\fR \fIcommand\fR [\fIoptions\fR]"]),
+        ("DESCRIPTION", ["Runs a command. Each is a program with a manual page of its own; those that are not",
+                         r"installed come with the packages palpate\-tools and palpate\-trainer.", ".PP", plain(of_all)]),
         ("COMMANDS", listed),
         ("SEE ALSO", [", ".join(rf"\fBpalpate\-{name}\fR(1)" for name in names)]))
 

@@ -11,15 +11,18 @@ NEEDED = ("debootstrap", "unshare", "chroot")
 # Mounts of its own, which end with the command.
 INSIDE = """root=$1; mount --bind "$2" "$root/var/cache/apt/archives" && mount -t proc proc "$root/proc" || exit 1
 shift 2; exec chroot "$root" "$@" """
-ENVIRONMENT = {"PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "HOME": "/root", "LC_ALL": "C.UTF-8", "DEBIAN_FRONTEND": "noninteractive"}
+ENVIRONMENT = {"PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "HOME": "/root", "LC_ALL": "C.UTF-8",
+               "DEBIAN_FRONTEND": "noninteractive"}
 # What apt, dpkg and ldconfig keep of themselves, and what is no disk.
-NOT_COUNTED = {"proc", "sys", "dev", "run", "tmp", "srv", "root", "var/cache", "var/log", "var/lib/apt", "var/lib/dpkg", "etc/ld.so.cache"}
+NOT_COUNTED = {"proc", "sys", "dev", "run", "tmp", "srv", "root", "var/cache", "var/log", "var/lib/apt",
+               "var/lib/dpkg", "etc/ld.so.cache"}
 
 
 def sources():
     """[(address, suite)] of Debian 12 in this machine's apt."""
-    listed = subprocess.run(["apt-get", "indextargets", "--format", "$(LABEL) $(REPO_URI) $(CODENAME)", "Created-By: Packages"],
-                            capture_output=True, text=True, check=True).stdout
+    listed = subprocess.run(
+        ["apt-get", "indextargets", "--format", "$(LABEL) $(REPO_URI) $(CODENAME)", "Created-By: Packages"],
+        capture_output=True, text=True, check=True).stdout
     lines = [line.split() for line in dict.fromkeys(listed.splitlines()) if line.startswith("Debian")]
     return [(address, suite) for _, address, suite in lines if suite.startswith("bookworm")]
 
@@ -42,8 +45,10 @@ def make_bare():
         address, suite = next(each for each in sources() if each[1] == "bookworm")
         started = CACHE / "started"
         shutil.rmtree(started, ignore_errors=True)
-        subprocess.run(["debootstrap", "--variant=minbase", suite, started, address], check=True, stdout=subprocess.DEVNULL)
-        (started / "etc/apt/sources.list").write_text("".join(f"deb {address} {suite} main\n" for address, suite in sources()))
+        subprocess.run(["debootstrap", "--variant=minbase", suite, started, address], check=True,
+                       stdout=subprocess.DEVNULL)
+        lines = (f"deb {address} {suite} main\n" for address, suite in sources())
+        (started / "etc/apt/sources.list").write_text("".join(lines))
         started.rename(BARE)
     bare = DebianRoot(BARE)
     bare.run("apt-get", "update", "-q")
@@ -62,7 +67,8 @@ class DebianRoot:
 
     def run(self, *command):
         """What a command in it prints. Throws CalledProcessError after showing all that it said."""
-        inside = ["unshare", "--mount", "--pid", "--fork", "--kill-child", "sh", "-c", INSIDE, "sh", self.folder, FETCHED]
+        inside = ["unshare", "--mount", "--pid", "--fork", "--kill-child",
+                  "sh", "-c", INSIDE, "sh", self.folder, FETCHED]
         ran = subprocess.run([*inside, *map(str, command)], env=ENVIRONMENT, text=True, stdin=subprocess.DEVNULL,
                              stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         if ran.returncode != 0:
@@ -72,16 +78,16 @@ class DebianRoot:
 
     def install(self, *packages):
         """Names, or archives of this machine, with what they depend on and recommend."""
-        for archive in (each for each in packages if isinstance(each, pathlib.Path)):
-            self.take(archive)
-        self.run("apt-get", "install", "-y", "-q", *(f"/srv/{each.name}" if isinstance(each, pathlib.Path) else each for each in packages))
+        self.take(*(each for each in packages if isinstance(each, pathlib.Path)))
+        names = (f"/srv/{each.name}" if isinstance(each, pathlib.Path) else each for each in packages)
+        self.run("apt-get", "install", "-y", "-q", *names)
 
     def take(self, *files):
         for file in files:
             shutil.copy2(file, self.folder / "srv")
 
     def purge(self):
-        """Ours, and with them what came for their sake, also where something that was there recommends or suggests it."""
+        """Ours, and what came for their sake, also where something that was there recommends or suggests it."""
         ours = [name for name in self.packages() if "palpate" in name]
         self.run("apt-get", "purge", "-y", "-q", *ours)
         self.run("apt-get", "autoremove", "--purge", "-y", "-q", "-o", "APT::AutoRemove::RecommendsImportant=0",

@@ -12,6 +12,7 @@ SOURCE = pathlib.Path(os.environ["PALPATE_SOURCE"])
 BIN = pathlib.Path(os.environ["PALPATE_BIN"])
 
 
+@unittest.skipUnless(all(map(shutil.which, ("man", "mandoc"))), "PALPATE: man-db or mandoc is missing")
 class Documents(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -19,16 +20,17 @@ class Documents(unittest.TestCase):
         cls.addClassCleanup(temporary.cleanup)
         cls.share = pathlib.Path(temporary.name)
         cls.programs = sorted(path.name for path in BIN.glob("palpate*"))
-        subprocess.run([SOURCE / "cmake/packages/documents.py", "palpate-tools", "1.2.3", "--share", cls.share, "--programs", BIN,
-                        "--sources", "formats", "tools", "--commands", *cls.programs], check=True)
+        subprocess.run([SOURCE / "cmake/packages/documents.py", "palpate-tools", "1.2.3", "--share", cls.share,
+                        "--programs", BIN, "--sources", "formats", "tools", "--commands", *cls.programs], check=True)
 
     def page(self, program):
         return gzip.decompress((self.share / f"man/man1/{program}.1.gz").read_bytes()).decode()
 
     def shown(self, program):
         """A page as a terminal shows it, without its warnings, and those."""
-        shown = subprocess.run(["man", "--warnings", "-l", "-"], input=self.page(program), capture_output=True, text=True,
-                               env=os.environ | {"LC_ALL": "C.UTF-8", "MANWIDTH": "100"})
+        shown = subprocess.run(
+            ["man", "--warnings", "-l", "-"], input=self.page(program), capture_output=True, text=True,
+            env=os.environ | {"LC_ALL": "C.UTF-8", "MANWIDTH": "100"})
         return shown.stdout, shown.stderr
 
     def test_every_program_has_a_page_that_groff_takes_without_a_warning(self):
@@ -37,16 +39,17 @@ class Documents(unittest.TestCase):
             self.assertEqual(warnings, "", program)
             self.assertRegex(shown, rf"NAME\n +{program} +- +\w")
 
-    @unittest.skipUnless(shutil.which("mandoc"), "PALPATE: mandoc is missing")
     def test_every_page_is_one_that_mandoc_takes_without_a_warning(self):
         for program in self.programs:
-            told = subprocess.run(["mandoc", "-Tlint", "-W", "warning"], input=self.page(program), capture_output=True, text=True)
+            told = subprocess.run(["mandoc", "-Tlint", "-W", "warning"], input=self.page(program), capture_output=True,
+                                  text=True)
             self.assertEqual((told.returncode, told.stdout), (0, ""), program)
 
     def test_a_page_has_every_option_of_the_help_and_palpate_1_every_command(self):
         for program in self.programs[1:]:
             told = subprocess.run([BIN / program, "--help"], capture_output=True, text=True, check=True).stdout
-            named = [word for line in told.splitlines() if line.startswith("  -") for word in line.split()[0].split(",")]
+            names = [line.split()[0] for line in told.splitlines() if line.startswith("  -")]
+            named = ",".join(names).split(",")
             shown = self.shown(program)[0]
             self.assertGreater(len(named), 5)
             self.assertEqual([name for name in named if name not in shown], [], program)
@@ -63,7 +66,8 @@ class Documents(unittest.TestCase):
 
     def test_dpkg_reads_the_changelog(self):
         changelog = gzip.decompress((self.share / "doc/palpate-tools/changelog.gz").read_bytes()).decode()
-        told = subprocess.run(["dpkg-parsechangelog", "-l", "-", "-S", "Version"], input=changelog, capture_output=True, text=True, check=True)
+        told = subprocess.run(["dpkg-parsechangelog", "-l", "-", "-S", "Version"], input=changelog,
+                              capture_output=True, text=True, check=True)
         self.assertEqual((told.stdout.strip(), told.stderr), ("1.2.3", ""))
 
 
