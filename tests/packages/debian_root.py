@@ -8,9 +8,10 @@ import subprocess
 CACHE = pathlib.Path(os.environ["PALPATE_BUILD"]) / "debian"  # the bare root and what apt fetched, kept from run to run
 BARE, FETCHED = CACHE / "bare", CACHE / "fetched"
 NEEDED = ("debootstrap", "unshare", "chroot")
-# Mounts of its own, which end with the command.
+# Mounts and processes of its own, which end with the command. The shell stays, for xvfb-run never hears of its server
+# where it is process 1.
 INSIDE = """root=$1; mount --bind "$2" "$root/var/cache/apt/archives" && mount -t proc proc "$root/proc" || exit 1
-shift 2; exec chroot "$root" "$@" """
+shift 2; chroot "$root" "$@"; exit"""
 ENVIRONMENT = {"PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "HOME": "/root", "LC_ALL": "C.UTF-8",
                "DEBIAN_FRONTEND": "noninteractive"}
 # What apt, dpkg and ldconfig keep of themselves, and what is no disk.
@@ -70,7 +71,7 @@ class DebianRoot:
         inside = ["unshare", "--mount", "--pid", "--fork", "--kill-child",
                   "sh", "-c", INSIDE, "sh", self.folder, FETCHED]
         ran = subprocess.run([*inside, *map(str, command)], env=ENVIRONMENT, text=True, stdin=subprocess.DEVNULL,
-                             stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=900)
         if ran.returncode != 0:
             print(*command, ran.stdout[-6000:], ran.stderr[-6000:], sep="\n")
             ran.check_returncode()
