@@ -78,11 +78,11 @@ class DebianRoot:
             ran.check_returncode()
         return ran.stdout
 
-    def install(self, *packages):
-        """Names, or archives of this machine, with what they depend on and recommend."""
+    def install(self, *packages, recommended=True):
+        """Names, or archives of this machine, with what they depend on and, as apt does by itself, recommend."""
         self.take(*(each for each in packages if isinstance(each, pathlib.Path)))
         names = (f"/srv/{each.name}" if isinstance(each, pathlib.Path) else each for each in packages)
-        self.run("apt-get", "install", "-y", "-q", *names)
+        self.run("apt-get", "install", "-y", "-q", "-o", f"APT::Install-Recommends={recommended}", *names)
 
     def take(self, *files):
         for file in files:

@@ -184,6 +184,7 @@ class CleanDebian(Packages):
         return {line.strip() for line in told.splitlines() if not line.startswith(" ")}
 
     def test_the_tools_build_a_case_and_a_cohort(self):
+        self.root.install("snakemake", recommended=False)  # with it come the tools of several clouds, 1 GB
         self.install("palpate-runtime", "palpate-tools")
         labels = self.scratch / "abdomen.seg.nrrd"
         output(BUILD / "tests/phantom", "abdomen", self.scratch / "abdomen.nrrd", labels)
