@@ -31,6 +31,10 @@ add_library(OpenIGTLink::OpenIGTLink UNKNOWN IMPORTED)
 set_target_properties(OpenIGTLink::OpenIGTLink PROPERTIES IMPORTED_LOCATION "${PALPATE_OPENIGTLINK_LIBRARY}"
     INTERFACE_INCLUDE_DIRECTORIES "${PALPATE_OPENIGTLINK_INCLUDE}")
 
+# Python: writes manual pages and copyright files, runs tests. Debian's own interpreter: it sees python3-h5py.
+find_program(Python3_EXECUTABLE python3 PATHS /usr/bin NO_DEFAULT_PATH)
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+
 if(PALPATE_TOOLS)
     # ITK: the reference implementation of volume reading, DICOM geometry and segmentation filters.
     find_package(ITK 5.2 REQUIRED COMPONENTS
@@ -88,9 +92,6 @@ endif()
 if(PALPATE_TESTS)
     find_package(GTest REQUIRED)
     include(GoogleTest)
-    # Debian's own interpreter: it sees python3-h5py.
-    find_program(Python3_EXECUTABLE python3 PATHS /usr/bin NO_DEFAULT_PATH)
-    find_package(Python3 REQUIRED COMPONENTS Interpreter)
     if(DEFINED ENV{PALPATE_DATA})
         set(palpate_data_default "$ENV{PALPATE_DATA}")
     else()

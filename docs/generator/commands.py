@@ -98,16 +98,17 @@ def cell(text):
 
 
 def meaning(option):
+    """What an option does, and with which others."""
     needs = option.needs.replace("Excludes:", "not with").replace("Needs:", "only with")
     needs = re.sub(r"(?<=\w) (?=--)", ", ", re.sub(r"\s+(not with|only with)", r"; \1", needs)).replace("with, ", "with ")
-    return cell("; ".join(part for part in (option.meaning, needs) if part))
+    return "; ".join(part for part in (option.meaning, needs) if part)
 
 
 def option_table(options):
     lines = ["| option | takes | default | meaning |", "|---|---|---|---|"]
     for option in options:
         default = option.default if option.default == "required" else f"`{option.default}`" if option.default else "–"
-        lines.append(f"| {', '.join(f'`{name}`' for name in option.names)} | {cell(option.takes)} | {default} | {meaning(option)} |")
+        lines.append(f"| {', '.join(f'`{name}`' for name in option.names)} | {cell(option.takes)} | {default} | {cell(meaning(option))} |")
     return lines
 
 
