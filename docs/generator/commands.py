@@ -9,9 +9,9 @@ from collections import namedtuple
 
 COLUMN = 30  # where the help's descriptions begin
 WIDTH = 110  # of notes
-# Commands whose examples need no files of the reader's; the others' options are held against the programs by house.docs_commands.
+# Commands whose examples need no files of the reader's.
 RUN = ("tissues",)
-NOT_RUN = "an example with files of the reader's"
+NOT_RUN = "an example with files of the reader's; house.docs_commands holds its options against the program"
 KINDS = {"TEXT": "text", "FLOAT": "number", "INT": "integer", "UINT": "integer from 0 on",
          "FLOAT:POSITIVE": "number above 0", "FLOAT:NONNEGATIVE": "number from 0 on", "INT:POSITIVE": "integer above 0"}
 Option = namedtuple("Option", "names takes default needs meaning")

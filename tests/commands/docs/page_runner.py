@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs the blocks of a page in order, in one folder, with the built programs on the PATH."""
+import collections
 import os
 import pathlib
 import shutil
@@ -7,6 +8,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 sys.path.insert(0, f"{os.environ['PALPATE_SOURCE']}/tests/commands")
@@ -33,6 +35,7 @@ class Pages:
         self.root, self.slow = root, slow
         self.home = pathlib.Path(tempfile.mkdtemp(prefix="pages."))
         self.done = {}  # page -> its folder
+        self.locks = collections.defaultdict(threading.Lock)  # page -> held while it runs
         self.ran, self.not_run = [], []  # blocks; (block, reason)
 
     def close(self):
@@ -45,13 +48,15 @@ class Pages:
                        "XDG_DATA_HOME": str(self.home / ".local/share")}
 
     def folder_of(self, page):
-        """Where the page `page` (a path below the source) has run. Throws Wrong."""
-        if page in self.done:
-            return self.done[page]
+        """Where the page `page` (a path below the source) has run, perhaps by another thread. Throws Wrong."""
+        with self.locks[page]:
+            return self.done.get(page) or self.run_page(page)
+
+    def run_page(self, page):
         text = (self.root / page).read_text()
         folder = self.home / page.replace("/", "_").removesuffix(".md")
         if start := page_it_starts_from(text):
-            shutil.copytree(self.folder_of(os.path.normpath(f"{os.path.dirname(page)}/{start}")), folder)
+            shutil.copytree(self.folder_of(os.path.normpath(os.path.join(os.path.dirname(page), start))), folder)
         else:
             folder.mkdir()
         for block in blocks_of(page, text):
@@ -103,15 +108,17 @@ class Pages:
         started = time.monotonic()
         with XServer("1280x720") as server:
             display = {"DISPLAY": server.environment["DISPLAY"]}
-            with open(self.home / "window.log", "w+") as log:
+            with open(f"{folder}.window.log", "w") as log:
                 process = subprocess.Popen(["bash", "-euc", line], cwd=folder, env=self.environment() | display, stdin=subprocess.DEVNULL,
                                            stdout=log, stderr=subprocess.STDOUT, start_new_session=True)
                 try:
-                    found = subprocess.run(["timeout", str(WINDOW_S), "xdotool", "search", "--sync", "--onlyvisible", "--name", "[Pp]alpate"],
-                                           env=self.environment() | display, capture_output=True, text=True)
-                    if found.returncode or process.poll() is not None:
+                    window, until = "", time.monotonic() + WINDOW_S
+                    while not window and process.poll() is None and time.monotonic() < until:
+                        time.sleep(0.3)
+                        window = subprocess.run(["xdotool", "search", "--onlyvisible", "--name", "[Pp]alpate"], env=self.environment() | display,
+                                                capture_output=True, text=True).stdout.partition("\n")[0]
+                    if not window:
                         raise Wrong(f"{block}: no window opens:\n{line}\n{pathlib.Path(log.name).read_text()[-2000:]}")
-                    window = found.stdout.split()[0]
                     time.sleep(2)
                     until = time.monotonic() + WINDOW_S
                     while process.poll() is None and time.monotonic() < until:

@@ -4,6 +4,7 @@ import os
 import pathlib
 import tempfile
 import unittest
+from concurrent.futures import ThreadPoolExecutor
 
 from page_blocks import BadPage, blocks_of, missing_line, same_line
 from page_runner import SOURCE, Pages, Wrong
@@ -20,17 +21,22 @@ class Docs(unittest.TestCase):
     def run_pages(self, names, slow=False):
         runner = Pages(slow=slow)
         self.addCleanup(runner.close)
-        for page in names:
-            with self.subTest(page):
-                try:
-                    runner.folder_of(page)
-                except (BadPage, Wrong) as error:
-                    self.fail(str(error))
-        for block in runner.ran:
+
+        def errors_of(page):
+            try:
+                runner.folder_of(page)
+            except (BadPage, Wrong) as error:
+                return [str(error)]
+            return []
+
+        with ThreadPoolExecutor(2) as pool:  # most of a block is one thread's work, or waiting for a clock
+            errors = dict.fromkeys(error for found in pool.map(errors_of, names) for error in found)
+        for block in sorted(runner.ran, key=str):
             print(f"ran: {block} in {block.seconds:.1f} s")
-        for block, reason in runner.not_run:
+        for block, reason in sorted(runner.not_run, key=lambda row: str(row[0])):
             print(f"not run: {block}: {reason}")
         print(f"{len(runner.ran)} blocks ran, {len(runner.not_run)} did not")
+        self.assertFalse(errors, "\n\n".join(errors))
         return runner
 
     def test_every_block_runs_or_says_why_not(self):
