@@ -7,7 +7,8 @@ pages.py <source folder>                reads the pages alone: length, links, pa
 pages.py <source folder> <programs>     compares commands and options in code with the programs' help
 
 A figure that somebody measured, and every percentage, stands between `<!-- figure: PLACE -->` and `<!-- /figure -->`. PLACE is a file of the
-repository, or a section of the benchmarks' page, in which the same numbers stand; a section has the command that gives them.
+repository, or `benchmarks#section` of tests/benchmarks/README.md, in which the same numbers stand; such a section has the command that
+gives them.
 """
 import functools
 import os
@@ -84,6 +85,7 @@ def false_figures(root, page, text):
     """Figures that do not stand where the page has them from, and percentages from nowhere."""
     for place, figure in FIGURE.findall(text):
         path, _, anchor = place.partition("#")
+        path = BENCHMARKS if path == "benchmarks" else path
         if not NUMBER.search(figure):
             yield f"has '{figure}' for a figure, without a number"
         if not (root / path).is_file():
