@@ -9,8 +9,8 @@ from collections import namedtuple
 
 COLUMN = 30  # where the help's descriptions begin
 WIDTH = 110  # of notes
-# Commands whose examples need no files of the reader's.
-RUN = ("tissues",)
+# Commands whose examples need nothing but what the first tutorial leaves.
+RUN = ("export", "inspect", "tissues")
 NOT_RUN = "an example with files of the reader's; house.docs_commands holds its options against the program"
 KINDS = {"TEXT": "text", "FLOAT": "number", "INT": "integer", "UINT": "integer from 0 on",
          "FLOAT:POSITIVE": "number above 0", "FLOAT:NONNEGATIVE": "number from 0 on", "INT:POSITIVE": "integer above 0"}
