@@ -1,0 +1,92 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a hand gets back that goes round on frictionless tissue: the work of a closed loop, of what was stored by pressing.
+
+    closed_loops.py ASSET [--depth MM] [--radius MM] [--places N]      (PALPATE_BIN has the programs)
+
+At places drawn evenly over the surface, where it can be touched, is no edge (normals within 70 degrees) and nothing stands opposite or
+beside, an infinitely stiff hand goes straight in, then twice round a circle in the
+plane of the surface there, in steps of 0.02 mm. The work of the second round should be nothing. Loops that leave the tissue are left out.
+"""
+import argparse
+import csv
+import os
+import pathlib
+import subprocess
+import tempfile
+
+import h5py
+import numpy as np
+
+PALPATE = pathlib.Path(os.environ.get("PALPATE_BIN", "build/release/bin")) / "palpate"
+STEP = 0.02  # mm
+
+
+def places(asset, count, circle):
+    """Points and inward normals (mm) where the surface around is free and no edge, and the tool's radius."""
+    with h5py.File(asset) as file:
+        body, radius = file["palpate/bodies/deformable/0"], float(file["palpate/haptics"].attrs["tool_radius"])
+        triangles = body["surface_nodes"][...][body["surface_triangles"][...]]
+        touchable = np.isin(triangles, body["contact_nodes"][...]).all(axis=1)
+        corners = body["rest_positions"][...][triangles]
+        rigid = np.vstack([np.zeros((0, 3)), *(other["vertices"][...] for other in file["palpate/bodies"].get("rigid", {}).values())])
+    across, middle = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), corners.mean(axis=1)
+    area = np.linalg.norm(across, axis=1)
+    outward, found = across / area[:, None], []
+    for t in np.random.default_rng(3).choice(len(area), len(area), replace=False, p=area / area.sum()):
+        around = np.linalg.norm(middle - middle[t], axis=1) < circle + radius
+        beside = np.linalg.norm(rigid - middle[t], axis=1) < 2 * (circle + radius)
+        ahead = middle[t] + outward[t] * np.linspace(2 * radius + 1, 2 * radius + 6, 6)[:, None]
+        facing = min(np.linalg.norm(middle - place, axis=1).min() for place in ahead) < radius
+        if touchable[around].all() and (outward[around] @ outward[t]).min() > 0.3 and not beside.any() and not facing:
+            found.append((middle[t], -outward[t]))
+    return found[:count], radius
+
+
+def path(point, inward, radius, depth, circle):
+    """Positions of the hand, one a tick, and where the second round begins."""
+    side = np.cross(inward, np.eye(3)[np.argmin(abs(inward))])
+    side /= np.linalg.norm(side)
+    other, steps = np.cross(inward, side), round(2 * np.pi * circle / STEP)
+    start = point - side * circle - inward * radius
+    down = [start + inward * way for way in np.arange(-2, depth, STEP)]
+    angles = np.arange(2 * steps + 1) * 2 * np.pi / steps
+    centre = point + inward * (depth - radius)
+    turn = [centre - circle * (np.cos(a) * side + np.sin(a) * other) for a in angles]
+    return np.array(down + turn), len(down), len(down) + steps
+
+
+def loop(asset, folder, positions, pressed, second):
+    """Work of the second round over the energy stored by pressing, and the largest step of force in it over the largest force."""
+    np.savetxt(folder / "hand.txt", positions, "%.6f")
+    subprocess.run([PALPATE, "touch", asset, "--script", folder / "hand.txt", "--virtual-clock", "--log", folder / "log.csv", "--quiet", "--force"],
+                   check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    with open(folder / "log.csv") as log:
+        rows = [[float(row[f"{what}_{axis}"]) for what, axis in [*(("device", f"{c}_mm") for c in "xyz"), *(("force", f"{c}_n") for c in "xyz")]]
+                for row in csv.DictReader(log)]
+    where, force = np.array(rows)[:, :3], np.array(rows)[:, 3:]
+    work = -0.5 * ((force[1:] + force[:-1]) * np.diff(where, axis=0)).sum(axis=1)  # by the hand
+    size = np.linalg.norm(force, axis=1)[second:]
+    if size.min() == 0:
+        return None
+    return abs(work[second:].sum()) / work[:pressed].sum(), np.linalg.norm(np.diff(force[second:], axis=0), axis=1).max() / size.max()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("asset", type=pathlib.Path)
+    parser.add_argument("--depth", type=float, default=1.5)
+    parser.add_argument("--radius", type=float, default=3.0, help="of the circle [mm]")
+    parser.add_argument("--places", type=int, default=24)
+    arguments = parser.parse_args()
+    chosen, tool = places(arguments.asset, arguments.places, arguments.radius)
+    with tempfile.TemporaryDirectory() as folder:
+        loops = [loop(arguments.asset, pathlib.Path(folder), *path(*place, tool, arguments.depth, arguments.radius)) for place in chosen]
+    kept = np.array([result for result in loops if result]) * 100
+    print(f"{arguments.asset.stem}: tool {tool:g} mm, {arguments.depth:g} mm deep, {len(kept)} of {len(loops)} loops stayed in contact; "
+          f"work of what was stored: median {np.median(kept[:, 0]):.2g} %, 90th percentile {np.percentile(kept[:, 0], 90):.2g} %, "
+          f"most {kept[:, 0].max():.2g} %; largest step of force: median {np.median(kept[:, 1]):.2g} %, most {kept[:, 1].max():.2g} %")
+
+
+if __name__ == "__main__":
+    main()
