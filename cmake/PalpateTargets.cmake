@@ -132,10 +132,12 @@ function(palpate_executable name)
     set_property(GLOBAL APPEND PROPERTY PALPATE_COMMANDS_OF_${CMAKE_INSTALL_DEFAULT_COMPONENT_NAME} ${name})
 endfunction()
 
-# palpate_test(<room> SOURCES ... LINKS ... [LABEL unit|realtime|slow|...] [PRECOMPILED set]): GoogleTest cases, each a
-# ctest named <room>.<Suite>.<case>. PALPATE_DATA and PALPATE_BIN reach the test through its environment.
+# palpate_test(<room> SOURCES ... LINKS ... [LABEL unit|realtime|slow|...] [PRECOMPILED set] [THREADS]): GoogleTest cases,
+# each a ctest named <room>.<Suite>.<case>. PALPATE_DATA and PALPATE_BIN reach the test through its environment. THREADS:
+# more than one runs in it, so ThreadSanitizer has something to find; its preset has these alone, target `thread_tests`.
+add_custom_target(thread_tests)
 function(palpate_test room)
-    cmake_parse_arguments(arg "" "LABEL;TIMEOUT;PRECOMPILED" "SOURCES;LINKS" ${ARGN})
+    cmake_parse_arguments(arg "THREADS" "LABEL;TIMEOUT;PRECOMPILED" "SOURCES;LINKS" ${ARGN})
     if(NOT arg_PRECOMPILED)
         set(arg_PRECOMPILED tests)
     endif()
@@ -145,6 +147,9 @@ function(palpate_test room)
     if(NOT arg_TIMEOUT)
         set(arg_TIMEOUT 120)
     endif()
+    if("thread" IN_LIST PALPATE_SANITIZERS AND NOT arg_THREADS)
+        return()
+    endif()
     string(REPLACE "." "_" target "test_${room}")
     if(NOT arg_LABEL STREQUAL "unit")
         set(target ${target}_${arg_LABEL})
@@ -153,6 +158,9 @@ function(palpate_test room)
     target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
     target_link_libraries(${target} PRIVATE ${arg_LINKS} GTest::gtest_main palpate_house)
     palpate_reuse_precompiled(${target} ${arg_PRECOMPILED})
+    if(arg_THREADS)
+        add_dependencies(thread_tests ${target})
+    endif()
     set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
     # What watches the clock runs alone; everything else may run side by side.
     if(arg_LABEL STREQUAL "realtime")

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs what is missing, builds the release and both sanitizer presets, runs all tests but the slow ones, and
-# clang-tidy over formats and runtime.
+# Installs what is missing, builds the release and both sanitizer presets (of tsan the tests that run threads), runs all
+# tests but the slow ones, and clang-tidy over formats and runtime.
 # Closes with ctest's own summary; skipped tests are printed with their reason.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../pipelines/set_up.sh"
-set_up release asan tsan
+set_up release asan tsan:thread_tests
 cd "$root"
 # Without these two volumes the tests of the demo's cases are skipped.
 sample_data/unpack.py build/sample_data || echo "run.sh: the sample volumes could not be unpacked" >&2

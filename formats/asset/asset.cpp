@@ -67,8 +67,19 @@ Case read_case(const Hdf5File& file) {
     return patient_case;
 }
 
+std::optional<std::string> signer_of(const Hdf5File& file) {
+    if (!file.has_attribute("/palpate", "signature")) return std::nullopt;
+    const Signature signature{file.text_attribute("/palpate", "signature"),
+                              file.text_attribute("/palpate", "public_key")};
+    if (!is_signed(file.text_attribute("/palpate", "manifest_sha256"), signature))
+        throw InvalidInput(
+            {file.name(), "has a signature that is false", "", "do not use it; ask who made it"});
+    return signature.public_key;
+}
+
 // A wrong digest explains whatever else is wrong, so it is reported first.
 Case read_checked(const Hdf5File& file) {
+    static_cast<void>(signer_of(file));  // a false one is refused whoever is trusted
     auto checked = std::async(std::launch::async, [&] { file.check_digests("/palpate"); });
     try {
         Case patient_case = read_case(file);
@@ -78,16 +89,6 @@ Case read_checked(const Hdf5File& file) {
         if (checked.valid()) checked.get();
         throw;
     }
-}
-
-std::optional<std::string> signer_of(const Hdf5File& file) {
-    if (!file.has_attribute("/palpate", "signature")) return std::nullopt;
-    const Signature signature{file.text_attribute("/palpate", "signature"),
-                              file.text_attribute("/palpate", "public_key")};
-    if (!is_signed(file.text_attribute("/palpate", "manifest_sha256"), signature))
-        throw InvalidInput(
-            {file.name(), "has a signature that is false", "", "do not use it; ask who made it"});
-    return signature.public_key;
 }
 
 }  // namespace
