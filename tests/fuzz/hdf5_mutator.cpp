@@ -39,17 +39,13 @@ void put(Bytes bytes, std::size_t at, T value) {
     std::memcpy(&bytes[at], &value, sizeof(T));
 }
 
-bool spells(Bytes bytes, std::size_t at, std::string_view text) {
-    return at + text.size() <= bytes.size() && std::memcmp(&bytes[at], text.data(), text.size()) == 0;
-}
-
 // Superblock, object headers and their continuations, without their checksums, which follow them.
 class Blocks {
   public:
     explicit Blocks(Bytes file) : file_(file) {
         if (file.size() >= superblock_size + 4) found_.push_back(file.first(superblock_size));
         for (std::size_t at = 0; at + 8 < file.size(); ++at)
-            if (spells(file, at, "OHDR")) add_header(at);
+            if (file[at] == 'O' && std::memcmp(&file[at], "OHDR", 4) == 0) add_header(at);
     }
 
     const std::vector<Bytes>& found() const { return found_; }

@@ -16,6 +16,7 @@ done
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir "$work/corpus"
+export LSAN_OPTIONS=suppressions=$here/leaks_of_others.txt:print_suppressions=0
 start=$SECONDS status=0
 TMPDIR=$work "$fuzzer" -runs="$runs" -seed=1 -timeout="${TIMEOUT_S:-1}" -rss_limit_mb=2048 -malloc_limit_mb=512 -print_final_stats=1 \
     -artifact_prefix="$fuzzer-" "$work/corpus" "${folders[@]}" >"$work/log" 2>&1 || status=$?
