@@ -12,8 +12,8 @@
 namespace palpate::toml_file {
 namespace {
 
-// What no file that a person writes comes near. A full stop may nest a table in a table, which toml++ 3.3 does not
-// limit, though it takes tables down by recursion.
+// What no file that a person writes comes near. A full stop may nest a table in a table, which toml++ 3.3
+// does not limit, though it takes tables down by recursion.
 constexpr std::uintmax_t most_bytes = 1 << 20;
 constexpr std::ptrdiff_t most_full_stops = 4096;
 
@@ -24,7 +24,8 @@ std::string text_of(const std::filesystem::path& path, const std::string& next_s
     const std::string text(std::istreambuf_iterator<char>(stream), {});
     if (const auto stops = std::ranges::count(text, '.'); stops > most_full_stops)
         throw InvalidInput({path.string(), fmt::format("has {} full stops", stops),
-                            fmt::format("{} at most, for each may nest a table", most_full_stops), next_step});
+                            fmt::format("{} at most, for each may nest a table", most_full_stops),
+                            next_step});
     return text;
 }
 

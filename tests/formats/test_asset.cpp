@@ -245,7 +245,8 @@ TEST(Asset, with_a_provenance_nested_too_deeply_is_refused) {
     Case patient_case = sample::sample_case();
     const auto nested = [](int levels) {
         const auto times = static_cast<std::size_t>(levels);
-        return R"({"note": "a \" and [[[", "list": )" + std::string(times, '[') + std::string(times, ']') + "}";
+        return R"({"note": "a \" and [[[", "list": )" + std::string(times, '[') + std::string(times, ']') +
+               "}";
     };
     patient_case.provenance = nested(63);
     EXPECT_EQ(refusal([&] { write_asset(scratch / "a.vtkhdf", patient_case); }), "");

@@ -192,7 +192,23 @@ TEST(Hdf5File, objects_that_share_bytes_are_refused) {
         bytes = with_header_number(bytes, path, 76, 4096);  // its size
     }
     sample::write_bytes(scratch / "b.h5", bytes);
-    EXPECT_THAT(refusal([&] { Hdf5File(scratch / "b.h5"); }), HasSubstr("shares its bytes with other objects"));
+    EXPECT_THAT(refusal([&] { Hdf5File(scratch / "b.h5"); }),
+                HasSubstr("shares its bytes with other objects"));
+}
+
+TEST(Hdf5File, a_path_that_is_too_long_is_refused) {
+    const Scratch scratch;
+    const auto nested = [&](const char* name, int levels) {
+        Hdf5Writer writer(scratch / name);
+        std::string path;
+        for (int level = 0; level < levels; ++level) path += "/" + std::string(50, 'a');
+        writer.group(path);
+        writer.finish("/");
+    };
+    nested("a.h5", 5);  // 255 bytes
+    EXPECT_NO_THROW(Hdf5File(scratch / "a.h5"));
+    nested("b.h5", 6);
+    EXPECT_THAT(refusal([&] { Hdf5File(scratch / "b.h5"); }), HasSubstr("has a path that is too long"));
 }
 
 struct Feature {

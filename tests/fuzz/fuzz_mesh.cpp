@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Surfaces and tetrahedra, our own and others'. Every reader of a format gets every input and leaves what is not its
-// own at once.
+// Surfaces and tetrahedra, our own and others'. Every reader of a format gets every input and leaves what is
+// not its own at once.
 #include "tests/fuzz/feed.hpp"
 #include "tools/meshing/files/imported_mesh.hpp"
 #include "tools/meshing/files/mesh_files.hpp"

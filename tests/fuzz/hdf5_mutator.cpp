@@ -145,7 +145,8 @@ class Digests {
         std::vector<std::byte> places;
         if (vertices != nullptr) {
             places.assign(vertices->bytes.begin(), vertices->bytes.end());
-        } else if (values(body + "/surface_nodes") != nullptr && values(body + "/rest_positions") != nullptr) {
+        } else if (values(body + "/surface_nodes") != nullptr &&
+                   values(body + "/rest_positions") != nullptr) {
             triangles = values(body + "/surface_triangles");
             const auto nodes = values(body + "/surface_nodes")->bytes,
                        rest = values(body + "/rest_positions")->bytes;
@@ -224,8 +225,7 @@ class Mutation {
         const Hdf5Array& array = arrays[below(arrays.size())];
         const std::uint64_t rows = array.shape[0], size = array.bytes.size(), row = size / rows;
         const std::uint64_t wanted = below(2) == 0 ? below(rows + 1) : rows + 1 + below(4);
-        const auto start =
-            static_cast<std::uint64_t>(writable(array).data() - file_.data());
+        const auto start = static_cast<std::uint64_t>(writable(array).data() - file_.data());
         const Blocks blocks(file_);
         for (const Bytes block : blocks.found()) {
             const auto layout = place_of(block, start, size);
@@ -242,7 +242,8 @@ class Mutation {
   private:
     static std::size_t place_of(Bytes block, std::uint64_t address, std::uint64_t size) {
         for (std::size_t at = 0; at + 16 <= block.size(); ++at)
-            if (number_at<std::uint64_t>(block, at) == address && number_at<std::uint64_t>(block, at + 8) == size)
+            if (number_at<std::uint64_t>(block, at) == address &&
+                number_at<std::uint64_t>(block, at + 8) == size)
                 return at;
         return block.size();
     }

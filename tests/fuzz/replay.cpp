@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs a fuzz target over the files of folders, where libFuzzer is not linked; options (-...) are libFuzzer's.
+// Runs a fuzz target over the files of folders, where libFuzzer is not linked; options (-...) are
+// libFuzzer's.
 #include <algorithm>
 #include <cstdint>
 #include <iostream>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// write_fuzz_tool_samples FOLDER: small files that the readers of the tools take, in a folder for each reader.
+// write_fuzz_tool_samples FOLDER: small files that the readers of the tools take, in a folder for each
+// reader.
 #include "tests/formats/sample_case.hpp"
 #include "tools/imaging/files/image_files.hpp"
 #include "tools/meshing/files/mesh_files.hpp"

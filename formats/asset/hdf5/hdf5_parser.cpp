@@ -19,7 +19,7 @@ constexpr std::uint64_t undefined_address = ~std::uint64_t{0};
 constexpr std::size_t checksum_size = 4;
 constexpr int deepest_group = 16;
 constexpr std::size_t most_objects = 65536;
-constexpr std::size_t longest_name = 64;
+constexpr std::size_t longest_name = 64, longest_path = 255;
 constexpr std::size_t highest_rank = 8;
 
 enum Message : unsigned {  // IV.A.2
@@ -83,8 +83,8 @@ class Parser {
         return file_.subspan(static_cast<std::size_t>(address), static_cast<std::size_t>(size));
     }
 
-    // As extent(), for what belongs to one object alone: all of it together is no larger than the file, so that
-    // neither time nor memory can be, whoever reads it all.
+    // As extent(), for what belongs to one object alone: all of it together is no larger than the file, so
+    // that neither time nor memory can be, whoever reads it all.
     Bytes claim(std::uint64_t address, std::uint64_t size) {
         const Bytes bytes = extent(address, size);
         if (size > unclaimed_) refuse("shares its bytes with other objects", "bytes of its own");
@@ -131,6 +131,8 @@ class Parser {
     void add_object(const std::string& path, std::uint64_t address, int depth) {
         where_ = path;
         if (depth > deepest_group) refuse("groups are nested too deeply", std::to_string(deepest_group));
+        if (path.size() > longest_path)
+            refuse("has a path that is too long", std::to_string(longest_path) + " bytes");
         Header header = object_header(address);
         Hdf5Object object;
         object.attributes = std::move(header.attributes);

@@ -22,6 +22,7 @@
 #include <vtkXMLImageDataReader.h>
 
 #include "formats/model/errors.hpp"
+#include "formats/model/legacy_vtk.hpp"
 #include "tools/imaging/files/read_image.hpp"
 
 namespace palpate::imaging {
@@ -81,6 +82,7 @@ vtkSmartPointer<vtkImageData> load(const std::filesystem::path& path) {
                 {path.string(), "is not VTK XML image data", "", "check that the file is whole"});
         return output_of(*reader, path);
     }
+    require_room_for_arrays(path);
     vtkNew<vtkStructuredPointsReader> reader;
     return output_of(*reader, path);
 }

@@ -10,8 +10,8 @@
 
 namespace palpate::imaging {
 
-// Sets of segments that share a voxel are kept one by one: without an end to them, a file of many layers would make
-// more of them than any memory holds.
+// Sets of segments that share a voxel are kept one by one: without an end to them, a file of many layers
+// would make more of them than any memory holds.
 constexpr std::size_t most_claimants = 64;
 
 SegmentPainter::SegmentPainter(const ImageGrid& grid, std::vector<Label> segments,

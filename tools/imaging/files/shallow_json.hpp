@@ -5,8 +5,8 @@
 
 namespace palpate::imaging {
 
-/// Parses JSON; the result is_discarded() where it is none, or nested more than 32 deep: copying and writing such a value
-/// out would recurse as deeply.
+/// Parses JSON; the result is_discarded() where it is none, or nested more than 32 deep: copying and writing
+/// such a value out would recurse as deeply.
 template <typename Input>
 nlohmann::json shallow_json(Input&& input) {
     constexpr int deepest = 32;

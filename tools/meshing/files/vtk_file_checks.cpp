@@ -11,6 +11,7 @@
 #include <string>
 
 #include "formats/model/errors.hpp"
+#include "formats/model/legacy_vtk.hpp"
 #include "tools/meshing/files/scanner.hpp"
 #include "tools/meshing/files/text.hpp"
 
@@ -160,6 +161,7 @@ void require_plausible_xml(const std::filesystem::path& path) {
 }
 
 void require_sound_legacy(const std::filesystem::path& path) {
+    require_room_for_arrays(path);
     LegacyCheck(path).run();
 }
 

@@ -9,9 +9,10 @@ namespace palpate::meshing {
 /// What is no such file passes; reading it says so.
 void require_plausible_xml(const std::filesystem::path& path);
 
-/// Checks points, cells and cell types of a legacy VTK file of unstructured grid or polygons, because VTK's
-/// readers write past their arrays where the counts contradict each other. Throws InvalidInput naming file
-/// and line. Source: VTK user's guide, "Simple legacy formats", and version 5.1 of these.
+/// Checks arrays (require_room_for_arrays()), points, cells and cell types of a legacy VTK file of
+/// unstructured grid or polygons, because VTK's readers write past their arrays where the counts contradict
+/// each other. Throws InvalidInput naming file and line. Source: VTK user's guide, "Simple legacy formats",
+/// and version 5.1 of these.
 void require_sound_legacy(const std::filesystem::path& path);
 
 }  // namespace palpate::meshing
