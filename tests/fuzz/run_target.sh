@@ -20,8 +20,8 @@ export LSAN_OPTIONS=suppressions=$here/leaks_of_others.txt:print_suppressions=0
 start=$SECONDS status=0
 TMPDIR=$work "$fuzzer" -runs="$runs" -seed=1 -timeout="${TIMEOUT_S:-1}" -rss_limit_mb=2048 -malloc_limit_mb=512 -print_final_stats=1 \
     -artifact_prefix="$fuzzer-" "$work/corpus" "${folders[@]}" >"$work/log" 2>&1 || status=$?
-edges=$(grep -oE 'cov: [0-9]+' "$work/log" | tail -n 1 | cut -d ' ' -f 2)
-done=$(grep -oE 'number_of_executed_units: [0-9]+' "$work/log" | cut -d ' ' -f 2)
+edges=$(sed -nE 's/.*cov: ([0-9]+).*/\1/p' "$work/log" | tail -n 1)
+done=$(sed -nE 's/.*number_of_executed_units: //p' "$work/log" | tail -n 1)
 found=0
 [ $status -eq 0 ] || { found=1; tail -n 60 "$work/log" >&2; }
 printf '%-12s %10s %8s %8s %4s\n' "$reader" "${done:-?}" $((SECONDS - start)) "${edges:-?}" $found

@@ -135,16 +135,18 @@ class LegacyCheck {
 
 }  // namespace
 
-void require_plausible_xml(const std::filesystem::path& path) {
+std::size_t require_plausible_xml(const std::filesystem::path& path) {
     std::ifstream stream(path, std::ios::binary);
     const std::string text(std::istreambuf_iterator<char>(stream), {});
     const std::string_view header = std::string_view(text).substr(0, text.find("<AppendedData"));
-    // Compression shrinks by 7000 at most (LZMA of equal bytes).
-    const std::size_t room = text.size() * (header.find("compressor") == std::string::npos ? 1 : 7000);
+    // By how much compression shrinks at most: zlib 1032, LZ4 255, LZMA 7000, all of equal bytes.
+    const bool packed = header.find("compressor") != std::string::npos;
+    const bool lzma = header.find("LZMA") != std::string::npos;
+    const std::size_t room = text.size() * (lzma ? 7000 : packed ? 1100 : 1);
     for (std::size_t at = header.find("NumberOf"); at != std::string::npos;
          at = header.find("NumberOf", at + 1)) {
         const std::size_t equals = header.find('=', at), open = header.find_first_of("\"'", equals);
-        if (open == std::string::npos) return;
+        if (open == std::string::npos) break;
         const std::string_view name = header.substr(at, equals - at);
         if (name.find_first_of("\"'<>") != std::string::npos) continue;  // an array's name
         const std::string_view value =
@@ -152,12 +154,15 @@ void require_plausible_xml(const std::filesystem::path& path) {
         std::int64_t number = -1;
         const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
         const std::int64_t least = name.starts_with("NumberOfComponents") ? 1 : 0;
+        // A point has three numbers of two bytes or more.
+        const std::size_t most = room / (name.starts_with("NumberOfPoints") ? 6 : 1);
         if (error != std::errc{} || end != value.data() + value.size() || number < least ||
-            static_cast<std::size_t>(number) > room)
+            static_cast<std::size_t>(number) > most)
             throw InvalidInput(
                 {path.string(), fmt::format("{} is '{}'", name.substr(0, 40), value.substr(0, 40)),
                  fmt::format("{} or more, and no more than the file has room for", least), "write it again"});
     }
+    return room;
 }
 
 void require_sound_legacy(const std::filesystem::path& path) {

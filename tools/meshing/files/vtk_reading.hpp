@@ -41,7 +41,7 @@ template <typename Reader>
 void read_with(Reader& reader, const std::filesystem::path& path, const char* kind) {
     VtkErrorListener listener;
     if constexpr (requires { reader.SetParserErrorObserver(listener.command()); }) {
-        require_plausible_xml(path);
+        reader.set_room(require_plausible_xml(path));
         reader.SetReaderErrorObserver(listener.command());
         reader.SetParserErrorObserver(listener.command());
     }
