@@ -11,7 +11,7 @@
 #include <string>
 
 #include "formats/model/errors.hpp"
-#include "formats/model/legacy_vtk.hpp"
+#include "tools/meshing/files/legacy_arrays.hpp"
 #include "tools/meshing/files/scanner.hpp"
 #include "tools/meshing/files/text.hpp"
 
@@ -37,6 +37,10 @@ class LegacyCheck {
         while (!file_.at_end()) {
             const std::string keyword = lower_case(file_.word());
             if (keyword == "cell_data" || keyword == "point_data") break;
+            if (keyword == "field") {
+                check_fields();
+                continue;
+            }
             const bool of_cells = keyword == "cells" || keyword == "polygons" || keyword == "lines" ||
                                   keyword == "vertices" || keyword == "triangle_strips";
             if (!of_cells && keyword != "points" && keyword != "cell_types") continue;
@@ -63,6 +67,23 @@ class LegacyCheck {
         if (found == type_sizes.end())
             file_.fail(fmt::format("values of type '{}'", type.substr(0, 40)), "such as float or int", again);
         return found->second;
+    }
+
+    // VTK's readers use what is not there where an array of a field breaks off.
+    void check_fields() {
+        file_.word();  // its name
+        for (std::int64_t left = file_.require_room(file_.integer(), 1); left > 0; --left) {
+            file_.word();
+            const std::int64_t components = file_.require_room(file_.integer(), 1),
+                               tuples = file_.require_room(file_.integer(), 1);
+            const std::string type = lower_case(file_.word());
+            if (type != "string") {
+                skip_values(file_.require_room(components * tuples, 1), type);
+                continue;
+            }
+            file_.line();
+            for (std::int64_t n = file_.require_room(components * tuples, 1); n > 0; --n) file_.line();
+        }
     }
 
     void begin_values() {

@@ -1,8 +1,8 @@
-// SPDX-License-Identifier: Apache-2.0
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <filesystem>
 
-namespace palpate {
+namespace palpate::meshing {
 
 /// Checks what a legacy VTK file announces of arrays (SCALARS, COLOR_SCALARS, TEXTURE_COORDINATES,
 /// LOOKUP_TABLE, FIELD and the arrays of that), because VTK allocates it before it reads any: no more values
@@ -10,4 +10,4 @@ namespace palpate {
 /// linear.
 void require_room_for_arrays(const std::filesystem::path& path);
 
-}  // namespace palpate
+}  // namespace palpate::meshing

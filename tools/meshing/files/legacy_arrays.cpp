@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-#include "formats/model/legacy_vtk.hpp"
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/meshing/files/legacy_arrays.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,8 +11,9 @@
 #include <string_view>
 
 #include "formats/model/errors.hpp"
+#include "tools/meshing/files/text.hpp"
 
-namespace palpate {
+namespace palpate::meshing {
 namespace {
 
 constexpr std::array<std::string_view, 17> types{
@@ -20,16 +21,8 @@ constexpr std::array<std::string_view, 17> types{
     "int",          "unsigned_int",  "long",        "unsigned_long", "float",    "double",
     "vtktypeint64", "vtktypeuint64", "string",      "utf8_string",   "vtkidtype"};
 
-std::string in_lower_case(std::string_view text) {
-    std::string lower(text);
-    std::ranges::transform(lower, lower.begin(), [](char c) {
-        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    });
-    return lower;
-}
-
 // Negative and larger numbers than any file has bytes count as too many.
-std::optional<double> number_of(std::string_view word) {
+std::optional<double> value_of(std::string_view word) {
     double number = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
     if (error != std::errc{} || end == word.data()) return std::nullopt;
@@ -58,9 +51,9 @@ void require_room_for_arrays(const std::filesystem::path& path) {
         end = std::min(text.find_first_of(white, at), text.size());
         std::ranges::rotate(words, words.begin() + 1);
         words[3] = std::string_view(text).substr(at, end - at);
-        const auto number = number_of(words[3]);
+        const auto number = value_of(words[3]);
         if (number && !words[0].empty()) {
-            const std::string keyword = in_lower_case(words[0]), before = in_lower_case(words[1]);
+            const std::string keyword = lower_case(words[0]), before = lower_case(words[1]);
             if (keyword == "scalars") require("values to a point", *number, widest);
             if (before == "color_scalars" || before == "texture_coordinates")
                 require("values to a point", *number, widest);
@@ -68,8 +61,8 @@ void require_room_for_arrays(const std::filesystem::path& path) {
             if (before == "field") require("arrays", *number, size / 8);
         }
         if (!number && words[3].size() < 16 &&
-            std::ranges::find(types, in_lower_case(words[3])) != types.end()) {
-            const auto components = number_of(words[1]), tuples = number_of(words[2]);
+            std::ranges::find(types, lower_case(words[3])) != types.end()) {
+            const auto components = value_of(words[1]), tuples = value_of(words[2]);
             if (components && tuples) {
                 require("values", *components, size);
                 require("values", *tuples, size);
@@ -79,4 +72,4 @@ void require_room_for_arrays(const std::filesystem::path& path) {
     }
 }
 
-}  // namespace palpate
+}  // namespace palpate::meshing
