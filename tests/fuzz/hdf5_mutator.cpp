@@ -44,8 +44,9 @@ class Blocks {
   public:
     explicit Blocks(Bytes file) : file_(file) {
         if (file.size() >= superblock_size + 4) found_.push_back(file.first(superblock_size));
-        for (std::size_t at = 0; at + 8 < file.size(); ++at)
-            if (file[at] == 'O' && std::memcmp(&file[at], "OHDR", 4) == 0) add_header(at);
+        const std::string_view text(reinterpret_cast<const char*>(file.data()), file.size());
+        for (std::size_t at = text.find("OHDR"); at != std::string_view::npos; at = text.find("OHDR", at + 1))
+            if (at + 8 < text.size()) add_header(at);
     }
 
     const std::vector<Bytes>& found() const { return found_; }

@@ -17,9 +17,10 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir "$work/corpus"
 export LSAN_OPTIONS=suppressions=$here/leaks_of_others.txt:print_suppressions=0
+case $reader in asset | recording) longest=65536 ;; *) longest=8192 ;; esac
 start=$SECONDS status=0
-TMPDIR=$work "$fuzzer" -runs="$runs" -seed=1 -timeout="${TIMEOUT_S:-1}" -rss_limit_mb=2048 -malloc_limit_mb=512 -print_final_stats=1 \
-    -artifact_prefix="$fuzzer-" "$work/corpus" "${folders[@]}" >"$work/log" 2>&1 || status=$?
+TMPDIR=$work "$fuzzer" -runs="$runs" -seed=1 -max_len=$longest -timeout=1 -rss_limit_mb=2048 -malloc_limit_mb=512 \
+    -print_final_stats=1 -artifact_prefix="$fuzzer-" "$work/corpus" "${folders[@]}" >"$work/log" 2>&1 || status=$?
 edges=$(sed -nE 's/.*cov: ([0-9]+).*/\1/p' "$work/log" | tail -n 1)
 done=$(sed -nE 's/.*number_of_executed_units: //p' "$work/log" | tail -n 1)
 found=0
