@@ -44,14 +44,15 @@ class StlReader {
     bool is_binary(const std::filesystem::path& path) const {
         if (size_ < header_size + 4) return false;
         Scanner head(path);
-        const bool solid = lower_case(head.peek()) == "solid";
-        head.skip(header_size, 1);
+        const auto start = head.raw<std::array<char, 5>>();
+        const bool solid = lower_case({start.data(), start.size()}) == "solid";
+        head.skip(static_cast<std::int64_t>(header_size - start.size()), 1);
         return !solid || size_ == header_size + 4 +
                                       facet_size * std::size_t{head.raw<std::uint32_t>(std::endian::little)};
     }
 
     void read_binary() {
-        file_.skip(header_size, 1);
+        file_.skip(static_cast<std::int64_t>(header_size), 1);
         const auto count = file_.require_room(file_.raw<std::uint32_t>(std::endian::little), facet_size);
         for (std::int64_t n = 0; n < count; ++n) {
             file_.skip(3, sizeof(float));  // its normal
