@@ -14,8 +14,8 @@
 #include "tools/meshing/files/ply_file.hpp"
 #include "tools/meshing/files/stl_file.hpp"
 #include "tools/meshing/files/surface_repair.hpp"
-#include "tools/meshing/files/vtk_reading.hpp"
-#include "tools/meshing/files/xml_readers.hpp"
+#include "tools/meshing/files/vtk/vtk_reading.hpp"
+#include "tools/meshing/files/vtk/xml_readers.hpp"
 
 namespace palpate::meshing {
 namespace {

@@ -19,8 +19,8 @@
 #include <vtkXMLUnstructuredGridWriter.h>
 
 #include "formats/model/errors.hpp"
-#include "tools/meshing/files/vtk_reading.hpp"
-#include "tools/meshing/files/xml_readers.hpp"
+#include "tools/meshing/files/vtk/vtk_reading.hpp"
+#include "tools/meshing/files/vtk/xml_readers.hpp"
 
 namespace palpate::meshing {
 namespace {

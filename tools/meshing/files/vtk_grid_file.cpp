@@ -11,8 +11,8 @@
 #include "formats/model/errors.hpp"
 #include "tools/meshing/files/found_mesh.hpp"
 #include "tools/meshing/files/imported_placement.hpp"
-#include "tools/meshing/files/vtk_reading.hpp"
-#include "tools/meshing/files/xml_readers.hpp"
+#include "tools/meshing/files/vtk/vtk_reading.hpp"
+#include "tools/meshing/files/vtk/xml_readers.hpp"
 
 namespace palpate::meshing {
 namespace {

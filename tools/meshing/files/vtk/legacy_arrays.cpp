@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/meshing/files/legacy_arrays.hpp"
+#include "tools/meshing/files/vtk/legacy_arrays.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/meshing/files/vtk_file_checks.hpp"
+#include "tools/meshing/files/vtk/vtk_file_checks.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -11,9 +11,9 @@
 #include <string>
 
 #include "formats/model/errors.hpp"
-#include "tools/meshing/files/legacy_arrays.hpp"
 #include "tools/meshing/files/scanner.hpp"
 #include "tools/meshing/files/text.hpp"
+#include "tools/meshing/files/vtk/legacy_arrays.hpp"
 
 namespace palpate::meshing {
 namespace {

@@ -15,7 +15,7 @@
 #include <vtkPoints.h>
 
 #include "formats/model/label_map.hpp"
-#include "tools/meshing/files/vtk_file_checks.hpp"
+#include "tools/meshing/files/vtk/vtk_file_checks.hpp"
 
 namespace palpate::meshing {
 
