@@ -16,7 +16,7 @@
 namespace palpate::meshing {
 namespace {
 
-constexpr std::array<std::string_view, 17> types{
+constexpr std::array<std::string_view, 17> legacy_types{
     "bit",          "char",          "signed_char", "unsigned_char", "short",    "unsigned_short",
     "int",          "unsigned_int",  "long",        "unsigned_long", "float",    "double",
     "vtktypeint64", "vtktypeuint64", "string",      "utf8_string",   "vtkidtype"};
@@ -61,7 +61,7 @@ void require_room_for_arrays(const std::filesystem::path& path) {
             if (before == "field") require("arrays", *number, size / 8);
         }
         if (!number && words[3].size() < 16 &&
-            std::ranges::find(types, lower_case(words[3])) != types.end()) {
+            std::ranges::find(legacy_types, lower_case(words[3])) != legacy_types.end()) {
             const auto components = value_of(words[1]), tuples = value_of(words[2]);
             if (components && tuples) {
                 require("values", *components, size);
