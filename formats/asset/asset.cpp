@@ -27,7 +27,29 @@ std::string deformable_path(std::size_t i) {
     return "/palpate/bodies/deformable/" + std::to_string(i);
 }
 
+// Whoever looks into this JSON may do so by recursion.
+void check_provenance(const std::string& json, const std::string& where) {
+    constexpr int deepest = 64;
+    int depth = 0;
+    bool quoted = false;
+    for (std::size_t i = 0; i < json.size(); ++i) {
+        const char c = json[i];
+        if (quoted && c == '\\')
+            ++i;
+        else if (c == '"')
+            quoted = !quoted;
+        else if (!quoted && (c == '[' || c == '{'))
+            ++depth;
+        else if (!quoted && (c == ']' || c == '}'))
+            --depth;
+        if (depth > deepest)
+            throw InvalidInput({where + ": /palpate/provenance", "is nested too deeply",
+                                std::to_string(deepest) + " levels at most", "pack the case again"});
+    }
+}
+
 void check_case(const Case& patient_case, const std::string& where) {
+    check_provenance(patient_case.provenance, where);
     check_name(patient_case.name, where + ": /palpate");
     check_haptics(patient_case.haptics, where + ": /palpate/haptics");
     if (patient_case.rigid_bodies.empty() && patient_case.deformable_bodies.empty())

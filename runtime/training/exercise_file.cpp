@@ -19,6 +19,7 @@ using Eigen::Vector3d;
 using toml_file::TableReader;
 
 constexpr auto see = "see docs/exercises.md";
+constexpr std::size_t most_exercises = 1000;
 
 Task task_of(TableReader& table) {
     const std::vector<std::string> names(std::begin(task_names), std::end(task_names));
@@ -106,7 +107,11 @@ std::vector<ExerciseRecipe> read_exercises(const std::filesystem::path& file) {
     if (const auto schema = root.required<std::int64_t>("schema"); schema != 1)
         root.fail(root.node("schema"), "schema", fmt::format("is {}", schema), "1", "");
     std::vector<ExerciseRecipe> recipes;
-    for (TableReader& table : root.tables("exercise")) {
+    std::vector<TableReader> tables = root.tables("exercise");
+    if (tables.size() > most_exercises)
+        root.fail(document, "exercise", fmt::format("is there {} times", tables.size()),
+                  fmt::format("{} at most", most_exercises), "share them out among files");
+    for (TableReader& table : tables) {
         recipes.push_back(recipe_of(table));
         const auto same = std::ranges::count(recipes, recipes.back().name, &ExerciseRecipe::name);
         if (same > 1)

@@ -240,6 +240,21 @@ TEST(Asset, may_hold_a_compliance_of_one_block) {
     expect_same(read_asset(scratch / "case.vtkhdf").deformable_bodies[0], written.deformable_bodies[0]);
 }
 
+TEST(Asset, with_a_provenance_nested_too_deeply_is_refused) {
+    const Scratch scratch;
+    Case patient_case = sample::sample_case();
+    const auto nested = [](int levels) {
+        const auto times = static_cast<std::size_t>(levels);
+        return R"({"note": "a \" and [[[", "list": )" + std::string(times, '[') + std::string(times, ']') +
+               "}";
+    };
+    patient_case.provenance = nested(63);
+    EXPECT_EQ(refusal([&] { write_asset(scratch / "a.vtkhdf", patient_case); }), "");
+    patient_case.provenance = nested(64);
+    EXPECT_THAT(refusal([&] { write_asset(scratch / "b.vtkhdf", patient_case); }),
+                HasSubstr("/palpate/provenance: is nested too deeply (expected 64 levels at most)"));
+}
+
 TEST(Asset, may_lack_provenance_outside_labels_and_rigid_bodies) {
     const Scratch scratch;
     Case written = sample::sample_case(1);

@@ -168,6 +168,49 @@ TEST(Hdf5File, extents_beyond_the_file_are_refused_before_anything_is_allocated)
     EXPECT_THAT(refused(address, address + 1), HasSubstr("8-byte boundary"));
 }
 
+TEST(Hdf5File, objects_that_share_bytes_are_refused) {
+    const Scratch scratch;
+    const std::array<float, 1024> values{};
+    constexpr int copies = 8;  // larger together than the file
+    {
+        Hdf5Writer writer(scratch / "a.h5");
+        for (int i = 0; i < copies; ++i)
+            writer.dataset("/" + std::to_string(i), std::span<const float>(values).first(i == 0 ? 1024 : 19),
+                           {i == 0 ? 1024U : 19U});
+        writer.finish("/");
+    }
+    std::vector<char> bytes = sample::read_bytes(scratch / "a.h5");
+    const Hdf5File file(scratch / "a.h5");
+    const auto address = [&](const std::string& path) {
+        return static_cast<std::uint64_t>(file.objects().at(path).values->bytes.data() -
+                                          file.mapping().bytes().data());
+    };
+    for (int i = 1; i < copies; ++i) {
+        const std::string path = "/" + std::to_string(i);
+        bytes = with_header_number(bytes, path, address(path), address("/0"));
+        bytes = with_header_number(bytes, path, 19, 1024);  // its shape
+        bytes = with_header_number(bytes, path, 76, 4096);  // its size
+    }
+    sample::write_bytes(scratch / "b.h5", bytes);
+    EXPECT_THAT(refusal([&] { Hdf5File(scratch / "b.h5"); }),
+                HasSubstr("shares its bytes with other objects"));
+}
+
+TEST(Hdf5File, a_path_that_is_too_long_is_refused) {
+    const Scratch scratch;
+    const auto nested = [&](const char* name, int levels) {
+        Hdf5Writer writer(scratch / name);
+        std::string path;
+        for (int level = 0; level < levels; ++level) path += "/" + std::string(50, 'a');
+        writer.group(path);
+        writer.finish("/");
+    };
+    nested("a.h5", 5);  // 255 bytes
+    EXPECT_NO_THROW(Hdf5File(scratch / "a.h5"));
+    nested("b.h5", 6);
+    EXPECT_THAT(refusal([&] { Hdf5File(scratch / "b.h5"); }), HasSubstr("has a path that is too long"));
+}
+
 struct Feature {
     const char* name;
     std::function<void(hid_t file)> add;

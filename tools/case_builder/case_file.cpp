@@ -299,7 +299,8 @@ void read_import_options(TableReader& input, CaseFile& result) {
     read(input, "nifti_frame", result.volume_import.nifti_frame);
     result.labels_import.nifti_frame = result.volume_import.nifti_frame;
     if (const auto names = input.optional<std::string>("label_names")) {
-        if (const auto file = input.path("label_names"); std::filesystem::is_regular_file(*file))
+        std::error_code none;  // what is too long for a path is none
+        if (const auto file = input.path("label_names"); std::filesystem::is_regular_file(*file, none))
             result.label_table = file;
         result.labels_import.label_names = result.label_table ? result.label_table->string() : *names;
     }

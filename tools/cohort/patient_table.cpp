@@ -10,6 +10,7 @@
 
 #include "formats/model/errors.hpp"
 #include "formats/model/label_map.hpp"
+#include "formats/model/small_file.hpp"
 
 namespace palpate::cohort {
 namespace {
@@ -99,6 +100,8 @@ Patient patient_of(const std::vector<std::string>& columns, const std::vector<st
 }  // namespace
 
 std::vector<Patient> read_patient_table(const std::filesystem::path& path) {
+    constexpr std::uintmax_t most_bytes = 16 << 20;
+    require_small_file(path, most_bytes);
     std::ifstream stream(path);
     std::vector<std::string> columns;
     std::vector<Patient> patients;

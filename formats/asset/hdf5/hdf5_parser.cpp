@@ -19,7 +19,7 @@ constexpr std::uint64_t undefined_address = ~std::uint64_t{0};
 constexpr std::size_t checksum_size = 4;
 constexpr int deepest_group = 16;
 constexpr std::size_t most_objects = 65536;
-constexpr std::size_t longest_name = 64;
+constexpr std::size_t longest_name = 64, longest_path = 255;
 constexpr std::size_t highest_rank = 8;
 
 enum Message : unsigned {  // IV.A.2
@@ -60,7 +60,8 @@ std::string text_of(Bytes bytes) {
 
 class Parser {
   public:
-    Parser(Bytes file, const std::string& file_name) : file_(file), file_name_(file_name) {}
+    Parser(Bytes file, const std::string& file_name)
+        : file_(file), file_name_(file_name), unclaimed_(file.size()) {}
 
     std::map<std::string, Hdf5Object> parse() {
         add_object("/", superblock(), 0);
@@ -80,6 +81,15 @@ class Parser {
         if (address > file_.size() || size > file_.size() - address)
             refuse("lies beyond the end of the file", std::to_string(file_.size()) + " bytes");
         return file_.subspan(static_cast<std::size_t>(address), static_cast<std::size_t>(size));
+    }
+
+    // As extent(), for what belongs to one object alone: all of it together is no larger than the file, so
+    // that neither time nor memory can be, whoever reads it all.
+    Bytes claim(std::uint64_t address, std::uint64_t size) {
+        const Bytes bytes = extent(address, size);
+        if (size > unclaimed_) refuse("shares its bytes with other objects", "bytes of its own");
+        unclaimed_ -= bytes.size();
+        return bytes;
     }
 
     void check_checksum(Bytes block) const {
@@ -121,6 +131,8 @@ class Parser {
     void add_object(const std::string& path, std::uint64_t address, int depth) {
         where_ = path;
         if (depth > deepest_group) refuse("groups are nested too deeply", std::to_string(deepest_group));
+        if (path.size() > longest_path)
+            refuse("has a path that is too long", std::to_string(longest_path) + " bytes");
         Header header = object_header(address);
         Hdf5Object object;
         object.attributes = std::move(header.attributes);
@@ -136,7 +148,7 @@ class Parser {
             if (stored != size) refuse("stores " + std::to_string(stored) + " bytes", std::to_string(size));
             if (size > 0) {
                 if (start % 8 != 0) refuse("does not start on an 8-byte boundary");
-                object.values->bytes = extent(start, size);
+                object.values->bytes = claim(start, size);
             }
         }
         if (!objects_.emplace(path, std::move(object)).second) refuse("occurs twice");
@@ -168,7 +180,7 @@ class Parser {
         const std::uint64_t size = cursor.sized_number(flags);
         const std::size_t prefix = file_.size() - static_cast<std::size_t>(address) - cursor.remaining();
         cursor.take(size);
-        check_checksum(extent(address, prefix + size + checksum_size));
+        check_checksum(claim(address, prefix + size + checksum_size));
 
         Header header;
         std::vector<Bytes> chunks{extent(address + prefix, size)};
@@ -234,7 +246,7 @@ class Parser {
         const auto address = body.number<std::uint64_t>();
         const auto size = body.number<std::uint64_t>();
         if (!visited_.insert(address).second) refuse("has a header that continues in itself");
-        const Bytes block = extent(address, size);
+        const Bytes block = claim(address, size);
         if (block.size() < 4 + checksum_size || text_of(block.first(4)) != "OCHK")
             refuse("has a header that breaks off");
         check_checksum(block);
@@ -355,6 +367,7 @@ class Parser {
 
     Bytes file_;
     std::string file_name_;
+    std::uint64_t unclaimed_;  // bytes of the file that no object has yet
     std::string where_;
     std::set<std::uint64_t> visited_;
     std::map<std::string, Hdf5Object> objects_;

@@ -74,6 +74,16 @@ TEST_F(ExerciseFile, what_cannot_be_is_told_with_file_line_and_key) {
                 HasSubstr("second time"));
     EXPECT_THAT(sample::refusal([&] { read_exercises(written("schema = 1\n")); }), HasSubstr("exercise"));
     EXPECT_THAT(sample::refusal([&] { read_exercises(written("schema = 2\n")); }), HasSubstr("schema"));
+    std::string many, deep = "a", long_one = "#";
+    for (int i = 0; i <= 1000; ++i) many += "[[exercise]]\n";
+    for (int i = 0; i < 5000; ++i) deep += ".a";
+    long_one.resize(1 << 20, ' ');
+    const auto refused = [&](const std::string& text) {
+        return sample::refusal([&] { read_exercises(written("schema = 1\n" + text)); });
+    };
+    EXPECT_THAT(refused(many), HasSubstr("is there 1001 times (expected 1000 at most)"));
+    EXPECT_THAT(refused(deep + " = 1\n"), HasSubstr("has 5000 full stops (expected 4096 at most"));
+    EXPECT_THAT(refused(long_one), HasSubstr("bytes (expected 1048576 at most)"));
 }
 
 TEST_F(ExerciseFile, every_patient_has_the_standard_ones) {

@@ -11,13 +11,17 @@
 #include <vector>
 
 #include "formats/model/errors.hpp"
+#include "formats/model/small_file.hpp"
 #include "tools/imaging/files/label_names.hpp"
 #include "tools/imaging/files/read_image.hpp"
+#include "tools/imaging/files/shallow_json.hpp"
 #include "tools/imaging/files/totalsegmentator_labels.hpp"
 #include "tools/imaging/files/trimmed.hpp"
 
 namespace palpate::imaging {
 namespace {
+
+constexpr std::uintmax_t most_bytes = 16 << 20;
 
 using Colour = std::optional<std::array<float, 3>>;
 
@@ -123,8 +127,11 @@ bool add_row(LabelTable& table, const std::string& line, const Columns& columns)
 LabelTable json_table(const std::string& text, const std::filesystem::path& path) {
     const InvalidInput malformed({path.string(), "is no JSON label table",
                                   "{\"5\": \"liver\"} or {\"labels\": {\"liver\": 5}}", "correct the file"});
-    nlohmann::json document = nlohmann::json::parse(text, nullptr, false);
-    if (document.is_object() && document.contains("labels")) document = document["labels"];
+    nlohmann::json document = shallow_json(text);
+    if (document.is_object() && document.contains("labels")) {
+        nlohmann::json labels = std::move(document["labels"]);
+        document = std::move(labels);
+    }
     if (!document.is_object()) throw malformed;
     LabelTable table;
     for (const auto& [key, item] : document.items()) {
@@ -174,6 +181,7 @@ LabelTable parse_xml_label_table(std::string_view xml) {
 }
 
 LabelTable read_label_table(const std::filesystem::path& path) {
+    require_small_file(path, most_bytes);
     std::ifstream stream(path);
     if (!stream) throw InvalidInput({path.string(), "cannot be read", "", "check the path"});
     const std::string mark = "\xEF\xBB\xBF";  // of UTF-8

@@ -175,9 +175,8 @@ StoredImage read_image_file(const std::filesystem::path& path, const NoteSink& n
                             const ReadOptions& options) {
     const std::string name = in_lower_case(path.filename().string());
     if (is_nifti(path)) return read_nifti(path, note, options);
-    if (const std::string head = first_bytes(path, 16);
-        name.ends_with(".vti") || (name.ends_with(".vtk") && head.starts_with("# vtk")))
-        return read_vtk_image(path, note);
+    if (name.ends_with(".vti")) return read_vtk_image(path, note);
+    if (name.ends_with(".vtk") && first_bytes(path, 5) == "# vtk") return read_legacy_vtk(path, note);
     return read_itk_image(path, note);
 }
 

@@ -36,7 +36,8 @@ struct StoredImage {
 StoredImage read_itk_image(const std::filesystem::path& path, const NoteSink& note);
 StoredImage read_nifti(const std::filesystem::path& path, const NoteSink& note, const ReadOptions& options);
 StoredImage read_vtk_image(const std::filesystem::path& path, const NoteSink& note);
-/// The one of the three that knows the format.
+StoredImage read_legacy_vtk(const std::filesystem::path& path, const NoteSink& note);
+/// The one of the four that knows the format.
 StoredImage read_image_file(const std::filesystem::path& path, const NoteSink& note,
                             const ReadOptions& options);
 

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
@@ -23,6 +24,46 @@
 
 namespace palpate::imaging {
 namespace {
+
+// What NrrdIO and MetaIO go through without an end: each line of a header once for each other, every name of
+// a pattern, every one of the dimensions that a MetaImage claims.
+void require_short_header(const std::filesystem::path& path) {
+    constexpr std::size_t longest = std::size_t{1} << 20;
+    constexpr int most_lines = 8192;
+    constexpr double most_files = 65536;
+    const auto refuse = [&](const std::string& found, const std::string& expected) {
+        throw InvalidInput({path.string(), found, expected, "correct the header"});
+    };
+    std::ifstream stream(path, std::ios::binary);
+    std::string line;
+    std::getline(stream, line);
+    const bool nrrd = line.starts_with("NRRD");
+    std::size_t bytes = 0;
+    for (int lines = 1; std::getline(stream, line) && !(nrrd && trimmed(line).empty()); ++lines) {
+        bytes += line.size();
+        if (lines > most_lines || bytes > longest)
+            refuse("has a header of more than 8192 lines or 1 MiB", "");
+        if (!nrrd && line.find("NDims") != std::string::npos) {
+            std::erase_if(line, [](unsigned char c) { return std::isspace(c) != 0; });
+            const std::string value = line.substr(std::min(line.size(), std::size_t{6}));
+            if (!line.starts_with("NDims") || value.size() != 1 || value[0] < '1' || value[0] > '9')
+                refuse("has NDims '" + as_utf8(value).substr(0, 40) + "'", "1 to 9");
+        }
+        const std::string field = in_lower_case(line);
+        if (!nrrd && field.starts_with("elementdatafile")) return;
+        if (!nrrd || !(field.starts_with("data file:") || field.starts_with("datafile:"))) continue;
+        const std::string value = trimmed(line.substr(line.find(':') + 1));
+        std::istringstream words(value.substr(std::min(value.size(), value.rfind('%'))));
+        double first = 0, last = 0, step = 1;
+        if (std::string pattern;
+            words >> pattern >> first >> last >> step && !(std::abs((last - first) / step) <= most_files))
+            refuse("keeps its voxels in more than 65536 files", "");
+        std::error_code none;
+        if (const auto file = path.parent_path() / value;
+            std::filesystem::exists(file, none) && !std::filesystem::is_regular_file(file, none))
+            refuse("keeps its voxels in what is no file", "a file");
+    }
+}
 
 itk::ImageIOBase::Pointer image_io_of(const std::filesystem::path& path) {
     const std::array<itk::ImageIOBase::Pointer, 2> candidates{itk::NrrdImageIO::New().GetPointer(),
@@ -293,6 +334,7 @@ std::string reason_of(const itk::ExceptionObject& error) {
 }
 
 StoredImage read_itk_image(const std::filesystem::path& path, const NoteSink& note) {
+    require_short_header(path);
     const itk::ImageIOBase::Pointer io = image_io_of(path);
     const bool meta = dynamic_cast<itk::MetaImageIO*>(io.GetPointer()) != nullptr;
     try {

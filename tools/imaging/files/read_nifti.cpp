@@ -116,6 +116,8 @@ StoredImage read_nifti(const std::filesystem::path& path, const NoteSink& note, 
         if (offset > largest_header)
             throw InvalidInput({path.string(), fmt::format("claims a header of {} bytes", offset),
                                 fmt::format("{} at most", largest_header), "check that the file is whole"});
+        check_claim(offset, std::filesystem::file_size(path),
+                    stream.packed() ? Packing::deflated : Packing::none, path);
         std::string extension(offset - header.bytes, '\0');
         stream.read(extension.data(), extension.size());
         image.labels = parse_xml_label_table(extension);

@@ -17,8 +17,6 @@
 #include <vtkPointData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkStringArray.h>
-#include <vtkStructuredPoints.h>
-#include <vtkStructuredPointsReader.h>
 #include <vtkXMLImageDataReader.h>
 
 #include "formats/model/errors.hpp"
@@ -68,20 +66,14 @@ vtkSmartPointer<vtkImageData> output_of(Reader& reader, const std::filesystem::p
     }
     if (complaints->any || reader.GetErrorCode() != vtkErrorCode::NoError || reader.GetOutput() == nullptr)
         throw InvalidInput(
-            {path.string(), "cannot be read as VTK image data", "",
-             "check that the file is whole; of .vtk files only STRUCTURED_POINTS are volumes"});
+            {path.string(), "cannot be read as VTK image data", "", "check that the file is whole"});
     return reader.GetOutput();
 }
 
 vtkSmartPointer<vtkImageData> load(const std::filesystem::path& path) {
-    if (in_lower_case(path.extension().string()) == ".vti") {
-        vtkNew<vtkXMLImageDataReader> reader;
-        if (reader->CanReadFile(path.c_str()) == 0)
-            throw InvalidInput(
-                {path.string(), "is not VTK XML image data", "", "check that the file is whole"});
-        return output_of(*reader, path);
-    }
-    vtkNew<vtkStructuredPointsReader> reader;
+    vtkNew<vtkXMLImageDataReader> reader;
+    if (reader->CanReadFile(path.c_str()) == 0)
+        throw InvalidInput({path.string(), "is not VTK XML image data", "", "check that the file is whole"});
     return output_of(*reader, path);
 }
 

@@ -10,6 +10,10 @@
 
 namespace palpate::imaging {
 
+// Sets of segments that share a voxel are kept one by one: without an end to them, a file of many layers
+// would make more of them than any memory holds.
+constexpr std::size_t most_claimants = 64;
+
 SegmentPainter::SegmentPainter(const ImageGrid& grid, std::vector<Label> segments,
                                std::span<const std::size_t> voxels, Overlaps rule)
     : grid_(grid), segments_(std::move(segments)), rule_(rule), sets_(1), claimants_(grid.voxel_count(), 0) {
@@ -27,6 +31,10 @@ std::uint32_t SegmentPainter::joined_by(std::uint32_t set, std::size_t segment) 
     const auto [join, fresh] =
         joins_.try_emplace(std::uint64_t{set} << 32 | segment, static_cast<std::uint32_t>(sets_.size()));
     if (fresh) {
+        if (sets_[set].size() == most_claimants)
+            throw InvalidInput({"segmentation",
+                                fmt::format("more than {} segments claim one voxel", most_claimants), "",
+                                "export fewer segments at once"});
         std::vector<std::size_t> both = sets_[set];
         both.push_back(segment);
         sets_.push_back(std::move(both));

@@ -10,6 +10,8 @@
 #include <set>
 
 #include "formats/model/errors.hpp"
+#include "formats/model/small_file.hpp"
+#include "tools/imaging/files/shallow_json.hpp"
 #include "tools/imaging/files/trimmed.hpp"
 
 namespace palpate::imaging {
@@ -17,6 +19,7 @@ namespace {
 
 using nlohmann::json;
 
+constexpr std::uintmax_t most_bytes = 16 << 20;
 constexpr const char* schema =
     "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/Resources/Schema/"
     "markups-schema-v1.0.3.json#";
@@ -54,7 +57,7 @@ Eigen::Vector3d to_lps(const std::filesystem::path& path, const std::string& sys
 }
 
 std::vector<Seed> read_json(const std::filesystem::path& path, std::istream& stream) {
-    const json document = json::parse(stream, nullptr, false);
+    const json document = shallow_json(stream);
     if (!document.is_object() || !document.contains("markups"))
         refuse(path, "holds no markups", "a point list of 3D Slicer (.mrk.json)");
     std::vector<Seed> seeds;
@@ -130,6 +133,7 @@ std::vector<Seed> read_seeds(const std::filesystem::path& path) {
     const bool fcsv = name.ends_with(".fcsv");
     if (!fcsv && !name.ends_with(".json"))
         refuse(path, "is no list of points", ".mrk.json or .fcsv of 3D Slicer");
+    require_small_file(path, most_bytes);
     std::ifstream stream(path);
     if (!stream) refuse(path, "cannot be opened", "", "check the path");
     std::vector<Seed> seeds = fcsv ? read_fcsv(path, stream) : read_json(path, stream);

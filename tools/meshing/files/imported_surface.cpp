@@ -3,19 +3,19 @@
 #include <fstream>
 #include <vtkCellArray.h>
 #include <vtkNew.h>
-#include <vtkOBJReader.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataReader.h>
-#include <vtkSTLReader.h>
 #include <vtkTriangleFilter.h>
-#include <vtkXMLPolyDataReader.h>
 
 #include "formats/model/errors.hpp"
 #include "tools/meshing/files/imported_mesh.hpp"
 #include "tools/meshing/files/imported_placement.hpp"
+#include "tools/meshing/files/obj_file.hpp"
 #include "tools/meshing/files/ply_file.hpp"
+#include "tools/meshing/files/stl_file.hpp"
 #include "tools/meshing/files/surface_repair.hpp"
-#include "tools/meshing/files/vtk_reading.hpp"
+#include "tools/meshing/files/vtk/vtk_reading.hpp"
+#include "tools/meshing/files/vtk/xml_readers.hpp"
 
 namespace palpate::meshing {
 namespace {
@@ -29,10 +29,10 @@ vtkSmartPointer<vtkPolyData> read_as(const std::filesystem::path& path, const ch
 
 vtkSmartPointer<vtkPolyData> read_polygons(const std::filesystem::path& path) {
     const std::string extension = extension_of(path);
-    if (extension == ".vtp") return read_as<vtkXMLPolyDataReader>(path, "VTK PolyData file (.vtp)");
+    if (extension == ".vtp") return read_as<XmlSurfaceReader>(path, "VTK PolyData file (.vtp)");
     if (extension == ".vtk") return read_as<vtkPolyDataReader>(path, "legacy VTK file with polygons");
-    if (extension == ".stl") return read_as<vtkSTLReader>(path, "STL file");
-    if (extension == ".obj") return read_as<vtkOBJReader>(path, "Wavefront OBJ file");
+    if (extension == ".stl") return read_stl(path);
+    if (extension == ".obj") return read_obj(path);
     if (extension == ".ply") return read_ply(path);
     throw InvalidInput({path.string(), "has the extension '" + extension + "'",
                         ".vtp, .vtk, .stl, .obj or .ply",

@@ -15,13 +15,12 @@
 #include <vtkStringArray.h>
 #include <vtkTypeInt32Array.h>
 #include <vtkUnstructuredGrid.h>
-#include <vtkXMLPolyDataReader.h>
 #include <vtkXMLPolyDataWriter.h>
-#include <vtkXMLUnstructuredGridReader.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
 #include "formats/model/errors.hpp"
-#include "tools/meshing/files/vtk_reading.hpp"
+#include "tools/meshing/files/vtk/vtk_reading.hpp"
+#include "tools/meshing/files/vtk/xml_readers.hpp"
 
 namespace palpate::meshing {
 namespace {
@@ -138,7 +137,7 @@ vtkNew<vtkTypeInt32Array> make_integers(const std::vector<std::int32_t>& values,
 }  // namespace
 
 TriangleMesh read_surface(const fs::path& path) {
-    vtkNew<vtkXMLPolyDataReader> reader;
+    vtkNew<XmlSurfaceReader> reader;
     read_with(*reader.Get(), path, "VTK PolyData file (.vtp)");
     vtkPolyData* data = reader->GetOutput();
     require_lps(data, path);
@@ -160,7 +159,7 @@ void write_surface(const fs::path& path, const TriangleMesh& surface) {
 }
 
 TetMesh read_tetrahedra(const fs::path& path) {
-    vtkNew<vtkXMLUnstructuredGridReader> reader;
+    vtkNew<XmlGridReader> reader;
     read_with(*reader.Get(), path, "VTK UnstructuredGrid file (.vtu)");
     vtkUnstructuredGrid* data = reader->GetOutput();
     require_lps(data, path);

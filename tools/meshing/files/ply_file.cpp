@@ -83,6 +83,9 @@ class PlyReader {
                 for (const Element& other : elements_)
                     if (other.name == element.name)
                         file_.fail("announces element " + other.name + " twice", "", "write the file again");
+                constexpr std::size_t most_elements = 64;
+                if (elements_.size() == most_elements)
+                    file_.fail("announces more than 64 elements", "", "write the file again");
                 elements_.push_back(std::move(element));
             } else if (keyword == "property" && !elements_.empty()) {
                 Property property{};

@@ -7,12 +7,12 @@
 #include <vtkSmartPointer.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkUnstructuredGridReader.h>
-#include <vtkXMLUnstructuredGridReader.h>
 
 #include "formats/model/errors.hpp"
 #include "tools/meshing/files/found_mesh.hpp"
 #include "tools/meshing/files/imported_placement.hpp"
-#include "tools/meshing/files/vtk_reading.hpp"
+#include "tools/meshing/files/vtk/vtk_reading.hpp"
+#include "tools/meshing/files/vtk/xml_readers.hpp"
 
 namespace palpate::meshing {
 namespace {
@@ -71,7 +71,7 @@ FoundTetrahedra from_grid(vtkUnstructuredGrid* grid, const std::filesystem::path
 
 FoundTetrahedra read_vtk_grid(const std::filesystem::path& path) {
     if (extension_of(path) == ".vtu") {
-        vtkNew<vtkXMLUnstructuredGridReader> reader;
+        vtkNew<XmlGridReader> reader;
         read_with(*reader, path, "VTK UnstructuredGrid file (.vtu)");
         return from_grid(reader->GetOutput(), path);
     }

@@ -15,7 +15,7 @@
 #include <vtkPoints.h>
 
 #include "formats/model/label_map.hpp"
-#include "tools/meshing/files/vtk_file_checks.hpp"
+#include "tools/meshing/files/vtk/vtk_file_checks.hpp"
 
 namespace palpate::meshing {
 
@@ -41,7 +41,7 @@ template <typename Reader>
 void read_with(Reader& reader, const std::filesystem::path& path, const char* kind) {
     VtkErrorListener listener;
     if constexpr (requires { reader.SetParserErrorObserver(listener.command()); }) {
-        require_plausible_xml(path);
+        reader.set_room(require_plausible_xml(path));
         reader.SetReaderErrorObserver(listener.command());
         reader.SetParserErrorObserver(listener.command());
     }

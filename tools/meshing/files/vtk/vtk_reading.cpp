@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/meshing/files/vtk_reading.hpp"
+#include "tools/meshing/files/vtk/vtk_reading.hpp"
 
 #include <algorithm>
 #include <cmath>
