@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "formats/asset/body_io.hpp"
+#include "formats/asset/hdf5/digest.hpp"
 #include "formats/asset/validate.hpp"
 #include "tests/formats/sample_case.hpp"
 

@@ -8,8 +8,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     constexpr fuzz::MemoryCap cap{.factor = 16384, .base = std::size_t{8} << 20};
     for (const char* name : {"fuzzed.nrrd", "fuzzed.mha", "fuzzed.nii", "fuzzed.vti", "fuzzed.vtk"})
         fuzz::feed({data, size}, name, cap, [](const std::filesystem::path& path) {
-            imaging::read_image(path, imaging::ImageKind::found_out, {},
-                                {.overlaps = imaging::Overlaps::smaller_wins});
+            imaging::ReadOptions options;
+            options.overlaps = imaging::Overlaps::smaller_wins;
+            imaging::read_image(path, imaging::ImageKind::found_out, {}, options);
         });
     return 0;
 }
