@@ -9,7 +9,6 @@
 #include "formats/asset/hdf5/digest.hpp"
 #include "formats/asset/hdf5/signature.hpp"
 #include "formats/asset/looks_io.hpp"
-#include "formats/asset/owned_values.hpp"
 #include "formats/asset/validate.hpp"
 #include "formats/asset/vtk_grid.hpp"
 #include "formats/model/errors.hpp"
@@ -113,6 +112,21 @@ Case read_checked(const Hdf5File& file) {
     }
 }
 
+// With keys, one of them must have signed it.
+Case read_trusted(const Hdf5File& file, std::span<const std::string> trusted_keys) {
+    check_header(file, "case");
+    if (!trusted_keys.empty()) {
+        const auto signer = signer_of(file);
+        if (!signer)
+            throw InvalidInput({file.name(), "is not signed", "the signature of a trusted key",
+                                "ask who made it to sign it: 'palpate pack --sign'"});
+        if (std::ranges::find(trusted_keys, *signer) == trusted_keys.end())
+            throw InvalidInput({file.name(), "is signed by " + *signer, "a trusted key",
+                                "trust that key only if you know whose it is"});
+    }
+    return read_checked(file);
+}
+
 }  // namespace
 
 void write_asset(const std::filesystem::path& path, const Case& patient_case,
@@ -160,36 +174,17 @@ Case read_asset(const std::filesystem::path& path, Digests digests) {
 }
 
 Case read_asset(const std::filesystem::path& path, std::span<const std::string> trusted_keys) {
-    const Hdf5File file(path);
-    check_header(file, "case");
-    const auto signer = signer_of(file);
-    if (!signer)
-        throw InvalidInput({path.string(), "is not signed", "the signature of a trusted key",
-                            "ask who made it to sign it: 'palpate pack --sign'"});
-    if (std::ranges::find(trusted_keys, *signer) == trusted_keys.end())
-        throw InvalidInput({path.string(), "is signed by " + *signer, "a trusted key",
-                            "trust that key only if you know whose it is"});
-    return read_checked(file);
+    return read_trusted(Hdf5File(path), trusted_keys);
+}
+
+Case load_asset(const std::filesystem::path& path, std::span<const std::string> trusted_keys) {
+    return read_trusted(Hdf5File(path, Held::copied), trusted_keys);
 }
 
 std::optional<std::string> signer_of(const std::filesystem::path& path) {
     const Hdf5File file(path);
     check_header(file, "case");
     return signer_of(file);
-}
-
-Case load_asset(const std::filesystem::path& path, std::span<const std::string> trusted_keys) {
-    Case patient_case = trusted_keys.empty() ? read_asset(path) : read_asset(path, trusted_keys);
-    for (DeformableBody& body : patient_case.deformable_bodies) {
-        if (auto* dense = std::get_if<DenseCompliance>(&body.compliance)) {
-            dense->entries = owned(dense->entries.get(), dense->dof_count() * dense->dof_count());
-        } else {
-            auto& blocks = std::get<HierarchicalCompliance>(body.compliance);
-            blocks.values = owned(blocks.values.get(), blocks.value_count);
-            blocks.factors = owned(blocks.factors.get(), blocks.factor_count);
-        }
-    }
-    return patient_case;
 }
 
 std::string asset_digest(const std::filesystem::path& path) {

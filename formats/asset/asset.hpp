@@ -25,7 +25,8 @@ void write_asset(const std::filesystem::path& path, const Case& patient_case,
 /// the file, the dataset and the remedy.
 Case read_asset(const std::filesystem::path& path, Digests digests = Digests::check);
 
-/// The same, of an asset that one of the keys (read_public_keys()) must have signed.
+/// The same, digests checked, of an asset that one of the keys (read_public_keys()) must have signed; of any
+/// without.
 Case read_asset(const std::filesystem::path& path, std::span<const std::string> trusted_keys);
 
 /// The key that an asset is signed by, and the signature holds; none if it is not signed. Digests are not

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
+#include <iomanip>
 #include <numbers>
+#include <sstream>
 
 #include "formats/model/errors.hpp"
 
@@ -29,15 +30,17 @@ InvalidInput refusal(const TetMesh& mesh, std::size_t t) {
     const bool inside_out = quality <= -smallest_element_quality;
     const Eigen::Vector3d centre =
         (corner(mesh, t, 0) + corner(mesh, t, 1) + corner(mesh, t, 2) + corner(mesh, t, 3)) / 4;
-    return InvalidInput(
-        {fmt::format("tetrahedron {}", t),
-         fmt::format("it is {}: nodes {}, {}, {} and {} around ({:.4g}, {:.4g}, {:.4g}) mm span {:.3g} mm³ "
-                     "over a longest edge of {:.3g} mm, quality {:.2g}",
-                     inside_out ? "inside out" : "flat", nodes[0], nodes[1], nodes[2], nodes[3], centre.x(),
-                     centre.y(), centre.z(), six_volume(mesh, t) / 6, longest_edge(mesh, t), quality),
-         fmt::format("quality above {:.0e}; a regular tetrahedron has 1", smallest_element_quality),
-         inside_out ? "exchange two of its nodes, or mesh again with 'palpate mesh'"
-                    : "merge its nearest nodes, or mesh again with 'palpate mesh'"});
+    std::ostringstream found;
+    found << "it is " << (inside_out ? "inside out" : "flat") << ": nodes " << nodes[0] << ", " << nodes[1]
+          << ", " << nodes[2] << " and " << nodes[3] << " around (" << std::setprecision(4) << centre.x()
+          << ", " << centre.y() << ", " << centre.z() << ") mm span " << std::setprecision(3)
+          << six_volume(mesh, t) / 6 << " mm³ over a longest edge of " << longest_edge(mesh, t)
+          << " mm, quality " << std::setprecision(2) << quality;
+    std::ostringstream expected;
+    expected << "quality above " << smallest_element_quality << "; a regular tetrahedron has 1";
+    return InvalidInput({"tetrahedron " + std::to_string(t), found.str(), expected.str(),
+                         inside_out ? "exchange two of its nodes, or mesh again with 'palpate mesh'"
+                                    : "merge its nearest nodes, or mesh again with 'palpate mesh'"});
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <future>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <utility>
 
 #include "formats/asset/asset.hpp"
@@ -18,8 +19,8 @@ namespace {
 std::unique_ptr<haptics::HapticModel> sound_model(const Case& patient_case, const SessionRequest& request) {
     auto judged = std::async(std::launch::async, [&] {
         for (const DeformableBody& body : patient_case.deformable_bodies)
-            elasticity::require_answers_of_mesh(body,
-                                                request.asset.string() + ": compliance of " + body.name);
+            elasticity::require_answers_of_mesh(body, request.asset.string() + ": compliance of " + body.name,
+                                                std::random_device{}());
     });
     auto model = std::make_unique<haptics::HapticModel>(patient_case, request.method, request.tool_count);
     judged.get();

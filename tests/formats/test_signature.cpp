@@ -68,8 +68,13 @@ TEST_F(Signing, takes_keys_of_its_kind_alone) {
     EXPECT_THAT(refusal([&] { sign_manifest(digest, open_key); }), HasSubstr("holds no private key"));
     EXPECT_THAT(refusal([&] { sign_manifest(digest, scratch / "missing.pem"); }),
                 HasSubstr("cannot be read"));
-    EXPECT_THAT(refusal([&] { read_public_keys(std::array{nothing}); }), HasSubstr("holds no public key"));
-    EXPECT_THAT(refusal([&] { read_public_keys(std::array{key}); }), HasSubstr("holds no public key"));
+    EXPECT_THAT(refusal([&] { read_public_keys(std::array{nothing}); }),
+                HasSubstr("holds no public key that is whole"));
+    EXPECT_THAT(refusal([&] { read_public_keys(std::array{key}); }), HasSubstr("holds no public keys alone"));
+    const auto torn =
+        written(scratch / "torn.pem",
+                std::string(first_public) + "-----BEGIN PUBLIC KEY-----\nMCow\n-----END PUBLIC KEY-----\n");
+    EXPECT_THAT(refusal([&] { read_public_keys(std::array{torn}); }), HasSubstr("holds no public key"));
     const auto two = written(scratch / "two.pem", std::string(first_public) + first_public);
     EXPECT_THAT(read_public_keys(std::array{two}), ElementsAre(first_key, first_key));
 }

@@ -7,15 +7,19 @@
 #include <chrono>
 #include <climits>
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
 #include <fstream>
-#include <regex>
+#include <functional>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <system_error>
 #include <thread>
+#include <tuple>
 #include <unistd.h>
+#include <utility>
 
 #include "formats/model/errors.hpp"
 
@@ -50,8 +54,28 @@ extern "C" void remove_and_exit(int) {
     _exit(130);
 }
 
-std::string temporary_prefix() {
-    return ".part" + std::to_string(getpid()) + "-";
+// Tells machines that share a folder apart: a lock of one may say nothing to another.
+const std::string& machine() {
+    static const std::string name = [] {
+        std::string id;
+        std::getline(std::ifstream("/etc/machine-id"), id);
+        std::array<char, 256> host{};
+        if (id.empty() && gethostname(host.data(), host.size() - 1) == 0) id = host.data();
+        std::array<char, 9> digits{};
+        std::snprintf(digits.data(), digits.size(), "%08zx", std::hash<std::string>{}(id)&0xFFFFFFFFU);
+        return std::string(digits.data());
+    }();
+    return name;
+}
+
+// Of the files that this machine's processes stage: ".part-1a2b3c4d-4711.0-liver.vtkhdf" is the first of
+// process 4711.
+std::string staged_prefix() {
+    return ".part-" + machine() + "-";
+}
+
+std::string staged_prefix(int attempt) {
+    return staged_prefix() + std::to_string(getpid()) + "." + std::to_string(attempt) + "-";
 }
 
 int claim_slot(const std::string& path) {
@@ -79,41 +103,64 @@ void flush_to_disk(const std::filesystem::path& path, const std::filesystem::pat
     if (!flushed) fail(target, "could not be written", error);
 }
 
-// Who holds this lock on a staged file is still at work on it, on this machine or another that shares the
-// folder. The system lets go of it with the process, however that ends.
-bool lock(int file) {
-    struct flock whole {};
-    whole.l_type = F_WRLCK;
-    whole.l_whence = SEEK_SET;
-    return fcntl(file, F_OFD_SETLK, &whole) == 0;
+enum class Lock { ours, of_another, unknown };
+
+// Who holds this lock on a staged file is still at work on it; the system lets go of it with the process,
+// however that ends. It is on one byte that no file has, for a lock may keep a library's own descriptor from
+// writing. Unknown on file systems without locks.
+Lock lock(int file) {
+    struct flock byte {};
+    byte.l_type = F_WRLCK;
+    byte.l_whence = SEEK_SET;
+    byte.l_start = off_t{1} << 62;
+    byte.l_len = 1;
+    if (fcntl(file, F_OFD_SETLK, &byte) == 0) return Lock::ours;
+    return errno == EAGAIN || errno == EACCES ? Lock::of_another : Lock::unknown;
 }
 
-// Removes what killed processes left staged in a folder. Where it cannot be locked, as on some network file
-// systems, nobody can tell whether its process lives, and it stays.
+bool is_still(int file, const std::filesystem::path& path) {
+    struct stat opened {
+    }, named{};
+    return fstat(file, &opened) == 0 && lstat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino &&
+           opened.st_dev == named.st_dev;
+}
+
+// Removes what killed processes of this machine left staged in a folder. Where it cannot be locked nobody can
+// tell whether its process lives, and it stays.
 void remove_orphans(const std::filesystem::path& folder) {
-    static const std::regex staged(R"(\.part\d+-.*)");
     std::error_code ignored;
     for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
-        if (!std::regex_match(entry.path().filename().string(), staged) || !entry.is_regular_file(ignored) ||
-            entry.is_symlink(ignored))
+        if (!entry.path().filename().string().starts_with(staged_prefix()) ||
+            !entry.is_regular_file(ignored) || entry.is_symlink(ignored))
             continue;
         const int file = open(entry.path().c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
         if (file < 0) continue;
-        if (lock(file)) unlink(entry.path().c_str());
+        if (lock(file) == Lock::ours && is_still(file, entry.path())) unlink(entry.path().c_str());
         close(file);
     }
 }
 
-// Creates a staged file and locks it. Another process may take it for an orphan before it is locked; then
-// again.
-int create_locked(const std::filesystem::path& staged, const std::filesystem::path& target) {
-    for (;;) {
-        const int file = open(staged.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
-        if (file < 0) fail(target, "could not be written", errno);
-        struct stat status {};
-        if (!lock(file) || (fstat(file, &status) == 0 && status.st_nlink > 0)) return file;
+// Creates a file of its own beside the target and locks it; returns its descriptor and its path. Another
+// process that looks for orphans may be quicker with the lock; then under another name.
+std::pair<int, std::filesystem::path> create_staged(const std::filesystem::path& folder,
+                                                    const std::filesystem::path& target) {
+    constexpr int most_attempts = 100;
+    for (int attempt = 0;; ++attempt) {
+        const auto path = folder / (staged_prefix(attempt) + target.filename().string());
+        const int file = open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (file < 0 && (errno != EEXIST || attempt == most_attempts))
+            fail(target, "could not be written", errno);
+        if (file < 0) continue;
+        if (lock(file) != Lock::of_another && is_still(file, path)) return {file, path};
         close(file);
     }
+}
+
+// A folder that nobody else looks into.
+std::filesystem::path make_private_folder(const std::filesystem::path& target) {
+    std::string name = std::filesystem::temp_directory_path() / "palpate-XXXXXX";
+    if (mkdtemp(name.data()) == nullptr) fail(target, "has no folder to be made in", errno);
+    return name;
 }
 
 std::filesystem::path folder_of(const std::filesystem::path& file) {
@@ -161,6 +208,7 @@ bool require_file_or_pipe(const std::filesystem::path& target) {
 
 // Hands a finished file to whoever reads a pipe.
 void copy_into_pipe(const std::filesystem::path& staged, const std::filesystem::path& pipe) {
+    std::signal(SIGPIPE, SIG_IGN);  // a reader that goes is an error like others
     std::ifstream from(staged, std::ios::binary);
     std::ofstream to(pipe, std::ios::binary);
     if (std::filesystem::file_size(staged) > 0) to << from.rdbuf();
@@ -174,20 +222,19 @@ StagedFile::StagedFile(const std::filesystem::path& target, bool replace)
     : is_pipe_(require_file_or_pipe(target)), target_(is_pipe_ ? target : followed(target)) {
     if (!replace && !is_pipe_ && std::filesystem::exists(target_))
         throw InvalidInput({target.string(), "exists already", "", "choose another name or pass --force"});
-    const std::filesystem::path folder =
-        is_pipe_ ? std::filesystem::temp_directory_path() : folder_of(target_);
+    const std::filesystem::path folder = is_pipe_ ? make_private_folder(target) : folder_of(target_);
     if (!std::filesystem::is_directory(folder))
         throw InvalidInput(
             {target.string(), "its folder does not exist", "", "make it first: mkdir -p " + folder.string()});
-    remove_orphans(folder);
-    temporary_ = folder / (temporary_prefix() + target_.filename().string());
+    if (!is_pipe_) remove_orphans(folder);
+    std::tie(held_, temporary_) = create_staged(folder, target_);
     slot_ = claim_slot(temporary_.string());
-    held_ = create_locked(temporary_, target_);
 }
 
 StagedFile::~StagedFile() {
     std::error_code ignored;
     std::filesystem::remove(temporary_, ignored);
+    if (is_pipe_) std::filesystem::remove(temporary_.parent_path(), ignored);
     close(held_);
     if (slot_ >= 0) slots[slot_].used.store(false);
 }
@@ -209,9 +256,9 @@ void StagedFile::commit() {
 }
 
 std::string with_final_names(std::string message) {
-    const std::string prefix = temporary_prefix();
-    for (auto at = message.find(prefix); at != std::string::npos; at = message.find(prefix, at))
-        message.erase(at, prefix.size());
+    for (auto at = message.find(staged_prefix()); at != std::string::npos;
+         at = message.find(staged_prefix(), at))
+        message.erase(at, message.find('-', at + staged_prefix().size()) + 1 - at);
     return message;
 }
 

@@ -114,7 +114,7 @@ Json verify(const std::filesystem::path& asset, const std::vector<std::filesyste
     set_linear_algebra_threads(session.threads);
     session.progress.step("read and check digests", 0);
     const auto keys = asset::read_public_keys(trusted);
-    const Case patient_case = keys.empty() ? asset::read_asset(asset) : asset::read_asset(asset, keys);
+    const Case patient_case = asset::read_asset(asset, keys);
     Checks checks;
     if (const auto signer = asset::signer_of(asset))
         checks.add("asset",

@@ -52,8 +52,8 @@ std::string unpadded(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-Hdf5File::Hdf5File(const std::filesystem::path& path)
-    : name_(path.string()), mapping_(path), objects_(parse_hdf5(mapping_.bytes(), name_)) {}
+Hdf5File::Hdf5File(const std::filesystem::path& path, Held held)
+    : name_(path.string()), mapping_(path, held), objects_(parse_hdf5(mapping_.bytes(), name_)) {}
 
 void Hdf5File::refuse(const std::string& path, const std::string& found, const std::string& expected) const {
     throw InvalidInput(

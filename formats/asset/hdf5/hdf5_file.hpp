@@ -36,7 +36,7 @@ struct Hdf5Object {
 /// Every function throws InvalidInput naming file, object, what was found, and the remedy.
 class Hdf5File {
   public:
-    explicit Hdf5File(const std::filesystem::path& path);
+    explicit Hdf5File(const std::filesystem::path& path, Held held = Held::mapped);
 
     /// A size that a dimension may have any of, in place of a number.
     static constexpr std::int64_t any = -1;

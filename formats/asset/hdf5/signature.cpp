@@ -3,9 +3,12 @@
 
 #include <cstdio>
 #include <memory>
+#include <openssl/crypto.h>
 #include <openssl/err.h>
 #include <openssl/evp.h>
 #include <openssl/pem.h>
+#include <openssl/x509.h>
+#include <optional>
 
 #include "formats/asset/hdf5/digest.hpp"
 #include "formats/model/errors.hpp"
@@ -73,6 +76,19 @@ std::string public_part(EVP_PKEY* key) {
     return to_hexadecimal(bytes);
 }
 
+// The content of the next block of a PEM file; none at its end, or where it is broken.
+std::optional<Octets> read_block(std::FILE* stream) {
+    char *name = nullptr, *header = nullptr;
+    unsigned char* data = nullptr;
+    long size = 0;
+    if (PEM_read(stream, &name, &header, &data, &size) != 1) return std::nullopt;
+    Octets block(data, data + size);
+    OPENSSL_free(name);
+    OPENSSL_free(header);
+    OPENSSL_free(data);
+    return block;
+}
+
 }  // namespace
 
 Signature sign_manifest(std::string_view manifest_sha256, const std::filesystem::path& private_key) {
@@ -107,18 +123,21 @@ bool is_signed(std::string_view manifest_sha256, const Signature& signature) {
 }
 
 std::vector<std::string> read_public_keys(std::span<const std::filesystem::path> files) {
+    const char* remedy = "make one with 'openssl pkey -in key.pem -pubout -out key.pub.pem'";
     std::vector<std::string> keys;
     for (const auto& file : files) {
         const Stream stream = open_stream(file);
         const std::size_t before = keys.size();
-        while (const Key key{PEM_read_PUBKEY(stream.get(), nullptr, no_passphrase, nullptr), EVP_PKEY_free}) {
-            if (EVP_PKEY_get_base_id(key.get()) != EVP_PKEY_ED25519) break;
+        while (const auto block = read_block(stream.get())) {
+            const unsigned char* start = block->data();
+            const Key key(d2i_PUBKEY(nullptr, &start, static_cast<long>(block->size())), EVP_PKEY_free);
+            if (!key || EVP_PKEY_get_base_id(key.get()) != EVP_PKEY_ED25519)
+                refuse_key(file, "public keys alone", remedy);
             keys.push_back(public_part(key.get()));
         }
+        const bool at_end = ERR_GET_REASON(ERR_peek_last_error()) == PEM_R_NO_START_LINE;
+        if (keys.size() == before || !at_end) refuse_key(file, "public key that is whole", remedy);
         ERR_clear_error();
-        if (keys.size() == before)
-            refuse_key(file, "public key",
-                       "make one with 'openssl pkey -in key.pem -pubout -out key.pub.pem'");
     }
     return keys;
 }

@@ -218,8 +218,7 @@ Json play_recording(const PlaybackOptions& options, const PlaybackWindow& shown,
     const recording::Recording recording = recording::read_recording(options.play);
     check_asset(recording, options.play, shown.asset);
     session.progress.step("reading the case", 0.3);
-    const Case patient_case = shown.trusted_keys.empty() ? asset::read_asset(shown.asset)
-                                                         : asset::read_asset(shown.asset, shown.trusted_keys);
+    const Case patient_case = asset::read_asset(shown.asset, shown.trusted_keys);
     const auto model = model_of(recording, options.play, shown.asset, patient_case);
     RecordedScene scene(recording, options.play, options.tool, *model, patient_case);
     std::optional<ExpertGhost> ghost;

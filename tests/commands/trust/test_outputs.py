@@ -81,6 +81,15 @@ class Outputs(unittest.TestCase):
                                self.folder / "result.json"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=60)
         self.assertEqual((made.returncode, made.stdout), (OK, self.written()), made.stderr)
 
+    def test_a_reader_that_goes_is_an_error_and_nothing_is_left(self):
+        private = self.folder / "tmp"
+        private.mkdir()
+        ran = subprocess.run(["sh", "-c", '"$0" "$1" -o /dev/stdout --quiet --json "$2" | true', BIN / "palpate-obb",
+                              self.folder / "skull.vtp", self.folder / "result.json"], env=dict(os.environ, TMPDIR=str(private)),
+                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=60)
+        self.assertIn("Broken pipe", ran.stderr)
+        self.assertEqual(list(private.iterdir()), [])
+
     def test_what_a_link_leads_to_is_replaced_whole(self):
         elsewhere = self.folder / "elsewhere"
         elsewhere.mkdir()
@@ -107,15 +116,19 @@ class Outputs(unittest.TestCase):
                                     self.folder / "result.json"])
         self.addCleanup(running.wait)
         self.addCleanup(running.kill)
-        staged = f".part{running.pid}-result.json"
         end = time.monotonic() + 60
-        while self.staged() != [staged] and time.monotonic() < end:
+        while not self.staged() and time.monotonic() < end:
             time.sleep(0.02)
+        staged = self.staged()
+        self.assertRegex(" ".join(staged), rf"^\.part-[0-9a-f]{{8}}-{running.pid}\.0-result\.json$")
+        elsewhere = self.folder / ".part-00000000-1.0-of-another-machine"  # whose locks may not be seen here
+        elsewhere.write_text("staged")
         self.assertEqual(self.obb(self.folder / "one.obb.h5").returncode, OK)
-        self.assertEqual(self.staged(), [staged])
+        self.assertEqual(self.staged(), sorted([elsewhere.name, *staged]))
+        elsewhere.unlink()
         running.send_signal(signal.SIGKILL)
         running.wait()
-        self.assertEqual(self.staged(), [staged])
+        self.assertEqual(self.staged(), staged)
         self.assertEqual(self.obb(self.folder / "two.obb.h5").returncode, OK)
         self.assertEqual(self.staged(), [])
 

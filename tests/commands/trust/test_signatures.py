@@ -78,7 +78,7 @@ class Signatures(unittest.TestCase):
     def test_a_file_without_a_key_is_named(self):
         refused = run(BIN / "palpate-verify", self.asset, "--trusted", self.folder / "lab.pem")
         self.assertEqual(refused.returncode, INVALID, refused.stderr)
-        self.assertIn("lab.pem: holds no public key", refused.stderr)
+        self.assertIn("lab.pem: holds no public keys alone", refused.stderr)
 
 
 if __name__ == "__main__":

@@ -2,13 +2,16 @@
 // A foreign program: touches the asset that it is given, and reports the culprit of one that is not there.
 #include <algorithm>
 #include <formats/asset/asset.hpp>
+#include <formats/elasticity/plausible_compliance.hpp>
 #include <formats/model/errors.hpp>
 #include <iostream>
 #include <runtime/haptics/haptic_model.hpp>
 
 int main(int argc, char** argv) {
     if (argc != 2) return 2;
-    const palpate::Case patient_case = palpate::asset::read_asset(argv[1]);
+    const palpate::Case patient_case = palpate::asset::load_asset(argv[1]);
+    for (const palpate::DeformableBody& body : patient_case.deformable_bodies)
+        palpate::elasticity::require_answers_of_mesh(body, argv[1], 1);
     palpate::haptics::HapticModel model(patient_case);
     const Eigen::Vector3d middle =
         patient_case.deformable_bodies.front().obb_tree.nodes.front().center.cast<double>();
