@@ -19,6 +19,7 @@
 #include <vtkStringArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkUnstructuredGridWriter.h>
+#include <vtkXMLUnstructuredGridWriter.h>
 
 #include "tests/tools/meshing/imported_files.hpp"
 #include "tools/meshing/files/imported_mesh.hpp"
@@ -324,6 +325,73 @@ TEST_F(ImportedMesh, counts_of_vtk_xml_files_that_cannot_be_are_refused) {
                    vtu("5", "2", "99999999999999999999", "4 8"));
     for (const char* offsets : {"4 9", "8 4", "-4 8", "4"})
         expect_refusal({"e.vtu"}, "e.vtu", vtu("5", "2", "3", offsets));
+}
+
+// The two tetrahedra by VTK's writer, in the kind of data that `set` chooses.
+template <typename Set>
+fs::path vtu_of_vtk(const fs::path& path, const TetMesh& mesh, Set set) {
+    vtkNew<vtkUnstructuredGrid> grid;
+    vtkNew<vtkPoints> points;
+    for (const Eigen::Vector3d& p : mesh.rest_positions) points->InsertNextPoint(p.data());
+    grid->SetPoints(points);
+    for (const Tetrahedron& t : mesh.tetrahedra) {
+        const std::array<vtkIdType, 4> nodes{t[0], t[1], t[2], t[3]};
+        grid->InsertNextCell(VTK_TETRA, 4, nodes.data());
+    }
+    vtkNew<vtkStringArray> space, none;
+    space->SetName("SPACE");
+    space->InsertNextValue("LPS");
+    none->SetName("none");
+    grid->GetFieldData()->AddArray(space);
+    grid->GetFieldData()->AddArray(none);
+    vtkNew<vtkXMLUnstructuredGridWriter> writer;
+    writer->SetInputData(grid);
+    writer->SetFileName(path.c_str());
+    set(*writer.Get());
+    EXPECT_EQ(writer->Write(), 1);
+    return path;
+}
+
+TEST_F(ImportedMesh, compressed_vtk_xml_files_of_every_kind_are_read) {
+    const TetMesh mesh = tetrahedra("a.vtk", legacy("2 10", "2"));
+    using Writer = vtkXMLWriter;
+    for (const int mode : {int{Writer::Binary}, int{Writer::Appended}, int{Writer::Ascii}})
+        for (const int compressor :
+             {int{Writer::NONE}, int{Writer::ZLIB}, int{Writer::LZ4}, int{Writer::LZMA}})
+            for (const int header : {int{Writer::UInt32}, int{Writer::UInt64}})
+                for (const int order : {int{Writer::BigEndian}, int{Writer::LittleEndian}})
+                    for (const bool encoded : {false, true})
+                        for (const std::size_t block : {24, 32768}) {
+                            const auto path = vtu_of_vtk(folder_ / "b.vtu", mesh, [&](auto& writer) {
+                                writer.SetDataMode(mode);
+                                writer.SetCompressorType(compressor);
+                                writer.SetHeaderType(header);
+                                writer.SetByteOrder(order);
+                                writer.SetEncodeAppendedData(encoded);
+                                writer.SetBlockSize(block);
+                            });
+                            EXPECT_EQ(read_imported_tetrahedra(path, {}).tetrahedra, mesh.tetrahedra)
+                                << mode << compressor << header << order << encoded << block;
+                        }
+}
+
+TEST_F(ImportedMesh, blocks_beyond_what_a_vtk_xml_file_has_room_for_are_refused) {
+    const TetMesh mesh = tetrahedra("a.vtk", legacy("2 10", "2"));
+    const auto path = vtu_of_vtk(folder_ / "b.vtu", mesh, [](auto& writer) {
+        writer.SetHeaderType(vtkXMLWriter::UInt64);
+        writer.EncodeAppendedDataOff();
+    });
+    std::ifstream stream(path, std::ios::binary);
+    const std::string whole(std::istreambuf_iterator<char>(stream), {});
+    // Of the text SPACE: number of blocks, their size, that of the last, its packed size.
+    const std::size_t at = whole.find('_', whole.find("<AppendedData")) + 1;
+    const std::int64_t much = std::int64_t{1} << 34;
+    for (const auto& [word, value] : std::vector<std::pair<std::size_t, std::int64_t>>{
+             {0, much}, {0, 1 << 20}, {0, -1}, {1, 0}, {2, much}, {2, -1}, {3, much}, {3, -1}}) {
+        std::string text = whole;
+        text.replace(at + 8 * word, 8, bytes(value));
+        expect_refusal({"c.vtu", "is not a readable VTK"}, "c.vtu", text);
+    }
 }
 
 TEST_F(ImportedMesh, medit_files_of_tetgen_that_announce_too_many_triangles_are_read) {
