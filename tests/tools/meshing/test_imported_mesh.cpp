@@ -258,6 +258,10 @@ TEST_F(ImportedMesh, legacy_vtk_fields_of_every_kind_are_passed_over_and_regions
     region->InsertNextValue(7);
     grid->GetCellData()->AddArray(region);
     grid->GetCellData()->AddArray(names);  // binary texts of cells too
+    vtkNew<vtkBitArray> flags;
+    flags->SetName("flags");
+    for (int n = 0; n < 5; ++n) flags->InsertNextValue(n % 2);
+    grid->GetPointData()->AddArray(flags);  // the file ends with more values than bytes
     vtkNew<vtkFloatArray> field;
     field->SetName("field");
     field->SetNumberOfComponents(3);

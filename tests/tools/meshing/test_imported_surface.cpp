@@ -114,7 +114,8 @@ TEST_F(ImportedSurface, stl_is_known_by_its_content) {
     const std::string byte_order_mark = "\xEF\xBB\xBF";
     for (const std::string& text :
          {ascii_stl("solid", "", "\n"), ascii_stl("solid vertex normal facet", "\t", "\r\n"),
-          ascii_stl("  \n solid ascii", "  ", "\n"), ascii_stl(byte_order_mark + "solid a", " ", "\n"),
+          ascii_stl("solid vertex", std::string(7000, ' '), "\n"), ascii_stl("  \n solid ascii", "  ", "\n"),
+          ascii_stl(byte_order_mark + "solid a", " ", "\n"),
           ascii_stl("SOLID " + std::string(200, 'n'), "", "\r\n"), binary_stl("solid exported by x", 4),
           binary_stl("solid exported by x", 0), binary_stl("", 4), binary_stl("facet vertex", 4)}) {
         const TriangleMesh read = surface("a.stl", text);

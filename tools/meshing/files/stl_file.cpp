@@ -47,12 +47,11 @@ class StlReader {
         if (size_ < header_size + 4) return false;
         Scanner head(path);
         const std::string start = lower_case(head.text().substr(0, 1 << 16));
-        const bool facets =
-            start.find("facet") < start.find("vertex") && start.find("vertex") != std::string::npos;
+        const auto has = [&](const char* word) { return start.find(word) != std::string::npos; };
+        const bool text = (has("facet") && has("vertex")) || has("endsolid");
         head.skip(static_cast<std::int64_t>(header_size), 1);
         const std::size_t count = head.raw<std::uint32_t>(std::endian::little);
-        return size_ == header_size + 4 + facet_size * count ||
-               !(facets || start.find("endsolid") != std::string::npos);
+        return !text || size_ == header_size + 4 + facet_size * count;
     }
 
     // Counts are often those of another file, or 0; what is there counts, unless it ends within a triangle.

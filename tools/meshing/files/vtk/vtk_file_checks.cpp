@@ -85,8 +85,12 @@ class LegacyCheck {
         file_.word();  // its name
         for (std::int64_t left = file_.require_room(file_.integer(), 1); left > 0; --left) {
             if (file_.word() == "NULL_ARRAY") continue;
-            const std::int64_t components = file_.require_room(file_.integer(), 1),
-                               tuples = file_.require_room(file_.integer(), 1);
+            const std::int64_t components = file_.integer(), tuples = file_.integer();
+            const auto most = static_cast<std::int64_t>(8 * file_.text().size());  // there are bits
+            if (components < 0 || tuples < 0 || (components > 0 && tuples > most / components))
+                file_.fail(
+                    fmt::format("{} times {} values, for which the file is too short", tuples, components),
+                    "", again);
             const std::string type = lower_case(file_.word());
             if (type == "string" || type == "utf8_string")
                 skip_texts(components * tuples);
