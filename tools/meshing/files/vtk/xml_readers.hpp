@@ -39,6 +39,7 @@ class BlocksChecked : public vtkXMLDataParser {
 template <typename Reader>
 class OffsetsChecked : public Reader {
   public:
+    // NOLINTNEXTLINE(readability-identifier-naming): VTK's
     static OffsetsChecked* New() { VTK_STANDARD_NEW_BODY(OffsetsChecked); }
     void set_room(std::size_t values) { room_ = static_cast<double>(values); }
 
