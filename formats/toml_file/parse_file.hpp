@@ -6,8 +6,8 @@
 
 namespace palpate::toml_file {
 
-/// Reads a TOML file of at most 1 MiB and 4096 full stops. Throws InvalidInput naming file and line for a
-/// syntax error, with `next_step`.
+/// Reads a TOML file of at most 1 MiB and 4096 full stops in its keys. Throws InvalidInput naming file and
+/// line for a syntax error, with `next_step`.
 toml::table parse_file(const std::filesystem::path& path, const std::string& next_step);
 
 }  // namespace palpate::toml_file

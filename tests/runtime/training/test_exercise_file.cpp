@@ -82,7 +82,7 @@ TEST_F(ExerciseFile, what_cannot_be_is_told_with_file_line_and_key) {
         return sample::refusal([&] { read_exercises(written("schema = 1\n" + text)); });
     };
     EXPECT_THAT(refused(many), HasSubstr("is there 1001 times (expected 1000 at most)"));
-    EXPECT_THAT(refused(deep + " = 1\n"), HasSubstr("has 5000 full stops (expected 4096 at most"));
+    EXPECT_THAT(refused(deep + " = 1\n"), HasSubstr("has 5000 full stops in keys (expected 4096 at most"));
     EXPECT_THAT(refused(long_one), HasSubstr("bytes (expected 1048576 at most)"));
 }
 

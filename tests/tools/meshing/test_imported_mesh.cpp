@@ -7,10 +7,19 @@
 #include <fstream>
 #include <gtest/gtest.h>
 #include <unistd.h>
+#include <vtkBitArray.h>
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
+#include <vtkFloatArray.h>
+#include <vtkIntArray.h>
 #include <vtkNew.h>
+#include <vtkPointData.h>
 #include <vtkPoints.h>
+#include <vtkStringArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkUnstructuredGridWriter.h>
+#include <vtkXMLUnstructuredGridWriter.h>
 
 #include "tests/tools/meshing/imported_files.hpp"
 #include "tools/meshing/files/imported_mesh.hpp"
@@ -211,6 +220,91 @@ TEST_F(ImportedMesh, legacy_vtk_files_of_version_5_are_read_in_either_kind) {
         }
 }
 
+TEST_F(ImportedMesh, legacy_vtk_fields_of_every_kind_are_passed_over_and_regions_kept) {
+    const TetMesh mesh = tetrahedra("a.vtk", legacy("2 10", "2"));
+    vtkNew<vtkUnstructuredGrid> grid;
+    vtkNew<vtkPoints> points;
+    for (const Eigen::Vector3d& p : mesh.rest_positions) points->InsertNextPoint(p.data());
+    points->GetData()->SetComponentName(0, "x");  // METADATA, with two empty names
+    grid->SetPoints(points);
+    for (const Tetrahedron& t : mesh.tetrahedra) {
+        const std::array<vtkIdType, 4> nodes{t[0], t[1], t[2], t[3]};
+        grid->InsertNextCell(VTK_TETRA, 4, nodes.data());
+    }
+    vtkNew<vtkStringArray> space, names, long_ones;
+    space->SetName("SPACE");
+    space->InsertNextValue("RAS");
+    names->SetName("region_names");
+    names->InsertNextValue("liver");
+    names->InsertNextValue("tumour of\nliver");
+    vtkNew<vtkIntArray> values, region;
+    values->SetName("region_values");
+    values->InsertNextValue(5);
+    values->InsertNextValue(7);
+    values->SetComponentName(0, "cells");
+    long_ones->SetName("log");
+    for (const std::size_t length : {0, 100, 20000}) long_ones->InsertNextValue(std::string(length, 'l'));
+    vtkNew<vtkBitArray> bits;
+    bits->SetName("bits");
+    for (int n = 0; n < 19; ++n) bits->InsertNextValue(n % 2);
+    vtkNew<vtkDoubleArray> time;
+    time->SetName("TimeValue");
+    time->InsertNextValue(-0.5);
+    for (vtkAbstractArray* array :
+         std::initializer_list<vtkAbstractArray*>{time, values, names, bits, long_ones, space})
+        grid->GetFieldData()->AddArray(array);
+    region->SetName("region");
+    region->InsertNextValue(5);
+    region->InsertNextValue(7);
+    grid->GetCellData()->AddArray(region);
+    grid->GetCellData()->AddArray(names);  // binary texts of cells too
+    vtkNew<vtkBitArray> flags;
+    flags->SetName("flags");
+    for (int n = 0; n < 5; ++n) flags->InsertNextValue(n % 2);
+    grid->GetPointData()->AddArray(flags);  // the file ends with more values than bytes
+    vtkNew<vtkFloatArray> field;
+    field->SetName("field");
+    field->SetNumberOfComponents(3);
+    for (int n = 0; n < 5; ++n) field->InsertNextTuple3(-3, 100, 1e9);
+    grid->GetPointData()->SetVectors(field);
+    vtkNew<vtkUnstructuredGridWriter> writer;
+    writer->SetInputData(grid);
+    writer->SetHeader("scalars at step 100");
+    for (const int kind : {VTK_ASCII, VTK_BINARY})
+        for (const int version : {42, 51}) {
+            const fs::path path = folder_ / "b.vtk";
+            writer->SetFileType(kind);
+            writer->SetFileVersion(version);
+            writer->SetFileName(path.c_str());
+            ASSERT_EQ(writer->Write(), 1);
+            const TetMesh read = read_imported_tetrahedra(path, {});
+            EXPECT_EQ(read.tetrahedra, mesh.tetrahedra) << kind << version;
+            EXPECT_EQ(read.regions, (std::vector<std::int32_t>{5, 7}));
+            EXPECT_EQ(read.region_names.at(0).name, "liver");
+            EXPECT_EQ(read.rest_positions[1], Eigen::Vector3d(-1, 0, 0));
+        }
+}
+
+TEST_F(ImportedMesh, values_after_a_lookup_table_of_scalars_are_no_number_of_colours) {
+    const std::string mesh = legacy("2 10", "2");
+    for (const char* scalars : {"POINT_DATA 5\nSCALARS s float\nLOOKUP_TABLE default\n-3 1e9 0 0 0\n",
+                                "POINT_DATA 5\nSCALARS s float 1\nLOOKUP_TABLE t\n-3 1e9 0 0 0\n"
+                                "LOOKUP_TABLE t 2\n0 0 0 1\n1 1 1 1\n",
+                                "CELL_DATA 2\nNORMALS scalars float\n100 200 -3 1 1 1\n",
+                                "FIELD f 2\nNULL_ARRAY\na 1 2 float\n-1 2\n"})
+        EXPECT_EQ(tetrahedra("a.vtk", mesh + scalars).tetrahedra.size(), 2U) << scalars;
+    for (const char* hostile :
+         {"POINT_DATA 5\nSCALARS s float\nLOOKUP_TABLE t\n1 1 1 1 1\nLOOKUP_TABLE t 999999999\n",
+          "POINT_DATA 5\nVECTORS SCALARS floats\nLOOKUP_TABLE t 999999999\n",
+          "FIELD f 1\nSCALARS 1 0 float\nLOOKUP_TABLE t 999999999\n", "FIELD f 1\na 99999 99999 floats\n1\n",
+          "POINT_DATA 5\nSCALARS s float 99999999\n"})
+        expect_refusal({"than the file has room for"}, "b.vtk", mesh + hostile);
+    std::string binary = "# vtk DataFile Version 3.0\nx\nBINARY\nDATASET UNSTRUCTURED_GRID\n";
+    for (const char* texts :
+         {"FIELD f 1\na 1 1 string\n\x3f       ", "CELL_DATA 0\nFIELD f 1\na 1 1 string\n\x7f   "})
+        expect_refusal({"c.vtk"}, "c.vtk", binary + texts);
+}
+
 std::string vtu(const std::string& points, const std::string& cells, const std::string& components,
                 const std::string& offsets) {
     return "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\"><UnstructuredGrid>"
@@ -235,6 +329,73 @@ TEST_F(ImportedMesh, counts_of_vtk_xml_files_that_cannot_be_are_refused) {
                    vtu("5", "2", "99999999999999999999", "4 8"));
     for (const char* offsets : {"4 9", "8 4", "-4 8", "4"})
         expect_refusal({"e.vtu"}, "e.vtu", vtu("5", "2", "3", offsets));
+}
+
+// The two tetrahedra by VTK's writer, in the kind of data that `set` chooses.
+template <typename Set>
+fs::path vtu_of_vtk(const fs::path& path, const TetMesh& mesh, Set set) {
+    vtkNew<vtkUnstructuredGrid> grid;
+    vtkNew<vtkPoints> points;
+    for (const Eigen::Vector3d& p : mesh.rest_positions) points->InsertNextPoint(p.data());
+    grid->SetPoints(points);
+    for (const Tetrahedron& t : mesh.tetrahedra) {
+        const std::array<vtkIdType, 4> nodes{t[0], t[1], t[2], t[3]};
+        grid->InsertNextCell(VTK_TETRA, 4, nodes.data());
+    }
+    vtkNew<vtkStringArray> space, none;
+    space->SetName("SPACE");
+    space->InsertNextValue("LPS");
+    none->SetName("none");
+    grid->GetFieldData()->AddArray(space);
+    grid->GetFieldData()->AddArray(none);
+    vtkNew<vtkXMLUnstructuredGridWriter> writer;
+    writer->SetInputData(grid);
+    writer->SetFileName(path.c_str());
+    set(*writer.Get());
+    EXPECT_EQ(writer->Write(), 1);
+    return path;
+}
+
+TEST_F(ImportedMesh, compressed_vtk_xml_files_of_every_kind_are_read) {
+    const TetMesh mesh = tetrahedra("a.vtk", legacy("2 10", "2"));
+    using Writer = vtkXMLWriter;
+    for (const int mode : {int{Writer::Binary}, int{Writer::Appended}, int{Writer::Ascii}})
+        for (const int compressor :
+             {int{Writer::NONE}, int{Writer::ZLIB}, int{Writer::LZ4}, int{Writer::LZMA}})
+            for (const int header : {int{Writer::UInt32}, int{Writer::UInt64}})
+                for (const int order : {int{Writer::BigEndian}, int{Writer::LittleEndian}})
+                    for (const bool encoded : {false, true})
+                        for (const std::size_t block : {24, 32768}) {
+                            const auto path = vtu_of_vtk(folder_ / "b.vtu", mesh, [&](auto& writer) {
+                                writer.SetDataMode(mode);
+                                writer.SetCompressorType(compressor);
+                                writer.SetHeaderType(header);
+                                writer.SetByteOrder(order);
+                                writer.SetEncodeAppendedData(encoded);
+                                writer.SetBlockSize(block);
+                            });
+                            EXPECT_EQ(read_imported_tetrahedra(path, {}).tetrahedra, mesh.tetrahedra)
+                                << mode << compressor << header << order << encoded << block;
+                        }
+}
+
+TEST_F(ImportedMesh, blocks_beyond_what_a_vtk_xml_file_has_room_for_are_refused) {
+    const TetMesh mesh = tetrahedra("a.vtk", legacy("2 10", "2"));
+    const auto path = vtu_of_vtk(folder_ / "b.vtu", mesh, [](auto& writer) {
+        writer.SetHeaderType(vtkXMLWriter::UInt64);
+        writer.EncodeAppendedDataOff();
+    });
+    std::ifstream stream(path, std::ios::binary);
+    const std::string whole(std::istreambuf_iterator<char>(stream), {});
+    // Of the text SPACE: number of blocks, their size, that of the last, its packed size.
+    const std::size_t at = whole.find('_', whole.find("<AppendedData")) + 1;
+    const std::int64_t much = std::int64_t{1} << 34;
+    for (const auto& [word, value] : std::vector<std::pair<std::size_t, std::int64_t>>{
+             {0, much}, {0, 1 << 20}, {0, -1}, {1, 0}, {2, much}, {2, -1}, {3, much}, {3, -1}}) {
+        std::string text = whole;
+        text.replace(at + 8 * word, 8, bytes(value));
+        expect_refusal({"c.vtu", "is not a readable VTK"}, "c.vtu", text);
+    }
 }
 
 TEST_F(ImportedMesh, medit_files_of_tetgen_that_announce_too_many_triangles_are_read) {

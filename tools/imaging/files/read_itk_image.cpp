@@ -34,14 +34,15 @@ void require_short_header(const std::filesystem::path& path) {
     const auto refuse = [&](const std::string& found, const std::string& expected) {
         throw InvalidInput({path.string(), found, expected, "correct the header"});
     };
-    std::ifstream stream(path, std::ios::binary);
-    std::string line;
-    std::getline(stream, line);
-    const bool nrrd = line.starts_with("NRRD");
-    std::size_t bytes = 0;
-    for (int lines = 1; std::getline(stream, line) && !(nrrd && trimmed(line).empty()); ++lines) {
-        bytes += line.size();
-        if (lines > most_lines || bytes > longest)
+    std::string head(longest + 1, '\0');
+    std::ifstream file(path, std::ios::binary);
+    file.read(head.data(), static_cast<std::streamsize>(head.size()));
+    head.resize(static_cast<std::size_t>(file.gcount()));
+    const bool nrrd = head.starts_with("NRRD");
+    std::istringstream stream(head);
+    int lines = 0;
+    for (std::string line; std::getline(stream, line) && !(nrrd && trimmed(line).empty());) {
+        if (++lines > most_lines || (stream.eof() && head.size() > longest))
             refuse("has a header of more than 8192 lines or 1 MiB", "");
         if (!nrrd && line.find("NDims") != std::string::npos) {
             std::erase_if(line, [](unsigned char c) { return std::isspace(c) != 0; });
@@ -334,8 +335,8 @@ std::string reason_of(const itk::ExceptionObject& error) {
 }
 
 StoredImage read_itk_image(const std::filesystem::path& path, const NoteSink& note) {
+    const itk::ImageIOBase::Pointer io = image_io_of(path);  // looks at 8000 bytes at most
     require_short_header(path);
-    const itk::ImageIOBase::Pointer io = image_io_of(path);
     const bool meta = dynamic_cast<itk::MetaImageIO*>(io.GetPointer()) != nullptr;
     try {
         io->SetFileName(path.string());

@@ -116,9 +116,15 @@ StoredVoxels voxels_of(vtkDataArray& array, const std::filesystem::path& path) {
 }
 
 // Meshes and images of 3D Slicer say their frame in a field SPACE; others say nothing.
-bool is_ras(vtkImageData& data, const NoteSink& note) {
+bool is_ras(vtkImageData& data, const std::filesystem::path& path, const NoteSink& note) {
     auto* space = vtkStringArray::SafeDownCast(data.GetFieldData()->GetAbstractArray("SPACE"));
-    if (space != nullptr && space->GetNumberOfValues() == 1) return space->GetValue(0) == "RAS";
+    if (space != nullptr && space->GetNumberOfValues() == 1) {
+        const std::string name = space->GetValue(0);
+        if (name != "LPS" && name != "RAS")
+            throw InvalidInput({path.string(), "has the SPACE '" + as_utf8(name).substr(0, 40) + "'",
+                                "LPS or RAS", "export it in one of these"});
+        return name == "RAS";
+    }
     if (note) note("the header names no patient space; taken as LPS");
     return false;
 }
@@ -147,7 +153,7 @@ StoredImage read_vtk_image(const std::filesystem::path& path, const NoteSink& no
             axes(row, axis) = data->GetDirectionMatrix()->GetElement(row, axis) * data->GetSpacing()[axis];
     }
     image.grid.origin += axes * first;
-    if (is_ras(*data, note)) {
+    if (is_ras(*data, path, note)) {
         axes.topRows<2>() *= -1;
         image.grid.origin.head<2>() *= -1;
     }

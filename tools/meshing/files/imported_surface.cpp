@@ -27,11 +27,14 @@ vtkSmartPointer<vtkPolyData> read_as(const std::filesystem::path& path, const ch
     return reader->GetOutput();
 }
 
-vtkSmartPointer<vtkPolyData> read_polygons(const std::filesystem::path& path) {
+vtkSmartPointer<vtkPolyData> read_polygons(const std::filesystem::path& path, const NoteSink& note) {
     const std::string extension = extension_of(path);
     if (extension == ".vtp") return read_as<XmlSurfaceReader>(path, "VTK PolyData file (.vtp)");
     if (extension == ".vtk") return read_as<vtkPolyDataReader>(path, "legacy VTK file with polygons");
-    if (extension == ".stl") return read_stl(path);
+    if (extension == ".stl")
+        return read_stl(path, [&](std::string_view text) {
+            if (note) note(fmt::format("{}: {}", path.string(), text));
+        });
     if (extension == ".obj") return read_obj(path);
     if (extension == ".ply") return read_ply(path);
     throw InvalidInput({path.string(), "has the extension '" + extension + "'",
@@ -69,7 +72,7 @@ std::string stated_frame(vtkPolyData* data, const std::filesystem::path& path) {
 TriangleMesh read_unrepaired_surface(const std::filesystem::path& path, const ImportedMeshOptions& options,
                                      const NoteSink& note) {
     const std::string culprit = path.string();
-    const vtkSmartPointer<vtkPolyData> data = read_polygons(path);
+    const vtkSmartPointer<vtkPolyData> data = read_polygons(path, note);
     for (vtkCellArray* cells : {data->GetPolys(), data->GetStrips()})
         require_indices(cells, data->GetNumberOfPoints(), culprit);
     const std::map<std::string, std::int64_t> flat{{"line", data->GetNumberOfLines()},

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <fmt/format.h>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 #include <vtkCellArray.h>
@@ -35,9 +36,11 @@ class Words {
     std::string_view left_;
 };
 
+// It may begin with '+'.
 template <typename Number>
 std::optional<Number> number_of(std::string_view word) {
     Number number{};
+    if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
     if (error != std::errc{} || end != word.data() + word.size()) return std::nullopt;
     return number;
@@ -49,7 +52,8 @@ class ObjReader {
 
     vtkSmartPointer<vtkPolyData> read() {
         while (!file_.at_end()) {
-            Words words(file_.line());
+            const std::string line = next_line();
+            Words words(line);
             const std::string_view keyword = words.next();
             if (keyword == "v") add_vertex(words);
             if (keyword == "f") add_face(words);
@@ -63,6 +67,19 @@ class ObjReader {
     }
 
   private:
+    // One that ends with a backslash goes on in the next.
+    std::string next_line() {
+        std::string text;
+        while (true) {
+            text += file_.line();
+            const std::size_t last = text.find_last_not_of(" \t\r");
+            if (last == std::string::npos || text[last] != '\\') return text;
+            text.resize(last);
+            text += ' ';
+            if (file_.exhausted()) return text;
+        }
+    }
+
     void add_vertex(Words& words) {
         std::array<double, 3> place{};
         for (double& x : place) {

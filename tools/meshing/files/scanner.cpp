@@ -79,7 +79,8 @@ std::int32_t Scanner::narrow(std::int64_t value, const char* what) const {
 double Scanner::number() {
     const std::string_view text = word();
     double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const auto sign = static_cast<std::size_t>(text.size() > 1 && text[0] == '+' && text[1] != '-');
+    const auto [end, error] = std::from_chars(text.data() + sign, text.data() + text.size(), value);
     if (error != std::errc{} || end != text.data() + text.size())
         fail(fmt::format("'{}'", text.substr(0, 40)), "a number", "write the file again");
     return value;

@@ -17,16 +17,18 @@ class Scanner {
   public:
     explicit Scanner(const std::filesystem::path& path);
 
-    bool at_end();              ///< after white space
-    std::string_view word();    ///< the next word
-    std::string_view peek();    ///< the next word, which stays; empty at the end
+    bool at_end();                                          ///< after white space
+    bool exhausted() const { return at_ == text_.size(); }  ///< without that
+    std::string_view word();                                ///< the next word
+    std::string_view peek();                                ///< the next word, which stays; empty at the end
+    std::string_view text() const { return text_; }         ///< all of it
     std::string_view line();    ///< the rest of this line; the next reading starts below it
     std::string_view quoted();  ///< what stands between the next two '"'
     std::int64_t integer();     ///< the next word as a whole number
     std::int64_t count();       ///< a number of things that the rest of the file has room for
     /// `value` if it fits 32 bits; throws naming `what` if not.
     std::int32_t narrow(std::int64_t value, const char* what) const;
-    double number();                      ///< the next word as a number
+    double number();                      ///< the next word as a number; it may begin with '+'
     bool skip_to(std::string_view text);  ///< moves behind the next `text`; false, unmoved, if there is none
 
     /// The next bytes as a value.

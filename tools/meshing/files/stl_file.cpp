@@ -24,9 +24,9 @@ class StlReader {
     explicit StlReader(const std::filesystem::path& path)
         : file_(path), size_(std::filesystem::file_size(path)), binary_(is_binary(path)) {}
 
-    vtkSmartPointer<vtkPolyData> read() {
+    vtkSmartPointer<vtkPolyData> read(const NoteSink& note) {
         if (binary_)
-            read_binary();
+            read_binary(note);
         else
             read_ascii();
         if (triangles_->GetNumberOfCells() == 0)
@@ -40,20 +40,33 @@ class StlReader {
   private:
     using Place = std::array<float, 3>;
 
-    // Many binary files begin with "solid" too, but only theirs is the size that their count says.
+    // Many binary files begin with "solid" too, and texts with blanks or a byte order mark; but only binary
+    // ones are the size that their count says, and only texts have facets with vertices, or say that they
+    // end.
     bool is_binary(const std::filesystem::path& path) const {
         if (size_ < header_size + 4) return false;
         Scanner head(path);
-        const auto start = head.raw<std::array<char, 5>>();
-        const bool solid = lower_case({start.data(), start.size()}) == "solid";
-        head.skip(static_cast<std::int64_t>(header_size - start.size()), 1);
-        return !solid || size_ == header_size + 4 +
-                                      facet_size * std::size_t{head.raw<std::uint32_t>(std::endian::little)};
+        const std::string start = lower_case(head.text().substr(0, 1 << 16));
+        const auto has = [&](const char* word) { return start.find(word) != std::string::npos; };
+        const bool text = (has("facet") && has("vertex")) || has("endsolid");
+        head.skip(static_cast<std::int64_t>(header_size), 1);
+        const std::size_t count = head.raw<std::uint32_t>(std::endian::little);
+        return !text || size_ == header_size + 4 + facet_size * count;
     }
 
-    void read_binary() {
+    // Counts are often those of another file, or 0; what is there counts, unless it ends within a triangle.
+    void read_binary(const NoteSink& note) {
         file_.skip(static_cast<std::int64_t>(header_size), 1);
-        const auto count = file_.require_room(file_.raw<std::uint32_t>(std::endian::little), facet_size);
+        const std::int64_t announced = file_.raw<std::uint32_t>(std::endian::little);
+        const auto count = static_cast<std::int64_t>((size_ - header_size - 4) / facet_size);
+        const std::size_t rest = (size_ - header_size - 4) % facet_size;
+        if (announced != count && rest != 0)
+            file_.fail(
+                fmt::format("announces {} triangles, but {} and {} bytes follow", announced, count, rest),
+                "an STL file that is whole", "write the file again");
+        if (note && announced != count)
+            note(fmt::format("{} triangles are announced and {} there, which were taken", announced, count));
+        if (note && rest != 0) note(fmt::format("{} bytes after the last triangle were passed over", rest));
         for (std::int64_t n = 0; n < count; ++n) {
             file_.skip(3, sizeof(float));  // its normal
             std::array<vtkIdType, 3> corners{};
@@ -68,13 +81,11 @@ class StlReader {
     }
 
     void read_ascii() {
-        if (lower_case(file_.peek()) != "solid")
-            file_.fail("does not begin with 'solid'", "an STL file", "check how it was made");
         std::array<vtkIdType, 3> corners{};
         std::size_t found = 0;
         while (!file_.at_end()) {
             const std::string keyword = lower_case(file_.word());
-            if (keyword == "solid" || keyword == "endsolid") file_.line();  // a name
+            if (keyword.ends_with("solid")) file_.line();  // a name; a byte order mark may be before it
             if (keyword == "outer") found = 0;
             if (keyword == "vertex") {
                 if (found == 3) file_.fail("a loop of four corners", "three", "triangulate it first");
@@ -112,8 +123,8 @@ class StlReader {
 
 }  // namespace
 
-vtkSmartPointer<vtkPolyData> read_stl(const std::filesystem::path& path) {
-    return StlReader(path).read();
+vtkSmartPointer<vtkPolyData> read_stl(const std::filesystem::path& path, const NoteSink& note) {
+    return StlReader(path).read(note);
 }
 
 }  // namespace palpate::meshing

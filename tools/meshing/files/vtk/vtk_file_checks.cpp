@@ -2,6 +2,7 @@
 #include "tools/meshing/files/vtk/vtk_file_checks.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <fmt/format.h>
 #include <fstream>
@@ -18,11 +19,17 @@
 namespace palpate::meshing {
 namespace {
 
-// Sizes in binary files.
+// Sizes in binary files; eight values of type bit take one byte.
 const std::map<std::string, std::size_t> type_sizes{
-    {"char", 1},          {"unsigned_char", 1}, {"short", 2}, {"unsigned_short", 2}, {"int", 4},
-    {"unsigned_int", 4},  {"vtkidtype", 4},     {"long", 8},  {"unsigned_long", 8},  {"vtktypeint64", 8},
-    {"vtktypeuint64", 8}, {"float", 4},         {"double", 8}};
+    {"bit", 1},           {"char", 1},           {"signed_char", 1},   {"unsigned_char", 1},
+    {"short", 2},         {"unsigned_short", 2}, {"int", 4},           {"unsigned_int", 4},
+    {"vtkidtype", 4},     {"long", 8},           {"unsigned_long", 8}, {"vtktypeint64", 8},
+    {"vtktypeuint64", 8}, {"float", 4},          {"double", 8}};
+
+// Those whose next word is a name, which may be a keyword.
+const std::set<std::string> named_attributes{
+    "scalars",       "vectors",    "normals",      "tensors",    "tensors6",    "texture_coordinates",
+    "color_scalars", "global_ids", "pedigree_ids", "edge_flags", "lookup_table"};
 
 class LegacyCheck {
   public:
@@ -36,9 +43,11 @@ class LegacyCheck {
         std::set<std::string> seen;
         while (!file_.at_end()) {
             const std::string keyword = lower_case(file_.word());
-            if (keyword == "cell_data" || keyword == "point_data") break;
-            if (keyword == "field") {
-                check_fields();
+            if (keyword == "field") check_fields();
+            if (keyword == "metadata") skip_metadata(1);
+            if (keyword == "cell_data" || keyword == "point_data") in_attributes_ = true;
+            if (in_attributes_) {
+                if (named_attributes.contains(keyword)) file_.word();
                 continue;
             }
             const bool of_cells = keyword == "cells" || keyword == "polygons" || keyword == "lines" ||
@@ -46,9 +55,10 @@ class LegacyCheck {
             if (!of_cells && keyword != "points" && keyword != "cell_types") continue;
             if (!seen.insert(keyword).second) file_.fail("a second section " + keyword, "one", again);
             const std::int64_t count = file_.require_room(file_.integer(), 1);
-            if (keyword == "points")
-                skip_values(3 * (points = count), std::string(file_.word()));
-            else if (keyword == "cell_types")
+            if (keyword == "points") {
+                skip_values(3 * (points = count), lower_case(file_.word()));
+                skip_metadata_after(3);
+            } else if (keyword == "cell_types")
                 skip_values(types = count, "int");
             else if (const std::int64_t found = check_cells(count); keyword == "cells")
                 cells = found;
@@ -69,20 +79,56 @@ class LegacyCheck {
         return found->second;
     }
 
-    // VTK's readers use what is not there where an array of a field breaks off.
+    // VTK's readers use what is not there where an array of a field breaks off, and allocate what a text
+    // announces.
     void check_fields() {
         file_.word();  // its name
         for (std::int64_t left = file_.require_room(file_.integer(), 1); left > 0; --left) {
-            file_.word();
-            const std::int64_t components = file_.require_room(file_.integer(), 1),
-                               tuples = file_.require_room(file_.integer(), 1);
+            if (file_.word() == "NULL_ARRAY") continue;
+            const std::int64_t components = file_.integer(), tuples = file_.integer();
+            const auto most = static_cast<std::int64_t>(8 * file_.text().size());  // there are bits
+            if (components < 0 || tuples < 0 || (components > 0 && tuples > most / components))
+                file_.fail(
+                    fmt::format("{} times {} values, for which the file is too short", tuples, components),
+                    "", again);
             const std::string type = lower_case(file_.word());
-            if (type != "string") {
-                skip_values(file_.require_room(components * tuples, 1), type);
-                continue;
-            }
-            file_.line();
-            for (std::int64_t n = file_.require_room(components * tuples, 1); n > 0; --n) file_.line();
+            if (type == "string" || type == "utf8_string")
+                skip_texts(components * tuples);
+            else
+                skip_values(components * tuples, type);
+            skip_metadata_after(components);
+        }
+    }
+
+    void skip_texts(std::int64_t count) {
+        file_.line();
+        for (std::int64_t n = file_.require_room(count, 1); n > 0; --n)
+            binary_ ? skip_binary_text() : static_cast<void>(file_.line());
+    }
+
+    // The two highest bits of the first byte say how many more bytes the length has.
+    void skip_binary_text() {
+        const unsigned first = file_.raw<std::uint8_t>();
+        constexpr std::array<int, 4> more{7, 3, 1, 0};
+        std::uint64_t length = first & 0x3FU;
+        for (int n = 0; n < more[first >> 6U]; ++n) length = length << 8U | file_.raw<std::uint8_t>();
+        file_.skip(static_cast<std::int64_t>(length), 1);
+    }
+
+    void skip_metadata_after(std::int64_t components) {
+        if (lower_case(file_.peek().substr(0, 8)) != "metadata") return;
+        file_.word();
+        skip_metadata(components);
+    }
+
+    // Up to an empty line, but names of components may be empty too.
+    void skip_metadata(std::int64_t components) {
+        file_.line();
+        while (!file_.exhausted()) {
+            const std::string_view line = file_.line();
+            if (line.find_first_not_of(" \t\r") == std::string_view::npos) return;
+            if (lower_case(line.substr(0, 15)) != "component_names") continue;
+            for (std::int64_t n = 0; n < components && !file_.exhausted(); ++n) file_.line();
         }
     }
 
@@ -93,7 +139,7 @@ class LegacyCheck {
     void skip_values(std::int64_t count, const std::string& type) {
         const std::size_t size = size_of(type);
         begin_values();
-        if (binary_) return file_.skip(count, size);
+        if (binary_) return type == "bit" ? file_.skip((count + 7) / 8, 1) : file_.skip(count, size);
         for (std::int64_t left = file_.require_room(count, 1); left > 0; --left) file_.number();
     }
 
@@ -138,6 +184,7 @@ class LegacyCheck {
             if (offset < last || (n == 0 && offset != 0)) file_.fail("offsets that do not rise", "", again);
             last = offset;
         }
+        skip_metadata_after(1);
         if (last != size)
             file_.fail(fmt::format("offsets that end at {}", last), fmt::format("{}", size), again);
         if (lower_case(file_.word()) != "connectivity")
@@ -150,7 +197,7 @@ class LegacyCheck {
 
     static constexpr const char* again = "write the file again";
     Scanner file_;
-    bool binary_ = false;
+    bool binary_ = false, in_attributes_ = false;
     std::int64_t lowest_corner_ = 0, highest_corner_ = -1;
 };
 

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/meshing/files/vtk/xml_readers.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <vtkInputStream.h>
+
+namespace palpate::meshing {
+
+vtkStandardNewMacro(BlocksChecked);
+
+bool BlocksChecked::fit(vtkXMLDataElement& element, double room, std::uintmax_t file_size) {
+    const char* const format = element.GetAttribute("format");
+    const bool data = element.GetAttribute("offset") != nullptr ||
+                      (format != nullptr && std::strcmp(format, "binary") == 0);
+    if (data && !fits(element, room, file_size)) return false;
+    for (int n = 0; n < element.GetNumberOfNestedElements(); ++n)
+        if (!fit(*element.GetNestedElement(n), room, file_size)) return false;
+    return true;
+}
+
+bool BlocksChecked::fits(vtkXMLDataElement& array, double room, std::uintmax_t file_size) {
+    if (vtkTypeInt64 offset = 0; array.GetScalarAttribute("offset", offset) != 0) {
+        if (AppendedDataPosition == 0 || offset < 0) return false;
+        DataStream = AppendedDataStream;
+        SeekG(AppendedDataPosition + offset);
+    } else {
+        DataStream = InlineDataStream;
+        SeekInlineDataPosition(&array);
+    }
+    DataStream->SetStream(Stream);
+    DataStream->StartReading();
+    const auto begin = read_words(3);
+    if (!begin) return true;  // which VTK says itself where it wants the data
+    const auto blocks = (*begin)[0], size = (*begin)[1], last = (*begin)[2];
+    if (blocks == 0) return true;
+    const double whole = static_cast<double>(blocks) - (last > 0 ? 1 : 0);
+    if (blocks > file_size / 4 || size == 0 || last > size ||
+        !(whole * static_cast<double>(size) + static_cast<double>(last) <= room))
+        return false;
+    const auto packed = read_words(blocks);
+    DataStream->EndReading();
+    return packed && std::ranges::all_of(*packed, [&](std::uint64_t bytes) { return bytes <= file_size; });
+}
+
+// Nothing if there are fewer.
+std::optional<std::vector<std::uint64_t>> BlocksChecked::read_words(std::size_t count) {
+    const std::size_t width = HeaderType == 64 ? 8 : 4;
+    std::vector<unsigned char> bytes(count * width);
+    if (DataStream->Read(bytes.data(), bytes.size()) < bytes.size()) return std::nullopt;
+    std::vector<std::uint64_t> words(count);
+    for (std::size_t n = 0; n < count; ++n)
+        for (std::size_t b = 0; b < width; ++b)
+            words[n] = words[n] << 8U | bytes[n * width + (ByteOrder == BigEndian ? b : width - 1 - b)];
+    return words;
+}
+
+}  // namespace palpate::meshing
