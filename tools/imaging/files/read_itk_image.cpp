@@ -27,7 +27,7 @@ namespace {
 
 // What NrrdIO and MetaIO go through without an end: each line of a header once for each other, every name of
 // a pattern, every one of the dimensions that a MetaImage claims.
-void require_short_header(const std::filesystem::path& path) {
+void require_short_header(const std::filesystem::path& path, bool nrrd) {
     constexpr std::size_t longest = std::size_t{1} << 20;
     constexpr int most_lines = 8192;
     constexpr double most_files = 65536;
@@ -38,7 +38,6 @@ void require_short_header(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     file.read(head.data(), static_cast<std::streamsize>(head.size()));
     head.resize(static_cast<std::size_t>(file.gcount()));
-    const bool nrrd = head.starts_with("NRRD");
     std::istringstream stream(head);
     int lines = 0;
     for (std::string line; std::getline(stream, line) && !(nrrd && trimmed(line).empty());) {
@@ -336,8 +335,8 @@ std::string reason_of(const itk::ExceptionObject& error) {
 
 StoredImage read_itk_image(const std::filesystem::path& path, const NoteSink& note) {
     const itk::ImageIOBase::Pointer io = image_io_of(path);  // looks at 8000 bytes at most
-    require_short_header(path);
     const bool meta = dynamic_cast<itk::MetaImageIO*>(io.GetPointer()) != nullptr;
+    require_short_header(path, !meta);
     try {
         io->SetFileName(path.string());
         io->ReadImageInformation();
