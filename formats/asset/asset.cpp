@@ -98,9 +98,22 @@ std::optional<std::string> signer_of(const Hdf5File& file) {
     return signature.public_key;
 }
 
-// A wrong digest explains whatever else is wrong, so it is reported first.
-Case read_checked(const Hdf5File& file) {
-    static_cast<void>(signer_of(file));  // a false one is refused whoever is trusted
+// A signature must hold whoever is trusted; with keys, it must be there and of one of them.
+void require_signature(const Hdf5File& file, std::span<const std::string> trusted_keys) {
+    const auto signer = signer_of(file);
+    if (trusted_keys.empty()) return;
+    if (!signer)
+        throw InvalidInput({file.name(), "is not signed", "the signature of a trusted key",
+                            "ask who made it to sign it: 'palpate pack --sign'"});
+    if (std::ranges::find(trusted_keys, *signer) == trusted_keys.end())
+        throw InvalidInput({file.name(), "is signed by " + *signer, "a trusted key",
+                            "trust that key only if you know whose it is"});
+}
+
+Case read_checked(const Hdf5File& file, std::span<const std::string> trusted_keys) {
+    check_header(file, "case");
+    require_signature(file, trusted_keys);
+    // A wrong digest explains whatever else is wrong, so it is reported first.
     auto checked = std::async(std::launch::async, [&] { file.check_digests("/palpate"); });
     try {
         Case patient_case = read_case(file);
@@ -110,21 +123,6 @@ Case read_checked(const Hdf5File& file) {
         if (checked.valid()) checked.get();
         throw;
     }
-}
-
-// With keys, one of them must have signed it.
-Case read_trusted(const Hdf5File& file, std::span<const std::string> trusted_keys) {
-    check_header(file, "case");
-    if (!trusted_keys.empty()) {
-        const auto signer = signer_of(file);
-        if (!signer)
-            throw InvalidInput({file.name(), "is not signed", "the signature of a trusted key",
-                                "ask who made it to sign it: 'palpate pack --sign'"});
-        if (std::ranges::find(trusted_keys, *signer) == trusted_keys.end())
-            throw InvalidInput({file.name(), "is signed by " + *signer, "a trusted key",
-                                "trust that key only if you know whose it is"});
-    }
-    return read_checked(file);
 }
 
 }  // namespace
@@ -169,16 +167,17 @@ void write_asset(const std::filesystem::path& path, const Case& patient_case,
 
 Case read_asset(const std::filesystem::path& path, Digests digests) {
     const Hdf5File file(path);
+    if (digests == Digests::check) return read_checked(file, {});
     check_header(file, "case");
-    return digests == Digests::skip ? read_case(file) : read_checked(file);
+    return read_case(file);
 }
 
 Case read_asset(const std::filesystem::path& path, std::span<const std::string> trusted_keys) {
-    return read_trusted(Hdf5File(path), trusted_keys);
+    return read_checked(Hdf5File(path), trusted_keys);
 }
 
 Case load_asset(const std::filesystem::path& path, std::span<const std::string> trusted_keys) {
-    return read_trusted(Hdf5File(path, Held::copied), trusted_keys);
+    return read_checked(Hdf5File(path, Held::copied), trusted_keys);
 }
 
 std::optional<std::string> signer_of(const std::filesystem::path& path) {

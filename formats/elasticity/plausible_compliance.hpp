@@ -1,26 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "formats/model/body.hpp"
 
 namespace palpate::elasticity {
 
-/// Throws InvalidInput unless a stored compliance C answers loads as mesh, materials and fixed nodes do: K u
-/// = f is solved by conjugate gradients for two random loads f on all contact nodes, and u at each contact
-/// node compared with C f, both loads together.
+/// The contact node whose stored compliance is farthest off.
+struct WorstAnswer {
+    std::size_t contact_node = 0;
+    double difference = 0;    ///< mm, of its displacements by C and by the mesh, over all loads
+    double displacement = 0;  ///< mm, by the mesh
+
+    /// Infinite where C answers with no number.
+    double part() const;
+};
+
+/// What part() of a sound compliance stays below. The worst were 0.0005, and 0.03 where C was compressed to
+/// an accuracy of 0.1 (tests/benchmarks, "Forgers and crashes"); a hand is not hurt by a tenth.
+inline constexpr double most_off = 0.1;
+
+/// Compares a stored compliance C with mesh, materials and fixed nodes: K u = f is solved by conjugate
+/// gradients for two random loads f on all contact nodes, and u at each contact node compared with C f. A
+/// node is held against its own displacement, so that none hides another. Finds another modulus, boundary or
+/// mesh, another row or column of C, and an entry that outweighs its row; a change of a tenth or two that one
+/// draw misses the next may find. None if the gradients do not converge in 5000 steps: a Poisson's ratio of
+/// 0.4999 takes some 1400.
 ///
-/// A node may be off by a tenth of its own displacement, whatever the others do: sound compliances are off by
-/// 0.0005 of it, and by 0.03 where they were compressed to an accuracy of 0.1. What is farther off at a node,
-/// by another modulus, boundary or mesh, another row or column of C or an entry that outweighs its row, is
-/// found; a change of a tenth or two that one draw misses the next may find. Where the gradients do not
-/// converge in 5000 steps nothing can be said, and C is refused: a Poisson's ratio of 0.4999 takes 1400.
-///
-/// `seed` draws the loads. A reader of strangers' files takes another each time, so that nobody can make a C
-/// that answers these loads alone. `where` names the compliance. Unchecked: what the asset's reader checks.
-/// Cost: assembly and some hundred products with K, 0.4 s for 15 000 linear tetrahedra. Source: Hestenes and
-/// Stiefel 1952.
+/// `seed` draws the loads. Unchecked: what the asset's reader checks. Cost: assembly and some hundred
+/// products with K. Source: Hestenes and Stiefel 1952.
+std::optional<WorstAnswer> worst_answer(const DeformableBody& body, std::uint64_t seed);
+
+/// Throws InvalidInput, naming the compliance by `where`, if the worst answer is off by more than most_off or
+/// cannot be had. A reader of strangers' files takes another seed each time, so that nobody can make a C for
+/// these loads alone.
 void require_answers_of_mesh(const DeformableBody& body, const std::string& where, std::uint64_t seed);
 
 }  // namespace palpate::elasticity

@@ -57,7 +57,7 @@ ROOMS = {
     "training": {"model", "asset", "session", "toml_file", "json"},
 }
 ROOMS["experiments"] = {"asset", "drawing", "cli", "session", "fem", "meshing", "obb", "cgal_peer"}  # measures both sides
-COMMANDS = {"model", "archive", "asset", "imaging", "meshing", "obb", "fem", "report", "cli", "case_builder", "cohort", "draft", "inspection", "requests", "stage_images", "stage_shapes",
+COMMANDS = {"model", "archive", "asset", "elasticity", "imaging", "meshing", "obb", "fem", "report", "cli", "case_builder", "cohort", "draft", "inspection", "requests", "stage_images", "stage_shapes",
             "stage_bodies", "stage_cases", "seeds", "tissue", "json"}
 APPS = {"model", "asset", "recording", "cli", "realtime", "collision", "haptics", "devices", "openigtlink", "session", "json"}
 EXECUTABLES = {

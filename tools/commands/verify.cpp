@@ -10,6 +10,7 @@
 #include "formats/asset/hdf5/signature.hpp"
 #include "formats/asset/validate.hpp"
 #include "formats/asset/vtk_grid.hpp"
+#include "formats/elasticity/plausible_compliance.hpp"
 #include "formats/model/errors.hpp"
 #include "tools/archive/privacy/find_identity.hpp"
 #include "tools/cli/command.hpp"
@@ -100,6 +101,10 @@ void check_mechanics(Checks& checks, const DeformableBody& body, std::int32_t co
         add_error(fmt::format("residual of {} re-solved columns", columns), fresh.residual);
         add_error(fmt::format("displacements under {} re-solved contact loads", loads), fresh.load_error);
         add_error("the same, at the loaded nodes", fresh.contact_error);
+        const auto answer = elasticity::worst_answer(body, verify_seed);
+        checks.add(body.name, "what touch asks of C: worst contact node, part of its displacement",
+                   answer && answer->part() <= elasticity::most_off, answer ? Json(answer->part()) : Json(),
+                   fmt::format("at most {:g}", elasticity::most_off));
         for (const Claim& claim : recheck_claims(body))
             checks.add(body.name, "the certificate's " + claim.figure + ", measured again", claim.holds,
                        claim.found, claim.allowed);

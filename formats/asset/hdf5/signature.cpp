@@ -42,20 +42,14 @@ int no_passphrase(char*, int, int, void*) {
 }
 
 // Of `size` bytes, none otherwise.
-Octets bytes_of(std::string_view digits, std::size_t size) {
-    const auto value = [](char digit) {
-        return digit >= '0' && digit <= '9'   ? digit - '0'
-               : digit >= 'a' && digit <= 'f' ? digit - 'a' + 10
-                                              : -1;
-    };
-    Octets bytes;
-    if (digits.size() != 2 * size) return {};
-    for (std::size_t i = 0; i < size; ++i) {
-        const int high = value(digits[2 * i]), low = value(digits[2 * i + 1]);
-        if (high < 0 || low < 0) return {};
-        bytes.push_back(static_cast<unsigned char>(16 * high + low));
-    }
-    return bytes;
+Octets bytes_of(const std::string& digits, std::size_t size) {
+    Octets bytes(size);
+    std::size_t read = 0;
+    const bool good = digits.size() == 2 * size &&
+                      OPENSSL_hexstr2buf_ex(bytes.data(), size, &read, digits.c_str(), '\0') == 1 &&
+                      read == size;
+    ERR_clear_error();
+    return good ? bytes : Octets{};
 }
 
 // What is signed says what it is, so that a signature of this key for something else is none of an asset.

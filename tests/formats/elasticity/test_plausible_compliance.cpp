@@ -3,6 +3,7 @@
 #include <functional>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <limits>
 
 #include "formats/elasticity/plausible_compliance.hpp"
 #include "formats/model/errors.hpp"
@@ -45,6 +46,23 @@ TEST(PlausibleCompliance, of_a_true_inverse_is_taken_whatever_the_load) {
         EXPECT_NO_THROW(require_answers_of_mesh(dense, "dense", seed));
         EXPECT_NO_THROW(require_answers_of_mesh(blocks, "blocks", seed));
     }
+}
+
+TEST(PlausibleCompliance, names_the_node_that_is_off_and_by_how_much) {
+    const DeformableBody body = with_entries(cube(), [](float* entries, std::size_t n) {
+        for (std::size_t axis = 0; axis < 3; ++axis) scale_row(entries, n, 30 + axis, 2);
+    });
+    const auto worst = elasticity::worst_answer(body, 3);
+    ASSERT_TRUE(worst);
+    EXPECT_EQ(worst->contact_node, 10U);
+    EXPECT_NEAR(worst->part(), 1, 0.5);  // twice as soft against others, four times against itself
+}
+
+TEST(PlausibleCompliance, that_answers_with_no_number_is_off_without_bound) {
+    const DeformableBody body = with_entries(cube(), [](float* entries, std::size_t n) {
+        for (std::size_t k = 0; k < n; ++k) entries[k] = k % 2 == 0 ? 3e38F : -3e38F;
+    });
+    EXPECT_EQ(elasticity::worst_answer(body, 3)->part(), std::numeric_limits<double>::infinity());
 }
 
 struct Forgery {

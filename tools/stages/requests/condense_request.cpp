@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "formats/model/compliance.hpp"
 #include "tools/cli/items.hpp"
 
 namespace palpate::stages {
@@ -156,7 +157,7 @@ void declare(cli::Command& command, CondenseRequest& request) {
     command
         .option("--accuracy", request.accuracy,
                 "relative error that a hierarchical C may have: displacements under random contact loads")
-        .range(1e-4, 0.1);
+        .range(1e-4, HierarchicalCompliance::coarsest_accuracy);
     command
         .option("--memory", request.memory_gib,
                 "memory that may be in use at once; 0: what the machine has left", "GiB", "memory_gib")
