@@ -18,8 +18,8 @@ struct WorstAnswer {
     double part() const;
 };
 
-/// What part() of a sound compliance stays below. The worst were 0.0005, and 0.03 where C was compressed to
-/// an accuracy of 0.1 (tests/benchmarks, "Forgers and crashes"); a hand is not hurt by a tenth.
+/// What part() of a sound compliance stays below. The worst were 0.005, and 0.02 where C was compressed to an
+/// accuracy of 0.1 (tests/benchmarks/judged_compliances.py); a hand is not hurt by a tenth.
 inline constexpr double most_off = 0.1;
 
 /// Compares a stored compliance C with mesh, materials and fixed nodes: K u = f is solved by conjugate
