@@ -240,21 +240,6 @@ TEST(Asset, may_hold_a_compliance_of_one_block) {
     expect_same(read_asset(scratch / "case.vtkhdf").deformable_bodies[0], written.deformable_bodies[0]);
 }
 
-TEST(Asset, with_a_provenance_nested_too_deeply_is_refused) {
-    const Scratch scratch;
-    Case patient_case = sample::sample_case();
-    const auto nested = [](int levels) {
-        const auto times = static_cast<std::size_t>(levels);
-        return R"({"note": "a \" and [[[", "list": )" + std::string(times, '[') + std::string(times, ']') +
-               "}";
-    };
-    patient_case.provenance = nested(63);
-    EXPECT_EQ(refusal([&] { write_asset(scratch / "a.vtkhdf", patient_case); }), "");
-    patient_case.provenance = nested(64);
-    EXPECT_THAT(refusal([&] { write_asset(scratch / "b.vtkhdf", patient_case); }),
-                HasSubstr("/palpate/provenance: is nested too deeply (expected 64 levels at most)"));
-}
-
 TEST(Asset, may_lack_provenance_outside_labels_and_rigid_bodies) {
     const Scratch scratch;
     Case written = sample::sample_case(1);
@@ -429,20 +414,9 @@ TEST(Asset, writing_refuses_parts_that_do_not_belong_together) {
     Case other_tree = sample::sample_case(1);
     other_tree.rigid_bodies[0].obb_tree = other_tree.deformable_bodies[0].obb_tree;
     EXPECT_THAT(refusal([&] { write_asset(scratch / "a", other_tree); }), HasSubstr("triangle_order"));
-    Case loose = sample::sample_case(1);
-    loose.rigid_bodies[0].obb_tree.nodes[3].half_extents *= 0.9F;
-    EXPECT_THAT(refusal([&] { write_asset(scratch / "a", loose); }), HasSubstr("box 3 leaves a triangle"));
     Case weak = sample::sample_case(1);
     weak.haptics.max_force = 0;
     EXPECT_THAT(refusal([&] { write_asset(scratch / "a", weak); }), HasSubstr("max_force is 0"));
-    for (double HapticSettings::*setting :
-         {&HapticSettings::tool_radius, &HapticSettings::coupling_stiffness, &HapticSettings::max_force,
-          &HapticSettings::max_force_rate, &HapticSettings::friction_at_rest,
-          &HapticSettings::shaft_length}) {
-        Case strong = sample::sample_case(1);
-        strong.haptics.*setting = 1e9;
-        EXPECT_THAT(refusal([&] { write_asset(scratch / "a", strong); }), HasSubstr("is 1000000000"));
-    }
     EXPECT_FALSE(std::filesystem::exists(scratch / "a"));
 }
 

@@ -14,6 +14,7 @@
 #include "tests/formats/sample_case.hpp"
 #include "tests/formats/scratch.hpp"
 #include "tests/fuzz/allocation_gauge.hpp"
+#include "tests/fuzz/look_at.hpp"
 
 namespace palpate {
 namespace {
@@ -150,23 +151,11 @@ struct Outcome {
     int refused = 0;
 };
 
-// Looks at all of compliances and scan, as the runtime may: what a reader lets pass must hold for it.
 void use(const Case& patient_case) {
     if (const auto& scan = patient_case.scan) {
         EXPECT_EQ(scan->values.size(), scan->grid.voxel_count());
-        scan->grid.index_of(
-            scan->grid.point_of(Eigen::Vector3d::Zero()));  // asserts an orthonormal direction
     }
-    for (const DeformableBody& body : patient_case.deformable_bodies) {
-        const std::int32_t nodes = node_count(body.compliance);
-        std::vector<Eigen::Vector3f> moved(static_cast<std::size_t>(nodes), Eigen::Vector3f::Zero());
-        std::vector<NodeForce> forces;
-        for (std::int32_t node = 0; node < nodes; ++node) {
-            forces.push_back({node, {1, 2, 3}});
-            compliance_block(body.compliance, node, nodes - 1 - node);
-        }
-        add_displacements(body.compliance, forces, moved);
-    }
+    fuzz::look_at(patient_case);
 }
 
 Outcome read_mutations(Form form, Digests digests, int count, unsigned seed) {

@@ -5,6 +5,7 @@ import os
 import pathlib
 import re
 import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -12,6 +13,8 @@ import debian_root
 from debian_root import DebianRoot
 
 SOURCE = pathlib.Path(os.environ["PALPATE_SOURCE"])
+sys.path.insert(0, f"{SOURCE}/tests/commands")
+from small_cohort import CASE  # noqa: E402
 BUILD = pathlib.Path(os.environ["PALPATE_BUILD"])
 MOST_ADDED_MB = 30  # by the runtime with all that it depends on and recommends
 # Fields that SPDX 2.3 knows of a document and of a package, of those that we give.
@@ -20,24 +23,6 @@ DOCUMENT = {"spdxVersion", "dataLicense", "SPDXID", "name", "documentNamespace",
 OF_PACKAGE = {"name", "SPDXID", "versionInfo", "supplier", "downloadLocation", "filesAnalyzed", "licenseConcluded",
               "licenseDeclared", "copyrightText", "externalRefs", "packageFileName", "checksums"}
 NAMES = ("libpalpate-dev", "palpate-runtime", "palpate-tools", "palpate-trainer")
-CASE = """schema = 1
-name = "abdomen"
-[input]
-labels = "abdomen.seg.nrrd"
-[[structure]]
-name = "liver"
-recipe = "import"
-[[deformable]]
-name = "liver"
-mesh = { cell_size_mm = 9 }
-fixed = [{ plane_mm = [0, 8, 0, 0, 1, 0] }]
-[[deformable.region]]
-label = "liver"
-youngs_modulus_kpa = 6.3
-poissons_ratio = 0.45
-"""
-
-
 def output(*command):
     return subprocess.run([*map(str, command)], check=True, stdout=subprocess.PIPE, text=True).stdout
 
@@ -186,7 +171,7 @@ class CleanDebian(Packages):
     def test_the_tools_build_a_case_and_a_cohort(self):
         self.root.install("snakemake", recommended=False)  # with it come the tools of several clouds, 1 GB
         self.install("palpate-runtime", "palpate-tools")
-        labels = self.scratch / "abdomen.seg.nrrd"
+        labels = self.scratch / "good.seg.nrrd"  # as the case file says
         output(BUILD / "tests/phantom", "abdomen", self.scratch / "abdomen.nrrd", labels)
         self.root.take(labels)
         (self.root.folder / "srv/case.toml").write_text(CASE)

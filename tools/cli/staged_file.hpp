@@ -4,6 +4,9 @@
 #include <string>
 #include <sys/types.h>
 
+#include "tools/cli/output_target.hpp"
+#include "tools/cli/staging.hpp"
+
 namespace palpate::cli {
 
 /// An output that appears whole or not at all: written under a temporary name in the target's folder, flushed
@@ -20,7 +23,7 @@ class StagedFile {
     ~StagedFile();
 
     /// Where to write; ends in the target's name, so that writers that look at the extension find it.
-    const std::filesystem::path& path() const { return temporary_; }
+    const std::filesystem::path& path() const { return staged_.path; }
 
     /// Writes the whole content; throws SystemFailure if it does not fit.
     void write_text(const std::string& text) const;
@@ -29,15 +32,10 @@ class StagedFile {
     void commit();
 
   private:
-    bool is_pipe_;
-    std::filesystem::path target_;
-    std::filesystem::path temporary_;
-    int slot_ = -1;
-    int held_ = -1;  ///< locks the temporary file while this lives
+    OutputTarget target_;
+    StagedName staged_;  ///< locked while this lives
+    int slot_ = -1, folder_slot_ = -1;
 };
-
-/// Puts final names into a message in the place of temporary ones.
-std::string with_final_names(std::string message);
 
 /// Makes SIGINT, SIGTERM and SIGHUP remove all staged files and exit with 130. Called once by Command::run().
 void remove_staged_files_on_interrupt();

@@ -90,6 +90,19 @@ class Outputs(unittest.TestCase):
         self.assertIn("Broken pipe", ran.stderr)
         self.assertEqual(list(private.iterdir()), [])
 
+    def test_an_interrupt_before_a_pipe_is_read_leaves_nothing(self):
+        private, pipe = self.folder / "tmp", self.folder / "pipe.obb.h5"
+        private.mkdir()
+        os.mkfifo(pipe)
+        waiting = subprocess.Popen([BIN / "palpate-obb", self.folder / "skull.vtp", "-o", pipe, "--quiet"],
+                                   env=dict(os.environ, TMPDIR=str(private)), stderr=subprocess.DEVNULL)
+        end = time.monotonic() + 60
+        while not list(private.glob("*/.part*")) and time.monotonic() < end:
+            time.sleep(0.02)
+        waiting.terminate()
+        self.assertEqual(waiting.wait(timeout=60), 130)
+        self.assertEqual(list(private.iterdir()), [])
+
     def test_what_a_link_leads_to_is_replaced_whole(self):
         elsewhere = self.folder / "elsewhere"
         elsewhere.mkdir()

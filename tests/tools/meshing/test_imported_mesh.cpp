@@ -37,6 +37,23 @@ using test::bytes;
 
 class ImportedMesh : public test::ImportedFiles {};
 
+// As VTK writes it: ASCII and binary, of versions 4.2 and 5.1, under a title that sounds like values.
+std::vector<fs::path> legacy_files_of(vtkUnstructuredGrid* grid, const fs::path& folder) {
+    std::vector<fs::path> files;
+    vtkNew<vtkUnstructuredGridWriter> writer;
+    writer->SetInputData(grid);
+    writer->SetHeader("scalars at step 100");
+    for (const int kind : {VTK_ASCII, VTK_BINARY})
+        for (const int version : {42, 51}) {
+            files.push_back(folder / (std::to_string(kind) + std::to_string(version) + ".vtk"));
+            writer->SetFileType(kind);
+            writer->SetFileVersion(version);
+            writer->SetFileName(files.back().c_str());
+            EXPECT_EQ(writer->Write(), 1);
+        }
+    return files;
+}
+
 // Two tetrahedra that share a face, of groups 5 and 7; the second one is written inverted. Node 40 is unused.
 const std::string nodes_1 = "$NOD\n6\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n9 1 1 1\n40 8 8 8\n$ENDNOD\n";
 const std::string gmsh_1 =
@@ -207,17 +224,8 @@ TEST_F(ImportedMesh, legacy_vtk_files_of_version_5_are_read_in_either_kind) {
         const std::array<vtkIdType, 4> nodes{t[0], t[1], t[2], t[3]};
         grid->InsertNextCell(VTK_TETRA, 4, nodes.data());
     }
-    vtkNew<vtkUnstructuredGridWriter> writer;
-    writer->SetInputData(grid);
-    for (const int kind : {VTK_ASCII, VTK_BINARY})
-        for (const int version : {42, 51}) {
-            const fs::path path = folder_ / "b.vtk";
-            writer->SetFileType(kind);
-            writer->SetFileVersion(version);
-            writer->SetFileName(path.c_str());
-            ASSERT_EQ(writer->Write(), 1);
-            EXPECT_EQ(read_imported_tetrahedra(path, {}).tetrahedra, mesh.tetrahedra) << kind << version;
-        }
+    for (const fs::path& path : legacy_files_of(grid, folder_))
+        EXPECT_EQ(read_imported_tetrahedra(path, {}).tetrahedra, mesh.tetrahedra) << path;
 }
 
 TEST_F(ImportedMesh, legacy_vtk_fields_of_every_kind_are_passed_over_and_regions_kept) {
@@ -267,22 +275,13 @@ TEST_F(ImportedMesh, legacy_vtk_fields_of_every_kind_are_passed_over_and_regions
     field->SetNumberOfComponents(3);
     for (int n = 0; n < 5; ++n) field->InsertNextTuple3(-3, 100, 1e9);
     grid->GetPointData()->SetVectors(field);
-    vtkNew<vtkUnstructuredGridWriter> writer;
-    writer->SetInputData(grid);
-    writer->SetHeader("scalars at step 100");
-    for (const int kind : {VTK_ASCII, VTK_BINARY})
-        for (const int version : {42, 51}) {
-            const fs::path path = folder_ / "b.vtk";
-            writer->SetFileType(kind);
-            writer->SetFileVersion(version);
-            writer->SetFileName(path.c_str());
-            ASSERT_EQ(writer->Write(), 1);
-            const TetMesh read = read_imported_tetrahedra(path, {});
-            EXPECT_EQ(read.tetrahedra, mesh.tetrahedra) << kind << version;
-            EXPECT_EQ(read.regions, (std::vector<std::int32_t>{5, 7}));
-            EXPECT_EQ(read.region_names.at(0).name, "liver");
-            EXPECT_EQ(read.rest_positions[1], Eigen::Vector3d(-1, 0, 0));
-        }
+    for (const fs::path& path : legacy_files_of(grid, folder_)) {
+        const TetMesh read = read_imported_tetrahedra(path, {});
+        EXPECT_EQ(read.tetrahedra, mesh.tetrahedra) << path;
+        EXPECT_EQ(read.regions, (std::vector<std::int32_t>{5, 7}));
+        EXPECT_EQ(read.region_names.at(0).name, "liver");
+        EXPECT_EQ(read.rest_positions[1], Eigen::Vector3d(-1, 0, 0));
+    }
 }
 
 TEST_F(ImportedMesh, values_after_a_lookup_table_of_scalars_are_no_number_of_colours) {

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/cli/staging.hpp"
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <fcntl.h>
+#include <fstream>
+#include <functional>
+#include <sys/stat.h>
+#include <system_error>
+#include <unistd.h>
+
+#include "tools/cli/output_target.hpp"
+
+namespace palpate::cli {
+namespace {
+
+// Tells machines that share a folder apart: a lock of one may say nothing to another.
+const std::string& machine() {
+    static const std::string name = [] {
+        std::string id;
+        std::getline(std::ifstream("/etc/machine-id"), id);
+        std::array<char, 256> host{};
+        if (id.empty() && gethostname(host.data(), host.size() - 1) == 0) id = host.data();
+        std::array<char, 9> digits{};
+        std::snprintf(digits.data(), digits.size(), "%08zx", std::hash<std::string>{}(id)&0xFFFFFFFFU);
+        return std::string(digits.data());
+    }();
+    return name;
+}
+
+// Of the files that this machine's processes stage: ".part-1a2b3c4d-4711.0-liver.vtkhdf" is the first of
+// process 4711.
+std::string staged_prefix() {
+    return ".part-" + machine() + "-";
+}
+
+std::string staged_prefix(int attempt) {
+    return staged_prefix() + std::to_string(getpid()) + "." + std::to_string(attempt) + "-";
+}
+
+enum class Lock { ours, of_another, unknown };
+
+// Who holds this lock on a staged file is still at work on it; the system lets go of it with the process,
+// however that ends. It is on one byte that no file has, for a lock may keep a library's own descriptor from
+// writing. Unknown on file systems without locks.
+Lock lock(int file) {
+    struct flock byte {};
+    byte.l_type = F_WRLCK;
+    byte.l_whence = SEEK_SET;
+    byte.l_start = off_t{1} << 62;
+    byte.l_len = 1;
+    if (fcntl(file, F_OFD_SETLK, &byte) == 0) return Lock::ours;
+    return errno == EAGAIN || errno == EACCES ? Lock::of_another : Lock::unknown;
+}
+
+bool is_still(int file, const std::filesystem::path& path) {
+    struct stat opened {
+    }, named{};
+    return fstat(file, &opened) == 0 && lstat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino &&
+           opened.st_dev == named.st_dev;
+}
+
+}  // namespace
+
+void remove_orphans(const std::filesystem::path& folder) {
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+        if (!entry.path().filename().string().starts_with(staged_prefix()) ||
+            !entry.is_regular_file(ignored) || entry.is_symlink(ignored))
+            continue;
+        const int file = open(entry.path().c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
+        if (file < 0) continue;
+        if (lock(file) == Lock::ours && is_still(file, entry.path())) unlink(entry.path().c_str());
+        close(file);
+    }
+}
+
+// Another process that looks for orphans may be quicker with the lock; then under another name.
+StagedName create_staged(const std::filesystem::path& folder, const std::filesystem::path& target) {
+    constexpr int most_attempts = 100;
+    for (int attempt = 0;; ++attempt) {
+        const auto path = folder / (staged_prefix(attempt) + target.filename().string());
+        const int file = open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (file < 0 && (errno != EEXIST || attempt == most_attempts)) fail_to_write(target, errno);
+        if (file < 0) continue;
+        if (lock(file) != Lock::of_another && is_still(file, path)) return {file, path};
+        close(file);
+    }
+}
+
+std::filesystem::path make_private_folder(const std::filesystem::path& target) {
+    std::string name = std::filesystem::temp_directory_path() / "palpate-XXXXXX";
+    if (mkdtemp(name.data()) == nullptr) fail_to_write(target, errno);
+    return name;
+}
+
+std::string with_final_names(std::string message) {
+    for (auto at = message.find(staged_prefix()); at != std::string::npos;
+         at = message.find(staged_prefix(), at))
+        message.erase(at, message.find('-', at + staged_prefix().size()) + 1 - at);
+    return message;
+}
+
+}  // namespace palpate::cli
