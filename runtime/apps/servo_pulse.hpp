@@ -5,7 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include "formats/model/errors.hpp"
-#include "tools/cli/staged_file.hpp"
+#include "tools/cli/outputs/staged_file.hpp"
 
 namespace palpate::apps {
 

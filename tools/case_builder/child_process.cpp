@@ -11,7 +11,7 @@
 #include <system_error>
 
 #include "formats/model/errors.hpp"
-#include "tools/cli/staged_file.hpp"
+#include "tools/cli/outputs/staged_file.hpp"
 
 namespace palpate::case_builder {
 namespace {

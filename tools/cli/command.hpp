@@ -11,8 +11,8 @@
 #include "formats/model/errors.hpp"
 #include "tools/cli/item_list.hpp"
 #include "tools/cli/option.hpp"
+#include "tools/cli/outputs/staged_file.hpp"
 #include "tools/cli/progress.hpp"
-#include "tools/cli/staged_file.hpp"
 
 namespace CLI {
 class App;

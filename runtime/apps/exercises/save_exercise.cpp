@@ -9,7 +9,7 @@
 #include "formats/model/errors.hpp"
 #include "runtime/training/teacher/exercise_text.hpp"
 #include "runtime/visual/controls/free_path.hpp"
-#include "tools/cli/staged_file.hpp"
+#include "tools/cli/outputs/staged_file.hpp"
 
 namespace palpate::apps {
 

@@ -16,7 +16,7 @@
 #include "runtime/training/lay_out.hpp"
 #include "runtime/training/touched_place.hpp"
 #include "tools/cli/command.hpp"
-#include "tools/cli/staged_file.hpp"
+#include "tools/cli/outputs/staged_file.hpp"
 
 namespace palpate::apps {
 namespace {

@@ -35,7 +35,7 @@ class SomeCrashes(Crashes):
         while not done.is_set():
             read = run(BIN / "palpate", "inspect", self.asset, "--json", "-", "--quiet")
             self.assertEqual(read.returncode, 0, read.stderr)
-            seen |= {region["youngs_modulus_kpa"] for region in json.loads(read.stdout)["regions"] if region["region"] == "liver"}
+            seen |= {round(region["youngs_modulus_kpa"], 6) for region in json.loads(read.stdout)["regions"] if region["region"] == "liver"}
         builder.join()
         self.assertEqual(self.rebuilt.returncode, 0, self.rebuilt.stderr)
         self.assertIn(6.3, seen)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/cli/output_target.hpp"
+#include "tools/cli/outputs/output_target.hpp"
 
 #include <string>
 #include <system_error>

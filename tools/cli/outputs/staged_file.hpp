@@ -4,8 +4,8 @@
 #include <string>
 #include <sys/types.h>
 
-#include "tools/cli/output_target.hpp"
-#include "tools/cli/staging.hpp"
+#include "tools/cli/outputs/output_target.hpp"
+#include "tools/cli/outputs/staging.hpp"
 
 namespace palpate::cli {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/cli/staging.hpp"
+#include "tools/cli/outputs/staging.hpp"
 
 #include <array>
 #include <cerrno>
@@ -12,7 +12,7 @@
 #include <system_error>
 #include <unistd.h>
 
-#include "tools/cli/output_target.hpp"
+#include "tools/cli/outputs/output_target.hpp"
 
 namespace palpate::cli {
 namespace {

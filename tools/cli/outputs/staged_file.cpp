@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/cli/staged_file.hpp"
+#include "tools/cli/outputs/staged_file.hpp"
 
 #include <array>
 #include <atomic>
