@@ -19,8 +19,16 @@ using Eigen::Vector3d;
 using Stiffness = Eigen::SparseMatrix<double>;
 using Gradients = Eigen::ConjugateGradient<Stiffness, Eigen::Lower>;
 
-constexpr int load_count = 2;
-constexpr double solver_tolerance = 1e-3;  // of the residual: u is off by 0.007, a fifteenth of most_off
+// How many random loads a compliance is asked, and how far they are solved, as a part of the residual.
+struct Question {
+    int loads = 0;
+    double tolerance = 0;
+};
+// Solved so far, u is off by 0.03 in one draw of ten, where a node happens to move little by more than
+// most_off in one of 200: an organ of 1750 contact nodes, 200 draws.
+constexpr Question glance{2, 1e-3};
+// What settles a doubt: u off by less than 1e-4, and no node of a sound C that moves little under all loads.
+constexpr Question scrutiny{8, 1e-5};
 constexpr int most_iterations = 20000;
 
 using Load = std::vector<NodeForce>;
@@ -46,13 +54,13 @@ class MeshAnswers {
         const auto positions = number_free_nodes(discretisation.node_count, discretisation.fixed_nodes);
         for (const std::int32_t node : body.contact_nodes) rows_.push_back(3 * Index{positions[node]});
         stiffness_ = assemble_stiffness(body.mesh, body.materials, discretisation, positions);
-        gradients_.setTolerance(solver_tolerance);
         gradients_.setMaxIterations(most_iterations);
         gradients_.compute(stiffness_);
     }
 
     // Displacements of the contact nodes, mm; none if the gradients do not converge.
-    std::vector<Vector3d> displacements(const Load& load) {
+    std::vector<Vector3d> displacements(const Load& load, double tolerance) {
+        gradients_.setTolerance(tolerance);
         Eigen::VectorXd forces = Eigen::VectorXd::Zero(stiffness_.rows());
         for (std::size_t c = 0; c < load.size(); ++c)
             forces.segment<3>(rows_[c]) = load[c].force.cast<double>();
@@ -69,21 +77,13 @@ class MeshAnswers {
     Gradients gradients_;
 };
 
-}  // namespace
-
-double WorstAnswer::part() const {
-    if (difference == 0) return 0;
-    return std::isfinite(difference) ? difference / displacement : std::numeric_limits<double>::infinity();
-}
-
-std::optional<WorstAnswer> worst_answer(const DeformableBody& body, std::uint64_t seed) {
+std::optional<WorstAnswer> ask(const DeformableBody& body, MeshAnswers& mesh, const Question& question,
+                               std::mt19937_64& random) {
     const std::size_t nodes = body.contact_nodes.size();
-    std::mt19937_64 random(seed);
-    MeshAnswers mesh(body);
     std::vector<double> squared_differences(nodes), squared_displacements(nodes);
-    for (int k = 0; k < load_count; ++k) {
+    for (int k = 0; k < question.loads; ++k) {
         const Load load = random_load(nodes, random);
-        const std::vector<Vector3d> expected = mesh.displacements(load);
+        const std::vector<Vector3d> expected = mesh.displacements(load, question.tolerance);
         if (expected.empty()) return std::nullopt;
         std::vector<Eigen::Vector3f> found(nodes, Eigen::Vector3f::Zero());
         add_displacements(body.compliance, load, found);
@@ -98,6 +98,20 @@ std::optional<WorstAnswer> worst_answer(const DeformableBody& body, std::uint64_
         if (here.part() > worst.part()) worst = here;
     }
     return worst;
+}
+
+}  // namespace
+
+double WorstAnswer::part() const {
+    if (difference == 0) return 0;
+    return std::isfinite(difference) ? difference / displacement : std::numeric_limits<double>::infinity();
+}
+
+std::optional<WorstAnswer> worst_answer(const DeformableBody& body, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    MeshAnswers mesh(body);
+    const auto worst = ask(body, mesh, glance, random);
+    return worst && worst->part() > most_off ? ask(body, mesh, scrutiny, random) : worst;
 }
 
 void require_answers_of_mesh(const DeformableBody& body, const std::string& where, std::uint64_t seed) {
