@@ -61,7 +61,7 @@ LoadShares load_shares(const DeformableBody& body, std::span<const std::int32_t>
         const auto same = [&](std::int32_t other) {
             return normals[static_cast<std::size_t>(other)].dot(normals[v]) > same_side;
         };
-        double sum = 0, free = 0;
+        double sum = 0;
         const std::size_t first = result.shares.size();
         // What does not give way does not spread either.
         if (blocks[v] >= 0)
@@ -74,12 +74,10 @@ LoadShares load_shares(const DeformableBody& body, std::span<const std::int32_t>
                 if (gives_way || std::ranges::binary_search(body.fixed_nodes, body.boundary.nodes[j]))
                     sum += weight;
                 if (!gives_way) continue;
-                free += weight;
                 result.shares.push_back({other, static_cast<float>(weight)});
             }
         for (std::size_t k = first; k < result.shares.size(); ++k)
             result.shares[k].weight /= static_cast<float>(sum);
-        result.freedom.push_back(sum > 0 ? static_cast<float>(free / sum) : 0);
         result.first.push_back(result.shares.size());
     }
     return result;

@@ -17,15 +17,14 @@ struct LoadShare {
 /// How a force on one vertex of a deformable surface is spread over its neighbours, and the displacements
 /// there averaged, so that contact does not feel the mesh. The derivation stands in load_shares.cpp.
 struct LoadShares {
-    /// Where a force on a vertex goes, and how much of each displacement counts there. Weights sum to
-    /// freedom[vertex]: the part on vertices that give way.
+    /// Where a force on a vertex goes, and how much of each displacement counts there. Weights sum to the
+    /// part of the disc that gives way.
     std::span<const LoadShare> of(std::int32_t vertex) const noexcept {
         return std::span(shares).subspan(first[vertex], first[vertex + 1] - first[vertex]);
     }
 
     std::vector<std::size_t> first;
     std::vector<LoadShare> shares;
-    std::vector<float> freedom;
 };
 
 /// How wide the disc is that contact spreads loads over, from the edges of a surface.

@@ -22,9 +22,8 @@ class LoadSpread {
     LoadSpread(const DeformableBody& body, std::span<const std::int32_t> blocks);
 
     /// Where a force on a vertex goes, and how much of each displacement counts there. Weights sum to
-    /// freedom(): the part on vertices that give way.
+    /// the part of the disc that gives way.
     std::span<const Share> shares(std::int32_t vertex) const noexcept { return shares_.of(vertex); }
-    double freedom(std::int32_t vertex) const noexcept { return shares_.freedom[vertex]; }
 
     /// How far vertex a gives way per force on vertex b, both spread, if they are near; nothing if they are
     /// so far apart that spreading changes nothing.

@@ -21,7 +21,8 @@ class EquilibriumOracle {
     explicit EquilibriumOracle(const DeformableBody& body, std::int32_t body_index = 0)
         : body_(body),
           body_index_(body_index),
-          spread_(body, compliance_blocks(body)),
+          blocks_(compliance_blocks(body)),
+          spread_(body, blocks_),
           compliance_(inverse(body)) {}
 
     /// Displacement of each surface vertex under the contacts of all tools and neighbours, mm.
@@ -45,7 +46,10 @@ class EquilibriumOracle {
         for (const std::int32_t node : body_.fixed_nodes) sum += internal.segment<3>(3 * node);
         // What a load spreads onto fixed nodes they bear at once.
         for_each_load(results, [&](std::int32_t vertex, const Eigen::Vector3d& force) {
-            sum -= (1 - spread_.freedom(vertex)) * force;
+            double spread = 0;
+            for (const haptics::LoadSpread::Share& share : spread_.shares(vertex))
+                spread += static_cast<double>(share.weight);
+            sum -= (1 - spread) * force;
         });
         return sum;
     }
@@ -54,11 +58,11 @@ class EquilibriumOracle {
     Eigen::Vector3d centre(const TickResult& result, double radius, double coupling) const {
         const Eigen::Vector3d force = force_of(result);
         const Eigen::Vector3d device = Eigen::Map<const Eigen::Vector3d>(result.device_position.data());
-        double freedom = 0;
+        double freedom = 0;  // the part of the press on vertices that give way
         for (const Contact& contact : result.active_contacts())
             for (std::size_t i = 0; i < 3; ++i)
-                freedom += static_cast<double>(contact.force * contact.weights[i]) *
-                           spread_.freedom(contact.vertices[i]) / press_of(result);
+                if (blocks_[static_cast<std::size_t>(contact.vertices[i])] >= 0)
+                    freedom += static_cast<double>(contact.force * contact.weights[i]) / press_of(result);
         const double sunk =
             freedom *
             local_indentation(force.norm(), radius, spread_.contact_modulus(), spread_.radius()).depth;
@@ -164,6 +168,7 @@ class EquilibriumOracle {
 
     const DeformableBody& body_;
     std::int32_t body_index_;
+    std::vector<std::int32_t> blocks_;
     haptics::LoadSpread spread_;
     Eigen::MatrixXd compliance_;
 };

@@ -128,7 +128,7 @@ std::optional<FeltRegion> felt_region(const DeformableBody& body, const Pressing
     const auto& vertices = body.boundary.surface.vertices;
     for (std::size_t k = 0; k < near.size(); ++k) {
         const auto v = static_cast<std::size_t>(near[k]);
-        plain[v] = pressed_stiffness(pressing, near[k], compliances[k], modulus);
+        plain[v] = pressed_stiffness(pressing, compliances[k], modulus);
         const FeltRegion felt{.region = region,
                               .vertex = near[k],
                               .depth = least_distance(nodes, vertices[v]),
@@ -192,10 +192,9 @@ Feel feel_of(const DeformableBody& body, double tool_radius, int threads) {
     const double modulus = surface_contact_modulus(body);
     Feel feel{.tool_radius = tool_radius, .depth = pressing.depth, .stiffness = {}, .regions = {}};
     for (std::size_t v = 0; v < compliances.size(); ++v)
-        feel.stiffness.push_back(compliances[v] > 0
-                                     ? static_cast<float>(pressed_stiffness(
-                                           pressing, static_cast<std::int32_t>(v), compliances[v], modulus))
-                                     : 0.0F);
+        feel.stiffness.push_back(
+            compliances[v] > 0 ? static_cast<float>(pressed_stiffness(pressing, compliances[v], modulus))
+                               : 0.0F);
     const std::int32_t main = main_region(body.mesh);
     for (const Label& label : body.mesh.region_names)
         if (label.value != main)
@@ -218,9 +217,9 @@ std::vector<FeltTrial> felt_trials(const DeformableBody& body, const FeltRegion&
         const std::array vertices{felt.vertex};
         FeltRegion tried = felt;
         tried.depth = new_depth;
-        tried.stiffness = pressed_stiffness(pressing, felt.vertex,
-                                            solved_compliances(other, pressing, vertices, threads)[0],
-                                            surface_contact_modulus(other));
+        tried.stiffness =
+            pressed_stiffness(pressing, solved_compliances(other, pressing, vertices, threads)[0],
+                              surface_contact_modulus(other));
         add(std::move(change), tried);
     };
     const DeformableBody plain = uncondensed(body);
@@ -259,10 +258,9 @@ std::vector<FeltTrial> felt_trials(const DeformableBody& body, const FeltRegion&
         if (radius > tool_radius && pressing_of(body, radius, depth).disc.reach > pressing.disc.reach)
             continue;
         FeltRegion tried = felt;
-        tried.stiffness =
-            pressed_stiffness(with_tool, felt.vertex, with_compliance, surface_contact_modulus(body));
+        tried.stiffness = pressed_stiffness(with_tool, with_compliance, surface_contact_modulus(body));
         tried.stiffness_without =
-            pressed_stiffness(with_tool, felt.vertex, without_compliance, surface_contact_modulus(without));
+            pressed_stiffness(with_tool, without_compliance, surface_contact_modulus(without));
         add(fmt::format("a tool of {:g} mm radius", radius), tried);
     }
     return trials;

@@ -40,8 +40,7 @@ Pressing pressing_of(const DeformableBody& body, double tool_radius, double dept
 }
 
 bool can_be_pressed(const Pressing& pressing, std::int32_t vertex) {
-    const auto v = static_cast<std::size_t>(vertex);
-    return pressing.blocks[v] >= 0 && pressing.shares.freedom[v] > 0;
+    return pressing.blocks[static_cast<std::size_t>(vertex)] >= 0;
 }
 
 std::vector<double> spread_compliances(const DeformableBody& body, const Pressing& pressing, int threads) {
@@ -97,13 +96,10 @@ std::vector<double> solved_compliances(const DeformableBody& body, const Pressin
     return compliances;
 }
 
-double pressed_stiffness(const Pressing& pressing, std::int32_t vertex, double compliance,
-                         double contact_modulus) {
-    const double freedom = pressing.shares.freedom[static_cast<std::size_t>(vertex)];
+double pressed_stiffness(const Pressing& pressing, double compliance, double contact_modulus) {
     const auto depth_under = [&](double force) {
         return compliance * force +
-               freedom * local_indentation(force, pressing.tool_radius, contact_modulus, pressing.disc.radius)
-                             .depth;
+               local_indentation(force, pressing.tool_radius, contact_modulus, pressing.disc.radius).depth;
     };
     // The depth grows with the force; bisected to the last bit but a few.
     double low = 0, high = pressing.depth / compliance;

@@ -39,10 +39,9 @@ std::vector<double> spread_compliances(const DeformableBody& body, const Pressin
 std::vector<double> solved_compliances(const DeformableBody& body, const Pressing& pressing,
                                        std::span<const std::int32_t> vertices, int threads);
 
-/// The stiffness F / d at a vertex, N/mm, with F such that c F + s(F) = d: c being the disc's compliance
+/// The stiffness F / d of the surface, N/mm, with F such that c F + s(F) = d: c being the disc's compliance
 /// there and s what the sphere sinks in besides, local_indentation() of tissue with this contact modulus
 /// (surface_contact_modulus()). `compliance` must be positive.
-double pressed_stiffness(const Pressing& pressing, std::int32_t vertex, double compliance,
-                         double contact_modulus);
+double pressed_stiffness(const Pressing& pressing, double compliance, double contact_modulus);
 
 }  // namespace palpate::fem

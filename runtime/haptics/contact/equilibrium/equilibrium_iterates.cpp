@@ -40,8 +40,8 @@ double ContactEquilibrium::sink(std::size_t iterate) noexcept {
             touch.push += row.force * row.normal;
             press += row.force;
             for (std::size_t i = 0; i < 3; ++i)
-                free += row.force * row.weights[static_cast<Index>(i)] *
-                        spread->freedom(body.triangle(row.triangle)[i]);
+                if (body.gives_way(body.triangle(row.triangle)[i]))
+                    free += row.force * row.weights[static_cast<Index>(i)];
         }
         const double pushing = touch.push.norm();
         if (!(press > 0) || !(pushing > 0)) continue;
