@@ -24,9 +24,10 @@ ROOMS = {
     "asset": {"model", "hdf5", "openssl", "threads"},
     "toml_file": {"model", "toml"},
     "recording": {"model", "asset"},
-    "imaging": {"model", "itk", "hdf5", "dcmtk", "vtk", "json"},  # HDF5 is one of ITK's own
+    "vtk_blocks": {"vtk"},
+    "imaging": {"model", "vtk_blocks", "itk", "hdf5", "dcmtk", "vtk", "json"},  # HDF5 is one of ITK's own
     "archive": {"model", "asset", "imaging", "dcmtk", "hdf5", "zlib"},
-    "meshing": {"model", "cgal", "vtk", "json"},
+    "meshing": {"model", "vtk_blocks", "cgal", "vtk", "json"},
     "obb": {"model"},
     "fem": {"model", "elasticity", "linear_algebra"},
     "linear_algebra": {"cholmod", "metis", "lapack"},

@@ -95,6 +95,13 @@ DeformableBody scaled(float factor) {
     });
 }
 
+// No more draws: the gradients go on for 20 000 steps.
+TEST(PlausibleCompliance, of_a_mesh_that_cannot_judge_it_is_refused) {
+    DeformableBody body = scaled(1000);
+    for (RegionMaterial& region : body.materials) region.material.poissons_ratio = 0.5 - 1e-14;
+    EXPECT_THROW(require_answers_of_mesh(body, "forged", 0), InvalidInput);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Each, ForgedCompliance,
     ::testing::Values(
@@ -126,13 +133,6 @@ INSTANTIATE_TEST_SUITE_P(
                             for (std::size_t j = 0; j < n; ++j)
                                 if (i / 3 != j / 3) entries[i * n + j] *= -1;
                     });
-                }},
-        Forgery{"nothing_that_can_be_judged",
-                [] {
-                    DeformableBody body = scaled(1000);
-                    for (RegionMaterial& region : body.materials)
-                        region.material.poissons_ratio = 0.5 - 1e-14;
-                    return body;
                 }},
         Forgery{"an_organ_that_is_held_elsewhere",
                 [] {

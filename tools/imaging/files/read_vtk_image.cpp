@@ -21,6 +21,7 @@
 
 #include "formats/model/errors.hpp"
 #include "tools/imaging/files/read_image.hpp"
+#include "tools/vtk_blocks/checked_blocks.hpp"
 
 namespace palpate::imaging {
 namespace {
@@ -71,7 +72,8 @@ vtkSmartPointer<vtkImageData> output_of(Reader& reader, const std::filesystem::p
 }
 
 vtkSmartPointer<vtkImageData> load(const std::filesystem::path& path) {
-    vtkNew<vtkXMLImageDataReader> reader;
+    vtkNew<vtk_blocks::WithCheckedBlocks<vtkXMLImageDataReader>> reader;
+    reader->set_room(std::filesystem::file_size(path) * static_cast<std::uintmax_t>(Packing::deflated));
     if (reader->CanReadFile(path.c_str()) == 0)
         throw InvalidInput({path.string(), "is not VTK XML image data", "", "check that the file is whole"});
     return output_of(*reader, path);

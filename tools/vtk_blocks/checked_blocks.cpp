@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/meshing/files/vtk/xml_readers.hpp"
+#include "tools/vtk_blocks/checked_blocks.hpp"
 
 #include <algorithm>
 #include <cstring>
 #include <vtkInputStream.h>
 
-namespace palpate::meshing {
+namespace palpate::vtk_blocks {
 
 vtkStandardNewMacro(BlocksChecked);
 
@@ -55,4 +55,4 @@ std::optional<std::vector<std::uint64_t>> BlocksChecked::read_words(std::size_t 
     return words;
 }
 
-}  // namespace palpate::meshing
+}  // namespace palpate::vtk_blocks
