@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Installs what is missing, builds the release and both sanitizer presets (of tsan the tests that run threads), runs all
-# tests but the slow ones, and clang-tidy over formats and runtime.
+# tests but the slow ones, and clang-tidy over formats and runtime, whose lines it counts.
 # Closes with ctest's own summary; skipped tests are printed with their reason.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../pipelines/set_up.sh"
@@ -16,7 +16,11 @@ run_preset() { # preset
     ctest --preset "$1" -j "$(nproc)" --output-junit "$root/build/$1/tests.xml" 2>&1 | tee "$root/build/$1/tests.log" || status=1
     python3 tests/skip_reasons.py "build/$1/tests.xml"
 }
+rm -rf build/asan/coverage  # what other tests left
 run_preset asan
+echo; echo "== Lines that preset asan ran"
+covered=$(tests/coverage.sh) || status=1
+echo "$covered"
 run_preset tsan
 run_preset release
 echo; echo "== clang-tidy"
@@ -28,5 +32,6 @@ for preset in asan tsan release; do
     echo "$preset:"
     grep -E '^[0-9]+% tests passed|^No tests were found' "build/$preset/tests.log"
 done
+grep -E '^(formats|runtime) ' <<<"$covered"
 tail -n 1 <<<"$tidied"
 exit $status
