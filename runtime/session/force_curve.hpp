@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,24 @@ struct CurvePoint {
     double time = 0;   ///< s
     double force = 0;  ///< N
     double depth = 0;  ///< mm
+};
+
+/// A force curve of a run of any length in 3 MB: two minutes of ticks, then of every so many the one with the
+/// smallest and the one with the largest force.
+class ForceCurve {
+  public:
+    static constexpr std::size_t most_points = 131072;
+
+    /// Takes the next tick's.
+    void add(const CurvePoint& point);
+    /// What is left of all, in the order of time.
+    std::vector<CurvePoint> points() const;
+
+  private:
+    std::vector<CurvePoint> points_;
+    std::size_t span_ = 2;         // ticks for which two points stay
+    CurvePoint lowest_, highest_;  // of the ticks since the last two
+    std::size_t since_ = 0;        // how many those are
 };
 
 /// Draws force (left axis, N) and depth (right axis, mm) over time (s) as an SVG picture of 960 x 420. Points

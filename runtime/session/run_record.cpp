@@ -33,8 +33,9 @@ void write_log_head(std::ostream& log) {
 
 void RunRecord::add(const TickResult& result) {
     const double force = vector_of(result.force).norm();
-    if (curve_.empty() || force > peak_force()) peak_ = result;
-    curve_.push_back({result.time, force, result.depth});
+    if (!began_ || force > peak_force()) peak_ = result;
+    began_ = true;
+    curve_.add({result.time, force, result.depth});
     if (result.tick == last_tick_ + 1)
         largest_force_step_ =
             std::max(largest_force_step_, (vector_of(result.force) - vector_of(last_force_)).norm());

@@ -22,7 +22,7 @@ class RunRecord {
 
     void add(const TickResult& result);
 
-    const std::vector<CurvePoint>& curve() const { return curve_; }
+    std::vector<CurvePoint> curve() const { return curve_.points(); }
     const TickResult& peak() const { return peak_; }       ///< the tick with the largest force
     double peak_force() const;                             ///< N
     double device_depth() const { return device_depth_; }  ///< deepest below any rest surface, mm
@@ -39,7 +39,8 @@ class RunRecord {
 
     const haptics::HapticModel& model_;
     std::ostream* log_;
-    std::vector<CurvePoint> curve_;
+    ForceCurve curve_;
+    bool began_ = false;
     TickResult peak_{};
     std::array<double, 3> last_force_{0, 0, 0};
     std::int64_t last_tick_ = -2;

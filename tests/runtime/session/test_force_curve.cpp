@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <gtest/gtest.h>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "runtime/session/force_curve.hpp"
 
@@ -29,6 +32,37 @@ TEST(ForceCurve, labels_axes_with_units_and_keeps_a_peak_of_one_tick) {
     // The axis runs to 2.5 N over 328 pixels; the peak is drawn at 40 + 328 * 0.1 / 2.5.
     EXPECT_NE(svg.find(",53.12 "), std::string::npos);
     EXPECT_LT(svg.size(), 100000U);
+}
+
+TEST(ForceCurve, of_a_short_run_keeps_every_tick) {
+    const std::vector<CurvePoint> press = one_press();
+    for (const std::size_t ticks : {1U, 2U, 7U, 10000U}) {
+        ForceCurve curve;
+        for (std::size_t n = 0; n < ticks; ++n) curve.add(press[n]);
+        const std::vector<CurvePoint> points = curve.points();
+        ASSERT_EQ(points.size(), ticks);
+        for (std::size_t n = 0; n < ticks; ++n) ASSERT_EQ(points[n].time, press[n].time);
+    }
+}
+
+TEST(ForceCurve, of_hours_stays_small_and_keeps_peaks_and_gaps_of_one_tick_in_order) {
+    constexpr std::int64_t ticks = 3'600'000, peak = 1'234'567, gap = 2'345'678;
+    ForceCurve curve;
+    for (std::int64_t tick = 0; tick < ticks; ++tick) {
+        const double force = tick == peak ? 3 : tick == gap ? 0 : 1;
+        curve.add({1e-3 * static_cast<double>(tick), force, force});
+    }
+    const std::vector<CurvePoint> points = curve.points();
+    EXPECT_LE(points.size(), ForceCurve::most_points);
+    EXPECT_GT(points.size(), ForceCurve::most_points / 4);
+    EXPECT_EQ(points.front().time, 0);
+    EXPECT_NEAR(points.back().time, 1e-3 * (ticks - 1), 0.2);
+    for (const auto& [tick, force] : {std::pair{peak, 3.0}, std::pair{gap, 0.0}}) {
+        const auto found = std::ranges::find(points, force, &CurvePoint::force);
+        ASSERT_NE(found, points.end());
+        EXPECT_EQ(found->time, 1e-3 * static_cast<double>(tick));
+    }
+    EXPECT_TRUE(std::ranges::is_sorted(points, {}, &CurvePoint::time));
 }
 
 TEST(ForceCurve, draws_nothing_felt_as_a_flat_line) {
