@@ -12,5 +12,6 @@ for object in "$build"/bin/* "$build"/tests/*; do
     [ -f "$object" ] && [ -x "$object" ] && objects+=(-object "$object")
 done
 llvm-cov-16 export -summary-only -instr-profile "$build/coverage/tests.profdata" "${objects[@]:1}" \
-    -ignore-filename-regex "^($PWD/)?(build|tests|tools|sample_data)/|^/usr/" >"$build/coverage/summary.json" 2>"$build/coverage/warnings"
+    -ignore-filename-regex "^($PWD/)?(build|tests|tools|sample_data)/|^/usr/" >"$build/coverage/summary.json" 2>"$build/coverage/warnings" ||
+    { cat "$build/coverage/warnings" >&2; exit 1; }
 python3 tests/coverage_by_room.py "$build/coverage/summary.json"

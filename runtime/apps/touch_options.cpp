@@ -34,8 +34,9 @@ TouchHandles declare(cli::Command& command, TouchOptions& options) {
         "of the target if not given, and with a file none, so that the tip alone is felt");
     command.option("--seed", options.seed, "of the scripts 'random' and 'tremble'");
     const cli::Option log = command.output("--log", options.log, "one row per tick (.csv)");
-    const cli::Option curve =
-        command.output("--curve", options.curve, "force and depth of the first tool over time (.svg)");
+    const cli::Option curve = command.output("--curve", options.curve,
+                                             "force and depth of the first tool over time; beyond two "
+                                             "minutes the ticks of least and largest force (.svg)");
     command.option("--stream", options.stream,
                    "PORT or ADDRESS:PORT at which 3D Slicer and others see the session over OpenIGTLink");
     command.output("--record", options.record, "every tick, from the start on (.h5)");

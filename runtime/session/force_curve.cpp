@@ -8,17 +8,6 @@
 namespace palpate::session {
 namespace {
 
-void append(std::vector<CurvePoint>& points, const CurvePoint& lowest, const CurvePoint& highest) {
-    if (lowest.time == highest.time) {
-        points.push_back(lowest);
-    } else {
-        const auto [first, second] = std::minmax(
-            lowest, highest, [](const CurvePoint& a, const CurvePoint& b) { return a.time < b.time; });
-        points.push_back(first);
-        points.push_back(second);
-    }
-}
-
 bool is_lower(const CurvePoint& a, const CurvePoint& b) {
     return a.force < b.force;
 }
@@ -26,25 +15,39 @@ bool is_lower(const CurvePoint& a, const CurvePoint& b) {
 }  // namespace
 
 void ForceCurve::add(const CurvePoint& point) {
-    lowest_ = since_ == 0 ? point : std::min(lowest_, point, is_lower);
-    // Of equal ones the later, so that two stay of a rest too.
-    highest_ = since_ == 0 || !is_lower(point, highest_) ? point : highest_;
+    if (since_ == 0 || is_lower(point, lowest_)) {
+        lowest_ = point;
+        lowest_at_ = since_;
+    }
+    // Of equal ones the later, so that these are two ticks.
+    if (since_ == 0 || !is_lower(point, highest_)) {
+        highest_ = point;
+        highest_at_ = since_;
+    }
     if (++since_ < span_) return;
-    append(points_, lowest_, highest_);
+    append_extremes(points_);
     since_ = 0;
     if (points_.size() < most_points) return;
-    std::vector<CurvePoint> fewer;
+    auto kept = points_.begin();
     for (auto four = points_.begin(); four != points_.end(); four += 4) {
         const auto [low, high] = std::minmax_element(four, four + 4, is_lower);
-        append(fewer, *low, *high);
+        const auto [first, second] = std::minmax(low, high);
+        const CurvePoint one = *first, other = *second;
+        *kept++ = one;
+        *kept++ = other;
     }
-    points_ = std::move(fewer);
+    points_.erase(kept, points_.end());
     span_ *= 2;
+}
+
+void ForceCurve::append_extremes(std::vector<CurvePoint>& points) const {
+    points.push_back(lowest_at_ < highest_at_ ? lowest_ : highest_);
+    if (since_ > 1) points.push_back(lowest_at_ < highest_at_ ? highest_ : lowest_);
 }
 
 std::vector<CurvePoint> ForceCurve::points() const {
     std::vector<CurvePoint> points = points_;
-    if (since_ > 0) append(points, lowest_, highest_);
+    if (since_ > 0) append_extremes(points);
     return points;
 }
 

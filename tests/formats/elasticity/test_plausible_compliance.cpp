@@ -95,11 +95,12 @@ DeformableBody scaled(float factor) {
     });
 }
 
-// No more draws: the gradients go on for 20 000 steps.
+// Next to 0.5 the stiffness is all but singular, and the gradients go on for 20 000 steps.
 TEST(PlausibleCompliance, of_a_mesh_that_cannot_judge_it_is_refused) {
-    DeformableBody body = scaled(1000);
-    for (RegionMaterial& region : body.materials) region.material.poissons_ratio = 0.5 - 1e-14;
-    EXPECT_THROW(require_answers_of_mesh(body, "forged", 0), InvalidInput);
+    DeformableBody body = cube();
+    for (RegionMaterial& region : body.materials) region.material.poissons_ratio = 0.5 - 1e-16;
+    EXPECT_FALSE(elasticity::worst_answer(body, 0));
+    EXPECT_THROW(require_answers_of_mesh(body, "sound", 0), InvalidInput);
 }
 
 INSTANTIATE_TEST_SUITE_P(

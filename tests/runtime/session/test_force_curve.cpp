@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <gtest/gtest.h>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -63,6 +64,18 @@ TEST(ForceCurve, of_hours_stays_small_and_keeps_peaks_and_gaps_of_one_tick_in_or
         EXPECT_EQ(found->time, 1e-3 * static_cast<double>(tick));
     }
     EXPECT_TRUE(std::ranges::is_sorted(points, {}, &CurvePoint::time));
+}
+
+// Times of a recording are whatever its file says.
+TEST(ForceCurve, of_times_that_stand_still_or_go_back_or_are_none_stays_small_too) {
+    for (const double step : {0.0, -1e-3, std::numeric_limits<double>::quiet_NaN()})
+        for (const double force : {1.0, std::numeric_limits<double>::quiet_NaN()}) {
+            ForceCurve curve;
+            constexpr std::size_t ticks = 3 * ForceCurve::most_points + 1;
+            for (std::size_t n = 0; n < ticks; ++n) curve.add({step * static_cast<double>(n), force, 0});
+            EXPECT_LE(curve.points().size(), ForceCurve::most_points);
+            EXPECT_GT(curve.points().size(), ForceCurve::most_points / 4);
+        }
 }
 
 TEST(ForceCurve, draws_nothing_felt_as_a_flat_line) {

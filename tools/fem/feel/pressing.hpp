@@ -26,7 +26,7 @@ struct Pressing {
 /// mesh's: where a is more than 4.9 edges, surfaces come out too soft, by a sixth where R = a.
 Pressing pressing_of(const DeformableBody& body, double tool_radius, double depth);
 
-/// True of a vertex that a sphere can be pressed against: part of its disc gives way.
+/// True of a vertex that a sphere can be pressed against: it gives way.
 bool can_be_pressed(const Pressing& pressing, std::int32_t vertex);
 
 /// By vertex, mm/N: how far the disc about it gives way along the normal under a force spread over it, n' (S
@@ -39,9 +39,9 @@ std::vector<double> spread_compliances(const DeformableBody& body, const Pressin
 std::vector<double> solved_compliances(const DeformableBody& body, const Pressing& pressing,
                                        std::span<const std::int32_t> vertices, int threads);
 
-/// The stiffness F / d of the surface, N/mm, with F such that c F + s(F) = d: c being the disc's compliance
-/// there and s what the sphere sinks in besides, local_indentation() of tissue with this contact modulus
-/// (surface_contact_modulus()). `compliance` must be positive.
+/// The stiffness F / d of the surface, N/mm, with F such that c F + s(F) = d: c being a disc's compliance
+/// (spread_compliances()) and s what the sphere sinks in besides, local_indentation() of tissue with this
+/// contact modulus (surface_contact_modulus()). `compliance` must be positive.
 double pressed_stiffness(const Pressing& pressing, double compliance, double contact_modulus);
 
 }  // namespace palpate::fem

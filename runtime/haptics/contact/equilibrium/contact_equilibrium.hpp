@@ -135,7 +135,7 @@ class ContactEquilibrium {
         Offsets next_sunk = no_offsets(), sunk_difference = no_offsets();
         Eigen::Vector3d sunk_free = Eigen::Vector3d::Zero();
         Eigen::Matrix3d sinking = Eigen::Matrix3d::Zero();
-        double freedom = 1;  // of the tissue that bears it
+        double freedom = 1;  // the part of the press on vertices that give way
         // Where that creeps: as what, and what is left of earlier presses; and what of that lasts, N.
         const TickCreep* creep = nullptr;
         CreepHistory left_push;

@@ -2,7 +2,9 @@
 #pragma once
 #include <concepts>
 #include <vtkDataArray.h>
+#include <vtkObjectFactory.h>
 #include <vtkSmartPointer.h>
+#include <vtkXMLDataElement.h>
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
