@@ -33,8 +33,7 @@ void write_log_head(std::ostream& log) {
 
 void RunRecord::add(const TickResult& result) {
     const double force = vector_of(result.force).norm();
-    if (!began_ || force > peak_force()) peak_ = result;
-    began_ = true;
+    if (last_tick_ == no_tick || force > peak_force()) peak_ = result;
     curve_.add({result.time, force, result.depth});
     if (result.tick == last_tick_ + 1)
         largest_force_step_ =

@@ -40,10 +40,10 @@ class RunRecord {
     const haptics::HapticModel& model_;
     std::ostream* log_;
     ForceCurve curve_;
-    bool began_ = false;
     TickResult peak_{};
     std::array<double, 3> last_force_{0, 0, 0};
-    std::int64_t last_tick_ = -2;
+    static constexpr std::int64_t no_tick = -2;  // nor before the first
+    std::int64_t last_tick_ = no_tick;
     double device_depth_ = 0;
     double tool_depth_ = 0;
     double largest_force_step_ = 0;
