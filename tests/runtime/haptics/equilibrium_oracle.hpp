@@ -54,19 +54,11 @@ class EquilibriumOracle {
         return sum;
     }
 
-    /// Where a tool of `radius` rests against the surface: its centre, sunk in as Hertz has it.
-    Eigen::Vector3d centre(const TickResult& result, double radius, double coupling) const {
-        const Eigen::Vector3d force = force_of(result);
-        const Eigen::Vector3d device = Eigen::Map<const Eigen::Vector3d>(result.device_position.data());
-        double freedom = 0;  // the part of the press on vertices that give way
-        for (const Contact& contact : result.active_contacts())
-            for (std::size_t i = 0; i < 3; ++i)
-                if (blocks_[static_cast<std::size_t>(contact.vertices[i])] >= 0)
-                    freedom += static_cast<double>(contact.force * contact.weights[i]) / press_of(result);
-        const double sunk =
-            freedom *
-            local_indentation(force.norm(), radius, spread_.contact_modulus(), spread_.radius()).depth;
-        return device + force / coupling + sunk * force.normalized();
+    /// How far a tool of `radius` sinks into what gives way, as Hertz has it, mm.
+    Eigen::Vector3d sunk(const TickResult& result, double radius) const {
+        const Eigen::Vector3d force = force_on_what_gives_way(result);
+        return local_indentation(force.norm(), radius, spread_.contact_modulus(), spread_.radius()).depth *
+               force.normalized();
     }
 
     /// Expects that the tools touch the surface where it is displaced to, and are nowhere inside.
@@ -76,13 +68,17 @@ class EquilibriumOracle {
         const TriangleMesh& rest = body_.boundary.surface;
         for (const TickResult& result : results) {
             if (!(press_of(result) > 0)) continue;
-            const Eigen::Vector3d tool = centre(result, radius, coupling);
+            const Eigen::Vector3d tool = Eigen::Map<const Eigen::Vector3d>(result.device_position.data()) +
+                                         force_of(result) / coupling;
+            const Eigen::Vector3d into = sunk(result, radius);
+            const auto corner = [&](std::int32_t vertex) -> Eigen::Vector3d {
+                const auto v = static_cast<std::size_t>(vertex);
+                return rest.vertices[v] + moved[v] - (gives_way(vertex) ? into : Eigen::Vector3d::Zero());
+            };
             double nearest = std::numeric_limits<double>::infinity();
             for (const Triangle& t : rest.triangles) {
                 collision::TriangleCorners corners;
-                for (std::size_t i = 0; i < 3; ++i)
-                    corners[i] =
-                        rest.vertices[static_cast<std::size_t>(t[i])] + moved[static_cast<std::size_t>(t[i])];
+                for (std::size_t i = 0; i < 3; ++i) corners[i] = corner(t[i]);
                 nearest = std::min(
                     nearest, std::sqrt(collision::closest_point_on_triangle(tool, corners).squared_distance));
             }
@@ -90,10 +86,8 @@ class EquilibriumOracle {
             for (const Contact& contact : result.active_contacts()) {
                 EXPECT_GE(contact.force, 0);
                 Eigen::Vector3d point = Eigen::Vector3d::Zero();
-                for (std::size_t i = 0; i < 3; ++i) {
-                    const auto v = static_cast<std::size_t>(contact.vertices[i]);
-                    point += static_cast<double>(contact.weights[i]) * (rest.vertices[v] + moved[v]);
-                }
+                for (std::size_t i = 0; i < 3; ++i)
+                    point += static_cast<double>(contact.weights[i]) * corner(contact.vertices[i]);
                 if (contact.force > 0) {
                     EXPECT_NEAR((tool - point).norm(), radius, tolerance);
                     EXPECT_NEAR(((tool - point).normalized() - normal_of(contact)).norm(), 0, tolerance);
@@ -113,7 +107,7 @@ class EquilibriumOracle {
                 energy -= 0.5 * static_cast<double>(contact.force * contact.weights[i]) *
                           normal_of(contact).dot(moved[static_cast<std::size_t>(contact.vertices[i])]);
         // The work of sinking in is the integral of F ds, by steps.
-        const double press = force_of(result).norm();
+        const double press = force_on_what_gives_way(result).norm();
         constexpr int steps = 2000;
         double last = 0;
         for (int k = 1; k <= steps; ++k) {
@@ -123,10 +117,21 @@ class EquilibriumOracle {
             energy += (f - 0.5 * press / steps) * (depth - last);
             last = depth;
         }
-        return energy + press * press / (2 * coupling);
+        return energy + force_of(result).squaredNorm() / (2 * coupling);
     }
 
   private:
+    bool gives_way(std::int32_t vertex) const { return blocks_[static_cast<std::size_t>(vertex)] >= 0; }
+
+    Eigen::Vector3d force_on_what_gives_way(const TickResult& result) const {
+        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+        for (const Contact& contact : result.active_contacts())
+            for (std::size_t i = 0; i < 3; ++i)
+                if (gives_way(contact.vertices[i]))
+                    sum += static_cast<double>(contact.force * contact.weights[i]) * normal_of(contact);
+        return sum;
+    }
+
     Eigen::VectorXd loads(std::span<const TickResult> results) const {
         Eigen::VectorXd load = Eigen::VectorXd::Zero(compliance_.rows());
         for_each_load(results, [&](std::int32_t vertex, const Eigen::Vector3d& force) {

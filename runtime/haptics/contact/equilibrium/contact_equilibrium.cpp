@@ -8,22 +8,20 @@
 // Contact that keeps energy. A tool of spheres of radius r hangs on its virtual coupling of stiffness K from
 // the device at d; x is where it is, u the displacements of the bodies' surfaces, C their compliance against
 // loads spread over the surface (load_shares.cpp). A sphere pressed into tissue sinks in by s besides,
-// against a potential U of the press alone (local_indentation.cpp), so that y = x + s is what meets the
-// surface. All come to rest where
-//     V = 1/2 K |x - d|² + 1/2 u . C^-1 u + U(s)    is least under    g_t = |y - q_t(u)| - r >= 0
-// for every sphere and every triangle t of the surface as it is *displaced*, q_t(u) its point closest to y.
+// against a potential U (local_indentation.cpp): what meets the surface is y = x + s, and it meets vertices
+// that do not give way at all, which are not sunk into, s farther on. All come to rest where
+//     V = 1/2 K |x - d|² + 1/2 u . C^-1 u + U(s)    is least under    g_t = |y - q_t(u, s)| - r >= 0
+// for every sphere and every triangle t of the surface as it is *displaced*, q_t its point closest to y.
 // The force on the device is -dV/dd = K (x - d): its work round a closed loop is zero. Rest positions,
 // anchors and smoothed normals have no part in it.
-// What does not give way at all is not sunk into either: on triangles between such vertices and others, s is
-// the less the more of the press they bear, and its gradient by that part is left out: a loop over them takes
-// or gives 5 to 19 % of what is stored, on a cube of 4 mm elements under a sphere of 1 mm.
 //
-// g_t is differentiable wherever y is off the triangle: its gradient by y is n = (y - q_t) / |y - q_t|, and
-// -w_i n by u_i, w the barycentric weights of q_t. Linearised at the present state, with s = s_0 + S F about
-// the present press F, the conditions for the forces f >= 0 that the triangles press with are
+// g_t is differentiable wherever y is off the triangle: its gradient by x is n = (y - q_t) / |y - q_t|,
+// -w_i n by u_i, w the barycentric weights of q_t, and p n by s, p the sum of w over the vertices that give
+// way. So s answers to the press F = sum p f n. Linearised at the present state, with s = s_0 + S F about the
+// present F, the conditions for the forces f >= 0 that the triangles press with are
 //     A f - delta >= 0,    f >= 0,    f . (A f - delta) = 0,
-//     A_kl = n_k . n_l / K + sum_ij w_ki w_lj n_k . C_ij n_l + n_k . S n_l,
-//     delta_k = n_k . (x - d + s - s_0) - sum_i w_ki n_k . u_i - g_k.
+//     A_kl = n_k . n_l / K + sum_ij w_ki w_lj n_k . C_ij n_l + p_k p_l n_k . S n_l,
+//     delta_k = n_k . (x - d + p_k (s - s_0)) - sum_i w_ki n_k . u_i - g_k.
 // The first term of A is there where k and l are of one tool, the second where they lie on one body, the
 // third where they press one sphere; a rigid body has the first alone. Where bodies press each other
 // (neighbour_contact.cpp), there are rows of the second kind between them. Where tissue creeps, C and s are
@@ -74,7 +72,6 @@ void ContactEquilibrium::forget(std::size_t t) noexcept {
         for (std::size_t soft = 0; soft < patches_.size(); ++soft) {
             Touch& touch = part.touches[soft];
             touch.near.clear();
-            if (touch.creep == nullptr) touch.freedom = 1;
             touch.sunk = local_dent(touch, patches_[soft]);
             touch.push.setZero();
             touch.drag.setZero();
@@ -260,11 +257,11 @@ bool ContactEquilibrium::found(std::size_t t) const noexcept {
         for (const GodObject::Touch& touch : part.sphere.if_rigid->touches()) {
             if (touch.surface < bodies_.rigid_count()) continue;
             const std::size_t soft = touch.surface - bodies_.rigid_count();
-            const TriangleCorners corners = patches_[soft].look_at(touch.foot.triangle);
-            Vector3d foot = Vector3d::Zero();
+            const Vector3d dent = local_dent(part.touches[soft], patches_[soft]);
+            const TriangleCorners corners = patches_[soft].look_at(touch.foot.triangle, dent);
+            Vector3d foot = -dent;
             for (std::size_t i = 0; i < 3; ++i)
                 foot += touch.foot.barycentric[static_cast<Index>(i)] * corners[i];
-            foot -= local_dent(part.touches[soft], patches_[soft]);
             if (touch.normal.dot(foot - part.sphere.device) + radius_ > first_reach) return false;
         }
     }
@@ -289,8 +286,9 @@ void ContactEquilibrium::write_contacts(std::size_t t, TickResult& result) const
         Eigen::Map<Vector3f>(contact.weights.data()) = row.weights.cast<float>();
         Eigen::Map<Vector3f>(contact.normal.data()) = row.normal.cast<float>();
         const Touch& touch = touch_of(row);
-        const double sunk = row.normal.dot(touch.sunk_free + touch.sinking * touch.push);
-        contact.gap = static_cast<float>(row.gap + row.normal.dot(touch.sunk_free));
+        const double sunk =
+            row.part_giving_way * row.normal.dot(touch.sunk_free + touch.sinking * touch.push);
+        contact.gap = static_cast<float>(row.gap + row.part_giving_way * row.normal.dot(touch.sunk_free));
         contact.force = static_cast<float>(row.force);
         contact.series_compliance = static_cast<float>(sunk / row.force);
         if (touch.press > 0)

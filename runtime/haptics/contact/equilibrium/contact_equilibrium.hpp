@@ -106,8 +106,11 @@ class ContactEquilibrium {
         Eigen::Vector3d weights = Eigen::Vector3d::Zero();
         Eigen::Vector3d normal = Eigen::Vector3d::Zero();
         Eigen::Vector3d point = Eigen::Vector3d::Zero();
-        double distance = 0;               // of the sphere's surface, mm
-        double gap = 0;                    // that forces must open, mm
+        double distance = 0;  // of the sphere's surface, mm
+        double gap = 0;       // that forces must open, mm
+        // How much of its point gives way: so much of what its sphere sinks in counts here. And the square of
+        // that part's slope along face or edge, 1/mm².
+        double part_giving_way = 1, slope_squared = 0;
         double force = 0;                  // N
         std::int32_t place = 0, rank = 0;  // among all rows, and by distance among its tool's
         Contact* wall = nullptr;
@@ -129,13 +132,14 @@ class ContactEquilibrium {
     // One sphere of a tool on one body.
     struct Touch {
         FixedList<std::int32_t, most_near> near;  // triangles, when it was looked last
-        // How far the sphere sinks into the tissue beyond what the surface gives way, against the press; and
-        // the press (N) about which that is linearised: sunk_free + sinking * press.
+        // How far the sphere sinks into what gives way beyond what the surface does, against the press there;
+        // and the press (N) about which that is linearised: sunk_free + sinking * press.
         Eigen::Vector3d sunk = Eigen::Vector3d::Zero(), push = Eigen::Vector3d::Zero();
         Offsets next_sunk = no_offsets(), sunk_difference = no_offsets();
         Eigen::Vector3d sunk_free = Eigen::Vector3d::Zero();
         Eigen::Matrix3d sinking = Eigen::Matrix3d::Zero();
-        double freedom = 1;  // the part of the press on vertices that give way
+        double righting =
+            0;  // N/mm, by which sinking in takes the press off what gives way: it turns normals
         // Where that creeps: as what, and what is left of earlier presses; and what of that lasts, N.
         const TickCreep* creep = nullptr;
         CreepHistory left_push;
@@ -158,7 +162,6 @@ class ContactEquilibrium {
         void forget_pushes() noexcept {
             if (creep == nullptr) return;
             creep = nullptr;
-            freedom = 1;
             left_push = {};
             lasting_push.setZero();
             sunk.setZero();
@@ -186,6 +189,7 @@ class ContactEquilibrium {
         double near = 0;   // mm: those nearer than this are solved
     };
 
+    static void divide(Row& row, const DeformedPatch& patch, const collision::TriangleCorners& met) noexcept;
     static std::int64_t key_of(const Row& row) noexcept;
     std::size_t wall_count() const noexcept;
     double gap_of_wall(const Row& row) const noexcept;

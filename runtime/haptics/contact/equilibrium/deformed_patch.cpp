@@ -80,6 +80,7 @@ void DeformedPatch::drop(std::int32_t slot) noexcept {
     vertices_[slot] = vertices_[last];
     slots_[vertices_[slot]] = slot;
     rest_[slot] = rest_[last];
+    gives_way_[static_cast<std::size_t>(slot)] = gives_way_[static_cast<std::size_t>(last)];
     moved_[slot] = moved_[last];
     before_[slot] = before_[last];
     held_moved_[slot] = held_moved_[last];
@@ -132,6 +133,7 @@ std::int32_t DeformedPatch::slot_of(std::int32_t vertex) noexcept {
         slot = slots_[vertex] = size_++;
         vertices_[slot] = vertex;
         rest_[slot] = body_->rest_position(vertex);
+        gives_way_[static_cast<std::size_t>(slot)] = body_->gives_way(vertex);
         creeps_as_[slot] = body_->creep_of(vertex);
         known_[static_cast<std::size_t>(slot)] = false;
         for (std::int32_t loaded = 0; loaded < slot; ++loaded)
@@ -160,9 +162,15 @@ bool DeformedPatch::slots_of(std::int32_t triangle, std::array<std::int32_t, 3>&
     return true;
 }
 
-collision::TriangleCorners DeformedPatch::look_at(std::int32_t triangle) const noexcept {
-    const Triangle& t = body_->triangle(triangle);
-    return {look_at_vertex(t[0]), look_at_vertex(t[1]), look_at_vertex(t[2])};
+collision::TriangleCorners DeformedPatch::look_at(std::int32_t triangle,
+                                                  const Vector3d& sunk) const noexcept {
+    collision::TriangleCorners met;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::int32_t vertex = body_->triangle(triangle)[i];
+        met[i] = look_at_vertex(vertex);
+        if (!body_->gives_way(vertex)) met[i] += sunk;
+    }
+    return met;
 }
 
 Vector3d DeformedPatch::look_at_vertex(std::int32_t vertex) const noexcept {

@@ -42,9 +42,8 @@ class DeformedPatch {
     bool is_in(std::int32_t vertex) const noexcept { return slots_[vertex] != no_slot; }
     /// How many vertices more may come in.
     std::int32_t room() const noexcept { return most_vertices - size_; }
-    /// Where a triangle's corners are, p_P, mm, whether its vertices are in or not: for a look from time to
-    /// time.
-    collision::TriangleCorners look_at(std::int32_t triangle) const noexcept;
+    /// The met_corners() of a triangle, whether its vertices are in or not: for a look from time to time.
+    collision::TriangleCorners look_at(std::int32_t triangle, const Eigen::Vector3d& sunk) const noexcept;
     /// The same of one vertex.
     Eigen::Vector3d look_at_vertex(std::int32_t vertex) const noexcept;
     bool bears_force() const noexcept { return !forces_.loaded.empty(); }
@@ -55,9 +54,18 @@ class DeformedPatch {
 
     /// Where the corners of a triangle are, p_P, mm.
     collision::TriangleCorners corners(const std::array<std::int32_t, 3>& slots) const noexcept {
-        return {rest_[slots[0]] + moved_[slots[0]], rest_[slots[1]] + moved_[slots[1]],
-                rest_[slots[2]] + moved_[slots[2]]};
+        return {position(slots[0]), position(slots[1]), position(slots[2])};
     }
+    /// Where a sphere that has sunk in by `sunk` (mm) meets them: it does not sink into what does not give
+    /// way.
+    collision::TriangleCorners met_corners(const std::array<std::int32_t, 3>& slots,
+                                           const Eigen::Vector3d& sunk) const noexcept {
+        collision::TriangleCorners met = corners(slots);
+        for (std::size_t i = 0; i < 3; ++i)
+            if (!gives_way(slots[i])) met[i] += sunk;
+        return met;
+    }
+    bool gives_way(std::int32_t slot) const noexcept { return gives_way_[static_cast<std::size_t>(slot)]; }
     /// Where a vertex is, p_P, mm.
     Eigen::Vector3d position(std::int32_t slot) const noexcept { return rest_[slot] + moved_[slot]; }
     /// By how much a vertex is displaced, mm: now, before this tick, and by the forces held alone with what
@@ -173,6 +181,7 @@ class DeformedPatch {
     std::vector<std::int32_t> slots_;     // of each surface vertex
     std::vector<std::int32_t> vertices_;  // this and what follows by slot
     std::vector<Eigen::Vector3d> rest_, moved_, before_, held_moved_;
+    std::bitset<static_cast<std::size_t>(most_vertices)> gives_way_;
     std::vector<std::int64_t> seen_;  // the tick in which it was looked at last
     std::vector<Eigen::Vector4f> sum_;
     // Rows by loaded slot, and which of them are there.

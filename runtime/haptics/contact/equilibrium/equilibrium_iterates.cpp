@@ -28,24 +28,18 @@ double ContactEquilibrium::sink(std::size_t iterate) noexcept {
             for (std::size_t soft = 0; soft < patches_.size(); ++soft) {
                 Touch& touch = part.touches[soft];
                 touch.push.setZero();
+                touch.righting = 0;
                 touch.next_sunk[iterate] = local_dent(touch, patches_[soft]);
             }
     for (const Group& group : groups_) {
         Touch& touch = touch_of(group);
-        const DeformableContact& body = patch_of(group).body();
-        const LoadSpread* spread = body.spread();
+        const LoadSpread* spread = patch_of(group).body().spread();
         if (!spread) continue;
-        double free = 0, press = 0;
         for (const Row& row : rows_of(group)) {
-            touch.push += row.force * row.normal;
-            press += row.force;
-            for (std::size_t i = 0; i < 3; ++i)
-                if (body.gives_way(body.triangle(row.triangle)[i]))
-                    free += row.force * row.weights[static_cast<Index>(i)];
+            touch.push += row.part_giving_way * row.force * row.normal;
+            touch.righting += row.force * radius_ * row.slope_squared;
         }
-        const double pushing = touch.push.norm();
-        if (!(press > 0) || !(pushing > 0)) continue;
-        touch.freedom = free / press;
+        if (touch.push.isZero(0)) continue;
         touch.next_sunk[iterate] = touch.sunk_free + touch.sinking * touch.push;
         const double now = touch.creep != nullptr ? touch.creep->now : 1;
         const Vector3d push = now * touch.push + touch.lasting_push;
@@ -53,7 +47,7 @@ double ContactEquilibrium::sink(std::size_t iterate) noexcept {
         const double along = std::max(push.norm(), slight_press(*spread));
         const LocalIndentation local =
             local_indentation(along, radius_, spread->contact_modulus(), spread->radius());
-        const Vector3d wanted = touch.freedom * local.depth / along * push;
+        const Vector3d wanted = local.depth / along * push;
         change = std::max(change, (wanted - touch.next_sunk[iterate]).lpNorm<Eigen::Infinity>());
     }
     return change;

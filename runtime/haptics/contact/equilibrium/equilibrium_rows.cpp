@@ -20,6 +20,29 @@ constexpr double look_margin = 1;    // mm: how much farther around is looked
 
 }  // namespace
 
+// Divides a row's point into what gives way and what does not.
+void ContactEquilibrium::divide(Row& row, const DeformedPatch& patch, const TriangleCorners& met) noexcept {
+    std::array<bool, 3> gives{};
+    for (std::size_t i = 0; i < 3; ++i) gives[i] = patch.gives_way(row.slots[i]);
+    if (gives[0] && gives[1] && gives[2]) return;
+    row.part_giving_way = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+        if (gives[i]) row.part_giving_way += row.weights[static_cast<Index>(i)];
+    if (!(row.part_giving_way > 0)) return;
+    // One corner differs from the others.
+    const std::size_t odd = gives[1] == gives[2] ? 0 : gives[0] == gives[2] ? 1 : 2;
+    const std::size_t next = (odd + 1) % 3, last = (odd + 2) % 3;
+    const Vector3d to_next = met[next] - met[odd], to_last = met[last] - met[odd];
+    const auto on = [&](std::size_t corner) { return row.weights[static_cast<Index>(corner)] > 0; };
+    if (!on(odd) || !(on(next) || on(last))) return;  // along the edge across, or at a vertex, it has none
+    if (!on(last))
+        row.slope_squared = 1 / to_next.squaredNorm();
+    else if (!on(next))
+        row.slope_squared = 1 / to_last.squaredNorm();
+    else
+        row.slope_squared = (to_last - to_next).squaredNorm() / to_next.cross(to_last).squaredNorm();
+}
+
 // How a sphere sinks in, about the press that was found last; before any, about a slight one.
 void ContactEquilibrium::linearise(Touch& touch, const DeformedPatch& patch) const noexcept {
     touch.sunk_free.setZero();
@@ -32,11 +55,14 @@ void ContactEquilibrium::linearise(Touch& touch, const DeformedPatch& patch) con
     const LocalIndentation local =
         local_indentation(press, radius_, spread->contact_modulus(), spread->radius());
     if (!(press > 0)) return;
-    touch.sinking = touch.freedom * local.depth / press * Eigen::Matrix3d::Identity();
+    touch.sinking = local.depth / press * Eigen::Matrix3d::Identity();
     if (known >= press) {
         const Vector3d axis = push / known;
-        touch.sinking += touch.freedom * (local.slope - local.depth / press) * axis * axis.transpose();
-        touch.sunk_free = touch.freedom * (local.depth - local.slope * press) * axis;
+        // As it sinks in, the surface turns towards what does not give way, and takes the press there.
+        const double turned = touch.righting * local.slope, slope = local.slope / (1 + turned);
+        const double depth = (local.depth + turned * axis.dot(touch.sunk)) / (1 + turned);
+        touch.sinking += (slope - local.depth / press) * axis * axis.transpose();
+        touch.sunk_free = (depth - slope * press) * axis;
     }
     if (touch.creep == nullptr) return;
     touch.sunk_free += touch.sinking * touch.lasting_push;
@@ -47,8 +73,8 @@ Vector3d ContactEquilibrium::local_dent(const Touch& touch, const DeformedPatch&
     const double push = touch.lasting_push.norm();
     if (touch.creep == nullptr || !(push > 0)) return Vector3d::Zero();
     const LoadSpread& spread = *patch.body().spread();
-    return touch.freedom * local_indentation(push, radius_, spread.contact_modulus(), spread.radius()).depth /
-           push * touch.lasting_push;
+    return local_indentation(push, radius_, spread.contact_modulus(), spread.radius()).depth / push *
+           touch.lasting_push;
 }
 
 // The feet on which a sphere rests if nothing gives way, with the surface at rest: where contact starts.
@@ -67,8 +93,10 @@ void ContactEquilibrium::gather_at_rest(std::size_t t, std::size_t p) noexcept {
         row.triangle = touch.foot.triangle;
         row.weights = touch.foot.barycentric;
         row.normal = touch.normal;
-        row.gap = touch.normal.dot(part.sphere.if_rigid->position() - part.sphere.device -
-                                   tools_[t].drag / coupling_ - part.touches[soft].sunk_free);
+        divide(row, patch, patch.corners(row.slots));
+        row.gap =
+            touch.normal.dot(part.sphere.if_rigid->position() - part.sphere.device -
+                             tools_[t].drag / coupling_ - row.part_giving_way * part.touches[soft].sunk_free);
         for (Index i = 0; i < 3; ++i)
             row.gap += row.weights[i] *
                        row.normal.dot(patch.held_displacement(row.slots[static_cast<std::size_t>(i)]));
@@ -121,7 +149,8 @@ void ContactEquilibrium::look_around(std::size_t t, std::size_t p, std::size_t s
     for (const std::int32_t triangle : touch.near) visited[triangle] = search_;
     for (Surrounding& near : touch.around) {
         if (near.due > touch.way || touch.near.full() || visited[near.triangle] == search_) continue;
-        const TrianglePoint closest = closest_point_on_triangle(centre, patch.look_at(near.triangle));
+        const TrianglePoint closest =
+            closest_point_on_triangle(centre, patch.look_at(near.triangle, touch.sunk));
         const double distance = std::sqrt(closest.squared_distance);
         if (distance < limit) touch.near.push_back(near.triangle);
         near.due = touch.way + std::max(0.0, distance - limit);
@@ -163,7 +192,7 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
         const std::int32_t triangle = queue_[next];
         std::array<std::int32_t, 3> slots;
         if (!patch.slots_of(triangle, slots)) break;
-        const TrianglePoint closest = closest_point_on_triangle(centre, patch.corners(slots));
+        const TrianglePoint closest = closest_point_on_triangle(centre, patch.met_corners(slots, touch.sunk));
         const bool near = closest.squared_distance < limit * limit;
         if (walks && (near || next < seeds))
             for (const std::int32_t neighbour : body.neighbours(triangle)) visit(neighbour);
@@ -194,8 +223,10 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
         row.normal = (centre - closest.point) / distance;
         row.point = closest.point;
         row.distance = distance - radius_;
-        row.gap =
-            row.normal.dot(tool.off - tool.drag / coupling_ + touch.sunk - touch.sunk_free) - row.distance;
+        divide(row, patch, patch.met_corners(slots, touch.sunk));
+        row.gap = row.normal.dot(tool.off - tool.drag / coupling_ +
+                                 row.part_giving_way * (touch.sunk - touch.sunk_free)) -
+                  row.distance;
         for (Index i = 0; i < 3; ++i) {
             const std::int32_t slot = row.slots[static_cast<std::size_t>(i)];
             row.gap -=
@@ -206,7 +237,7 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
     }
     Vector3d normal = Vector3d::Zero(), away = Vector3d::Zero();
     for (const Nearest& one : nearest_ones) {
-        const TriangleCorners corners = patch.corners(one.slots);
+        const TriangleCorners corners = patch.met_corners(one.slots, touch.sunk);
         normal += angle_about(one.point, corners) * unit_normal(corners);
         away = centre - one.point;
     }
@@ -225,8 +256,9 @@ bool ContactEquilibrium::watched_are_clear() const noexcept {
         const Tool& tool = tools_[static_cast<std::size_t>(row.tool)];
         const Touch& touch = touch_of(row);
         const DeformedPatch& patch = patch_of(row);
-        double distance =
-            row.normal.dot(tool.off - tool.drag / coupling_ + touch.sunk - touch.sunk_free) - row.gap;
+        double distance = row.normal.dot(tool.off - tool.drag / coupling_ +
+                                         row.part_giving_way * (touch.sunk - touch.sunk_free)) -
+                          row.gap;
         for (Index i = 0; i < 3; ++i) {
             const std::int32_t slot = row.slots[static_cast<std::size_t>(i)];
             distance -=
@@ -312,7 +344,8 @@ void ContactEquilibrium::fill_column(std::size_t l) noexcept {
         if (row.patch >= 0 && row.patch == pressing.patch) {
             opens += DeformedPatch::mean(field_, row.slots, row.weights);
             if (row.tool == pressing.tool && row.part == pressing.part)
-                opens += touch_of(row).sinking * pressing.normal;
+                opens += row.part_giving_way * pressing.part_giving_way *
+                         (touch_of(row).sinking * pressing.normal);
         }
         *column++ = row.normal.dot(opens);
     }
