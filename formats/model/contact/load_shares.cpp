@@ -19,6 +19,10 @@ namespace {
 
 // R, in edges' lengths: of those that a quarter are shorter than, so that a refined place decides.
 constexpr double elements_in_radius = 2.5;
+// What R² gains by linear elements, in edges' lengths squared: R²/4 is the density's second moment, and that
+// of equilateral triangles of edge e gains e²/4 because a force on a vertex is one spread linearly over the
+// triangles around it, and on the mean as much again because one between vertices is shared among them.
+constexpr double edges_squared = 2;
 constexpr double same_side = 0.3;  // cosine between normals that a disc takes together
 
 // The length that a quarter of the edges between vertices with a block are shorter than, mm; 0 if there are
@@ -42,13 +46,13 @@ double short_edge(const TriangleMesh& mesh, std::span<const std::int32_t> blocks
 
 SpreadDisc spread_disc(const DeformableBody& body, std::span<const std::int32_t> blocks) {
     const double edge = short_edge(body.boundary.surface, blocks), reach = elements_in_radius * edge;
-    // Between vertices, displacements are linear, which spreads them a little more.
-    return {reach, std::hypot(reach, edge)};
+    return {reach, std::hypot(reach, std::sqrt(edges_squared) * edge)};
 }
 
 SpreadDisc widened(const SpreadDisc& disc, double reach) {
     if (reach <= disc.reach) return disc;
-    return {reach, std::hypot(reach, disc.reach / elements_in_radius)};
+    const double edge = disc.reach / elements_in_radius;
+    return {reach, std::hypot(reach, std::sqrt(edges_squared) * edge)};
 }
 
 LoadShares load_shares(const DeformableBody& body, std::span<const std::int32_t> blocks, double reach) {

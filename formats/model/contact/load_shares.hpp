@@ -30,7 +30,7 @@ struct LoadShares {
 /// How wide the disc is that contact spreads loads over, from the edges of a surface.
 struct SpreadDisc {
     double reach = 0;   ///< mm; where the density ends
-    double radius = 0;  ///< mm; R of the density, with what linear displacements between vertices add
+    double radius = 0;  ///< mm; R of the density, with what linear elements add on the mean
 };
 
 /// The disc for a body whose vertices have these blocks of the compliance (compliance_blocks()).

@@ -37,8 +37,7 @@ class LoadSpread {
         return a == low ? block : Eigen::Matrix3f(block.transpose());
     }
 
-    /// R of the density that loads are spread with on the mean, mm; with what linear displacements between
-    /// vertices add.
+    /// R of the density that loads are spread with on the mean, mm; with what linear elements add.
     double radius() const noexcept { return disc_.radius; }
     /// E / (1 - nu²) of the tissue at the surface, N/mm².
     double contact_modulus() const noexcept { return contact_modulus_; }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "formats/model/contact/compliance_blocks.hpp"
@@ -100,32 +101,71 @@ TEST(LocalIndentation, with_what_the_spread_load_gives_makes_hertz_of_a_light_pr
     EXPECT_EQ(local_indentation(0, radius, modulus, disc).depth, 0);
 }
 
-// A sphere of a quarter to a whole element, wherever between nodes: as deep as Hertz has it on a half-space,
-// and what the cube as a whole adds.
+// What a force gives way by on a cube's top, spread over discs of this reach (mm), on the mean of all places
+// in the triangles around its middle, mm/N.
+double mean_compliance(const DeformableBody& body, double reach) {
+    const std::vector<std::int32_t> blocks = compliance_blocks(body);
+    const LoadShares shares = load_shares(body, blocks, reach);
+    const auto between = [&](std::int32_t a, std::int32_t b) {
+        double sum = 0;
+        for (const LoadShare& here : shares.of(a))
+            for (const LoadShare& there : shares.of(b))
+                sum += static_cast<double>(here.weight * there.weight) *
+                       static_cast<double>(
+                           compliance_block(body.compliance, blocks[static_cast<std::size_t>(here.vertex)],
+                                            blocks[static_cast<std::size_t>(there.vertex)])(2, 2));
+        return sum;
+    };
+    const TriangleMesh& surface = body.boundary.surface;
+    double sum = 0;
+    int triangles = 0;
+    for (const Triangle& t : surface.triangles) {
+        const auto corner = [&](std::size_t i) { return surface.vertices[static_cast<std::size_t>(t[i])]; };
+        const Vector3d middle = (corner(0) + corner(1) + corner(2)) / 3;
+        if ((middle - Vector3d(10, 10, 20)).norm() > 2.5) continue;
+        for (std::size_t i = 0; i < 3; ++i)  // the means of w_i w_j over a triangle
+            for (std::size_t j = 0; j < 3; ++j) sum += between(t[i], t[j]) / (i == j ? 6 : 12);
+        ++triangles;
+    }
+    return sum / triangles;
+}
+
+// A sphere of a quarter to four elements, wherever between nodes: as deep as Hertz has it on a half-space,
+// and what the cube as a whole adds: how much more a wide disc, which hardly feels the elements, gives way
+// than on a half-space.
 TEST(LoadSpread, lets_a_sphere_sink_in_by_hertz_between_nodes_as_on_them) {
-    const double modulus = spread().contact_modulus(), element = 20.0 / 6;
-    const std::int32_t middle = vertex_at({10, 10, 20});
-    const double whole = static_cast<double>((*spread().near_compliance(middle, middle))(2, 2)) -
-                         0.76654 / (modulus * spread().radius());
-    for (const double radius : {0.25 * element, element}) {
-        Case c = soft_cube(6);
+    constexpr int cells = 8;
+    Case c = soft_cube(cells);
+    const DeformableBody& body = c.deformable_bodies.front();
+    const double element = 20.0 / cells, modulus = surface_contact_modulus(body);
+    const SpreadDisc wide = widened(spread_disc(body, compliance_blocks(body)), 3 * element);
+    const double whole = mean_compliance(body, wide.reach) - 0.76654 / (modulus * wide.radius);
+    for (const double elements : {0.25, 1.0, 2.0, 4.0}) {
+        const double radius = elements * element;
         c.haptics.tool_radius = radius;
-        double shallowest = 1e9, deepest = 0;
-        for (const double x : {9.0, 10.0, 11.3})
-            for (const double y : {9.3, 10.0, 11.0}) {
-                HapticModel model(c);
-                TickResult result{};
-                for (double depth = -1; depth < 1.2; depth += 0.02)
-                    model.tick(held_at({x, y, 20 + radius - depth}), result);
-                const double force = force_of(result).norm();
-                const double sunk = 1.2 - 0.02 - force / model.coupling();
-                const double hertz = std::cbrt(9 * force * force / (16 * modulus * modulus * radius));
-                const double ratio = sunk / (hertz + whole * force);
-                shallowest = std::min(shallowest, ratio);
-                deepest = std::max(deepest, ratio);
-            }
-        EXPECT_GT(shallowest, 0.95) << radius;
-        EXPECT_LT(deepest, 1.05) << radius;
+        HapticModel model(c);
+        for (const double press : {0.4, 1.2}) {
+            double least = 1e9, most = 0;
+            for (const double x : {9.0, 10.0, 11.3})
+                for (const double y : {9.3, 10.0, 11.0}) {
+                    model.reset();
+                    TickResult result{};
+                    for (double depth = -1; depth < press; depth += 0.02)
+                        model.tick(held_at({x, y, 20 + radius - depth}), result);
+                    model.tick(held_at({x, y, 20 + radius - press}), result);
+                    const double force = force_of(result).norm();
+                    const double sunk = press - force / model.coupling() - whole * force;
+                    const double hertz =
+                        4.0 / 3 * modulus * std::sqrt(radius) * std::pow(std::max(sunk, 0.0), 1.5);
+                    least = std::min(least, force / hertz);
+                    most = std::max(most, force / hertz);
+                }
+            EXPECT_GT(least, 0.95) << elements << " elements, " << press << " mm deep";
+            EXPECT_LT(most, 1.05) << elements << " elements, " << press << " mm deep";
+            EXPECT_LT(most / least, 1.03 / 0.97) << elements << " elements, " << press << " mm deep";
+            const std::string name = std::to_string(elements) + "_elements_" + std::to_string(press) + "_mm";
+            RecordProperty(name, std::to_string(least) + " to " + std::to_string(most));
+        }
     }
 }
 
