@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a hand gets back that goes round on frictionless tissue: the work of a closed loop, of what was stored by pressing.
 
-    closed_loops.py ASSET [--depth MM] [--radius MM] [--places N]      (PALPATE_BIN has the programs)
+    closed_loops.py ASSET [--depth MM] [--radius MM] [--places N] [--held]      (PALPATE_BIN has the programs)
 
-At places drawn evenly over the surface, where it can be touched, is no edge (normals within 70 degrees) and nothing stands opposite or
+At places drawn evenly over the surface, where all of it gives way or, with --held, some is held, where it is no edge (normals within 70 degrees) and nothing stands opposite or
 beside, an infinitely stiff hand goes straight in, then twice round a circle in the
 plane of the surface there, in steps of 0.02 mm. The work of the second round should be nothing. Loops that leave the tissue are left out.
 """
@@ -22,23 +22,24 @@ PALPATE = pathlib.Path(os.environ.get("PALPATE_BIN", "build/release/bin")) / "pa
 STEP = 0.02  # mm
 
 
-def places(asset, count, circle):
+def places(asset, count, circle, held):
     """Points and inward normals (mm) where the surface around is free and no edge, and the tool's radius."""
     with h5py.File(asset) as file:
         body, radius = file["palpate/bodies/deformable/0"], float(file["palpate/haptics"].attrs["tool_radius"])
         triangles = body["surface_nodes"][...][body["surface_triangles"][...]]
-        touchable = np.isin(triangles, body["contact_nodes"][...]).all(axis=1)
+        corners_held = (~np.isin(triangles, body["contact_nodes"][...])).sum(axis=1)
         corners = body["rest_positions"][...][triangles]
         rigid = np.vstack([np.zeros((0, 3)), *(other["vertices"][...] for other in file["palpate/bodies"].get("rigid", {}).values())])
     across, middle = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), corners.mean(axis=1)
     area = np.linalg.norm(across, axis=1)
     outward, found = across / area[:, None], []
+    suits = (lambda held_around: 0 < held_around.mean() < 3) if held else (lambda held_around: not held_around.any())
     for t in np.random.default_rng(3).choice(len(area), len(area), replace=False, p=area / area.sum()):
         around = np.linalg.norm(middle - middle[t], axis=1) < circle + radius
         beside = np.linalg.norm(rigid - middle[t], axis=1) < 2 * (circle + radius)
         ahead = middle[t] + outward[t] * np.linspace(2 * radius + 1, 2 * radius + 6, 6)[:, None]
         facing = min(np.linalg.norm(middle - place, axis=1).min() for place in ahead) < radius
-        if touchable[around].all() and (outward[around] @ outward[t]).min() > 0.3 and not beside.any() and not facing:
+        if suits(corners_held[around]) and (outward[around] @ outward[t]).min() > 0.3 and not beside.any() and not facing:
             found.append((middle[t], -outward[t]))
     return found[:count], radius
 
@@ -78,8 +79,9 @@ def main():
     parser.add_argument("--depth", type=float, default=1.5)
     parser.add_argument("--radius", type=float, default=3.0, help="of the circle [mm]")
     parser.add_argument("--places", type=int, default=24)
+    parser.add_argument("--held", action="store_true", help="where part of the surface around does not give way")
     arguments = parser.parse_args()
-    chosen, tool = places(arguments.asset, arguments.places, arguments.radius)
+    chosen, tool = places(arguments.asset, arguments.places, arguments.radius, arguments.held)
     with tempfile.TemporaryDirectory() as folder:
         loops = [loop(arguments.asset, pathlib.Path(folder), *path(*place, tool, arguments.depth, arguments.radius)) for place in chosen]
     kept = np.array([result for result in loops if result]) * 100
