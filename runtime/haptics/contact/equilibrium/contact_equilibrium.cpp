@@ -41,6 +41,9 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 constexpr int warm_iterations = 8, cold_iterations = 24;
+// Where that does not lead to an equilibrium, as where tissue is about to snap, it goes on while few rows
+// have been solved: so long as a tick can afford it.
+constexpr std::size_t few_rows = 256;
 constexpr double far_off = 10;          // times the change before it
 constexpr double walked_ahead = 4;      // times the change: what answers and their combinations come to
 constexpr double helped = 0.5;          // times the change before it
@@ -181,7 +184,11 @@ void ContactEquilibrium::iterate(int most) noexcept {
     double before = std::numeric_limits<double>::infinity();
     double went =
         std::numeric_limits<double>::infinity();  // mm, at the most, since spheres looked around them
-    for (int iteration = 0; iteration < most; ++iteration) {
+    std::size_t solved = 0;
+    const auto affordable = [&](int iteration) {
+        return iteration < most || (iteration < cold_iterations && solved < few_rows);
+    };
+    for (int iteration = 0; affordable(iteration); ++iteration) {
         rows_.cut(wall_count());
         watched_.clear();
         double longest = cold_reach;
@@ -209,6 +216,7 @@ void ContactEquilibrium::iterate(int most) noexcept {
         neighbours_.gather(patches_, max_contacts - rows_.size());
         group_rows();
         solve_rows();
+        solved += rows_.size() + neighbours_.row_count();
         const auto round = static_cast<std::size_t>(iteration);
         const std::size_t newest = answer_of(round);
         if (friction_.at_rest > 0)
