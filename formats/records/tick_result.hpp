@@ -79,7 +79,8 @@ inline constexpr std::tuple contact_fields{
     Field("force", &Contact::force, "N",
           "f >= 0: what presses pushes the tissue by -n f, the tissue pushes back by n f"),
     Field("series_compliance", &Contact::series_compliance, "mm/N",
-          "c, in series with the body's own at this point: what the tool sinks in locally"),
+          "c, in series with the body's own at this point: what the tool sinks in locally, of the part that "
+          "gives way"),
     Field("friction", &Contact::friction, "N", "on the tool; the opposite on the tissue")};
 
 /// The contact's unit normal, from tissue to what presses it.

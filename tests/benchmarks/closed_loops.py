@@ -4,9 +4,10 @@
 
     closed_loops.py ASSET [--depth MM] [--radius MM] [--places N] [--held]      (PALPATE_BIN has the programs)
 
-At places drawn evenly over the surface, where all of it gives way or, with --held, some is held, where it is no edge (normals within 70 degrees) and nothing stands opposite or
-beside, an infinitely stiff hand goes straight in, then twice round a circle in the
-plane of the surface there, in steps of 0.02 mm. The work of the second round should be nothing. Loops that leave the tissue are left out.
+At places drawn evenly over the surface, where all of it gives way or, with --held, triangles under the circle have held corners, where
+it is no edge (normals within 70 degrees) and nothing stands opposite or beside, an infinitely stiff hand goes straight in, then twice
+round a circle in the plane of the surface there, in steps of 0.02 mm. The work of the second round should be nothing. Loops that leave
+the tissue are left out.
 """
 import argparse
 import csv
@@ -33,13 +34,15 @@ def places(asset, count, circle, held):
     across, middle = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), corners.mean(axis=1)
     area = np.linalg.norm(across, axis=1)
     outward, found = across / area[:, None], []
-    suits = (lambda held_around: 0 < held_around.mean() < 3) if held else (lambda held_around: not held_around.any())
+    part_held = (0 < corners_held) & (corners_held < 3)
     for t in np.random.default_rng(3).choice(len(area), len(area), replace=False, p=area / area.sum()):
-        around = np.linalg.norm(middle - middle[t], axis=1) < circle + radius
+        away = np.linalg.norm(middle - middle[t], axis=1)
+        around, under = away < circle + radius, abs(away - circle) < radius / 2
         beside = np.linalg.norm(rigid - middle[t], axis=1) < 2 * (circle + radius)
         ahead = middle[t] + outward[t] * np.linspace(2 * radius + 1, 2 * radius + 6, 6)[:, None]
         facing = min(np.linalg.norm(middle - place, axis=1).min() for place in ahead) < radius
-        if suits(corners_held[around]) and (outward[around] @ outward[t]).min() > 0.3 and not beside.any() and not facing:
+        suits = part_held[under].any() if held else not corners_held[around].any()
+        if suits and (outward[around] @ outward[t]).min() > 0.3 and not beside.any() and not facing:
             found.append((middle[t], -outward[t]))
     return found[:count], radius
 
@@ -79,7 +82,7 @@ def main():
     parser.add_argument("--depth", type=float, default=1.5)
     parser.add_argument("--radius", type=float, default=3.0, help="of the circle [mm]")
     parser.add_argument("--places", type=int, default=24)
-    parser.add_argument("--held", action="store_true", help="where part of the surface around does not give way")
+    parser.add_argument("--held", action="store_true", help="where triangles under the circle are held by some of their corners")
     arguments = parser.parse_args()
     chosen, tool = places(arguments.asset, arguments.places, arguments.radius, arguments.held)
     with tempfile.TemporaryDirectory() as folder:

@@ -130,6 +130,15 @@ double mean_compliance(const DeformableBody& body, double reach) {
     return sum / triangles;
 }
 
+// What the cube as a whole adds is the same for both discs.
+TEST(LoadSpread, a_narrower_disc_gives_way_more_as_its_radius_says) {
+    const DeformableBody body = sample::true_elastic_cube(10);
+    const SpreadDisc narrow = spread_disc(body, compliance_blocks(body)),
+                     wide = widened(narrow, 1.4 * narrow.reach);
+    const double more = 0.76654 / surface_contact_modulus(body) * (1 / narrow.radius - 1 / wide.radius);
+    EXPECT_NEAR(mean_compliance(body, narrow.reach) - mean_compliance(body, wide.reach), more, 0.08 * more);
+}
+
 // A sphere of a quarter to four elements, wherever between nodes: as deep as Hertz has it on a half-space,
 // and what the cube as a whole adds: how much more a wide disc, which hardly feels the elements, gives way
 // than on a half-space.

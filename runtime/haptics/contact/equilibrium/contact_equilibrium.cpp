@@ -17,8 +17,9 @@
 //
 // g_t is differentiable wherever y is off the triangle: its gradient by x is n = (y - q_t) / |y - q_t|,
 // -w_i n by u_i, w the barycentric weights of q_t, and p n by s, p the sum of w over the vertices that give
-// way. So s answers to the press F = sum p f n. Linearised at the present state, with s = s_0 + S F about the
-// present F, the conditions for the forces f >= 0 that the triangles press with are
+// way. So s answers to the press F = sum p f n (equilibrium_sinking.cpp has more). Linearised at the present
+// state, with s = s_0 + S F about the present F, the conditions for the forces f >= 0 that the triangles
+// press with are
 //     A f - delta >= 0,    f >= 0,    f . (A f - delta) = 0,
 //     A_kl = n_k . n_l / K + sum_ij w_ki w_lj n_k . C_ij n_l + p_k p_l n_k . S n_l,
 //     delta_k = n_k . (x - d + p_k (s - s_0)) - sum_i w_ki n_k . u_i - g_k.
@@ -41,9 +42,10 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 constexpr int warm_iterations = 8, cold_iterations = 24;
-// Where that does not lead to an equilibrium, as where tissue is about to snap, it goes on while few rows
-// have been solved: so long as a tick can afford it.
-constexpr std::size_t few_rows = 256;
+// Where warm iterations do not settle, as where tissue is about to snap, a tick has some to spare, with few
+// rows.
+constexpr int spare_iterations = 32;
+constexpr std::size_t few_rows = 16;
 constexpr double far_off = 10;          // times the change before it
 constexpr double walked_ahead = 4;      // times the change: what answers and their combinations come to
 constexpr double helped = 0.5;          // times the change before it
@@ -77,6 +79,7 @@ void ContactEquilibrium::forget(std::size_t t) noexcept {
             touch.near.clear();
             touch.sunk = local_dent(touch, patches_[soft]);
             touch.push.setZero();
+            touch.righting = 0;
             touch.drag.setZero();
             touch.slip.setZero();
             touch.slid = touch.pressed = false;
@@ -85,6 +88,7 @@ void ContactEquilibrium::forget(std::size_t t) noexcept {
 
 void ContactEquilibrium::begin_tick(double stiffness) noexcept {
     coupling_ = stiffness;
+    spare_iterations_ = spare_iterations;
     rows_.clear();
     groups_.clear();
     residual_ = 0;
@@ -184,11 +188,11 @@ void ContactEquilibrium::iterate(int most) noexcept {
     double before = std::numeric_limits<double>::infinity();
     double went =
         std::numeric_limits<double>::infinity();  // mm, at the most, since spheres looked around them
-    std::size_t solved = 0;
-    const auto affordable = [&](int iteration) {
-        return iteration < most || (iteration < cold_iterations && solved < few_rows);
+    const auto may_go_on = [&](int iteration) {
+        const bool few = rows_.size() + neighbours_.row_count() <= few_rows;
+        return iteration < most || (few && spare_iterations_-- > 0);
     };
-    for (int iteration = 0; affordable(iteration); ++iteration) {
+    for (int iteration = 0; may_go_on(iteration); ++iteration) {
         rows_.cut(wall_count());
         watched_.clear();
         double longest = cold_reach;
@@ -216,7 +220,6 @@ void ContactEquilibrium::iterate(int most) noexcept {
         neighbours_.gather(patches_, max_contacts - rows_.size());
         group_rows();
         solve_rows();
-        solved += rows_.size() + neighbours_.row_count();
         const auto round = static_cast<std::size_t>(iteration);
         const std::size_t newest = answer_of(round);
         if (friction_.at_rest > 0)
@@ -357,11 +360,16 @@ void ContactEquilibrium::remember_pushes() noexcept {
         Touch& touch = touch_of(group);
         const DeformableContact& body = patch_of(group).body();
         if (touch.creep != nullptr || !body.creeps() || body.spread() == nullptr) continue;
-        const Row& most = *std::ranges::max_element(rows_of(group), {}, &Row::force);
-        if (!(most.force > 0)) continue;
-        Index corner = 0;
-        most.weights.maxCoeff(&corner);
-        touch.creep = body.creep_of(body.triangle(most.triangle)[static_cast<std::size_t>(corner)]);
+        // The vertex that gives way and bears most.
+        double most = 0;
+        for (const Row& row : rows_of(group))
+            for (std::size_t i = 0; i < 3; ++i) {
+                const std::int32_t vertex = body.triangle(row.triangle)[i];
+                const double borne = row.force * row.weights[static_cast<Index>(i)];
+                if (borne <= most || !body.gives_way(vertex)) continue;
+                most = borne;
+                touch.creep = body.creep_of(vertex);
+            }
     }
     for (Tool& tool : tools_)
         for (Part& part : tool.parts)

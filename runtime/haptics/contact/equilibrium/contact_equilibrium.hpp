@@ -138,8 +138,7 @@ class ContactEquilibrium {
         Offsets next_sunk = no_offsets(), sunk_difference = no_offsets();
         Eigen::Vector3d sunk_free = Eigen::Vector3d::Zero();
         Eigen::Matrix3d sinking = Eigen::Matrix3d::Zero();
-        double righting =
-            0;  // N/mm, by which sinking in takes the press off what gives way: it turns normals
+        double righting = 0;  // R of equilibrium_sinking.cpp, N/mm
         // Where that creeps: as what, and what is left of earlier presses; and what of that lasts, N.
         const TickCreep* creep = nullptr;
         CreepHistory left_push;
@@ -155,6 +154,7 @@ class ContactEquilibrium {
         // What else is around, looked at again once the ways that sphere and tissue went could make it near.
         FixedList<Surrounding, most_rows> around;
         Eigen::Vector3d looked_from = Eigen::Vector3d::Zero(), looked_to = Eigen::Vector3d::Zero();
+        Eigen::Vector3d looked_sunk = Eigen::Vector3d::Zero(), last_sunk = Eigen::Vector3d::Zero();
         Eigen::Vector3d rubbed_centre = Eigen::Vector3d::Zero();
         double way = -1;  // mm, that sphere and tissue went since; negative: nothing was looked at
         Eigen::Vector3d last_centre = Eigen::Vector3d::Zero();
@@ -165,6 +165,7 @@ class ContactEquilibrium {
             left_push = {};
             lasting_push.setZero();
             sunk.setZero();
+            righting = 0;
         }
     };
     struct Part {
@@ -189,7 +190,8 @@ class ContactEquilibrium {
         double near = 0;   // mm: those nearer than this are solved
     };
 
-    static void divide(Row& row, const DeformedPatch& patch, const collision::TriangleCorners& met) noexcept;
+    static void find_part_giving_way(Row& row, const DeformedPatch& patch,
+                                     const collision::TriangleCorners& met) noexcept;
     static std::int64_t key_of(const Row& row) noexcept;
     std::size_t wall_count() const noexcept;
     double gap_of_wall(const Row& row) const noexcept;
@@ -283,7 +285,8 @@ class ContactEquilibrium {
     Eigen::Matrix<double, DeformedPatch::iterates, DeformedPatch::iterates> products_;
     std::size_t bank_ = 0, in_row_ = 0, carried_ = 0;
     double residual_ = 0;
-    double last_motion_ = 0;  // mm, of tissue, in the tick before
+    double last_motion_ = 0;    // mm, of tissue, in the tick before
+    int spare_iterations_ = 0;  // left in this tick
 };
 
 }  // namespace palpate::haptics

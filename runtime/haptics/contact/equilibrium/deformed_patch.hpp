@@ -44,7 +44,7 @@ class DeformedPatch {
     std::int32_t room() const noexcept { return most_vertices - size_; }
     /// The met_corners() of a triangle, whether its vertices are in or not: for a look from time to time.
     collision::TriangleCorners look_at(std::int32_t triangle, const Eigen::Vector3d& sunk) const noexcept;
-    /// The same of one vertex.
+    /// Where a vertex is, likewise.
     Eigen::Vector3d look_at_vertex(std::int32_t vertex) const noexcept;
     bool bears_force() const noexcept { return !forces_.loaded.empty(); }
     /// Whether nothing is known of it but its rest.

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "formats/model/contact/local_indentation.hpp"
 #include "runtime/haptics/contact/equilibrium/contact_equilibrium.hpp"
 
 namespace palpate::haptics {
@@ -18,40 +17,6 @@ constexpr double largest_weight = 5;  // of one step among several
 constexpr double slight_step = 0.01;  // of what is to be made good
 
 }  // namespace
-
-// How far the present forces sink each sphere into each body; returns by how much that is off what they
-// should, mm.
-double ContactEquilibrium::sink(std::size_t iterate) noexcept {
-    double change = 0;
-    for (Tool& tool : tools_)
-        for (Part& part : std::span(tool.parts).first(tool.felt))
-            for (std::size_t soft = 0; soft < patches_.size(); ++soft) {
-                Touch& touch = part.touches[soft];
-                touch.push.setZero();
-                touch.righting = 0;
-                touch.next_sunk[iterate] = local_dent(touch, patches_[soft]);
-            }
-    for (const Group& group : groups_) {
-        Touch& touch = touch_of(group);
-        const LoadSpread* spread = patch_of(group).body().spread();
-        if (!spread) continue;
-        for (const Row& row : rows_of(group)) {
-            touch.push += row.part_giving_way * row.force * row.normal;
-            touch.righting += row.force * radius_ * row.slope_squared;
-        }
-        if (touch.push.isZero(0)) continue;
-        touch.next_sunk[iterate] = touch.sunk_free + touch.sinking * touch.push;
-        const double now = touch.creep != nullptr ? touch.creep->now : 1;
-        const Vector3d push = now * touch.push + touch.lasting_push;
-        if (push.isZero(0)) continue;
-        const double along = std::max(push.norm(), slight_press(*spread));
-        const LocalIndentation local =
-            local_indentation(along, radius_, spread->contact_modulus(), spread->radius());
-        const Vector3d wanted = local.depth / along * push;
-        change = std::max(change, (wanted - touch.next_sunk[iterate]).lpNorm<Eigen::Infinity>());
-    }
-    return change;
-}
 
 // What the present forces make of tools and tissue; returns by how much that differs from where they are, mm.
 double ContactEquilibrium::answer(std::size_t iterate) noexcept {

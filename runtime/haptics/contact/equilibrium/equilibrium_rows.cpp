@@ -5,7 +5,6 @@
 #include <cmath>
 #include <tuple>
 
-#include "formats/model/contact/local_indentation.hpp"
 #include "runtime/haptics/contact/equilibrium/contact_equilibrium.hpp"
 
 namespace palpate::haptics {
@@ -19,63 +18,6 @@ constexpr double same_place = 1e-6;  // mm: closest points nearer than this are 
 constexpr double look_margin = 1;    // mm: how much farther around is looked
 
 }  // namespace
-
-// Divides a row's point into what gives way and what does not.
-void ContactEquilibrium::divide(Row& row, const DeformedPatch& patch, const TriangleCorners& met) noexcept {
-    std::array<bool, 3> gives{};
-    for (std::size_t i = 0; i < 3; ++i) gives[i] = patch.gives_way(row.slots[i]);
-    if (gives[0] && gives[1] && gives[2]) return;
-    row.part_giving_way = 0;
-    for (std::size_t i = 0; i < 3; ++i)
-        if (gives[i]) row.part_giving_way += row.weights[static_cast<Index>(i)];
-    if (!(row.part_giving_way > 0)) return;
-    // One corner differs from the others.
-    const std::size_t odd = gives[1] == gives[2] ? 0 : gives[0] == gives[2] ? 1 : 2;
-    const std::size_t next = (odd + 1) % 3, last = (odd + 2) % 3;
-    const Vector3d to_next = met[next] - met[odd], to_last = met[last] - met[odd];
-    const auto on = [&](std::size_t corner) { return row.weights[static_cast<Index>(corner)] > 0; };
-    if (!on(odd) || !(on(next) || on(last))) return;  // along the edge across, or at a vertex, it has none
-    if (!on(last))
-        row.slope_squared = 1 / to_next.squaredNorm();
-    else if (!on(next))
-        row.slope_squared = 1 / to_last.squaredNorm();
-    else
-        row.slope_squared = (to_last - to_next).squaredNorm() / to_next.cross(to_last).squaredNorm();
-}
-
-// How a sphere sinks in, about the press that was found last; before any, about a slight one.
-void ContactEquilibrium::linearise(Touch& touch, const DeformedPatch& patch) const noexcept {
-    touch.sunk_free.setZero();
-    touch.sinking.setZero();
-    const LoadSpread* spread = patch.body().spread();
-    if (!spread) return;
-    const double now = touch.creep != nullptr ? touch.creep->now : 1;
-    const Vector3d push = now * touch.push + touch.lasting_push;
-    const double known = push.norm(), press = std::max(known, slight_press(*spread));
-    const LocalIndentation local =
-        local_indentation(press, radius_, spread->contact_modulus(), spread->radius());
-    if (!(press > 0)) return;
-    touch.sinking = local.depth / press * Eigen::Matrix3d::Identity();
-    if (known >= press) {
-        const Vector3d axis = push / known;
-        // As it sinks in, the surface turns towards what does not give way, and takes the press there.
-        const double turned = touch.righting * local.slope, slope = local.slope / (1 + turned);
-        const double depth = (local.depth + turned * axis.dot(touch.sunk)) / (1 + turned);
-        touch.sinking += (slope - local.depth / press) * axis * axis.transpose();
-        touch.sunk_free = (depth - slope * press) * axis;
-    }
-    if (touch.creep == nullptr) return;
-    touch.sunk_free += touch.sinking * touch.lasting_push;
-    touch.sinking *= now;
-}
-
-Vector3d ContactEquilibrium::local_dent(const Touch& touch, const DeformedPatch& patch) const noexcept {
-    const double push = touch.lasting_push.norm();
-    if (touch.creep == nullptr || !(push > 0)) return Vector3d::Zero();
-    const LoadSpread& spread = *patch.body().spread();
-    return local_indentation(push, radius_, spread.contact_modulus(), spread.radius()).depth / push *
-           touch.lasting_push;
-}
 
 // The feet on which a sphere rests if nothing gives way, with the surface at rest: where contact starts.
 void ContactEquilibrium::gather_at_rest(std::size_t t, std::size_t p) noexcept {
@@ -93,7 +35,7 @@ void ContactEquilibrium::gather_at_rest(std::size_t t, std::size_t p) noexcept {
         row.triangle = touch.foot.triangle;
         row.weights = touch.foot.barycentric;
         row.normal = touch.normal;
-        divide(row, patch, patch.corners(row.slots));
+        find_part_giving_way(row, patch, patch.corners(row.slots));
         row.gap =
             touch.normal.dot(part.sphere.if_rigid->position() - part.sphere.device -
                              tools_[t].drag / coupling_ - row.part_giving_way * part.touches[soft].sunk_free);
@@ -118,14 +60,18 @@ void ContactEquilibrium::look_around(std::size_t t, std::size_t p, std::size_t s
         touch.around.clear();
         touch.way = 0;
     } else {
-        touch.way += (centre - touch.last_centre).norm() + last_motion_;
+        touch.way +=
+            (centre - touch.last_centre).norm() + (touch.sunk - touch.last_sunk).norm() + last_motion_;
     }
     touch.last_centre = centre;
-    if (anew || (centre - touch.looked_to).norm() > look_margin / 2 ||
+    touch.last_sunk = touch.sunk;
+    if (anew ||
+        (centre - touch.looked_to).norm() + (touch.sunk - touch.looked_sunk).norm() > look_margin / 2 ||
         (from - touch.looked_from).norm() > look_margin / 2) {
         const CollisionSurface& surface = *bodies_.surfaces[bodies_.rigid_count() + soft];
         std::array<std::int32_t, most_rows> slots;
-        const std::size_t found = surface.slots_near(from, centre, limit + look_margin, slots);
+        const std::size_t found =
+            surface.slots_near(from, centre, limit + look_margin + touch.sunk.norm(), slots);
         // What was looked at before keeps its turn; both lists are in the tree's order. What is new is
         // farther off than it need be looked at, so not all of it is looked at in one tick.
         FixedList<Surrounding, most_rows> around;
@@ -143,6 +89,7 @@ void ContactEquilibrium::look_around(std::size_t t, std::size_t p, std::size_t s
         touch.around = around;
         touch.looked_from = from;
         touch.looked_to = centre;
+        touch.looked_sunk = touch.sunk;
     }
     std::vector<std::uint32_t>& visited = visited_[soft];
     ++search_;
@@ -188,11 +135,13 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
     };
     FixedList<Nearest, max_contacts> nearest_ones;
     double nearest = limit;
+    bool behind_held = false;
     for (std::size_t next = 0; next < queue_.size(); ++next) {
         const std::int32_t triangle = queue_[next];
         std::array<std::int32_t, 3> slots;
         if (!patch.slots_of(triangle, slots)) break;
-        const TrianglePoint closest = closest_point_on_triangle(centre, patch.met_corners(slots, touch.sunk));
+        const TriangleCorners met = patch.met_corners(slots, touch.sunk);
+        const TrianglePoint closest = closest_point_on_triangle(centre, met);
         const bool near = closest.squared_distance < limit * limit;
         if (walks && (near || next < seeds))
             for (const std::int32_t neighbour : body.neighbours(triangle)) visit(neighbour);
@@ -200,7 +149,11 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
         if (!touch.near.full()) touch.near.push_back(triangle);
         const double distance = std::sqrt(closest.squared_distance);
         if (!(distance > 0)) continue;
-        if (distance < nearest + same_place) {
+        const auto gives_way = [&](std::int32_t slot) { return patch.gives_way(slot); };
+        // A sphere may press thin tissue down to what it is held by at its back.
+        if (std::ranges::none_of(slots, gives_way) && unit_normal(met).dot(centre - closest.point) < 0) {
+            behind_held = true;
+        } else if (distance < nearest + same_place) {
             if (distance < nearest - same_place) nearest_ones.clear();
             nearest = std::min(nearest, distance);
             if (!nearest_ones.full()) nearest_ones.push_back({slots, closest.point});
@@ -223,7 +176,7 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
         row.normal = (centre - closest.point) / distance;
         row.point = closest.point;
         row.distance = distance - radius_;
-        divide(row, patch, patch.met_corners(slots, touch.sunk));
+        find_part_giving_way(row, patch, met);
         row.gap = row.normal.dot(tool.off - tool.drag / coupling_ +
                                  row.part_giving_way * (touch.sunk - touch.sunk_free)) -
                   row.distance;
@@ -235,6 +188,7 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
         auto& list = row.distance < tool.near || is_active(row) ? rows_ : watched_;
         if (!list.full()) list.push_back(row);
     }
+    if (nearest_ones.empty()) return !behind_held;
     Vector3d normal = Vector3d::Zero(), away = Vector3d::Zero();
     for (const Nearest& one : nearest_ones) {
         const TriangleCorners corners = patch.met_corners(one.slots, touch.sunk);
