@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Measures palpate-segment against reference labels: overlap, surface distance, volume, time and memory.
 
-Needs PALPATE_BUILD (a build folder with judge_segmentation) and PALPATE_DATA. Prints one table; nothing fails here.
+Needs PALPATE_BUILD (a build folder in which the target judge_segmentation is built) and PALPATE_DATA. Prints one table; nothing fails here.
 Seeds are drawn at random inside the reference, eroded by a margin, so that no result depends on chosen points:
     measure_segmentation.py [sets of seeds a case, default 5] [seeds a set, default 5] [margin in mm, default 8]
 """

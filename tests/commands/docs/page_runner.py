@@ -35,6 +35,7 @@ class Pages:
         self.root, self.slow = root, slow
         self.home = pathlib.Path(tempfile.mkdtemp(prefix="pages."))
         self.done = {}  # page -> its folder
+        self.wrong = {}  # page -> what was thrown
         self.locks = collections.defaultdict(threading.Lock)  # page -> held while it runs
         self.ran, self.not_run = [], []  # blocks; (block, reason)
 
@@ -50,7 +51,14 @@ class Pages:
     def folder_of(self, page):
         """Where the page `page` (a path below the source) has run, perhaps by another thread. Throws Wrong."""
         with self.locks[page]:
-            return self.done.get(page) or self.run_page(page)
+            if page not in self.done and page not in self.wrong:
+                try:
+                    self.run_page(page)
+                except Exception as error:
+                    self.wrong[page] = error
+            if page in self.wrong:
+                raise self.wrong[page]
+            return self.done[page]
 
     def run_page(self, page):
         text = (self.root / page).read_text()
@@ -67,7 +75,6 @@ class Pages:
                 self.run(block, folder)
                 self.ran.append(block)
         self.done[page] = folder
-        return folder
 
     def reason_against(self, block):
         if block.remark == "not run" or block.remark == "slow" and not self.slow:
