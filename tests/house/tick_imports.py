@@ -32,6 +32,7 @@ TICK = {
         "contact/equilibrium/equilibrium_friction": "the same, friction",
         "contact/equilibrium/equilibrium_iterates": "the same, the way there",
         "contact/equilibrium/equilibrium_rows": "the same, what may press",
+        "contact/equilibrium/equilibrium_sinking": "the same, how far spheres sink in",
         "contact/equilibrium/neighbour_contact": "bodies beside each other",
         "contact/deformable_contact": "compliance and displacements of an elastic body",
         "contact/equilibrium/deformed_patch": "the part of a surface that tools are near",
