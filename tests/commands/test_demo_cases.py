@@ -75,8 +75,8 @@ class DemoCases(unittest.TestCase):
         deepest = depth.index(max(depth))
         self.assertAlmostEqual(max(depth), 3.0, delta=0.02)
         pressing = magnitude[:deepest + 1]
-        # A tool deeper than its own radius rolls over edges of the mesh: by a hundredth of the peak, 2.6 mm deep in the nasopharynx.
-        self.assertTrue(all(b >= a - 1.5e-2 * max(pressing) for a, b in zip(pressing, pressing[1:])), "force fell while pressing")
+        # A tool deeper than its own radius rolls over edges of the mesh: half a hundredth of the peak at most.
+        self.assertTrue(all(b >= a - 5e-3 * max(pressing) for a, b in zip(pressing, pressing[1:])), "force fell while pressing")
         released = next(index for index in range(deepest, len(depth)) if depth[index] == 0)
         self.assertEqual(magnitude[released + 25], 0, "a force stayed after release")
 

@@ -253,6 +253,7 @@ void ContactEquilibrium::iterate(int most) noexcept {
             carried_ = 0;
             next = mix(round, known, 0);
         }
+        if (climbs(next, newest)) next = alone(newest);
         relax_to(next, predicts ? std::numeric_limits<double>::infinity() : longest);
         if (change < settled && watched_are_clear() && neighbours_.is_clear(patches_)) break;
     }

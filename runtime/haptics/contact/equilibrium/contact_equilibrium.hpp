@@ -261,6 +261,7 @@ class ContactEquilibrium {
         return sum;
     }
     double departure(const Weights& weights, std::size_t from) const noexcept;
+    bool climbs(const Weights& weights, std::size_t newest) const noexcept;
     void relax_to(const Weights& weights, double longest) noexcept;
 
     const ContactBodies& bodies_;

@@ -260,6 +260,17 @@ double DeformedPatch::departure(const std::array<double, iterates>& weights,
     return most;
 }
 
+double DeformedPatch::along(const std::array<double, iterates>& weights, std::size_t iterate) const noexcept {
+    double sum = 0;
+    for (std::int32_t slot = 0; slot < size_; ++slot) {
+        Vector3d way = -moved_[slot];
+        for (std::size_t k = 0; k < iterates; ++k)
+            if (weights[k] != 0) way += weights[k] * answers_[k].moved[slot];
+        sum += way.dot(answers_[iterate].difference[slot]);
+    }
+    return sum;
+}
+
 // A part `step` of the way from the state's forces to a combination of the answers'.
 void DeformedPatch::combine(Forces& state, Forces Answer::*part, const std::array<double, iterates>& weights,
                             double step) noexcept {

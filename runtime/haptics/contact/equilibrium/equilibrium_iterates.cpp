@@ -136,6 +136,20 @@ double ContactEquilibrium::departure(const Weights& weights, std::size_t from) c
     return most;
 }
 
+// Whether a combination of answers leads the other way than the newest answer, which leads down V: then it is
+// for a saddle, as where a sphere rolls over an edge, and there the way is to be left to the answers.
+bool ContactEquilibrium::climbs(const Weights& weights, std::size_t newest) const noexcept {
+    double along = 0;
+    for (const Tool& tool : tools_) {
+        along += (combined(weights, tool.next_off) - tool.off).dot(tool.difference[newest]);
+        for (const Part& part : std::span(tool.parts).first(tool.felt))
+            for (const Touch& touch : part.touches)
+                along += (combined(weights, touch.next_sunk) - touch.sunk).dot(touch.sunk_difference[newest]);
+    }
+    for (const DeformedPatch& patch : patches_) along += patch.along(weights, newest);
+    return along < 0;
+}
+
 // Goes to a combination of answers, at most `longest` mm.
 void ContactEquilibrium::relax_to(const Weights& weights, double longest) noexcept {
     double way = 0;
