@@ -6,7 +6,7 @@ import subprocess
 import time
 import unittest
 
-from trainer_case import TRAIN, TrainerCase, yellow_pixels
+from trainer_case import TRAIN, TrainerCase, difference, yellow_pixels
 
 BUTTON_ROW = 690  # pixels from the window's top
 
@@ -21,14 +21,6 @@ class Controls(TrainerCase):
         self.x("xdotool", "mousemove", "--window", window, x, y, "click", 1)
         time.sleep(0.6)
 
-    def wait_for(self, condition):
-        """A busy machine draws late."""
-        for _ in range(20):
-            if condition():
-                return
-            time.sleep(0.5)
-        self.fail("what was waited for did not come within ten seconds")
-
     def test_a_button_does_what_its_key_does_and_touches_nothing(self):
         process, window = self.open_window()
         inside = 195  # where its button lies
@@ -41,41 +33,25 @@ class Controls(TrainerCase):
         self.assertEqual(self.finish(process)["force_peak_n"], 0)
 
     def test_u_takes_a_change_of_the_view_back(self):
-        process, window = self.open_window()
-        self.x("xdotool", "key", "h")  # hints fade by themselves, and figures change
-        self.x("xdotool", "mousemove", "--window", window, 150, 300)
-        time.sleep(0.5)
-        scene = lambda: self.part(window, "600x400+340+150")
-        before = scene()
-        self.x("xdotool", "mousedown", 3, "mousemove_relative", 60, 30)
-        time.sleep(0.3)
-        self.x("xdotool", "mouseup", 3)
-        time.sleep(0.3)
-        turned = scene()
-        def difference(one, other):
-            return sum(abs(a - b) for a, b in zip(one, other))
-
-        # Not to the bit: what detail there is time for may have changed meanwhile.
-        self.assertGreater(difference(before, turned), 0)
+        process, _ = self.open_window()
+        before = self.come_to_rest()
+        self.x("xdotool", "mousedown", 3, "mousemove_relative", 60, 30, "mouseup", 3)
+        turned = self.come_to_rest()
+        self.assertGreater(difference(before, turned), 5)
         self.x("xdotool", "key", "u")
-        self.wait_for(lambda: difference(before, scene()) < 0.3 * difference(before, turned))
+        # Not to the bit: what detail there is time for may have changed meanwhile.
+        self.assertLess(difference(before, self.come_to_rest()), 0.3 * difference(before, turned))
         self.x("xdotool", "key", "q")
         self.finish(process)
 
-    def part(self, window, geometry):
-        run = subprocess.run(["convert", "xwd:-", "-crop", geometry, "+repage", "rgb:-"],
-                             input=self.screen(window), capture_output=True, check=True)
-        return run.stdout
-
     def test_a_recording_begun_and_ended_by_a_key_replays(self):
         process, _ = self.open_window()
-        time.sleep(0.5)
         self.x("xdotool", "key", "o")
         for _ in range(20):  # half a millimetre each, from 5 mm above the surface
             self.x("xdotool", "key", "w")
-        time.sleep(0.5)
+        self.come_to_rest()
         self.x("xdotool", "key", "o")
-        time.sleep(0.3)
+        self.picture()
         self.x("xdotool", "key", "q")
         result = self.finish(process)
         self.assertEqual(result["recorded_by_key"], ["palpate-sample-1.h5"])
@@ -94,10 +70,10 @@ class Controls(TrainerCase):
         process, _ = self.open_window()
         self.x("xdotool", "key", "o")
         self.x("xdotool", "key", "f")  # of 'continuous', the last one, the next is the first
-        time.sleep(1.5)
+        self.come_to_rest()
         for _ in range(20):  # half a millimetre each, from 5 mm above the surface
             self.x("xdotool", "key", "w")
-        time.sleep(1.5)
+        self.come_to_rest()
         self.x("xdotool", "key", "q")
         result = self.finish(process)
         self.assertEqual(result["scheme"], "single")

@@ -11,7 +11,7 @@ import unittest
 import h5py
 import numpy as np
 
-from trainer_case import TRAIN, TrainerCase, yellow_pixels
+from trainer_case import TRAIN, TrainerCase, difference, yellow_pixels
 
 ON_THE_ORGAN = 760, 250  # pixels of the first view
 
@@ -47,10 +47,7 @@ class Train(TrainerCase):
         before = yellow_pixels(self.screen(window))
         for as_it_is_due in (lambda yellow: yellow > before + 500, lambda yellow: yellow < before + 100):
             self.x("xdotool", "key", "t")
-            deadline = time.monotonic() + 20  # of a window that other programs hold up
-            while not as_it_is_due(yellow := yellow_pixels(self.screen(window))):
-                self.assertLess(time.monotonic(), deadline, f"{yellow} yellow pixels where there were {before} at first")
-                time.sleep(0.2)
+            self.wait_for(lambda: as_it_is_due(yellow_pixels(self.screen(window))))
         self.x("xdotool", "key", "q")
         self.finish(process)
 
@@ -58,7 +55,7 @@ class Train(TrainerCase):
         process, _ = self.open_window("--size", "640x360")
         for name in ("palpate-sample-1.png", "palpate-sample-2.png"):
             self.x("xdotool", "key", "p")
-            time.sleep(1)
+            self.wait_for((self.folder / name).exists)
             header = (self.folder / name).read_bytes()[:24]
             self.assertEqual((int.from_bytes(header[16:20], "big"), int.from_bytes(header[20:24], "big")), (640, 360))
         self.x("xdotool", "key", "q")
@@ -68,7 +65,7 @@ class Train(TrainerCase):
         process, window = self.open_window()
         for _ in range(40):  # half a millimetre each, from 5 mm above the surface
             self.x("xdotool", "key", "w")
-        time.sleep(0.5)
+        self.come_to_rest()
         self.assertGreater(self.colours(window), 500)
         self.x("xdotool", "key", "q")
         result = self.finish(process)
@@ -85,7 +82,7 @@ class Train(TrainerCase):
         process, window = self.open_window("--device", "premium")
         for _ in range(16):  # half a millimetre each, from 5 mm above the surface: 3 mm deep
             self.x("xdotool", "key", "w")
-        time.sleep(0.5)
+        self.come_to_rest()
         self.x("xdotool", "key", "q")
         result = self.finish(process)
         self.assertEqual(result["device"], "simulated premium, guided by mouse and keyboard")
@@ -143,20 +140,20 @@ class Train(TrainerCase):
         self.assertEqual(replayed["force_peak_n"], result["force_peak_n"])
 
     def drag(self, button, dx, dy, steps=10):
-        """Drags from where the pointer is, steps times dx, dy pixels."""
+        """Drags from where the pointer is, steps times dx, dy pixels, and returns the scene's picture then."""
         self.x("xdotool", "mousedown", button)
         for _ in range(steps):
             self.x("xdotool", "mousemove_relative", "--", dx, dy)
             time.sleep(0.05)
-        time.sleep(0.7)
+        self.come_to_rest()
         self.x("xdotool", "mouseup", button)
-        time.sleep(0.3)
+        return self.come_to_rest()
 
     def test_the_left_button_presses_and_drags_with_every_simulated_device(self):
         for device in ([], ["--device", "touch"], ["--device", "desktop"], ["--device", "premium"]):
             process, window = self.open_window(*device)
             self.x("xdotool", "mousemove", "--window", window, *ON_THE_ORGAN)
-            time.sleep(0.7)
+            self.come_to_rest()
             self.drag(1, 4, 2)
             self.x("xdotool", "key", "q")
             result = self.finish(process)
@@ -171,10 +168,10 @@ class Train(TrainerCase):
             process, window = self.open_window()
             self.x("xdotool", "mousemove", "--window", window, *ON_THE_ORGAN)
             self.x("xdotool", "mousedown", 1)
-            time.sleep(0.5)
+            self.come_to_rest()
             for _ in range(notches):
                 self.x("xdotool", "click", 4)
-            time.sleep(1)
+            self.come_to_rest()
             self.x("xdotool", "mouseup", 1)
             self.x("xdotool", "key", "q")
             depth[notches] = self.finish(process)["penetration"]["device_mm"]
@@ -184,7 +181,7 @@ class Train(TrainerCase):
         process, window = self.open_window()
         for x, y in ((500, 300), ON_THE_ORGAN, (800, 500)):
             self.x("xdotool", "mousemove", "--window", window, x, y)
-            time.sleep(0.5)
+            self.come_to_rest()
         self.x("xdotool", "key", "q")
         result = self.finish(process)
         self.assertGreater(result["device_travel_mm"], 1)
@@ -192,14 +189,14 @@ class Train(TrainerCase):
 
     def test_what_moves_the_view_leaves_the_tool_where_it_is(self):
         for button, modifier in ((3, None), (2, None), (1, "shift"), (1, "ctrl"), (3, "ctrl")):
-            process, window = self.open_window()
-            before = self.screen(window)
+            process, _ = self.open_window()
+            before = self.come_to_rest()
             if modifier:
                 self.x("xdotool", "keydown", modifier)
-            self.drag(button, -8, -8)
+            moved = self.drag(button, -8, -8)
             if modifier:
                 self.x("xdotool", "keyup", modifier)
-            self.assertNotEqual(before, self.screen(window), (button, modifier))
+            self.assertGreater(difference(before, moved), 5, (button, modifier))
             self.x("xdotool", "key", "Escape")
             self.assertEqual(self.finish(process)["device_travel_mm"], 0, (button, modifier))
 
@@ -207,9 +204,9 @@ class Train(TrainerCase):
         process, _ = self.open_window()
         for _ in range(10):  # half a millimetre each, away from the organ
             self.x("xdotool", "key", "s")
-        time.sleep(0.5)
+        self.come_to_rest()
         self.x("xdotool", "key", "r")
-        time.sleep(0.5)
+        self.come_to_rest()
         self.x("xdotool", "key", "q")
         self.assertAlmostEqual(self.finish(process)["device_travel_mm"], 10, delta=0.5)
 

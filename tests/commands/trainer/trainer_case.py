@@ -13,13 +13,20 @@ sys.path.insert(0, f"{os.environ['PALPATE_SOURCE']}/tests/commands")
 from sample_asset import SampleAsset  # noqa: E402
 from x_server import NEEDED, XServer  # noqa: E402
 
-BESIDE_THE_ORGAN = 150, 300  # pixels of the sample's first view
+BESIDE_THE_ORGAN = 50, 300  # pixels of the sample's first view, and of its start page
+PNG_END = b"IEND\xaeB`\x82"
+STILL = 0.05  # of a channel's 255 on average: nothing moves
 TRAIN = pathlib.Path(os.environ["PALPATE_BIN"]) / "palpate-train"
 
 
 def pixels(dump):
     """Of an X window's dump: red, green, blue, red, ..."""
     return subprocess.run(["convert", "xwd:-", "-depth", "8", "rgb:-"], input=dump, capture_output=True, check=True).stdout
+
+
+def difference(one, other):
+    """How far two pictures of one size are apart, in a channel's 255, on average."""
+    return sum(abs(a - b) for a, b in zip(one, other, strict=True)) / len(one)
 
 
 def yellow_pixels(dump):
@@ -65,10 +72,45 @@ class TrainerCase(SampleAsset):
         time.sleep(0.5)
         return process, window
 
+    def wait_for(self, condition):
+        """A busy machine draws late."""
+        deadline = time.monotonic() + 30
+        while not condition():
+            self.assertLess(time.monotonic(), deadline, "what was waited for did not come within thirty seconds")
+            time.sleep(0.2)
+
+    def shows_page(self, window):
+        """Whether the dark sheet of the start page lies over the organ."""
+        small = subprocess.run(["convert", "xwd:-", "-resize", "16x9!", "-depth", "8", "rgb:-"],
+                               input=self.screen(window), capture_output=True, check=True).stdout
+        return max(small[3 * (16 * 7 + 8):][:3]) < 60
+
     def leave_start_page(self, window):
-        self.x("xdotool", "mousemove", "--window", window, *BESIDE_THE_ORGAN)
+        self.wait_for(lambda: self.shows_page(window))  # before it is there its keys are the window's
         self.x("xdotool", "key", "BackSpace")
-        time.sleep(0.5)
+        self.wait_for(lambda: not self.shows_page(window))
+
+    def picture(self):
+        """Red, green, blue, red, ... of the scene, coarse, as it is drawn after all that was sent so far."""
+        taken = lambda: [path for path in self.folder.glob("palpate-sample-*.png") if path.read_bytes().endswith(PNG_END)]
+        before = set(taken())
+        self.x("xdotool", "key", "F12")
+        self.wait_for(lambda: set(taken()) - before)
+        (path,) = set(taken()) - before
+        crop = ["-gravity", "center", "-crop", "100%x50%+0+0", "+repage", "-scale", "160x45!"]  # without the grain
+        rgb = subprocess.run(["convert", path, *crop, "-depth", "8", "rgb:-"], capture_output=True, check=True).stdout
+        path.unlink()
+        return rgb
+
+    def come_to_rest(self):
+        """Waits until what was sent so far has been done, and returns the scene's picture then."""
+        pictures = [self.picture(), self.picture()]
+        deadline = time.monotonic() + 30
+        while difference(*pictures) > STILL:
+            self.assertLess(time.monotonic(), deadline, "the scene does not come to rest")
+            time.sleep(0.1)
+            pictures = [pictures[1], self.picture()]
+        return pictures[1]
 
     def finish(self, process):
         """What the trainer printed, once it has ended in order."""
@@ -77,7 +119,7 @@ class TrainerCase(SampleAsset):
         return json.loads(out)
 
     def find_window(self):
-        """The id of the trainer's window, which is drawn and has the focus and the pointer in its middle."""
+        """The id of the trainer's window, which is drawn and has the focus, and the pointer beside the organ."""
         window = self.x("xdotool", "search", "--sync", "--onlyvisible", "--name", "Palpate: sample").split()[0]
         window = window.decode()
         deadline = time.monotonic() + 20
@@ -85,5 +127,5 @@ class TrainerCase(SampleAsset):
             self.assertLess(time.monotonic(), deadline, "nothing was drawn")
             time.sleep(0.2)
         self.x("xdotool", "windowfocus", "--sync", window)
-        self.x("xdotool", "mousemove", "--window", window, 640, 360)
+        self.x("xdotool", "mousemove", "--window", window, *BESIDE_THE_ORGAN)
         return window
