@@ -21,11 +21,10 @@ namespace {
 constexpr double elements_in_radius = 2.5;
 // What R² gains by linear elements, in edges' lengths squared. R²/4 is the density's second moment, to which
 // sharing forces between vertices among them adds e²/4 on the mean, in equilateral triangles of edge e. As
-// much again was measured: linear elements are too stiff under what changes within one. With 2, cubes of 6 to
-// 12 cells (Poisson's ratio 0.45) give way to discs of 2.5 to 3.5 edges as half-spaces within 2 %, but for
-// their sides; with 1 they are 4 to 7 % too stiff. By how much more flat parts of the demo's liver give way
-// to the narrower disc than to the wider is what 2 says within 1 % (1 says 17 % more), the median of 52
-// places.
+// much again was measured: linear elements are too stiff under what changes within one. How much more tissue
+// gives way to the narrower of two discs is what 2 says within 8 % on a cube (1: 19 % more) by
+// LoadSpread.a_narrower_disc_gives_way_more_as_its_radius_says, and within 1 % on flat parts of the demo's
+// liver and nasopharynx (1: 16 % more), and 22 % more than a brain does, by tests/benchmarks/spread_discs.py.
 constexpr double edges_squared = 2;
 constexpr double same_side = 0.3;  // cosine between normals that a disc takes together
 
