@@ -19,6 +19,8 @@ std::span<const StatusText, status_count> status_texts() {
         {coming_back, "coming_back", shown_text("the force returns by and by after a fault"), false},
         {energy_injected, "energy_injected",
          shown_text("contact gave a hand more energy than it got: a damper takes it back"), true},
+        {contact_unsettled, "contact_unsettled",
+         shown_text("tissue snaps, as over an edge, and comes to rest in the next ticks"), true},
     }};
     return texts;
 }

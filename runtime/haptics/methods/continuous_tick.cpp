@@ -11,6 +11,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double unsolved = 1e-3;      // mm of residual that is reported
+constexpr double unsettled = 1e-2;     // mm of change, likewise: 5 mN behind the usual coupling
 constexpr int most_rounds = 4;         // of contacts that only the solution of the others meets
 constexpr double farthest_return = 5;  // mm: a sphere of the shaft found again farther off starts anew
 
@@ -61,6 +62,7 @@ Vector3d ContinuousContact::force_of(std::size_t t, TickResult& result) noexcept
     const Vector3d press = equilibrium_.press(t);
     if (equilibrium_.was_cut(t)) result.status |= contacts_cut;
     if (!found) result.status |= contact_unsolved;
+    if (equilibrium_.change() > unsettled) result.status |= contact_unsettled;
     if (result.contact_count > 0 && equilibrium_.residual() <= unsolved && within_reach(t, press)) {
         result.residual = equilibrium_.residual();
         if (result.contact_count > walls) depth_in_tissue(tool, result);

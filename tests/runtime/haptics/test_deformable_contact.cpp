@@ -281,14 +281,17 @@ TEST_F(PartialContactSurface, is_left_and_entered_without_a_jump_of_the_force) {
         const Vector3d soft = go(part, result_, start);
         Vector3d last = soft;
         double largest = 0, stiff = 0;
+        int unsettled = 0;
         for (int step = 1; step <= 2 * steps; ++step) {  // there and back
             const double x = way * (step <= steps ? step : 2 * steps - step) / steps;
             const Vector3d force = go(part, result_, start + Vector3d(x, 0, 0));
             largest = std::max(largest, (force - last).norm());
             stiff = std::max(stiff, force.z());
-            EXPECT_EQ(result_.status, tick_ok);
+            EXPECT_EQ(result_.status & ~contact_unsettled, tick_ok);  // where the foot leaves what gives way
+            unsettled += result_.status != tick_ok;
             last = force;
         }
+        EXPECT_LE(unsettled, steps / 10);  // as it crosses the rim
         EXPECT_GT(stiff, 2 * soft.z());
         stiffest = std::max(stiffest, stiff);
         // A solved contact does not remember the way.

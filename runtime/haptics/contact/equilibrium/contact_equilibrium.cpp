@@ -47,7 +47,6 @@ constexpr int warm_iterations = 8, cold_iterations = 24;
 constexpr int spare_iterations = 32;
 constexpr std::size_t few_rows = 16;
 constexpr double far_off = 10;          // times the change before it
-constexpr double walked_ahead = 4;      // times the change: what answers and their combinations come to
 constexpr double helped = 0.5;          // times the change before it
 constexpr std::size_t most_walls = 48;  // leaves room for tissue
 
@@ -91,7 +90,7 @@ void ContactEquilibrium::begin_tick(double stiffness) noexcept {
     spare_iterations_ = spare_iterations;
     rows_.clear();
     groups_.clear();
-    residual_ = 0;
+    residual_ = change_ = 0;
     for (Tool& tool : tools_) {
         tool.was_felt = std::exchange(tool.felt, 0);
         tool.outside = true;
@@ -226,7 +225,7 @@ void ContactEquilibrium::iterate(int most) noexcept {
             rub(newest);
         else
             for (DeformedPatch& patch : patches_) patch.keep_hold(newest);
-        const double change = answer(newest);
+        const double change = change_ = answer(newest);
         compare(round);
         // Where answers of a tick before have led astray, it goes on from what they were added to.
         if (known > 0 && carried_ > 1 && change > before) {
@@ -247,13 +246,7 @@ void ContactEquilibrium::iterate(int most) noexcept {
         before = change;
         neighbours_.move(change);
         went += walked_ahead * change;
-        Weights next = change < settled ? alone(newest) : mix(round, known, carried_);
-        // Steps of a tick before say little of where they do not lead, as where tissue is about to snap.
-        if (carried_ > 1 && departure(next, newest) > change) {
-            carried_ = 0;
-            next = mix(round, known, 0);
-        }
-        if (climbs(next, newest)) next = alone(newest);
+        const Weights next = change < settled ? alone(newest) : next_state(round, known, change);
         relax_to(next, predicts ? std::numeric_limits<double>::infinity() : longest);
         if (change < settled && watched_are_clear() && neighbours_.is_clear(patches_)) break;
     }

@@ -74,6 +74,8 @@ class ContactEquilibrium {
     }
     /// Worst violation of the contact conditions, mm.
     double residual() const noexcept { return residual_; }
+    /// By how much what was found last differs from what the round before it found, mm.
+    double change() const noexcept { return change_; }
     /// Appends the contacts with deformable bodies that press the tool.
     void write_contacts(std::size_t tool, TickResult& result) const noexcept;
     /// Appends those of deformable bodies with what lies beside them.
@@ -85,6 +87,9 @@ class ContactEquilibrium {
     static constexpr std::size_t most_rows = 512;  // before they are cut
     static constexpr std::size_t most_near = 256;  // triangles beside a sphere
     static constexpr double settled = 1e-4;        // mm: changes smaller than this end the search
+    // How far a combination of answers may go ahead of the newest, in changes that this made; and what both
+    // come to.
+    static constexpr double farthest_ahead = 4, walked_ahead = farthest_ahead + 1;
     // mm beyond a sphere within which triangles count: of a tool at rest, and where contact starts.
     static constexpr double first_reach = 0.1, cold_reach = 0.5;
 
@@ -260,6 +265,12 @@ class ContactEquilibrium {
             if (weights[k] != 0) sum += weights[k] * answers[k];
         return sum;
     }
+    static Weights between(const Weights& from, const Weights& to, double share) noexcept {
+        Weights weights{};
+        for (std::size_t k = 0; k < weights.size(); ++k) weights[k] = from[k] + share * (to[k] - from[k]);
+        return weights;
+    }
+    Weights next_state(std::size_t iteration, std::size_t known, double change) noexcept;
     double departure(const Weights& weights, std::size_t from) const noexcept;
     bool climbs(const Weights& weights, std::size_t newest) const noexcept;
     void relax_to(const Weights& weights, double longest) noexcept;
@@ -285,7 +296,7 @@ class ContactEquilibrium {
     // many of the first there are in a row, and how many are left of a tick before.
     Eigen::Matrix<double, DeformedPatch::iterates, DeformedPatch::iterates> products_;
     std::size_t bank_ = 0, in_row_ = 0, carried_ = 0;
-    double residual_ = 0;
+    double residual_ = 0, change_ = 0;
     double last_motion_ = 0;    // mm, of tissue, in the tick before
     int spare_iterations_ = 0;  // left in this tick
 };

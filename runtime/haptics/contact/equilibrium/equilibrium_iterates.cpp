@@ -13,7 +13,6 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-constexpr double largest_weight = 5;  // of one step among several
 constexpr double slight_step = 0.01;  // of what is to be made good
 
 }  // namespace
@@ -118,13 +117,33 @@ ContactEquilibrium::Weights ContactEquilibrium::mix(std::size_t iteration, std::
         }
     }
     const Eigen::Matrix<double, most_steps, 1> parts = matrix.ldlt().solve(right).cwiseProduct(scale);
-    if (!parts.allFinite() || parts.cwiseAbs().maxCoeff() > largest_weight)
-        return carried > 0 ? mix(iteration, known, 0) : weights;
+    if (!parts.allFinite()) return weights;
     for (std::size_t i = 0; i < steps.size(); ++i) {
         weights[steps[i].first] -= parts[static_cast<Index>(i)];
         weights[steps[i].second] += parts[static_cast<Index>(i)];
     }
     return weights;
+}
+
+// Where to go on from: a combination of the answers so far, whose newest differs by `change` (mm) from the
+// state that it answers.
+ContactEquilibrium::Weights ContactEquilibrium::next_state(std::size_t iteration, std::size_t known,
+                                                           double change) noexcept {
+    const std::size_t newest = answer_of(iteration);
+    Weights next = mix(iteration, known, carried_);
+    // Steps of a tick before say little of where they do not lead, as where tissue is about to snap.
+    if (carried_ > 1 && departure(next, newest) > change) {
+        carried_ = 0;
+        next = mix(iteration, known, 0);
+    }
+    const double far = departure(next, newest);
+    const double step = far > farthest_ahead * change ? farthest_ahead * change / far : 1;
+    if (!climbs(next, newest)) return between(alone(newest), next, step);
+    // To a saddle, as where a sphere rolls over an edge. What lies there across its ridge is stiff, and
+    // answers to it alternate: so away from it, from the middle of two answers.
+    Weights middle = alone(newest);
+    if (known > 1) middle[newest] = middle[answer_of(iteration - 1)] = 0.5;
+    return between(middle, next, -step);
 }
 
 // How far a combination of answers is from one of them, mm.
@@ -136,8 +155,7 @@ double ContactEquilibrium::departure(const Weights& weights, std::size_t from) c
     return most;
 }
 
-// Whether a combination of answers leads the other way than the newest answer, which leads down V: then it is
-// for a saddle, as where a sphere rolls over an edge, and there the way is to be left to the answers.
+// Whether a combination of answers leads the other way than the newest answer, which leads down V.
 bool ContactEquilibrium::climbs(const Weights& weights, std::size_t newest) const noexcept {
     double along = 0;
     for (const Tool& tool : tools_) {
