@@ -75,7 +75,7 @@ if(PALPATE_TOOLS OR PALPATE_VISUAL)
     # Ogg Theora writer: Debian's VTK is built without IOFFMPEG, and the codec is free and in one file with its container.
     find_package(VTK 9.1 REQUIRED COMPONENTS
         CommonCore CommonDataModel CommonTransforms FiltersCore FiltersGeneral FiltersGeometry FiltersModeling
-        FiltersSources FiltersVerdict ImagingCore ImagingStencil IOGeometry IOHDF IOImage IOLegacy IOOggTheora IOXML
+        FiltersSources FiltersVerdict ImagingCore ImagingStencil IOCore IOGeometry IOHDF IOImage IOLegacy IOOggTheora IOXML
         InteractionStyle RenderingAnnotation RenderingContext2D RenderingContextOpenGL2 RenderingCore RenderingFreeType RenderingOpenGL2 RenderingUI
         ChartsCore ViewsContext2D)
     # Xlib, which VTK draws through: asks whether a display answers, where VTK would abort.

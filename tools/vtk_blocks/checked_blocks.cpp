@@ -2,12 +2,37 @@
 #include "tools/vtk_blocks/checked_blocks.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
+#include <string_view>
 #include <vtkInputStream.h>
 
 namespace palpate::vtk_blocks {
+namespace {
+
+bool knows_type(vtkXMLDataElement& array) {
+    constexpr std::array<std::string_view, 12> types{"Int8",    "UInt8",   "Int16",  "UInt16",
+                                                     "Int32",   "UInt32",  "Int64",  "UInt64",
+                                                     "Float32", "Float64", "String", "Bit"};
+    const char* const type = array.GetAttribute("type");
+    return type != nullptr && std::ranges::find(types, std::string_view(type)) != types.end();
+}
+
+}  // namespace
 
 vtkStandardNewMacro(BlocksChecked);
+
+bool knows_types(vtkXMLDataElement& element) {
+    const std::string_view name = element.GetName();
+    for (int n = 0; n < element.GetNumberOfNestedElements(); ++n) {
+        vtkXMLDataElement& nested = *element.GetNestedElement(n);
+        const std::string_view its_name = nested.GetName();
+        // All that is in a FieldData is taken for arrays, whatever it is called.
+        const bool array = name == "FieldData" || its_name == "DataArray" || its_name == "Array";
+        if ((array && !knows_type(nested)) || !knows_types(nested)) return false;
+    }
+    return true;
+}
 
 bool BlocksChecked::fit(vtkXMLDataElement& element, double room, std::uintmax_t file_size) {
     const char* const format = element.GetAttribute("format");
@@ -20,7 +45,9 @@ bool BlocksChecked::fit(vtkXMLDataElement& element, double room, std::uintmax_t 
 }
 
 bool BlocksChecked::fits(vtkXMLDataElement& array, double room, std::uintmax_t file_size) {
-    if (vtkTypeInt64 offset = 0; array.GetScalarAttribute("offset", offset) != 0) {
+    if (array.GetAttribute("offset") != nullptr) {
+        vtkTypeInt64 offset = 0;
+        if (array.GetScalarAttribute("offset", offset) == 0) return false;  // which VTK takes for 0
         if (AppendedDataPosition == 0 || offset < 0) return false;
         DataStream = AppendedDataStream;
         SeekG(AppendedDataPosition + offset);
@@ -33,7 +60,7 @@ bool BlocksChecked::fits(vtkXMLDataElement& array, double room, std::uintmax_t f
     const auto begin = read_words(3);
     if (!begin) return true;  // which VTK says itself where it wants the data
     const auto blocks = (*begin)[0], size = (*begin)[1], last = (*begin)[2];
-    if (blocks == 0) return true;
+    if (blocks == 0) return last == 0;  // which would count one less than none
     const double whole = static_cast<double>(blocks) - (last > 0 ? 1 : 0);
     if (blocks > file_size / 4 || size == 0 || last > size ||
         !(whole * static_cast<double>(size) + static_cast<double>(last) <= room))

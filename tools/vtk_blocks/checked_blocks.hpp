@@ -28,8 +28,11 @@ class BlocksChecked : public vtkXMLDataParser {
     std::optional<std::vector<std::uint64_t>> read_words(std::size_t count);
 };
 
+/// Whether VTK knows the type of every array below an element; its readers of XML crash at others.
+bool knows_types(vtkXMLDataElement& element);
+
 /// One of VTK's readers of XML, which complains of compressed data beyond what set_room() says instead of
-/// allocating them.
+/// allocating them, and of arrays of types that VTK does not know.
 template <typename Reader>
 class WithCheckedBlocks : public Reader {
   public:
@@ -46,6 +49,10 @@ class WithCheckedBlocks : public Reader {
     }
 
     int ReadVTKFile(vtkXMLDataElement* file) override {
+        if (!knows_types(*file)) {
+            vtkErrorWithObjectMacro(this, "an array of a type that VTK does not know");
+            return 0;
+        }
         auto* const parser = BlocksChecked::SafeDownCast(this->XMLParser);
         if (file->GetAttribute("compressor") == nullptr ||
             (parser != nullptr && parser->fit(*file, room_, std::filesystem::file_size(this->GetFileName()))))

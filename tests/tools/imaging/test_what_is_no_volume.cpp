@@ -31,5 +31,17 @@ TEST(ReadVolume, what_is_no_volume_is_called_so_however_large_its_lines_are) {
     }
 }
 
+TEST(ReadVolume, texts_that_metaio_has_no_room_for_are_refused) {
+    const TemporaryFolder folder;
+    const std::string begin = "ObjectType = Image\nNDims = 3\n", text(255, 'a');
+    const std::string end = "\nDimSize = 2 2 2\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n";
+    for (const std::string& line : {text + " = 1", "Comment = " + text, "  ObjectSubType : " + text}) {
+        write_bytes(folder / "v.mha", begin + line + end + "12345678");
+        EXPECT_SAYS(test::volume_refusal(folder / "v.mha"), "of more than 254 characters") << line;
+    }
+    write_bytes(folder / "v.mha", begin + "Comment = " + text.substr(1) + end + "12345678");
+    EXPECT_EQ(test::volume_refusal(folder / "v.mha"), "nothing was refused");
+}
+
 }  // namespace
 }  // namespace palpate

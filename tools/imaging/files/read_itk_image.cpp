@@ -25,8 +25,20 @@
 namespace palpate::imaging {
 namespace {
 
-// What NrrdIO and MetaIO go through without an end: each line of a header once for each other, every name of
-// a pattern, every one of the dimensions that a MetaImage claims.
+// MetaIO copies the names of fields, and the texts of these, into 255 bytes.
+bool overflows_metaio(const std::string& line) {
+    constexpr std::size_t longest = 254;
+    constexpr std::array<std::string_view, 4> texts{"Comment", "Name", "ObjectType", "ObjectSubType"};
+    const std::size_t separator = std::min(line.find_first_of("=:"), line.size());
+    if (separator > longest) return true;
+    const std::string text = trimmed(line.substr(std::min(separator + 1, line.size())));
+    return text.size() > longest &&
+           std::ranges::find(texts, trimmed(line.substr(0, separator))) != texts.end();
+}
+
+// What NrrdIO and MetaIO go through without an end, or beyond theirs: each line of a header once for each
+// other, every name of a pattern, every one of the dimensions that a MetaImage claims, the names of its
+// fields.
 void require_short_header(const std::filesystem::path& path, bool nrrd) {
     constexpr std::size_t longest = std::size_t{1} << 20;
     constexpr int most_lines = 8192;
@@ -43,6 +55,8 @@ void require_short_header(const std::filesystem::path& path, bool nrrd) {
     for (std::string line; std::getline(stream, line) && !(nrrd && trimmed(line).empty());) {
         if (++lines > most_lines || (stream.eof() && head.size() > longest))
             refuse("has a header of more than 8192 lines or 1 MiB", "");
+        if (!nrrd && overflows_metaio(line))
+            refuse("has a field, or a text in it, of more than 254 characters", "");
         if (!nrrd && line.find("NDims") != std::string::npos) {
             std::erase_if(line, [](unsigned char c) { return std::isspace(c) != 0; });
             const std::string value = line.substr(std::min(line.size(), std::size_t{6}));
