@@ -132,11 +132,12 @@ ContactEquilibrium::Weights ContactEquilibrium::next_state(std::size_t iteration
     const std::size_t newest = answer_of(iteration);
     Weights next = mix(iteration, known, carried_);
     // Steps of a tick before say little of where they do not lead, as where tissue is about to snap.
-    if (carried_ > 1 && departure(next, newest) > change) {
+    double far = departure(next, newest);
+    if (carried_ > 1 && far > change) {
         carried_ = 0;
         next = mix(iteration, known, 0);
+        far = departure(next, newest);
     }
-    const double far = departure(next, newest);
     const double step = far > farthest_ahead * change ? farthest_ahead * change / far : 1;
     if (!climbs(next, newest)) return between(alone(newest), next, step);
     // To a saddle, as where a sphere rolls over an edge. What lies there across its ridge is stiff, and

@@ -129,6 +129,7 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
         if (rests.surface == bodies_.rigid_count() + soft) visit(rests.foot.triangle);
     const std::size_t seeds = queue_.size();
     FixedList<Vector3d, most_rows> shared;
+    FixedList<double, most_rows> shared_squared;  // distances of these, which tell most of them apart
     struct Nearest {
         std::array<std::int32_t, 3> slots{};
         Vector3d point;
@@ -163,8 +164,14 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
             const auto same = [&](const Vector3d& other) {
                 return (other - closest.point).squaredNorm() < same_place * same_place;
             };
-            if (std::any_of(shared.begin(), shared.end(), same)) continue;
-            if (!shared.full()) shared.push_back(closest.point);
+            bool as_far = false;
+            for (const double squared : shared_squared)
+                as_far |= std::abs(squared - closest.squared_distance) < 3 * limit * same_place;
+            if (as_far && std::any_of(shared.begin(), shared.end(), same)) continue;
+            if (!shared.full()) {
+                shared.push_back(closest.point);
+                shared_squared.push_back(closest.squared_distance);
+            }
         }
         Row row;
         row.tool = static_cast<std::int32_t>(t);
