@@ -20,7 +20,7 @@ std::span<const StatusText, status_count> status_texts() {
         {energy_injected, "energy_injected",
          shown_text("contact gave a hand more energy than it got: a damper takes it back"), true},
         {contact_unsettled, "contact_unsettled",
-         shown_text("tissue snaps, as over an edge, and comes to rest in the next ticks"), true},
+         shown_text("tissue was not at rest when the tick ended, as where it snaps over an edge"), true},
     }};
     return texts;
 }

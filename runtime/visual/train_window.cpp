@@ -424,9 +424,9 @@ void TrainWindow::show(const VisualFrame& frame) {
     p.buttons.update(!frame.lesson.page && !frame.film_rate_hz, size[0], size[1]);
     p.timeline.update(frame.timeline);
     p.window->Render();
+    if (const auto told = p.pictures.outcome()) p.overlay.tell(*told);
     if (std::exchange(p.picture_asked, false))
         p.overlay.tell(p.pictures.write(p.window, free_path(".", p.case_name, ".png")));
-    if (const auto told = p.pictures.outcome()) p.overlay.tell(*told);
     if (frame.lesson.page && p.frames > 0)  // the first frame is not to wait for them
         p.thumbnails.take_next(*frame.lesson.page, display_scale(size[0], size[1]));
     ++p.frames;

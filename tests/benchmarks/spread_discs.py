@@ -6,7 +6,8 @@
 
 Loads are spread over discs of 2.5 and 3.5 edges (formats/model/contact/load_shares.cpp) at places drawn evenly over the surface where it
 is flat (normals within 32 degrees) and gives way; what the body as a whole adds is the same for both discs. Told for R² as it is, and with
-other multiples of the edge squared. Needs an asset whose first elastic body has a dense compliance.
+other multiples of the edge squared. Needs an asset whose first elastic body is of one material and has a dense compliance. A disc is what
+lies within its reach, where the load shares' own goes over the surface: they differ beside folds, which are not flat.
 """
 import argparse
 import pathlib
@@ -72,14 +73,15 @@ def main():
     with h5py.File(arguments.asset) as file:
         body = file["palpate/bodies/deformable/0"]
         surface, (modulus, ratio) = Surface(body), body["materials"][0]
-    drawn = np.random.default_rng(0).choice(len(surface.area), arguments.places, replace=False)
+    drawn = np.random.default_rng(0).choice(len(surface.area), min(arguments.places, len(surface.area)), replace=False)
     flat = [t for t in drawn if surface.is_flat(t)]
     found = [[surface.gives_way(t, disc * surface.edge) for disc in DISCS] for t in flat]
     kept = [(t, narrow - wide) for t, (narrow, wide) in zip(flat, found) if narrow is not None and wide is not None]
     more = [difference for _, difference in kept]
     own = np.median([2 * np.sqrt(surface.area[t] / np.sqrt(3)) for t, _ in kept])  # of an equilateral triangle as large
     low, median, high = np.percentile(more, [25, 50, 75])
-    print(f"{arguments.asset.stem}: edge {surface.edge:.2f} mm, there {own:.2f} mm; {len(more)} places, narrower disc gives way more by {median:.3f} mm/N ({low:.2f} to {high:.2f} in the middle half)")
+    print(f"{arguments.asset.stem}: edge {surface.edge:.2f} mm, there {own:.2f} mm; {len(more)} places, "
+          f"narrower disc gives way more by {median:.3f} mm/N ({low:.2f} to {high:.2f} in the middle half)")
     for multiple in 0, 1, 2, 3:
         radii = [surface.edge * np.sqrt(disc**2 + multiple) for disc in DISCS]
         print(f"R² + {multiple} edge²: {SPREAD * (1 - ratio**2) / modulus * (1 / radii[0] - 1 / radii[1]):.3f} mm/N")

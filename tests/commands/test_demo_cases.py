@@ -18,6 +18,7 @@ ORACLE = pathlib.Path(os.environ["PALPATE_BUILD"]) / "tests" / "press_oracle"
 VTK_SUMMARY = pathlib.Path(os.environ["PALPATE_BUILD"]) / "tests" / "vtk_summary"
 SAMPLES = SOURCE / "build" / "sample_data"
 
+UNSETTLED_SHARE = 0.004  # of a slide's ticks; 0.001 measured
 FORCE_TOLERANCE = 0.01  # relative; what a press may differ from the direct solve
 
 
@@ -61,8 +62,15 @@ class DemoCases(unittest.TestCase):
             self.assertLess(judgement["deepest_inside_mm"], 0.01)
             # Loads far apart count as points in a tick: 0.004 mm on the liver.
             self.assertLess(judgement["felt_residual_mm"], 0.01)
+            self.check_slide_comes_to_rest(asset)
             if and_then:
                 and_then(asset, folder)
+
+    def check_slide_comes_to_rest(self, asset):
+        """But where it slips over an edge, whose saddle the search for an equilibrium is not to stay at."""
+        slid = json.loads(run(BIN / "palpate", "touch", asset, "--script", "slide", "--virtual-clock", "--json", "-").stdout)
+        self.assertGreater(slid["force_peak_n"], 0.05)
+        self.assertLess(slid["statuses"].get("contact_unsettled", 0), UNSETTLED_SHARE * slid["ticks"])
 
     def check_force_follows_depth(self, log):
         """Up to the first rest at full depth force never falls; at the end of the release it is zero."""

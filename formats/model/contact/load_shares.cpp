@@ -22,9 +22,10 @@ constexpr double elements_in_radius = 2.5;
 // What R² gains by linear elements, in edges' lengths squared. R²/4 is the density's second moment, to which
 // sharing forces between vertices among them adds e²/4 on the mean, in equilateral triangles of edge e. As
 // much again was measured: linear elements are too stiff under what changes within one. How much more tissue
-// gives way to the narrower of two discs is what 2 says within 8 % on a cube (1: 19 % more) by
-// LoadSpread.a_narrower_disc_gives_way_more_as_its_radius_says, and within 1 % on flat parts of the demo's
-// liver and nasopharynx (1: 16 % more), and 22 % more than a brain does, by tests/benchmarks/spread_discs.py.
+// gives way to the narrower of two discs, 2 says too large by 6 % on a cube (1: by 24 %), as
+// LoadSpread.a_narrower_disc_gives_way_more_as_its_radius_says measures, and within 1 % on flat parts of the
+// demo's liver and nasopharynx (1: by 16 %), but by 22 % on those of a brain, as
+// tests/benchmarks/spread_discs.py does.
 constexpr double edges_squared = 2;
 constexpr double same_side = 0.3;  // cosine between normals that a disc takes together
 

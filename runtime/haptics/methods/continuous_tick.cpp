@@ -57,13 +57,17 @@ Vector3d ContinuousContact::force_of(std::size_t t, TickResult& result) noexcept
     const auto walls = result.contact_count;
     equilibrium_.write_contacts(t, result);
     const bool found = equilibrium_.solved(t);
-    if (result.contact_count == 0 && (found || !equilibrium_.touches_tissue(t)))
+    const TickStatus unrest =
+        equilibrium_.touches_tissue(t) && equilibrium_.change() > unsettled ? contact_unsettled : tick_ok;
+    if (result.contact_count == 0 && (found || !equilibrium_.touches_tissue(t))) {
+        result.status |= unrest;
         return rigid_force(tool.parts[0].on_rigid, tool.parts[0].device, result);
+    }
     const Vector3d press = equilibrium_.press(t);
     if (equilibrium_.was_cut(t)) result.status |= contacts_cut;
     if (!found) result.status |= contact_unsolved;
-    if (equilibrium_.change() > unsettled) result.status |= contact_unsettled;
     if (result.contact_count > 0 && equilibrium_.residual() <= unsolved && within_reach(t, press)) {
+        result.status |= unrest;
         result.residual = equilibrium_.residual();
         if (result.contact_count > walls) depth_in_tissue(tool, result);
         Vector3d force = press + equilibrium_.drag(t);

@@ -11,7 +11,7 @@ import unittest
 import h5py
 import numpy as np
 
-from trainer_case import TRAIN, TrainerCase, difference, yellow_pixels
+from trainer_case import TRAIN, TrainerCase, difference, is_whole, yellow_pixels
 
 ON_THE_ORGAN = 760, 250  # pixels of the first view
 
@@ -55,7 +55,7 @@ class Train(TrainerCase):
         process, _ = self.open_window("--size", "640x360")
         for name in ("palpate-sample-1.png", "palpate-sample-2.png"):
             self.x("xdotool", "key", "p")
-            self.wait_for((self.folder / name).exists)
+            self.wait_for(lambda: is_whole(self.folder / name))
             header = (self.folder / name).read_bytes()[:24]
             self.assertEqual((int.from_bytes(header[16:20], "big"), int.from_bytes(header[20:24], "big")), (640, 360))
         self.x("xdotool", "key", "q")

@@ -14,7 +14,6 @@ from sample_asset import SampleAsset  # noqa: E402
 from x_server import NEEDED, XServer  # noqa: E402
 
 BESIDE_THE_ORGAN = 50, 300  # pixels of the sample's first view, and of its start page
-PNG_END = b"IEND\xaeB`\x82"
 STILL = 0.05  # of a channel's 255 on average: nothing moves
 TRAIN = pathlib.Path(os.environ["PALPATE_BIN"]) / "palpate-train"
 
@@ -22,6 +21,11 @@ TRAIN = pathlib.Path(os.environ["PALPATE_BIN"]) / "palpate-train"
 def pixels(dump):
     """Of an X window's dump: red, green, blue, red, ..."""
     return subprocess.run(["convert", "xwd:-", "-depth", "8", "rgb:-"], input=dump, capture_output=True, check=True).stdout
+
+
+def is_whole(picture):
+    """Whether a PNG file is there and written to its end."""
+    return picture.exists() and picture.read_bytes().endswith(b"IEND\xaeB`\x82")
 
 
 def difference(one, other):
@@ -92,7 +96,7 @@ class TrainerCase(SampleAsset):
 
     def picture(self):
         """Red, green, blue, red, ... of the scene, coarse, as it is drawn after all that was sent so far."""
-        taken = lambda: [path for path in self.folder.glob("palpate-sample-*.png") if path.read_bytes().endswith(PNG_END)]
+        taken = lambda: list(filter(is_whole, self.folder.glob("palpate-sample-*.png")))
         before = set(taken())
         self.x("xdotool", "key", "F12")
         self.wait_for(lambda: set(taken()) - before)

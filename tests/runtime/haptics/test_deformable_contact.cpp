@@ -269,6 +269,7 @@ TEST_F(PartialContactSurface, shows_no_displacement_beyond_its_rim) {
 // force rises from the tissue's to the coupling's: steeply, but a step ten times as fine changes it a tenth
 // as much.
 TEST_F(PartialContactSurface, is_left_and_entered_without_a_jump_of_the_force) {
+    constexpr double rim_share = 0.1;  // of the way
     constexpr double refinement = 10,
                      slack = 1.5;         // where the force bends, a fine step catches the steepest place
     const Vector3d start(10, 9.7, 21.5);  // 1.5 mm deep
@@ -291,7 +292,9 @@ TEST_F(PartialContactSurface, is_left_and_entered_without_a_jump_of_the_force) {
             unsettled += result_.status != tick_ok;
             last = force;
         }
-        EXPECT_LE(unsettled, steps / 10);  // as it crosses the rim
+        // As it crosses the rim, where what a sphere sinks into ends: once there, once back.
+        EXPECT_GT(unsettled, 0);
+        EXPECT_LE(unsettled, steps * rim_share);
         EXPECT_GT(stiff, 2 * soft.z());
         stiffest = std::max(stiffest, stiff);
         // A solved contact does not remember the way.

@@ -278,7 +278,7 @@ TEST(Neighbours, give_back_what_a_closed_loop_put_in) {
         stored = std::max(stored, work);
         last_force = force_of(result);
     }
-    EXPECT_LE(unsettled, 2);
+    EXPECT_LE(unsettled, 2);  // one, on the circle
     EXPECT_EQ(last_force.norm(), 0);
     ASSERT_GT(stored, 0.1);
     EXPECT_NEAR(work, 0, 0.01 * stored);

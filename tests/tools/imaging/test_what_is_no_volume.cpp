@@ -35,10 +35,21 @@ TEST(ReadVolume, texts_that_metaio_has_no_room_for_are_refused) {
     const TemporaryFolder folder;
     const std::string begin = "ObjectType = Image\nNDims = 3\n", text(255, 'a');
     const std::string end = "\nDimSize = 2 2 2\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n";
-    for (const std::string& line : {text + " = 1", "Comment = " + text, "  ObjectSubType : " + text}) {
+    for (const std::string& line :
+         {text + " = 1", "Comment = " + text, "  ObjectSubType : " + text, "AcquisitionDate = " + text}) {
         write_bytes(folder / "v.mha", begin + line + end + "12345678");
         EXPECT_SAYS(test::volume_refusal(folder / "v.mha"), "of more than 254 characters") << line;
     }
+    // MetaIO takes each of these for a comment.
+    for (const std::string& line :
+         {"Comment\n= " + text, "\fComment = " + text, "Offset = 0 0 0\rComment = " + text,
+          "Comment" + std::string(1, '\0') + "x = " + text}) {
+        write_bytes(folder / "v.mha", begin + line + end + "12345678");
+        EXPECT_SAYS(test::volume_refusal(folder / "v.mha"), " in its header") << line;
+    }
+    EXPECT_SAYS(test::volume_refusal(folder / "v.mha"), "correct the header");
+    write_bytes(folder / "v.mha", begin + "ElementDataFiles = x\nComment = " + text + end + "12345678");
+    EXPECT_SAYS(test::volume_refusal(folder / "v.mha"), "of more than 254 characters");
     write_bytes(folder / "v.mha", begin + "Comment = " + text.substr(1) + end + "12345678");
     EXPECT_EQ(test::volume_refusal(folder / "v.mha"), "nothing was refused");
 }

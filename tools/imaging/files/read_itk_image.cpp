@@ -25,15 +25,27 @@
 namespace palpate::imaging {
 namespace {
 
-// MetaIO copies the names of fields, and the texts of these, into 255 bytes.
-bool overflows_metaio(const std::string& line) {
+// The field that a line of a MetaImage's header names.
+std::string field_of(const std::string& line) {
+    return trimmed(line.substr(0, line.find_first_of("=:")));
+}
+
+// MetaIO copies the names of fields and these texts into 255 bytes. It ends a name at other control
+// characters too, and seeks its separator in the lines that follow.
+std::string fault_for_metaio(const std::string& whole_line) {
     constexpr std::size_t longest = 254;
-    constexpr std::array<std::string_view, 4> texts{"Comment", "Name", "ObjectType", "ObjectSubType"};
-    const std::size_t separator = std::min(line.find_first_of("=:"), line.size());
-    if (separator > longest) return true;
-    const std::string text = trimmed(line.substr(std::min(separator + 1, line.size())));
-    return text.size() > longest &&
-           std::ranges::find(texts, trimmed(line.substr(0, separator))) != texts.end();
+    constexpr std::array<std::string_view, 5> texts{"Comment", "Name", "ObjectType", "ObjectSubType",
+                                                    "AcquisitionDate"};
+    const std::string line = trimmed(whole_line), name = field_of(line);
+    if (line.empty()) return "";
+    if (std::ranges::any_of(line, [](unsigned char c) { return c < ' ' && c != '\t'; }))
+        return "has a control character in its header";
+    const std::size_t separator = line.find_first_of("=:");
+    if (separator == std::string::npos || name.empty()) return "has a line in its header that names no field";
+    const bool is_text = std::ranges::find(texts, name) != texts.end();
+    if (name.size() > longest || (is_text && trimmed(line.substr(separator + 1)).size() > longest))
+        return "has a field, or a text in it, of more than 254 characters";
+    return "";
 }
 
 // What NrrdIO and MetaIO go through without an end, or beyond theirs: each line of a header once for each
@@ -55,16 +67,17 @@ void require_short_header(const std::filesystem::path& path, bool nrrd) {
     for (std::string line; std::getline(stream, line) && !(nrrd && trimmed(line).empty());) {
         if (++lines > most_lines || (stream.eof() && head.size() > longest))
             refuse("has a header of more than 8192 lines or 1 MiB", "");
-        if (!nrrd && overflows_metaio(line))
-            refuse("has a field, or a text in it, of more than 254 characters", "");
+        if (!nrrd) {
+            if (const std::string fault = fault_for_metaio(line); !fault.empty()) refuse(fault, "");
+        }
         if (!nrrd && line.find("NDims") != std::string::npos) {
             std::erase_if(line, [](unsigned char c) { return std::isspace(c) != 0; });
             const std::string value = line.substr(std::min(line.size(), std::size_t{6}));
             if (!line.starts_with("NDims") || value.size() != 1 || value[0] < '1' || value[0] > '9')
                 refuse("has NDims '" + as_utf8(value).substr(0, 40) + "'", "1 to 9");
         }
+        if (!nrrd && field_of(line) == "ElementDataFile") return;
         const std::string field = in_lower_case(line);
-        if (!nrrd && field.starts_with("elementdatafile")) return;
         if (!nrrd || !(field.starts_with("data file:") || field.starts_with("datafile:"))) continue;
         const std::string value = trimmed(line.substr(line.find(':') + 1));
         std::istringstream words(value.substr(std::min(value.size(), value.rfind('%'))));

@@ -74,7 +74,7 @@ class ContactEquilibrium {
     }
     /// Worst violation of the contact conditions, mm.
     double residual() const noexcept { return residual_; }
-    /// By how much what was found last differs from what the round before it found, mm.
+    /// By how much the last answer differs from the state of tools and tissue that it answers, mm.
     double change() const noexcept { return change_; }
     /// Appends the contacts with deformable bodies that press the tool.
     void write_contacts(std::size_t tool, TickResult& result) const noexcept;

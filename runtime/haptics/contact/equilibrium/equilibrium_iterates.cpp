@@ -138,20 +138,29 @@ ContactEquilibrium::Weights ContactEquilibrium::next_state(std::size_t iteration
         next = mix(iteration, known, 0);
         far = departure(next, newest);
     }
-    const double step = far > farthest_ahead * change ? farthest_ahead * change / far : 1;
-    if (!climbs(next, newest)) return between(alone(newest), next, step);
-    // To a saddle, as where a sphere rolls over an edge. What lies there across its ridge is stiff, and
-    // answers to it alternate: so away from it, from the middle of two answers.
-    Weights middle = alone(newest);
-    if (known > 1) middle[newest] = middle[answer_of(iteration - 1)] = 0.5;
-    return between(middle, next, -step);
+    if (climbs(next, newest)) {
+        // To a saddle, as where a sphere rolls over an edge. What lies there across its ridge is stiff, and
+        // answers to it alternate: so away from it, from the middle of two answers.
+        Weights middle = alone(newest);
+        if (known > 1) middle[newest] = middle[answer_of(iteration - 1)] = 0.5;
+        next = between(middle, next, -std::min(1.0, farthest_ahead * change / far));
+        far = departure(next, newest);
+    }
+    return far > farthest_ahead * change ? between(alone(newest), next, farthest_ahead * change / far) : next;
 }
 
 // How far a combination of answers is from one of them, mm.
 double ContactEquilibrium::departure(const Weights& weights, std::size_t from) const noexcept {
     double most = 0;
-    for (const Tool& tool : tools_)
-        most = std::max(most, (combined(weights, tool.next_off) - tool.next_off[from]).norm());
+    const auto depart = [&](const Offsets& answers) {
+        return (combined(weights, answers) - answers[from]).norm();
+    };
+    for (const Tool& tool : tools_) {
+        most = std::max(most, depart(tool.next_off));
+        for (const Part& part : std::span(tool.parts).first(tool.felt))
+            for (const Touch& touch : part.touches)
+                most = std::max({most, depart(touch.next_sunk), depart(touch.next_drag) / coupling_});
+    }
     for (const DeformedPatch& patch : patches_) most = std::max(most, patch.departure(weights, from));
     return most;
 }
