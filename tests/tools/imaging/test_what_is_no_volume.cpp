@@ -40,18 +40,21 @@ TEST(ReadVolume, texts_that_metaio_has_no_room_for_are_refused) {
         write_bytes(folder / "v.mha", begin + line + end + "12345678");
         EXPECT_SAYS(test::volume_refusal(folder / "v.mha"), "of more than 254 characters") << line;
     }
-    // MetaIO takes each of these for a comment.
+    // MetaIO takes each of these for a comment or a name of its own.
     for (const std::string& line :
-         {"Comment\n= " + text, "\fComment = " + text, "Offset = 0 0 0\rComment = " + text,
-          "Comment" + std::string(1, '\0') + "x = " + text}) {
+         {"Comment\n\n= " + text, "Comment\nFoo = " + text, "\fComment\t: " + text, "Comment\rFoo = " + text,
+          "Comment" + std::string(1, '\0') + "Foo = " + text, "Foo\nElementDataFile = x\nComment = " + text,
+          "ElementDataFiles = x\nComment = " + text, text}) {
         write_bytes(folder / "v.mha", begin + line + end + "12345678");
-        EXPECT_SAYS(test::volume_refusal(folder / "v.mha"), " in its header") << line;
+        EXPECT_SAYS(test::volume_refusal(folder / "v.mha"), "of more than 254 characters") << line;
     }
-    EXPECT_SAYS(test::volume_refusal(folder / "v.mha"), "correct the header");
-    write_bytes(folder / "v.mha", begin + "ElementDataFiles = x\nComment = " + text + end + "12345678");
-    EXPECT_SAYS(test::volume_refusal(folder / "v.mha"), "of more than 254 characters");
-    write_bytes(folder / "v.mha", begin + "Comment = " + text.substr(1) + end + "12345678");
-    EXPECT_EQ(test::volume_refusal(folder / "v.mha"), "nothing was refused");
+    // And has room for these, such as a text of several lines out of DICOM.
+    for (const std::string& line :
+         {"Comment = " + text.substr(1), std::string("0020|4000 = one\r\ntwo\n0020|0010 = 3"),
+          "0020|4000 = \x1b$B" + text, "Foo\nComment = " + text, "= " + text}) {
+        write_bytes(folder / "v.mha", begin + line + end + "12345678");
+        EXPECT_EQ(test::volume_refusal(folder / "v.mha"), "nothing was refused") << line;
+    }
 }
 
 }  // namespace

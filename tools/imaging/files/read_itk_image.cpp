@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
@@ -20,77 +19,11 @@
 #include "formats/model/errors.hpp"
 #include "tools/imaging/files/itk_image.hpp"
 #include "tools/imaging/files/read_image.hpp"
+#include "tools/imaging/files/text_headers.hpp"
 #include "tools/imaging/files/trimmed.hpp"
 
 namespace palpate::imaging {
 namespace {
-
-// The field that a line of a MetaImage's header names.
-std::string field_of(const std::string& line) {
-    return trimmed(line.substr(0, line.find_first_of("=:")));
-}
-
-// MetaIO copies the names of fields and these texts into 255 bytes. It ends a name at other control
-// characters too, and seeks its separator in the lines that follow.
-std::string fault_for_metaio(const std::string& whole_line) {
-    constexpr std::size_t longest = 254;
-    constexpr std::array<std::string_view, 5> texts{"Comment", "Name", "ObjectType", "ObjectSubType",
-                                                    "AcquisitionDate"};
-    const std::string line = trimmed(whole_line), name = field_of(line);
-    if (line.empty()) return "";
-    if (std::ranges::any_of(line, [](unsigned char c) { return c < ' ' && c != '\t'; }))
-        return "has a control character in its header";
-    const std::size_t separator = line.find_first_of("=:");
-    if (separator == std::string::npos || name.empty()) return "has a line in its header that names no field";
-    const bool is_text = std::ranges::find(texts, name) != texts.end();
-    if (name.size() > longest || (is_text && trimmed(line.substr(separator + 1)).size() > longest))
-        return "has a field, or a text in it, of more than 254 characters";
-    return "";
-}
-
-// What NrrdIO and MetaIO go through without an end, or beyond theirs: each line of a header once for each
-// other, every name of a pattern, every one of the dimensions that a MetaImage claims, the names of its
-// fields.
-void require_short_header(const std::filesystem::path& path, bool nrrd) {
-    constexpr std::size_t longest = std::size_t{1} << 20;
-    constexpr int most_lines = 8192;
-    constexpr double most_files = 65536;
-    const auto refuse = [&](const std::string& found, const std::string& expected) {
-        throw InvalidInput({path.string(), found, expected, "correct the header"});
-    };
-    std::string head(longest + 1, '\0');
-    std::ifstream file(path, std::ios::binary);
-    file.read(head.data(), static_cast<std::streamsize>(head.size()));
-    head.resize(static_cast<std::size_t>(file.gcount()));
-    std::istringstream stream(head);
-    int lines = 0;
-    for (std::string line; std::getline(stream, line) && !(nrrd && trimmed(line).empty());) {
-        if (++lines > most_lines || (stream.eof() && head.size() > longest))
-            refuse("has a header of more than 8192 lines or 1 MiB", "");
-        if (!nrrd) {
-            if (const std::string fault = fault_for_metaio(line); !fault.empty()) refuse(fault, "");
-        }
-        if (!nrrd && line.find("NDims") != std::string::npos) {
-            std::erase_if(line, [](unsigned char c) { return std::isspace(c) != 0; });
-            const std::string value = line.substr(std::min(line.size(), std::size_t{6}));
-            if (!line.starts_with("NDims") || value.size() != 1 || value[0] < '1' || value[0] > '9')
-                refuse("has NDims '" + as_utf8(value).substr(0, 40) + "'", "1 to 9");
-        }
-        if (!nrrd && field_of(line) == "ElementDataFile") return;
-        const std::string field = in_lower_case(line);
-        if (!nrrd || !(field.starts_with("data file:") || field.starts_with("datafile:"))) continue;
-        const std::string value = trimmed(line.substr(line.find(':') + 1));
-        std::istringstream words(value.substr(std::min(value.size(), value.rfind('%'))));
-        double first = 0, last = 0, step = 1;
-        if (std::string pattern;
-            words >> pattern >> first >> last >> step && !(std::abs((last - first) / step) <= most_files))
-            refuse("keeps its voxels in more than 65536 files", "");
-        std::error_code none;
-        if (const auto file = path.parent_path() / value;
-            std::filesystem::exists(file, none) && !std::filesystem::is_regular_file(file, none))
-            refuse("keeps its voxels in what is no file", "a file");
-    }
-}
 
 itk::ImageIOBase::Pointer image_io_of(const std::filesystem::path& path) {
     const std::array<itk::ImageIOBase::Pointer, 2> candidates{itk::NrrdImageIO::New().GetPointer(),
@@ -363,7 +296,7 @@ std::string reason_of(const itk::ExceptionObject& error) {
 StoredImage read_itk_image(const std::filesystem::path& path, const NoteSink& note) {
     const itk::ImageIOBase::Pointer io = image_io_of(path);  // looks at 8000 bytes at most
     const bool meta = dynamic_cast<itk::MetaImageIO*>(io.GetPointer()) != nullptr;
-    require_short_header(path, !meta);
+    meta ? require_short_metaimage_header(path) : require_short_nrrd_header(path);
     try {
         io->SetFileName(path.string());
         io->ReadImageInformation();

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/imaging/files/text_headers.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <sstream>
+#include <string>
+#include <string_view>
+
+#include "formats/model/errors.hpp"
+#include "tools/imaging/files/read_image.hpp"
+#include "tools/imaging/files/trimmed.hpp"
+
+namespace palpate::imaging {
+namespace {
+
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& found,
+                         const std::string& expected) {
+    throw InvalidInput({path.string(), found, expected, "correct the header"});
+}
+
+bool is_space(unsigned char c) {
+    return std::isspace(c) != 0;
+}
+
+// Reads lines until `is_last` says so.
+void read_lines(const std::filesystem::path& path, const std::function<bool(const std::string&)>& is_last) {
+    constexpr std::size_t longest = std::size_t{1} << 20;
+    constexpr int most_lines = 8192;
+    std::string head(longest + 1, '\0');
+    std::ifstream file(path, std::ios::binary);
+    file.read(head.data(), static_cast<std::streamsize>(head.size()));
+    head.resize(static_cast<std::size_t>(file.gcount()));
+    std::istringstream stream(head);
+    int lines = 0;
+    for (std::string line; std::getline(stream, line);) {
+        if (++lines > most_lines || (stream.eof() && head.size() > longest))
+            refuse(path, "has a header of more than 8192 lines or 1 MiB", "");
+        if (is_last(line)) return;
+    }
+}
+
+void check_files_of_nrrd(const std::filesystem::path& path, const std::string& value) {
+    constexpr double most_files = 65536;
+    std::istringstream words(value.substr(std::min(value.size(), value.rfind('%'))));
+    double first = 0, last = 0, step = 1;
+    if (std::string pattern;
+        words >> pattern >> first >> last >> step && !(std::abs((last - first) / step) <= most_files))
+        refuse(path, "keeps its voxels in more than 65536 files", "");
+    std::error_code none;
+    if (const auto file = path.parent_path() / value;
+        std::filesystem::exists(file, none) && !std::filesystem::is_regular_file(file, none))
+        refuse(path, "keeps its voxels in what is no file", "a file");
+}
+
+// What MetaIO takes for the name of a field where a line begins: up to a separator or a carriage return, and
+// as a text of C up to a zero.
+std::string name_of_field(std::string_view line) {
+    line.remove_prefix(static_cast<std::size_t>(std::ranges::find_if_not(line, is_space) - line.begin()));
+    line = line.substr(0, line.find_first_of(std::string_view("=:\r\0", 4)));
+    while (!line.empty() && is_space(static_cast<unsigned char>(line.back()))) line.remove_suffix(1);
+    return std::string(line);
+}
+
+void check_dimensions(const std::filesystem::path& path, std::string line) {
+    std::erase_if(line, is_space);
+    const std::string value = line.substr(std::min(line.size(), std::size_t{6}));
+    if (!line.starts_with("NDims") || value.size() != 1 || value[0] < '1' || value[0] > '9')
+        refuse(path, "has NDims '" + as_utf8(value).substr(0, 40) + "'", "1 to 9");
+}
+
+}  // namespace
+
+void require_short_nrrd_header(const std::filesystem::path& path) {
+    read_lines(path, [&](const std::string& line) {
+        const std::string field = in_lower_case(line);
+        if (field.starts_with("data file:") || field.starts_with("datafile:"))
+            check_files_of_nrrd(path, trimmed(line.substr(line.find(':') + 1)));
+        return trimmed(line).empty();
+    });
+}
+
+void require_short_metaimage_header(const std::filesystem::path& path) {
+    constexpr std::size_t longest = 254;
+    constexpr std::array<std::string_view, 5> texts{"Comment", "Name", "ObjectType", "ObjectSubType",
+                                                    "AcquisitionDate"};
+    std::string waiting;  // a name whose separator MetaIO seeks in the lines that follow
+    read_lines(path, [&](const std::string& line) {
+        const std::string name = waiting.empty() ? name_of_field(line) : waiting;
+        const std::size_t separator = line.find_first_of("=:");
+        if (line.find("NDims") != std::string::npos) check_dimensions(path, line);
+        waiting = separator == std::string::npos ? name : "";
+        const bool is_text = separator != std::string::npos && std::ranges::find(texts, name) != texts.end();
+        if (name.size() > longest || (is_text && trimmed(line.substr(separator + 1)).size() > longest))
+            refuse(path, "has a field, or a text in it, of more than 254 characters", "");
+        return separator != std::string::npos && name == "ElementDataFile";
+    });
+}
+
+}  // namespace palpate::imaging

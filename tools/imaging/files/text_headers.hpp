@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <filesystem>
+
+namespace palpate::imaging {
+
+/// Throws InvalidInput where NrrdIO would not come to an end with a header: of more than 8192 lines or 1 MiB,
+/// each of which it holds against each other, or of a pattern of more than 65536 files; or with what is no
+/// file.
+void require_short_nrrd_header(const std::filesystem::path& path);
+
+/// Throws InvalidInput where MetaIO would not come to an end with a header, which has as many lines and 1 to
+/// 9 dimensions, or would write behind the 255 bytes that it has for the name of a field and some texts.
+void require_short_metaimage_header(const std::filesystem::path& path);
+
+}  // namespace palpate::imaging
