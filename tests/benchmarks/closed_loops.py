@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a hand gets back that goes round on frictionless tissue: the work of a closed loop, of what was stored by pressing.
 
-    closed_loops.py ASSET [--depth MM] [--radius MM] [--places N] [--held]      (PALPATE_BIN has the programs)
+    closed_loops.py ASSET [--depth MM] [--radius MM] [--places N] [--held] [--edges]      (PALPATE_BIN has the programs)
 
 At places drawn evenly over the surface, where all of it gives way or, with --held, triangles under the circle have held corners, where
 it is no edge (normals within 70 degrees) and nothing stands opposite or beside, an infinitely stiff hand goes straight in, then twice
 round a circle in the plane of the surface there, in steps of 0.02 mm. The work of the second round should be nothing. Loops that leave
-the tissue are left out.
+the tissue are left out. With --edges, places on edges and with something opposite or beside count too.
 """
 import argparse
 import csv
@@ -23,7 +23,7 @@ PALPATE = pathlib.Path(os.environ.get("PALPATE_BIN", "build/release/bin")) / "pa
 STEP = 0.02  # mm
 
 
-def places(asset, count, circle, held):
+def places(asset, count, circle, held, edges):
     """Points and inward normals (mm) where the surface around is free and no edge, and the tool's radius."""
     with h5py.File(asset) as file:
         body, radius = file["palpate/bodies/deformable/0"], float(file["palpate/haptics"].attrs["tool_radius"])
@@ -42,7 +42,8 @@ def places(asset, count, circle, held):
         ahead = middle[t] + outward[t] * np.linspace(2 * radius + 1, 2 * radius + 6, 6)[:, None]
         facing = min(np.linalg.norm(middle - place, axis=1).min() for place in ahead) < radius
         suits = part_held[under].any() if held else not corners_held[around].any()
-        if suits and (outward[around] @ outward[t]).min() > 0.3 and not beside.any() and not facing:
+        open_there = (outward[around] @ outward[t]).min() > 0.3 and not beside.any() and not facing
+        if suits and (edges or open_there):
             found.append((middle[t], -outward[t]))
     return found[:count], radius
 
@@ -83,8 +84,9 @@ def main():
     parser.add_argument("--radius", type=float, default=3.0, help="of the circle [mm]")
     parser.add_argument("--places", type=int, default=24)
     parser.add_argument("--held", action="store_true", help="where triangles under the circle are held by some of their corners")
+    parser.add_argument("--edges", action="store_true", help="on edges and beside others as well")
     arguments = parser.parse_args()
-    chosen, tool = places(arguments.asset, arguments.places, arguments.radius, arguments.held)
+    chosen, tool = places(arguments.asset, arguments.places, arguments.radius, arguments.held, arguments.edges)
     with tempfile.TemporaryDirectory() as folder:
         loops = [loop(arguments.asset, pathlib.Path(folder), *path(*place, tool, arguments.depth, arguments.radius)) for place in chosen]
     kept = np.array([result for result in loops if result]) * 100

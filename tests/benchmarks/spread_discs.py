@@ -73,15 +73,18 @@ def main():
     with h5py.File(arguments.asset) as file:
         body = file["palpate/bodies/deformable/0"]
         surface, (modulus, ratio) = Surface(body), body["materials"][0]
+        held = body["rest_positions"][...][body["fixed_nodes"][...]]
     drawn = np.random.default_rng(0).choice(len(surface.area), min(arguments.places, len(surface.area)), replace=False)
     flat = [t for t in drawn if surface.is_flat(t)]
     found = [[surface.gives_way(t, disc * surface.edge) for disc in DISCS] for t in flat]
     kept = [(t, narrow - wide) for t, (narrow, wide) in zip(flat, found) if narrow is not None and wide is not None]
     more = [difference for _, difference in kept]
-    own = np.median([2 * np.sqrt(surface.area[t] / np.sqrt(3)) for t, _ in kept])  # of an equilateral triangle as large
+    own = [2 * np.sqrt(surface.area[t] / np.sqrt(3)) for t, _ in kept]  # edge of an equilateral triangle as large
+    to_held = [np.linalg.norm(held - surface.middle[t], axis=1).min() for t, _ in kept]
     low, median, high = np.percentile(more, [25, 50, 75])
-    print(f"{arguments.asset.stem}: edge {surface.edge:.2f} mm, there {own:.2f} mm; {len(more)} places, "
+    print(f"{arguments.asset.stem}: edge {surface.edge:.2f} mm, there {np.median(own):.2f} mm; {len(more)} places, "
           f"narrower disc gives way more by {median:.3f} mm/N ({low:.2f} to {high:.2f} in the middle half)")
+    print(f"correlation with that edge {np.corrcoef(more, own)[0, 1]:.2f}, with the distance to held nodes {np.corrcoef(more, to_held)[0, 1]:.2f}")
     for multiple in 0, 1, 2, 3:
         radii = [surface.edge * np.sqrt(disc**2 + multiple) for disc in DISCS]
         print(f"R² + {multiple} edge²: {SPREAD * (1 - ratio**2) / modulus * (1 / radii[0] - 1 / radii[1]):.3f} mm/N")

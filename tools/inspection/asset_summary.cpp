@@ -57,7 +57,7 @@ void add_regions(Json& rows, const DeformableBody& body) {
         rows.push_back({{"body", body.name},
                         {"region", body.mesh.region_names[i].name},
                         {"label", region},
-                        {"youngs_modulus_kpa", material.youngs_modulus / 1e-3},
+                        {"youngs_modulus_kpa", material.youngs_modulus / 1e-3},  // of 9 * 1e-3, 9
                         {"poissons_ratio", material.poissons_ratio},
                         {"relaxation", relaxation_text(relaxation_of(body, region))},
                         {"tetrahedra", std::ranges::count(body.mesh.regions, region)},

@@ -16,7 +16,7 @@ DETAIL = 50  # of a channel's 255: what grain and edges may change of a pixel wh
 class Views(TrainerCase):
     def open_window(self):
         process, window = super().open_window()
-        self.press("BackSpace")  # leave the start page
+        self.leave_start_page(window)
         return process, window
 
     def close(self, process):

@@ -87,7 +87,7 @@ class TrainerCase(SampleAsset):
         """Whether the dark sheet of the start page lies over the organ."""
         small = subprocess.run(["convert", "xwd:-", "-resize", "16x9!", "-depth", "8", "rgb:-"],
                                input=self.screen(window), capture_output=True, check=True).stdout
-        return max(small[3 * (16 * 7 + 8):][:3]) < 60
+        return max(small[3 * (16 * 7 + 8):][:3]) < 60  # in column 8 and row 7, where the organ is brighter
 
     def leave_start_page(self, window):
         self.wait_for(lambda: self.shows_page(window))  # before it is there its keys are the window's

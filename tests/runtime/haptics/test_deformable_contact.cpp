@@ -292,7 +292,8 @@ TEST_F(PartialContactSurface, is_left_and_entered_without_a_jump_of_the_force) {
             unsettled += result_.status != tick_ok;
             last = force;
         }
-        // As it crosses the rim, where what a sphere sinks into ends: once there, once back.
+        // As it crosses the rim, where what a sphere sinks into ends: once there, once back. Should none be
+        // left, another test must see that unsettled ticks are told.
         EXPECT_GT(unsettled, 0);
         EXPECT_LE(unsettled, steps * rim_share);
         EXPECT_GT(stiff, 2 * soft.z());
