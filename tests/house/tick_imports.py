@@ -18,6 +18,7 @@ from pathlib import Path
 TICK = {
     "runtime/collision/CMakeFiles/palpate_collision.dir": {
         "neighbourhood": "sweeps against the triangles next to the tool",
+        "rounded_triangle": "a point against one triangle that is round at its edges",
         "segment_queries": "segments against segments and triangles",
         "surface_access": "triangles and nodes, read by every query",
         "surface_normals": "inside or outside, normals",

@@ -4,6 +4,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "tests/formats/sample_case.hpp"
 
@@ -39,8 +41,10 @@ Eigen::MatrixXd dense_stiffness(const TetMesh& mesh, const Material& material) {
     return K;
 }
 
-DeformableBody true_elastic_cube(int cells) {
-    DeformableBody body = elastic_cube(cells);
+namespace {
+
+// Its compliance anew, of soft tissue.
+DeformableBody with_true_compliance(DeformableBody body) {
     for (RegionMaterial& region : body.materials) region.material = soft_tissue();
     Eigen::MatrixXd K = dense_stiffness(body.mesh, soft_tissue());
     for (const std::int32_t node : body.fixed_nodes)
@@ -62,6 +66,21 @@ DeformableBody true_elastic_cube(int cells) {
                 inverse(std::min(mesh_dof(i), mesh_dof(j)), std::max(mesh_dof(i), mesh_dof(j))));
     compliance.entries = std::shared_ptr<const float>(entries, entries.get());
     return body;
+}
+
+}  // namespace
+
+DeformableBody true_elastic_cube(int cells) {
+    return with_true_compliance(elastic_cube(cells));
+}
+
+DeformableBody true_elastic_arch(int cells, double radius) {
+    DeformableBody body = elastic_cube(cells);
+    for (auto* positions : {&body.mesh.rest_positions, &body.boundary.surface.vertices})
+        for (Eigen::Vector3d& p : *positions)
+            p.z() *= 1 - (radius - std::sqrt(radius * radius - (p.x() - 10) * (p.x() - 10))) / 20;
+    body.obb_tree = median_tree(body.boundary.surface, 4);
+    return with_true_compliance(std::move(body));
 }
 
 DeformableBody with_contact_nodes(DeformableBody body, const std::vector<std::int32_t>& contact_nodes) {

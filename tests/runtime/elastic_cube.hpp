@@ -14,6 +14,9 @@ Eigen::MatrixXd dense_stiffness(const TetMesh& mesh, const Material& material);
 /// without the fixed nodes, restricted to the contact nodes. 5 kPa, Poisson's ratio 0.45.
 DeformableBody true_elastic_cube(int cells);
 
+/// The same, its top bent to a cylinder of `radius` (mm) about an axis along y under the middle of the top.
+DeformableBody true_elastic_arch(int cells, double radius);
+
 /// The same body with these contact nodes alone (some of the body's own, ascending), and their rows and
 /// columns of its compliance.
 DeformableBody with_contact_nodes(DeformableBody body, const std::vector<std::int32_t>& contact_nodes);

@@ -17,7 +17,9 @@ ContactBodies::ContactBodies(const Case& patient_case, bool spreads_loads) {
         surfaces.push_back(
             std::make_unique<CollisionSurface>(body.boundary.surface, body.obb_tree, body.name));
         triangles.push_back(body.boundary.surface.triangles);
-        deformable.emplace_back(body, index, spreads_loads);
+        deformable.emplace_back(
+            body, inner_balls(body.boundary.surface, *surfaces.back(), patient_case.haptics.tool_radius),
+            index, spreads_loads);
     }
 }
 

@@ -9,6 +9,7 @@
 #include "formats/model/body.hpp"
 #include "formats/records/tick_result.hpp"
 #include "runtime/haptics/contact/creep.hpp"
+#include "runtime/haptics/contact/inner_balls.hpp"
 #include "runtime/haptics/contact/load_spread.hpp"
 
 namespace palpate::haptics {
@@ -17,9 +18,10 @@ namespace palpate::haptics {
 /// compliance.
 class DeformableContact {
   public:
-    /// `body_index` goes into the contacts. Throws InvalidInput if compliance and surface do not belong
-    /// together.
-    DeformableContact(const DeformableBody& body, std::int32_t body_index, bool spreads_load);
+    /// `inner_balls` are the body's, by surface vertex; `body_index` goes into the contacts. Throws
+    /// InvalidInput if compliance and surface do not belong together.
+    DeformableContact(const DeformableBody& body, std::vector<InnerBall> inner_balls, std::int32_t body_index,
+                      bool spreads_load);
 
     /// See HapticModel::surface_displacement(); contacts between other bodies are ignored. Thread-safe.
     void surface_displacement(std::span<const Contact> contacts,
@@ -36,6 +38,10 @@ class DeformableContact {
     std::size_t vertex_count() const noexcept { return vertices_.size(); }
     Eigen::Vector3d rest_position(std::int32_t vertex) const noexcept {
         return vertices_[vertex].cast<double>();
+    }
+    /// The ball inside the surface at a vertex, which goes with it.
+    const InnerBall& inner_ball(std::int32_t vertex) const noexcept {
+        return inner_balls_[static_cast<std::size_t>(vertex)];
     }
     /// Whether a vertex gives way at all: it is neither fixed nor left out.
     bool gives_way(std::int32_t vertex) const noexcept { return blocks_[vertex] >= 0; }
@@ -60,6 +66,7 @@ class DeformableContact {
     std::vector<Triangle> triangles_;  // surface vertices
     std::vector<std::array<std::int32_t, 3>> neighbours_;
     std::vector<Eigen::Vector3f> vertices_;  // at rest, p_P, mm
+    std::vector<InnerBall> inner_balls_;     // by vertex
     std::vector<TickCreep> creep_;
     std::vector<std::int32_t> creep_of_vertex_;  // -1 where it does not creep
 };

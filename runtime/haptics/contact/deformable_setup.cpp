@@ -9,8 +9,12 @@ using Eigen::Vector3f;
 
 constexpr double period = 1e-3;  // s
 
-DeformableContact::DeformableContact(const DeformableBody& body, std::int32_t body_index, bool spreads_load)
-    : body_index_(body_index), compliance_(body.compliance), triangles_(body.boundary.surface.triangles) {
+DeformableContact::DeformableContact(const DeformableBody& body, std::vector<InnerBall> inner_balls,
+                                     std::int32_t body_index, bool spreads_load)
+    : body_index_(body_index),
+      compliance_(body.compliance),
+      triangles_(body.boundary.surface.triangles),
+      inner_balls_(std::move(inner_balls)) {
     blocks_ = compliance_blocks(body);
     neighbours_ = triangle_neighbours(triangles_);
     if (spreads_load) spread_.emplace(body, blocks_);

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/LU>
+#include <algorithm>
+#include <array>
 #include <gtest/gtest.h>
 #include <limits>
 #include <span>
 
 #include "formats/model/contact/compliance_blocks.hpp"
 #include "formats/model/contact/local_indentation.hpp"
-#include "runtime/collision/triangle_queries.hpp"
+#include "runtime/collision/collision_surface.hpp"
+#include "runtime/haptics/contact/inner_balls.hpp"
 #include "runtime/haptics/contact/load_spread.hpp"
 #include "tests/runtime/haptics/held_tool.hpp"
 
@@ -23,6 +26,7 @@ class EquilibriumOracle {
           body_index_(body_index),
           blocks_(compliance_blocks(body)),
           spread_(body, blocks_),
+          surface_(body.boundary.surface, body.obb_tree, body.name),
           compliance_(inverse(body)) {}
 
     /// Displacement of each surface vertex under the contacts of all tools and neighbours, mm.
@@ -71,25 +75,34 @@ class EquilibriumOracle {
             const Eigen::Vector3d tool = Eigen::Map<const Eigen::Vector3d>(result.device_position.data()) +
                                          force_of(result) / coupling;
             const Eigen::Vector3d into = sunk(result, radius);
-            const auto corner = [&](std::int32_t vertex) -> Eigen::Vector3d {
+            const std::vector<haptics::InnerBall> balls = haptics::inner_balls(rest, surface_, radius);
+            const auto centre = [&](std::int32_t vertex) -> Eigen::Vector3d {
                 const auto v = static_cast<std::size_t>(vertex);
-                return rest.vertices[v] + moved[v] - (gives_way(vertex) ? into : Eigen::Vector3d::Zero());
+                return rest.vertices[v] + moved[v] + balls[v].inset -
+                       (gives_way(vertex) ? into : Eigen::Vector3d::Zero());
             };
             double nearest = std::numeric_limits<double>::infinity();
             for (const Triangle& t : rest.triangles) {
-                collision::TriangleCorners corners;
-                for (std::size_t i = 0; i < 3; ++i) corners[i] = corner(t[i]);
-                nearest = std::min(
-                    nearest, std::sqrt(collision::closest_point_on_triangle(tool, corners).squared_distance));
+                std::array<Eigen::Vector3d, 3> centres;
+                Eigen::Vector3d radii;
+                for (std::size_t i = 0; i < 3; ++i) {
+                    centres[i] = centre(t[i]);
+                    radii[static_cast<Eigen::Index>(i)] = balls[static_cast<std::size_t>(t[i])].radius;
+                }
+                nearest = std::min(nearest, distance_of_balls(tool, centres, radii));
             }
             EXPECT_NEAR(nearest, radius, tolerance);
             for (const Contact& contact : result.active_contacts()) {
                 EXPECT_GE(contact.force, 0);
                 Eigen::Vector3d point = Eigen::Vector3d::Zero();
-                for (std::size_t i = 0; i < 3; ++i)
-                    point += static_cast<double>(contact.weights[i]) * corner(contact.vertices[i]);
+                double ball = 0;
+                for (std::size_t i = 0; i < 3; ++i) {
+                    const auto weight = static_cast<double>(contact.weights[i]);
+                    point += weight * centre(contact.vertices[i]);
+                    ball += weight * balls[static_cast<std::size_t>(contact.vertices[i])].radius;
+                }
                 if (contact.force > 0) {
-                    EXPECT_NEAR((tool - point).norm(), radius, tolerance);
+                    EXPECT_NEAR((tool - point).norm(), radius + ball, tolerance);
                     EXPECT_NEAR(((tool - point).normalized() - normal_of(contact)).norm(), 0, tolerance);
                 }
             }
@@ -121,6 +134,35 @@ class EquilibriumOracle {
     }
 
   private:
+    // The least distance of p from the balls between a triangle's corners, which is convex over it: by ever
+    // smaller steps along the triangle from the best of its corners and middle.
+    static double distance_of_balls(const Eigen::Vector3d& p, const std::array<Eigen::Vector3d, 3>& centres,
+                                    const Eigen::Vector3d& radii) {
+        const auto distance = [&](double b, double c) {
+            const double a = 1 - b - c;
+            return (p - a * centres[0] - b * centres[1] - c * centres[2]).norm() - a * radii[0] -
+                   b * radii[1] - c * radii[2];
+        };
+        constexpr std::array<std::array<int, 2>, 6> ways{
+            {{1, 0}, {0, 1}, {-1, 1}, {-1, 0}, {0, -1}, {1, -1}}};
+        double b = 1.0 / 3, c = 1.0 / 3, least = distance(b, c);
+        for (double step = 0.5; step > 1e-6; step *= 0.5)
+            for (bool better = true; better;) {
+                better = false;
+                for (const auto& [along_b, along_c] : ways) {
+                    const double next_b = b + step * along_b, next_c = c + step * along_c;
+                    if (std::min({next_b, next_c, 1 - next_b - next_c}) < 0) continue;
+                    const double here = distance(next_b, next_c);
+                    if (here >= least) continue;
+                    b = next_b;
+                    c = next_c;
+                    least = here;
+                    better = true;
+                }
+            }
+        return least;
+    }
+
     bool gives_way(std::int32_t vertex) const { return blocks_[static_cast<std::size_t>(vertex)] >= 0; }
 
     Eigen::Vector3d force_on_what_gives_way(const TickResult& result) const {
@@ -175,6 +217,7 @@ class EquilibriumOracle {
     std::int32_t body_index_;
     std::vector<std::int32_t> blocks_;
     haptics::LoadSpread spread_;
+    collision::CollisionSurface surface_;
     Eigen::MatrixXd compliance_;
 };
 

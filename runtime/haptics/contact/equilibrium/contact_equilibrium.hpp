@@ -110,14 +110,14 @@ class ContactEquilibrium {
         std::array<std::int32_t, 3> slots{};
         Eigen::Vector3d weights = Eigen::Vector3d::Zero();
         Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-        Eigen::Vector3d point = Eigen::Vector3d::Zero();
-        double distance = 0;  // of the sphere's surface, mm
+        double radius = 0;    // of the sphere and of the ball that it meets, mm
+        double distance = 0;  // between their surfaces, mm
         double gap = 0;       // that forces must open, mm
         // How much of its point gives way: so much of what its sphere sinks in counts here. And the square of
         // that part's slope along face or edge, 1/mm².
         double part_giving_way = 1, slope_squared = 0;
         double force = 0;                  // N
-        std::int32_t place = 0, rank = 0;  // among all rows, and by distance among its tool's
+        std::int32_t place = 0, rank = 0;  // among all rows; by distance among its sphere's, then its tool's
         Contact* wall = nullptr;
     };
     // The rows of one sphere on one body: rows_[first] ... rows_[end - 1].

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "runtime/collision/triangle_queries.hpp"
+#include "runtime/collision/rounded_triangle.hpp"
 #include "runtime/haptics/contact/deformable_contact.hpp"
 #include "runtime/haptics/contact/fixed_list.hpp"
 
@@ -64,6 +64,17 @@ class DeformedPatch {
         for (std::size_t i = 0; i < 3; ++i)
             if (!gives_way(slots[i])) met[i] += sunk;
         return met;
+    }
+    /// What a sphere meets of a triangle whose met_corners() are these: it is round at its edges.
+    collision::RoundedTriangle rounded(std::int32_t triangle,
+                                       const collision::TriangleCorners& met) const noexcept {
+        collision::RoundedTriangle round{.centres = met, .radii = {}};
+        for (std::size_t i = 0; i < 3; ++i) {
+            const InnerBall& ball = body_->inner_ball(body_->triangle(triangle)[i]);
+            round.centres[i] += ball.inset;
+            round.radii[static_cast<Eigen::Index>(i)] = ball.radius;
+        }
+        return round;
     }
     bool gives_way(std::int32_t slot) const noexcept { return gives_way_[static_cast<std::size_t>(slot)]; }
     /// Where a vertex is, p_P, mm.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "runtime/haptics/contact/equilibrium/contact_equilibrium.hpp"
 
@@ -35,7 +36,9 @@ void ContactEquilibrium::gather_at_rest(std::size_t t, std::size_t p) noexcept {
         row.triangle = touch.foot.triangle;
         row.weights = touch.foot.barycentric;
         row.normal = touch.normal;
-        find_part_giving_way(row, patch, patch.corners(row.slots));
+        const RoundedTriangle round = patch.rounded(row.triangle, patch.corners(row.slots));
+        row.radius = radius_ + row.weights.dot(round.radii);
+        find_part_giving_way(row, patch, round.centres);
         row.gap =
             touch.normal.dot(part.sphere.if_rigid->position() - part.sphere.device -
                              tools_[t].drag / coupling_ - row.part_giving_way * part.touches[soft].sunk_free);
@@ -96,9 +99,9 @@ void ContactEquilibrium::look_around(std::size_t t, std::size_t p, std::size_t s
     for (const std::int32_t triangle : touch.near) visited[triangle] = search_;
     for (Surrounding& near : touch.around) {
         if (near.due > touch.way || touch.near.full() || visited[near.triangle] == search_) continue;
-        const TrianglePoint closest =
-            closest_point_on_triangle(centre, patch.look_at(near.triangle, touch.sunk));
-        const double distance = std::sqrt(closest.squared_distance);
+        const NearestBall ball =
+            nearest_ball(centre, patch.rounded(near.triangle, patch.look_at(near.triangle, touch.sunk)));
+        const double distance = ball.distance - ball.radius;
         if (distance < limit) touch.near.push_back(near.triangle);
         near.due = touch.way + std::max(0.0, distance - limit);
     }
@@ -129,10 +132,10 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
         if (rests.surface == bodies_.rigid_count() + soft) visit(rests.foot.triangle);
     const std::size_t seeds = queue_.size();
     FixedList<Vector3d, most_rows> shared;
-    FixedList<double, most_rows> shared_squared;  // distances of these, which tell most of them apart
+    FixedList<double, most_rows> shared_distances;  // of these, which tell most of them apart
     struct Nearest {
-        std::array<std::int32_t, 3> slots{};
-        Vector3d point;
+        TriangleCorners centres;
+        Vector3d centre;  // of the ball
     };
     FixedList<Nearest, max_contacts> nearest_ones;
     double nearest = limit;
@@ -141,36 +144,37 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
         const std::int32_t triangle = queue_[next];
         std::array<std::int32_t, 3> slots;
         if (!patch.slots_of(triangle, slots)) break;
-        const TriangleCorners met = patch.met_corners(slots, touch.sunk);
-        const TrianglePoint closest = closest_point_on_triangle(centre, met);
-        const bool near = closest.squared_distance < limit * limit;
+        const RoundedTriangle round = patch.rounded(triangle, patch.met_corners(slots, touch.sunk));
+        const NearestBall ball = nearest_ball(centre, round);
+        const double distance = ball.distance - ball.radius;
+        const bool near = distance < limit;
         if (walks && (near || next < seeds))
             for (const std::int32_t neighbour : body.neighbours(triangle)) visit(neighbour);
         if (!near) continue;
         if (!touch.near.full()) touch.near.push_back(triangle);
-        const double distance = std::sqrt(closest.squared_distance);
-        if (!(distance > 0)) continue;
+        if (!(ball.distance > 0)) continue;
         const auto gives_way = [&](std::int32_t slot) { return patch.gives_way(slot); };
         // A sphere may press thin tissue down to what it is held by at its back.
-        if (std::ranges::none_of(slots, gives_way) && unit_normal(met).dot(centre - closest.point) < 0) {
+        if (std::ranges::none_of(slots, gives_way) &&
+            unit_normal(round.centres).dot(centre - ball.centre) < 0) {
             behind_held = true;
         } else if (distance < nearest + same_place) {
             if (distance < nearest - same_place) nearest_ones.clear();
             nearest = std::min(nearest, distance);
-            if (!nearest_ones.full()) nearest_ones.push_back({slots, closest.point});
+            if (!nearest_ones.full()) nearest_ones.push_back({round.centres, ball.centre});
         }
         // Triangles have points in common where these are not within one of them.
-        if (closest.feature != Feature::face) {
+        if (ball.feature != Feature::face) {
             const auto same = [&](const Vector3d& other) {
-                return (other - closest.point).squaredNorm() < same_place * same_place;
+                return (other - ball.centre).squaredNorm() < same_place * same_place;
             };
             bool as_far = false;
-            for (const double squared : shared_squared)
-                as_far |= std::abs(squared - closest.squared_distance) < 3 * limit * same_place;
+            for (const double other : shared_distances)
+                as_far |= std::abs(other - ball.distance) < same_place;
             if (as_far && std::any_of(shared.begin(), shared.end(), same)) continue;
             if (!shared.full()) {
-                shared.push_back(closest.point);
-                shared_squared.push_back(closest.squared_distance);
+                shared.push_back(ball.centre);
+                shared_distances.push_back(ball.distance);
             }
         }
         Row row;
@@ -179,11 +183,11 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
         row.patch = static_cast<std::int32_t>(soft);
         row.triangle = triangle;
         row.slots = slots;
-        row.weights = closest.barycentric;
-        row.normal = (centre - closest.point) / distance;
-        row.point = closest.point;
+        row.weights = ball.barycentric;
+        row.normal = (centre - ball.centre) / ball.distance;
+        row.radius = radius_ + ball.radius;
         row.distance = distance - radius_;
-        find_part_giving_way(row, patch, met);
+        find_part_giving_way(row, patch, round.centres);
         row.gap = row.normal.dot(tool.off - tool.drag / coupling_ +
                                  row.part_giving_way * (touch.sunk - touch.sunk_free)) -
                   row.distance;
@@ -198,9 +202,8 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
     if (nearest_ones.empty()) return !behind_held;
     Vector3d normal = Vector3d::Zero(), away = Vector3d::Zero();
     for (const Nearest& one : nearest_ones) {
-        const TriangleCorners corners = patch.met_corners(one.slots, touch.sunk);
-        normal += angle_about(one.point, corners) * unit_normal(corners);
-        away = centre - one.point;
+        normal += angle_about(one.centre, one.centres) * unit_normal(one.centres);
+        away = centre - one.centre;
     }
     return normal.dot(away) >= 0;
 }
@@ -229,16 +232,24 @@ bool ContactEquilibrium::watched_are_clear() const noexcept {
     });
 }
 
-// Leaves as many rows as can be solved: each tool its nearest, in turn.
+// Leaves as many rows as can be solved: each tool its nearest, in turn, and of those of one sphere the second
+// after the nearest of all others, and so on.
 void ContactEquilibrium::cut_rows() noexcept {
     if (rows_.size() <= max_contacts) return;
     const auto soft = rows_.begin() + static_cast<std::ptrdiff_t>(wall_count());
     for (auto row = soft; row != rows_.end(); ++row) row->place = static_cast<std::int32_t>(row - soft);
+    const auto number = [&](const auto& of) {
+        for (auto row = soft; row != rows_.end(); ++row)
+            row->rank = row != soft && of(*std::prev(row)) == of(*row) ? std::prev(row)->rank + 1 : 0;
+    };
     std::sort(soft, rows_.end(), [](const Row& a, const Row& b) {
-        return std::tie(a.tool, a.distance, a.place) < std::tie(b.tool, b.distance, b.place);
+        return std::tie(a.tool, a.part, a.distance, a.place) < std::tie(b.tool, b.part, b.distance, b.place);
     });
-    for (auto row = soft; row != rows_.end(); ++row)
-        row->rank = row != soft && std::prev(row)->tool == row->tool ? std::prev(row)->rank + 1 : 0;
+    number([](const Row& row) { return std::pair(row.tool, row.part); });
+    std::sort(soft, rows_.end(), [](const Row& a, const Row& b) {
+        return std::tie(a.tool, a.rank, a.distance, a.place) < std::tie(b.tool, b.rank, b.distance, b.place);
+    });
+    number([](const Row& row) { return row.tool; });
     std::sort(soft, rows_.end(),
               [](const Row& a, const Row& b) { return std::tie(a.rank, a.tool) < std::tie(b.rank, b.tool); });
     for (std::size_t k = max_contacts; k < rows_.size(); ++k)

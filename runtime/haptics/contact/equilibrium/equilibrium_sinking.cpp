@@ -99,7 +99,7 @@ double ContactEquilibrium::sink(std::size_t iterate) noexcept {
         if (!spread) continue;
         for (const Row& row : rows_of(group)) {
             touch.push += row.part_giving_way * row.force * row.normal;
-            touch.righting += row.force * radius_ * row.slope_squared;
+            touch.righting += row.force * row.radius * row.slope_squared;
         }
         if (touch.push.isZero(0)) continue;
         touch.next_sunk[iterate] = touch.sunk_free + touch.sinking * touch.push;
