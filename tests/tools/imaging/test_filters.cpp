@@ -4,6 +4,7 @@
 #include <random>
 
 #include "tools/imaging/files/image_files.hpp"
+#include "tools/imaging/organs/random_walker.hpp"
 #include "tools/imaging/voxels/coarse_grid.hpp"
 #include "tools/imaging/voxels/filters.hpp"
 #include "tools/imaging/voxels/necks.hpp"
@@ -125,6 +126,36 @@ TEST(Necks, a_thin_bar_is_cut_and_a_thick_one_is_not) {
         EXPECT_GE(part.count(), ball);
         EXPECT_EQ(part.count() == mask.count(), joined);
     }
+}
+
+// A line of voxels 2 mm apart, the first certainly inside and the last certainly outside.
+Mask walked(const std::vector<float>& values, double trust_mm, float prior) {
+    ImageGrid grid;
+    grid.size = {static_cast<std::int32_t>(values.size()), 1, 1};
+    grid.spacing = {2, 1, 1};
+    Mask inside{grid, std::vector<std::uint8_t>(values.size(), 0)}, outside = inside;
+    inside.voxels.front() = outside.voxels.back() = 1;
+    return random_walk({grid, values},
+                       {inside, outside, std::vector<float>(values.size(), prior), 1, trust_mm});
+}
+
+TEST(RandomWalk, divides_an_even_line_in_the_middle_and_another_at_its_step) {
+    constexpr double no_trust = 1e6;  // mm
+    EXPECT_EQ(walked(std::vector<float>(10, 50), no_trust, 0).count(), 5U);
+    EXPECT_EQ(walked({0, 0, 9, 9, 9, 9, 9, 9, 9, 9}, no_trust, 0).count(), 2U);
+    EXPECT_EQ(walked({0, 0, 0, 0, 0, 0, 0, 9, 9, 9}, no_trust, 0).count(), 7U);
+}
+
+// On an even line the chance u of being inside solves u'' = (u - prior) / trust^2: with trust far below the
+// line's length and prior 0 it falls as exp(-x / trust) from the certain end, and is one half at trust ln 2.
+TEST(RandomWalk, believes_grey_values_beyond_the_trusted_length) {
+    const std::vector<float> even(200, 50);
+    for (const double trust_mm : {20.0, 40.0}) {
+        const double half_mm = trust_mm * std::log(2.0);
+        const auto voxels = static_cast<double>(walked(even, trust_mm, 0).count());
+        EXPECT_NEAR(2 * (voxels - 1), half_mm, 2) << trust_mm;  // a voxel
+    }
+    EXPECT_EQ(walked(even, 20, 1).count() + walked(even, 20, 0).count(), even.size());
 }
 
 }  // namespace

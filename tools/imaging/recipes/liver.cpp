@@ -5,8 +5,8 @@
 #include <span>
 
 #include "formats/model/errors.hpp"
+#include "tools/imaging/organs/organ.hpp"
 #include "tools/imaging/recipes/job.hpp"
-#include "tools/imaging/voxels/organ.hpp"
 
 namespace palpate::imaging {
 namespace {

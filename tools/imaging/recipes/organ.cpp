@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/imaging/voxels/organ.hpp"
+#include "tools/imaging/organs/organ.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -7,9 +7,9 @@
 #include <span>
 
 #include "formats/model/errors.hpp"
+#include "tools/imaging/organs/organ_seeds.hpp"
 #include "tools/imaging/recipes/job.hpp"
 #include "tools/imaging/voxels/hounsfield.hpp"
-#include "tools/imaging/voxels/organ_seeds.hpp"
 #include "tools/imaging/voxels/seed_statistics.hpp"
 
 namespace palpate::imaging {
@@ -51,6 +51,7 @@ Mask make_organ(const Job& job) {
         return organ(*job.volume, seeds, parameters, job.culprit(), job.note);
     parameters.per_hu = grey_at(*job.volume, seeds, job) / seeds_grey;
     parameters.unit = "";
+    parameters.wall_mm = 0;  // what is bright is fat as often as bone
     parameters.darkest_hu = 0;
     parameters.brightest_hu = std::numeric_limits<double>::infinity();
     Volume scaled = *job.volume;

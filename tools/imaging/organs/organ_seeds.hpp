@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/imaging/voxels/organ.hpp"
+#include "tools/imaging/organs/organ.hpp"
 
 namespace palpate::imaging {
 

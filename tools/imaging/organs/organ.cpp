@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/imaging/voxels/organ.hpp"
+#include "tools/imaging/organs/organ.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
 #include "formats/model/errors.hpp"
+#include "tools/imaging/organs/organ_seeds.hpp"
+#include "tools/imaging/organs/random_walker.hpp"
 #include "tools/imaging/voxels/coarse_grid.hpp"
 #include "tools/imaging/voxels/filters.hpp"
 #include "tools/imaging/voxels/necks.hpp"
-#include "tools/imaging/voxels/organ_seeds.hpp"
 #include "tools/imaging/voxels/seed_statistics.hpp"
 
 namespace palpate::imaging {
@@ -20,17 +21,20 @@ using Points = std::span<const Eigen::Vector3d>;
 constexpr double block_mm = 2;           // fine enough for the shape, coarse enough for noise and time
 constexpr double reach_mm = 200;         // further from the seeds no liver reaches
 constexpr double seed_reach_mm = 10;     // a seed may lie in a vessel or a lesion
-constexpr int smoothing_steps = 8;       // of the curvature flow
+constexpr double smoothing_steps = 8;    // of the curvature flow, on blocks of block_mm
 constexpr double bone_hu = 250;          // above vessels and kidneys in most contrast phases
 constexpr double rib_gap = 20;           // mm: balls of this radius do not pass between two ribs
 constexpr double first_edge_factor = 4;  // an edge is so much steeper than the surroundings of the seeds
 constexpr double edge_factor = 3;        // and, later, than what was found, vessels and all
 constexpr double least_edge = 1;         // HU per mm, for images without noise
+constexpr double least_noise = 1;        // HU, likewise
 constexpr double local_mm = 12;     // the local mean is taken over Gaussian surroundings of this deviation
 constexpr double organ_neck = 0.4;  // of cut_at_necks()
 constexpr double edge_mm = 4;       // edges are about this wide
 constexpr double regained_mm = 3;   // thinner parts stay this far from thick ones
-constexpr double surroundings_mm = 60;  // kept around what the first round found
+constexpr double border_mm = 5;     // the border is looked for this far either side of what was found
+constexpr double around_mm = 4;     // deviation of the Gaussian surroundings that say what lies around
+constexpr double trust_mm = 10;     // without an edge grey values decide over this length
 constexpr int most_rounds = 8;
 constexpr double settled = 0.01;  // share of voxels that a round may still add or lose
 
@@ -38,16 +42,23 @@ constexpr double settled = 0.01;  // share of voxels that a round may still add 
 struct Blocks {
     Volume grey;    // within 200 HU of the seeds
     Volume smooth;  // the same without noise
-    Mask wall;      // bone and the gaps between ribs
+    Mask wall;      // bone, the gaps between ribs, and what lies between them and any organ
     Volume steepness;
     double edge = 0;           // what is as steep is an edge, per mm
     std::vector<float> local;  // the organ's mean grey value around each block
 };
 
-Mask wall_of(const Volume& volume) {
+Mask wall_of(const Volume& volume, double wall_mm) {
     Mask bone{volume.grid, std::vector<std::uint8_t>(volume.values.size())};
     std::ranges::transform(volume.values, bone.voxels.begin(), [](float v) { return v >= bone_hu; });
-    return close(bone, rib_gap);
+    return dilate(close(bone, rib_gap), wall_mm);
+}
+
+// Steps of the curvature flow that smooth over the same length (its square grows with steps and with that of
+// a voxel's side): eight steps on voxels of 3 mm round the border of a liver off by more than one of them.
+int steps_on(const ImageGrid& grid) {
+    const double side = std::cbrt(grid.voxel_volume());
+    return std::max(1, static_cast<int>(std::lround(smoothing_steps * std::pow(block_mm / side, 2))));
 }
 
 // The gradient around each seed, and of those the median: single seeds lie near vessels or the border.
@@ -60,12 +71,12 @@ double inner_gradient(const Volume& steepness, Points seeds) {
     return robust_statistics(gradients).mean;
 }
 
-Blocks prepare(Volume grey, const OrganSeeds& seeds) {
-    Mask wall = wall_of(grey);
+Blocks prepare(Volume grey, const OrganSeeds& seeds, double wall_mm) {
+    Mask wall = wall_of(grey, wall_mm);
     for (float& value : grey.values)
         value =
             std::clamp(value, static_cast<float>(seeds.center - 200), static_cast<float>(seeds.center + 200));
-    Volume smooth = curvature_flow(grey, smoothing_steps);
+    Volume smooth = curvature_flow(grey, steps_on(grey.grid));
     Volume steepness = gradient_length(smooth, block_mm * 0.75);
     const double edge = std::max(least_edge, first_edge_factor * inner_gradient(steepness, seeds.points));
     std::vector<float> local(smooth.values.size());
@@ -75,16 +86,6 @@ Blocks prepare(Volume grey, const OrganSeeds& seeds) {
     });
     return {std::move(grey), std::move(smooth), std::move(wall), std::move(steepness), edge,
             std::move(local)};
-}
-
-Blocks crop_blocks(const Blocks& blocks, const Box& box) {
-    Volume local = crop(Volume{blocks.grey.grid, blocks.local}, box);
-    return {crop(blocks.grey, box),
-            crop(blocks.smooth, box),
-            crop(blocks.wall, box),
-            crop(blocks.steepness, box),
-            blocks.edge,
-            std::move(local.values)};
 }
 
 // The pieces of a mask that are nearest to a seed, at most `reach` (mm) away.
@@ -116,28 +117,6 @@ Mask thick_part(const Mask& candidates, Points seeds, double neck_mm) {
         core.voxels[i] = cut.voxels[i] && depth[i] >= neck_mm;
     core = pieces_at(core, seeds, 3 * seed_reach_mm);
     return intersect(dilate(core, neck_mm + regained_mm), cut);
-}
-
-// Adds the voxels around `mask` whose grey value is nearer to the organ's than to that of what follows.
-Mask with_rim(const Mask& mask, const Volume& blocks, const std::vector<float>& local,
-              const Mask& not_there) {
-    const ImageGrid& grid = mask.grid;
-    const Mask rim = subtract(dilate(mask, grid.spacing.maxCoeff()), mask);
-    Mask result = mask;
-    for_each_voxel(grid, [&](std::int32_t i, std::int32_t j, std::int32_t k, std::size_t offset) {
-        if (!rim.voxels[offset] || not_there.voxels[offset]) return;
-        double furthest = 0;
-        for (std::int32_t dk = -1; dk <= 1; ++dk)
-            for (std::int32_t dj = -1; dj <= 1; ++dj)
-                for (std::int32_t di = -1; di <= 1; ++di) {
-                    if (!grid.contains(i + di, j + dj, k + dk)) continue;
-                    const std::size_t other = grid.offset(i + di, j + dj, k + dk);
-                    if (!mask.voxels[other])
-                        furthest = std::max(furthest, std::abs(double{blocks.values[other]} - local[offset]));
-                }
-        if (std::abs(blocks.values[offset] - local[offset]) < furthest / 2) result.voxels[offset] = 1;
-    });
-    return result;
 }
 
 // Voxels near the local mean and not in the wall, with or without edges.
@@ -178,28 +157,63 @@ void follow(Blocks& blocks, const Mask& found, const OrganSeeds& seeds, double d
     });
 }
 
-// The organ in blocks of `box`, which shrinks to the organ's surroundings.
-Mask organ_of_blocks(Volume grey, const OrganSeeds& seeds, const OrganParameters& p, Box& box) {
-    Blocks blocks = prepare(std::move(grey), seeds);
+// How probably each voxel is of the organ, by its grey value between the organ's local mean and that of what
+// lies around, both with the noise of what was found: half way between the two, as a voxel is that lies half
+// in either, it is one half.
+std::vector<float> chances_by_grey(const Mask& found, const std::vector<float>& distance,
+                                   const Blocks& blocks, double noise) {
+    constexpr double least_share = 1e-3;  // of what lies around; further inside there is none
+    Volume share{found.grid, std::vector<float>(distance.size())}, mean = blocks.grey;
+    for (std::size_t i = 0; i < distance.size(); ++i) {
+        share.values[i] = double{distance[i]} > found.grid.spacing.maxCoeff() ? 1 : 0;  // clear of the border
+        mean.values[i] *= share.values[i];
+    }
+    gaussian(found.grid, share.values, around_mm);
+    gaussian(found.grid, mean.values, around_mm);
+    std::vector<float> chances(distance.size());
+    for (std::size_t i = 0; i < chances.size(); ++i) {
+        const double grey = double{blocks.grey.values[i]},
+                     off_organ = (grey - double{blocks.local[i]}) / noise,
+                     around = double{mean.values[i]} / std::max(least_share, double{share.values[i]}),
+                     off_around = (grey - around) / noise;
+        chances[i] =
+            static_cast<float>(1 / (1 + std::exp((off_organ * off_organ - off_around * off_around) / 2)));
+    }
+    return chances;
+}
+
+// What was found, its border put by a random walker where grey values change.
+Mask with_border(const Mask& found, const Blocks& blocks) {
+    const std::vector<float> depth = depth_in(found), distance = distance_to(found);
+    std::vector<float> off;
+    for (std::size_t i = 0; i < found.voxels.size(); ++i)
+        if (found.voxels[i]) off.push_back(blocks.grey.values[i] - blocks.local[i]);
+    const double noise = std::max(least_noise, robust_statistics(off).sigma);
+    Mask inside = found, outside = blocks.wall;
+    for (std::size_t i = 0; i < found.voxels.size(); ++i) {
+        inside.voxels[i] = double{depth[i]} > border_mm;
+        if (double{distance[i]} > border_mm) outside.voxels[i] = 1;
+    }
+    return random_walk(blocks.grey, {.inside = std::move(inside),
+                                     .outside = std::move(outside),
+                                     .prior = chances_by_grey(found, distance, blocks, noise),
+                                     .noise = noise,
+                                     .trust_mm = trust_mm});
+}
+
+Mask organ_of_blocks(Volume grey, const OrganSeeds& seeds, const OrganParameters& p) {
+    Blocks blocks = prepare(std::move(grey), seeds, p.wall_mm);
     Mask found = found_in(blocks, seeds, p);
     follow(blocks, found, seeds, p.drift_hu);
-    const Box part = bounding_box(found, surroundings_mm);
-    blocks = crop_blocks(blocks, part);
-    found = crop(found, part);
-    box.size = part.size;
-    for (std::size_t axis = 0; axis < 3; ++axis) box.low[axis] += part.low[axis];
-    Mask candidates;
     for (int round = 1; round < most_rounds; ++round) {
         const auto before = static_cast<double>(found.count());
         blocks.edge = std::max(least_edge, edge_factor * median_within(found, blocks.steepness));
-        candidates = candidates_of(blocks, p.tolerance_hu, false);
         found = found_in(blocks, seeds, p);
         follow(blocks, found, seeds, p.drift_hu);
         if (std::abs(static_cast<double>(found.count()) - before) < settled * before) break;
     }
     found = fill_holes(close(pieces_at(found, seeds.points, seed_reach_mm), p.gap_mm));
-    return pieces_at(fill_holes(with_rim(found, blocks.grey, blocks.local, candidates)), seeds.points,
-                     seed_reach_mm);
+    return pieces_at(fill_holes(with_border(found, blocks)), seeds.points, seed_reach_mm);
 }
 
 // The blocks that are not air and at most reach_mm from the seeds' box.
@@ -236,9 +250,9 @@ Mask organ(const Volume& volume, Points seeds, const OrganParameters& parameters
     const auto block = blocks_of(volume.grid, block_mm);
     Volume whole = coarsen(volume, block);
     const OrganSeeds looked_at = look_at_seeds(whole, seeds, parameters, culprit, note);
-    Box box = box_around(whole, seeds);
+    const Box box = box_around(whole, seeds);
     whole = crop(whole, box);
-    const Mask found = organ_of_blocks(std::move(whole), looked_at, parameters, box);
+    const Mask found = organ_of_blocks(std::move(whole), looked_at, parameters);
     if (found.count() == 0)
         throw InvalidInput(
             {culprit, fmt::format("no piece as thick as {} mm holds a seed", 2 * parameters.neck_mm), "",

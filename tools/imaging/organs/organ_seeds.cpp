@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/imaging/voxels/organ_seeds.hpp"
+#include "tools/imaging/organs/organ_seeds.hpp"
 
 #include <algorithm>
 #include <cmath>
