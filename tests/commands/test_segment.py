@@ -220,10 +220,6 @@ class Import(ImagingCommand):
                     "no label '9'")
         self.expect(self.import_(self.volume, "-o", self.output.with_suffix(".mha")), INVALID, "expected .nrrd")
 
-    def test_slicer_description_names_the_options(self):
-        text = self.import_("--xml").stdout
-        self.assertIn("<longflag>labels</longflag>", text.replace("--", ""))
-
 
 if __name__ == "__main__":
     unittest.main()

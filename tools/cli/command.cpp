@@ -2,6 +2,7 @@
 #include "tools/cli/command.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cassert>
 #include <chrono>
 #include <cmath>
@@ -76,6 +77,22 @@ std::string key_from(const Option& option) {
     key.erase(0, key.find_first_not_of('-'));
     std::ranges::replace(key, '-', '_');
     return key;
+}
+
+// The arguments, last one first as CLI11 wants them, in which "--max_triangles" is "--max-triangles": 3D
+// Slicer's flags are identifiers. What follows "--" is no option.
+std::vector<std::string> reversed_arguments(int argc, char** argv) {
+    std::vector<std::string> words;
+    bool options = true;
+    for (int i = 1; i < argc; ++i) {
+        std::string word = argv[i];
+        options = options && word != "--";
+        if (options && word.starts_with("--"))
+            std::replace(word.begin(), std::find(word.begin(), word.end(), '='), '_', '-');
+        words.push_back(std::move(word));
+    }
+    std::ranges::reverse(words);
+    return words;
 }
 
 std::string help_footer(const CommandText& text) {
@@ -221,7 +238,7 @@ int Command::parse(int argc, char** argv) {
             return ExitCode::ok;
         }
     try {
-        app_->parse(argc, argv);
+        app_->parse(reversed_arguments(argc, argv));
         return -1;
     } catch (const CLI::CallForHelp&) {
         std::cout << app_->help();
