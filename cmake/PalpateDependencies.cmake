@@ -38,7 +38,7 @@ find_package(Python3 REQUIRED COMPONENTS Interpreter)
 if(PALPATE_TOOLS)
     # ITK: the reference implementation of volume reading, DICOM geometry and segmentation filters.
     find_package(ITK 5.2 REQUIRED COMPONENTS
-        ITKCommon ITKIOImageBase ITKIONRRD ITKIOMeta ITKZLIB
+        ITKCommon ITKIOImageBase ITKIONIFTI ITKIONRRD ITKIOMeta ITKZLIB
         ITKConnectedComponents ITKCurvatureFlow ITKDistanceMap ITKLabelMap)
     # DCMTK's dcmseg: the reference reader of DICOM segmentation objects, which ITK and GDCM lack.
     set(PALPATE_DCMTK_LIBRARIES)

@@ -13,6 +13,7 @@
 #include "tests/tools/imaging/hand_written_images.hpp"
 #include "tests/tools/imaging/refusals.hpp"
 #include "tools/imaging/files/image_files.hpp"
+#include "tools/imaging/files/label_names.hpp"
 
 namespace palpate {
 namespace {
@@ -142,6 +143,28 @@ TEST(LabelMapFiles, names_values_and_colours_survive_a_round_trip) {
     }
 }
 
+TEST(LabelMapFiles, as_nifti_they_keep_every_voxel_and_as_a_bids_table_their_names) {
+    const TemporaryFolder folder;
+    for (const std::uint16_t last : {std::uint16_t{7}, std::uint16_t{700}}) {  // uint8 and uint16
+        LabelMap map = small_map();
+        map.labels[50] = last;
+        map.names[1] = {last, "soft\twall", {1, 0, 0}};
+        write_nifti_labels(folder / "l_dseg.nii.gz", map);
+        write_nifti_labels(folder / "again_dseg.nii.gz", map);
+        EXPECT_EQ(test::bytes_of(folder / "l_dseg.nii.gz"), test::bytes_of(folder / "again_dseg.nii.gz"));
+        write_bytes(folder / "l_dseg.tsv", bids_label_table(map.names));
+        LabelMap read = read_label_map(folder / "l_dseg.nii.gz");
+        name_labels(read, folder / "l_dseg.tsv");
+        EXPECT_EQ(read.labels, map.labels);
+        EXPECT_TRUE(same_grid(read.grid, map.grid));
+        ASSERT_EQ(read.names.size(), 2U);
+        EXPECT_EQ(read.names[0].name, "skull");
+        EXPECT_EQ(read.names[1].name, "soft wall");
+        EXPECT_EQ(read.names[1].value, last);
+        EXPECT_EQ(read.names[1].colour, map.names[1].colour);
+    }
+}
+
 TEST(LabelMapFiles, carry_the_fields_that_slicer_reads_a_segmentation_from) {
     const TemporaryFolder folder;
     write_label_map(folder / "l.seg.nrrd", small_map());
@@ -248,6 +271,7 @@ TEST(ImageFiles, directions_slightly_off_are_made_orthonormal_and_reported) {
 TEST(ImageFiles, outputs_with_another_ending_are_refused) {
     EXPECT_THROW(write_volume("volume.mha", ramp_volume()), InvalidInput);
     EXPECT_THROW(write_label_map("labels.nrrd", small_map()), InvalidInput);
+    EXPECT_THROW(write_nifti_labels("labels.nrrd", small_map()), InvalidInput);
 }
 
 TEST(ImageFiles, a_file_that_cannot_be_written_whole_is_a_system_failure) {

@@ -129,7 +129,9 @@ TEST_P(Orientation, all_48_axis_orders_in_every_format_read_as_the_same_organ_in
             test::write_bytes(folder / "o.nii", test::nifti_file(map.grid, test::raw_bytes<float>(real)));
             test::write_bytes(folder / "o.vti", vti_file(map));
             write_label_map(folder / "o.seg.nrrd", map);
-            for (const char* name : {"lps.nrrd", "ras.nrrd", "o.mha", "o.nii", "o.vti", "o.seg.nrrd"}) {
+            write_nifti_labels(folder / "o.nii.gz", map);
+            for (const char* name :
+                 {"lps.nrrd", "ras.nrrd", "o.mha", "o.nii", "o.vti", "o.seg.nrrd", "o.nii.gz"}) {
                 SCOPED_TRACE(fmt::format("{} along {} {} {}, backwards {}", name, order[0], order[1],
                                          order[2], backwards));
                 expect_same_organ(read_label_map(folder / name), expected);

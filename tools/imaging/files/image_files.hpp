@@ -127,6 +127,11 @@ void write_volume(const std::filesystem::path& path, const Volume& volume);
 /// write_volume() does.
 void write_label_map(const std::filesystem::path& path, const LabelMap& map);
 
+/// Writes gzip-compressed NIfTI-1, uint8 or uint16, whose RAS affine is the grid's LPS one turned about z.
+/// Nothing but geometry, in float32, and values is written: names go into a bids_label_table(). The path must
+/// end in ".nii.gz". Throws as write_volume() does.
+void write_nifti_labels(const std::filesystem::path& path, const LabelMap& map);
+
 /// Limits the threads that imaging functions use; results do not depend on it.
 void set_imaging_threads(int count);
 

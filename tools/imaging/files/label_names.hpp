@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -30,6 +31,10 @@ LabelTable parse_xml_label_table(std::string_view xml);
 /// A name may have blanks; of numbers behind it three or four are a colour and a single one of 1000 or more
 /// is a code. Throws InvalidInput naming file and line for anything else or a value beyond 65535.
 LabelTable read_label_table(const std::filesystem::path& path);
+
+/// A BIDS _dseg.tsv of labels: columns index, name and color ("#ff8000"), in the order given. A tab or line
+/// break in a name becomes a blank. read_label_table() reads the same values, names and, to 1/510, colours.
+std::string bids_label_table(std::span<const Label> labels);
 
 /// TotalSegmentator's table of a version and task, "v2/total"; throws InvalidInput naming the nearest ones.
 LabelTable totalsegmentator_table(std::string_view task);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <fstream>
@@ -205,6 +206,21 @@ LabelTable read_label_table(const std::filesystem::path& path) {
              "value and name, as in a .ctbl, ITK-SNAP, FreeSurfer or BIDS table", "correct the line"});
     }
     if (table.empty()) throw InvalidInput({path.string(), "names no label", "", "choose a label table"});
+    return table;
+}
+
+std::string bids_label_table(std::span<const Label> labels) {
+    std::string table = "index\tname\tcolor\n";
+    for (const Label& label : labels) {
+        std::string name = label.name;
+        for (const char between : {'\t', '\n', '\r'}) std::ranges::replace(name, between, ' ');
+        std::array<long, 3> rgb{};
+        std::ranges::transform(label.colour, rgb.begin(), [](float channel) {
+            return std::lround(255 * std::clamp(channel, 0.0F, 1.0F));
+        });
+        table +=
+            fmt::format("{}\t{}\t#{:02x}{:02x}{:02x}\n", label.value, trimmed(name), rgb[0], rgb[1], rgb[2]);
+    }
     return table;
 }
 

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <itkImageFileWriter.h>
 #include <itkMetaDataObject.h>
+#include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
 #include <limits>
 
@@ -35,9 +36,10 @@ void require_ending(const std::filesystem::path& path, std::string_view ending) 
             {path.string(), "has another ending", std::string(ending), "name the output accordingly"});
 }
 
-template <typename Voxel>
-void write_nrrd(const std::filesystem::path& path, const ImageGrid& grid, std::span<const Voxel> voxels,
-                const std::map<std::string, std::string>& header) {
+// `before` are the bytes that the gzip stream has ahead of the voxels.
+template <typename ImageIO, typename Voxel>
+void write_packed(const std::filesystem::path& path, const ImageGrid& grid, std::span<const Voxel> voxels,
+                  const std::map<std::string, std::string>& header, std::uint64_t before) {
     if (voxels.size() != grid.voxel_count())
         throw InvalidInput({path.string(), fmt::format("{} values", voxels.size()),
                             fmt::format("{}, one per voxel", grid.voxel_count()), ""});
@@ -45,7 +47,7 @@ void write_nrrd(const std::filesystem::path& path, const ImageGrid& grid, std::s
     auto& dictionary = image->GetMetaDataDictionary();
     for (const auto& [key, text] : header) itk::EncapsulateMetaData(dictionary, key, text);
     auto writer = itk::ImageFileWriter<ItkImage<Voxel>>::New();
-    writer->SetImageIO(itk::NrrdImageIO::New());
+    writer->SetImageIO(ImageIO::New());
     writer->SetFileName(path.string());
     writer->SetInput(image);
     writer->UseCompressionOn();
@@ -55,9 +57,34 @@ void write_nrrd(const std::filesystem::path& path, const ImageGrid& grid, std::s
     } catch (const itk::ExceptionObject&) {
         written = false;
     }
-    if (!written || !ends_whole(path, voxels.size_bytes()))
+    if (!written || !ends_whole(path, before + voxels.size_bytes()))
         throw SystemFailure(
             {path.string(), "could not be written", "", "check free space and permissions of its folder"});
+}
+
+template <typename Voxel>
+void write_nrrd(const std::filesystem::path& path, const ImageGrid& grid, std::span<const Voxel> voxels,
+                const std::map<std::string, std::string>& header) {
+    write_packed<itk::NrrdImageIO>(path, grid, voxels, header, 0);
+}
+
+// ITK turns LPS into NIfTI's RAS and sets qform and sform alike.
+template <typename Voxel>
+void write_nifti(const std::filesystem::path& path, const ImageGrid& grid, std::span<const Voxel> voxels) {
+    constexpr std::uint64_t header_bytes = 352;
+    write_packed<itk::NiftiImageIO>(path, grid, voxels, {}, header_bytes);
+}
+
+bool fits_bytes(const LabelMap& map) {
+    return std::ranges::none_of(map.labels, [](std::uint16_t value) { return value > 255; });
+}
+
+// Precondition: fits_bytes().
+std::vector<std::uint8_t> as_bytes(const LabelMap& map) {
+    std::vector<std::uint8_t> labels(map.labels.size());
+    std::ranges::transform(map.labels, labels.begin(),
+                           [](std::uint16_t value) { return static_cast<std::uint8_t>(value); });
+    return labels;
 }
 
 }  // namespace
@@ -94,12 +121,14 @@ void write_label_map(const std::filesystem::path& path, const LabelMap& map) {
         header[prefix + "Extent"] =
             fmt::format("0 {} 0 {} 0 {}", map.grid.size[0] - 1, map.grid.size[1] - 1, map.grid.size[2] - 1);
     }
-    if (std::ranges::any_of(map.labels, [](std::uint16_t value) { return value > 255; }))
-        return write_nrrd<std::uint16_t>(path, map.grid, map.labels, header);
-    std::vector<std::uint8_t> labels(map.labels.size());
-    std::ranges::transform(map.labels, labels.begin(),
-                           [](std::uint16_t value) { return static_cast<std::uint8_t>(value); });
-    write_nrrd<std::uint8_t>(path, map.grid, labels, header);
+    if (!fits_bytes(map)) return write_nrrd<std::uint16_t>(path, map.grid, map.labels, header);
+    write_nrrd<std::uint8_t>(path, map.grid, as_bytes(map), header);
+}
+
+void write_nifti_labels(const std::filesystem::path& path, const LabelMap& map) {
+    require_ending(path, ".nii.gz");
+    if (!fits_bytes(map)) return write_nifti<std::uint16_t>(path, map.grid, map.labels);
+    write_nifti<std::uint8_t>(path, map.grid, as_bytes(map));
 }
 
 }  // namespace palpate::imaging
