@@ -42,7 +42,7 @@ ROOMS = {
     "tissue": {"model"},
     "draft": {"model", "imaging", "tissue"},
     "case_builder": {"model", "asset", "cli", "imaging", "requests", "tissue", "toml_file", "json"},
-    "cohort": {"model", "case_builder", "cli", "report", "json"},
+    "cohort": {"model", "case_builder", "cli", "imaging", "report", "json"},
     "seeds": {"model", "imaging", "vtk"},
     "hd_conformance": {"model", "devices", "json"},
     "realtime": {"records"},

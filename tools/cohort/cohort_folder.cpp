@@ -23,6 +23,12 @@ std::filesystem::path CohortFolder::batch() const {
 std::filesystem::path CohortFolder::done() const {
     return batch() / "done";
 }
+std::filesystem::path CohortFolder::table_name() const {
+    return batch() / "table";
+}
+std::filesystem::path CohortFolder::bids_table() const {
+    return root / "patients.tsv";
+}
 std::filesystem::path CohortFolder::plan() const {
     return batch() / "plan.json";
 }

@@ -17,8 +17,9 @@ namespace {
 
 using case_builder::Override;
 
-// Columns that stand for a key of the case file and hold a path.
-const std::map<std::string, std::string> path_columns{{"volume", "input.volume"}, {"labels", "input.labels"}};
+// Columns that stand for a key of the case file and hold text, mostly a path.
+const std::map<std::string, std::string> text_columns{
+    {"volume", "input.volume"}, {"labels", "input.labels"}, {"label_names", "input.label_names"}};
 
 std::string stripped(const std::string& text) {
     const auto first = text.find_first_not_of(" \r"), last = text.find_last_not_of(" \r");
@@ -37,7 +38,7 @@ std::vector<std::string> cells_of(const std::string& line) {
 
 void require_columns(const std::vector<std::string>& columns, const std::filesystem::path& path) {
     const std::string where = path.string() + ":1";
-    const std::vector<std::string> known{"patient", "case", "volume", "labels"};
+    const std::vector<std::string> known{"patient", "case", "volume", "labels", "label_names", "problem"};
     std::set<std::string> seen;
     for (const std::string& column : columns) {
         if (column.starts_with('#')) continue;
@@ -89,7 +90,9 @@ Patient patient_of(const std::vector<std::string>& columns, const std::vector<st
             patient.name = cell;
         else if (column == "case")
             patient.case_path = std::filesystem::absolute(path.parent_path() / cell).lexically_normal();
-        else if (const auto key = path_columns.find(column); key != path_columns.end())
+        else if (column == "problem")
+            patient.mistake = cell;
+        else if (const auto key = text_columns.find(column); key != text_columns.end())
             patient.overrides.push_back({key->second, case_builder::quoted(cell), path, line});
         else
             patient.overrides.push_back({column, cell, path, line});
@@ -99,10 +102,7 @@ Patient patient_of(const std::vector<std::string>& columns, const std::vector<st
 
 }  // namespace
 
-std::vector<Patient> read_patient_table(const std::filesystem::path& path) {
-    constexpr std::uintmax_t most_bytes = 16 << 20;
-    require_small_file(path, most_bytes);
-    std::ifstream stream(path);
+std::vector<Patient> parse_patient_table(std::istream& stream, const std::filesystem::path& path) {
     std::vector<std::string> columns;
     std::vector<Patient> patients;
     std::set<std::string> names;
@@ -114,9 +114,10 @@ std::vector<Patient> read_patient_table(const std::filesystem::path& path) {
             require_columns(columns = cells, path);
         } else if (std::ranges::any_of(cells, [](const std::string& cell) { return !cell.empty(); })) {
             Patient& patient = patients.emplace_back(patient_of(columns, cells, line, path));
-            patient.mistake = mistake_in_name(patient, names);
-            patient.named = patient.mistake.empty();
-            if (patient.named && patient.case_path.empty())
+            const std::string in_name = mistake_in_name(patient, names);
+            patient.named = in_name.empty();
+            if (!patient.named) patient.mistake = in_name;
+            if (patient.mistake.empty() && patient.case_path.empty())
                 patient.mistake = "column 'case' is empty; name the case file";
             if (cells.size() > columns.size())
                 patient.mistake =
@@ -131,6 +132,13 @@ std::vector<Patient> read_patient_table(const std::filesystem::path& path) {
                             "a line of column names and a line for each patient",
                             "see docs/many_patients.md"});
     return patients;
+}
+
+std::vector<Patient> read_patient_table(const std::filesystem::path& path) {
+    constexpr std::uintmax_t most_bytes = 16 << 20;
+    require_small_file(path, most_bytes);
+    std::ifstream stream(path);
+    return parse_patient_table(stream, path);
 }
 
 }  // namespace palpate::cohort

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <filesystem>
+#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -19,10 +20,14 @@ struct Patient {
 };
 
 /// Reads a tab-separated table whose first line names its columns: `patient` (letters, digits, '.', '_',
-/// '-'), `case` (a case file), and any of `volume`, `labels` and dotted keys of case files
+/// '-'), `case` (a case file), and any of `volume`, `labels`, `label_names` and dotted keys of case files
 /// ("deformable.liver.mesh.cell_size_mm"), whose cells go before the case file's values where they are not
-/// empty. Columns that begin with '#' are for people. Paths are absolute or relative to the table. Throws
-/// InvalidInput naming the column for a head that cannot be used; a row that cannot be keeps its mistake.
+/// empty. A row whose `problem` is not empty has that as its mistake. Columns that begin with '#' are for
+/// people. Paths are absolute or relative to the table. Throws InvalidInput naming the column for a head that
+/// cannot be used; a row that cannot be keeps its mistake.
 std::vector<Patient> read_patient_table(const std::filesystem::path& path);
+
+/// The same of a table that is not written yet, or not there; `path` is where it would be.
+std::vector<Patient> parse_patient_table(std::istream& stream, const std::filesystem::path& path);
 
 }  // namespace palpate::cohort

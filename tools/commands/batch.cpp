@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// palpate batch: builds all patients of a table and shows them on one page.
+// palpate batch: builds all patients of a table, or of a BIDS dataset, and shows them on one page.
 #include <algorithm>
 #include <fmt/format.h>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <set>
 #include <spdlog/spdlog.h>
+#include <sstream>
 
 #include "formats/model/errors.hpp"
 #include "tools/case_builder/folder_lock.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/cohort/bids/bids_table.hpp"
+#include "tools/cohort/cohort.hpp"
 #include "tools/cohort/cohort_page.hpp"
 #include "tools/cohort/plan.hpp"
-#include "tools/cohort/results.hpp"
 #include "tools/cohort/snakemake.hpp"
 
 namespace {
@@ -23,47 +27,41 @@ std::filesystem::path own_folder() {
     return std::filesystem::read_symlink("/proc/self/exe").parent_path();
 }
 
-using States = std::vector<std::vector<StageState>>;
-
-// A table as it is built.
-struct Cohort {
-    std::filesystem::path table;  // absolute
-    CohortFolder folder;
-    std::vector<PatientBuild> builds;
+// What the command line names.
+struct BatchRequest {
+    std::filesystem::path table, case_file, output;
+    BidsChoice choice;
 };
 
-Cohort read_cohort(const std::filesystem::path& table, const std::filesystem::path& output) {
-    Cohort cohort{std::filesystem::absolute(table).lexically_normal(),
-                  {std::filesystem::absolute(output).lexically_normal()},
-                  {}};
-    for (const Patient& patient : read_patient_table(cohort.table)) {
-        cohort.builds.push_back(build_of(patient, cohort.folder));
-        if (const std::string& mistake = cohort.builds.back().patient.mistake; !mistake.empty())
-            spdlog::error("{}: {}", patient.name, mistake);
+// Writes the table of a BIDS dataset, but not over one that somebody edited.
+void keep_table(const std::filesystem::path& file, const std::string& text, const BatchRequest& request,
+                bool force) {
+    if (std::ifstream stream(file); stream) {
+        const std::string kept{std::istreambuf_iterator<char>(stream), {}};
+        if (kept == text) return;
+        if (!force)
+            throw InvalidInput({file.string(),
+                                "is not the table that " + request.table.string() + " gives now", "",
+                                fmt::format("build it as it stands with 'palpate batch {} -o {}', or pass "
+                                            "--force to write it anew",
+                                            file.string(), request.output.string())});
     }
-    return cohort;
+    std::filesystem::create_directories(file.parent_path());
+    cli::write_text_file(file, text, true);
 }
 
-States states_of_all(const Cohort& cohort, cli::Progress& progress) {
-    States states;
-    for (const PatientBuild& build : cohort.builds) {
-        progress.step("comparing digests",
-                      static_cast<double>(states.size()) / static_cast<double>(cohort.builds.size()));
-        states.push_back(states_of(build, own_folder()));
-    }
-    progress.finish();
-    return states;
-}
-
-void write_requests(const Cohort& cohort) {
-    std::filesystem::remove_all(cohort.folder.batch() / "requests");
-    std::filesystem::create_directories(cohort.folder.batch() / "requests");
-    for (const PatientBuild& build : cohort.builds)
-        if (build.patient.mistake.empty())
-            cli::write_text_file(cohort.folder.request_of(build.patient.name),
-                                 request_of(build).dump(2) + "\n", true);
-    cli::write_text_file(cohort.folder.batch() / "table_folder", cohort.table.parent_path().string() + "\n",
-                         true);
+// The cohort of a table, or of a BIDS dataset, whose table goes into the cohort's folder if it is kept; what
+// is relative to that folder can be looked for only if there is one.
+Cohort cohort_of_request(const BatchRequest& request, bool keep, bool force) {
+    if (!std::filesystem::is_directory(request.table))
+        return cohort_of(read_patient_table(request.table), request.table, request.output);
+    const CohortFolder folder{std::filesystem::weakly_canonical(std::filesystem::absolute(request.output))};
+    const std::string text =
+        bids_patient_table(request.table, request.case_file, keep ? folder.root : std::filesystem::path(),
+                           request.choice, [](std::string_view said) { spdlog::warn("{}", said); });
+    if (keep) keep_table(folder.bids_table(), text, request, force);
+    std::istringstream stream(text);
+    return cohort_of(parse_patient_table(stream, folder.bids_table()), folder.bids_table(), folder.root);
 }
 
 // Tells how far patients and stages are.
@@ -138,12 +136,6 @@ std::vector<PatientResult> write_results(const Cohort& cohort, States states) {
     return results;
 }
 
-void refuse_others(const CohortFolder& folder) {
-    if (case_builder::FolderLock::held_by_another(folder.batch(), "batch"))
-        throw InvalidInput({folder.root.string(), "is being built by another palpate batch", "",
-                            "wait for it or end it; what it finished is kept"});
-}
-
 nlohmann::ordered_json result_json(const Cohort& cohort, std::span<const PatientResult> results,
                                    std::int64_t stages) {
     nlohmann::ordered_json patients = nlohmann::ordered_json::array();
@@ -161,17 +153,23 @@ nlohmann::ordered_json result_json(const Cohort& cohort, std::span<const Patient
 nlohmann::ordered_json build_cohort(const Cohort& cohort, const SnakemakeRun& run, cli::Session& session) {
     std::filesystem::create_directories(cohort.folder.batch());
     std::filesystem::create_directories(cohort.folder.snakemake_log().parent_path());
-    refuse_others(cohort.folder);
+    refuse_while_built(cohort.folder);
     const case_builder::FolderLock lock(cohort.folder.batch(), "batch");
     write_requests(cohort);
     std::int64_t stages = 0;
     bool interrupted = false;
+    const auto states = [&] {
+        States found = states_of_all(cohort, own_folder(),
+                                     [&](double done) { session.progress.step("comparing digests", done); });
+        session.progress.finish();
+        return found;
+    };
     try {
-        stages = run_what_is_to_do(cohort, states_of_all(cohort, session.progress), run, session);
+        stages = run_what_is_to_do(cohort, states(), run, session);
     } catch (const cli::Interrupted&) {
         interrupted = true;
     }
-    const auto results = write_results(cohort, states_of_all(cohort, session.progress));
+    const auto results = write_results(cohort, states());
     session.text = summary_text(results) + cohort.folder.page().string() + "\n";
     if (interrupted) {
         spdlog::error("interrupted; run the same command again to go on");
@@ -199,24 +197,39 @@ nlohmann::ordered_json check_cohort(const Cohort& cohort) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    std::filesystem::path table, output;
+    BatchRequest request;
     std::string profile = "local";
     bool check = false, requests = false;
     cli::Command command(
         {.name = "batch",
          .summary = "Builds every patient of a table side by side and shows them on one page.",
          .examples = {"palpate batch patients.tsv -o cohort",
-                      "palpate batch patients.tsv -o cohort --profile slurm"},
+                      "palpate batch patients.tsv -o cohort --profile slurm",
+                      "palpate batch bids/ --case liver.toml -o cohort"},
          .notes =
              "The table is separated by tabs: patient, case and, where a patient differs from the case file, "
-             "volume, labels or a case file's key such as deformable.liver.mesh.cell_size_mm; paths are "
-             "relative to the table. OUTPUT gets an asset, a report and a status (.json) for each patient, "
-             "index.html, results.tsv, stages.tsv and logs. One patient's failure stops no other; exit code "
-             "4 "
-             "says that not all were built. Run again, only stages whose inputs changed run, also after an "
-             "interrupt or a kill. Needs Snakemake."});
-    command.input("table", table, "patients (.tsv)").required();
-    command.output("-o,--output", output, "folder for the cohort").required();
+             "volume, labels, label_names or a case file's key such as deformable.liver.mesh.cell_size_mm; "
+             "paths are relative to the table. Of a BIDS dataset it is made, with a row for each subject or "
+             "session, and kept as OUTPUT/patients.tsv. OUTPUT gets an asset, a report and a status (.json) "
+             "for each patient, index.html, results.tsv, stages.tsv and logs. One patient's failure stops no "
+             "other; exit code 4 says that not all were built. Run again, only stages whose inputs changed "
+             "run, also after an interrupt or a kill. Needs Snakemake."});
+    command.input("table", request.table, "patients (.tsv), or the folder of a BIDS dataset").required();
+    command.output("-o,--output", request.output, "folder for the cohort").required();
+    const cli::Option case_option =
+        command.input("--case", request.case_file, "of a BIDS dataset: case file (.toml) of all patients");
+    const std::vector<cli::Option> bids_options{
+        case_option,
+        command
+            .option("--image", request.choice.image,
+                    "of a BIDS dataset: which image, as T2w or acq-mprage_T1w")
+            .shown_default("the suffix that most subjects have"),
+        command.option("--segmentation", request.choice.segmentation,
+                       "of a BIDS dataset: which *_dseg.nii.gz where there are several, as seg-organs"),
+        command
+            .input("--derivatives", request.choice.derivatives,
+                   "of a BIDS dataset: the folder that has the segmentations")
+            .shown_default("all in its derivatives/")};
     command.option("--profile", profile,
                    "where stages run: local, slurm, or a folder with a Snakemake profile");
     const cli::Option check_option =
@@ -227,7 +240,19 @@ int main(int argc, char** argv) {
               "scheduler of your own, and build nothing")
         .excludes(check_option);
     return command.run(argc, argv, [&](cli::Session& session) {
-        const Cohort cohort = read_cohort(table, output);
+        const bool dataset = std::filesystem::is_directory(request.table);
+        if (dataset && !case_option.given())
+            throw UsageError({request.table.string(), "is a folder without --case",
+                              "a BIDS dataset and the case file of its patients, or a table",
+                              "draft one with 'palpate init'"});
+        for (const cli::Option& option : bids_options)
+            if (!dataset && option.given())
+                throw UsageError({option.name(), "with a table", "a BIDS dataset",
+                                  "a table names case files, images and label maps itself"});
+        const Cohort cohort = cohort_of_request(request, !check, session.force);
+        for (const PatientBuild& build : cohort.builds)
+            if (!build.patient.mistake.empty())
+                spdlog::error("{}: {}", build.patient.name, build.patient.mistake);
         if (check) return check_cohort(cohort);
         if (requests) {
             write_requests(cohort);

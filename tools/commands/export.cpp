@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <array>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
@@ -7,6 +8,9 @@
 #include "tools/archive/objects/archive_objects.hpp"
 #include "tools/archive/objects/segment_codes.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/cli/outputs/staged_folder.hpp"
+#include "tools/cli/refuse_beside.hpp"
+#include "tools/cohort/bids/bids_export.hpp"
 #include "tools/imaging/files/label_names.hpp"
 #include "tools/inspection/file_kind.hpp"
 #include "tools/stages/surface.hpp"
@@ -18,7 +22,9 @@ using namespace palpate::archive;
 
 const cli::CommandText text{
     .name = "export",
-    .summary = "Turns a label map or a closed surface into a DICOM object for a hospital's archive.",
+    .summary =
+        "Turns a label map or a closed surface into a DICOM object for a hospital's archive, a cohort "
+        "into a BIDS dataset of derivatives.",
     .examples = {"palpate export labels.seg.nrrd --reference ct_series/ --identity -o labels.dcm",
                  "palpate export labels.seg.nrrd --label liver -o liver_stl.dcm"},
     .notes =
@@ -32,7 +38,11 @@ const cli::CommandText text{
         "has\n"
         "the patient's name, id, birth date and sex and the study's date, id and accession number, so that "
         "an\n"
-        "archive files it there. Segments are numbered from 1 in the order of their values."};
+        "archive files it there. Segments are numbered from 1 in the order of their values.\n"
+        "The folder of a cohort that 'palpate batch' built from a BIDS dataset becomes a BIDS dataset of\n"
+        "derivatives (OUTPUT bids/derivatives/palpate): structures (_dseg.nii.gz), asset and report of all\n"
+        "patients that are built as their table and inputs are now. Inside the source dataset its files are\n"
+        "named as sources; elsewhere by the dataset's DOI, if it has one."};
 
 struct ExportRequest {
     std::filesystem::path input, output, reference;
@@ -86,6 +96,40 @@ nlohmann::ordered_json export_labels(const ExportRequest& request, const Filing&
     return {{"object", "segmentation"}, {"segments", segments}};
 }
 
+std::filesystem::path own_folder() {
+    return std::filesystem::read_symlink("/proc/self/exe").parent_path();
+}
+
+nlohmann::ordered_json export_cohort(const ExportRequest& request, cli::Session& session) {
+    const cohort::Cohort built = cohort::cohort_in(request.input);
+    refuse_while_built(built.folder);
+    cohort::require_replaceable(request.output);
+    cli::end_softly_on_interrupt();
+    cli::StagedFolder staged(request.output, session.force);
+    const auto step = [&](const char* what) {
+        return [&session, what](double done) {
+            if (cli::interrupt_asked()) throw cli::Interrupted();
+            session.progress.step(what, done);
+        };
+    };
+    imaging::set_imaging_threads(session.threads);
+    const cohort::States states = states_of_all(built, own_folder(), step("comparing digests"));
+    const cohort::BidsExport made =
+        write_bids_dataset(built, states, request.output, staged.path(), step("writing"));
+    staged.commit();
+    session.progress.finish();
+    nlohmann::ordered_json left_out = nlohmann::ordered_json::array();
+    for (const auto& [patient, why] : made.left_out) {
+        spdlog::warn("{} is left out: {}", patient, why);
+        left_out.push_back({{"patient", patient}, {"said", why}});
+    }
+    if (!made.linked)
+        spdlog::warn(
+            "the dataset does not say which files it is from; write it into the source's "
+            "derivatives/, or give the source a DatasetDOI");
+    return {{"object", "BIDS derivatives"}, {"patients", made.patients}, {"left_out", left_out}};
+}
+
 nlohmann::ordered_json run_export(const ExportRequest& request, cli::Session& session) {
     if (request.identity && request.reference.empty())
         throw UsageError({"--identity", "is given without --reference", "both",
@@ -124,8 +168,11 @@ nlohmann::ordered_json run_export(const ExportRequest& request, cli::Session& se
 int main(int argc, char** argv) {
     cli::Command command(text);
     ExportRequest request;
-    command.input("input", request.input, "label map (.seg.nrrd, NIfTI, NRRD, DICOM SEG) or closed surface")
-        .required();
+    const cli::Option input_option =
+        command
+            .input("input", request.input,
+                   "label map (.seg.nrrd, NIfTI, NRRD, DICOM SEG), closed surface, or folder of a cohort")
+            .required();
     const cli::Option label =
         command.option("--label", request.label, "the outline of this label, by name or value, as a surface");
     command.option("--label-names", request.label_names, "names for the labels, as 'import' takes them")
@@ -142,6 +189,13 @@ int main(int argc, char** argv) {
     command.option("--series", request.series, "of that folder, by number, UID or description")
         .needs(reference);
     command.flag("--identity", request.identity, "take the reference's patient and study along");
-    command.output("-o,--output", request.output, "DICOM object (.dcm)").required();
-    return command.run(argc, argv, [&](cli::Session& session) { return run_export(request, session); });
+    const cli::Option output =
+        command.output("-o,--output", request.output, "DICOM object (.dcm), or folder for a BIDS dataset")
+            .required();
+    return command.run(argc, argv, [&](cli::Session& session) {
+        if (!std::filesystem::is_directory(request.input)) return run_export(request, session);
+        refuse_beside(command, "a cohort", std::array{input_option, output},
+                      "the others are for one label map or surface");
+        return export_cohort(request, session);
+    });
 }

@@ -80,6 +80,23 @@ TEST_F(PatientTable, a_row_that_cannot_be_used_keeps_its_mistake_and_the_others_
     }
 }
 
+TEST_F(PatientTable, a_row_with_a_problem_is_not_built_and_names_of_labels_are_text) {
+    const auto patients = read(
+        "patient\tcase\tlabel_names\tproblem\n"
+        "a\tc.toml\t../bids/dseg.tsv\t\n"
+        "b\t\t\thas two images\n"
+        "../c\tc.toml\t\thas no image\n");
+    ASSERT_EQ(patients.size(), 3U);
+    EXPECT_EQ(patients[0].mistake, "");
+    ASSERT_EQ(patients[0].overrides.size(), 1U);
+    EXPECT_EQ(patients[0].overrides[0].key, "input.label_names");
+    EXPECT_EQ(patients[0].overrides[0].value, R"("../bids/dseg.tsv")");
+    EXPECT_EQ(patients[1].mistake, patients[1].where + ": has two images");
+    EXPECT_TRUE(patients[1].named);
+    EXPECT_THAT(patients[2].mistake, HasSubstr("no safe file name"));
+    EXPECT_FALSE(patients[2].named);
+}
+
 TEST_F(PatientTable, a_head_that_cannot_be_used_is_refused_by_its_column) {
     EXPECT_THAT(
         refusal("patient\tcase\tvolumes\np\tc.toml\t\n"),

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/cohort/bids/bids_export.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "formats/model/errors.hpp"
+#include "tools/cli/command.hpp"
+#include "tools/cli/outputs/staged_file.hpp"
+#include "tools/cohort/bids/bids_folder.hpp"
+#include "tools/imaging/files/image_files.hpp"
+#include "tools/imaging/files/label_names.hpp"
+
+namespace palpate::cohort {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* readme = R"(# Haptic assets
+
+Made by Palpate, a tool that turns a patient's CT or MRI into an organ that a hand can feel. Of each scan:
+
+- `*_desc-palpate_dseg.nii.gz`: the structures of the asset, in the space of the image that they are from;
+  the `.tsv` beside it names them.
+- `*_desc-palpate_asset.vtkhdf`: the asset, which `palpate touch` and `palpate train` open, and ParaView as an
+  unstructured grid. Lengths are in mm, positions LPS.
+- `*_desc-palpate_report.html`: what it is and how good it is, with pictures.
+
+BIDS does not know the last two; `.bidsignore` says so.
+)";
+
+// An image of a BIDS dataset.
+struct SourceImage {
+    fs::path dataset;  // canonical
+    BidsFile file;
+};
+
+// The dataset is the folder above the subject's.
+SourceImage source_of(const PatientBuild& build) {
+    const std::string& patient = build.patient.name;
+    const fs::path image = fs::absolute(build.case_file.volume.value_or("")).lexically_normal();
+    const std::string subject = patient.substr(0, patient.find('_'));
+    fs::path dataset;
+    for (const fs::path& part : image) {
+        if (part == subject && subject.starts_with("sub-") && is_bids_dataset(dataset)) {
+            const auto name = parse_bids_name(image.filename().string());
+            if (name) return {fs::canonical(dataset), {image.lexically_relative(dataset), *name}};
+        }
+        dataset /= part;
+    }
+    throw InvalidInput({build.patient.where,
+                        "'" + patient + "' is not named after an image of a BIDS dataset",
+                        "a patient sub-01, with sub-01/anat/sub-01_T1w.nii.gz or the like as volume",
+                        "build the cohort from a BIDS dataset: palpate batch DATASET --case CASE -o OUTPUT"});
+}
+
+// How the derivative's files name those of their source.
+class SourceLink {
+  public:
+    SourceLink(fs::path dataset, const fs::path& output) : dataset_(std::move(dataset)) {
+        const nlohmann::json description = dataset_description(dataset_);
+        if (const auto doi = description.find("DatasetDOI");
+            doi != description.end() && doi->is_string() && !doi->get<std::string>().empty()) {
+            doi_ = doi->get<std::string>();
+            link_ = doi_.find(':') == std::string::npos ? "doi:" + doi_ : doi_;
+        }
+        const fs::path place = fs::weakly_canonical(fs::absolute(output));
+        if (is_below(place)) link_ = dataset_.lexically_relative(place).generic_string();
+    }
+
+    bool given() const { return !link_.empty(); }
+
+    // "bids:raw:sub-01/anat/sub-01_T1w.nii.gz"; nothing for a file that is not in the dataset.
+    std::optional<std::string> uri_of(const fs::path& file) const {
+        const fs::path full = file.is_absolute() ? file.lexically_normal() : dataset_ / file;
+        if (!given() || !is_below(full)) return std::nullopt;
+        return "bids:raw:" + full.lexically_relative(dataset_).generic_string();
+    }
+
+    // SourceDatasets take no relative address; DatasetLinks do.
+    void describe(Json& description) const {
+        if (!doi_.empty()) description["SourceDatasets"] = Json::array({{{"DOI", doi_}}});
+        if (given()) description["DatasetLinks"] = {{"raw", link_}};
+    }
+
+  private:
+    bool is_below(const fs::path& path) const {
+        const fs::path relative = path.lexically_relative(dataset_);
+        return !relative.empty() && *relative.begin() != "..";
+    }
+
+    fs::path dataset_;
+    std::string link_, doi_;
+};
+
+void write_text(const fs::path& path, const std::string& text) {
+    cli::write_text_file(path, text, false);
+}
+
+void copy_whole(const fs::path& from, const fs::path& to) {
+    cli::StagedFile staged(to, false);
+    fs::copy_file(from, staged.path(), fs::copy_options::overwrite_existing);
+    staged.commit();
+}
+
+void write_structures(const fs::path& labels, const fs::path& stem, const SourceImage& source,
+                      const PatientBuild& build, const SourceLink& link) {
+    const LabelMap map = imaging::read_label_map(labels);
+    cli::StagedFile staged(stem.string() + "_dseg.nii.gz", false);
+    imaging::write_nifti_labels(staged.path(), map);
+    staged.commit();
+    write_text(stem.string() + "_dseg.tsv", imaging::bids_label_table(map.names));
+    Json sidecar{{"Description", "Structures of the haptic asset, in the space of the image"}};
+    const auto image = link.uri_of(source.file.path);
+    if (image) sidecar["Sources"] = Json::array({*image});
+    const auto segmentation =
+        build.case_file.labels ? link.uri_of(fs::absolute(*build.case_file.labels)) : std::nullopt;
+    if (segmentation) sidecar["Sources"].push_back(*segmentation);
+    sidecar["SpatialReference"] = image.value_or("orig");
+    write_text(stem.string() + "_dseg.json", sidecar.dump(2) + "\n");
+}
+
+void write_patient(const PatientBuild& build, const SourceImage& source, const SourceLink& link,
+                   const fs::path& folder) {
+    BidsName name = source.file.name;
+    std::erase_if(name.entities, [](const auto& entity) { return entity.first == "desc"; });
+    name.entities.emplace_back("desc", "palpate");
+    std::string stem;
+    for (const auto& [entity, value] : name.entities)
+        stem += (stem.empty() ? "" : "_") + entity + "-" + value;
+    const fs::path place = folder / source.file.path.parent_path().parent_path() / "anat";
+    fs::create_directories(place);
+    const fs::path labels = build.paths.parts / "labels.seg.nrrd";
+    if (needs_labels(build.case_file)) write_structures(labels, place / stem, source, build, link);
+    copy_whole(build.paths.asset, place / (stem + "_asset.vtkhdf"));
+    copy_whole(build.paths.report, place / (stem + "_report.html"));
+}
+
+// In the words of what failed, without the line break at their end.
+std::string reason_of(const PatientResult& result) {
+    if (result.outcome == Outcome::unfinished)
+        return "is not built, or its inputs changed since; run 'palpate batch' again";
+    return result.said.substr(0, result.said.find_last_not_of('\n') + 1);
+}
+
+void write_description(const fs::path& folder, const SourceLink& link) {
+    Json description{{"Name", "Haptic assets by Palpate"},
+                     {"BIDSVersion", "1.9.0"},
+                     {"DatasetType", "derivative"},
+                     {"GeneratedBy", Json::array({{{"Name", "Palpate"}, {"Version", cli::version()}}})}};
+    link.describe(description);
+    write_text(folder / "dataset_description.json", description.dump(2) + "\n");
+    write_text(folder / "README.md", readme);
+    write_text(folder / ".bidsignore", "*_asset.vtkhdf\n*_report.html\n");
+}
+
+}  // namespace
+
+BidsExport write_bids_dataset(const Cohort& cohort, const States& states, const fs::path& output,
+                              const fs::path& folder, const std::function<void(double)>& before_each) {
+    BidsExport made;
+    std::vector<std::pair<const PatientBuild*, SourceImage>> built;
+    for (std::size_t i = 0; i < states.size(); ++i) {
+        const PatientResult result = result_of(cohort.builds[i], states[i]);
+        if (result.outcome == Outcome::built)
+            built.emplace_back(&cohort.builds[i], source_of(cohort.builds[i]));
+        else
+            made.left_out.emplace_back(result.patient, reason_of(result));
+    }
+    if (built.empty())
+        throw InvalidInput({cohort.folder.root.string(),
+                            "has no patient that is built as its table and inputs are now", "one at least",
+                            "build it first: palpate batch"});
+    const fs::path& dataset = built.front().second.dataset;
+    for (const auto& [build, source] : built)
+        if (source.dataset != dataset)
+            throw InvalidInput({build->patient.where, "comes from " + source.dataset.string(),
+                                dataset.string() + ", where the first patient comes from",
+                                "build a cohort of each dataset"});
+    const SourceLink link(dataset, output);
+    made.linked = link.given();
+    for (const auto& [build, source] : built) {
+        before_each(static_cast<double>(made.patients.size()) / static_cast<double>(built.size()));
+        write_patient(*build, source, link, folder);
+        made.patients.push_back(build->patient.name);
+    }
+    write_description(folder, link);
+    return made;
+}
+
+void require_replaceable(const fs::path& output) {
+    if (!fs::exists(fs::symlink_status(output)) || (fs::is_directory(output) && fs::is_empty(output))) return;
+    if (!is_bids_dataset(output) || !is_ours(dataset_description(output)))
+        throw InvalidInput({output.string(), "is there and is no dataset that Palpate made",
+                            "a new folder, or one of an earlier export", "choose another name"});
+}
+
+}  // namespace palpate::cohort
