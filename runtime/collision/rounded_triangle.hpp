@@ -20,10 +20,10 @@ struct NearestBall {
 };
 
 /// Finds where |p - q| - rho(q) is least for q on the triangle of the centres, rho being the balls' radius
-/// linearly between them: that is the distance of p from the hull, negative inside near its surface. Its
-/// gradient by p is n = (p - q) / |p - q|, and by a centre that with its weight, negative, whatever the
-/// radii. Where a radius changes faster along the triangle than the place, 1 mm by mm, a corner's ball holds
-/// its neighbour's. Realtime-safe.
+/// linearly between them: that is the distance of p (mm) from the hull, negative inside near its surface. Its
+/// gradient by p is n = (p - q) / |p - q|, and by a centre -w n with its weight w, whatever the radii. Where
+/// a radius changes by more along an edge than the edge is long, one corner's ball holds the other's. All is
+/// finite (unchecked). Realtime-safe. The hull is that of sphere-meshes (Thiery, Guy, Boubekeur 2013).
 NearestBall nearest_ball(const Eigen::Vector3d& p, const RoundedTriangle& t) noexcept;
 
 }  // namespace palpate::collision

@@ -25,10 +25,12 @@ using Eigen::Vector3d;
 // edges. And in mean edges about a vertex, with how far surfaces may be off for it.
 constexpr double tool_radii = 3, most_edges = 2, most_off = 0.05;
 constexpr double thickness_share = 1.0 / 3;  // of the body's thickness there, at most
+
 // Triangles of balls' centres have this share of the area of their own at least, and radii differ along an
 // edge by this share of its length at most.
 constexpr double area_kept = 0.16, steepest = 0.25;
 constexpr double shrinks = 0.9;
+constexpr int most_passes = 200;     // by which what shrinks all the time is nothing
 constexpr double tangential = 1e-3;  // weight of staying near the mean normal
 constexpr double skin = 1e-3;        // of the way: where a ray leaves its own triangles
 
@@ -63,7 +65,9 @@ std::vector<Surroundings> surroundings_of(const TriangleMesh& mesh) {
     return all;
 }
 
+// Zero where no triangle about a vertex has area.
 Vector3d direction_of(const Surroundings& at) {
+    if (!(at.angle > 0)) return Vector3d::Zero();
     const Vector3d mean = at.sum.normalized();
     const Matrix3d squares = at.squares / at.angle + tangential * Matrix3d::Identity();
     return mean + squares.ldlt().solve((at.sum - at.squares * mean) / at.angle);
@@ -72,7 +76,7 @@ Vector3d direction_of(const Surroundings& at) {
 }  // namespace
 
 std::vector<InnerBall> inner_balls(const TriangleMesh& mesh, const collision::CollisionSurface& surface,
-                                   double tool_radius) {
+                                   std::span<const std::int32_t> blocks, double tool_radius) {
     const std::size_t count = mesh.vertices.size();
     const std::vector<Surroundings> surroundings = surroundings_of(mesh);
     std::vector<Vector3d> directions(count);
@@ -88,7 +92,7 @@ std::vector<InnerBall> inner_balls(const TriangleMesh& mesh, const collision::Co
         }
     }
     for (std::size_t v = 0; v < count; ++v) {
-        if (surroundings[v].edge_count == 0) continue;
+        if (directions[v].isZero()) continue;
         const double edge = surroundings[v].edges / surroundings[v].edge_count;
         radii[v] = std::min(tool_radii * tool_radius, most_edges * edge);
         if (off[v] * radii[v] > most_off * edge) radii[v] = most_off * edge / off[v];
@@ -97,7 +101,14 @@ std::vector<InnerBall> inner_balls(const TriangleMesh& mesh, const collision::Co
         if (const auto back = surface.sweep_sphere(vertex + skin * way, vertex + way, 0))
             radii[v] *= back->fraction;
     }
-    for (bool smaller = true; smaller;) {
+    // What is held stays as it is: a sphere may press thin tissue down to it, and so meet it from its back;
+    // and as spheres do not sink into it, they tilt what is held in part, with which balls do not turn.
+    const auto held = [&](std::int32_t v) { return blocks[static_cast<std::size_t>(v)] < 0; };
+    for (const Triangle& t : mesh.triangles)
+        if (std::ranges::any_of(t, held))
+            for (const std::int32_t corner : t) radii[static_cast<std::size_t>(corner)] = 0;
+    bool smaller = true;
+    for (int pass = 0; smaller && pass < most_passes; ++pass) {
         smaller = false;
         for (const Triangle& t : mesh.triangles) {
             const collision::TriangleCorners own = corners_of(mesh, t);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "formats/model/triangle_mesh.hpp"
@@ -14,11 +16,14 @@ struct InnerBall {
     double radius = 0;                                ///< mm
 };
 
-/// Finds a ball for each vertex of a closed surface, mm, so that the hulls of the balls at each triangle's
-/// corners make the same surface with round edges. A ball has three times the radius of the tool (mm)
-/// or the length of two edges, and less where the body is thin or strongly bent: what it cuts off or adds is
-/// a twentieth of an edge or less. `surface` is the mesh's own. O(n log n) in the mesh.
+/// Finds a ball for each vertex of `mesh`, in its order, so that the hulls of the balls at each triangle's
+/// corners make the same surface with round edges. A ball has three times the radius of the tool (mm) or the
+/// length of two edges, less where the body is thin or strongly bent, and none where it is held: what it cuts
+/// off or adds is a twentieth of an edge or less. A vertex whose triangles have no area has a ball of radius
+/// 0. The mesh is closed, its vertices are finite, mm, and its triangles look outward (unchecked); `surface`
+/// is its own. A ray by vertex and up to 200 passes over the triangles. Throws nothing but what allocating
+/// throws.
 std::vector<InnerBall> inner_balls(const TriangleMesh& mesh, const collision::CollisionSurface& surface,
-                                   double tool_radius);
+                                   std::span<const std::int32_t> blocks, double tool_radius);
 
 }  // namespace palpate::haptics

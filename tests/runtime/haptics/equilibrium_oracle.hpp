@@ -75,7 +75,8 @@ class EquilibriumOracle {
             const Eigen::Vector3d tool = Eigen::Map<const Eigen::Vector3d>(result.device_position.data()) +
                                          force_of(result) / coupling;
             const Eigen::Vector3d into = sunk(result, radius);
-            const std::vector<haptics::InnerBall> balls = haptics::inner_balls(rest, surface_, radius);
+            const std::vector<haptics::InnerBall> balls =
+                haptics::inner_balls(rest, surface_, blocks_, radius);
             const auto centre = [&](std::int32_t vertex) -> Eigen::Vector3d {
                 const auto v = static_cast<std::size_t>(vertex);
                 return rest.vertices[v] + moved[v] + balls[v].inset -
@@ -135,7 +136,7 @@ class EquilibriumOracle {
 
   private:
     // The least distance of p from the balls between a triangle's corners, which is convex over it: by ever
-    // smaller steps along the triangle from the best of its corners and middle.
+    // smaller steps along the triangle from its middle.
     static double distance_of_balls(const Eigen::Vector3d& p, const std::array<Eigen::Vector3d, 3>& centres,
                                     const Eigen::Vector3d& radii) {
         const auto distance = [&](double b, double c) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "formats/model/contact/compliance_blocks.hpp"
 #include "runtime/collision/rounded_triangle.hpp"
 #include "runtime/haptics/contact/inner_balls.hpp"
 #include "tests/runtime/haptics/held_tool.hpp"
@@ -18,7 +19,7 @@ using Eigen::Vector3d;
 
 std::vector<InnerBall> balls_of(const DeformableBody& body, double tool_radius) {
     const TriangleMesh& mesh = body.boundary.surface;
-    return inner_balls(mesh, {mesh, body.obb_tree, body.name}, tool_radius);
+    return inner_balls(mesh, {mesh, body.obb_tree, body.name}, compliance_blocks(body), tool_radius);
 }
 
 collision::RoundedTriangle rounded(const TriangleMesh& mesh, const Triangle& t,
@@ -66,6 +67,10 @@ TEST(InnerBalls, cut_off_a_twentieth_of_an_edge_at_most) {
     for (const DeformableBody& body : {sample::elastic_cube(5), sample::true_elastic_arch(5, 12)}) {
         const TriangleMesh& mesh = body.boundary.surface;
         const std::vector<InnerBall> balls = balls_of(body, 1);
+        for (std::size_t v = 0; v < balls.size(); ++v) {
+            const bool beside_held = mesh.vertices[v].z() < 4 + 1e-9;  // of the lowest layer of cells
+            EXPECT_TRUE(beside_held ? balls[v].radius == 0 : balls[v].radius > 0.1) << v;
+        }
         for (const Triangle& t : mesh.triangles) {
             const auto corner = [&](std::size_t i) { return mesh.vertices[static_cast<std::size_t>(t[i])]; };
             for (std::size_t i = 0; i < 3; ++i)
@@ -79,7 +84,12 @@ TEST(InnerBalls, stay_inside_thin_bodies) {
     DeformableBody plate = sample::elastic_cube(5);
     for (Vector3d& v : plate.boundary.surface.vertices) v.z() *= 0.01;  // 0.2 mm thick
     plate.obb_tree = sample::median_tree(plate.boundary.surface, 4);
-    for (const InnerBall& ball : balls_of(plate, 3)) EXPECT_LE(ball.radius, 0.2 / 3 + 1e-6);
+    double widest = 0;
+    for (const InnerBall& ball : balls_of(plate, 3)) {
+        EXPECT_LE(ball.radius, 0.2 / 3 + 1e-6);
+        widest = std::max(widest, ball.radius);
+    }
+    EXPECT_GT(widest, 0.8 * 0.2 / 3);
 }
 
 TEST(InnerBalls, turn_no_triangle_of_their_centres_over) {
@@ -89,6 +99,7 @@ TEST(InnerBalls, turn_no_triangle_of_their_centres_over) {
     body.obb_tree = sample::median_tree(body.boundary.surface, 4);
     const TriangleMesh& mesh = body.boundary.surface;
     const std::vector<InnerBall> balls = balls_of(body, 5);
+    EXPECT_GT(std::ranges::max(balls, {}, &InnerBall::radius).radius, 1);
     for (const Triangle& t : mesh.triangles) {
         const auto vertex = [&](std::size_t i) { return mesh.vertices[static_cast<std::size_t>(t[i])]; };
         const Vector3d own = (vertex(1) - vertex(0)).cross(vertex(2) - vertex(0));
@@ -96,6 +107,18 @@ TEST(InnerBalls, turn_no_triangle_of_their_centres_over) {
         const Vector3d inner =
             (round.centres[1] - round.centres[0]).cross(round.centres[2] - round.centres[0]);
         EXPECT_GT(inner.dot(own), 0.1 * own.squaredNorm());
+    }
+}
+
+TEST(InnerBalls, are_found_where_vertices_lie_on_each_other) {
+    DeformableBody body = sample::elastic_cube(3);
+    std::vector<Vector3d>& vertices = body.boundary.surface.vertices;
+    vertices[1] = vertices[0];
+    vertices[5] = vertices[4] + Vector3d(0, 0, 1e-15);
+    body.obb_tree = sample::median_tree(body.boundary.surface, 4);
+    for (const InnerBall& ball : balls_of(body, 1)) {
+        EXPECT_TRUE(ball.inset.allFinite() && std::isfinite(ball.radius));
+        EXPECT_GE(ball.radius, 0);
     }
 }
 

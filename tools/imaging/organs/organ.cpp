@@ -162,7 +162,7 @@ void follow(Blocks& blocks, const Mask& found, const OrganSeeds& seeds, double d
 // in either, it is one half.
 std::vector<float> chances_by_grey(const Mask& found, const std::vector<float>& distance,
                                    const Blocks& blocks, double noise) {
-    constexpr double least_share = 1e-3;  // of what lies around; further inside there is none
+    constexpr float least_share = 1e-3F;  // of what lies around; further inside there is none
     Volume share{found.grid, std::vector<float>(distance.size())}, mean = blocks.grey;
     for (std::size_t i = 0; i < distance.size(); ++i) {
         share.values[i] = double{distance[i]} > found.grid.spacing.maxCoeff() ? 1 : 0;  // clear of the border
@@ -172,9 +172,13 @@ std::vector<float> chances_by_grey(const Mask& found, const std::vector<float>& 
     gaussian(found.grid, mean.values, around_mm);
     std::vector<float> chances(distance.size());
     for (std::size_t i = 0; i < chances.size(); ++i) {
+        if (share.values[i] < least_share) {
+            chances[i] = 1;
+            continue;
+        }
         const double grey = double{blocks.grey.values[i]},
                      off_organ = (grey - double{blocks.local[i]}) / noise,
-                     around = double{mean.values[i]} / std::max(least_share, double{share.values[i]}),
+                     around = double{mean.values[i]} / double{share.values[i]},
                      off_around = (grey - around) / noise;
         chances[i] =
             static_cast<float>(1 / (1 + std::exp((off_organ * off_organ - off_around * off_around) / 2)));

@@ -31,10 +31,10 @@ struct OrganParameters {
 /// the organ's or that of what lies around it; holes are filled. `note` receives what a person should look
 /// at: seeds whose surroundings differ from the others'. Throws InvalidInput naming `culprit` and the seed if
 /// there is none, one lies outside the volume or in something darker or brighter than allowed; and if nothing
-/// as thick as neck_mm holds the seeds. Cost: linear in voxels. Deterministic at any thread count. Source:
-/// the usual order for the liver (Campadelli et al., 2009: smoothing, statistics from seeds, growth, cutting
-/// leaks by shape), with the local means of Lankton and Tannenbaum (2008), the watershed of cut_at_necks()
-/// and random_walk().
+/// as thick as neck_mm holds the seeds. Cost: linear in voxels, but for the border's sparse system.
+/// Deterministic at any thread count. Source: the usual order for the liver (Campadelli et al., 2009:
+/// smoothing, statistics from seeds, growth, cutting leaks by shape), with the local means of Lankton and
+/// Tannenbaum (2008), the watershed of cut_at_necks() and random_walk().
 Mask organ(const Volume& volume, std::span<const Eigen::Vector3d> seeds, const OrganParameters& parameters,
            const std::string& culprit, const std::function<void(std::string_view)>& note = {});
 

@@ -4,7 +4,9 @@
 #include <Eigen/Sparse>
 #include <array>
 #include <cmath>
+#include <fmt/format.h>
 
+#include "formats/model/errors.hpp"
 #include "tools/imaging/voxels/coarse_grid.hpp"
 
 namespace palpate::imaging {
@@ -17,6 +19,11 @@ constexpr double accuracy = 1e-4;      // of the chances, relative: the border l
 
 Mask random_walk(const Volume& grey, const Walk& walk) {
     constexpr std::int32_t certain = -1;
+    if (!(walk.noise > 0) || !(walk.trust_mm > 0) || walk.prior.size() != grey.values.size())
+        throw InvalidInput({"the random walk to an organ's border",
+                            fmt::format("noise {}, trust_mm {}, {} priors for {} voxels", walk.noise,
+                                        walk.trust_mm, walk.prior.size(), grey.values.size()),
+                            "noise and trust_mm above 0, one prior per voxel", ""});
     const ImageGrid& grid = grey.grid;
     Mask result = walk.inside;
     std::vector<std::int32_t> unknown(grid.voxel_count(), certain);
@@ -61,6 +68,11 @@ Mask random_walk(const Volume& grey, const Walk& walk) {
     Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> solver;
     solver.setTolerance(accuracy);
     const Eigen::VectorXd chances = solver.compute(steps).solveWithGuess(ends, start);
+    if (solver.info() != Eigen::Success)
+        throw SystemFailure({"the random walk to an organ's border",
+                             fmt::format("did not converge: residual {:.1e} after {} steps", solver.error(),
+                                         solver.iterations()),
+                             fmt::format("{:.0e}", accuracy), "report this scan and its seeds"});
     for (std::size_t i = 0; i < unknown.size(); ++i)
         if (unknown[i] != certain) result.voxels[i] = chances[unknown[i]] >= 0.5;
     return result;

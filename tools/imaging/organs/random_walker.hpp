@@ -20,7 +20,8 @@ struct Walk {
 /// their grey values, whose variance within one tissue is 2 noise^2; and at each voxel it ends, with weight
 /// 1 / trust_mm^2, inside with the chance that `prior` gives. So the border runs where grey values change
 /// most, and where they do not, evenly between what is certain. Cost: a sparse system with one unknown per
-/// voxel that is not certain, solved by conjugate gradients in one thread. Source: Grady (2005), with the
+/// voxel that is not certain, solved by conjugate gradients in one thread. Throws InvalidInput if noise,
+/// trust or priors are not as told, SystemFailure if it does not converge. Source: Grady (2005), with the
 /// priors of Grady (CVPR 2005).
 Mask random_walk(const Volume& grey, const Walk& walk);
 
