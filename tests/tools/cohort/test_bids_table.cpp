@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "formats/model/errors.hpp"
+#include "tools/cohort/bids/bids_folder.hpp"
 #include "tools/cohort/bids/bids_name.hpp"
 #include "tools/cohort/bids/bids_table.hpp"
 #include "tools/cohort/patient_table.hpp"
@@ -201,6 +202,39 @@ TEST_F(BidsTable, segmentations_are_found_where_the_case_takes_them_with_the_nea
     EXPECT_THAT(rows[1].mistake, HasSubstr("has no segmentation sub-02_ses-1_dseg.nii.gz"));
     EXPECT_THAT(refusal(derivatives(folder_ / "none")), HasSubstr("is no folder"));
     EXPECT_THAT(refusal(segmentation("organs_mask")), HasSubstr("--segmentation: 'organs_mask'"));
+}
+
+TEST_F(BidsTable, names_of_labels_that_are_open_or_not_there_are_the_rows_problem) {
+    write_case("import");
+    for (const std::string subject : {"sub-01", "sub-02", "sub-03"}) {
+        add(subject + "/anat/" + subject + "_T1w.nii.gz");
+        add("derivatives/x/" + subject + "/anat/" + subject + "_seg-a_desc-b_dseg.nii.gz");
+    }
+    add("derivatives/x/sub-01/seg-a_dseg.tsv");
+    add("derivatives/x/sub-01/desc-b_dseg.tsv");
+    fs::create_symlink("../none", dataset_ / "derivatives/x/sub-02/dseg.tsv");
+    add("derivatives/x/dseg.tsv");
+    const auto rows = patients();
+    EXPECT_THAT(rows[0].mistake, HasSubstr("has 2 tables of label names that are as near as each other, "
+                                           "desc-b_dseg.tsv and seg-a_dseg.tsv; keep one"));
+    EXPECT_THAT(rows[1].mistake, HasSubstr("dseg.tsv is a link to a file that is not there"));
+    EXPECT_EQ(rows[2].mistake, "");
+}
+
+TEST_F(BidsTable, a_folder_that_cannot_be_read_is_not_taken_for_an_empty_one) {
+    add("sub-01/anat/sub-01_T1w.nii.gz");
+    add("sub-02/notes.txt");
+    fs::create_symlink("anat", dataset_ / "sub-02/anat");  // refused to root too
+    EXPECT_THAT(refusal(), HasSubstr("sub-02/anat: could not be read: "));
+}
+
+TEST_F(BidsTable, a_dataset_that_another_program_made_too_is_not_ours) {
+    const auto made_by = [](const char* makers) { return is_ours(nlohmann::json::parse(makers)); };
+    EXPECT_TRUE(made_by(R"({"GeneratedBy": [{"Name": "Palpate"}]})"));
+    for (const char* makers :
+         {R"({"GeneratedBy": [{"Name": "Palpate"}, {"Name": "x"}]})", R"({"GeneratedBy": ["Palpate"]})",
+          R"({"GeneratedBy": [{"Name": 1}]})", R"({"GeneratedBy": []})", "{}"})
+        EXPECT_FALSE(made_by(makers)) << makers;
 }
 
 TEST_F(BidsTable, what_is_no_dataset_is_refused) {

@@ -17,16 +17,46 @@ fs::path description_of(const fs::path& dataset) {
     return dataset / "dataset_description.json";
 }
 
+// No such file is an answer; that it cannot be looked at is none.
+void require_readable(const fs::path& path, const std::error_code& error) {
+    if (error && error != std::errc::no_such_file_or_directory && error != std::errc::not_a_directory)
+        throw SystemFailure({path.string(), "could not be read: " + error.message(), "",
+                             "check its permissions and its disk, then run again"});
+}
+
 // What a table could not hold is no name of BIDS either.
 bool is_printable(const std::string& name) {
     return std::ranges::none_of(name, [](unsigned char c) { return c < ' ' || c == 127; });
 }
 
+bool is_folder(const fs::path& path) {
+    std::error_code error;
+    const bool folder = fs::is_directory(path, error);
+    require_readable(path, error);
+    return folder;
+}
+
 }  // namespace
 
+bool is_there(const fs::path& path) {
+    std::error_code error;
+    const bool there = fs::exists(path, error);
+    require_readable(path, error);
+    return there;
+}
+
+std::vector<fs::path> entries_in(const fs::path& folder) {
+    std::vector<fs::path> entries;
+    std::error_code error;
+    for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+        entries.push_back(at->path());
+    require_readable(folder, error);
+    std::ranges::sort(entries);
+    return entries;
+}
+
 bool is_bids_dataset(const fs::path& folder) {
-    std::error_code none;
-    return fs::exists(description_of(folder), none);
+    return is_there(description_of(folder));
 }
 
 nlohmann::json dataset_description(const fs::path& dataset) {
@@ -46,30 +76,24 @@ nlohmann::json dataset_description(const fs::path& dataset) {
 
 bool is_ours(const nlohmann::json& description) {
     const auto makers = description.find("GeneratedBy");
-    return makers != description.end() && makers->is_array() &&
-           std::ranges::any_of(*makers, [](const nlohmann::json& maker) {
-               return maker.is_object() && maker.contains("Name") && maker["Name"] == "Palpate";
-           });
+    return makers != description.end() && makers->is_array() && makers->size() == 1 &&
+           makers->front().is_object() && makers->front().value("Name", nlohmann::json()) == "Palpate";
 }
 
 std::vector<std::string> folders_in(const fs::path& folder, const std::string& prefix) {
     std::vector<std::string> names;
-    std::error_code none;
-    for (const auto& entry : fs::directory_iterator(folder, none))
-        if (const std::string name = entry.path().filename().string();
-            name.starts_with(prefix) && !name.starts_with('.') && is_printable(name) &&
-            entry.is_directory(none))
+    for (const fs::path& entry : entries_in(folder))
+        if (const std::string name = entry.filename().string();
+            name.starts_with(prefix) && !name.starts_with('.') && is_printable(name) && is_folder(entry))
             names.push_back(name);
-    std::ranges::sort(names);
     return names;
 }
 
 std::vector<BidsFile> images_in(const fs::path& dataset, const fs::path& below) {
     std::vector<BidsFile> files;
-    std::error_code none;
     for (const char* type : {"anat", "ct"})
-        for (const auto& entry : fs::directory_iterator(dataset / below / type, none)) {
-            const std::string name = entry.path().filename().string();
+        for (const fs::path& entry : entries_in(dataset / below / type)) {
+            const std::string name = entry.filename().string();
             auto parsed = parse_bids_name(name);
             if (parsed && is_printable(name) && name.starts_with(patient_name(below) + "_") &&
                 (parsed->extension == ".nii" || parsed->extension == ".nii.gz"))

@@ -15,14 +15,21 @@ struct BidsFile {
     BidsName name;
 };
 
-/// Tells whether a folder is a BIDS dataset, by its dataset_description.json.
+/// Tells whether a file is there, links followed. Throws SystemFailure if that cannot be known.
+bool is_there(const std::filesystem::path& path);
+
+/// What is in a folder, by name; nothing if there is no such folder. Throws SystemFailure if it cannot be
+/// read.
+std::vector<std::filesystem::path> entries_in(const std::filesystem::path& folder);
+
+/// Tells whether a folder is a BIDS dataset, by its dataset_description.json. Throws as is_there().
 bool is_bids_dataset(const std::filesystem::path& folder);
 
 /// A dataset's dataset_description.json. Throws InvalidInput if it is missing, no JSON object or longer than
 /// 16 MiB.
 nlohmann::json dataset_description(const std::filesystem::path& dataset);
 
-/// Tells whether a dataset_description.json says that Palpate made the dataset.
+/// Tells whether a dataset_description.json says that Palpate, and nobody else, made the dataset.
 bool is_ours(const nlohmann::json& description);
 
 /// The folders in `folder` whose names begin with `prefix`, "sub-", by name; none if it is no folder.

@@ -23,24 +23,38 @@ bool is_of(const BidsName& segmentation, const BidsName& image) {
     });
 }
 
-fs::path label_table_of(const fs::path& dataset, const BidsFile& segmentation) {
+// The most specific of the nearest.
+std::vector<fs::path> label_tables_of(const fs::path& dataset, const BidsFile& segmentation) {
     fs::path folder = segmentation.path;
     do {
         folder = folder.parent_path();
-        fs::path best;
+        std::vector<fs::path> best;
         std::size_t most = 0;
-        std::error_code none;
-        for (const auto& entry : fs::directory_iterator(dataset / folder, none)) {
-            const auto name = parse_bids_name(entry.path().filename().string(), false);
+        for (const fs::path& entry : entries_in(dataset / folder)) {
+            const auto name = parse_bids_name(entry.filename().string(), false);
             if (!name || name->suffix != "dseg" || name->extension != ".tsv" ||
                 !segmentation.name.has_all_of(*name))
                 continue;
-            if (best.empty() || name->entities.size() > most) best = entry.path();
+            if (name->entities.size() > most) best.clear();
+            if (name->entities.size() >= most) best.push_back(entry);
             most = std::max(most, name->entities.size());
         }
         if (!best.empty()) return best;
     } while (!folder.empty());
     return {};
+}
+
+ChosenSegmentation with_label_table(const fs::path& dataset, const BidsFile& segmentation) {
+    ChosenSegmentation chosen{dataset / segmentation.path, {}, ""};
+    const std::vector<fs::path> tables = label_tables_of(dataset, segmentation);
+    if (tables.size() == 1) chosen.label_table = tables[0];
+    if (tables.size() > 1)
+        chosen.problem = fmt::format(
+            "has {} tables of label names that are as near as each other, {} and {}; keep one, or name one "
+            "in "
+            "the column label_names",
+            tables.size(), tables[0].filename().string(), tables[1].filename().string());
+    return chosen;
 }
 
 }  // namespace
@@ -82,7 +96,7 @@ ChosenSegmentation choose_segmentation(std::span<const fs::path> folders, const 
             "or name one in the column labels",
             found.size(), fmt::join(names, ", "));
     else
-        chosen = {found[0].first / found[0].second.path, label_table_of(found[0].first, found[0].second), ""};
+        chosen = with_label_table(found[0].first, found[0].second);
     return chosen;
 }
 

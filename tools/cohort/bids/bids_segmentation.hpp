@@ -10,8 +10,8 @@ namespace palpate::cohort {
 
 /// A subject's discrete segmentation, or why there is none.
 struct ChosenSegmentation {
-    std::filesystem::path labels;       ///< *_dseg.nii.gz; empty if there is a problem
-    std::filesystem::path label_table;  ///< the dseg.tsv that names its values; empty if none does
+    std::filesystem::path labels;       ///< *_dseg.nii.gz; empty if there is not one
+    std::filesystem::path label_table;  ///< the dseg.tsv that names its values; empty if not one does
     std::string problem;                ///< and the remedy
 };
 
@@ -24,7 +24,8 @@ std::vector<std::filesystem::path> segmentation_folders(const std::filesystem::p
 /// The one segmentation of `image` in the folders' `below` ("sub-01/ses-02"): suffix dseg, in the image's own
 /// space, no entity of the acquisition (acq, run, ...) with another value than the image has, and all that
 /// `wanted` has, "seg-organs". Its names come from the dseg.tsv that BIDS' inheritance principle gives it: in
-/// its folder or one above, no entity that it has not, the nearest and then the most specific.
+/// its folder or one above, no entity that it has not, the nearest and then the most specific; of several
+/// such none, which is a problem.
 ChosenSegmentation choose_segmentation(std::span<const std::filesystem::path> folders,
                                        const std::filesystem::path& below, const BidsName& image,
                                        const BidsName& wanted);

@@ -39,7 +39,7 @@ bool takes_labels(const case_builder::CaseFile& case_file) {
 }
 
 void require_there(const fs::path& file, Row& row) {
-    if (std::error_code none; file.empty() || !row.problem.empty() || fs::exists(file, none)) return;
+    if (file.empty() || !row.problem.empty() || is_there(file)) return;
     row.problem = fmt::format("{} is a link to a file that is not there; fetch it, as by 'datalad get'",
                               file.filename().string());
 }
@@ -49,6 +49,7 @@ void add_segmentation(const ChosenSegmentation& chosen, Row& row) {
     row.labels = chosen.labels;
     row.label_table = chosen.label_table;
     require_there(row.labels, row);
+    require_there(row.label_table, row);
 }
 
 std::string table_text(const std::vector<Row>& rows, const fs::path& case_file, const fs::path& folder,
