@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -32,6 +33,15 @@ Made by Palpate, a tool that turns a patient's CT or MRI into an organ that a ha
 BIDS does not know the last two; `.bidsignore` says so.
 )";
 
+bool lies_in(const fs::path& path, const fs::path& folder) {
+    const fs::path relative = path.lexically_relative(folder);
+    return !relative.empty() && *relative.begin() != "..";
+}
+
+fs::path place_of(const fs::path& path) {
+    return fs::weakly_canonical(fs::absolute(path));
+}
+
 // An image of a BIDS dataset.
 struct SourceImage {
     fs::path dataset;  // canonical
@@ -41,7 +51,11 @@ struct SourceImage {
 // The dataset is the folder above the subject's.
 SourceImage source_of(const PatientBuild& build) {
     const std::string& patient = build.patient.name;
-    const fs::path image = fs::absolute(build.case_file.volume.value_or("")).lexically_normal();
+    if (!build.case_file.volume)
+        throw InvalidInput({build.patient.where, "'" + patient + "' was built without an image",
+                            "an image of a BIDS dataset, which the derivatives are named after",
+                            "name the image that it is of in the column volume and build again"});
+    const fs::path image = fs::absolute(*build.case_file.volume).lexically_normal();
     const std::string subject = patient.substr(0, patient.find('_'));
     fs::path dataset;
     for (const fs::path& part : image) {
@@ -67,8 +81,8 @@ class SourceLink {
             doi_ = doi->get<std::string>();
             link_ = doi_.find(':') == std::string::npos ? "doi:" + doi_ : doi_;
         }
-        const fs::path place = fs::weakly_canonical(fs::absolute(output));
-        if (is_below(place)) link_ = dataset_.lexically_relative(place).generic_string();
+        const fs::path place = place_of(output);
+        if (lies_in(place, dataset_)) link_ = dataset_.lexically_relative(place).generic_string();
     }
 
     bool given() const { return !link_.empty(); }
@@ -76,7 +90,7 @@ class SourceLink {
     // "bids:raw:sub-01/anat/sub-01_T1w.nii.gz"; nothing for a file that is not in the dataset.
     std::optional<std::string> uri_of(const fs::path& file) const {
         const fs::path full = file.is_absolute() ? file.lexically_normal() : dataset_ / file;
-        if (!given() || !is_below(full)) return std::nullopt;
+        if (!given() || !lies_in(full, dataset_)) return std::nullopt;
         return "bids:raw:" + full.lexically_relative(dataset_).generic_string();
     }
 
@@ -87,11 +101,6 @@ class SourceLink {
     }
 
   private:
-    bool is_below(const fs::path& path) const {
-        const fs::path relative = path.lexically_relative(dataset_);
-        return !relative.empty() && *relative.begin() != "..";
-    }
-
     fs::path dataset_;
     std::string link_, doi_;
 };
@@ -123,20 +132,43 @@ void write_structures(const fs::path& labels, const fs::path& stem, const Source
     write_text(stem.string() + "_dseg.json", sidecar.dump(2) + "\n");
 }
 
-void write_patient(const PatientBuild& build, const SourceImage& source, const SourceLink& link,
-                   const fs::path& folder) {
+// "sub-01/ses-02/anat/sub-01_ses-02_desc-palpate", what names of the patient's files begin with.
+fs::path stem_of(const SourceImage& source) {
+    auto part = source.file.path.begin();
+    fs::path place = *part;
+    if (++part != source.file.path.end() && part->string().starts_with("ses-") &&
+        *part != source.file.path.filename())
+        place /= *part;
     BidsName name = source.file.name;
     std::erase_if(name.entities, [](const auto& entity) { return entity.first == "desc"; });
     name.entities.emplace_back("desc", "palpate");
     std::string stem;
     for (const auto& [entity, value] : name.entities)
         stem += (stem.empty() ? "" : "_") + entity + "-" + value;
-    const fs::path place = folder / source.file.path.parent_path().parent_path() / "anat";
-    fs::create_directories(place);
+    return place / "anat" / stem;
+}
+
+void require_own_names(const std::vector<std::pair<const PatientBuild*, SourceImage>>& built) {
+    std::map<fs::path, const PatientBuild*> patients;
+    for (const auto& [build, source] : built) {
+        const auto [other, is_first] = patients.try_emplace(stem_of(source), build);
+        if (!is_first)
+            throw InvalidInput({build->patient.where,
+                                fmt::format("'{}' and '{}' would both be {}", other->second->patient.name,
+                                            build->patient.name, other->first.string()),
+                                "one patient of each subject, session, acquisition and run",
+                                "put one of them into a cohort of its own and export that elsewhere"});
+    }
+}
+
+void write_patient(const PatientBuild& build, const SourceImage& source, const SourceLink& link,
+                   const fs::path& folder) {
+    const std::string stem = (folder / stem_of(source)).string();
+    fs::create_directories(fs::path(stem).parent_path());
     const fs::path labels = build.paths.parts / "labels.seg.nrrd";
-    if (needs_labels(build.case_file)) write_structures(labels, place / stem, source, build, link);
-    copy_whole(build.paths.asset, place / (stem + "_asset.vtkhdf"));
-    copy_whole(build.paths.report, place / (stem + "_report.html"));
+    if (needs_labels(build.case_file)) write_structures(labels, stem, source, build, link);
+    copy_whole(build.paths.asset, stem + "_asset.vtkhdf");
+    copy_whole(build.paths.report, stem + "_report.html");
 }
 
 // In the words of what failed, without the line break at their end.
@@ -180,6 +212,8 @@ BidsExport write_bids_dataset(const Cohort& cohort, const States& states, const 
             throw InvalidInput({build->patient.where, "comes from " + source.dataset.string(),
                                 dataset.string() + ", where the first patient comes from",
                                 "build a cohort of each dataset"});
+    require_outside(output, dataset);
+    require_own_names(built);
     const SourceLink link(dataset, output);
     made.linked = link.given();
     for (const auto& [build, source] : built) {
@@ -189,6 +223,12 @@ BidsExport write_bids_dataset(const Cohort& cohort, const States& states, const 
     }
     write_description(folder, link);
     return made;
+}
+
+void require_outside(const fs::path& output, const fs::path& source) {
+    if (lies_in(place_of(source), place_of(output)))
+        throw InvalidInput({output.string(), "has " + source.string() + " in it, of which it would be made",
+                            "a folder of its own", "choose another name"});
 }
 
 void require_replaceable(const fs::path& output) {

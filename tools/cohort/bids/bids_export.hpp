@@ -23,11 +23,15 @@ struct BidsExport {
 /// will lie: inside the source dataset, Sources and SpatialReference lead there by a relative link, elsewhere
 /// by its DOI if it has one, else nothing does. No path of this machine is written; the same cohort gives the
 /// same bytes. `before_each` is called before each patient, with what part is done. Throws InvalidInput if
-/// nobody is built, if an image is in no BIDS dataset, or if they are in several; SystemFailure if something
+/// nobody is built, if an image is in no BIDS dataset or there is none, if they are in several datasets or in
+/// one inside `output`, or if two patients' files would have the same names; SystemFailure if something
 /// cannot be written.
 BidsExport write_bids_dataset(const Cohort& cohort, const States& states, const std::filesystem::path& output,
                               const std::filesystem::path& folder,
                               const std::function<void(double)>& before_each);
+
+/// Throws InvalidInput if `source`, of which `output` is made, is that folder or lies in it.
+void require_outside(const std::filesystem::path& output, const std::filesystem::path& source);
 
 /// Throws InvalidInput if `output` holds something that an export must not replace: anything but a dataset
 /// that Palpate made.
