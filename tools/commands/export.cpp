@@ -103,9 +103,10 @@ std::filesystem::path own_folder() {
 nlohmann::ordered_json export_cohort(const ExportRequest& request, cli::Session& session) {
     const cohort::Cohort built = cohort::cohort_in(request.input);
     refuse_while_built(built.folder);
-    cohort::require_replaceable(request.output);
+    cohort::require_outside(request.output, built.folder.root);
     cli::end_softly_on_interrupt();
     cli::StagedFolder staged(request.output, session.force);
+    cohort::require_replaceable(request.output);  // also what StagedFolder put back
     const auto step = [&](const char* what) {
         return [&session, what](double done) {
             if (cli::interrupt_asked()) throw cli::Interrupted();
