@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A BIDS dataset becomes a cohort, and the cohort a BIDS dataset of derivatives."""
+import fcntl
 import gzip
 import json
 import os
@@ -245,6 +246,24 @@ class Bids(SmallCohort):
         self.assertEqual(sorted(os.listdir(target)), ["precious"])
         self.assertFalse(any(name.startswith((".part", ".old")) for name in os.listdir(self.folder)))
         self.assertIn("of which it would be made", self.run_palpate("export", self.out, "-o", self.folder, "--force", code=3).stderr)
+
+    def test_a_table_is_not_written_anew_while_its_cohort_is_built(self):
+        self.add_scan("sub-01")
+        self.name_labels()
+        self.bids("--requests")
+        table = self.out / "patients.tsv"
+        table.write_text(table.read_text() + "\n")
+        kept = table.read_text()
+        place = 1469598103934665603  # FNV-1a, as FolderLock has it
+        for letter in b"batch":
+            place = (place ^ letter) * 1099511628211 % 2**64
+        with open(self.out / ".batch" / "lock", "a+b") as held:
+            fcntl.lockf(held, fcntl.LOCK_EX, 1, place % 2**30)
+            self.assertIn("is being built by another", self.bids("--requests", "--force", code=3).stderr)
+            self.assertIn("is being built by another", self.run_palpate("export", self.out, "-o", self.folder / "made", code=3).stderr)
+        self.assertEqual(table.read_text(), kept)
+        self.bids("--requests", "--force")
+        self.assertNotEqual(table.read_text(), kept)
 
 
 if __name__ == "__main__":

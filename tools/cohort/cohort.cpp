@@ -45,8 +45,9 @@ void write_requests(const Cohort& cohort) {
 }
 
 void refuse_while_built(const CohortFolder& folder) {
-    if (case_builder::FolderLock::held_by_another(folder.batch(), "batch"))
-        throw InvalidInput({folder.root.string(), "is being built by another palpate batch", "",
+    if (std::filesystem::exists(folder.batch()) &&
+        case_builder::FolderLock::held_by_another(folder.batch(), "batch"))
+        throw InvalidInput({folder.root.string(), "is being built by another palpate batch, or exported", "",
                             "wait for it or end it; what it finished is kept"});
 }
 

@@ -27,7 +27,8 @@ Cohort cohort_in(const std::filesystem::path& folder);
 /// Leaves in the folder what `palpate build --request` takes for each patient, and where the table is.
 void write_requests(const Cohort& cohort);
 
-/// Throws InvalidInput if a `palpate batch` builds the cohort at this moment.
+/// Throws InvalidInput if a `palpate batch` builds the cohort at this moment, or a `palpate export`
+/// copies it: who holds the FolderLock "batch" of its batch().
 void refuse_while_built(const CohortFolder& folder);
 
 using States = std::vector<std::vector<StageState>>;

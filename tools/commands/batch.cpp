@@ -59,7 +59,10 @@ Cohort cohort_of_request(const BatchRequest& request, bool keep, bool force) {
     const std::string text =
         bids_patient_table(request.table, request.case_file, keep ? folder.root : std::filesystem::path(),
                            request.choice, [](std::string_view said) { spdlog::warn("{}", said); });
-    if (keep) keep_table(folder.bids_table(), text, request, force);
+    if (keep) {
+        refuse_while_built(folder);
+        keep_table(folder.bids_table(), text, request, force);
+    }
     std::istringstream stream(text);
     return cohort_of(parse_patient_table(stream, folder.bids_table()), folder.bids_table(), folder.root);
 }

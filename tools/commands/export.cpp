@@ -7,6 +7,7 @@
 #include "formats/model/errors.hpp"
 #include "tools/archive/objects/archive_objects.hpp"
 #include "tools/archive/objects/segment_codes.hpp"
+#include "tools/case_builder/folder_lock.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/outputs/staged_folder.hpp"
 #include "tools/cli/refuse_beside.hpp"
@@ -103,6 +104,7 @@ std::filesystem::path own_folder() {
 nlohmann::ordered_json export_cohort(const ExportRequest& request, cli::Session& session) {
     const cohort::Cohort built = cohort::cohort_in(request.input);
     refuse_while_built(built.folder);
+    const case_builder::FolderLock lock(built.folder.batch(), "batch");
     cohort::require_outside(request.output, built.folder.root);
     cli::end_softly_on_interrupt();
     cli::StagedFolder staged(request.output, session.force);
