@@ -11,6 +11,7 @@
 #include "runtime/devices/mounted_device.hpp"
 #include "runtime/devices/simulation.hpp"
 #include "runtime/session/hand_script.hpp"
+#include "tools/cli/refuse_beside.hpp"
 
 namespace palpate::apps {
 namespace {
@@ -94,7 +95,7 @@ void refuse_idle_options(const cli::Command& command, const TouchOptions& option
     constexpr std::array of_scripts{"--script", "--column", "--depth", "--speed", "--shaft", "--seed"};
     const bool physical = !choose_device(options.device, "--device").kind.simulated;
     for (const cli::Parameter& parameter : command.parameters()) {
-        if (!parameter.option.given()) continue;
+        if (!cli::asked_for(parameter)) continue;
         const std::string name = parameter.option.name();
         if (physical && std::ranges::find(of_scripts, name) != of_scripts.end())
             throw UsageError({name, "with --device " + options.device, "a simulated device", ""});

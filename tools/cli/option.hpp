@@ -24,7 +24,8 @@ class Option {
     Option positive() const;
     Option non_negative() const;
     Option one_of(std::vector<std::string> words) const;
-    /// What the help gives as the default, where the variable's content is not it.
+    /// What the help gives as the default, where the variable's content is not it: a value that the option
+    /// takes, for 3D Slicer passes it. What is no value belongs into the help, as "[default: all cores]".
     Option shown_default(const std::string& text) const;
     /// Takes one value each time it is given, so that the next word may be a positional one; values may also
     /// be parted by `delimiter`, unless that is 0.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 
@@ -9,7 +10,12 @@
 
 namespace palpate::cli {
 
-/// Throws UsageError if the user gave any option but `allowed` beside `option`, saying `why`.
+/// Whether the user gave an option another value than its default, which 3D Slicer passes unasked.
+inline bool asked_for(const Parameter& parameter) {
+    return parameter.option.given() && parameter.value().dump() != parameter.unset;
+}
+
+/// Throws UsageError if the user asked for any option but `allowed` beside `option`, saying `why`.
 inline void refuse_beside(const Command& command, const std::string& option, std::span<const Option> allowed,
                           const std::string& why) {
     std::string names;
@@ -17,7 +23,7 @@ inline void refuse_beside(const Command& command, const std::string& option, std
         if (other.name().starts_with("--") && other.name() != option)
             names += (names.empty() ? "" : ", ") + other.name();
     for (const Parameter& parameter : command.parameters())
-        if (parameter.option.given() && std::ranges::find(allowed, parameter.option) == allowed.end())
+        if (asked_for(parameter) && std::ranges::find(allowed, parameter.option) == allowed.end())
             throw UsageError({parameter.option.name(), "with " + option, names + " at most", why});
 }
 

@@ -223,16 +223,14 @@ int main(int argc, char** argv) {
         command.input("--case", request.case_file, "of a BIDS dataset: case file (.toml) of all patients");
     const std::vector<cli::Option> bids_options{
         case_option,
-        command
-            .option("--image", request.choice.image,
-                    "of a BIDS dataset: which image, as T2w or acq-mprage_T1w")
-            .shown_default("the suffix that most subjects have"),
+        command.option("--image", request.choice.image,
+                       "of a BIDS dataset: which image, as T2w or acq-mprage_T1w [default: the suffix that "
+                       "most subjects have]"),
         command.option("--segmentation", request.choice.segmentation,
                        "of a BIDS dataset: which *_dseg.nii.gz where there are several, as seg-organs"),
-        command
-            .input("--derivatives", request.choice.derivatives,
-                   "of a BIDS dataset: the folder that has the segmentations")
-            .shown_default("all in its derivatives/")};
+        command.input("--derivatives", request.choice.derivatives,
+                      "of a BIDS dataset: the folder that has the segmentations [default: all in its "
+                      "derivatives/]")};
     command.option("--profile", profile,
                    "where stages run: local, slurm, or a folder with a Snakemake profile");
     const cli::Option check_option =

@@ -87,7 +87,8 @@ void check_request(const ImportRequest& request) {
                dicom_image =
                    !labels && (std::filesystem::is_directory(request.input, none) || is_dicom(request.input));
     require(labels || request.label_names.empty(), "--label-names", "label maps", "add --labels");
-    require(labels || request.overlaps.empty(), "--overlaps", "label maps", "add --labels");
+    require(labels || request.overlaps.empty() || request.overlaps == "refuse", "--overlaps", "label maps",
+            "add --labels");
     require(!labels || !request.deface, "--deface", "images", "leave it out");
     require(dicom_image || request.series.empty(), "--series", "DICOM images", "leave it out");
     require(dicom_image || !request.accept_gaps, "--accept-gaps", "DICOM images", "leave it out");
