@@ -79,16 +79,24 @@ std::string key_from(const Option& option) {
     return key;
 }
 
-// The arguments, last one first as CLI11 wants them, in which "--max_triangles" is "--max-triangles": 3D
-// Slicer's flags are identifiers. What follows "--" is no option.
-std::vector<std::string> reversed_arguments(int argc, char** argv) {
+// The arguments, last one first as CLI11 wants them, in which "--max_triangles" is "--max-triangles" where
+// the command has that option: 3D Slicer's flags are identifiers. What follows "--" or an option that takes
+// a value is no option.
+std::vector<std::string> reversed_arguments(const CLI::App& app, int argc, char** argv) {
     std::vector<std::string> words;
-    bool options = true;
+    bool options = true, value = false;
     for (int i = 1; i < argc; ++i) {
         std::string word = argv[i];
-        options = options && word != "--";
-        if (options && word.starts_with("--"))
-            std::replace(word.begin(), std::find(word.begin(), word.end(), '='), '_', '-');
+        options = options && (value || word != "--");
+        if (options && !value && word.starts_with("--")) {
+            const std::string name = word.substr(0, word.find('='));
+            std::string dashed = name;
+            std::ranges::replace(dashed, '_', '-');
+            if (app.get_option_no_throw(name) == nullptr && app.get_option_no_throw(dashed) != nullptr)
+                word.replace(0, name.size(), dashed);
+        }
+        const CLI::Option* const option = options && !value ? app.get_option_no_throw(word) : nullptr;
+        value = option != nullptr && word.starts_with('-') && option->get_items_expected_min() > 0;
         words.push_back(std::move(word));
     }
     std::ranges::reverse(words);
@@ -238,7 +246,7 @@ int Command::parse(int argc, char** argv) {
             return ExitCode::ok;
         }
     try {
-        app_->parse(reversed_arguments(argc, argv));
+        app_->parse(reversed_arguments(*app_, argc, argv));
         return -1;
     } catch (const CLI::CallForHelp&) {
         std::cout << app_->help();

@@ -4,6 +4,7 @@
 The rules are those of Slicer's ModuleDescriptionParser, which refuses the whole module where one is broken, and, for which elements
 there are and in which order, those of CTK's schema of command line modules, which is stricter.
 """
+import json
 import os
 import pathlib
 import re
@@ -139,6 +140,24 @@ class Descriptions(unittest.TestCase):
                 for given in (folder, file, labels) if "<channel>input" in run(command, "--xml").stdout else (folder,):
                     with self.subTest(command.name, given=given.name):
                         self.assertEqual(*(outcome(command, given, unasked) for unasked in (True, False)))
+
+    def test_a_value_that_begins_like_an_option_is_left_as_it_is(self):
+        corners = ("0 0 0", "0 9 0", "9 0 0", "0 0 9")
+        facets = [[corners[i] for i in triangle] for triangle in ((0, 1, 2), (0, 2, 3), (0, 3, 1), (1, 3, 2))]
+        for words, title in ((["--title", "--my_title"], "--my_title"), (["--title=--my_title"], "--my_title"), (["--title", "--"], "--"),
+                             (["--title", "--algorithm_name", "--algorithm_name", "a_b"], "--algorithm_name")):
+            with self.subTest(words), tempfile.TemporaryDirectory() as scratch:
+                surface = pathlib.Path(scratch) / "surface.stl"
+                surface.write_text("solid a\n" + "".join(
+                    "facet normal 0 0 0\nouter loop\n" + "".join(f"vertex {corner}\n" for corner in facet) + "endloop\nendfacet\n"
+                    for facet in facets) + "endsolid a\n")
+                made = run(BIN / "palpate-export", *words, surface, "-o", surface.with_suffix(".dcm"), "--unit", "mm", "--frame", "lps",
+                           "--json", "-")
+                self.assertEqual(made.returncode, 0, made.stderr)
+                self.assertEqual(json.loads(made.stdout)["title"], title)
+
+    def test_a_flag_that_no_option_has_is_told_as_it_was_given(self):
+        self.assertIn("--no_such", run(BIN / "palpate-obb", "--no_such", "a.vtp", "-o", "b").stderr)
 
     def test_a_command_does_what_slicer_calls_with_names_of_several_words(self):
         with tempfile.TemporaryDirectory() as scratch:
