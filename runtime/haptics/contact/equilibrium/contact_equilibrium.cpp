@@ -270,7 +270,8 @@ bool ContactEquilibrium::found(std::size_t t) const noexcept {
             const NearestBall ball = nearest_ball(centre, round);
             const double above = touch.normal.dot(centre - ball.centre), together = radius_ + ball.radius;
             const double apart = std::copysign(ball.distance, above) - together;
-            // Over a round edge it is less far above than it is apart; far past one, it is below another face.
+            // Over a round edge it is less far above than it is apart; far past one, it is below another
+            // face.
             const bool past = above < together - first_reach && apart > first_reach;
             if (apart < -first_reach || past) return false;
         }
