@@ -11,12 +11,14 @@
 // loads spread over the surface (load_shares.cpp). A sphere pressed into tissue sinks in by s besides,
 // against a potential U (local_indentation.cpp): what meets the surface is y = x + s, and it meets vertices
 // that do not give way at all, which are not sunk into, s farther on. All come to rest where
-//     V = 1/2 K |x - d|² + 1/2 u . C^-1 u + U(s)    is least under    g_t = |y - q_t(u, s)| - r >= 0
-// for every sphere and every triangle t of the surface as it is *displaced*, q_t its point closest to y.
+//     V = 1/2 K |x - d|² + 1/2 u . C^-1 u + U(s)    is least under    g_t = |y - q_t(u, s)| - r - rho_t >= 0
+// for every sphere and every triangle t of the surface as it is *displaced*. Its edges are round: at each
+// corner a ball lies inside the surface and goes with it (inner_balls.cpp), and q_t and rho_t are centre and
+// radius of the ball nearest to y of those between them.
 // The force on the device is -dV/dd = K (x - d): its work round a closed loop is zero. Rest positions,
 // anchors and smoothed normals have no part in it.
 //
-// g_t is differentiable wherever y is off the triangle: its gradient by x is n = (y - q_t) / |y - q_t|,
+// g_t is differentiable wherever y is off the balls' centres: its gradient by x is n = (y - q_t) / |y - q_t|,
 // -w_i n by u_i, w the barycentric weights of q_t, and p n by s, p the sum of w over the vertices that give
 // way. So s answers to the press F = sum p f n (equilibrium_sinking.cpp has more). Linearised at the present
 // state, with s = s_0 + S F about the present F, the conditions for the forces f >= 0 that the triangles
