@@ -22,8 +22,10 @@ const std::vector<Tissue>& all_tissues() {
          .poissons_ratio = 0.45,
          .density_kg_m3 = 1040,
          .relaxation = {},
-         .source = "median G 3.07 kPa of 10 by MR elastography, 2.37 of 14 aged, Murphy et al., PMC3217096; least by "
-                   "excised tissue of 0.5 to 1.4 kPa, Budday et al., Acta Biomater 48:319-340, 2017; density that of "
+         .source = "median G 3.07 kPa of 10 by MR elastography, 2.37 of 14 aged, Murphy et al., PMC3217096; "
+                   "least by "
+                   "excised tissue of 0.5 to 1.4 kPa, Budday et al., Acta Biomater 48:319-340, 2017; density "
+                   "that of "
                    "GATE's materials"},
         {.name = "kidney",
          .meaning = "healthy, adults, in vivo",
@@ -33,8 +35,10 @@ const std::vector<Tissue>& all_tissues() {
          .poissons_ratio = 0.45,
          .density_kg_m3 = 1050,
          .relaxation = {},
-         .source = "shear waves of 1.93 +- 0.22 m per s in 9 by MR elastography, Magn Reson Med 78:976-983, 2017; G 4.9 "
-                   "+- 0.5 kPa at 45 Hz and 9.4 +- 0.8 at 76 of 10, J Magn Reson Imaging 34:880-886, 2011; density ICRU "
+         .source = "shear waves of 1.93 +- 0.22 m per s in 9 by MR elastography, Magn Reson Med 78:976-983, "
+                   "2017; G 4.9 "
+                   "+- 0.5 kPa at 45 Hz and 9.4 +- 0.8 at 76 of 10, J Magn Reson Imaging 34:880-886, 2011; "
+                   "density ICRU "
                    "Report 46"},
         {.name = "liver",
          .meaning = "healthy, adults, in vivo",
@@ -82,8 +86,9 @@ const std::vector<Tissue>& all_tissues() {
          .poissons_ratio = 0.45,
          .density_kg_m3 = 1040,
          .relaxation = {},
-         .source = "G 1.14 +- 0.13 kPa by MR elastography at 40 Hz, 2.08 +- 0.31 at 60 Hz elsewhere, J Magn Reson "
-                   "Imaging 52:448-458, 2020; density that of GATE's materials"},
+         .source =
+             "G 1.14 +- 0.13 kPa by MR elastography at 40 Hz, 2.08 +- 0.31 at 60 Hz elsewhere, J Magn Reson "
+             "Imaging 52:448-458, 2020; density that of GATE's materials"},
         {.name = "soft-palate",
          .meaning = "stands in for the nasopharyngeal wall, of which no measurement was found",
          .youngs_modulus_kpa = 7.8,
@@ -103,7 +108,8 @@ const std::vector<Tissue>& all_tissues() {
          .poissons_ratio = 0.45,
          .density_kg_m3 = 1060,
          .relaxation = {},
-         .source = "the middle of G 3.57 +- 0.59 and 4.26 +- 0.63 kPa (driver right, left) of 16 by MR elastography at "
+         .source = "the middle of G 3.57 +- 0.59 and 4.26 +- 0.63 kPa (driver right, left) of 16 by MR "
+                   "elastography at "
                    "60 Hz, Am J Roentgenol 195:387-392, 2010; density that of GATE's materials"},
     };
     return all;
