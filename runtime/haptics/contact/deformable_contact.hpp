@@ -43,6 +43,8 @@ class DeformableContact {
     const InnerBall& inner_ball(std::int32_t vertex) const noexcept {
         return inner_balls_[static_cast<std::size_t>(vertex)];
     }
+    /// How much lower than a vertex the ball inside is at the most, mm.
+    double most_cut_off() const noexcept { return most_cut_off_; }
     /// Whether a vertex gives way at all: it is neither fixed nor left out.
     bool gives_way(std::int32_t vertex) const noexcept { return blocks_[vertex] >= 0; }
     /// How vertex a gives way per force on vertex b, mm/N; zero if either is fixed or left out.
@@ -66,7 +68,8 @@ class DeformableContact {
     std::vector<Triangle> triangles_;  // surface vertices
     std::vector<std::array<std::int32_t, 3>> neighbours_;
     std::vector<Eigen::Vector3f> vertices_;  // at rest, p_P, mm
-    std::vector<InnerBall> inner_balls_;     // by vertex
+    double most_cut_off_ = 0;
+    std::vector<InnerBall> inner_balls_;  // by vertex
     std::vector<TickCreep> creep_;
     std::vector<std::int32_t> creep_of_vertex_;  // -1 where it does not creep
 };

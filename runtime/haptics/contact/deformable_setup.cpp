@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a deformable body's contact allocates before the first tick.
+#include <algorithm>
+
 #include "formats/model/contact/compliance_blocks.hpp"
 #include "runtime/haptics/contact/deformable_contact.hpp"
 #include "runtime/haptics/contact/triangle_neighbours.hpp"
@@ -16,6 +18,8 @@ DeformableContact::DeformableContact(const DeformableBody& body, std::vector<Inn
       triangles_(body.boundary.surface.triangles),
       inner_balls_(std::move(inner_balls)) {
     blocks_ = compliance_blocks(body);
+    for (const InnerBall& ball : inner_balls_)
+        most_cut_off_ = std::max(most_cut_off_, ball.inset.norm() - ball.radius);
     neighbours_ = triangle_neighbours(triangles_);
     if (spreads_load) spread_.emplace(body, blocks_);
     for (const Eigen::Vector3d& vertex : body.boundary.surface.vertices)

@@ -21,9 +21,10 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// Radii at most, in the tool's radius: pressed as deep as twice that, it does not slip off a bent surface's
-// edges. And in mean edges about a vertex, with how far surfaces may be off for it.
-constexpr double tool_radii = 3, most_edges = 2, most_off = 0.05;
+// Radii at most: in the radius of the tool, which does not slip off the edges of a bent surface that it is
+// pressed into as deep as that; and in mean edges about a vertex, with how far surfaces may be off for it.
+// And in mean edges about a vertex, with how far surfaces may be off for it.
+constexpr double tool_radii = 3, most_edges = 2, most_off = 0.02;
 constexpr double thickness_share = 1.0 / 3;  // of the body's thickness there, at most
 
 // Triangles of balls' centres have this share of the area of their own at least, and radii differ along an

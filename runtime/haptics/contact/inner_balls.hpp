@@ -19,7 +19,7 @@ struct InnerBall {
 /// Finds a ball for each vertex of `mesh`, in its order, so that the hulls of the balls at each triangle's
 /// corners make the same surface with round edges. A ball has three times the radius of the tool (mm) or the
 /// length of two edges, less where the body is thin or strongly bent, and none where it is held: what it cuts
-/// off or adds is a twentieth of an edge or less. A vertex whose triangles have no area has a ball of radius
+/// off or adds is a fiftieth of an edge or less. A vertex whose triangles have no area has a ball of radius
 /// 0. The mesh is closed, its vertices are finite, mm, and its triangles look outward (unchecked); `surface`
 /// is its own. A ray by vertex and up to 200 passes over the triangles. Throws nothing but what allocating
 /// throws.

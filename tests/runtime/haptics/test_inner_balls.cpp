@@ -63,19 +63,19 @@ TEST(InnerBalls, are_three_times_as_wide_as_a_small_tool_where_a_surface_is_flat
 }
 
 // Of its edges of 4 to 5.7 mm about a vertex.
-TEST(InnerBalls, cut_off_a_twentieth_of_an_edge_at_most) {
+TEST(InnerBalls, cut_off_a_fiftieth_of_an_edge_at_most) {
     for (const DeformableBody& body : {sample::elastic_cube(5), sample::true_elastic_arch(5, 12)}) {
         const TriangleMesh& mesh = body.boundary.surface;
         const std::vector<InnerBall> balls = balls_of(body, 1);
         for (std::size_t v = 0; v < balls.size(); ++v) {
             const bool beside_held = mesh.vertices[v].z() < 4 + 1e-9;  // of the lowest layer of cells
-            EXPECT_TRUE(beside_held ? balls[v].radius == 0 : balls[v].radius > 0.1) << v;
+            EXPECT_TRUE(beside_held ? balls[v].radius == 0 : balls[v].radius > 0.05) << v;
         }
         for (const Triangle& t : mesh.triangles) {
             const auto corner = [&](std::size_t i) { return mesh.vertices[static_cast<std::size_t>(t[i])]; };
             for (std::size_t i = 0; i < 3; ++i)
                 for (const Vector3d& p : {corner(i), Vector3d(0.5 * (corner(i) + corner((i + 1) % 3)))})
-                    EXPECT_NEAR(distance_from_rounded(p, mesh, balls), 0, 0.05 * 5.7);
+                    EXPECT_NEAR(distance_from_rounded(p, mesh, balls), 0, 0.02 * 5.7);
         }
     }
 }
@@ -137,12 +137,12 @@ TEST(SmallTool, slides_over_edges_of_a_bent_surface_without_slipping_off_them) {
         return Vector3d(10 + from_axis * std::sin(angle), 9.7, 20 - bend + from_axis * std::cos(angle));
     };
     const double begin = -0.4, end = 0.4;
-    for (double depth = -1; depth < 2; depth += 0.02) model.tick(held_at(at(begin, depth)), result);
-    for (int tick = 0; tick < 50; ++tick) model.tick(held_at(at(begin, 2)), result);
+    for (double depth = -1; depth < 1; depth += 0.02) model.tick(held_at(at(begin, depth)), result);
+    for (int tick = 0; tick < 50; ++tick) model.tick(held_at(at(begin, 1)), result);
     Vector3d last = force_of(result);
     double largest = 0;
     for (double angle = begin; angle < end; angle += 0.02 / bend) {
-        model.tick(held_at(at(angle, 2)), result);
+        model.tick(held_at(at(angle, 1)), result);
         EXPECT_EQ(result.status, tick_ok);
         largest = std::max(largest, (force_of(result) - last).norm() / force_of(result).norm());
         last = force_of(result);
