@@ -201,7 +201,7 @@ class Record(SampleAsset):
     def test_what_makes_no_sense_is_refused(self):
         path, _ = self.recorded("sense.h5", "--virtual-clock", "--seconds", 0.1)
         self.assertEqual(self.touch("--replay", path, "--virtual-clock").returncode, 2)
-        self.assertEqual(self.touch("--replay", path, "--script", "press").returncode, 2)
+        self.assertEqual(self.touch("--replay", path, "--script", "slide").returncode, 2)
         self.assertEqual(self.touch("--replay", path, "--record", self.folder / "copy.h5").returncode, 2)
         self.assertEqual(self.touch("--record", self.folder / "none.h5", "--record-seconds", 0).returncode, 2)
         self.assertFalse((self.folder / "none.h5").exists())

@@ -23,7 +23,6 @@ using Eigen::Vector3d;
 
 // Radii at most: in the radius of the tool, which does not slip off the edges of a bent surface that it is
 // pressed into as deep as that; and in mean edges about a vertex, with how far surfaces may be off for it.
-// And in mean edges about a vertex, with how far surfaces may be off for it.
 constexpr double tool_radii = 3, most_edges = 2, most_off = 0.02;
 constexpr double thickness_share = 1.0 / 3;  // of the body's thickness there, at most
 
