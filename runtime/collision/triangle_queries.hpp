@@ -5,12 +5,20 @@
 #include <cstdint>
 #include <optional>
 
+#include "formats/model/triangle_mesh.hpp"
+
 namespace palpate::collision {
 
 /// What of a triangle a point lies on.
 enum class Feature : std::uint8_t { face, edge, vertex };
 
 using TriangleCorners = std::array<Eigen::Vector3d, 3>;  ///< mm
+
+/// Where the corners of one of a mesh's triangles are, mm.
+inline TriangleCorners corners_of(const TriangleMesh& mesh, const Triangle& t) {
+    const auto vertex = [&](std::size_t i) { return mesh.vertices[static_cast<std::size_t>(t[i])]; };
+    return {vertex(0), vertex(1), vertex(2)};
+}
 
 /// The unit normal of triangle `t`, (t1 - t0) x (t2 - t0) normalised; zero where that is rounding only.
 /// Realtime-safe.

@@ -64,11 +64,6 @@ std::vector<Vector3d> held_points(const Case& patient_case, const HapticModel& m
     return points;
 }
 
-TriangleCorners corners_of(const TriangleMesh& mesh, std::int32_t triangle) {
-    const Triangle& t = mesh.triangles[triangle];
-    return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
-}
-
 TouchTarget target_on(std::size_t body, std::int32_t triangle, const TriangleCorners& t,
                       const Vector3d& point) {
     TouchTarget target;
@@ -108,9 +103,9 @@ std::vector<std::int32_t> free_triangles(const Case& patient_case, std::size_t b
 std::optional<TouchTarget> touch_target_near(const Case& patient_case, const HapticModel& model,
                                              std::size_t body, const Vector3d& place) {
     const auto nearest = model.surface(body).closest_point(place, std::numeric_limits<double>::max());
-    TouchTarget target =
-        target_on(body, nearest->triangle, corners_of(surface_of(patient_case, body), nearest->triangle),
-                  nearest->point);
+    const TriangleMesh& mesh = surface_of(patient_case, body);
+    TouchTarget target = target_on(body, nearest->triangle,
+                                   corners_of(mesh, mesh.triangles[nearest->triangle]), nearest->point);
     const auto clearance = clearance_at(model, target.place.point, target.place.normal);
     if (!clearance) return std::nullopt;
     target.place.clearance = *clearance;
@@ -137,7 +132,7 @@ TouchTarget choose_touch_target(const Case& patient_case, const HapticModel& mod
     };
     std::vector<Candidate> candidates;
     for (const std::int32_t triangle : free_triangles(patient_case, body)) {
-        const TriangleCorners t = corners_of(mesh, triangle);
+        const TriangleCorners t = corners_of(mesh, mesh.triangles[triangle]);
         Candidate candidate{target_on(body, triangle, t, (t[0] + t[1] + t[2]) / 3),
                             std::numeric_limits<double>::max()};
         for (const Vector3d& point : held)

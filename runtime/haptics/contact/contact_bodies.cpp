@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/haptics/contact/contact_bodies.hpp"
 
-#include "formats/model/contact/compliance_blocks.hpp"
-
 namespace palpate::haptics {
 
 using namespace collision;
@@ -19,10 +17,8 @@ ContactBodies::ContactBodies(const Case& patient_case, bool spreads_loads) {
         surfaces.push_back(
             std::make_unique<CollisionSurface>(body.boundary.surface, body.obb_tree, body.name));
         triangles.push_back(body.boundary.surface.triangles);
-        deformable.emplace_back(body,
-                                inner_balls(body.boundary.surface, *surfaces.back(), compliance_blocks(body),
-                                            patient_case.haptics.tool_radius),
-                                index, spreads_loads);
+        deformable.emplace_back(body, *surfaces.back(), patient_case.haptics.tool_radius, index,
+                                spreads_loads);
     }
 }
 

@@ -18,10 +18,10 @@ namespace palpate::haptics {
 /// compliance.
 class DeformableContact {
   public:
-    /// `inner_balls` are the body's, by surface vertex; `body_index` goes into the contacts. Throws
-    /// InvalidInput if compliance and surface do not belong together.
-    DeformableContact(const DeformableBody& body, std::vector<InnerBall> inner_balls, std::int32_t body_index,
-                      bool spreads_load);
+    /// `surface` is the body's, `tool_radius` (mm) that of all tools; `body_index` goes into the contacts.
+    /// Throws InvalidInput if compliance and surface do not belong together.
+    DeformableContact(const DeformableBody& body, const collision::CollisionSurface& surface,
+                      double tool_radius, std::int32_t body_index, bool spreads_load);
 
     /// See HapticModel::surface_displacement(); contacts between other bodies are ignored. Thread-safe.
     void surface_displacement(std::span<const Contact> contacts,
@@ -39,12 +39,10 @@ class DeformableContact {
     Eigen::Vector3d rest_position(std::int32_t vertex) const noexcept {
         return vertices_[vertex].cast<double>();
     }
-    /// The ball inside the surface at a vertex, which goes with it.
+    /// The ball inside the surface at a vertex, which goes with it; of a body that spreads loads.
     const InnerBall& inner_ball(std::int32_t vertex) const noexcept {
         return inner_balls_[static_cast<std::size_t>(vertex)];
     }
-    /// How much lower than a vertex the ball inside is at the most, mm.
-    double most_cut_off() const noexcept { return most_cut_off_; }
     /// Whether a vertex gives way at all: it is neither fixed nor left out.
     bool gives_way(std::int32_t vertex) const noexcept { return blocks_[vertex] >= 0; }
     /// How vertex a gives way per force on vertex b, mm/N; zero if either is fixed or left out.
@@ -68,8 +66,7 @@ class DeformableContact {
     std::vector<Triangle> triangles_;  // surface vertices
     std::vector<std::array<std::int32_t, 3>> neighbours_;
     std::vector<Eigen::Vector3f> vertices_;  // at rest, p_P, mm
-    double most_cut_off_ = 0;
-    std::vector<InnerBall> inner_balls_;  // by vertex
+    std::vector<InnerBall> inner_balls_;     // by vertex
     std::vector<TickCreep> creep_;
     std::vector<std::int32_t> creep_of_vertex_;  // -1 where it does not creep
 };

@@ -18,11 +18,12 @@ struct InnerBall {
 
 /// Finds a ball for each vertex of `mesh`, in its order, so that the hulls of the balls at each triangle's
 /// corners make the same surface with round edges. A ball has three times the radius of the tool (mm) or the
-/// length of two edges, less where the body is thin or strongly bent, and none where it is held: what it cuts
-/// off or adds is a fiftieth of an edge or less. A vertex whose triangles have no area has a ball of radius
-/// 0. The mesh is closed, its vertices are finite, mm, and its triangles look outward (unchecked); `surface`
-/// is its own. A ray by vertex and up to 200 passes over the triangles. Throws nothing but what allocating
-/// throws.
+/// length of two edges, and less where the body is thin or strongly bent, and none where it is held: it lies
+/// a fiftieth of an edge below its vertex or above its triangles at most, and never more than 0.05 mm. A
+/// vertex whose triangles have no area has a ball of radius 0. The mesh is closed, its vertices are finite,
+/// mm, and its triangles look outward (unchecked); `surface` is its own; `blocks` says which vertices give
+/// way, as compliance_blocks() does. A ray by vertex and up to 200 passes over the triangles. Throws nothing
+/// but what allocating throws.
 std::vector<InnerBall> inner_balls(const TriangleMesh& mesh, const collision::CollisionSurface& surface,
                                    std::span<const std::int32_t> blocks, double tool_radius);
 

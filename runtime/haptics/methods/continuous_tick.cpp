@@ -61,12 +61,7 @@ Vector3d ContinuousContact::force_of(std::size_t t, TickResult& result) noexcept
         equilibrium_.touches_tissue(t) && equilibrium_.change() > unsettled ? contact_unsettled : tick_ok;
     if (result.contact_count == 0 && (found || !equilibrium_.touches_tissue(t))) {
         result.status |= unrest;
-        const Vector3d force = rigid_force(tool.parts[0].on_rigid, tool.parts[0].device, result);
-        // It may be below the rest surface all the same: where that is round, or dented by another tool.
-        for (const Part& part : std::span(tool.parts).first(tool.parts_felt))
-            if (result.contact_count == 0)
-                result.depth = std::max(result.depth, (part.on_all.position() - part.device).norm());
-        return force;
+        return rigid_force(tool.parts[0].on_rigid, tool.parts[0].device, result);
     }
     const Vector3d press = equilibrium_.press(t);
     if (equilibrium_.was_cut(t)) result.status |= contacts_cut;

@@ -2,7 +2,6 @@
 #include "runtime/haptics/contact/equilibrium/contact_equilibrium.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -266,16 +265,11 @@ bool ContactEquilibrium::found(std::size_t t) const noexcept {
             if (touch.surface < bodies_.rigid_count()) continue;
             const std::size_t soft = touch.surface - bodies_.rigid_count();
             const Vector3d dent = local_dent(part.touches[soft], patches_[soft]);
-            const RoundedTriangle round = patches_[soft].rounded(
-                touch.foot.triangle, patches_[soft].look_at(touch.foot.triangle, dent));
-            const Vector3d centre = part.sphere.device + dent;
-            const NearestBall ball = nearest_ball(centre, round);
-            const double above = touch.normal.dot(centre - ball.centre), together = radius_ + ball.radius;
-            const double apart = std::copysign(ball.distance, above) - together;
-            // Over a round edge it is less far above than it is apart; far past one, it is below another
-            // face.
-            const bool past = above < together - first_reach && apart > first_reach;
-            if (apart < -first_reach || past) return false;
+            const TriangleCorners corners = patches_[soft].look_at(touch.foot.triangle, dent);
+            Vector3d foot = -dent;
+            for (std::size_t i = 0; i < 3; ++i)
+                foot += touch.foot.barycentric[static_cast<Index>(i)] * corners[i];
+            if (touch.normal.dot(foot - part.sphere.device) + radius_ > first_reach) return false;
         }
     }
     return true;

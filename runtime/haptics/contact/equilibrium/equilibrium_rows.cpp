@@ -57,7 +57,7 @@ void ContactEquilibrium::look_around(std::size_t t, std::size_t p, std::size_t s
     Touch& touch = part.touches[soft];
     const DeformedPatch& patch = patches_[soft];
     const Vector3d centre = centre_of(tool, part, touch), from = part.sphere.if_rigid->position();
-    const double limit = radius_ + tool.reach + patches_[soft].body().most_cut_off();
+    const double limit = radius_ + tool.reach;
     const bool anew = touch.way < 0;
     if (anew) {
         touch.around.clear();
@@ -117,7 +117,7 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
     const DeformableContact& body = patch.body();
     linearise(touch, patch);
     const Vector3d centre = centre_of(tool, part, touch);
-    const double limit = radius_ + tool.reach + patches_[soft].body().most_cut_off();
+    const double limit = radius_ + tool.reach;
     std::vector<std::uint32_t>& visited = visited_[soft];
     ++search_;
     queue_.clear();
