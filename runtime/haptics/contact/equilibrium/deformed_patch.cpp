@@ -31,6 +31,13 @@ void DeformedPatch::Forces::add(std::int32_t slot, const Vector3d& force) noexce
     at[slot] += force;
 }
 
+void DeformedPatch::Forces::drop(std::int32_t slot) noexcept {
+    if (!is_loaded[static_cast<std::size_t>(slot)]) return;
+    loaded.erase_if([&](std::int32_t other) { return other == slot; });
+    is_loaded[static_cast<std::size_t>(slot)] = false;
+    at[slot].setZero();
+}
+
 void DeformedPatch::Forces::move(std::int32_t from, std::int32_t to) noexcept {
     const auto listed = std::find(loaded.begin(), loaded.end(), from);
     if (listed == loaded.end()) return;
@@ -72,9 +79,14 @@ void DeformedPatch::drop_one() noexcept {
     if (weakest != no_slot) drop(weakest);
 }
 
-// The last slot takes the place of this one, which bears nothing.
+// The last slot takes the place of this one, which bears nothing; an answer of some ticks before may have
+// loaded it.
 void DeformedPatch::drop(std::int32_t slot) noexcept {
     slots_[vertices_[slot]] = no_slot;
+    for (Answer& answer : answers_) {
+        answer.forces.drop(slot);
+        answer.held.drop(slot);
+    }
     const std::int32_t last = --size_;
     if (slot == last) return;
     vertices_[slot] = vertices_[last];

@@ -153,6 +153,7 @@ class DeformedPatch {
         explicit Forces(std::size_t slots) : at(slots, Eigen::Vector3d::Zero()) {}
         void clear() noexcept;
         void add(std::int32_t slot, const Eigen::Vector3d& force) noexcept;
+        void drop(std::int32_t slot) noexcept;
         void move(std::int32_t from, std::int32_t to) noexcept;  // which bears nothing
     };
     struct Answer {
