@@ -12,15 +12,11 @@ namespace palpate {
 using namespace collision;
 using Eigen::Vector3d;
 
-namespace {
-
 Vector3d in_cube(double half_edge, std::mt19937& generator) {
     std::uniform_real_distribution<double> axis(-half_edge, half_edge);
     const double x = axis(generator), y = axis(generator), z = axis(generator);
     return {x, y, z};
 }
-
-}  // namespace
 
 ObbTree tilted_tree(TriangleMesh surface, std::size_t leaf_size) {
     const Eigen::Matrix3d R_BP = Eigen::AngleAxisd(0.7, Vector3d(1, 2, 3).normalized()).toRotationMatrix();

@@ -8,6 +8,9 @@
 
 namespace palpate {
 
+/// A point of a cube about the origin, evenly drawn, mm.
+Eigen::Vector3d in_cube(double half_edge, std::mt19937& generator);
+
 /// A tree of boxes along the axes of a rotated frame.
 ObbTree tilted_tree(TriangleMesh surface, std::size_t leaf_size);
 

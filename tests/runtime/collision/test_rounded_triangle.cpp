@@ -6,6 +6,7 @@
 #include <random>
 
 #include "runtime/collision/rounded_triangle.hpp"
+#include "tests/runtime/collision/collision_scene.hpp"
 
 namespace palpate {
 namespace {
@@ -15,10 +16,7 @@ using Eigen::Vector3d;
 
 class RandomRoundedTriangles {
   public:
-    Vector3d point(double reach) {
-        std::uniform_real_distribution<double> axis(-reach, reach);
-        return {axis(generator_), axis(generator_), axis(generator_)};
-    }
+    Vector3d point(double reach) { return in_cube(reach, generator_); }
     // Radii that differ by less than the corners are apart, but for every tenth triangle.
     RoundedTriangle triangle(int index) {
         RoundedTriangle t{.centres = {point(2), point(2), point(2)}, .radii = {}};

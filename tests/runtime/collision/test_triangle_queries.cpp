@@ -5,6 +5,7 @@
 #include <random>
 
 #include "runtime/collision/triangle_queries.hpp"
+#include "tests/runtime/collision/collision_scene.hpp"
 
 namespace palpate {
 namespace {
@@ -16,10 +17,7 @@ constexpr double triangle_tolerance = 1e-9;  // mm: coordinates of a few mm, squ
 
 class RandomTriangles {
   public:
-    Vector3d point(double reach) {
-        std::uniform_real_distribution<double> axis(-reach, reach);
-        return {axis(generator_), axis(generator_), axis(generator_)};
-    }
+    Vector3d point(double reach) { return in_cube(reach, generator_); }
     // Every third triangle is a needle, a doubled corner or a single point.
     TriangleCorners triangle(int index) {
         TriangleCorners t{point(2), point(2), point(2)};
