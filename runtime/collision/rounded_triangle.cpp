@@ -23,12 +23,15 @@ NearestBall ball_at(const Vector3d& p, const RoundedTriangle& t, const Vector3d&
 }
 
 // Along an edge the nearest ball lies off the foot of p by d sigma / sqrt(1 - sigma²), d the distance of p
-// from the edge's line and sigma the slope of the radius.
-NearestBall nearest_ball_on_edges(const Vector3d& p, const RoundedTriangle& t) noexcept {
+// from the edge's line and sigma the slope of the radius. `weights` are those of the nearest ball on the
+// whole plane: edges beyond which it lies are looked at, for from any other place the way there leads nearer.
+NearestBall nearest_ball_on_edges(const Vector3d& p, const RoundedTriangle& t,
+                                  const Vector3d& weights_on_plane) noexcept {
     NearestBall best;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t j = (i + 1) % 3;
+        if (weights_on_plane[static_cast<Eigen::Index>((i + 2) % 3)] > 0) continue;
         const Vector3d edge = t.centres[j] - t.centres[i], way = p - t.centres[i];
         const double length = edge.norm();
         const double grows = t.radii[static_cast<Eigen::Index>(j)] - t.radii[static_cast<Eigen::Index>(i)];
@@ -58,6 +61,7 @@ NearestBall nearest_ball(const Vector3d& p, const RoundedTriangle& t) noexcept {
     const Vector3d b = t.centres[1] - t.centres[0], c = t.centres[2] - t.centres[0], way = p - t.centres[0];
     const double bb = b.squaredNorm(), bc = b.dot(c), cc = c.squaredNorm();
     const double determinant = bb * cc - bc * bc;
+    Vector3d weights = Vector3d::Zero();
     // Relative to the edges, as unit_normal() has it, squared.
     if (determinant > 1e-12 * bb * cc) {
         const double along_b = way.dot(b), along_c = way.dot(c);
@@ -71,11 +75,11 @@ NearestBall nearest_ball(const Vector3d& p, const RoundedTriangle& t) noexcept {
             const double height_squared = way.squaredNorm() - foot_b * along_b - foot_c * along_c;
             const double off = std::sqrt(std::max(0.0, height_squared) / (1 - slope_squared));
             const double weight_b = foot_b + off * slope_b, weight_c = foot_c + off * slope_c;
-            const Vector3d weights(1 - weight_b - weight_c, weight_b, weight_c);
+            weights = {1 - weight_b - weight_c, weight_b, weight_c};
             if (weights.minCoeff() > 0) return ball_at(p, t, weights, Feature::face);
         }
     }
-    return nearest_ball_on_edges(p, t);
+    return nearest_ball_on_edges(p, t, weights);
 }
 
 }  // namespace palpate::collision

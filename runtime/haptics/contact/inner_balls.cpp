@@ -28,7 +28,7 @@ using Eigen::Vector3d;
 constexpr double tool_radii = 3, most_edges = 2, thickness_share = 1.0 / 3;
 // How far balls may be off for it, in mean edges, and in mm: half of what contact takes for touching
 // (ContactEquilibrium::first_reach), so that the surface at rest still tells where contact starts and ends.
-constexpr double most_off = 0.02, most_off_mm = 0.05;
+constexpr double most_off = 0.05, most_off_mm = 0.05;
 // Triangles of balls' centres have this share of the area of their own at least, and radii differ along an
 // edge by this share of its length at most, or a tenth more.
 constexpr double area_kept = 0.16, steepest = 0.25;

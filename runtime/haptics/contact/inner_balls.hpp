@@ -19,7 +19,7 @@ struct InnerBall {
 /// Finds a ball for each vertex of `mesh`, in its order, so that the hulls of the balls at each triangle's
 /// corners make the same surface with round edges. A ball has three times the radius of the tool (mm) or the
 /// length of two edges, and less where the body is thin or strongly bent, and none where it is held: it lies
-/// a fiftieth of an edge below its vertex or above its triangles at most, and never more than 0.05 mm. A
+/// a twentieth of an edge below its vertex or above its triangles at most, and never more than 0.05 mm. A
 /// vertex whose triangles have no area has a ball of radius 0. The mesh is closed, its vertices are finite,
 /// mm, and its triangles look outward (unchecked); `surface` is its own; `blocks` says which vertices give
 /// way, as compliance_blocks() does. A ray by vertex and up to 200 passes over the triangles. Throws nothing
