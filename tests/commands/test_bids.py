@@ -219,23 +219,10 @@ class Bids(SmallCohort):
         precious = self.folder / "inputs"
         self.assertIn("no dataset that Palpate made", self.run_palpate("export", self.out, "-o", precious, "--force", code=3).stderr)
         self.assertTrue((precious / "case.toml").exists())
+        self.assertIn("of which it would be made", self.run_palpate("export", self.out, "-o", self.folder, "--force", code=3).stderr)
         self.assertIn("has no patient that is built", self.run_palpate("export", self.out, "-o", self.folder / "x", code=3).stderr)
         self.assertIn("with a cohort", self.run_palpate("export", self.out, "--title", "liver", "-o", self.folder / "x", code=2).stderr)
         self.assertFalse(any(name.startswith((".part", "x")) for name in os.listdir(self.folder)))
-
-    def test_what_a_killed_export_left_comes_back_and_nothing_foreign_is_lost(self):
-        self.write_table(("first", "inputs/case.toml", "inputs/good.seg.nrrd", "", ""))
-        self.run_palpate("batch", self.folder / "patients.tsv", "-o", self.out, "--requests")
-        target, old = self.folder / "made", self.folder / ".old-made"
-        old.mkdir()
-        (old / "precious").write_text("x")
-        self.assertIn("made: is there again: a process that was killed had left it", self.run_palpate("export", self.out, "-o", target, code=3).stderr)
-        self.assertEqual(sorted(os.listdir(target)), ["precious"])
-        target.rename(old)
-        self.assertIn("no dataset that Palpate made", self.run_palpate("export", self.out, "-o", target, "--force", code=3).stderr)
-        self.assertEqual(sorted(os.listdir(target)), ["precious"])
-        self.assertFalse(any(name.startswith((".part", ".old")) for name in os.listdir(self.folder)))
-        self.assertIn("of which it would be made", self.run_palpate("export", self.out, "-o", self.folder, "--force", code=3).stderr)
 
     def test_a_table_is_not_written_anew_while_its_cohort_is_built(self):
         self.add_scan("sub-01")

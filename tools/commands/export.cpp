@@ -108,7 +108,7 @@ nlohmann::ordered_json export_cohort(const ExportRequest& request, cli::Session&
     cohort::require_outside(request.output, built.folder.root);
     cli::end_softly_on_interrupt();
     cli::StagedFolder staged(request.output, session.force);
-    cohort::require_replaceable(request.output);  // also what StagedFolder put back
+    cohort::require_replaceable(request.output);
     const auto step = [&](const char* what) {
         return [&session, what](double done) {
             if (cli::interrupt_asked()) throw cli::Interrupted();

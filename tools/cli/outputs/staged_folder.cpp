@@ -26,37 +26,6 @@ fs::path place_of(const fs::path& target) {
     return place.has_filename() ? place : place.parent_path();
 }
 
-fs::path old_of(const fs::path& target) {
-    return target.parent_path() / (".old-" + target.filename().string());
-}
-
-// Whether the target went missing between the two renames of a killed process, and is there again.
-bool put_back(const fs::path& target) {
-    const fs::path old = old_of(target);
-    if (fs::exists(fs::symlink_status(target)) || !fs::is_directory(fs::symlink_status(old))) return false;
-    std::error_code failed;
-    fs::rename(old, target, failed);
-    if (failed) fail_to_write(target, failed.value());
-    return true;
-}
-
-// For file systems that cannot exchange two folders at once.
-void exchange_in_steps(const fs::path& staged, const fs::path& target) {
-    const fs::path old = old_of(target);
-    if (fs::exists(fs::symlink_status(old)))
-        throw InvalidInput({old.string(),
-                            "is there, a name that " + target.string() + " needs while it is replaced", "",
-                            "look whether anybody needs it, then rename or remove it"});
-    std::error_code failed, ignored;
-    fs::rename(target, old, failed);
-    if (!failed) fs::rename(staged, target, failed);
-    if (failed) {
-        if (!fs::exists(fs::symlink_status(target))) fs::rename(old, target, ignored);
-        fail_to_write(target, failed.value());
-    }
-    fs::rename(old, staged, ignored);
-}
-
 // Held on a staged folder, so that no other process takes it for one that a killed process left.
 int locked(const fs::path& folder, const fs::path& target) {
     const int lock = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
@@ -81,13 +50,6 @@ StagedFolder::StagedFolder(const fs::path& target, bool replace) : target_(place
     if (mkdir(staged_.c_str(), 0777) != 0 && errno != EEXIST) fail_to_write(target, errno);
     lock_ = locked(staged_, target);
     for (const auto& left : fs::directory_iterator(staged_)) fs::remove_all(left.path());
-    if (put_back(target_) && !replace) {
-        discard();
-        throw InvalidInput(
-            {target.string(),
-             "is there again: a process that was killed had left it as " + old_of(target_).string(), "",
-             "choose another name or pass --force"});
-    }
 }
 
 StagedFolder::~StagedFolder() {
@@ -104,8 +66,11 @@ void StagedFolder::discard() {
 void StagedFolder::commit() {
     if (fs::exists(fs::symlink_status(target_))) {
         replaced_ = locked(target_, target_);  // it is the staged one in a moment
-        if (renameat2(AT_FDCWD, staged_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0)
-            exchange_in_steps(staged_, target_);
+        if (renameat2(AT_FDCWD, staged_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0) {
+            if (errno != EINVAL && errno != ENOSYS) fail_to_write(target_, errno);
+            throw InvalidInput({target_.string(), "cannot be replaced at once on this file system", "",
+                                "remove it first: rm -r " + target_.string()});
+        }
     } else if (rename(staged_.c_str(), target_.c_str()) != 0) {
         fail_to_write(target_, errno);
     }

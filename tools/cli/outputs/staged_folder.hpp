@@ -6,14 +6,12 @@ namespace palpate::cli {
 
 /// A folder of outputs that appears whole or not at all: filled under a hidden name beside the target, with
 /// which commit() exchanges it, removed otherwise. What a killed process left there, the next one for the
-/// same target removes. Where the file system exchanges nothing the target is for a moment called .old-NAME;
-/// if a process is killed then, the next one first puts it back. A job that uses one asks
-/// end_softly_on_interrupt() and looks at interrupt_asked().
+/// same target removes. A job that uses one asks end_softly_on_interrupt() and looks at interrupt_asked().
 class StagedFolder {
   public:
-    /// Throws InvalidInput if `target` is there, but for an empty folder, and `replace` is false, also one
-    /// that was put back, if the folder that it goes into is missing, or if another process fills the same
-    /// one; SystemFailure if nothing can be written there.
+    /// Throws InvalidInput if `target` is there, but for an empty folder, and `replace` is false, if the
+    /// folder that it goes into is missing, or if another process fills the same one; SystemFailure if
+    /// nothing can be written there.
     StagedFolder(const std::filesystem::path& target, bool replace);
     StagedFolder(const StagedFolder&) = delete;
     StagedFolder& operator=(const StagedFolder&) = delete;
@@ -23,8 +21,8 @@ class StagedFolder {
     const std::filesystem::path& path() const { return staged_; }
 
     /// Puts the folder in the target's place; what was there goes with this object. Throws SystemFailure if
-    /// it cannot, InvalidInput if another process writes there or .old-NAME is in the way, and leaves the
-    /// target.
+    /// it cannot, InvalidInput if another process writes there or if the file system cannot exchange two
+    /// folders at once, and leaves the target.
     void commit();
 
   private:
