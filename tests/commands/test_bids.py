@@ -8,6 +8,7 @@ import re
 import shutil
 import struct
 import subprocess
+import time
 import unittest
 
 from small_cohort import BIN, CASE, PHANTOM, SmallCohort
@@ -117,9 +118,7 @@ class Bids(SmallCohort):
         self.assertEqual(self.rows()["sub-01"]["label_names"], "../bids/derivatives/hand/dseg.tsv")
 
         target = self.dataset / "derivatives" / "palpate"
-        killed = target.parent / ".part-palpate"  # what an export that was killed left
-        killed.mkdir()
-        (killed / "sub-99").mkdir()
+        self.leave_a_killed_export(target)
         ran = self.run_palpate("export", self.out, "-o", target, "--json", self.folder / "export.json")
         made = json.loads((self.folder / "export.json").read_text())
         self.assertEqual(made["patients"], ["sub-01", "sub-02_ses-01", "sub-02_ses-02"])
@@ -150,6 +149,25 @@ class Bids(SmallCohort):
         sidecar = json.loads((elsewhere / "sub-01/anat/sub-01_acq-thick_run-1_desc-palpate_dseg.json").read_text())
         self.assertEqual(sidecar["SpatialReference"], "orig")
         self.assertIn("0 findings", self.run_palpate("verify", "--privacy", elsewhere).stdout)
+
+    def leave_a_killed_export(self, target):
+        """Another process leaves the folder that an export fills; once that is killed, it is the next one's to remove."""
+        report, aside = self.out / "sub-02_ses-02.html", self.folder / "report.html"
+        report.rename(aside)
+        os.mkfifo(report)  # holds the export up: nobody writes into it
+        running = subprocess.Popen([BIN / "palpate", "export", self.out, "-o", target, "--quiet"])
+        self.addCleanup(running.wait)
+        self.addCleanup(running.kill)
+        staged = lambda: list(target.parent.glob(".part-*"))
+        while not staged() and running.poll() is None:
+            time.sleep(0.02)
+        self.run_palpate("tissues", "--json", target.parent / "tissues.json")
+        (target.parent / "tissues.json").unlink()
+        (staged()[0] / "sub-99").mkdir()
+        running.kill()
+        running.wait()
+        self.assertEqual(len(staged()), 1)
+        aside.replace(report)
 
     def check_dataset(self, target):
         description = json.loads((target / "dataset_description.json").read_text())

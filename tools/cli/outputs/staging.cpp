@@ -8,6 +8,7 @@
 #include <fcntl.h>
 #include <fstream>
 #include <functional>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
@@ -31,8 +32,7 @@ const std::string& machine() {
     return name;
 }
 
-// Of the files that this machine's processes stage: ".part-1a2b3c4d-4711.0-liver.vtkhdf" is the first of
-// process 4711.
+// Of what this machine's processes stage: ".part-1a2b3c4d-4711.0-liver.vtkhdf" is the first of process 4711.
 std::string staged_prefix() {
     return ".part-" + machine() + "-";
 }
@@ -43,16 +43,18 @@ std::string staged_prefix(int attempt) {
 
 enum class Lock { ours, of_another, unknown };
 
-// Who holds this lock on a staged file is still at work on it; the system lets go of it with the process,
-// however that ends. It is on one byte that no file has, for a lock may keep a library's own descriptor from
-// writing. Unknown on file systems without locks.
-Lock lock(int file) {
+// Who holds this lock on what is staged is still at work on it; the system lets go of it with the process,
+// however that ends. Of a file it is on one byte that none has, for a lock may keep a library's own
+// descriptor from writing; a folder, which nobody opens for writing, has no bytes to lock. Unknown on file
+// systems without locks.
+Lock lock(int file, bool is_folder) {
     struct flock byte {};
     byte.l_type = F_WRLCK;
     byte.l_whence = SEEK_SET;
     byte.l_start = off_t{1} << 62;
     byte.l_len = 1;
-    if (fcntl(file, F_OFD_SETLK, &byte) == 0) return Lock::ours;
+    if ((is_folder ? flock(file, LOCK_EX | LOCK_NB) : fcntl(file, F_OFD_SETLK, &byte)) == 0)
+        return Lock::ours;
     return errno == EAGAIN || errno == EACCES ? Lock::of_another : Lock::unknown;
 }
 
@@ -63,32 +65,55 @@ bool is_still(int file, const std::filesystem::path& path) {
            opened.st_dev == named.st_dev;
 }
 
+int create(const std::filesystem::path& path, bool is_folder) {
+    if (!is_folder) return open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (mkdir(path.c_str(), 0777) != 0) return -1;
+    const int folder = open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NOFOLLOW);
+    const int error = errno;
+    if (folder < 0) rmdir(path.c_str());
+    errno = error;
+    return folder;
+}
+
+// Another process that looks for orphans may be quicker with the lock, or even have removed a folder before
+// it is open; then under another name.
+StagedName create_locked(const std::filesystem::path& folder, const std::filesystem::path& target,
+                         bool is_folder) {
+    constexpr int most_attempts = 100;
+    for (int attempt = 0;; ++attempt) {
+        const auto path = folder / (staged_prefix(attempt) + target.filename().string());
+        const int file = create(path, is_folder);
+        if (file < 0 && ((errno != EEXIST && errno != ENOENT) || attempt == most_attempts))
+            fail_to_write(target, errno);
+        if (file < 0) continue;
+        if (lock(file, is_folder) != Lock::of_another && is_still(file, path)) return {file, path};
+        close(file);
+    }
+}
+
 }  // namespace
 
 void remove_orphans(const std::filesystem::path& folder) {
     std::error_code ignored;
     for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+        const bool is_folder = entry.is_directory(ignored);
         if (!entry.path().filename().string().starts_with(staged_prefix()) ||
-            !entry.is_regular_file(ignored) || entry.is_symlink(ignored))
+            (!is_folder && !entry.is_regular_file(ignored)) || entry.is_symlink(ignored))
             continue;
-        const int file = open(entry.path().c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
+        const int file = open(entry.path().c_str(), (is_folder ? O_RDONLY : O_RDWR) | O_CLOEXEC | O_NOFOLLOW);
         if (file < 0) continue;
-        if (lock(file) == Lock::ours && is_still(file, entry.path())) unlink(entry.path().c_str());
+        if (lock(file, is_folder) == Lock::ours && is_still(file, entry.path()))
+            std::filesystem::remove_all(entry.path(), ignored);
         close(file);
     }
 }
 
-// Another process that looks for orphans may be quicker with the lock; then under another name.
 StagedName create_staged(const std::filesystem::path& folder, const std::filesystem::path& target) {
-    constexpr int most_attempts = 100;
-    for (int attempt = 0;; ++attempt) {
-        const auto path = folder / (staged_prefix(attempt) + target.filename().string());
-        const int file = open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (file < 0 && (errno != EEXIST || attempt == most_attempts)) fail_to_write(target, errno);
-        if (file < 0) continue;
-        if (lock(file) != Lock::of_another && is_still(file, path)) return {file, path};
-        close(file);
-    }
+    return create_locked(folder, target, false);
+}
+
+StagedName create_staged_folder(const std::filesystem::path& folder, const std::filesystem::path& target) {
+    return create_locked(folder, target, true);
 }
 
 std::filesystem::path make_private_folder(const std::filesystem::path& target) {

@@ -5,7 +5,7 @@
 
 namespace palpate::cli {
 
-/// A file under a temporary name, and a descriptor of it that holds its lock.
+/// A file or folder under a temporary name, and a descriptor of it that holds its lock.
 struct StagedName {
     int descriptor = -1;
     std::filesystem::path path;
@@ -14,6 +14,9 @@ struct StagedName {
 /// Creates a file of its own in `folder`, whose name ends in the target's, and locks it, so that others can
 /// tell that its process lives. Throws SystemFailure if it cannot be made.
 StagedName create_staged(const std::filesystem::path& folder, const std::filesystem::path& target);
+
+/// The same of a folder in `folder`.
+StagedName create_staged_folder(const std::filesystem::path& folder, const std::filesystem::path& target);
 
 /// Removes what killed processes of this machine left staged in a folder. Where it cannot be locked, as on
 /// some network file systems, nobody can tell whether its process lives, and it stays; so does what other
