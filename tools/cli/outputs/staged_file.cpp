@@ -8,7 +8,6 @@
 #include <climits>
 #include <csignal>
 #include <cstring>
-#include <fcntl.h>
 #include <fstream>
 #include <sys/wait.h>
 #include <thread>
@@ -56,14 +55,6 @@ int claim_slot(const std::string& path) {
         return static_cast<int>(i);
     }
     return -1;
-}
-
-void flush_to_disk(const std::filesystem::path& path, const std::filesystem::path& target) {
-    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    const bool flushed = file >= 0 && fsync(file) == 0;
-    const int error = errno;
-    if (file >= 0) close(file);
-    if (!flushed) fail_to_write(target, error);
 }
 
 // Hands a finished file to whoever reads a pipe.

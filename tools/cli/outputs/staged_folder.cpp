@@ -44,6 +44,9 @@ StagedFolder::~StagedFolder() {
 }
 
 void StagedFolder::commit() {
+    for (const auto& entry : fs::recursive_directory_iterator(staged_.path))
+        flush_to_disk(entry.path(), target_);
+    flush_to_disk(staged_.path, target_);
     if (fs::exists(fs::symlink_status(target_))) {
         if (renameat2(AT_FDCWD, staged_.path.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0) {
             if (errno != EINVAL && errno != ENOSYS) fail_to_write(target_, errno);
@@ -53,11 +56,7 @@ void StagedFolder::commit() {
     } else if (rename(staged_.path.c_str(), target_.c_str()) != 0) {
         fail_to_write(target_, errno);
     }
-    const int folder = open(target_.parent_path().c_str(), O_RDONLY | O_CLOEXEC);
-    if (folder >= 0) {
-        fsync(folder);
-        close(folder);
-    }
+    flush_to_disk(target_.parent_path(), target_);
 }
 
 }  // namespace palpate::cli

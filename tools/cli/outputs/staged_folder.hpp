@@ -19,11 +19,12 @@ class StagedFolder {
     StagedFolder& operator=(const StagedFolder&) = delete;
     ~StagedFolder();
 
-    /// Where to put the files, each flushed to disk, as StagedFile does.
+    /// Where to put the files.
     const std::filesystem::path& path() const { return staged_.path; }
 
-    /// Puts the folder in the target's place; what was there goes with this object. Throws SystemFailure if
-    /// it cannot, InvalidInput if the file system cannot exchange two folders at once, and leaves the target.
+    /// Flushes all of it and puts it in the target's place; what was there goes with this object. Throws
+    /// SystemFailure if it cannot, InvalidInput if the file system cannot exchange two folders at once, and
+    /// leaves the target.
     void commit();
 
   private:

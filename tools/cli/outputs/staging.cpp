@@ -116,6 +116,14 @@ StagedName create_staged_folder(const std::filesystem::path& folder, const std::
     return create_locked(folder, target, true);
 }
 
+void flush_to_disk(const std::filesystem::path& path, const std::filesystem::path& target) {
+    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    const bool flushed = file >= 0 && fsync(file) == 0;
+    const int error = errno;
+    if (file >= 0) close(file);
+    if (!flushed) fail_to_write(target, error);
+}
+
 std::filesystem::path make_private_folder(const std::filesystem::path& target) {
     std::string name = std::filesystem::temp_directory_path() / "palpate-XXXXXX";
     if (mkdtemp(name.data()) == nullptr) fail_to_write(target, errno);

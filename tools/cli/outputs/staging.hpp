@@ -23,6 +23,10 @@ StagedName create_staged_folder(const std::filesystem::path& folder, const std::
 /// machines staged.
 void remove_orphans(const std::filesystem::path& folder);
 
+/// Waits until a file's content, or a folder's names, are on the disk. Throws SystemFailure that names
+/// `target`.
+void flush_to_disk(const std::filesystem::path& path, const std::filesystem::path& target);
+
 /// Makes a folder that nobody else looks into. Throws SystemFailure.
 std::filesystem::path make_private_folder(const std::filesystem::path& target);
 

@@ -105,23 +105,11 @@ class SourceLink {
     std::string link_, doi_;
 };
 
-void write_text(const fs::path& path, const std::string& text) {
-    cli::write_text_file(path, text, false);
-}
-
-void copy_whole(const fs::path& from, const fs::path& to) {
-    cli::StagedFile staged(to, false);
-    fs::copy_file(from, staged.path(), fs::copy_options::overwrite_existing);
-    staged.commit();
-}
-
 void write_structures(const fs::path& labels, const fs::path& stem, const SourceImage& source,
                       const PatientBuild& build, const SourceLink& link) {
     const LabelMap map = imaging::read_label_map(labels);
-    cli::StagedFile staged(stem.string() + "_dseg.nii.gz", false);
-    imaging::write_nifti_labels(staged.path(), map);
-    staged.commit();
-    write_text(stem.string() + "_dseg.tsv", imaging::bids_label_table(map.names));
+    imaging::write_nifti_labels(stem.string() + "_dseg.nii.gz", map);
+    cli::write_text_file(stem.string() + "_dseg.tsv", imaging::bids_label_table(map.names), false);
     Json sidecar{{"Description", "Structures of the haptic asset, in the space of the image"}};
     const auto image = link.uri_of(source.file.path);
     if (image) sidecar["Sources"] = Json::array({*image});
@@ -129,7 +117,7 @@ void write_structures(const fs::path& labels, const fs::path& stem, const Source
         build.case_file.labels ? link.uri_of(fs::absolute(*build.case_file.labels)) : std::nullopt;
     if (segmentation) sidecar["Sources"].push_back(*segmentation);
     sidecar["SpatialReference"] = image.value_or("orig");
-    write_text(stem.string() + "_dseg.json", sidecar.dump(2) + "\n");
+    cli::write_text_file(stem.string() + "_dseg.json", sidecar.dump(2) + "\n", false);
 }
 
 // "sub-01/ses-02/anat/sub-01_ses-02_desc-palpate", what names of the patient's files begin with.
@@ -167,8 +155,8 @@ void write_patient(const PatientBuild& build, const SourceImage& source, const S
     fs::create_directories(fs::path(stem).parent_path());
     const fs::path labels = build.paths.parts / "labels.seg.nrrd";
     if (needs_labels(build.case_file)) write_structures(labels, stem, source, build, link);
-    copy_whole(build.paths.asset, stem + "_asset.vtkhdf");
-    copy_whole(build.paths.report, stem + "_report.html");
+    fs::copy_file(build.paths.asset, stem + "_asset.vtkhdf");
+    fs::copy_file(build.paths.report, stem + "_report.html");
 }
 
 // In the words of what failed, without the line break at their end.
@@ -184,9 +172,9 @@ void write_description(const fs::path& folder, const SourceLink& link) {
                      {"DatasetType", "derivative"},
                      {"GeneratedBy", Json::array({{{"Name", "Palpate"}, {"Version", cli::version()}}})}};
     link.describe(description);
-    write_text(folder / "dataset_description.json", description.dump(2) + "\n");
-    write_text(folder / "README.md", readme);
-    write_text(folder / ".bidsignore", "*_asset.vtkhdf\n*_report.html\n");
+    cli::write_text_file(folder / "dataset_description.json", description.dump(2) + "\n", false);
+    cli::write_text_file(folder / "README.md", readme, false);
+    cli::write_text_file(folder / ".bidsignore", "*_asset.vtkhdf\n*_report.html\n", false);
 }
 
 }  // namespace
