@@ -108,8 +108,8 @@ class SourceLink {
 void write_structures(const fs::path& labels, const fs::path& stem, const SourceImage& source,
                       const PatientBuild& build, const SourceLink& link) {
     const LabelMap map = imaging::read_label_map(labels);
-    imaging::write_nifti_labels(stem.string() + "_dseg.nii.gz", map);
-    cli::write_text_file(stem.string() + "_dseg.tsv", imaging::bids_label_table(map.names), false);
+    imaging::write_nifti_labels(stem.string() + "dseg.nii.gz", map);
+    cli::write_text_file(stem.string() + "dseg.tsv", imaging::bids_label_table(map.names), false);
     Json sidecar{{"Description", "Structures of the haptic asset, in the space of the image"}};
     const auto image = link.uri_of(source.file.path);
     if (image) sidecar["Sources"] = Json::array({*image});
@@ -117,23 +117,20 @@ void write_structures(const fs::path& labels, const fs::path& stem, const Source
         build.case_file.labels ? link.uri_of(fs::absolute(*build.case_file.labels)) : std::nullopt;
     if (segmentation) sidecar["Sources"].push_back(*segmentation);
     sidecar["SpatialReference"] = image.value_or("orig");
-    cli::write_text_file(stem.string() + "_dseg.json", sidecar.dump(2) + "\n", false);
+    cli::write_text_file(stem.string() + "dseg.json", sidecar.dump(2) + "\n", false);
 }
 
-// "sub-01/ses-02/anat/sub-01_ses-02_desc-palpate", what names of the patient's files begin with.
+// "sub-01/ses-02/anat/sub-01_ses-02_desc-palpate_", what names of the patient's files begin with.
 fs::path stem_of(const SourceImage& source) {
     auto part = source.file.path.begin();
     fs::path place = *part;
     if (++part != source.file.path.end() && part->string().starts_with("ses-") &&
         *part != source.file.path.filename())
         place /= *part;
-    BidsName name = source.file.name;
+    BidsName name{source.file.name.entities, "", ""};
     std::erase_if(name.entities, [](const auto& entity) { return entity.first == "desc"; });
     name.entities.emplace_back("desc", "palpate");
-    std::string stem;
-    for (const auto& [entity, value] : name.entities)
-        stem += (stem.empty() ? "" : "_") + entity + "-" + value;
-    return place / "anat" / stem;
+    return place / "anat" / spelled(name);
 }
 
 void require_own_names(const std::vector<std::pair<const PatientBuild*, SourceImage>>& built) {
@@ -142,7 +139,7 @@ void require_own_names(const std::vector<std::pair<const PatientBuild*, SourceIm
         const auto [other, is_first] = patients.try_emplace(stem_of(source), build);
         if (!is_first)
             throw InvalidInput({build->patient.where,
-                                fmt::format("'{}' and '{}' would both be {}", other->second->patient.name,
+                                fmt::format("'{}' and '{}' would both be {}*", other->second->patient.name,
                                             build->patient.name, other->first.string()),
                                 "one patient of each subject, session, acquisition and run",
                                 "put one of them into a cohort of its own and export that elsewhere"});
@@ -155,8 +152,8 @@ void write_patient(const PatientBuild& build, const SourceImage& source, const S
     fs::create_directories(fs::path(stem).parent_path());
     const fs::path labels = build.paths.parts / "labels.seg.nrrd";
     if (needs_labels(build.case_file)) write_structures(labels, stem, source, build, link);
-    fs::copy_file(build.paths.asset, stem + "_asset.vtkhdf");
-    fs::copy_file(build.paths.report, stem + "_report.html");
+    fs::copy_file(build.paths.asset, stem + "asset.vtkhdf");
+    fs::copy_file(build.paths.report, stem + "report.html");
 }
 
 // In the words of what failed, without the line break at their end.
