@@ -151,6 +151,16 @@ TEST_F(BidsTable, one_kind_of_image_is_taken_of_all_and_what_a_subject_lacks_is_
     EXPECT_THAT(refusal(image("T2w.nii")), HasSubstr("--image: 'T2w.nii'"));
 }
 
+TEST_F(BidsTable, a_subject_counts_once_however_often_he_was_scanned) {
+    add("sub-01/ses-1/anat/sub-01_ses-1_T1w.nii.gz");
+    add("sub-01/ses-2/anat/sub-01_ses-2_T1w.nii.gz");
+    add("sub-01/ses-3/anat/sub-01_ses-3_T1w.nii.gz");
+    add("sub-02/anat/sub-02_FLAIR.nii.gz");
+    add("sub-03/anat/sub-03_FLAIR.nii.gz");
+    patients();
+    EXPECT_THAT(notes_, HasSubstr("the FLAIR images are taken; there are T1w too"));
+}
+
 TEST_F(BidsTable, of_runs_the_first_is_taken_and_acquisitions_are_named) {
     add("sub-01/anat/sub-01_run-10_T1w.nii.gz");
     add("sub-01/anat/sub-01_run-02_T1w.nii.gz");

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <map>
+#include <set>
 
 #include "formats/model/errors.hpp"
 
@@ -64,15 +65,16 @@ std::vector<Scan> scans_of(const fs::path& dataset) {
 BidsName image_of_most(std::span<const Scan> scans, BidsName wanted, const Note& note) {
     if (!wanted.suffix.empty()) return wanted;
     std::vector<std::string> there;
-    std::ptrdiff_t most = 0;
+    std::size_t most = 0;
     std::string best = preferred_suffixes.front();
     for (const char* suffix : preferred_suffixes) {
         wanted.suffix = suffix;
-        const auto count =
-            std::ranges::count_if(scans, [&](const Scan& scan) { return !candidates(scan, wanted).empty(); });
-        if (count > 0) there.emplace_back(suffix);
-        if (count > most) best = suffix;
-        most = std::max(most, count);
+        std::set<std::string> subjects;
+        for (const Scan& scan : scans)
+            if (!candidates(scan, wanted).empty()) subjects.insert(scan.subject);
+        if (!subjects.empty()) there.emplace_back(suffix);
+        if (subjects.size() > most) best = suffix;
+        most = std::max(most, subjects.size());
     }
     wanted.suffix = best;
     std::erase(there, best);

@@ -29,8 +29,8 @@ struct ChosenImage {
 /// Every subject, or each session of one, by name. Throws InvalidInput if there is none.
 std::vector<Scan> scans_of(const std::filesystem::path& dataset);
 
-/// What to look for: `wanted` with its suffix, or else with the one that most scans have, of equals the first
-/// of T1w, T2w, FLAIR, PDw, T2starw, UNIT1 and ct. `note` is told where there are others.
+/// What to look for: `wanted` with its suffix, or else with the one that most subjects have, of equals the
+/// first of T1w, T2w, FLAIR, PDw, T2starw, UNIT1 and ct. `note` is told where there are others.
 BidsName image_of_most(std::span<const Scan> scans, BidsName wanted,
                        const std::function<void(std::string_view)>& note);
 
