@@ -99,8 +99,7 @@ void check_needs(const TableReader& table, const CaseFile& case_file, const Stru
     if (recipe.needs_volume && !case_file.volume) lacks("grey values", "set input.volume or pass --volume");
     if (recipe.needs_seeds && !has_seeds(structure))
         lacks("seeds", "set seeds_mm, or place them with 'palpate seeds' and set seeds_file");
-    const bool imports = imaging::find_parameter(recipe, "file") != nullptr;
-    if (imports && !case_file.labels && !structure.files.contains("file"))
+    if (imports_labels(structure) && !case_file.labels)
         lacks("a label map", "set input.labels or pass --labels");
 }
 

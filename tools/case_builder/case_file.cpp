@@ -363,4 +363,10 @@ bool needs_labels(const CaseFile& case_file) {
     });
 }
 
+bool imports_labels(const StructureSpec& structure) {
+    const imaging::Recipe* recipe = imaging::find_recipe(structure.recipe);
+    return recipe != nullptr && imaging::find_parameter(*recipe, "file") != nullptr &&
+           !structure.files.contains("file");
+}
+
 }  // namespace palpate::case_builder

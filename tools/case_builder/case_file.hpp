@@ -84,4 +84,7 @@ CaseFile read_case_file(const std::filesystem::path& path, std::span<const Overr
 /// Tells whether some stage needs the label map of the structures; imported meshes and surfaces alone do not.
 bool needs_labels(const CaseFile& case_file);
 
+/// Tells whether the structure is taken from a label map and names no file of its own.
+bool imports_labels(const StructureSpec& structure);
+
 }  // namespace palpate::case_builder

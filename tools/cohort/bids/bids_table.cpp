@@ -8,7 +8,6 @@
 #include "tools/case_builder/case_file.hpp"
 #include "tools/cohort/bids/bids_images.hpp"
 #include "tools/cohort/bids/bids_segmentation.hpp"
-#include "tools/imaging/recipes/recipe.hpp"
 
 namespace palpate::cohort {
 namespace {
@@ -27,15 +26,6 @@ BidsName wanted_name(const std::string& text, const char* option) {
     if (!name || !name->extension.empty())
         throw UsageError({option, "'" + text + "'", "entities and suffix, as in acq-mprage_T1w", ""});
     return *name;
-}
-
-bool takes_labels(const case_builder::CaseFile& case_file) {
-    return case_file.labels ||
-           std::ranges::any_of(case_file.structures, [](const case_builder::StructureSpec& structure) {
-               const imaging::Recipe* recipe = imaging::find_recipe(structure.recipe);
-               return recipe != nullptr && imaging::find_parameter(*recipe, "file") != nullptr &&
-                      !structure.files.contains("file");
-           });
 }
 
 void require_there(const fs::path& file, Row& row) {
@@ -77,7 +67,9 @@ std::string table_text(const std::vector<Row>& rows, const fs::path& case_file, 
 std::string bids_patient_table(const fs::path& dataset, const fs::path& case_file, const fs::path& folder,
                                const BidsChoice& choice, const Note& note) {
     dataset_description(dataset);
-    const bool with_labels = takes_labels(case_builder::read_case_file(case_file));
+    const case_builder::CaseFile read = case_builder::read_case_file(case_file);
+    const bool with_labels =
+        read.labels || std::ranges::any_of(read.structures, case_builder::imports_labels);
     const fs::path root = fs::canonical(dataset);
     const fs::path derivatives =
         choice.derivatives.empty() ? fs::path() : fs::weakly_canonical(choice.derivatives);
