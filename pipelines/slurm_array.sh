@@ -8,5 +8,5 @@ set -eu
 : "${SLURM_ARRAY_TASK_ID:?is not set: this is run by sbatch --array}"
 batch=$(realpath "$1")/.batch
 request=$(find "$batch/requests" -name '*.json' | sort | sed -n "${SLURM_ARRAY_TASK_ID}p")
-cd "$(cat "$batch/table_folder")"
+cd "$(dirname "$(cat "$batch/table")")"
 exec palpate build --request "$request" --threads "${SLURM_CPUS_PER_TASK:-1}" --force

@@ -40,7 +40,6 @@ void write_requests(const Cohort& cohort) {
         if (build.patient.mistake.empty())
             cli::write_text_file(folder.request_of(build.patient.name), request_of(build).dump(2) + "\n",
                                  true);
-    cli::write_text_file(folder.batch() / "table_folder", cohort.table.parent_path().string() + "\n", true);
     cli::write_text_file(folder.table_name(), cohort.table.string() + "\n", true);
 }
 
