@@ -10,16 +10,13 @@
 
 #include "formats/model/label_map.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/cli/software.hpp"
 
 namespace {
 
-std::filesystem::path own_folder() {
-    return std::filesystem::read_symlink("/proc/self/exe").parent_path();
-}
-
 std::vector<std::string> installed_commands() {
     std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(own_folder())) {
+    for (const auto& entry : std::filesystem::directory_iterator(palpate::cli::programs_folder())) {
         const std::string name = entry.path().filename().string();
         if (name.starts_with("palpate-")) names.push_back(name.substr(8));
     }
@@ -50,7 +47,7 @@ int main(int argc, char** argv) {
         std::cout << "palpate " << palpate::cli::version() << '\n';
         return palpate::cli::ExitCode::ok;
     }
-    const std::filesystem::path program = own_folder() / ("palpate-" + name);
+    const std::filesystem::path program = palpate::cli::programs_folder() / ("palpate-" + name);
     if (name.starts_with("-") || name.find('/') != std::string::npos || !std::filesystem::exists(program)) {
         std::cerr << "palpate: no command '" << name << "'";
         const auto near = palpate::nearest_names(name, installed_commands());

@@ -16,4 +16,8 @@ nlohmann::ordered_json software_versions() {
     return {{"palpate", version()}, {"libraries", libraries}};
 }
 
+std::filesystem::path programs_folder() {
+    return std::filesystem::read_symlink("/proc/self/exe").parent_path();
+}
+
 }  // namespace palpate::cli

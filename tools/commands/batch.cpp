@@ -12,6 +12,7 @@
 #include "formats/model/errors.hpp"
 #include "tools/case_builder/folder_lock.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/cli/software.hpp"
 #include "tools/cohort/bids/bids_table.hpp"
 #include "tools/cohort/cohort.hpp"
 #include "tools/cohort/cohort_page.hpp"
@@ -22,10 +23,6 @@ namespace {
 
 using namespace palpate;
 using namespace palpate::cohort;
-
-std::filesystem::path own_folder() {
-    return std::filesystem::read_symlink("/proc/self/exe").parent_path();
-}
 
 // What the command line names.
 struct BatchRequest {
@@ -117,7 +114,8 @@ std::int64_t run_what_is_to_do(const Cohort& cohort, const States& states, const
             std::filesystem::remove(failure_page(cohort.builds[i].paths));
     cli::write_text_file(
         cohort.folder.plan(),
-        plan_of(cohort.builds, states, cohort.folder, cohort.table.parent_path(), own_folder()).dump(1) +
+        plan_of(cohort.builds, states, cohort.folder, cohort.table.parent_path(), cli::programs_folder())
+                .dump(1) +
             "\n",
         true);
     run_snakemake(run, cohort.folder, [&](const JobEvent& event) { bar.show(event); });
@@ -162,7 +160,7 @@ nlohmann::ordered_json build_cohort(const Cohort& cohort, const SnakemakeRun& ru
     std::int64_t stages = 0;
     bool interrupted = false;
     const auto states = [&] {
-        States found = states_of_all(cohort, own_folder(),
+        States found = states_of_all(cohort, cli::programs_folder(),
                                      [&](double done) { session.progress.step("comparing digests", done); });
         session.progress.finish();
         return found;
@@ -259,8 +257,9 @@ int main(int argc, char** argv) {
             write_requests(cohort);
             return nlohmann::ordered_json{{"requests", (cohort.folder.batch() / "requests").string()}};
         }
-        const SnakemakeRun run{std::filesystem::weakly_canonical(own_folder() / "../share/palpate/pipelines"),
-                               profile, session.threads};
+        const SnakemakeRun run{
+            std::filesystem::weakly_canonical(cli::programs_folder() / "../share/palpate/pipelines"), profile,
+            session.threads};
         return build_cohort(cohort, run, session);
     });
 }

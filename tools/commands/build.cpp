@@ -10,6 +10,7 @@
 #include "tools/case_builder/overrides.hpp"
 #include "tools/case_builder/stages.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/cli/software.hpp"
 
 namespace {
 using namespace palpate;
@@ -164,8 +165,7 @@ int main(int argc, char** argv) {
         if (parts.empty()) parts = std::filesystem::path(output).replace_extension(".parts");
         const case_builder::BuildPaths paths{parts, output,
                                              std::filesystem::path(output).replace_extension(".html")};
-        const case_builder::StageRunner runner(std::filesystem::read_symlink("/proc/self/exe").parent_path(),
-                                               parts, session.threads, session.quiet);
+        const case_builder::StageRunner runner(cli::programs_folder(), parts, session.threads, session.quiet);
         if (!session.force) {
             require_our_output(runner, "pack", paths.asset);
             require_our_output(runner, "report", paths.report);

@@ -11,6 +11,7 @@
 #include "tools/cli/command.hpp"
 #include "tools/cli/outputs/staged_folder.hpp"
 #include "tools/cli/refuse_beside.hpp"
+#include "tools/cli/software.hpp"
 #include "tools/cohort/bids/bids_export.hpp"
 #include "tools/imaging/files/label_names.hpp"
 #include "tools/inspection/file_kind.hpp"
@@ -97,10 +98,6 @@ nlohmann::ordered_json export_labels(const ExportRequest& request, const Filing&
     return {{"object", "segmentation"}, {"segments", segments}};
 }
 
-std::filesystem::path own_folder() {
-    return std::filesystem::read_symlink("/proc/self/exe").parent_path();
-}
-
 nlohmann::ordered_json export_cohort(const ExportRequest& request, cli::Session& session) {
     const cohort::Cohort built = cohort::cohort_in(request.input);
     refuse_while_built(built.folder);
@@ -116,7 +113,7 @@ nlohmann::ordered_json export_cohort(const ExportRequest& request, cli::Session&
         };
     };
     imaging::set_imaging_threads(session.threads);
-    const cohort::States states = states_of_all(built, own_folder(), step("comparing digests"));
+    const cohort::States states = states_of_all(built, cli::programs_folder(), step("comparing digests"));
     const cohort::BidsExport made =
         write_bids_dataset(built, states, request.output, staged.path(), step("writing"));
     staged.commit();

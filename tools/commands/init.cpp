@@ -12,6 +12,7 @@
 #include "tools/case_builder/case_check.hpp"
 #include "tools/case_builder/child_process.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/cli/software.hpp"
 #include "tools/draft/anatomy.hpp"
 #include "tools/draft/case_draft.hpp"
 #include "tools/draft/scan_draft.hpp"
@@ -144,7 +145,7 @@ void place_seeds(InitRequest& request, const draft::ScanRecipes& recipes) {
         return;
     }
     spdlog::info("click into {}; save with S, leave with Q", recipes.where);
-    const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "palpate-seeds";
+    const fs::path program = cli::programs_folder() / "palpate-seeds";
     std::vector<std::string> arguments{request.input.string(), "-o", request.seeds_file.string()};
     for (const std::string& structure : recipes.structures)
         if (structure.starts_with(recipes.clicked + ":"))
