@@ -25,6 +25,7 @@ class Scratch {
     ~Scratch() { std::filesystem::remove_all(folder_); }
 
     std::filesystem::path operator/(const std::string& name) const { return folder_ / name; }
+    const std::filesystem::path& path() const { return folder_; }
 
   private:
     std::filesystem::path folder_;

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "formats/model/errors.hpp"
-#include "tests/tools/imaging/hand_written_images.hpp"
+#include "tests/formats/scratch.hpp"
 #include "tools/case_builder/case_file.hpp"
 
 namespace palpate::case_builder {
@@ -31,7 +31,7 @@ poissons_ratio = 0.45
 )";
 
 std::filesystem::path written(const std::string& text) {
-    static const palpate::test::TemporaryFolder folder;  // of each process, as tests run side by side
+    static const sample::Scratch folder;  // of each process, as tests run side by side
     const auto path = folder / "case.toml";
     std::ofstream(path) << text;
     return path;

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "formats/model/errors.hpp"
-#include "tests/tools/imaging/hand_written_images.hpp"
+#include "tests/formats/scratch.hpp"
 #include "tools/case_builder/case_file.hpp"
 #include "tools/case_builder/overrides.hpp"
 
@@ -40,7 +40,7 @@ class Overrides : public testing::Test {
         return error.what();
     }
 
-    palpate::test::TemporaryFolder folder_;
+    sample::Scratch folder_;
 };
 
 TEST_F(Overrides, go_before_what_the_case_file_says) {

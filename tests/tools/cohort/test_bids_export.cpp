@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fstream>
 #include <gmock/gmock.h>
-#include <unistd.h>
 
 #include "formats/model/errors.hpp"
+#include "tests/formats/scratch.hpp"
+#include "tests/tools/refusal_of.hpp"
 #include "tools/cohort/bids/bids_export.hpp"
 
 namespace palpate::cohort {
@@ -15,8 +16,8 @@ using testing::HasSubstr;
 // Patients that count as built, for they have no stages, of a dataset without files.
 class BidsExportTest : public testing::Test {
   protected:
-    const fs::path folder_ =
-        fs::canonical(testing::TempDir()) / ("palpate_bids_export_" + std::to_string(getpid()));
+    const sample::Scratch scratch_;
+    const fs::path folder_ = fs::canonical(scratch_.path());
     const fs::path dataset_ = folder_ / "bids", staged_ = folder_ / "staged";
     Cohort cohort_{folder_ / "patients.tsv", {folder_ / "out"}, {}};
 
@@ -25,7 +26,6 @@ class BidsExportTest : public testing::Test {
         fs::create_directories(staged_);
         std::ofstream(dataset_ / "dataset_description.json") << R"({"Name": "x", "BIDSVersion": "1.9.0"})";
     }
-    void TearDown() override { fs::remove_all(folder_); }
 
     void add(const std::string& name, const std::string& image) {
         PatientBuild& build = cohort_.builds.emplace_back();
@@ -42,12 +42,8 @@ class BidsExportTest : public testing::Test {
     }
     // Of an export that must leave nothing.
     std::string refusal(const fs::path& output) const {
-        try {
-            write(output);
-        } catch (const InvalidInput& error) {
-            return fs::is_empty(staged_) ? error.what() : "something was written";
-        }
-        return "nothing was refused";
+        const std::string said = test::refusal_of([&] { write(output); });
+        return fs::is_empty(staged_) ? said : "something was written";
     }
 };
 

@@ -2,9 +2,10 @@
 #include <fstream>
 #include <gmock/gmock.h>
 #include <sstream>
-#include <unistd.h>
 
 #include "formats/model/errors.hpp"
+#include "tests/formats/scratch.hpp"
+#include "tests/tools/refusal_of.hpp"
 #include "tools/cohort/bids/bids_folder.hpp"
 #include "tools/cohort/bids/bids_name.hpp"
 #include "tools/cohort/bids/bids_table.hpp"
@@ -36,7 +37,8 @@ TEST(BidsName, is_taken_apart_and_spelled_as_it_was) {
 // A dataset of empty files: no image is read.
 class BidsTable : public testing::Test {
   protected:
-    const fs::path folder_ = fs::canonical(testing::TempDir()) / ("palpate_bids_" + std::to_string(getpid()));
+    const sample::Scratch scratch_;
+    const fs::path folder_ = fs::canonical(scratch_.path());
     const fs::path dataset_ = folder_ / "bids", out_ = folder_ / "out", case_ = folder_ / "case.toml";
     std::string notes_;
 
@@ -45,7 +47,6 @@ class BidsTable : public testing::Test {
         std::ofstream(dataset_ / "dataset_description.json") << R"({"Name": "x", "BIDSVersion": "1.9.0"})";
         write_case("threshold");
     }
-    void TearDown() override { fs::remove_all(folder_); }
 
     // Recipe "import" takes a label map, "threshold" does not.
     void write_case(const std::string& recipe) const {
@@ -64,12 +65,7 @@ class BidsTable : public testing::Test {
         return parse_patient_table(stream, out_ / "patients.tsv");
     }
     std::string refusal(const BidsChoice& choice = {}) {
-        try {
-            patients(choice);
-        } catch (const Error& error) {
-            return error.what();
-        }
-        return "nothing was refused";
+        return test::refusal_of<Error>([&] { patients(choice); });
     }
 };
 

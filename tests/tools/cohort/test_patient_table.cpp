@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fstream>
 #include <gmock/gmock.h>
-#include <unistd.h>
 
-#include "formats/model/errors.hpp"
+#include "tests/formats/scratch.hpp"
+#include "tests/tools/refusal_of.hpp"
 #include "tools/cohort/patient_table.hpp"
 
 namespace palpate::cohort {
@@ -15,23 +15,15 @@ using testing::StartsWith;
 
 class PatientTable : public testing::Test {
   protected:
-    const fs::path folder_ = fs::path(testing::TempDir()) / ("palpate_table_" + std::to_string(getpid()));
+    const sample::Scratch folder_;
     const fs::path table_ = folder_ / "patients.tsv";
-
-    void SetUp() override { fs::create_directories(folder_); }
-    void TearDown() override { fs::remove_all(folder_); }
 
     std::vector<Patient> read(const std::string& text) const {
         std::ofstream(table_) << text;
         return read_patient_table(table_);
     }
     std::string refusal(const std::string& text) const {
-        try {
-            read(text);
-        } catch (const InvalidInput& error) {
-            return error.what();
-        }
-        return "nothing was refused";
+        return test::refusal_of([&] { read(text); });
     }
 };
 

@@ -4,23 +4,12 @@
 #include <gtest/gtest.h>
 #include <string>
 
-#include "formats/model/errors.hpp"
+#include "tests/tools/refusal_of.hpp"
 #include "tools/imaging/files/image_files.hpp"
 
 namespace palpate::test {
 
-/// The message of the error of type `Refusal` that `call` throws, or a text that is none.
-template <typename Refusal = InvalidInput, typename Call>
-std::string refusal_of(Call&& call) {
-    try {
-        call();
-    } catch (const Refusal& error) {
-        return error.what();
-    }
-    return "nothing was refused";
-}
-
-/// The same of reading a volume.
+/// What refusal_of() gives of reading a volume.
 template <typename Refusal = InvalidInput>
 std::string volume_refusal(const std::filesystem::path& path, const imaging::ReadOptions& options = {}) {
     return refusal_of<Refusal>([&] { imaging::read_volume(path, {}, options); });

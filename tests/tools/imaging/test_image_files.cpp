@@ -10,6 +10,7 @@
 #include <sys/resource.h>
 
 #include "formats/model/errors.hpp"
+#include "tests/formats/scratch.hpp"
 #include "tests/tools/imaging/hand_written_images.hpp"
 #include "tests/tools/imaging/refusals.hpp"
 #include "tools/imaging/files/image_files.hpp"
@@ -19,10 +20,10 @@ namespace palpate {
 namespace {
 
 using namespace imaging;
+using sample::Scratch;
 using test::expect_same_place;
 using test::header_tolerance;
 using test::refusal_of;
-using test::TemporaryFolder;
 using test::write_bytes;
 
 Volume ramp_volume() {
@@ -61,7 +62,7 @@ std::string float_bytes(const Volume& volume) {
 }
 
 TEST(ImageFiles, every_axis_order_and_obliquity_of_every_format_reads_as_the_same_place) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     Volume volume = ramp_volume();
     for (const Eigen::Matrix3d& direction : all_directions()) {
         volume.grid.direction = direction;
@@ -82,7 +83,7 @@ TEST(ImageFiles, every_axis_order_and_obliquity_of_every_format_reads_as_the_sam
 }
 
 TEST(ImageFiles, writing_and_reading_a_volume_changes_nothing) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     for (const float offset : {0.0F, 0.25F}) {  // int16 and float32
         Volume volume = ramp_volume();
         volume.grid.direction = oblique();
@@ -97,14 +98,14 @@ TEST(ImageFiles, writing_and_reading_a_volume_changes_nothing) {
 }
 
 TEST(ImageFiles, the_same_volume_gives_the_same_bytes) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     write_volume(folder / "a.nrrd", ramp_volume());
     write_volume(folder / "b.nrrd", ramp_volume());
     EXPECT_EQ(test::bytes_of(folder / "a.nrrd"), test::bytes_of(folder / "b.nrrd"));
 }
 
 TEST(ImageFiles, header_fields_of_the_input_do_not_reach_the_output) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const Volume volume = ramp_volume();
     write_bytes(folder / "in.nrrd",
                 test::nrrd_file(volume.grid, "float", float_bytes(volume), "left-posterior-superior",
@@ -126,7 +127,7 @@ LabelMap small_map() {
 }
 
 TEST(LabelMapFiles, names_values_and_colours_survive_a_round_trip) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     for (const std::uint16_t last : {std::uint16_t{7}, std::uint16_t{700}}) {  // uint8 and uint16
         LabelMap map = small_map();
         map.labels[50] = last;
@@ -144,7 +145,7 @@ TEST(LabelMapFiles, names_values_and_colours_survive_a_round_trip) {
 }
 
 TEST(LabelMapFiles, as_nifti_they_keep_every_voxel_and_as_a_bids_table_their_names) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     for (const std::uint16_t last : {std::uint16_t{7}, std::uint16_t{700}}) {  // uint8 and uint16
         LabelMap map = small_map();
         map.labels[50] = last;
@@ -166,7 +167,7 @@ TEST(LabelMapFiles, as_nifti_they_keep_every_voxel_and_as_a_bids_table_their_nam
 }
 
 TEST(LabelMapFiles, carry_the_fields_that_slicer_reads_a_segmentation_from) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     write_label_map(folder / "l.seg.nrrd", small_map());
     const std::string header = test::bytes_of(folder / "l.seg.nrrd");
     for (const char* line :
@@ -178,7 +179,7 @@ TEST(LabelMapFiles, carry_the_fields_that_slicer_reads_a_segmentation_from) {
 }
 
 TEST(LabelMapFiles, values_without_a_segment_field_are_named_by_value) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const LabelMap map = small_map();
     std::vector<std::int32_t> wide(map.labels.begin(), map.labels.end());
     write_bytes(folder / "l.nrrd", test::nrrd_file(map.grid, "int", test::raw_bytes<std::int32_t>(wide),
@@ -194,7 +195,7 @@ TEST(LabelMapFiles, values_without_a_segment_field_are_named_by_value) {
 }
 
 TEST(LabelMapFiles, grey_values_and_empty_maps_are_refused) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     LabelMap map = small_map();
     write_bytes(folder / "grey.nrrd", test::nrrd_file(ramp_volume().grid, "float", float_bytes(ramp_volume()),
                                                       "left-posterior-superior"));
@@ -206,7 +207,7 @@ TEST(LabelMapFiles, grey_values_and_empty_maps_are_refused) {
 }
 
 TEST(ImageFiles, bad_inputs_are_refused_with_their_fault) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     Volume volume = ramp_volume();
     const auto nrrd = [&](const Volume& v) {
         return test::nrrd_file(v.grid, "float", float_bytes(v), "left-posterior-superior");
@@ -240,7 +241,7 @@ TEST(ImageFiles, bad_inputs_are_refused_with_their_fault) {
 }
 
 TEST(ImageFiles, truncated_files_of_every_format_are_refused) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const Volume volume = ramp_volume();
     write_volume(folder / "whole.nrrd", volume);
     const std::map<std::string, std::string> files{
@@ -256,7 +257,7 @@ TEST(ImageFiles, truncated_files_of_every_format_are_refused) {
 }
 
 TEST(ImageFiles, directions_slightly_off_are_made_orthonormal_and_reported) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     Volume volume = ramp_volume();
     volume.grid.direction(0, 1) = 4e-4;
     write_bytes(folder / "v.nrrd",
@@ -275,7 +276,7 @@ TEST(ImageFiles, outputs_with_another_ending_are_refused) {
 }
 
 TEST(ImageFiles, a_file_that_cannot_be_written_whole_is_a_system_failure) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     Volume volume = ramp_volume();
     volume.grid.size = {32, 32, 32};
     volume.values.resize(volume.grid.voxel_count());

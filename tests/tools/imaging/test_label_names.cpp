@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "formats/model/errors.hpp"
+#include "tests/formats/scratch.hpp"
 #include "tests/tools/imaging/hand_written_images.hpp"
 #include "tests/tools/imaging/refusals.hpp"
 #include "tools/imaging/files/image_files.hpp"
@@ -11,7 +12,7 @@ namespace palpate {
 namespace {
 
 using namespace imaging;
-using test::TemporaryFolder;
+using sample::Scratch;
 using test::write_bytes;
 
 LabelMap bare_map() {
@@ -25,7 +26,7 @@ LabelMap bare_map() {
 }
 
 TEST(LabelNames, every_kind_of_table_names_the_same_labels) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const std::map<std::string, std::string> tables{
         {"slicer.ctbl",
          "# Color table file\n# 3 values\n0 Background 0 0 0 0\n1 spleen 255 0 51 255\n5 liver 0 255 0 "
@@ -75,7 +76,7 @@ TEST(LabelNames, totalsegmentator_values_mean_what_their_version_and_task_say) {
 }
 
 TEST(LabelNames, what_a_table_does_not_know_keeps_its_name_with_a_note) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     write_bytes(folder / "t.txt", "5 liver\n");
     LabelMap map = bare_map();
     std::string notes;
@@ -89,7 +90,7 @@ TEST(LabelNames, what_a_table_does_not_know_keeps_its_name_with_a_note) {
 }
 
 TEST(LabelNames, malformed_tables_are_refused_with_their_line) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const auto refusal = [&](const std::string& text) {
         write_bytes(folder / "t.txt", text);
         return test::refusal_of<Error>([&] { read_label_table(folder / "t.txt"); });
@@ -108,7 +109,7 @@ TEST(LabelNames, malformed_tables_are_refused_with_their_line) {
 }
 
 TEST(LabelNames, names_may_have_blanks_and_what_is_ambiguous_is_refused) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const auto name = [&](const std::string& line) {
         write_bytes(folder / "t.txt", line + "\n");
         return read_label_table(folder / "t.txt").at(1).name;
@@ -145,7 +146,7 @@ TEST(LabelNames, repeated_names_get_numbers) {
 }
 
 TEST(LabelNames, the_label_table_of_a_nifti_header_extension_is_read) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const LabelMap map = bare_map();
     const std::string xml =
         "<CaretExtension><VolumeInformation><LabelTable>\n"

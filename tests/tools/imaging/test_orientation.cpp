@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
+#include "tests/formats/scratch.hpp"
 #include "tests/tools/imaging/hand_written_dicom.hpp"
 #include "tools/imaging/files/image_files.hpp"
 #include "tools/imaging/voxels/label_statistics.hpp"
@@ -113,7 +114,7 @@ TEST_P(Orientation, all_48_axis_orders_in_every_format_read_as_the_same_organ_in
         Eigen::AngleAxisd(-0.8, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix(),
         Eigen::AngleAxisd(2.4, Eigen::Vector3d(-2, 1, 0.5).normalized()).toRotationMatrix()};
     const LabelMap expected = organ(rotations[static_cast<std::size_t>(GetParam())]);
-    const test::TemporaryFolder folder;
+    const sample::Scratch folder;
     std::array<int, 3> order{0, 1, 2};
     int orders = 0;
     do {

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "formats/model/errors.hpp"
+#include "tests/formats/scratch.hpp"
 #include "tests/tools/imaging/hand_written_dicom.hpp"
 #include "tests/tools/imaging/refusals.hpp"
 #include "tools/imaging/files/image_files.hpp"
@@ -17,8 +18,8 @@ namespace palpate {
 namespace {
 
 using namespace imaging;
+using sample::Scratch;
 using test::DicomData;
-using test::TemporaryFolder;
 
 // Positions are written with nine digits; interpolation adds float32 round-off of a few hundred.
 constexpr double place_tolerance = 1e-5, value_tolerance = 2e-2;
@@ -54,7 +55,7 @@ Eigen::Vector3d place_of(const ImageGrid& grid, double k) {
 }
 
 // Slices at the given multiples of the slice distance, under names in another order.
-void write_stack(const TemporaryFolder& folder, const ImageGrid& grid, const std::vector<double>& places,
+void write_stack(const Scratch& folder, const ImageGrid& grid, const std::vector<double>& places,
                  const std::function<void(DicomData&, std::size_t)>& change = {}) {
     for (std::size_t n = 0; n < places.size(); ++n) {
         DicomData slice = slice_at(grid, place_of(grid, places[n]));
@@ -88,7 +89,7 @@ ReadOptions accepting_gaps() {
 }
 
 TEST(Dicom, slices_in_any_order_with_their_own_slopes_make_the_volume_in_its_place) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const ImageGrid grid = oblique_stack();
     // Thickness 3 mm at a distance of 2 mm: overlapping slices.
     write_stack(folder, grid, even, [&](DicomData& slice, std::size_t n) {
@@ -107,7 +108,7 @@ TEST(Dicom, slices_in_any_order_with_their_own_slopes_make_the_volume_in_its_pla
 }
 
 TEST(Dicom, twelve_bits_with_sign_keep_their_sign_and_negative_first_photometry_its_values) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const ImageGrid grid = oblique_stack();
     for (int k = 0; k < 8; ++k) {
         std::vector<std::int16_t> stored(120, 0x0FFB);  // -5 in twelve bits
@@ -124,7 +125,7 @@ TEST(Dicom, twelve_bits_with_sign_keep_their_sign_and_negative_first_photometry_
 }
 
 TEST(Dicom, a_header_that_claims_more_than_the_files_hold_is_refused_before_memory_is_taken) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     ImageGrid huge = oblique_stack();
     huge.size = {65000, 65000, 8};
     for (int k = 0; k < 8; ++k)
@@ -134,7 +135,7 @@ TEST(Dicom, a_header_that_claims_more_than_the_files_hold_is_refused_before_memo
 }
 
 TEST(Dicom, every_lossless_compression_reads_as_the_same_values) {
-    const TemporaryFolder plain;
+    const Scratch plain;
     const ImageGrid grid = oblique_stack();
     write_stack(plain, grid, even);
     const Volume expected = read_volume(plain.path());
@@ -142,7 +143,7 @@ TEST(Dicom, every_lossless_compression_reads_as_the_same_values) {
          {gdcm::TransferSyntax::JPEGLSLossless, gdcm::TransferSyntax::JPEG2000Lossless,
           gdcm::TransferSyntax::RLELossless, gdcm::TransferSyntax::JPEGLosslessProcess14_1}) {
         SCOPED_TRACE(gdcm::TransferSyntax::GetTSString(syntax));
-        const TemporaryFolder packed;
+        const Scratch packed;
         for (const auto& entry : std::filesystem::directory_iterator(plain.path())) {
             gdcm::ImageReader reader;
             reader.SetFileName(entry.path().c_str());
@@ -165,7 +166,7 @@ TEST(Dicom, every_lossless_compression_reads_as_the_same_values) {
 }
 
 TEST(Dicom, empty_and_missing_identifiers_do_not_split_a_series) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     write_stack(folder, oblique_stack(), even, [](DicomData& slice, std::size_t n) {
         for (const std::uint32_t tag : {0x00080018U, 0x0020000dU, 0x0020000eU})
             n % 2 ? slice.erase(tag) : static_cast<void>(slice.text(tag, "UI", ""));
@@ -174,7 +175,7 @@ TEST(Dicom, empty_and_missing_identifiers_do_not_split_a_series) {
 }
 
 TEST(Dicom, several_series_are_listed_and_one_is_chosen_by_number_uid_or_description) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     ImageGrid grid = oblique_stack();
     std::filesystem::create_directories(folder / "a");
     std::filesystem::create_directories(folder / "b");
@@ -220,7 +221,7 @@ TEST(Dicom, several_series_are_listed_and_one_is_chosen_by_number_uid_or_descrip
 }
 
 TEST(Dicom, texts_of_other_alphabets_are_listed_as_utf8_and_only_codes_pass_for_a_modality) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     write_stack(folder, oblique_stack(), even, [](DicomData& slice, std::size_t) {
         slice.text(0x0008103e, "LO", "Oberbauch ven\xf6s\n").text(0x00080060, "CS", "ROE JANE");
     });
@@ -233,7 +234,7 @@ TEST(Dicom, texts_of_other_alphabets_are_listed_as_utf8_and_only_codes_pass_for_
 }
 
 TEST(Dicom, scouts_and_localizers_beside_a_volume_need_no_choice) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const ImageGrid grid = oblique_stack();
     write_stack(folder, grid, even);
     test::write_bytes(folder / "scout.dcm",
@@ -253,7 +254,7 @@ TEST(Dicom, scouts_and_localizers_beside_a_volume_need_no_choice) {
 }
 
 TEST(Dicom, files_that_are_no_images_are_skipped_with_a_note) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const ImageGrid grid = oblique_stack();
     write_stack(folder, grid, even);
     for (const char* kind : {"SEG", "RTSTRUCT", "SR"})
@@ -267,7 +268,7 @@ TEST(Dicom, files_that_are_no_images_are_skipped_with_a_note) {
 }
 
 TEST(Dicom, a_missing_slice_is_refused_with_its_place_and_interpolated_on_request) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const ImageGrid grid = oblique_stack();
     write_stack(folder, grid, {0, 1, 2, 3, 5, 6, 7});
     const std::string refusal = test::volume_refusal(folder.path());
@@ -284,7 +285,7 @@ TEST(Dicom, a_missing_slice_is_refused_with_its_place_and_interpolated_on_reques
 }
 
 TEST(Dicom, uneven_slices_are_refused_and_interpolated_on_request) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const ImageGrid grid = oblique_stack();
     write_stack(folder, grid, {0, 1, 2, 3.3, 4, 5, 6, 7});
     EXPECT_SAYS(test::volume_refusal(folder.path()), "2.600 mm between");
@@ -294,7 +295,7 @@ TEST(Dicom, uneven_slices_are_refused_and_interpolated_on_request) {
 }
 
 TEST(Dicom, a_tilted_gantry_is_refused_with_its_angle_and_untilted_on_request) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const ImageGrid grid = oblique_stack();
     const double shift = 2 * std::tan(15 * M_PI / 180);  // mm a slice
     for (int k = 0; k < 8; ++k)
@@ -330,7 +331,7 @@ TEST(Dicom, tilt_and_spacing_that_creep_are_refused_and_resampled_on_request) {
     for (int n = 0; n < 50; ++n) creeping.push_back(creeping.back() + (n < 25 ? 0.965 : n > 25 ? 1.035 : 1));
     ImageGrid fine = grid;
     fine.spacing[2] = 0.275;  // so that distances may differ by 4 %
-    const TemporaryFolder tilted, uneven;
+    const Scratch tilted, uneven;
     for (int k = 0; k < 8; ++k)
         test::write_bytes(tilted / fmt::format("{}.dcm", k),
                           slice_at(grid, place_of(grid, k) + k * shift * grid.direction.col(1)).file());
@@ -346,7 +347,7 @@ TEST(Dicom, tilt_and_spacing_that_creep_are_refused_and_resampled_on_request) {
 }
 
 TEST(Dicom, links_that_lead_nowhere_or_to_themselves_are_no_slices) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     write_stack(folder, oblique_stack(), even);
     std::filesystem::create_symlink("loop", folder / "loop");
     std::filesystem::create_symlink("missing", folder / "broken");
@@ -355,7 +356,7 @@ TEST(Dicom, links_that_lead_nowhere_or_to_themselves_are_no_slices) {
 }
 
 TEST(Dicom, doubled_slices_are_refused_and_left_out_on_request_only_if_identical) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const ImageGrid grid = oblique_stack();
     write_stack(folder, grid, {0, 1, 2, 3, 3, 4, 5, 6, 7});
     EXPECT_SAYS(test::volume_refusal(folder.path()), "two slices lie at one place");
@@ -374,7 +375,7 @@ TEST(Dicom, mixed_damaged_coloured_and_placeless_slices_are_refused_by_name) {
     turned.direction.col(1) *= -1;
     small.size = {6, 10, 8};
     const auto refusal = [&](const std::function<void(DicomData&)>& change) {
-        const TemporaryFolder folder;
+        const Scratch folder;
         write_stack(folder, grid, even, [&](DicomData& slice, std::size_t n) {
             if (n == 3) change(slice);  // 4.dcm
         });
@@ -395,7 +396,7 @@ TEST(Dicom, mixed_damaged_coloured_and_placeless_slices_are_refused_by_name) {
                 "4.dcm says not where");
     EXPECT_SAYS(refusal([&](DicomData& s) { s.erase(0x00200032); }), "4.dcm says not where");
     EXPECT_SAYS(refusal([&](DicomData& s) { s.text(0x7fe00010, "OW", std::string(100, '\1')); }), "4.dcm: ");
-    const TemporaryFolder folder;
+    const Scratch folder;
     write_stack(folder, grid, even);
     const std::string whole = test::bytes_of(folder / "4.dcm");
     for (const std::size_t missing : {10U, 200U}) {
@@ -406,7 +407,7 @@ TEST(Dicom, mixed_damaged_coloured_and_placeless_slices_are_refused_by_name) {
 
 TEST(Dicom, an_enhanced_file_of_several_frames_reads_as_the_same_volume) {
     const ImageGrid grid = oblique_stack();
-    const TemporaryFolder folder, slices;
+    const Scratch folder, slices;
     write_stack(slices, grid, even);
     const Volume expected = read_volume(slices.path());
     const std::vector<int> order{3, 0, 7, 1, 6, 2, 5, 4};

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "formats/model/errors.hpp"
+#include "tests/formats/scratch.hpp"
 #include "tests/tools/imaging/hand_written_dicom.hpp"
 #include "tests/tools/imaging/refusals.hpp"
 #include "tools/imaging/files/image_files.hpp"
@@ -12,8 +13,8 @@ namespace palpate {
 namespace {
 
 using namespace imaging;
+using sample::Scratch;
 using test::DicomData;
-using test::TemporaryFolder;
 
 ImageGrid small_grid() {
     ImageGrid grid;
@@ -102,7 +103,7 @@ std::string label_map_refusal(const std::filesystem::path& path) {
 }
 
 TEST(DicomSeg, frames_in_any_order_with_empty_slices_left_out_are_the_segments_in_their_place) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const ImageGrid grid = small_grid();
     test::write_bytes(
         folder / "s.dcm",
@@ -120,7 +121,7 @@ TEST(DicomSeg, frames_in_any_order_with_empty_slices_left_out_are_the_segments_i
 }
 
 TEST(DicomSeg, a_single_slice_gets_an_empty_neighbour_at_its_thickness) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const ImageGrid grid = small_grid();
     test::write_bytes(folder / "s.dcm", segmentation(grid, {"liver"}, {{1, 3, {8}}}));
     const LabelMap map = read_label_map(folder / "s.dcm");
@@ -131,7 +132,7 @@ TEST(DicomSeg, a_single_slice_gets_an_empty_neighbour_at_its_thickness) {
 }
 
 TEST(DicomSeg, overlaps_fractions_frames_off_the_grid_and_images_are_refused) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const ImageGrid grid = small_grid();
     const auto refusal = [&](const std::vector<Frame>& frames, const std::string& type = "BINARY") {
         test::write_bytes(folder / "s.dcm", segmentation(grid, {"liver", "tumour"}, frames, type));

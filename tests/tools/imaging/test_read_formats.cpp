@@ -8,6 +8,7 @@
 #include <zlib.h>
 
 #include "formats/model/errors.hpp"
+#include "tests/formats/scratch.hpp"
 #include "tests/tools/imaging/hand_written_images.hpp"
 #include "tests/tools/imaging/refusals.hpp"
 #include "tools/imaging/files/image_files.hpp"
@@ -16,9 +17,9 @@ namespace palpate {
 namespace {
 
 using namespace imaging;
+using sample::Scratch;
 using test::expect_same_place;
 using test::header_tolerance;
-using test::TemporaryFolder;
 using test::write_bytes;
 
 Volume oblique_ramp() {
@@ -60,7 +61,7 @@ ReadOptions framed(const std::string& frame) {
 }
 
 TEST(Nifti, transforms_that_agree_are_read_and_ones_that_do_not_are_refused_with_both) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     for (const bool mirrored : {false, true}) {
         Volume volume = oblique_ramp();
         if (mirrored) volume.grid.direction.col(2) *= -1;
@@ -85,7 +86,7 @@ TEST(Nifti, transforms_that_agree_are_read_and_ones_that_do_not_are_refused_with
 }
 
 TEST(Nifti, a_transform_that_is_not_set_cannot_be_chosen) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const Volume volume = oblique_ramp();
     write_bytes(folder / "v.nii", test::nifti_file(volume.grid, test::raw_bytes<float>(volume.values)));
     EXPECT_SAYS(test::volume_refusal<Error>(folder / "v.nii", framed("qform")), "has no qform");
@@ -93,7 +94,7 @@ TEST(Nifti, a_transform_that_is_not_set_cannot_be_chosen) {
 }
 
 TEST(Nifti, shear_up_to_a_thousandth_is_repaired_and_reported_and_beyond_refused) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     for (const double shear : {9e-4, 1.2e-3}) {
         Volume volume = oblique_ramp();
         volume.grid.direction.col(1) += shear * volume.grid.direction.col(0);
@@ -113,7 +114,7 @@ TEST(Nifti, shear_up_to_a_thousandth_is_repaired_and_reported_and_beyond_refused
 }
 
 TEST(Nifti, a_file_without_transforms_is_read_as_ras_with_a_note) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     Volume volume = oblique_ramp();
     volume.grid.direction.setIdentity();
     std::string file = test::nifti_file(volume.grid, test::raw_bytes<float>(volume.values));
@@ -126,7 +127,7 @@ TEST(Nifti, a_file_without_transforms_is_read_as_ras_with_a_note) {
 }
 
 TEST(Nifti, big_endian_scaled_and_second_version_files_hold_the_same_volume) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const Volume volume = oblique_ramp();
     const std::string little = test::nifti_file(volume.grid, test::raw_bytes<float>(volume.values));
 
@@ -184,7 +185,7 @@ TEST(Nifti, big_endian_scaled_and_second_version_files_hold_the_same_volume) {
 }
 
 TEST(Nifti, colours_time_series_pairs_and_false_claims_are_refused) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const Volume volume = oblique_ramp();
     const std::string good = test::nifti_file(volume.grid, test::raw_bytes<float>(volume.values));
     const auto refusal = [&](std::size_t offset, auto value) {
@@ -229,7 +230,7 @@ std::size_t voxels_of(const LabelMap& map, const std::string& name) {
 }
 
 TEST(SegNrrd, layers_that_do_not_overlap_become_one_map_with_names_and_colours) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     write_bytes(folder / "s.seg.nrrd", layered_segmentation(false));
     const LabelMap map = read_label_map(folder / "s.seg.nrrd");
     EXPECT_EQ(map.grid.size, (std::array<std::int32_t, 3>{4, 5, 6}));
@@ -241,7 +242,7 @@ TEST(SegNrrd, layers_that_do_not_overlap_become_one_map_with_names_and_colours) 
 }
 
 TEST(SegNrrd, overlaps_are_refused_with_the_pair_or_decided_as_asked) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     write_bytes(folder / "s.seg.nrrd", layered_segmentation(true));
     try {
         read_label_map(folder / "s.seg.nrrd");
@@ -264,7 +265,7 @@ TEST(SegNrrd, overlaps_are_refused_with_the_pair_or_decided_as_asked) {
 }
 
 TEST(SegNrrd, old_segmentations_hold_a_segment_in_each_layer) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     std::string file = layered_segmentation(false);
     for (const char* field :
          {"Segment0_LabelValue:=1\nSegment0_Layer:=1\n", "Segment1_LabelValue:=1\nSegment1_Layer:=0\n",
@@ -280,7 +281,7 @@ TEST(SegNrrd, old_segmentations_hold_a_segment_in_each_layer) {
 }
 
 TEST(Nrrd, every_patient_space_becomes_lps_and_others_are_noted) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const std::vector<std::int16_t> voxels{1, 2, 3, 4, 5, 6, 7, 8};
     for (const auto& [space, sign] :
          std::map<std::string, Eigen::Vector3d>{{"left-posterior-superior", {1, 1, 1}},
@@ -312,7 +313,7 @@ TEST(Nrrd, every_patient_space_becomes_lps_and_others_are_noted) {
 }
 
 TEST(Nrrd, units_other_than_millimetres_are_refused_by_name) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const Volume volume = oblique_ramp();
     const auto file = [&](const std::string& units) {
         return test::nrrd_file(volume.grid, "float", test::raw_bytes<float>(volume.values),
@@ -325,7 +326,7 @@ TEST(Nrrd, units_other_than_millimetres_are_refused_by_name) {
 }
 
 TEST(Claims, of_more_voxels_than_a_file_can_hold_are_refused_before_memory_is_taken) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     ImageGrid grid = oblique_ramp().grid;
     grid.size = {60000, 60000, 60000};  // 432 TB of int16
     const std::string data(1000, '\1');
@@ -353,7 +354,7 @@ TEST(Claims, of_more_voxels_than_a_file_can_hold_are_refused_before_memory_is_ta
 }
 
 TEST(ReadVolume, endings_do_not_depend_on_case) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const Volume volume = oblique_ramp();
     write_bytes(folder / "V.NII", test::nifti_file(volume.grid, test::raw_bytes<float>(volume.values)));
     write_bytes(folder / "V.MHA",
@@ -366,7 +367,7 @@ TEST(ReadVolume, endings_do_not_depend_on_case) {
 }
 
 TEST(SegNrrd, three_segments_in_one_voxel_are_three_pairs) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     std::string fields;
     for (int n = 0; n < 3; ++n)
         fields += fmt::format("Segment{0}_Name:={1}\nSegment{0}_LabelValue:=1\nSegment{0}_Layer:={0}\n", n,
@@ -390,7 +391,7 @@ TEST(SegNrrd, three_segments_in_one_voxel_are_three_pairs) {
 }
 
 TEST(SegNrrd, a_segment_without_name_is_called_by_its_value) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     std::string file = layered_segmentation(false);
     file.replace(file.find("Name:=vessel"), 12, "Name:=");
     write_bytes(folder / "s.seg.nrrd", file);
@@ -398,7 +399,7 @@ TEST(SegNrrd, a_segment_without_name_is_called_by_its_value) {
 }
 
 TEST(LabelValues, up_to_65535_are_exact_and_beyond_are_refused) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const ImageGrid grid = oblique_ramp().grid;
     std::vector<std::uint32_t> values(grid.voxel_count(), 0);
     values[3] = 65535;
@@ -425,7 +426,7 @@ std::string deflated(const std::string& bytes) {
 }
 
 TEST(MetaImage, compressed_data_is_read_with_and_without_its_size_and_not_if_cut) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const Volume volume = oblique_ramp();
     const std::string packed = deflated(test::raw_bytes<float>(volume.values));
     std::string header = test::meta_file(volume.grid, "MET_FLOAT", "");
@@ -451,7 +452,7 @@ TEST(MetaImage, compressed_data_is_read_with_and_without_its_size_and_not_if_cut
 }
 
 TEST(MetaImage, slope_blanks_and_header_sizes_are_honoured_and_lists_of_files_refused) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const Volume volume = oblique_ramp();
     const std::string raw = test::raw_bytes<float>(volume.values), skipped(100, 'H');
     const auto read = [&](const std::string& fields, const std::string& file) {
@@ -478,7 +479,7 @@ TEST(MetaImage, slope_blanks_and_header_sizes_are_honoured_and_lists_of_files_re
 }
 
 TEST(VtkImage, legacy_structured_points_are_read_and_other_data_refused) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const std::string header =
         "# vtk DataFile Version 3.0\nJane Roe\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 3 2\n"
         "ORIGIN 1 2 3\nSPACING 0.5 0.75 1.25\nPOINT_DATA 12\nSCALARS s short 1\nLOOKUP_TABLE default\n";

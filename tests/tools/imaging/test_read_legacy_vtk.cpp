@@ -15,13 +15,14 @@
 #include <vtkStructuredPointsWriter.h>
 #include <vtkUnsignedCharArray.h>
 
+#include "tests/formats/scratch.hpp"
 #include "tests/tools/imaging/hand_written_images.hpp"
 #include "tests/tools/imaging/refusals.hpp"
 
 namespace palpate::imaging {
 namespace {
 
-using test::TemporaryFolder;
+using sample::Scratch;
 using test::volume_refusal;
 using test::write_bytes;
 
@@ -45,7 +46,7 @@ class VtkWritten {
         data->GetFieldData()->AddArray(array);
     }
 
-    std::filesystem::path write(const TemporaryFolder& folder, int kind) const {
+    std::filesystem::path write(const Scratch& folder, int kind) const {
         vtkNew<vtkStructuredPointsWriter> writer;
         writer->SetInputData(data);
         writer->SetFileType(kind);
@@ -65,7 +66,7 @@ void expect_values(const Volume& volume) {
 }
 
 TEST(LegacyVtk, the_space_that_a_file_of_either_kind_states_is_honoured) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     for (const int kind : {VTK_ASCII, VTK_BINARY}) {
         VtkWritten ras, lps;
         ras.add_text("Comment", std::string(300, 'x'));  // whose length takes two bytes
@@ -86,7 +87,7 @@ TEST(LegacyVtk, the_space_that_a_file_of_either_kind_states_is_honoured) {
 }
 
 TEST(LegacyVtk, arrays_and_sections_that_are_no_voxels_are_passed_over) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     for (const int kind : {VTK_ASCII, VTK_BINARY}) {
         VtkWritten image;
         vtkNew<vtkDoubleArray> time, of_cells, vectors;
@@ -122,7 +123,7 @@ TEST(LegacyVtk, arrays_and_sections_that_are_no_voxels_are_passed_over) {
 }
 
 TEST(LegacyVtk, one_array_of_a_field_at_the_points_is_taken_and_two_are_refused) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     for (const int kind : {VTK_ASCII, VTK_BINARY}) {
         VtkWritten image;
         image.data->GetPointData()->SetActiveScalars(nullptr);  // so that it is written as a field
@@ -139,7 +140,7 @@ TEST(LegacyVtk, one_array_of_a_field_at_the_points_is_taken_and_two_are_refused)
 }
 
 TEST(LegacyVtk, unsigned_char_which_vtk_writes_as_colours_is_read) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     for (const int kind : {VTK_ASCII, VTK_BINARY}) {
         const VtkWritten<vtkUnsignedCharArray> image;
         const auto path = image.write(folder, kind);
@@ -149,7 +150,7 @@ TEST(LegacyVtk, unsigned_char_which_vtk_writes_as_colours_is_read) {
 }
 
 TEST(LegacyVtk, extents_move_the_origin) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     VtkWritten image;
     const auto path = image.write(folder, VTK_ASCII);
     std::string text = test::bytes_of(path);
@@ -161,7 +162,7 @@ TEST(LegacyVtk, extents_move_the_origin) {
 }
 
 TEST(LegacyVtk, false_claims_are_refused) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const std::string head = "# vtk DataFile Version 5.1\nx\nBINARY\nDATASET STRUCTURED_POINTS\n";
     const std::string size = "DIMENSIONS 2 3 2\n";
     for (const std::string& text :

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "formats/model/errors.hpp"
+#include "tests/formats/scratch.hpp"
 #include "tests/tools/imaging/hand_written_images.hpp"
 #include "tests/tools/imaging/real_data.hpp"
 #include "tools/imaging/files/image_files.hpp"
@@ -126,7 +127,7 @@ TEST(RealImages, overlapping_segments_of_a_dicom_segmentation_are_those_of_its_n
 
 TEST(RealImages, a_missing_dicom_slice_is_refused_with_its_place) {
     REQUIRE_REAL_DATA(folder, "abdomen_dicom_ts20");
-    const test::TemporaryFolder copy;
+    const sample::Scratch copy;
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::directory_iterator(folder / "dicom"))
         files.push_back(entry.path());

@@ -3,17 +3,18 @@
 #include <map>
 #include <string>
 
+#include "tests/formats/scratch.hpp"
 #include "tests/tools/imaging/hand_written_images.hpp"
 #include "tests/tools/imaging/refusals.hpp"
 
 namespace palpate {
 namespace {
 
-using test::TemporaryFolder;
+using sample::Scratch;
 using test::write_bytes;
 
 TEST(ReadVolume, what_is_no_volume_is_called_so_however_large_its_lines_are) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const std::string binary = std::string(3 << 20, '\x7f') + std::string(20000, '\n');
     for (const char* name : {"scan.img", "scan.hdr"}) {
         write_bytes(folder / name, binary);
@@ -32,7 +33,7 @@ TEST(ReadVolume, what_is_no_volume_is_called_so_however_large_its_lines_are) {
 }
 
 TEST(ReadVolume, texts_that_metaio_has_no_room_for_are_refused) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const std::string begin = "ObjectType = Image\nNDims = 3\n", text(255, 'a');
     const std::string end = "\nDimSize = 2 2 2\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n";
     for (const std::string& line :

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-#include "tests/tools/imaging/hand_written_images.hpp"
+#include "tests/formats/scratch.hpp"
 #include "tools/cli/items.hpp"
 #include "tools/stages/requests/condense_request.hpp"
 #include "tools/stages/requests/import_request.hpp"
@@ -19,8 +19,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const test::TemporaryFolder& folder() {
-    static const test::TemporaryFolder folder;  // of each process, as tests run side by side
+const sample::Scratch& folder() {
+    static const sample::Scratch folder;  // of each process, as tests run side by side
     return folder;
 }
 
