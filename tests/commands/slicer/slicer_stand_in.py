@@ -74,13 +74,11 @@ class Widgets:
 class Segmentation:
     """A segmentation node whose file is there already, with one volume that it was made from."""
 
-    def __init__(self, source, names, volume):
-        self.source, self.names, self.volume = source, names, volume
+    def __init__(self, source, volume):
+        self.source, self.volume = source, volume
 
     def GetSegmentation(self):
-        named = lambda name: types.SimpleNamespace(GetName=lambda: name)
-        return types.SimpleNamespace(GetSegment=named, GetNthSegment=lambda k: named(self.names[k]),
-                                     GetNumberOfSegments=lambda: len(self.names))
+        return types.SimpleNamespace(GetSegment=lambda name: types.SimpleNamespace(GetName=lambda: name))
 
     def GetNodeReference(self, role):
         return self.volume

@@ -88,6 +88,11 @@ class Steps(Phantom):
         said = steps.failure("init", made.returncode, made.stderr.splitlines(), files)
         self.assertIn("palpate init, exit code 3: invalid input", said)
         self.assertIn("no label 'lever'; nearest names: 'liver'", said)
+        files.parts.mkdir()
+        page = files.parts / "failure.html"
+        self.assertNotIn(str(page), steps.failure("build", 4, [], files))
+        page.touch()
+        self.assertIn(str(page), steps.failure("build", 4, [], files))
 
     def test_lines_are_whole_wherever_they_are_cut(self):
         text = "palpate-build: mesh größer\r\npalpate-mesh: refine\nrest".encode()
@@ -121,11 +126,11 @@ class Flow(Phantom):
         self.module = importlib.import_module("MakeItTouchable")
         self.addCleanup(sys.modules.pop, "MakeItTouchable")
 
-    def widget(self, organ, labels=None, names=("liver", "tumour"), program=BIN):
+    def widget(self, organ, labels=None, program=BIN):
         """The module's panel after its user chose everything."""
         widget = self.module.MakeItTouchableWidget()
         volume = types.SimpleNamespace(source=self.scan)
-        node = Segmentation(labels or self.labels, names, volume)
+        node = Segmentation(labels or self.labels, volume)
         chosen = {"currentNode.return_value": node, "currentSegmentID.return_value": organ}
         widget.setup()
         widget.organ.configure_mock(**chosen)
@@ -190,20 +195,12 @@ class Flow(Phantom):
         self.widget("liver", program=false_program).on_make()
         self.assertIn("could not be started", self.slicer.shown.pop())
 
-    def test_names_that_no_asset_takes_are_refused_before_anything_is_written(self):
-        widget = self.widget("liver", names=("liver", "left/right"))
-        widget.on_make()
-        self.assertIn("left/right", self.slicer.shown.pop())
-        self.assertEqual(list(self.folder.iterdir()), [])
-
-    def test_no_asset_takes_them(self):
-        files = steps.case_files(self.folder, "liver")
-        self.renamed("ribs", "left/right").rename(files.labels)
-        for arguments in (steps.init_arguments(files, "liver", False), steps.build_arguments(files, False, False)):
-            ended = run(BIN / "palpate", *arguments)
-        self.assertEqual(ended.returncode, 3, ended.stderr)
-        self.assertIn("holds a path", ended.stderr)
-        self.assertIn(str(files.parts / "failure.html"), steps.failure("build", 3, ended.stderr.splitlines(), files))
+    def test_a_name_that_no_asset_takes_is_refused_before_anything_is_built(self):
+        self.widget("liver", self.renamed("ribs", "left/right")).on_make()
+        message, = self.slicer.shown
+        self.assertIn("palpate init, exit code 3: invalid input", message)
+        self.assertIn("'left/right'", message)
+        self.assertEqual([arguments[0] for arguments in Process.started], ["init"])
 
     def test_a_segmentation_that_slicer_does_not_write_is_told_with_the_way_out(self):
         widget = self.widget("liver")

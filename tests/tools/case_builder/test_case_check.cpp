@@ -87,6 +87,8 @@ TEST(CaseCheck, a_mistake_is_told_by_line_before_anything_is_built) {
              {"center_mm = [1, 2.5, 3]", "center_mm = [1, 2.5, inf]", ":16:", "finite"},
              {"radius_mm = 4", "radius_mm = -4", ":17:", "0 or more"},
              {"name = \"tumour\"", "name = \"liver\"", ":13:", "a second time"},
+             {"name = \"tumour\"", "name = \"left/tumour\"", ":13:", "is 'left/tumour' (expected no '/'"},
+             {"name = \"tumour\"", "name = 'left\\tumour'", ":13:", "is 'left\\tumour'"},
              {"[[rigid]]\nname = \"skull\"", "[[rigid]]\nname = \"scull\"", ":19:", "'skull'"},
              {"cell_size_mm = 8", "cell_size_mm = 0", ":23:", "above 0"},
              {"near = \"tumour\"", "near = \"tumor\"", ":24:", "'tumour'"},

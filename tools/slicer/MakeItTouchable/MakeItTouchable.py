@@ -41,12 +41,6 @@ def export_case(segmentation, volume, files):
             raise RuntimeError(f"Slicer cannot write {path.name}: {error}; {mends[path]}") from error
 
 
-def segment_names(segmentation):
-    """Names of all segments of a segmentation node."""
-    segments = segmentation.GetSegmentation()
-    return [segments.GetNthSegment(k).GetName() for k in range(segments.GetNumberOfSegments())]
-
-
 def connect_live(port):
     """Has SlicerOpenIGTLink show what palpate sends at `port` of this machine, by one connector however often it is called."""
     connector = slicer.mrmlScene.GetFirstNodeByName("Palpate") or slicer.mrmlScene.AddNewNodeByClass("vtkMRMLIGTLConnectorNode", "Palpate")
@@ -221,10 +215,8 @@ class MakeItTouchableWidget(ScriptedLoadableModuleWidget):
         if not program or not files:
             return
         segmentation, volume, replace = self.organ.currentNode(), self.volume.currentNode(), self.replace.checked
-        there, slashes = steps.files_in_the_way(files, bool(volume)), steps.names_with_slashes(segment_names(segmentation))
-        if slashes:
-            slicer.util.errorDisplay(f"No organ takes a name with '/' or '\\': rename {', '.join(slashes)}")
-        elif there and not replace:
+        there = steps.files_in_the_way(files, bool(volume))
+        if there and not replace:
             slicer.util.errorDisplay(f"{there[0]} exists already; choose another folder or 'Replace what is there'")
         else:
             self.run(program, files, segmentation, volume, replace)
@@ -291,7 +283,7 @@ class MakeItTouchableTest(ScriptedLoadableModuleTest):
         labels = slicer.util.addVolumeFromArray(voxels, nodeClassName="vtkMRMLLabelMapVolumeNode")
         segmentation = slicer.mrmlScene.AddNewNodeByClass("vtkMRMLSegmentationNode")
         slicer.modules.segmentations.logic().ImportLabelmapToSegmentationNode(labels, segmentation)
-        organ, = segment_names(segmentation)
+        organ = segmentation.GetSegmentation().GetNthSegment(0).GetName()
         with tempfile.TemporaryDirectory() as folder:
             files = steps.case_files(folder, organ)
             export_case(segmentation, slicer.util.addVolumeFromArray(voxels.astype(numpy.int16)), files)

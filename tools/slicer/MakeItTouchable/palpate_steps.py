@@ -43,11 +43,6 @@ def files_in_the_way(files, with_volume):
     return [path for path in written if path.exists()]
 
 
-def names_with_slashes(names):
-    """Names of segments that no asset takes: it carries no paths, so a name has neither '/' nor '\\'."""
-    return [name for name in names if "/" in name or "\\" in name]
-
-
 def find_program(setting, module_folder, search_path=None):
     """The program palpate, as text, or None: `setting` (a file, or a folder with it) where it is given; else on the PATH, as
     `search_path` gives it or the process has it; else where it was installed together with the module's folder."""
