@@ -40,7 +40,7 @@ Volume defaced(Volume volume, const std::string& culprit, const NoteSink& note) 
 }
 
 Overlaps overlaps_of(const std::string& text) {
-    if (text.empty() || text == "refuse") return Overlaps::refuse;
+    if (text == "refuse") return Overlaps::refuse;
     if (text == "later") return Overlaps::later_wins;
     if (text == "smaller") return Overlaps::smaller_wins;
     throw UsageError({"--overlaps", "'" + text + "'", "refuse, later or smaller", ""});
@@ -87,8 +87,7 @@ void check_request(const ImportRequest& request) {
                dicom_image =
                    !labels && (std::filesystem::is_directory(request.input, none) || is_dicom(request.input));
     require(labels || request.label_names.empty(), "--label-names", "label maps", "add --labels");
-    require(labels || request.overlaps.empty() || request.overlaps == "refuse", "--overlaps", "label maps",
-            "add --labels");
+    require(labels || request.overlaps == "refuse", "--overlaps", "label maps", "add --labels");
     require(!labels || !request.deface, "--deface", "images", "leave it out");
     require(dicom_image || request.series.empty(), "--series", "DICOM images", "leave it out");
     require(dicom_image || !request.accept_gaps, "--accept-gaps", "DICOM images", "leave it out");

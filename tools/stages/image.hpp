@@ -21,7 +21,7 @@ nlohmann::ordered_json scan_json(const std::optional<Scan>& scan);
 nlohmann::ordered_json to_json(const imaging::LabelStatistics& label);
 
 /// Throws UsageError for what a request asks of an input that has no such thing, and unless it either lists
-/// or names an output. `overlaps` counts as asked for if it is not empty.
+/// or names an output.
 void check_request(const ImportRequest& request);
 
 /// How to read the request's input. Throws UsageError for an unknown word.

@@ -20,10 +20,8 @@ void declare(cli::Command& command, ImportRequest& request) {
     command.flag("--labels", request.labels, "the input is a label map");
     command.option("--label-names", request.label_names,
                    "names of the labels: value=name,..., a known table or a file");
-    command
-        .option("--overlaps", request.overlaps,
-                "where segments of a label map overlap: refuse, later (in the file) or smaller wins")
-        .shown_default("refuse");
+    command.option("--overlaps", request.overlaps,
+                   "where segments of a label map overlap: refuse, later (in the file) or smaller wins");
 }
 
 }  // namespace palpate::stages

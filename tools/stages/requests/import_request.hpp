@@ -14,11 +14,11 @@ struct ImportRequest {
     bool list = false;             ///< list the DICOM series and make nothing
     std::string series;            ///< number, UID or description; empty: the only or main one
     bool accept_gaps = false;
-    std::string nifti_frame;  ///< "qform", "sform" or empty
-    bool deface = false;      ///< takes a head's face out of a CT
-    bool labels = false;      ///< the input is a label map
-    std::string label_names;  ///< as name_labels() takes it
-    std::string overlaps;     ///< "refuse", "later" or "smaller"; empty: refuse
+    std::string nifti_frame;          ///< "qform", "sform" or empty
+    bool deface = false;              ///< takes a head's face out of a CT
+    bool labels = false;              ///< the input is a label map
+    std::string label_names;          ///< as name_labels() takes it
+    std::string overlaps = "refuse";  ///< or "later" or "smaller"
 };
 
 /// Binds the options of `palpate import`.
