@@ -73,10 +73,8 @@ std::function<nlohmann::ordered_json()> value_of(const T& variable) {
 
 // "max_triangles" for "--max-triangles".
 std::string key_from(const Option& option) {
-    std::string key = option.name();
-    key.erase(0, key.find_first_not_of('-'));
-    std::ranges::replace(key, '-', '_');
-    return key;
+    const std::string key = option.name();
+    return identifier(key.substr(key.find_first_not_of('-')));
 }
 
 // The arguments, last one first as CLI11 wants them, in which "--max_triangles" is "--max-triangles" where
@@ -116,6 +114,11 @@ std::string help_footer(const CommandText& text) {
 
 std::string version() {
     return PALPATE_VERSION;
+}
+
+std::string identifier(std::string name) {
+    std::ranges::replace(name, '-', '_');
+    return name;
 }
 
 Command::Command(CommandText text)

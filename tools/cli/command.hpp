@@ -55,6 +55,9 @@ struct Parameter {
     std::string unset;                              ///< that value before anything was read, as JSON text
 };
 
+/// A name as an identifier: "max_triangles" for "max-triangles".
+std::string identifier(std::string name);
+
 /// What one run of a command may use.
 struct Session {
     int threads = 1;     ///< --threads

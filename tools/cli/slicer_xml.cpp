@@ -39,16 +39,8 @@ const char* tag_of(const Parameter& parameter) {
     return "string";
 }
 
-// Slicer wants identifiers, for its flags as well: "max-triangles" becomes "max_triangles", and
-// Command::parse() takes
-// "--max_triangles" for "--max-triangles".
-std::string identifier(std::string name) {
-    for (char& c : name)
-        if (c == '-') c = '_';
-    return name;
-}
-
-// In the order of CTK's schema, which is stricter than Slicer's parser.
+// In the order of CTK's schema, which is stricter than Slicer's parser. Slicer wants identifiers, for its
+// flags as well: Command::parse() takes "--max_triangles" for "--max-triangles".
 std::string parameter_xml(const Parameter& parameter, int& position) {
     const CLI::Option& option = parameter.option.handle();
     const std::string tag = tag_of(parameter);
