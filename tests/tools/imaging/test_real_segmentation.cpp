@@ -44,13 +44,15 @@ void expect_liver(const Volume& volume, const Mask& reference, double least) {
     }
 }
 
-constexpr double contrast_dice = 0.925;
-constexpr double plain_dice = 0.93;  // without contrast liver and muscle are alike
+// Each a little below the worst of the draws in tests/benchmarks/README.md, table of Segmentation.
+constexpr double atlas_dice = 0.925;
+constexpr double slab_dice = 0.965;
+constexpr double plain_dice = 0.94;
 
 TEST(RealSegmentation, liver_with_contrast_from_five_seeds) {
     REQUIRE_REAL_DATA(folder, "abdomen_ct_spl");
     expect_liver(read_volume(folder / "ct.nrrd"), mask_of(read_label_map(folder / "seg.nrrd"), "3"),
-                 contrast_dice);
+                 atlas_dice);
 }
 
 TEST(RealSegmentation, liver_in_a_slab_with_streaks_from_five_seeds) {
@@ -58,7 +60,7 @@ TEST(RealSegmentation, liver_in_a_slab_with_streaks_from_five_seeds) {
     const Volume volume = read_volume(folder / "dicom");
     const LabelMap prior = read_label_map(folder / "seg_totalseg.nii.gz");
     const LabelMap reference = run(&volume, &prior, {"liver: recipe=import label=5"});
-    expect_liver(volume, mask_of(reference, "liver"), contrast_dice);
+    expect_liver(volume, mask_of(reference, "liver"), slab_dice);
 }
 
 TEST(RealSegmentation, liver_without_contrast_from_five_seeds) {

@@ -54,8 +54,8 @@ Mask wall_of(const Volume& volume, double wall_mm) {
     return dilate(close(bone, rib_gap), wall_mm);
 }
 
-// Steps of the curvature flow that smooth over the same length (its square grows with steps and with that of
-// a voxel's side): eight steps on voxels of 3 mm round the border of a liver off by more than one of them.
+// Steps of the curvature flow that smooth over the same length: its square grows with steps and with that of
+// a voxel's side.
 int steps_on(const ImageGrid& grid) {
     const double side = std::cbrt(grid.voxel_volume());
     return std::max(1, static_cast<int>(std::lround(smoothing_steps * std::pow(block_mm / side, 2))));
