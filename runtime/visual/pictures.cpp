@@ -8,8 +8,10 @@
 
 #include "formats/model/errors.hpp"
 #include "runtime/texts/translated.hpp"
+#include "runtime/visual/controls/display.hpp"
 
 namespace palpate::visual {
+namespace {
 
 vtkSmartPointer<vtkImageData> grab_pixels(vtkRenderWindow* window) {
     vtkNew<vtkWindowToImageFilter> grab;
@@ -17,6 +19,15 @@ vtkSmartPointer<vtkImageData> grab_pixels(vtkRenderWindow* window) {
     grab->ReadFrontBufferOff();
     grab->Update();
     return grab->GetOutput();
+}
+
+}  // namespace
+
+vtkSmartPointer<vtkImageData> shown_pixels(vtkRenderWindow* window) {
+    vtkSmartPointer<vtkImageData> pixels;
+    speak_to_display([&] { pixels = grab_pixels(window); });
+    require_display();
+    return pixels;
 }
 
 void write_picture(const std::filesystem::path& path, vtkImageData* pixels) {

@@ -10,8 +10,8 @@
 
 namespace palpate::visual {
 
-/// What the window shows. In the thread that draws it.
-vtkSmartPointer<vtkImageData> grab_pixels(vtkRenderWindow* window);
+/// What the window shows. In the thread that draws it. Throws SystemFailure if its display is lost.
+vtkSmartPointer<vtkImageData> shown_pixels(vtkRenderWindow* window);
 
 /// Writes pixels as PNG. Throws SystemFailure if that fails. In any thread; up to a second for 3840x2160.
 void write_picture(const std::filesystem::path& path, vtkImageData* pixels);

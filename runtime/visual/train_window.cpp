@@ -400,6 +400,10 @@ TrainWindow::~TrainWindow() {
 }
 
 void TrainWindow::show(const VisualFrame& frame) {
+    speak_to_display([&] { draw(frame); });
+}
+
+void TrainWindow::draw(const VisualFrame& frame) {
     Parts& p = *parts_;
     p.interactor->ProcessEvents();
     if (p.closed || lost()) return;
@@ -448,11 +452,7 @@ bool TrainWindow::lost() const {
 }
 
 void TrainWindow::require_display() const {
-    if (lost())
-        throw SystemFailure({.culprit = "DISPLAY",
-                             .found = "display or window went away",
-                             .expected = "",
-                             .next_step = "start again where a display answers"});
+    visual::require_display();
 }
 
 Vector3d TrainWindow::hand() const {
@@ -489,11 +489,11 @@ ShownDetail TrainWindow::detail() const {
 }
 
 void TrainWindow::save_picture(const std::filesystem::path& path) {
-    write_picture(path, grab_pixels(parts_->window));
+    write_picture(path, shown_pixels(parts_->window));
 }
 
 void TrainWindow::add_to(Film& film) {
-    film.add(grab_pixels(parts_->window));
+    film.add(shown_pixels(parts_->window));
 }
 
 }  // namespace palpate::visual

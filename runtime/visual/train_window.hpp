@@ -63,6 +63,8 @@ class TrainWindow {
 
   private:
     struct Parts;
+    void draw(const VisualFrame& frame);
+
     std::unique_ptr<Parts> parts_;
 };
 

@@ -105,11 +105,7 @@ class RecordingPlayer {
   private:
     // By the user, or because there is no window any more.
     bool ended() const {
-        if (window_.lost())
-            throw SystemFailure({.culprit = "DISPLAY",
-                                 .found = "display or window went away",
-                                 .expected = "",
-                                 .next_step = "start the trainer again where a display answers"});
+        window_.require_display();
         return window_.closed() || cli::interrupt_asked();
     }
 

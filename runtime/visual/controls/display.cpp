@@ -2,6 +2,7 @@
 #include "runtime/visual/controls/display.hpp"
 
 #include <X11/Xlib.h>
+#include <csetjmp>
 
 #include "formats/model/errors.hpp"
 
@@ -9,10 +10,16 @@ namespace palpate::visual {
 namespace {
 
 bool lost = false;
+std::jmp_buf* way_out = nullptr;  // of the speech that is under way
 
 int note_loss(Display*, XErrorEvent*) {
     lost = true;
     return 0;
+}
+
+void leave(Display*, void*) {
+    lost = true;
+    if (way_out != nullptr) std::longjmp(*way_out, 1);
 }
 
 }  // namespace
@@ -33,12 +40,36 @@ DisplayConnection::~DisplayConnection() {
 void survive_loss_of(void* display) {
     XSetErrorHandler(note_loss);
     XSetIOErrorHandler([](Display*) { return 0; });  // Xlib's own writes to stderr
-    XSetIOErrorExitHandler(
-        static_cast<Display*>(display), [](Display*, void*) { lost = true; }, nullptr);
+    XSetIOErrorExitHandler(static_cast<Display*>(display), leave, nullptr);
 }
 
 bool display_lost() {
     return lost;
+}
+
+void require_display() {
+    if (lost)
+        throw SystemFailure({.culprit = "DISPLAY",
+                             .found = "display or window went away",
+                             .expected = "",
+                             .next_step = "start again where a display answers"});
+}
+
+void speak_to_display(const std::function<void()>& speech) {
+    if (lost) return;
+    std::jmp_buf here;
+    if (setjmp(here) != 0) {
+        way_out = nullptr;
+        return;
+    }
+    way_out = &here;
+    try {
+        speech();
+    } catch (...) {
+        way_out = nullptr;
+        throw;
+    }
+    way_out = nullptr;
 }
 
 }  // namespace palpate::visual

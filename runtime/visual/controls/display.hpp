@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+
 namespace palpate::visual {
 
 /// A connection of our own to the X display: VTK aborts where none answers, and a server that loses its last
@@ -26,5 +28,13 @@ void survive_loss_of(void* display);
 /// Whether that has happened: nothing is shown any more, and what draws must not be destroyed, which would
 /// speak to the server. In the thread that draws.
 bool display_lost();
+
+/// Throws SystemFailure if it has.
+void require_display();
+
+/// Runs what draws or reads pixels, in the thread that draws; nothing once the display is lost. Is left on
+/// the spot where it is lost meanwhile, without destroying what the speech holds: Mesa's software renderer
+/// (22.3) smashed its stack where it went on after that. So a speech holds no lock of ours.
+void speak_to_display(const std::function<void()>& speech);
 
 }  // namespace palpate::visual
