@@ -56,6 +56,10 @@ constexpr std::array words{
     Word{"skin", Part::aside, ""},
     Word{"torso", Part::aside, ""},
     Word{"liver", Part::organ, "liver"},
+    Word{"kidney", Part::organ, "kidney"},
+    Word{"spleen", Part::organ, "spleen"},
+    Word{"pancreas", Part::organ, "pancreas"},
+    Word{"brain", Part::organ, "brain"},
 };
 
 struct Direction {

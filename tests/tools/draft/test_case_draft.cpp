@@ -56,8 +56,12 @@ TEST(Anatomy, reads_names_as_segmenters_write_them) {
     EXPECT_EQ(anatomy_of("portal_vein_and_splenic_vein", from_the_front).part, Part::vessel);
     EXPECT_EQ(anatomy_of("vertebrae_L3", from_the_front).part, Part::bone);
     EXPECT_EQ(anatomy_of("lung_lower_lobe_right", from_the_front).part, Part::aside);
-    const Anatomy unknown = anatomy_of("spleen", from_the_front);
+    for (const char* preset : {"kidney", "spleen", "pancreas", "brain"})
+        EXPECT_EQ(anatomy_of(std::string("left_") + preset, from_the_front).tissue, preset);
+    EXPECT_EQ(anatomy_of("kidney_tumour", from_the_front).part, Part::lesion);
+    const Anatomy unknown = anatomy_of("stomach", from_the_front);
     EXPECT_EQ(unknown.part, Part::organ);
+    EXPECT_EQ(unknown.tissue, "");
     EXPECT_EQ(unknown.held_towards, Vector3d(0, 1, 0));
     EXPECT_EQ(direction_of("Right", "x"), Vector3d(-1, 0, 0));
     EXPECT_THROW(direction_of("up", "x"), UsageError);
