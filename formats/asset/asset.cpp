@@ -192,4 +192,15 @@ std::string asset_digest(const std::filesystem::path& path) {
     return file.text_attribute("/palpate", "manifest_sha256");
 }
 
+std::vector<std::string> differences(const std::filesystem::path& one, const std::filesystem::path& other) {
+    const auto ours = Hdf5File(one).digests(), theirs = Hdf5File(other).digests();
+    std::vector<std::string> different;
+    for (const auto& [path, digest] : ours)
+        if (const auto found = theirs.find(path); found == theirs.end() || found->second != digest)
+            different.push_back(path);
+    for (const auto& [path, digest] : theirs)
+        if (!ours.contains(path)) different.push_back(path);
+    return different;
+}
+
 }  // namespace palpate::asset

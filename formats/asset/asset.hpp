@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "formats/model/body.hpp"
 
@@ -40,5 +41,9 @@ Case load_asset(const std::filesystem::path& path, std::span<const std::string> 
 /// The digest of everything in an asset, as the file says it; read_asset() checks it. Throws InvalidInput if
 /// the file is no asset.
 std::string asset_digest(const std::filesystem::path& path);
+
+/// The datasets by their paths and the attributes by "path@name" in which two assets are not the same byte
+/// for byte, signatures aside. Throws InvalidInput if one is no asset.
+std::vector<std::string> differences(const std::filesystem::path& one, const std::filesystem::path& other);
 
 }  // namespace palpate::asset

@@ -67,27 +67,27 @@ std::size_t full_stops_in_keys(std::string_view text) {
     return stops;
 }
 
-std::string text_of(const std::filesystem::path& path, const std::string& next_step) {
-    require_small_file(path, most_bytes);
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream) throw InvalidInput({path.string(), "cannot be read", "", "check the path"});
-    const std::string text(std::istreambuf_iterator<char>(stream), {});
+}  // namespace
+
+toml::table parse_text(const std::string& text, const std::filesystem::path& path,
+                       const std::string& next_step) {
     if (const std::size_t stops = full_stops_in_keys(text); stops > most_full_stops)
         throw InvalidInput({path.string(), fmt::format("has {} full stops in keys", stops),
                             fmt::format("{} at most, for each nests a table", most_full_stops), next_step});
-    return text;
-}
-
-}  // namespace
-
-toml::table parse_file(const std::filesystem::path& path, const std::string& next_step) {
     try {
-        return toml::parse(text_of(path, next_step), path.string());
+        return toml::parse(text, path.string());
     } catch (const toml::parse_error& error) {
         const auto line = error.source().begin.line;
         throw InvalidInput({line > 0 ? fmt::format("{}:{}", path.string(), line) : path.string(),
                             std::string(error.description()), "", next_step});
     }
+}
+
+toml::table parse_file(const std::filesystem::path& path, const std::string& next_step) {
+    require_small_file(path, most_bytes);
+    std::ifstream stream(path, std::ios::binary);
+    if (!stream) throw InvalidInput({path.string(), "cannot be read", "", "check the path"});
+    return parse_text(std::string(std::istreambuf_iterator<char>(stream), {}), path, next_step);
 }
 
 }  // namespace palpate::toml_file

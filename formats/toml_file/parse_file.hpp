@@ -10,4 +10,8 @@ namespace palpate::toml_file {
 /// line for a syntax error, with `next_step`.
 toml::table parse_file(const std::filesystem::path& path, const std::string& next_step);
 
+/// The same of a text that `path` holds.
+toml::table parse_text(const std::string& text, const std::filesystem::path& path,
+                       const std::string& next_step);
+
 }  // namespace palpate::toml_file

@@ -122,6 +122,32 @@ class Build(unittest.TestCase):
         self.assertEqual(repeated.returncode, 0, repeated.stderr)
         self.assertEqual(again.read_bytes(), (self.folder / "case.parts" / "spine.vtp").read_bytes())
 
+    def test_an_asset_s_case_is_built_again_elsewhere_to_the_same_bytes(self):
+        there = self.folder / "there"
+        there.mkdir()
+        shutil.move(self.folder / "case.vtkhdf", there / "original.vtkhdf")
+        shutil.move(self.folder / "truth.seg.nrrd", there / "labels.seg.nrrd")  # as the case calls it
+        shutil.move(self.folder / "abdomen.nrrd", there / "scan.nrrd")
+        again = there / "again.vtkhdf"
+        command = [BIN / "palpate", "build", there / "original.vtkhdf", "-o", again, "--virtual-clock",
+                   "--json", there / "result.json"]
+        missing = run(*command)
+        self.assertEqual(missing.returncode, 3)
+        self.assertIn(f"{there / 'volume.nrrd'}: is not there", missing.stderr)
+        built = run(*command, "--volume", there / "scan.nrrd")
+        self.assertEqual(built.returncode, 0, built.stderr)
+        self.assertEqual(json.loads((there / "result.json").read_text())["again"],
+                         {"original": str(there / "original.vtkhdf"), "different": []})
+        self.assertEqual(again.read_bytes(), (there / "original.vtkhdf").read_bytes())
+        (there / "result.json").unlink()
+        with (there / "scan.nrrd").open("r+b") as scan:
+            scan.seek(-2, 2)
+            scan.write(b"\0\1")
+        changed = run(*command, "--volume", there / "scan.nrrd")
+        self.assertEqual(changed.returncode, 0, changed.stderr)
+        self.assertIn("was built of: volume", changed.stderr)
+        self.assertNotIn("again", json.loads((there / "result.json").read_text()))
+
     def test_another_modulus_reruns_only_from_condensation_on(self):
         self.change("youngs_modulus_kpa = 6.3", "youngs_modulus_kpa = 7")
         self.assertEqual(self.stages_run(), ["condense liver", "pack", "touch", "report"])

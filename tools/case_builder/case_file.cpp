@@ -12,6 +12,7 @@
 #include "formats/records/haptic_settings.hpp"
 #include "formats/records/quality_contract.hpp"
 #include "formats/toml_file/table_reader.hpp"
+#include "tools/case_builder/kept_case.hpp"
 #include "tools/case_builder/toml_document.hpp"
 #include "tools/imaging/recipes/recipe.hpp"
 #include "tools/tissue/tissue.hpp"
@@ -70,18 +71,6 @@ nlohmann::ordered_json to_json(const toml::node& node) {
     if (const toml::array* array = node.as_array())
         for (const toml::node& item : *array) list.push_back(to_json(item));
     return list;
-}
-
-// The keys of a table in the order in which they are written; toml++ keeps them by name. Those that an
-// override adds are written nowhere in the file and come last.
-std::vector<std::string> keys_as_written(const toml::table& table) {
-    std::vector<std::tuple<bool, toml::source_position, std::string>> found;
-    for (const auto& [key, node] : table)
-        found.emplace_back(!key.source().begin, key.source().begin, key.str());
-    std::ranges::sort(found);
-    std::vector<std::string> keys;
-    for (const auto& [added, position, key] : found) keys.push_back(key);
-    return keys;
 }
 
 // A structure's other keys are the recipe's parameters, cleaning steps in the order written; `palpate
@@ -343,6 +332,7 @@ CaseFile read_case_file(const std::filesystem::path& path, std::span<const Overr
     for (const DeformableSpec& body : result.deformable) require_new(body.name);
     if (result.rigid.empty() && result.deformable.empty())
         root.fail(document, "deformable", "is missing", "at least one [[rigid]] or [[deformable]] body");
+    result.kept = kept_case(document);
     return result;
 }
 

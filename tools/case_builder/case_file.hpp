@@ -74,9 +74,11 @@ struct CaseFile {
     std::filesystem::path sign;  ///< private key that signs the asset; of the command line, not of the file
     QualityContract quality;
     int attempts = stages::MeshRequest{}.attempts;  ///< to keep the contract
+    std::string kept;                               ///< what the asset keeps of it, see kept_case()
 };
 
-/// Reads a case file, some of its values replaced. Throws InvalidInput naming file, line and key for a syntax
+/// Reads a case file, or the case that an asset was built from, some of its values replaced. Paths are as
+/// from the folder of the file, or of the asset. Throws InvalidInput naming file, line and key for a syntax
 /// error, an unknown key (with the nearest known ones), a missing or wrongly typed value, a name used twice
 /// or unfit for a file name, or another schema.
 CaseFile read_case_file(const std::filesystem::path& path, std::span<const Override> overrides = {});

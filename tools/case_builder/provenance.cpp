@@ -5,6 +5,7 @@
 
 #include "formats/asset/hdf5/digest.hpp"
 #include "tools/case_builder/cautions.hpp"
+#include "tools/case_builder/kept_case.hpp"
 
 namespace palpate::case_builder {
 namespace {
@@ -29,6 +30,7 @@ Json provenance(const CaseFile& case_file, std::span<const Stage> before) {
     Json inputs = Json::object();
     if (case_file.volume) inputs["volume_sha256"] = content_digest(*case_file.volume);
     if (case_file.labels) inputs["labels_sha256"] = content_digest(*case_file.labels);
+    if (case_file.label_table) inputs["label_names_sha256"] = content_digest(*case_file.label_table);
     std::map<std::string, std::string> imported;  // files may be called after a patient
     const auto add_imported = [&](const std::string& name, const std::filesystem::path& file) {
         if (file.empty()) return;
@@ -55,10 +57,23 @@ Json provenance(const CaseFile& case_file, std::span<const Stage> before) {
     Json structures = Json::array();
     for (const StructureSpec& structure : case_file.structures)
         structures.push_back(structure_request(structure, "_sha256", asset::sha256_file));
-    return {{"inputs", inputs},
+    return {{"case", case_file.kept},
+            {"inputs", inputs},
             {"structures", structures},
             {"steps", steps},
             {"cautions", cautions_of(case_file)}};
+}
+
+std::vector<std::string> changed_since(const std::filesystem::path& asset, const CaseFile& case_file) {
+    Json then = build_kept_in(asset);
+    const Json now = provenance(case_file, {});
+    std::vector<std::string> changed;
+    for (const auto& [name, digest] : now["inputs"].items())
+        if (then["inputs"].value(name, "") != digest)
+            changed.push_back(name.substr(0, name.rfind("_sha256")));
+    if (then["structures"] != now["structures"]) changed.emplace_back("structures");
+    if (changed.empty() && then["case"] != now["case"]) changed.emplace_back("case");
+    return changed;
 }
 
 }  // namespace palpate::case_builder

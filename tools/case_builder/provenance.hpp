@@ -8,9 +8,13 @@
 
 namespace palpate::case_builder {
 
-/// What made an asset, for the asset: digests of the inputs, the structures, and the request of each stage
-/// `before` the packing but
-/// the imports. No folder, and no file name of the patient's: imported files are called after their bodies.
+/// What made an asset, for the asset: the case to build it again from, digests of the inputs, the structures,
+/// and the request of each stage `before` the packing but the imports. No folder, and no file name of the
+/// patient's: imported files are called after their bodies.
 nlohmann::ordered_json provenance(const CaseFile& case_file, std::span<const Stage> before);
+
+/// What differs between a case and the one that an asset was built of: names of inputs whose content is
+/// another, "structures", or else "case". Throws InvalidInput if the asset keeps none.
+std::vector<std::string> changed_since(const std::filesystem::path& asset, const CaseFile& case_file);
 
 }  // namespace palpate::case_builder

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/case_builder/toml_document.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "formats/model/errors.hpp"
 #include "formats/model/label_map.hpp"
 #include "formats/toml_file/parse_file.hpp"
+#include "tools/case_builder/kept_case.hpp"
 
 namespace palpate::case_builder {
 namespace {
@@ -90,9 +93,21 @@ void apply(const Override& override, toml::table& document) {
 }  // namespace
 
 toml::table read_toml(const std::filesystem::path& path, std::span<const Override> overrides) {
-    toml::table document = toml_file::parse_file(path, "see docs/case_file.md");
+    const char* const see = "see docs/case_file.md";
+    toml::table document = is_asset(path) ? toml_file::parse_text(case_kept_in(path), path, see)
+                                          : toml_file::parse_file(path, see);
     for (const Override& override : overrides) apply(override, document);
     return document;
+}
+
+std::vector<std::string> keys_as_written(const toml::table& table) {
+    std::vector<std::tuple<bool, toml::source_position, std::string>> found;
+    for (const auto& [key, node] : table)
+        found.emplace_back(!key.source().begin, key.source().begin, key.str());
+    std::ranges::sort(found);
+    std::vector<std::string> keys;
+    for (const auto& [added, position, key] : found) keys.push_back(key);
+    return keys;
 }
 
 }  // namespace palpate::case_builder

@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "formats/asset/asset.hpp"
 #include "formats/model/errors.hpp"
 #include "tools/case_builder/case_check.hpp"
 #include "tools/case_builder/cautions.hpp"
 #include "tools/case_builder/forecast.hpp"
+#include "tools/case_builder/kept_case.hpp"
 #include "tools/case_builder/overrides.hpp"
+#include "tools/case_builder/provenance.hpp"
 #include "tools/case_builder/stages.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/software.hpp"
@@ -111,6 +114,23 @@ case_builder::StageRecord run_one(const Build& build, const std::string& name) {
     return run(build, stage);
 }
 
+// A case may be built again on the inputs that it was built on, to see that it becomes the same, or on
+// others.
+void tell_what_changed(const std::vector<std::string>& changed, const std::filesystem::path& original) {
+    if (changed.empty()) return;
+    spdlog::warn("not what {} was built of: {}", original.string(), fmt::join(changed, ", "));
+}
+
+nlohmann::ordered_json compared(const std::filesystem::path& again, const std::filesystem::path& original) {
+    const std::vector<std::string> different = asset::differences(again, original);
+    if (different.empty())
+        spdlog::info("{} is {} again, byte for byte in every dataset", again.string(), original.string());
+    else
+        spdlog::warn("{} differs from {} in {}", again.string(), original.string(),
+                     fmt::join(different, ", "));
+    return {{"original", original.string()}, {"different", different}};
+}
+
 nlohmann::ordered_json forecast(const Build& build, const std::string& name) {
     const case_builder::Stage& stage = stage_named(build, name);
     const double bytes = static_cast<double>(case_builder::peak_memory_forecast(stage, build.runner));
@@ -129,13 +149,18 @@ int main(int argc, char** argv) {
          .summary = "Builds one patient's asset and report from a case file, running only the stages whose "
                     "inputs changed.",
          .examples = {"palpate build pipelines/cases/liver.toml -o liver.vtkhdf",
-                      "palpate build nasopharynx.toml --volume patient7.nrrd -o patient7.vtkhdf"},
+                      "palpate build nasopharynx.toml --volume patient7.nrrd -o patient7.vtkhdf",
+                      "palpate build liver.vtkhdf --labels labels.seg.nrrd -o again.vtkhdf"},
          .notes =
              "Beside OUTPUT.vtkhdf it writes OUTPUT.html and the folder OUTPUT.parts with every "
              "intermediate result. Where a stage fails, OUTPUT.parts/failure.html shows what it said and "
              "slices through what there was by then. --set deformable.liver.mesh.cell_size_mm=8 goes before "
-             "what the case file says; an element of an array of tables is called by its name or label."});
-    command.input("case", case_path, "case file (.toml)").required();
+             "what the case file says; an element of an array of tables is called by its name or label. An "
+             "asset keeps its case: built again of the same inputs by the same versions, it becomes the same "
+             "byte for byte, and what differs is told; inputs that it names lie in its folder or are "
+             "given."});
+    command.input("case", case_path, "case file (.toml), or an asset (.vtkhdf) whose case is built again")
+        .required();
     command.input("--volume", volume, "CT or MRI to use instead of the case file's input.volume");
     command.input("--labels", labels, "label map to use instead of the case file's input.labels");
     command.output("-o,--output", output, "asset (.vtkhdf)").required();
@@ -154,10 +179,12 @@ int main(int argc, char** argv) {
                  "other work");
     return command.run(argc, argv, [&](cli::Session& session) {
         require_asset_name(output);
-        const std::vector<case_builder::Override> overrides = overrides_of(settings);
+        std::vector<case_builder::Override> overrides = overrides_of(settings);
+        for (const auto& [key, file] : {std::pair("volume", volume), std::pair("labels", labels)})
+            if (!file.empty())
+                overrides.push_back({fmt::format("input.{}", key), case_builder::quoted(file.string()),
+                                     fmt::format("--{}", key), 1});
         case_builder::CaseFile case_file = case_builder::read_case_file(case_path, overrides);
-        if (!volume.empty()) case_file.volume = volume;
-        if (!labels.empty()) case_file.labels = labels;
         case_file.sign = sign;
         case_builder::check_case_file(case_path, case_file, overrides);
         if (stage_name.empty())
@@ -175,9 +202,14 @@ int main(int argc, char** argv) {
             stages_of(case_file, paths, virtual_clock ? TouchClock::virtual_time : TouchClock::real);
         const Build build{case_file, paths, stages, runner};
         if (forecast_only) return forecast(build, stage_name);
+        const bool again = case_builder::is_asset(case_path) && stage_name.empty();
+        const auto changed = again ? changed_since(case_path, case_file) : std::vector<std::string>();
+        tell_what_changed(changed, case_path);
         const auto records = stage_name.empty() ? run_all(build) : std::vector{run_one(build, stage_name)};
-        return nlohmann::ordered_json{{"asset", paths.asset.string()},
+        nlohmann::ordered_json result{{"asset", paths.asset.string()},
                                       {"report", paths.report.string()},
                                       {"stages", stages_json(records)}};
+        if (again && changed.empty()) result["again"] = compared(paths.asset, case_path);
+        return result;
     });
 }

@@ -108,16 +108,23 @@ std::vector<std::string> Hdf5File::texts(const std::string& path,
     return texts;
 }
 
-void Hdf5File::check_digests(const std::string& manifest_path) const {
-    std::map<std::string, std::string> manifest;
+std::map<std::string, std::string> Hdf5File::digests() const {
+    std::map<std::string, std::string> digests;
     for (const auto& [path, object] : objects_) {
-        if (object.values && object.values->type != ScalarType::variable_text) {
-            manifest[path] = sha256(object.values->bytes);
-            if (manifest[path] != text_attribute(path, "sha256")) refuse(path, "does not match its SHA-256");
-        }
+        if (object.values && object.values->type != ScalarType::variable_text)
+            digests[path] = sha256(object.values->bytes);
         for (const auto& [name, array] : object.attributes)
-            if (in_manifest(name)) manifest[path + '@' + name] = sha256(array.bytes);
+            if (in_manifest(name)) digests[path + '@' + name] = sha256(array.bytes);
     }
+    return digests;
+}
+
+void Hdf5File::check_digests(const std::string& manifest_path) const {
+    const std::map<std::string, std::string> manifest = digests();
+    for (const auto& [path, object] : objects_)
+        if (const auto dataset = manifest.find(path);
+            dataset != manifest.end() && dataset->second != text_attribute(path, "sha256"))
+            refuse(path, "does not match its SHA-256");
     if (manifest_digest(manifest) != text_attribute(manifest_path, "manifest_sha256"))
         refuse(manifest_path, "the manifest does not match its SHA-256");
 }

@@ -65,6 +65,10 @@ class Hdf5File {
     }
     std::string text_attribute(const std::string& path, const std::string& name) const;
 
+    /// SHA-256 of every dataset by its path and of every attribute by "path@name", but for what the manifest
+    /// leaves out. 0.5 s per GB.
+    std::map<std::string, std::string> digests() const;
+
     /// Recomputes the digest of every dataset and of the manifest kept at `manifest_path`. 0.5 s per GB.
     void check_digests(const std::string& manifest_path) const;
 

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/case_builder/kept_case.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "formats/asset/asset.hpp"
+#include "formats/model/errors.hpp"
+#include "tools/case_builder/overrides.hpp"
+#include "tools/case_builder/toml_document.hpp"
+#include "tools/imaging/recipes/recipe.hpp"
+
+namespace palpate::case_builder {
+namespace {
+
+bool is_letter_or_digit(unsigned char c) {
+    return std::isalnum(c) != 0;
+}
+
+// ".nii.gz" of "Doe.nii.gz"; none of "Doe.John", of a folder, of a name that is no file's.
+std::string kind_of(const std::filesystem::path& file) {
+    for (const char* kind : {".nii.gz", ".seg.nrrd"})
+        if (file.filename().string().ends_with(kind)) return kind;
+    const std::string extension = file.extension().string();
+    std::error_code none;
+    const bool known = extension.size() > 1 && extension.size() <= 6 &&
+                       std::all_of(extension.begin() + 1, extension.end(), is_letter_or_digit) &&
+                       !std::filesystem::is_directory(file, none);
+    return known ? extension : "";
+}
+
+std::string as_file_name(std::string words) {
+    std::ranges::replace_if(
+        words, [](unsigned char c) { return !is_letter_or_digit(c) && c != '-'; }, '_');
+    return words;
+}
+
+std::filesystem::path resolved(const toml::node& text) {
+    const auto& written_in = text.source().path;
+    return std::filesystem::path(written_in ? *written_in : "").parent_path() / *text.value<std::string>();
+}
+
+// A number, a flag or a text as TOML writes it.
+std::string leaf(const toml::node& node) {
+    if (const auto number = node.value_exact<double>()) return fmt::format("{:#}", *number);
+    std::ostringstream stream;
+    node.visit([&](const auto& value) { stream << value; });
+    return stream.str();
+}
+
+bool has_header(const toml::node& node) {
+    return node.is_table() && !node.as_table()->is_inline();
+}
+
+std::string below(const std::string& place, const std::string& key) {
+    return place.empty() ? key : place + "_" + key;
+}
+
+// A series' number may stay; its UID leads to the archive that it is from.
+bool may_stay(const std::string& key, const toml::node& node) {
+    const auto text = node.value_exact<std::string>();
+    return key != "series" || !text ||
+           std::ranges::all_of(*text, [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
+bool names_file(const std::string& key, const std::filesystem::path& file) {
+    std::error_code none;  // what is too long for a path is none
+    if (key == "label_names") return std::filesystem::is_regular_file(file, none);
+    return key == "volume" || key == "labels" || key.ends_with("_file") || imaging::is_file_parameter(key);
+}
+
+// The value of `key`. `place` is what a file is called there.
+std::string value(const toml::node& node, const std::string& key, const std::string& place) {
+    if (const toml::table* table = node.as_table()) {
+        std::vector<std::string> pairs;
+        for (const std::string& inner : keys_as_written(*table))
+            pairs.push_back(inner + " = " + value(*table->get(inner), inner, below(place, inner)));
+        return fmt::format("{{ {} }}", fmt::join(pairs, ", "));
+    }
+    if (const toml::array* array = node.as_array()) {
+        std::vector<std::string> items;
+        for (const toml::node& item : *array)
+            items.push_back(value(item, key, fmt::format("{}_{}", place, items.size() + 1)));
+        return fmt::format("[{}]", fmt::join(items, ", "));
+    }
+    if (node.is_string())
+        if (const std::filesystem::path file = resolved(node); names_file(key, file))
+            return quoted(as_file_name(place) + kind_of(file));
+    return leaf(node);
+}
+
+// What stands below a header: values, then tables with headers of their own.
+std::string block(const toml::table& table, const std::string& header, const std::string& place) {
+    std::string values, blocks;
+    for (const std::string& key : keys_as_written(table)) {
+        const toml::node& node = *table.get(key);
+        const std::string inner = header.empty() ? key : header + "." + key;
+        const toml::array* const array = node.as_array();
+        if (has_header(node)) {
+            const std::string inside = header.empty() ? "" : below(place, key);
+            blocks += fmt::format("\n[{}]\n{}", inner, block(*node.as_table(), inner, inside));
+        } else if (array != nullptr && !array->empty() && std::ranges::all_of(*array, has_header)) {
+            int count = 0;
+            for (const toml::node& element : *array) {
+                const toml::table& each = *element.as_table();
+                const std::string numbered = below(place, fmt::format("{}_{}", key, ++count));
+                const std::string inside = header.empty() ? each["name"].value_or(numbered) : numbered;
+                blocks += fmt::format("\n[[{}]]\n{}", inner, block(each, inner, inside));
+            }
+        } else if (may_stay(key, node)) {
+            values += fmt::format("{} = {}\n", key, value(node, key, below(place, key)));
+        }
+    }
+    return values + blocks;
+}
+
+}  // namespace
+
+std::string kept_case(const toml::table& document) {
+    return block(document, "", "");
+}
+
+bool is_asset(const std::filesystem::path& case_file) {
+    return case_file.extension() == ".vtkhdf";
+}
+
+nlohmann::ordered_json build_kept_in(const std::filesystem::path& path) {
+    const auto provenance = nlohmann::ordered_json::parse(asset::read_asset(path).provenance, nullptr, false);
+    if (provenance.is_object())
+        if (const auto build = provenance.find("build"); build != provenance.end() && build->is_object())
+            if (const auto kept = build->find("case"); kept != build->end() && kept->is_string())
+                return *build;
+    throw InvalidInput({path.string(), "keeps no case to build again", "an asset of palpate build",
+                        "pass the case file that it was made of"});
+}
+
+std::string case_kept_in(const std::filesystem::path& path) {
+    return build_kept_in(path)["case"].get<std::string>();
+}
+
+}  // namespace palpate::case_builder
