@@ -4,11 +4,17 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <span>
 #include <string_view>
 #include <vtkInputStream.h>
 
 namespace palpate::vtk_blocks {
 namespace {
+
+bool is_array_of_texts(vtkXMLDataElement& element) {
+    const char* const type = element.GetAttribute("type");
+    return type != nullptr && std::strcmp(type, "String") == 0;
+}
 
 bool knows_type(vtkXMLDataElement& array) {
     constexpr std::array<std::string_view, 12> types{"Int8",    "UInt8",   "Int16",  "UInt16",
@@ -32,6 +38,48 @@ bool knows_types(vtkXMLDataElement& element) {
         if ((array && !knows_type(nested)) || !knows_types(nested)) return false;
     }
     return true;
+}
+
+void drop_texts(vtkXMLDataElement& element) {
+    const bool field = std::strcmp(element.GetName(), "FieldData") == 0;
+    for (int n = element.GetNumberOfNestedElements() - 1; n >= 0; --n) {
+        vtkXMLDataElement& nested = *element.GetNestedElement(n);
+        if (!field && is_array_of_texts(nested))
+            element.RemoveNestedElement(&nested);
+        else
+            drop_texts(nested);
+    }
+}
+
+bool BlocksChecked::texts_fit(vtkXMLDataElement& element, double room) {
+    if (is_array_of_texts(element) && !has_no_more_texts_than_announced(element, room)) return false;
+    for (int n = 0; n < element.GetNumberOfNestedElements(); ++n)
+        if (!texts_fit(*element.GetNestedElement(n), room)) return false;
+    return true;
+}
+
+// A text ends with a zero.
+bool BlocksChecked::has_no_more_texts_than_announced(vtkXMLDataElement& array, double room) {
+    int tuples = 0, components = 1;
+    array.GetScalarAttribute("NumberOfTuples", tuples);
+    array.GetScalarAttribute("NumberOfComponents", components);
+    const double announced = static_cast<double>(tuples) * components;
+    vtkTypeInt64 offset = 0;
+    const bool appended = array.GetScalarAttribute("offset", offset) != 0;
+    const char* const format = array.GetAttribute("format");
+    const bool ascii = format == nullptr || std::strcmp(format, "binary") != 0;
+    std::array<char, 4096> letters;
+    double ends = 0;
+    for (vtkTypeUInt64 at = 0; static_cast<double>(at) <= room;) {
+        const std::size_t read =
+            appended ? ReadAppendedData(offset, letters.data(), at, letters.size(), VTK_CHAR)
+                     : ReadInlineData(&array, ascii ? 1 : 0, letters.data(), at, letters.size(), VTK_CHAR);
+        if (read == 0) return true;
+        ends += static_cast<double>(std::ranges::count(std::span(letters).first(read), '\0'));
+        if (ends > announced) return false;
+        at += read;
+    }
+    return false;
 }
 
 bool BlocksChecked::fit(vtkXMLDataElement& element, double room, std::uintmax_t file_size) {
