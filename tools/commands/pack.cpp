@@ -5,6 +5,7 @@
 #include "formats/asset/asset.hpp"
 #include "formats/asset/hdf5/digest.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/fem/condensation/sway.hpp"
 #include "tools/fem/feel/feel.hpp"
 #include "tools/fem/solvers/dense_kernels.hpp"
 #include "tools/stages/case.hpp"
@@ -59,6 +60,10 @@ int main(int argc, char** argv) {
             for (Json& row : stages::felt_rows(body)) felt.push_back(std::move(row));
         }
         std::vector<std::string> warnings = unfelt(patient_case, session.threads);
+        for (const DeformableBody& body : patient_case.deformable_bodies)
+            if (const fem::Sway sway = fem::sway_of(body); fem::hangs(body, sway))
+                warnings.push_back("'" + body.name + "' " + fem::hanging_text(sway) +
+                                   "; hold it there too ('fixed'), or thicken what links it ('close_mm')");
         if (!request.scan.empty() && !patient_case.scan)
             warnings.push_back("the scan shows nothing of the bodies and is left out");
         for (const std::string& warning : warnings) spdlog::warn("{}", warning);

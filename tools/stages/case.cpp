@@ -9,6 +9,7 @@
 #include "formats/asset/parts.hpp"
 #include "formats/model/errors.hpp"
 #include "tools/cli/software.hpp"
+#include "tools/fem/condensation/sway.hpp"
 #include "tools/fem/feel/feel.hpp"
 #include "tools/imaging/faces/face.hpp"
 #include "tools/imaging/files/image_files.hpp"
@@ -154,6 +155,8 @@ Case make_case(const PackRequest& request, int threads, const ProgressCallback& 
     for (DeformableBody& body : made.deformable_bodies) {
         progress("press " + body.name + " all over", 0.3);
         body.feel = fem::feel_of(body, made.haptics.tool_radius, threads);
+        if (const fem::Sway sway = fem::sway_of(body); fem::hangs(body, sway))
+            notes.push_back("\u2018" + body.name + "\u2019 " + fem::hanging_text(sway) + ".");
     }
     made.provenance = Json{
         {"software", cli::software_versions()},

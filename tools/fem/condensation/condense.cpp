@@ -15,6 +15,7 @@
 #include "tools/fem/certificate/contact_loads.hpp"
 #include "tools/fem/condensation/cluster_order.hpp"
 #include "tools/fem/condensation/compress.hpp"
+#include "tools/fem/condensation/sway.hpp"
 #include "tools/fem/solvers/dense_kernels.hpp"
 #include "tools/fem/solvers/free_system.hpp"
 #include "tools/fem/solvers/panel_solver.hpp"
@@ -183,6 +184,10 @@ HierarchicalCompliance condense_hierarchically(const DeformableBody& body, doubl
         if (worst <= margin * accuracy) return compliance;
         tolerance *= second_share * accuracy / worst;
     }
+    const Sway sway = sway_of(body, solver.displacements(spread_newtons(body)));
+    if (hangs(body, sway))
+        throw InvalidInput({body.name, hanging_text(sway) + ", and floats do not tell dents in it", "",
+                            "hold it there too ('fixed'), or thicken what links it ('close_mm')"});
     throw InvalidInput({body.name, "its compliance could not be compressed to the accuracy asked for", "",
                         "ask for less with --accuracy, or for --representation dense"});
 }
