@@ -139,6 +139,9 @@ const char* flaw_of(const stages::NodePick& pick) {
     const auto& plane = pick.plane_mm;
     if (!plane.empty() && plane[3] == 0 && plane[4] == 0 && plane[5] == 0)
         return "has a plane without a normal";
+    const auto& facing = pick.facing;
+    if (!facing.empty() && facing[0] == 0 && facing[1] == 0 && facing[2] == 0)
+        return "has a direction of no length";
     return nullptr;
 }
 

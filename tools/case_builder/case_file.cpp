@@ -38,13 +38,14 @@ std::vector<stages::NodePick> node_picks(TableReader& body, const std::string& k
         pick.box_mm = table.optional_numbers("box_mm", 6).value_or(std::vector<double>{});
         pick.sphere_mm = table.optional_numbers("sphere_mm", 4).value_or(std::vector<double>{});
         pick.plane_mm = table.optional_numbers("plane_mm", 6).value_or(std::vector<double>{});
+        pick.facing = table.optional_numbers("facing", 3).value_or(std::vector<double>{});
         pick.nodes_file = table.path("nodes_file").value_or("");
         table.refuse_unknown();
         if (table.raw().size() != 1)
             body.fail(table.raw(), key, "has a rule that is not understood",
                       "one of { touching = \"label\" }, { region = \"name\" }, { box_mm = [6] }, { sphere_mm "
                       "= [4] }, "
-                      "{ plane_mm = [6] }, { nodes_file = \"nodes.txt\" }");
+                      "{ plane_mm = [6] }, { facing = [3] }, { nodes_file = \"nodes.txt\" }");
         picks.push_back(std::move(pick));
     }
     return picks;

@@ -15,6 +15,7 @@ namespace {
 
 using imaging::Mask;
 
+constexpr double most_thicknesses = 4;
 constexpr double held_share = 0.12;         // of the organ's surface
 constexpr double beside_mm = 10;            // as near as this, a structure is a neighbour
 constexpr std::size_t most_neighbours = 5;  // the nearest
@@ -112,6 +113,21 @@ Eigen::Vector3d plane_point(std::vector<Eigen::Vector3d> points, const Eigen::Ve
     return *place;
 }
 
+// Whether an organ goes on from where it is held by many times what it is thick (a cylinder's diameter is
+// four times its volume by its surface).
+bool is_too_long(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& held_at,
+                 const Eigen::Vector3d& towards, double thickness) {
+    Eigen::Vector3d held = Eigen::Vector3d::Zero();
+    double count = 0, farthest = 0;
+    for (const Eigen::Vector3d& point : points)
+        if ((point - held_at).dot(towards) >= 0) {
+            held += point;
+            ++count;
+        }
+    for (const Eigen::Vector3d& point : points) farthest = std::max(farthest, (point - held / count).norm());
+    return farthest > most_thicknesses * thickness;
+}
+
 double rounded(double mm) {
     return std::max(0.5, std::round(2 * mm) / 2);
 }
@@ -188,6 +204,8 @@ CaseDraft draft_case(LabelMap map, const Wishes& wishes, const std::string& culp
     draft.held_towards = anatomy.held_towards;
     draft.held_at = plane_point(outside.points, anatomy.held_towards);
     draft.why_held = anatomy.why_held;
+    draft.held_along =
+        is_too_long(outside.points, draft.held_at, draft.held_towards, 4000 * draft.volume_ml / outside.area);
     draft.tool_radius = std::clamp(std::round(edge), 1.0, 5.0);
     add_lesions(draft, map, organ, wishes, volumes);
     draft.structures.push_back(
@@ -209,11 +227,14 @@ CaseDraft draft_case(const TetMesh& mesh, const Wishes& wishes, const std::strin
         const std::string tissue = anatomy_of(region.name, wishes.approach).tissue;
         draft.regions.push_back({region.name, tissue.empty() ? whole.tissue : tissue, 0, region.value});
     }
-    double edges = 0;
-    for (const Triangle& t : boundary.surface.triangles)
-        edges += (boundary.surface.vertices[static_cast<std::size_t>(t[0])] -
-                  boundary.surface.vertices[static_cast<std::size_t>(t[1])])
-                     .norm();
+    double edges = 0, area = 0;
+    for (const Triangle& t : boundary.surface.triangles) {
+        const auto corner = [&](std::size_t i) {
+            return boundary.surface.vertices[static_cast<std::size_t>(t[i])];
+        };
+        edges += (corner(0) - corner(1)).norm();
+        area += (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() / 2;
+    }
     const double edge = edges / static_cast<double>(boundary.surface.triangles.size());
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) draft.volume_ml += six_volume(mesh, t) / 6000;
     draft.cell_size = edge / edge_over_cell;
@@ -221,6 +242,8 @@ CaseDraft draft_case(const TetMesh& mesh, const Wishes& wishes, const std::strin
     draft.held_towards = whole.held_towards;
     draft.held_at = plane_point(boundary.surface.vertices, whole.held_towards);
     draft.why_held = whole.why_held;
+    draft.held_along = is_too_long(boundary.surface.vertices, draft.held_at, draft.held_towards,
+                                   4000 * draft.volume_ml / area);
     return draft;
 }
 

@@ -42,6 +42,7 @@ struct CaseDraft {
     Eigen::Vector3d held_at =
         Eigen::Vector3d::Zero();  ///< p_P, mm: on the plane beyond which the body is held
     Eigen::Vector3d held_towards = Eigen::Vector3d::Zero();  ///< unit
+    bool held_along = false;  ///< by all that looks that way, for what is too long to be held at one end
     std::vector<std::string>
         held_by;  ///< labels that it is grown to, in place of that plane; empty: the plane
     std::string why_held;

@@ -29,6 +29,11 @@ std::string region_text(const DraftRegion& region) {
 }
 
 std::string held_text(const CaseDraft& draft) {
+    if (draft.held_by.empty() && draft.held_along)
+        return fmt::format(
+            "# Held is {}, all along,\n# for it is too long to be held at one end.\n"
+            "fixed = [{{ facing = [{:.3f}, {:.3f}, {:.3f}] }}]\n",
+            draft.why_held, draft.held_towards.x(), draft.held_towards.y(), draft.held_towards.z());
     if (draft.held_by.empty())
         return fmt::format(
             "# Held is {}:\n# what lies beyond this plane, a point and the way to go.\n"

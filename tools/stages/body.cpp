@@ -99,6 +99,8 @@ std::vector<NodeRule> rules_of(const std::string& option, const std::vector<Node
             rules.push_back(sphere_rule(option, pick.sphere_mm));
         else if (!pick.plane_mm.empty())
             rules.push_back(plane_rule(option, pick.plane_mm));
+        else if (!pick.facing.empty())
+            rules.push_back(facing_rule(option, pick.facing));
         else
             rules.push_back(box_rule(option, pick.box_mm));
     return rules;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <istream>
 #include <span>
 #include <string_view>
 #include <vtkInputStream.h>
@@ -69,11 +70,17 @@ bool BlocksChecked::has_no_more_texts_than_announced(vtkXMLDataElement& array, d
     const char* const format = array.GetAttribute("format");
     const bool ascii = format == nullptr || std::strcmp(format, "binary") != 0;
     std::array<char, 4096> letters;
+    const auto read_from = [&](vtkTypeUInt64 at, std::size_t count) {
+        Stream->clear();
+        return appended ? ReadAppendedData(offset, letters.data(), at, count, VTK_CHAR)
+                        : ReadInlineData(&array, ascii ? 1 : 0, letters.data(), at, count, VTK_CHAR);
+    };
     double ends = 0;
     for (vtkTypeUInt64 at = 0; static_cast<double>(at) <= room;) {
-        const std::size_t read =
-            appended ? ReadAppendedData(offset, letters.data(), at, letters.size(), VTK_CHAR)
-                     : ReadInlineData(&array, ascii ? 1 : 0, letters.data(), at, letters.size(), VTK_CHAR);
+        // Where a later block is damaged, fewer letters may be read, as VTK may do.
+        std::size_t read = 0;
+        for (std::size_t count = letters.size(); read == 0 && count > 0; count /= 2)
+            read = read_from(at, count);
         if (read == 0) return true;
         ends += static_cast<double>(std::ranges::count(std::span(letters).first(read), '\0'));
         if (ends > announced) return false;
@@ -93,6 +100,7 @@ bool BlocksChecked::fit(vtkXMLDataElement& element, double room, std::uintmax_t 
 }
 
 bool BlocksChecked::fits(vtkXMLDataElement& array, double room, std::uintmax_t file_size) {
+    Stream->clear();  // or nothing is read any more once an array before reached the file's end
     if (array.GetAttribute("offset") != nullptr) {
         vtkTypeInt64 offset = 0;
         if (array.GetScalarAttribute("offset", offset) == 0) return false;  // which VTK takes for 0

@@ -215,19 +215,20 @@ TEST(CaseFile, nodes_are_held_and_touched_by_the_same_rules) {
     const std::string rules =
         "[{ touching = \"background\" }, { region = \"tumour\" }, { box_mm = [0, 0, 0, 1, 2.5, 3] }, "
         "{ sphere_mm = [1, 2, 3, 4] }, { plane_mm = [0, 0, 0, 0, 0, 1] }, "
-        "{ nodes_file = \"sets/rim.txt\" }]";
+        "{ facing = [0, 1, 0] }, { nodes_file = \"sets/rim.txt\" }]";
     text.replace(text.find("fixed = "), text.find('\n', text.find("fixed = ")) - text.find("fixed = "),
                  "fixed = " + rules + "\ncontact = " + rules);
     const DeformableSpec body = read_case_file(written(text)).deformable.at(0);
     const auto file = written(text).parent_path() / "sets/rim.txt";
     for (const auto& picks : {body.condense.fixed, body.condense.contact}) {
-        ASSERT_EQ(picks.size(), 6U);
+        ASSERT_EQ(picks.size(), 7U);
         EXPECT_EQ(picks[0].touching, "background");
         EXPECT_EQ(picks[1].region, "tumour");
         EXPECT_EQ(picks[2].box_mm, (std::vector<double>{0, 0, 0, 1, 2.5, 3}));
         EXPECT_EQ(picks[3].sphere_mm, (std::vector<double>{1, 2, 3, 4}));
         EXPECT_EQ(picks[4].plane_mm, (std::vector<double>{0, 0, 0, 0, 0, 1}));
-        EXPECT_EQ(picks[5].nodes_file, file);
+        EXPECT_EQ(picks[5].facing, (std::vector<double>{0, 1, 0}));
+        EXPECT_EQ(picks[6].nodes_file, file);
     }
 }
 

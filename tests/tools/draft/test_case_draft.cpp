@@ -100,6 +100,20 @@ TEST(CaseDraft, holds_an_eighth_of_the_surface_on_the_side_away_from_the_approac
     EXPECT_NEAR(draft.held_at.x(), 30 * (1 - 2 * 0.12), 2);
 }
 
+TEST(CaseDraft, holds_what_is_long_all_along) {
+    std::vector<Ball> row;  // a bow whose middle alone lies on the side away from the approach
+    for (double z = -52; z <= 52; z += 4) row.push_back({"aorta", {0, 30 - z * z / 40, z}, 6});
+    LabelMap map = map_of({row.begin(), row.end()});
+    std::ranges::replace_if(
+        map.labels, [](std::uint16_t label) { return label > 0; }, std::uint16_t{1});
+    map.names.resize(1);
+    const CaseDraft draft = draft_case(map, {.organ = "aorta"}, "x");
+    EXPECT_TRUE(draft.held_along);
+    EXPECT_NE(case_text(draft).find("fixed = [{ facing = [0.000, 1.000, 0.000] }]\n"), std::string::npos)
+        << case_text(draft);
+    EXPECT_FALSE(draft_case(map_of({{"spleen", {0, 0, 0}, 30}}), {}, "x").held_along);
+}
+
 TEST(CaseDraft, looks_at_the_largest_piece_alone) {
     const Ball splinter{"spleen", {0, -50, 0}, 6};
     LabelMap map = map_of({{"spleen", {0, 0, 0}, 20}, splinter});

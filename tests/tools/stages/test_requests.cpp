@@ -159,7 +159,8 @@ TEST(Request, of_condense_survives_json) {
     request.mesh = existing("m.vtu");
     request.name = "wall";
     request.materials = {{"wall:a", 6.3, 0.45}};
-    request.fixed.resize(3);
+    request.fixed.resize(4);
+    request.fixed[3].facing = {0, 1, 0};
     request.fixed[0].touching = "skull";
     request.fixed[1].sphere_mm = {1, 2, 3.5, 4};
     request.fixed[2].nodes_file = "rim.txt";

@@ -24,7 +24,7 @@ std::optional<double> number_of(std::string_view text) {
 }
 
 constexpr std::string_view box_meaning = "x0,y0,z0,x1,y1,z1", sphere_meaning = "x,y,z,radius",
-                           plane_meaning = "x,y,z,nx,ny,nz";
+                           plane_meaning = "x,y,z,nx,ny,nz", facing_meaning = "nx,ny,nz";
 
 // `meaning`, such as "x,y,z,radius", tells how many numbers there must be.
 void require_count(const std::vector<double>& numbers, std::string_view meaning, const std::string& rule) {
@@ -74,6 +74,28 @@ BeyondPlane plane_of(const std::vector<double>& n, const std::string& rule) {
     return plane;
 }
 
+Facing facing_of(const std::vector<double>& n, const std::string& rule) {
+    require_count(n, facing_meaning, rule);
+    const Facing facing{{n[0], n[1], n[2]}};
+    if (facing.direction.isZero(0))
+        throw UsageError({rule, "it has no length", "a direction, such as 0,1,0", ""});
+    return facing;
+}
+
+// Of all nodes of the mesh; zero inside.
+std::vector<Eigen::Vector3d> surface_normals(const TetMesh& mesh, const BoundarySurface& boundary) {
+    std::vector<Eigen::Vector3d> normals(mesh.rest_positions.size(), Eigen::Vector3d::Zero());
+    for (const Triangle& triangle : boundary.surface.triangles) {
+        const auto corner = [&](std::size_t i) -> const Eigen::Vector3d& {
+            return boundary.surface.vertices[triangle[i]];
+        };
+        const Eigen::Vector3d twice_area = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+        for (const std::int32_t vertex : triangle) normals[boundary.nodes[vertex]] += twice_area;
+    }
+    for (Eigen::Vector3d& normal : normals) normal.normalize();
+    return normals;
+}
+
 // "--fixed sphere:1,2,3.5,4".
 std::string rule_text(std::string_view option, std::string_view kind, const std::vector<double>& numbers) {
     return fmt::format("{} {}:{}", option, kind, fmt::join(numbers, ","));
@@ -83,7 +105,7 @@ std::int32_t outside_value(const TetMesh& mesh, const std::string& name, const s
     if (mesh.outside_labels.empty())
         throw InvalidInput(
             {rule, "the mesh does not tell what lies around it", "",
-             "mesh it from a label map, or pick nodes by region, box, sphere, plane or nodes"});
+             "mesh it from a label map, or pick nodes by region, box, sphere, plane, facing or nodes"});
     if (name == "background") return 0;
     for (const Label& label : mesh.outside_names)
         if (label.name == name) return label.value;
@@ -100,6 +122,7 @@ using Predicate = std::function<bool(std::int32_t)>;
 // One way of telling surface nodes apart for each kind of rule but ListedNodes.
 struct PredicateOf {
     const TetMesh& mesh;
+    const BoundarySurface& boundary;
     const std::string& rule;
 
     const Eigen::Vector3d& at(std::int32_t node) const { return mesh.rest_positions[node]; }
@@ -120,6 +143,11 @@ struct PredicateOf {
     }
     Predicate operator()(const BeyondPlane& plane) const {
         return [this, &plane](std::int32_t node) { return (at(node) - plane.point).dot(plane.normal) >= 0; };
+    }
+    Predicate operator()(const Facing& facing) const {
+        constexpr double half_right_angle = 0.7071;  // its cosine
+        return [normals = surface_normals(mesh, boundary), direction = facing.direction.normalized()](
+                   std::int32_t node) { return normals[node].dot(direction) >= half_right_angle; };
     }
     Predicate operator()(const OfRegion& region) const {
         const std::int32_t value = require_label(mesh.region_names, region.name, rule).value;
@@ -185,7 +213,7 @@ void mark_nodes(const TetMesh& mesh, const BoundarySurface& boundary, const Node
             mark(node);
         }
     } else {
-        const PredicateOf predicate_of{mesh, rule.text};
+        const PredicateOf predicate_of{mesh, boundary, rule.text};
         const Predicate picks = std::visit(predicate_of, rule.pick);
         for (const std::int32_t node : boundary.nodes)
             if (picks(node)) mark(node);
@@ -225,6 +253,7 @@ NodeRule parse_node_rule(std::string_view option, std::string_view text) {
     if (kind == "box") return {rule, box_of(numbers_of(rest, box_meaning, rule), rule)};
     if (kind == "sphere") return {rule, sphere_of(numbers_of(rest, sphere_meaning, rule), rule)};
     if (kind == "plane") return {rule, plane_of(numbers_of(rest, plane_meaning, rule), rule)};
+    if (kind == "facing") return {rule, facing_of(numbers_of(rest, facing_meaning, rule), rule)};
     throw UsageError({std::string(option) + " '" + std::string(text) + "'", "is no rule that picks nodes",
                       std::string(node_rule_grammar), ""});
 }
@@ -242,6 +271,11 @@ NodeRule sphere_rule(std::string_view option, const std::vector<double>& center_
 NodeRule plane_rule(std::string_view option, const std::vector<double>& point_and_normal) {
     const std::string rule = rule_text(option, "plane", point_and_normal);
     return {rule, plane_of(point_and_normal, rule)};
+}
+
+NodeRule facing_rule(std::string_view option, const std::vector<double>& direction) {
+    const std::string rule = rule_text(option, "facing", direction);
+    return {rule, facing_of(direction, rule)};
 }
 
 std::vector<std::int32_t> fixed_nodes_of(const TetMesh& mesh, const BoundarySurface& boundary,

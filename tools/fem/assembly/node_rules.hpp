@@ -29,6 +29,10 @@ struct InsideSphere {
 struct BeyondPlane {
     Eigen::Vector3d point, normal;
 };
+/// Surface nodes at which the surface looks within 45 degrees of a direction, LPS, by its triangles' area.
+struct Facing {
+    Eigen::Vector3d direction;
+};
 /// Surface nodes that are corners of a region's tetrahedra; a region by name or value.
 struct OfRegion {
     std::string name;
@@ -41,14 +45,15 @@ struct ListedNodes {
 /// What picks nodes of a mesh, to hold them or to let them be touched.
 struct NodeRule {
     std::string text;  ///< as it was given, such as "--fixed sphere:0,0,0,5"; errors name it
-    std::variant<TouchingLabel, InsideBox, InsideSphere, BeyondPlane, OfRegion, ListedNodes> pick;
+    std::variant<TouchingLabel, InsideBox, InsideSphere, BeyondPlane, Facing, OfRegion, ListedNodes> pick;
 };
 
 /// The grammar of parse_node_rule(), for the help of commands.
 inline constexpr std::string_view node_rule_grammar =
     "touching:LABEL (what lies beyond the surface; 'background' for none), region:NAME, "
     "box:x0,y0,z0,x1,y1,z1, sphere:x,y,z,r, plane:x,y,z,nx,ny,nz (the side its normal points to), "
-    "nodes:FILE (text, one node index a line, counted from 0, '#' for comments)";
+    "facing:nx,ny,nz (where the surface looks that way within 45 degrees), nodes:FILE (text, one node index "
+    "a line, counted from 0, '#' for comments)";
 
 /// Reads a rule of `option`, "--fixed" or "--contact", in the words of node_rule_grammar; positions and
 /// radius are LPS mm. Throws UsageError naming the rule for an unknown kind, a number that is not
@@ -57,10 +62,11 @@ inline constexpr std::string_view node_rule_grammar =
 NodeRule parse_node_rule(std::string_view option, std::string_view text);
 
 /// The same rules from numbers: x0, y0, z0, x1, y1, z1 of a box; x, y, z, r of a sphere; x, y, z, nx, ny, nz
-/// of a plane. Throw as parse_node_rule() does.
+/// of a plane; nx, ny, nz that the surface looks along. Throw as parse_node_rule() does.
 NodeRule box_rule(std::string_view option, const std::vector<double>& corners);
 NodeRule sphere_rule(std::string_view option, const std::vector<double>& center_and_radius);
 NodeRule plane_rule(std::string_view option, const std::vector<double>& point_and_normal);
+NodeRule facing_rule(std::string_view option, const std::vector<double>& direction);
 
 /// Returns the nodes that any rule picks, ascending: surface nodes, and interior ones where a file lists
 /// them. Throws InvalidInput if a rule names an unknown label or region (with the nearest names), picks no

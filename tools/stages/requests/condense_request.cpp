@@ -100,20 +100,24 @@ void to_json(Json& json, const NodePick& pick) {
     json = Json::object();
     for (const auto& [key, name] : {std::pair{"touching", &pick.touching}, {"region", &pick.region}})
         if (!name->empty()) json[key] = *name;
-    for (const auto& [key, numbers] :
-         {std::pair{"box_mm", &pick.box_mm}, {"sphere_mm", &pick.sphere_mm}, {"plane_mm", &pick.plane_mm}})
+    for (const auto& [key, numbers] : {std::pair{"box_mm", &pick.box_mm},
+                                       {"sphere_mm", &pick.sphere_mm},
+                                       {"plane_mm", &pick.plane_mm},
+                                       {"facing", &pick.facing}})
         if (!numbers->empty()) json[key] = *numbers;
     if (!pick.nodes_file.empty()) json["nodes_file"] = pick.nodes_file.string();
 }
 
 void from_json(const Json& json, NodePick& pick) {
-    cli::refuse_other_keys(json, {"touching", "region", "box_mm", "sphere_mm", "plane_mm", "nodes_file"});
+    cli::refuse_other_keys(json,
+                           {"touching", "region", "box_mm", "sphere_mm", "plane_mm", "facing", "nodes_file"});
     pick = {};
     pick.touching = json.value("touching", "");
     pick.region = json.value("region", "");
     pick.box_mm = json.value("box_mm", std::vector<double>{});
     pick.sphere_mm = json.value("sphere_mm", std::vector<double>{});
     pick.plane_mm = json.value("plane_mm", std::vector<double>{});
+    pick.facing = json.value("facing", std::vector<double>{});
     pick.nodes_file = json.value("nodes_file", "");
 }
 

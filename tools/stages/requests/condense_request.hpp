@@ -39,6 +39,7 @@ struct NodePick {
     std::vector<double> box_mm;     ///< x0, y0, z0, x1, y1, z1
     std::vector<double> sphere_mm;  ///< x, y, z, r
     std::vector<double> plane_mm;   ///< x, y, z, nx, ny, nz
+    std::vector<double> facing;     ///< nx, ny, nz
     std::filesystem::path nodes_file;
 };
 

@@ -67,6 +67,12 @@ TEST(NodeRules, every_kind_picks_the_surface_nodes_it_describes) {
     const TetMesh mesh = test::block_mesh({4, 4, 4}, {4, 4, 4});
     EXPECT_EQ(fixed(mesh, {"plane:0,0,0.5,0,0,-1"}).size(), 25U);
     EXPECT_EQ(fixed(mesh, {"sphere:0,0,0,1.2"}).size(), 4U);
+    // Of a face its inside, and of its edges what looks that way as much as any other.
+    const Nodes top = fixed(mesh, {"facing:0,0,2"});
+    EXPECT_GE(top.size(), 9U);
+    for (const std::int32_t node : top) EXPECT_EQ(mesh.rest_positions[node].z(), 4);
+    for (const std::int32_t node : fixed(mesh, {"sphere:2,2,4,1.5"}))
+        EXPECT_TRUE(std::ranges::binary_search(top, node) || mesh.rest_positions[node].z() < 4);
     // The whole block as a box: interior nodes stay free.
     EXPECT_EQ(fixed(mesh, {"box:-1,-1,-1,5,5,5"}).size(), 125U - 27U);
     EXPECT_EQ(fixed(mesh, {"sphere:0,0,0,0.5", "sphere:4,4,4,0.5"}), (Nodes{0, 124}));
@@ -123,7 +129,9 @@ TEST(NodeRules, malformed_text_is_a_usage_error_that_quotes_it) {
              {"box:1,2,3,4,5,x", "'x' is not a number"},
              {"box:1,2,3,4,1,6", "not below its second"},
              {"plane:0,0,0,1,0,0,0", "7 numbers (expected 6"},
-             {"plane:1,2,3,0,0,0", "normal has no length"}}) {
+             {"plane:1,2,3,0,0,0", "normal has no length"},
+             {"facing:0,1", "2 numbers (expected 3"},
+             {"facing:0,0,0", "no length"}}) {
         EXPECT_THROW(parse_node_rule("--fixed", text), UsageError) << text;
         const std::string said = message([&] { parse_node_rule("--fixed", text); });
         EXPECT_NE(said.find(found), std::string::npos) << said;
