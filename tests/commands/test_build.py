@@ -140,6 +140,13 @@ class Build(unittest.TestCase):
                          {"original": str(there / "original.vtkhdf"), "different": []})
         self.assertEqual(again.read_bytes(), (there / "original.vtkhdf").read_bytes())
         (there / "result.json").unlink()
+        with_one = subprocess.run([BIN / "palpate", "build", self.folder / "case.toml", "--set", "input.volume=there/scan.nrrd", "--set",
+                                   "input.labels=there/labels.seg.nrrd", "-o", there / "one.vtkhdf", "--virtual-clock", "--threads", "1"],
+                                  cwd=self.folder, capture_output=True, text=True, timeout=200)
+        self.assertEqual(with_one.returncode, 0, with_one.stderr)
+        self.assertEqual(run(BIN / "palpate", "build", there / "one.vtkhdf", "--volume", there / "scan.nrrd", "-o", there / "one_again.vtkhdf",
+                             "--virtual-clock").returncode, 0)
+        self.assertEqual((there / "one_again.vtkhdf").read_bytes(), (there / "one.vtkhdf").read_bytes())
         with (there / "scan.nrrd").open("r+b") as scan:
             scan.seek(-2, 2)
             scan.write(b"\0\1")

@@ -26,7 +26,7 @@ Json without_paths(Json json, const std::map<std::string, std::string>& imported
 
 }  // namespace
 
-Json provenance(const CaseFile& case_file, std::span<const Stage> before) {
+Json provenance(const CaseFile& case_file, std::span<const Stage> before, const StageRunner* runner) {
     Json inputs = Json::object();
     if (case_file.volume) inputs["volume_sha256"] = content_digest(*case_file.volume);
     if (case_file.labels) inputs["labels_sha256"] = content_digest(*case_file.labels);
@@ -52,7 +52,11 @@ Json provenance(const CaseFile& case_file, std::span<const Stage> before) {
         if (stage.command == "import") continue;
         Json request = stage.request;
         if (stage.command == "segment") request.erase("structure");  // told below, by digests of their files
-        steps.push_back({{"command", stage.command}, {"request", without_paths(request, imported)}});
+        Json& step = steps.emplace_back(
+            Json{{"command", stage.command}, {"request", without_paths(request, imported)}});
+        if (const auto record = runner != nullptr ? runner->recorded(stage.name) : std::nullopt)
+            if (const Json::json_pointer threads("/plan/threads"); record->result.contains(threads))
+                step["threads"] = record->result[threads];
     }
     Json structures = Json::array();
     for (const StructureSpec& structure : case_file.structures)
@@ -62,6 +66,13 @@ Json provenance(const CaseFile& case_file, std::span<const Stage> before) {
             {"structures", structures},
             {"steps", steps},
             {"cautions", cautions_of(case_file)}};
+}
+
+std::optional<int> threads_of(const std::filesystem::path& asset) {
+    for (const Json& step : build_kept_in(asset).value("steps", Json::array()))
+        if (const auto threads = step.find("threads"); threads != step.end() && threads->is_number_integer())
+            return threads->get<int>();
+    return std::nullopt;
 }
 
 std::vector<std::string> changed_since(const std::filesystem::path& asset, const CaseFile& case_file) {

@@ -316,6 +316,7 @@ int Command::run(int argc, char** argv, const std::function<nlohmann::ordered_js
         Session session;
         session.threads =
             threads_ > 0 ? threads_ : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+        session.threads_given = threads_ > 0;
         session.force = force_;
         session.quiet = quiet_;
         session.json = !json_path_.empty();

@@ -60,7 +60,8 @@ std::string identifier(std::string name);
 
 /// What one run of a command may use.
 struct Session {
-    int threads = 1;     ///< --threads
+    int threads = 1;  ///< --threads, or all cores
+    bool threads_given = false;
     bool force = false;  ///< --force: existing outputs may be replaced
     bool quiet = false;  ///< --quiet
     bool json = false;   ///< --json: the result is for a program

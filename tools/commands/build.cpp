@@ -192,6 +192,9 @@ int main(int argc, char** argv) {
         if (parts.empty()) parts = std::filesystem::path(output).replace_extension(".parts");
         const case_builder::BuildPaths paths{parts, output,
                                              std::filesystem::path(output).replace_extension(".html")};
+        const bool again = case_builder::is_asset(case_path) && stage_name.empty();
+        if (again && !session.threads_given)
+            session.threads = case_builder::threads_of(case_path).value_or(session.threads);
         const case_builder::StageRunner runner(cli::programs_folder(), parts, session.threads, session.quiet);
         if (!session.force) {
             require_our_output(runner, "pack", paths.asset);
@@ -202,7 +205,6 @@ int main(int argc, char** argv) {
             stages_of(case_file, paths, virtual_clock ? TouchClock::virtual_time : TouchClock::real);
         const Build build{case_file, paths, stages, runner};
         if (forecast_only) return forecast(build, stage_name);
-        const bool again = case_builder::is_asset(case_path) && stage_name.empty();
         const auto changed = again ? changed_since(case_path, case_file) : std::vector<std::string>();
         tell_what_changed(changed, case_path);
         const auto records = stage_name.empty() ? run_all(build) : std::vector{run_one(build, stage_name)};

@@ -23,7 +23,10 @@ Json to_json(const CondensationPlan& plan) {
                              {"seconds", forecast.seconds},
                              {"memory_bytes", forecast.memory_bytes},
                              {"size_bytes", forecast.size_bytes}});
-    return {{"method", name_of(plan.chosen.method)}, {"reason", plan.reason}, {"forecasts", forecasts}};
+    return {{"method", name_of(plan.chosen.method)},
+            {"reason", plan.reason},
+            {"threads", plan.threads},
+            {"forecasts", forecasts}};
 }
 
 Json to_json(const MadeBody& made) {

@@ -160,6 +160,7 @@ Case make_case(const PackRequest& request, int threads, const ProgressCallback& 
     }
     made.provenance = Json{
         {"software", cli::software_versions()},
+        {"threads", threads},
         {"build", read_provenance(request.provenance)},
         {"meshes", read_mesh_results(request.mesh_results)},
         {"notes", notes}}.dump();
