@@ -203,7 +203,8 @@ void prepare(const Stage& stage, const CaseFile& case_file, const BuildPaths& pa
     std::filesystem::create_directories(paths.parts);
     const auto before = stages_before(stage, stages);
     if (stage.name == "pack")
-        cli::write_text_file(provenance_file(paths), provenance(case_file, before, &runner).dump(2) + "\n", true);
+        cli::write_text_file(provenance_file(paths), provenance(case_file, before, &runner).dump(2) + "\n",
+                             true);
     if (stage.name == "report") write_records(paths, before, runner);
 }
 
