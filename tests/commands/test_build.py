@@ -122,6 +122,16 @@ class Build(unittest.TestCase):
         self.assertEqual(repeated.returncode, 0, repeated.stderr)
         self.assertEqual(again.read_bytes(), (self.folder / "case.parts" / "spine.vtp").read_bytes())
 
+    def test_a_body_that_hangs_is_told_by_build_report_and_asset(self):
+        self.change("fixed = [{ plane_mm = [0, 8, 0, 0, 1, 0] }]", "fixed = [{ plane_mm = [0, 16, 0, 0, 1, 0] }]")
+        self.change("youngs_modulus_kpa = 6.3", "youngs_modulus_kpa = 0.5")
+        built = self.build_in(self.folder, "--virtual-clock")
+        self.assertEqual(built.returncode, 0, built.stderr)
+        self.assertRegex(built.stderr, "‘liver’ hangs: 0.1 N spread over it moves it by .* mm around .*; hold it there too")
+        self.assertRegex((self.folder / "case.html").read_text(), "‘liver’ hangs: 0.1 N")
+        seen = run(BIN / "palpate", "inspect", self.folder / "case.vtkhdf", "--json", "-")
+        self.assertRegex(json.loads(seen.stdout)["provenance"]["notes"][-1], "^‘liver’ hangs")
+
     def test_an_asset_s_case_is_built_again_elsewhere_to_the_same_bytes(self):
         there = self.folder / "there"
         there.mkdir()
@@ -141,9 +151,12 @@ class Build(unittest.TestCase):
         self.assertEqual(again.read_bytes(), (there / "original.vtkhdf").read_bytes())
         (there / "result.json").unlink()
         with_one = subprocess.run([BIN / "palpate", "build", self.folder / "case.toml", "--set", "input.volume=there/scan.nrrd", "--set",
-                                   "input.labels=there/labels.seg.nrrd", "-o", there / "one.vtkhdf", "--virtual-clock", "--threads", "1"],
+                                   "input.labels=there/labels.seg.nrrd", "--set", "name=liver 3/4", "-o", there / "one.vtkhdf", "--virtual-clock", "--threads", "1"],
                                   cwd=self.folder, capture_output=True, text=True, timeout=200)
         self.assertEqual(with_one.returncode, 0, with_one.stderr)
+        itself = run(BIN / "palpate", "build", there / "one.vtkhdf", "--volume", there / "scan.nrrd", "-o", there / "one.vtkhdf")
+        self.assertEqual(itself.returncode, 2)
+        self.assertIn("is the asset that is to be built again", itself.stderr)
         self.assertEqual(run(BIN / "palpate", "build", there / "one.vtkhdf", "--volume", there / "scan.nrrd", "-o", there / "one_again.vtkhdf",
                              "--virtual-clock").returncode, 0)
         self.assertEqual((there / "one_again.vtkhdf").read_bytes(), (there / "one.vtkhdf").read_bytes())

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "formats/toml_file/parse_file.hpp"
+#include "formats/toml_file/quoted.hpp"
 #include "tests/formats/scratch.hpp"
 
 namespace palpate {
@@ -22,6 +23,13 @@ std::string outcome(const std::string& text) {
     const sample::Scratch scratch;
     std::ofstream(scratch / "a.toml") << text;
     return sample::refusal([&] { toml_file::parse_file(scratch / "a.toml", "correct it"); });
+}
+
+TEST(TomlFile, a_quoted_text_is_read_back) {
+    for (const std::string text : {"a \"b\" \\c", "line\nfeed\tand bell\a", "it's", "L\xc3\xa4"}) {
+        const toml::table table = toml_file::parse_text("a = " + toml_file::quoted(text), "x.toml", "");
+        EXPECT_EQ(table["a"].value<std::string>(), text);
+    }
 }
 
 TEST(TomlFile, full_stops_of_numbers_texts_and_comments_are_free) {

@@ -40,9 +40,9 @@ ROOMS = {
     "stage_cases": {"requests", "asset", "fem", "imaging", "meshing", "obb"},
     "inspection": {"stage_images", "stage_shapes", "stage_bodies", "asset", "draft"},
     "tissue": {"model"},
-    "draft": {"model", "imaging", "tissue"},
+    "draft": {"model", "imaging", "tissue", "toml_file"},
     "case_builder": {"model", "asset", "cli", "imaging", "requests", "tissue", "toml_file", "json"},
-    "cohort": {"model", "case_builder", "cli", "imaging", "report", "json"},
+    "cohort": {"model", "case_builder", "cli", "imaging", "report", "toml_file", "json"},
     "seeds": {"model", "imaging", "vtk"},
     "hd_conformance": {"model", "devices", "json"},
     "realtime": {"records"},
@@ -59,7 +59,7 @@ ROOMS = {
 }
 ROOMS["experiments"] = {"asset", "drawing", "cli", "session", "fem", "meshing", "obb", "cgal_peer"}  # measures both sides
 COMMANDS = {"model", "archive", "asset", "elasticity", "imaging", "meshing", "obb", "fem", "report", "cli", "case_builder", "cohort", "draft", "inspection", "requests", "stage_images", "stage_shapes",
-            "stage_bodies", "stage_cases", "seeds", "tissue", "json"}
+            "stage_bodies", "stage_cases", "seeds", "tissue", "toml_file", "json"}
 APPS = {"model", "asset", "recording", "cli", "realtime", "collision", "haptics", "devices", "openigtlink", "session", "json"}
 EXECUTABLES = {
     "palpate": {"cli", "model"},

@@ -112,11 +112,14 @@ void check_structures(TableReader& root, const CaseFile& case_file, Mistakes& mi
             mistakes.push_back(table.complaint(table.node("name"), "name",
                                                "is '" + structure.name + "' a second time", "",
                                                "give each structure its own name"));
-        // As an asset refuses it, but before anything is meshed.
-        if (structure.name.find_first_of("/\\") != std::string::npos)
-            mistakes.push_back(table.complaint(table.node("name"), "name", "is '" + structure.name + "'",
-                                               "no '/' and no '\\'",
-                                               "rename it, in the label map that it is from as well"));
+        // As an asset refuses them, but before anything is meshed.
+        nlohmann::ordered_json texts = structure.parameters;
+        texts["name"] = structure.name;
+        for (const auto& [key, text] : texts.items())
+            if (text.is_string() && text.get<std::string>().find_first_of("/\\") != std::string::npos)
+                mistakes.push_back(table.complaint(
+                    table.node(key), key, "is '" + text.get<std::string>() + "'", "no '/' and no '\\'",
+                    "rename it, in the label map that it is from as well"));
         if (imaging::find_recipe(structure.recipe) == nullptr) {
             std::vector<std::string> names;
             for (const imaging::Recipe& recipe : imaging::recipes()) names.push_back(recipe.name);

@@ -2,6 +2,7 @@
 #include "tools/case_builder/kept_case.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -9,6 +10,7 @@
 
 #include "formats/asset/asset.hpp"
 #include "formats/model/errors.hpp"
+#include "formats/toml_file/quoted.hpp"
 #include "tools/case_builder/overrides.hpp"
 #include "tools/case_builder/toml_document.hpp"
 #include "tools/imaging/recipes/recipe.hpp"
@@ -16,20 +18,20 @@
 namespace palpate::case_builder {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 bool is_letter_or_digit(unsigned char c) {
     return std::isalnum(c) != 0;
 }
 
-// ".nii.gz" of "Doe.nii.gz"; none of "Doe.John", of a folder, of a name that is no file's.
+// ".nii.gz" of "Doe.nii.gz"; none of "Doe.John", whose ending may be a name.
 std::string kind_of(const std::filesystem::path& file) {
-    for (const char* kind : {".nii.gz", ".seg.nrrd"})
-        if (file.filename().string().ends_with(kind)) return kind;
-    const std::string extension = file.extension().string();
-    std::error_code none;
-    const bool known = extension.size() > 1 && extension.size() <= 6 &&
-                       std::all_of(extension.begin() + 1, extension.end(), is_letter_or_digit) &&
-                       !std::filesystem::is_directory(file, none);
-    return known ? extension : "";
+    constexpr std::array kinds{".nii.gz", ".seg.nrrd", ".nii", ".nrrd", ".nhdr", ".mha",  ".mhd", ".vti",
+                               ".vtk",    ".dcm",      ".vtp", ".vtu",  ".stl",  ".obj",  ".ply", ".msh",
+                               ".mesh",   ".json",     ".csv", ".tsv",  ".txt",  ".ctbl", ".fcsv"};
+    const std::string name = file.filename().string();
+    const auto kind = std::ranges::find_if(kinds, [&](const char* k) { return name.ends_with(k); });
+    return kind != kinds.end() ? *kind : "";
 }
 
 std::string as_file_name(std::string words) {
@@ -45,7 +47,10 @@ std::filesystem::path resolved(const toml::node& text) {
 
 // A number, a flag or a text as TOML writes it.
 std::string leaf(const toml::node& node) {
-    if (const auto number = node.value_exact<double>()) return fmt::format("{:#}", *number);
+    if (const auto number = node.value_exact<double>()) {
+        const std::string digits = fmt::format("{}", *number);
+        return digits.find_first_of(".en") == std::string::npos ? digits + ".0" : digits;
+    }
     std::ostringstream stream;
     node.visit([&](const auto& value) { stream << value; });
     return stream.str();
@@ -59,7 +64,7 @@ std::string below(const std::string& place, const std::string& key) {
     return place.empty() ? key : place + "_" + key;
 }
 
-// A series' number may stay; its UID leads to the archive that it is from.
+// A series' number may stay; its UID or description leads to the archive that it is from.
 bool may_stay(const std::string& key, const toml::node& node) {
     const auto text = node.value_exact<std::string>();
     return key != "series" || !text ||
@@ -77,7 +82,8 @@ std::string value(const toml::node& node, const std::string& key, const std::str
     if (const toml::table* table = node.as_table()) {
         std::vector<std::string> pairs;
         for (const std::string& inner : keys_as_written(*table))
-            pairs.push_back(inner + " = " + value(*table->get(inner), inner, below(place, inner)));
+            if (may_stay(inner, *table->get(inner)))
+                pairs.push_back(inner + " = " + value(*table->get(inner), inner, below(place, inner)));
         return fmt::format("{{ {} }}", fmt::join(pairs, ", "));
     }
     if (const toml::array* array = node.as_array()) {
@@ -88,7 +94,7 @@ std::string value(const toml::node& node, const std::string& key, const std::str
     }
     if (node.is_string())
         if (const std::filesystem::path file = resolved(node); names_file(key, file))
-            return quoted(as_file_name(place) + kind_of(file));
+            return toml_file::quoted(as_file_name(place) + kind_of(file));
     return leaf(node);
 }
 
@@ -107,7 +113,9 @@ std::string block(const toml::table& table, const std::string& header, const std
             for (const toml::node& element : *array) {
                 const toml::table& each = *element.as_table();
                 const std::string numbered = below(place, fmt::format("{}_{}", key, ++count));
-                const std::string inside = header.empty() ? each["name"].value_or(numbered) : numbered;
+                const std::string name = each["name"].value_or(numbered);
+                // Of a name that is none for a file, another may make the same.
+                const std::string inside = header.empty() && as_file_name(name) == name ? name : numbered;
                 blocks += fmt::format("\n[[{}]]\n{}", inner, block(each, inner, inside));
             }
         } else if (may_stay(key, node)) {
@@ -127,18 +135,37 @@ bool is_asset(const std::filesystem::path& case_file) {
     return case_file.extension() == ".vtkhdf";
 }
 
-nlohmann::ordered_json build_kept_in(const std::filesystem::path& path) {
-    const auto provenance = nlohmann::ordered_json::parse(asset::read_asset(path).provenance, nullptr, false);
-    if (provenance.is_object())
-        if (const auto build = provenance.find("build"); build != provenance.end() && build->is_object())
-            if (const auto kept = build->find("case"); kept != build->end() && kept->is_string())
-                return *build;
-    throw InvalidInput({path.string(), "keeps no case to build again", "an asset of palpate build",
-                        "pass the case file that it was made of"});
+std::string case_kept_in(const std::filesystem::path& path) {
+    return kept_build(path).case_text;
 }
 
-std::string case_kept_in(const std::filesystem::path& path) {
-    return build_kept_in(path)["case"].get<std::string>();
+KeptBuild kept_build(const std::filesystem::path& path) {
+    constexpr int most_threads = 1024;
+    const auto refuse = [&](const char* found) {
+        throw InvalidInput(
+            {path.string(), found, "an asset of palpate build", "pass the case file that it was made of"});
+    };
+    const auto provenance = Json::parse(asset::read_asset(path).provenance, nullptr, false);
+    const Json build = provenance.is_object() ? provenance.value("build", Json()) : Json();
+    if (!build.is_object() || !build.contains("case") || !build["case"].is_string())
+        refuse("keeps no case to build again");
+    KeptBuild kept;
+    kept.case_text = build["case"];
+    kept.structures = build.value("structures", Json());
+    kept.series_left_out = build.contains("series_left_out");
+    const Json inputs = build.value("inputs", Json::object()), steps = build.value("steps", Json::array());
+    for (const auto& [name, digest] : inputs.items()) {
+        if (!digest.is_string()) refuse("names its inputs in a way of its own");
+        kept.inputs[name] = digest;
+    }
+    for (const Json& step : steps)
+        if (step.is_object() && step.contains("threads") && !kept.threads) {
+            const Json& threads = step["threads"];
+            if (!threads.is_number_integer() || threads < 1 || threads > most_threads)
+                refuse("was condensed by a number of threads that is none");
+            kept.threads = threads.get<int>();
+        }
+    return kept;
 }
 
 }  // namespace palpate::case_builder

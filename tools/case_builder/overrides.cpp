@@ -12,13 +12,4 @@ Override parse_override(const std::string& text, const std::filesystem::path& fi
     return {text.substr(0, sign), text.substr(sign + 1), file, line};
 }
 
-std::string quoted(const std::string& text) {
-    std::string quoted = "\"";
-    for (const char letter : text) {
-        if (letter == '"' || letter == '\\') quoted += '\\';
-        quoted += letter;
-    }
-    return quoted + '"';
-}
-
 }  // namespace palpate::case_builder

@@ -17,7 +17,4 @@ struct Override {
 /// key.
 Override parse_override(const std::string& text, const std::filesystem::path& file, int line);
 
-/// A text as TOML writes it, for what an override's value must not be taken for anything else.
-std::string quoted(const std::string& text);
-
 }  // namespace palpate::case_builder

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/case_builder/provenance.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <fmt/format.h>
 
 #include "formats/asset/hdf5/digest.hpp"
 #include "tools/case_builder/cautions.hpp"
-#include "tools/case_builder/kept_case.hpp"
 
 namespace palpate::case_builder {
 namespace {
@@ -61,29 +62,25 @@ Json provenance(const CaseFile& case_file, std::span<const Stage> before, const 
     Json structures = Json::array();
     for (const StructureSpec& structure : case_file.structures)
         structures.push_back(structure_request(structure, "_sha256", asset::sha256_file));
-    return {{"case", case_file.kept},
-            {"inputs", inputs},
-            {"structures", structures},
-            {"steps", steps},
-            {"cautions", cautions_of(case_file)}};
+    Json json{{"case", case_file.kept},
+              {"inputs", inputs},
+              {"structures", structures},
+              {"steps", steps},
+              {"cautions", cautions_of(case_file)}};
+    const std::string& series = case_file.volume_import.series;
+    if (!std::ranges::all_of(series, [](unsigned char c) { return std::isdigit(c) != 0; }))
+        json["series_left_out"] = true;
+    return json;
 }
 
-std::optional<int> threads_of(const std::filesystem::path& asset) {
-    for (const Json& step : build_kept_in(asset).value("steps", Json::array()))
-        if (const auto threads = step.find("threads"); threads != step.end() && threads->is_number_integer())
-            return threads->get<int>();
-    return std::nullopt;
-}
-
-std::vector<std::string> changed_since(const std::filesystem::path& asset, const CaseFile& case_file) {
-    Json then = build_kept_in(asset);
+std::vector<std::string> changed_since(const KeptBuild& then, const CaseFile& case_file) {
     const Json now = provenance(case_file, {});
     std::vector<std::string> changed;
     for (const auto& [name, digest] : now["inputs"].items())
-        if (then["inputs"].value(name, "") != digest)
+        if (const auto found = then.inputs.find(name); found == then.inputs.end() || found->second != digest)
             changed.push_back(name.substr(0, name.rfind("_sha256")));
-    if (then["structures"] != now["structures"]) changed.emplace_back("structures");
-    if (changed.empty() && then["case"] != now["case"]) changed.emplace_back("case");
+    if (then.structures != now["structures"]) changed.emplace_back("structures");
+    if (changed.empty() && then.case_text != case_file.kept) changed.emplace_back("case");
     return changed;
 }
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-#include <filesystem>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "tools/case_builder/case_file.hpp"
+#include "tools/case_builder/kept_case.hpp"
 #include "tools/case_builder/stage_runner.hpp"
 
 namespace palpate::case_builder {
@@ -19,11 +18,8 @@ namespace palpate::case_builder {
 nlohmann::ordered_json provenance(const CaseFile& case_file, std::span<const Stage> before,
                                   const StageRunner* runner = nullptr);
 
-/// How many threads condensed an asset's bodies, if its provenance tells.
-std::optional<int> threads_of(const std::filesystem::path& asset);
-
 /// What differs between a case and the one that an asset was built of: names of inputs whose content is
-/// another, "structures", or else "case". Throws InvalidInput if the asset keeps none.
-std::vector<std::string> changed_since(const std::filesystem::path& asset, const CaseFile& case_file);
+/// another, "structures", or else "case".
+std::vector<std::string> changed_since(const KeptBuild& then, const CaseFile& case_file);
 
 }  // namespace palpate::case_builder

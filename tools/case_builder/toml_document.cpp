@@ -10,6 +10,7 @@
 #include "formats/model/errors.hpp"
 #include "formats/model/label_map.hpp"
 #include "formats/toml_file/parse_file.hpp"
+#include "formats/toml_file/quoted.hpp"
 #include "tools/case_builder/kept_case.hpp"
 
 namespace palpate::case_builder {
@@ -67,7 +68,7 @@ toml::table parsed(const Override& override) {
     try {
         return parse(override.value);
     } catch (const toml::parse_error&) {
-        return parse(quoted(override.value));
+        return parse(toml_file::quoted(override.value));
     }
 }
 

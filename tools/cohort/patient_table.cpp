@@ -11,6 +11,7 @@
 #include "formats/model/errors.hpp"
 #include "formats/model/label_map.hpp"
 #include "formats/model/small_file.hpp"
+#include "formats/toml_file/quoted.hpp"
 
 namespace palpate::cohort {
 namespace {
@@ -93,7 +94,7 @@ Patient patient_of(const std::vector<std::string>& columns, const std::vector<st
         else if (column == "problem")
             patient.mistake = cell;
         else if (const auto key = text_columns.find(column); key != text_columns.end())
-            patient.overrides.push_back({key->second, case_builder::quoted(cell), path, line});
+            patient.overrides.push_back({key->second, toml_file::quoted(cell), path, line});
         else
             patient.overrides.push_back({column, cell, path, line});
     }

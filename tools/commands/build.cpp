@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <fmt/format.h>
+#include <optional>
 #include <spdlog/spdlog.h>
 
 #include "formats/asset/asset.hpp"
 #include "formats/model/errors.hpp"
+#include "formats/toml_file/quoted.hpp"
 #include "tools/case_builder/case_check.hpp"
 #include "tools/case_builder/cautions.hpp"
 #include "tools/case_builder/forecast.hpp"
@@ -114,6 +116,12 @@ case_builder::StageRecord run_one(const Build& build, const std::string& name) {
     return run(build, stage);
 }
 
+case_builder::KeptBuild read_kept(const std::filesystem::path& original, const std::filesystem::path& again) {
+    if (std::filesystem::exists(again) && std::filesystem::equivalent(original, again))
+        throw UsageError({again.string(), "is the asset that is to be built again", "another name", ""});
+    return case_builder::kept_build(original);
+}
+
 // A case may be built again on the inputs that it was built on, to see that it becomes the same, or on
 // others.
 void tell_what_changed(const std::vector<std::string>& changed, const std::filesystem::path& original) {
@@ -179,22 +187,26 @@ int main(int argc, char** argv) {
                  "other work");
     return command.run(argc, argv, [&](cli::Session& session) {
         require_asset_name(output);
+        std::optional<case_builder::KeptBuild> kept;
+        if (case_builder::is_asset(case_path) && stage_name.empty()) kept = read_kept(case_path, output);
         std::vector<case_builder::Override> overrides = overrides_of(settings);
         for (const auto& [key, file] : {std::pair("volume", volume), std::pair("labels", labels)})
             if (!file.empty())
-                overrides.push_back({fmt::format("input.{}", key), case_builder::quoted(file.string()),
+                overrides.push_back({fmt::format("input.{}", key), toml_file::quoted(file.string()),
                                      fmt::format("--{}", key), 1});
         case_builder::CaseFile case_file = case_builder::read_case_file(case_path, overrides);
         case_file.sign = sign;
+        if (kept && kept->series_left_out && case_file.volume_import.series.empty())
+            throw UsageError({"--set input.series",
+                              "is missing, for the asset does not keep which series was chosen",
+                              "its number, UID or description", "'palpate import FOLDER --list' lists them"});
         case_builder::check_case_file(case_path, case_file, overrides);
         if (stage_name.empty())
             for (const std::string& doubt : case_builder::doubts_of(case_file)) spdlog::warn("{}", doubt);
         if (parts.empty()) parts = std::filesystem::path(output).replace_extension(".parts");
         const case_builder::BuildPaths paths{parts, output,
                                              std::filesystem::path(output).replace_extension(".html")};
-        const bool again = case_builder::is_asset(case_path) && stage_name.empty();
-        if (again && !session.threads_given)
-            session.threads = case_builder::threads_of(case_path).value_or(session.threads);
+        if (kept && !session.threads_given) session.threads = kept->threads.value_or(session.threads);
         const case_builder::StageRunner runner(cli::programs_folder(), parts, session.threads, session.quiet);
         if (!session.force) {
             require_our_output(runner, "pack", paths.asset);
@@ -205,13 +217,13 @@ int main(int argc, char** argv) {
             stages_of(case_file, paths, virtual_clock ? TouchClock::virtual_time : TouchClock::real);
         const Build build{case_file, paths, stages, runner};
         if (forecast_only) return forecast(build, stage_name);
-        const auto changed = again ? changed_since(case_path, case_file) : std::vector<std::string>();
+        const auto changed = kept ? changed_since(*kept, case_file) : std::vector<std::string>();
         tell_what_changed(changed, case_path);
         const auto records = stage_name.empty() ? run_all(build) : std::vector{run_one(build, stage_name)};
         nlohmann::ordered_json result{{"asset", paths.asset.string()},
                                       {"report", paths.report.string()},
                                       {"stages", stages_json(records)}};
-        if (again && changed.empty()) result["again"] = compared(paths.asset, case_path);
+        if (kept && changed.empty()) result["again"] = compared(paths.asset, case_path);
         return result;
     });
 }

@@ -9,6 +9,7 @@
 #include <spdlog/spdlog.h>
 
 #include "formats/model/errors.hpp"
+#include "formats/toml_file/quoted.hpp"
 #include "tools/case_builder/case_check.hpp"
 #include "tools/case_builder/child_process.hpp"
 #include "tools/cli/command.hpp"
@@ -42,11 +43,11 @@ const NoteSink warn = [](std::string_view said) { spdlog::warn("{}", said); };
 // How the case file, which will lie beside `output`, names a file.
 std::string path_from(const fs::path& output, const fs::path& file) {
     const fs::path folder = fs::absolute(output).parent_path();
-    return draft::quoted(fs::absolute(file).lexically_proximate(folder).string());
+    return toml_file::quoted(fs::absolute(file).lexically_proximate(folder).string());
 }
 
 std::string import_lines(const std::string& label, const std::string& cleaning) {
-    return fmt::format("recipe = \"import\"\nlabel = {}\n{}", draft::quoted(label), cleaning);
+    return fmt::format("recipe = \"import\"\nlabel = {}\n{}", toml_file::quoted(label), cleaning);
 }
 
 draft::CaseDraft draft_of_labels(const InitRequest& request, LabelMap map, const draft::Wishes& wishes) {
@@ -56,7 +57,7 @@ draft::CaseDraft draft_of_labels(const InitRequest& request, LabelMap map, const
     if (!request.label_names.empty())
         found.input += fmt::format("label_names = {}\n", fs::is_regular_file(request.label_names)
                                                              ? path_from(request.output, request.label_names)
-                                                             : draft::quoted(request.label_names));
+                                                             : toml_file::quoted(request.label_names));
     for (draft::DraftStructure& structure : found.structures)
         structure.recipe = import_lines(
             structure.name,
@@ -186,7 +187,8 @@ draft::CaseDraft draft_of_volume(InitRequest request, const Volume& volume, draf
         },
         warn);
     found.input = fmt::format("volume = {}\n", path_from(request.output, request.input));
-    if (!request.series.empty()) found.input += fmt::format("series = {}\n", draft::quoted(request.series));
+    if (!request.series.empty())
+        found.input += fmt::format("series = {}\n", toml_file::quoted(request.series));
     return found;
 }
 
@@ -212,7 +214,7 @@ draft::CaseDraft draft_of(const InitRequest& request, cli::Session& session) {
 void check(const InitRequest& request) {
     if (request.organ.find_first_of(":\n\r\t") != std::string::npos)
         throw UsageError(
-            {"--organ", draft::quoted(request.organ), "a name without colons and line breaks", ""});
+            {"--organ", toml_file::quoted(request.organ), "a name without colons and line breaks", ""});
     for (const auto& [option, points] :
          {std::pair("--seed", &request.seeds), std::pair("--background-seed", &request.background_seeds)})
         for (const std::string& point : *points) draft::check_point(point, option);

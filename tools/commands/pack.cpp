@@ -5,7 +5,6 @@
 #include "formats/asset/asset.hpp"
 #include "formats/asset/hdf5/digest.hpp"
 #include "tools/cli/command.hpp"
-#include "tools/fem/condensation/sway.hpp"
 #include "tools/fem/feel/feel.hpp"
 #include "tools/fem/solvers/dense_kernels.hpp"
 #include "tools/stages/case.hpp"
@@ -50,8 +49,8 @@ int main(int argc, char** argv) {
     declare(command, request);
     return command.run(argc, argv, [&](cli::Session& session) {
         cli::StagedFile staged = session.stage(request.output);
-        fem::set_linear_algebra_threads(session.threads);
-        const Case patient_case =
+        fem::set_linear_algebra_threads(1);  // for last digits depend on it
+        const auto [patient_case, hanging] =
             make_case(request, session.threads,
                       [&](std::string_view what, double done) { session.progress.step(what, done); });
         Json feel = Json::array(), felt = Json::array();
@@ -60,10 +59,9 @@ int main(int argc, char** argv) {
             for (Json& row : stages::felt_rows(body)) felt.push_back(std::move(row));
         }
         std::vector<std::string> warnings = unfelt(patient_case, session.threads);
-        for (const DeformableBody& body : patient_case.deformable_bodies)
-            if (const fem::Sway sway = fem::sway_of(body); fem::hangs(body, sway))
-                warnings.push_back("'" + body.name + "' " + fem::hanging_text(sway) +
-                                   "; hold it there too ('fixed'), or thicken what links it ('close_mm')");
+        for (const std::string& sentence : hanging)
+            warnings.push_back(sentence +
+                               "; hold it there too ('fixed'), or thicken what links it ('close_mm')");
         if (!request.scan.empty() && !patient_case.scan)
             warnings.push_back("the scan shows nothing of the bodies and is left out");
         for (const std::string& warning : warnings) spdlog::warn("{}", warning);

@@ -75,7 +75,4 @@ std::string plausible_unit(double extent);
 /// Writes the draft as a case file with comments.
 std::string case_text(const CaseDraft& draft);
 
-/// A text as TOML writes it, in quotes.
-std::string quoted(const std::string& text);
-
 }  // namespace palpate::draft

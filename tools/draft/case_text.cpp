@@ -3,6 +3,7 @@
 #include <cctype>
 #include <fmt/format.h>
 
+#include "formats/toml_file/quoted.hpp"
 #include "tools/draft/case_draft.hpp"
 #include "tools/imaging/voxels/hounsfield.hpp"
 
@@ -18,11 +19,11 @@ std::string body_name(const std::string& label) {
 }
 
 std::string region_text(const DraftRegion& region) {
-    std::string text = fmt::format("\n[[deformable.region]]\nlabel = {}\n", quoted(region.label));
+    std::string text = fmt::format("\n[[deformable.region]]\nlabel = {}\n", toml_file::quoted(region.label));
     text += region.tissue.empty()
                 ? "# No preset is known for it: these are a liver's. Put in what you know.\n"
                   "youngs_modulus_kpa = 6.3\npoissons_ratio = 0.45\n"
-                : fmt::format("tissue = {}\n", quoted(region.tissue));
+                : fmt::format("tissue = {}\n", toml_file::quoted(region.tissue));
     if (region.mesh_region > 0) text += fmt::format("mesh_region = {}\n", region.mesh_region);
     if (region.cell_size > 0) text += fmt::format("cell_size_mm = {:g}\n", region.cell_size);
     return text;
@@ -42,40 +43,29 @@ std::string held_text(const CaseDraft& draft) {
             draft.held_towards.y(), draft.held_towards.z());
     std::string rules;
     for (const std::string& label : draft.held_by)
-        rules += fmt::format("{}{{ touching = {} }}", rules.empty() ? "" : ", ", quoted(label));
+        rules += fmt::format("{}{{ touching = {} }}", rules.empty() ? "" : ", ", toml_file::quoted(label));
     return fmt::format("# Held is {}.\nfixed = [{}]\n", draft.why_held, rules);
 }
 
 std::string rigid_text(const DraftRigid& body) {
     return fmt::format(
-        "[[rigid]]\nname = {}\nlabel = {}\n{}\n", quoted(body_name(body.label)), quoted(body.label),
+        "[[rigid]]\nname = {}\nlabel = {}\n{}\n", toml_file::quoted(body_name(body.label)),
+        toml_file::quoted(body.label),
         body.by_grey_values ? fmt::format("isovalue_hu = {:.1f}\n", imaging::bone_from_hu) : "");
 }
 
 }  // namespace
 
-std::string quoted(const std::string& text) {
-    std::string escaped = "\"";
-    for (const char c : text) {
-        if (c == '"' || c == '\\') escaped += '\\';
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-            escaped += fmt::format("\\u{:04x}", static_cast<unsigned char>(c));
-        else
-            escaped += c;
-    }
-    return escaped + '"';
-}
-
 std::string case_text(const CaseDraft& draft) {
     std::string text = fmt::format(
         "# A first draft: it builds as it is, and waits for what you know better. Positions are LPS mm.\n"
         "schema = 1\nname = {}\n{}",
-        quoted(body_name(draft.name)), draft.input.empty() ? "" : "\n[input]\n" + draft.input);
+        toml_file::quoted(body_name(draft.name)), draft.input.empty() ? "" : "\n[input]\n" + draft.input);
     for (const DraftStructure& structure : draft.structures)
-        text += fmt::format("\n# {}\n[[structure]]\nname = {}\n{}", structure.why, quoted(structure.name),
-                            structure.recipe);
-    text += fmt::format("\n[[deformable]]\nname = {}\n{}{}", quoted(body_name(draft.name)), draft.mesh,
-                        held_text(draft));
+        text += fmt::format("\n# {}\n[[structure]]\nname = {}\n{}", structure.why,
+                            toml_file::quoted(structure.name), structure.recipe);
+    text += fmt::format("\n[[deformable]]\nname = {}\n{}{}", toml_file::quoted(body_name(draft.name)),
+                        draft.mesh, held_text(draft));
     for (const DraftRegion& region : draft.regions) text += region_text(region);
     if (!draft.rigid.empty())
         text += "\n# Neighbours that do not give way; make one [[deformable]] if it should.\n";

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "formats/model/errors.hpp"
+#include "formats/toml_file/quoted.hpp"
 #include "tools/imaging/recipes/segmentation.hpp"
 #include "tools/imaging/voxels/seeds.hpp"
 
@@ -20,7 +21,7 @@ using imaging::RecipeValue;
 using imaging::StructureRecipe;
 
 std::string toml_value(const RecipeValue& value) {
-    if (const auto* text = std::get_if<std::string>(&value)) return quoted(*text);
+    if (const auto* text = std::get_if<std::string>(&value)) return toml_file::quoted(*text);
     if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
     if (const auto* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
     return fmt::format("[{}]", fmt::join(std::get<std::vector<double>>(value), ", "));
@@ -28,7 +29,7 @@ std::string toml_value(const RecipeValue& value) {
 
 // As a case file has it, parameters in the order in which they were written.
 std::string toml_lines(const StructureRecipe& structure, const std::string& seeds_file) {
-    std::string lines = fmt::format("recipe = {}\n", quoted(structure.recipe));
+    std::string lines = fmt::format("recipe = {}\n", toml_file::quoted(structure.recipe));
     for (const std::string& name : structure.order)
         if (name != "recipe")
             lines +=

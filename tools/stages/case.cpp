@@ -46,7 +46,10 @@ Json read_provenance(const std::filesystem::path& path) {
         throw InvalidInput({path.string(), error.what(), "JSON", "mend the file"});
     }
     if (json.contains("schema")) json.erase("schema");  // "palpate.mesh/1" is no path
-    refuse_paths(json, path.string());
+    for (const auto& [key, value] : json.items()) {
+        refuse_paths(key, path.string());
+        if (key != "case") refuse_paths(value, path.string());  // whose files have lost their folders already
+    }
     return json;
 }
 
@@ -135,7 +138,7 @@ void draw_in(const DrawnColour& drawn, Case& made) {
 
 }  // namespace
 
-Case make_case(const PackRequest& request, int threads, const ProgressCallback& progress) {
+MadeCase make_case(const PackRequest& request, int threads, const ProgressCallback& progress) {
     Case made{.name = request.name,
               .rigid_bodies = {},
               .deformable_bodies = {},
@@ -152,19 +155,20 @@ Case make_case(const PackRequest& request, int threads, const ProgressCallback& 
         made.scan = imaging::scan_of(imaging::read_volume(request.scan), points_of(made));
         if (made.scan && imaging::shows_face(*made.scan)) notes.push_back(face_note);
     }
+    std::vector<std::string> hanging;
     for (DeformableBody& body : made.deformable_bodies) {
         progress("press " + body.name + " all over", 0.3);
         body.feel = fem::feel_of(body, made.haptics.tool_radius, threads);
         if (const fem::Sway sway = fem::sway_of(body); fem::hangs(body, sway))
-            notes.push_back("\u2018" + body.name + "\u2019 " + fem::hanging_text(sway) + ".");
+            hanging.push_back("\u2018" + body.name + "\u2019 " + fem::hanging_text(sway));
     }
+    for (const std::string& sentence : hanging) notes.push_back(sentence + ".");
     made.provenance = Json{
         {"software", cli::software_versions()},
-        {"threads", threads},
         {"build", read_provenance(request.provenance)},
         {"meshes", read_mesh_results(request.mesh_results)},
         {"notes", notes}}.dump();
-    return made;
+    return {std::move(made), std::move(hanging)};
 }
 
 }  // namespace palpate::stages

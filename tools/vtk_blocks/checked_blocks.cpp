@@ -65,8 +65,9 @@ bool BlocksChecked::has_no_more_texts_than_announced(vtkXMLDataElement& array, d
     array.GetScalarAttribute("NumberOfTuples", tuples);
     array.GetScalarAttribute("NumberOfComponents", components);
     const double announced = static_cast<double>(tuples) * components;
-    vtkTypeInt64 offset = 0;
-    const bool appended = array.GetScalarAttribute("offset", offset) != 0;
+    vtkTypeInt64 offset = 0;  // as VTK takes one that is no number
+    const bool appended = array.GetAttribute("offset") != nullptr;
+    array.GetScalarAttribute("offset", offset);
     const char* const format = array.GetAttribute("format");
     const bool ascii = format == nullptr || std::strcmp(format, "binary") != 0;
     std::array<char, 4096> letters;

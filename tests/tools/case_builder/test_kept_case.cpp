@@ -47,7 +47,7 @@ name = 'left lobe'
 recipe = 'grow-from-seeds'
 smooth_mm = 2
 open_mm = 0.1
-seeds_file = "left_lobe_seeds_file.json"
+seeds_file = "structure_1_seeds_file.json"
 
 [[deformable]]
 name = 'liver'
@@ -90,6 +90,35 @@ TEST_F(KeptCase, has_what_goes_before_the_case_file) {
 TEST_F(KeptCase, knows_a_table_of_label_names_from_a_scheme) {
     std::ofstream(folder_ / "totalsegmentator") << "1 liver\n";
     EXPECT_NE(of(as_written).find("label_names = \"label_names\"\n"), std::string::npos);
+}
+
+TEST_F(KeptCase, keeps_numbers_as_numbers_and_texts_as_texts) {
+    std::string numbers = as_written;
+    numbers.insert(numbers.find("tool_radius_mm"), "max_force_n = 1e-5\n");
+    numbers.replace(numbers.find("name = \"liver\""), 14, R"(name = "it's \"x\" \u0007")");
+    for (const char* number : {"1e-5", "1e20", "-0.0", "100.0", "0.1"}) {
+        std::string text = numbers;
+        text.replace(text.find("0.1\n"), 3, number);
+        const std::string once = of(text);
+        EXPECT_EQ(of(once), once) << once;
+        const auto read = read_case_file(folder_ / "case.toml").structures.at(0).parameters["open_mm"];
+        EXPECT_TRUE(read.is_number_float());
+        EXPECT_EQ(read, std::stod(number));
+    }
+}
+
+TEST_F(KeptCase, leaves_a_series_out_of_inline_tables_too) {
+    std::string text = as_written;
+    const std::size_t begin = text.find("[input]"), end = text.find("[[structure]]");
+    text.replace(begin, end - begin, "input = { volume = \"ct\", series = \"1.2.840.113619.2\" }\n");
+    EXPECT_NE(of(text).find("input = { volume = \"input_volume\" }\n"), std::string::npos) << of(text);
+}
+
+TEST_F(KeptCase, calls_files_apart_whose_structures_names_differ_in_letters_that_no_file_has) {
+    std::string text = as_written;
+    text += "[[structure]]\nname = \"left_lobe\"\nrecipe = \"organ\"\nseeds_file = \"b.Smith\"\n";
+    EXPECT_NE(of(text).find("seeds_file = \"structure_1_seeds_file.json\""), std::string::npos) << of(text);
+    EXPECT_NE(of(text).find("seeds_file = \"left_lobe_seeds_file\""), std::string::npos) << of(text);
 }
 
 TEST_F(KeptCase, is_not_in_what_is_no_asset) {

@@ -154,9 +154,5 @@ TEST(CaseDraft, tetrahedra_keep_their_regions_and_take_the_tissue_of_the_files_n
     EXPECT_EQ(plausible_unit(0.18), "m");
 }
 
-TEST(CaseText, escapes_what_toml_would_read_otherwise) {
-    EXPECT_EQ(quoted("a \"b\" \\c"), R"("a \"b\" \\c")");
-}
-
 }  // namespace
 }  // namespace palpate::draft

@@ -76,6 +76,7 @@ TEST_F(Texts, are_no_more_than_an_array_announces) {
     EXPECT_EQ(texts()->GetValue(1), "b");
     EXPECT_FALSE(reads(R"(NumberOfTuples="1" format="ascii")", "97 0 98 0"));
     EXPECT_FALSE(reads(R"(NumberOfTuples="1" format="appended" offset="0")", "", appended));
+    EXPECT_FALSE(reads(R"(NumberOfTuples="1" format="appended" offset="x")", "", appended));
     EXPECT_FALSE(reads(R"(NumberOfTuples="x" format="ascii")", "97 0 98 0"));
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <numbers>
 #include <unistd.h>
 
 #include "formats/model/errors.hpp"
@@ -62,6 +64,19 @@ class NodeLists : public testing::Test {
     }
     std::filesystem::path file_;
 };
+
+TEST(NodeRules, a_surface_faces_a_way_within_45_degrees) {
+    const auto middle_of_top_picked = [](double degrees) {
+        TetMesh mesh = test::block_mesh({4, 4, 4}, {4, 4, 4});
+        const Nodes middle = fixed(mesh, {"sphere:2,2,4,0.5"});
+        for (Eigen::Vector3d& p : mesh.rest_positions)
+            p.z() += p.y() * std::tan(degrees * std::numbers::pi / 180);
+        const Nodes picked = fixed(mesh, {"facing:0,0,1"});
+        return std::ranges::binary_search(picked, middle.at(0));
+    };
+    EXPECT_TRUE(middle_of_top_picked(40));
+    EXPECT_FALSE(middle_of_top_picked(50));
+}
 
 TEST(NodeRules, every_kind_picks_the_surface_nodes_it_describes) {
     const TetMesh mesh = test::block_mesh({4, 4, 4}, {4, 4, 4});
