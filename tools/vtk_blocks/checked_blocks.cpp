@@ -8,6 +8,7 @@
 #include <span>
 #include <string_view>
 #include <vtkInputStream.h>
+#include <vtkNew.h>
 
 namespace palpate::vtk_blocks {
 namespace {
@@ -50,6 +51,17 @@ void drop_texts(vtkXMLDataElement& element) {
         else
             drop_texts(nested);
     }
+}
+
+void complete_pieces(vtkXMLDataElement& element) {
+    if (std::strcmp(element.GetName(), "Piece") == 0 &&
+        element.FindNestedElementWithName("PointData") == nullptr) {
+        const vtkNew<vtkXMLDataElement> none;
+        none->SetName("PointData");
+        element.AddNestedElement(none);
+    }
+    for (int n = 0; n < element.GetNumberOfNestedElements(); ++n)
+        complete_pieces(*element.GetNestedElement(n));
 }
 
 bool BlocksChecked::texts_fit(vtkXMLDataElement& element, double room) {

@@ -40,6 +40,10 @@ bool knows_types(vtkXMLDataElement& element);
 /// and VTK would write more of them than there are points or cells.
 void drop_texts(vtkXMLDataElement& element);
 
+/// Gives every piece below an element its PointData: without, VTK crashes over an array of cells that is too
+/// short.
+void complete_pieces(vtkXMLDataElement& element);
+
 /// One of VTK's readers of XML, which complains of compressed data beyond what set_room() says instead of
 /// allocating them, of arrays of types that VTK does not know, and of more texts than there is room for.
 template <typename Reader>
@@ -63,6 +67,7 @@ class WithCheckedBlocks : public Reader {
             return 0;
         }
         drop_texts(*file);
+        complete_pieces(*file);
         auto& parser = *BlocksChecked::SafeDownCast(this->XMLParser);
         if (file->GetAttribute("compressor") != nullptr &&
             !parser.fit(*file, room_, std::filesystem::file_size(this->GetFileName()))) {
