@@ -58,4 +58,17 @@ double six_volume(const TetMesh& mesh, std::size_t t) {
     return (point(1) - point(0)).cross(point(2) - point(0)).dot(point(3) - point(0));
 }
 
+std::vector<Eigen::Vector3d> surface_normals(const TriangleMesh& surface) {
+    std::vector<Eigen::Vector3d> normals(surface.vertices.size(), Eigen::Vector3d::Zero());
+    for (const Triangle& triangle : surface.triangles) {
+        const auto corner = [&](std::size_t c) -> const Eigen::Vector3d& {
+            return surface.vertices[static_cast<std::size_t>(triangle[c])];
+        };
+        const Eigen::Vector3d twice_area = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+        for (const std::int32_t vertex : triangle) normals[static_cast<std::size_t>(vertex)] += twice_area;
+    }
+    for (Eigen::Vector3d& normal : normals) normal.normalize();
+    return normals;
+}
+
 }  // namespace palpate

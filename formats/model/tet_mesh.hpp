@@ -41,6 +41,10 @@ struct BoundarySurface {
 /// order of their tetrahedra, so equal meshes give equal surfaces.
 BoundarySurface boundary_surface(const TetMesh& mesh);
 
+/// Unit normals of a surface's vertices, out of the body, weighted by the areas of their triangles; zero
+/// where these cancel each other.
+std::vector<Eigen::Vector3d> surface_normals(const TriangleMesh& surface);
+
 /// Returns six times the signed volume of tetrahedron `t`, mm³.
 double six_volume(const TetMesh& mesh, std::size_t t);
 

@@ -64,11 +64,9 @@ std::string below(const std::string& place, const std::string& key) {
     return place.empty() ? key : place + "_" + key;
 }
 
-// A series' number may stay; its UID or description leads to the archive that it is from.
 bool may_stay(const std::string& key, const toml::node& node) {
     const auto text = node.value_exact<std::string>();
-    return key != "series" || !text ||
-           std::ranges::all_of(*text, [](unsigned char c) { return std::isdigit(c) != 0; });
+    return key != "series" || !text || keeps_series(*text);
 }
 
 bool names_file(const std::string& key, const std::filesystem::path& file) {
@@ -126,6 +124,10 @@ std::string block(const toml::table& table, const std::string& header, const std
 }
 
 }  // namespace
+
+bool keeps_series(const std::string& series) {
+    return std::ranges::all_of(series, [](unsigned char c) { return std::isdigit(c) != 0; });
+}
 
 std::string kept_case(const toml::table& document) {
     return block(document, "", "");

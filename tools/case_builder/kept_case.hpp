@@ -14,6 +14,10 @@ namespace palpate::case_builder {
 /// called, for which their keys stand ("volume.nii.gz", "liver_seeds_file.json").
 std::string kept_case(const toml::table& document);
 
+/// Whether the choice of a series may stay: its number; a UID or description leads to the archive that it is
+/// from.
+bool keeps_series(const std::string& series);
+
 /// What an asset says of its build.
 struct KeptBuild {
     std::string case_text;                      ///< see kept_case()

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/case_builder/provenance.hpp"
 
-#include <algorithm>
-#include <cctype>
 #include <fmt/format.h>
 
 #include "formats/asset/hdf5/digest.hpp"
@@ -67,9 +65,7 @@ Json provenance(const CaseFile& case_file, std::span<const Stage> before, const 
               {"structures", structures},
               {"steps", steps},
               {"cautions", cautions_of(case_file)}};
-    const std::string& series = case_file.volume_import.series;
-    if (!std::ranges::all_of(series, [](unsigned char c) { return std::isdigit(c) != 0; }))
-        json["series_left_out"] = true;
+    if (!keeps_series(case_file.volume_import.series)) json["series_left_out"] = true;
     return json;
 }
 

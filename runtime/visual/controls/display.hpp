@@ -33,8 +33,8 @@ bool display_lost();
 void require_display();
 
 /// Runs what draws or reads pixels, in the thread that draws; nothing once the display is lost. Is left on
-/// the spot where it is lost meanwhile, without destroying what the speech holds: Mesa's software renderer
-/// (22.3) smashed its stack where it went on after that. So a speech holds no lock of ours.
+/// the spot where the connection goes meanwhile, without destroying what the speech holds: Mesa's software
+/// renderer (22.3) smashed its stack where it went on after that. So a speech holds no lock of ours.
 void speak_to_display(const std::function<void()>& speech);
 
 }  // namespace palpate::visual

@@ -82,20 +82,6 @@ Facing facing_of(const std::vector<double>& n, const std::string& rule) {
     return facing;
 }
 
-// Of all nodes of the mesh; zero inside.
-std::vector<Eigen::Vector3d> surface_normals(const TetMesh& mesh, const BoundarySurface& boundary) {
-    std::vector<Eigen::Vector3d> normals(mesh.rest_positions.size(), Eigen::Vector3d::Zero());
-    for (const Triangle& triangle : boundary.surface.triangles) {
-        const auto corner = [&](std::size_t i) -> const Eigen::Vector3d& {
-            return boundary.surface.vertices[triangle[i]];
-        };
-        const Eigen::Vector3d twice_area = (corner(1) - corner(0)).cross(corner(2) - corner(0));
-        for (const std::int32_t vertex : triangle) normals[boundary.nodes[vertex]] += twice_area;
-    }
-    for (Eigen::Vector3d& normal : normals) normal.normalize();
-    return normals;
-}
-
 // "--fixed sphere:1,2,3.5,4".
 std::string rule_text(std::string_view option, std::string_view kind, const std::vector<double>& numbers) {
     return fmt::format("{} {}:{}", option, kind, fmt::join(numbers, ","));
@@ -146,8 +132,12 @@ struct PredicateOf {
     }
     Predicate operator()(const Facing& facing) const {
         constexpr double half_right_angle = 0.7071;  // its cosine
-        return [normals = surface_normals(mesh, boundary), direction = facing.direction.normalized()](
-                   std::int32_t node) { return normals[node].dot(direction) >= half_right_angle; };
+        const std::vector<Eigen::Vector3d> normals = surface_normals(boundary.surface);
+        std::vector<bool> faces(mesh.rest_positions.size(), false);
+        for (std::size_t vertex = 0; vertex < normals.size(); ++vertex)
+            faces[boundary.nodes[vertex]] =
+                normals[vertex].dot(facing.direction.normalized()) >= half_right_angle;
+        return [faces = std::move(faces)](std::int32_t node) { return faces[node]; };
     }
     Predicate operator()(const OfRegion& region) const {
         const std::int32_t value = require_label(mesh.region_names, region.name, rule).value;

@@ -9,17 +9,12 @@
 namespace palpate::fem {
 namespace {
 
-// Unit normals of the contact nodes, out of the body, weighted by the areas of their triangles.
 std::vector<Eigen::Vector3d> contact_normals(const DeformableBody& body) {
-    std::vector<Eigen::Vector3d> of_node(body.mesh.rest_positions.size(), Eigen::Vector3d::Zero());
-    const auto& [vertices, triangles] = body.boundary.surface;
-    for (const Triangle& triangle : triangles) {
-        const auto corner = [&](std::size_t c) { return vertices[triangle[c]]; };
-        const Eigen::Vector3d area = (corner(1) - corner(0)).cross(corner(2) - corner(0));
-        for (const std::int32_t vertex : triangle) of_node[body.boundary.nodes[vertex]] += area;
-    }
+    const std::vector<Eigen::Vector3d> of_vertex = surface_normals(body.boundary.surface);
     std::vector<Eigen::Vector3d> normals;
-    for (const std::int32_t node : body.contact_nodes) normals.push_back(of_node[node].normalized());
+    for (const std::int32_t node : body.contact_nodes)
+        normals.push_back(of_vertex[static_cast<std::size_t>(
+            std::ranges::lower_bound(body.boundary.nodes, node) - body.boundary.nodes.begin())]);
     return normals;
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double felt_just = 0.1;  // N
+constexpr double felt_just = 0.1;  // N, of a light touch
 constexpr double most_of_its_extent = 0.25;
 
 }  // namespace

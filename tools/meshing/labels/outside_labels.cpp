@@ -64,18 +64,11 @@ class OutsideProbe {
 
 std::vector<std::int32_t> outside_labels(const TetMesh& mesh, const LabelMap& map) {
     const BoundarySurface boundary = boundary_surface(mesh);
-    std::vector<Eigen::Vector3d> normals(boundary.nodes.size(), Eigen::Vector3d::Zero());
-    for (const Triangle& t : boundary.surface.triangles) {
-        const auto point = [&](std::size_t c) -> const Eigen::Vector3d& {
-            return boundary.surface.vertices[t[c]];
-        };
-        const Eigen::Vector3d area = (point(1) - point(0)).cross(point(2) - point(0));
-        for (const std::int32_t vertex : t) normals[vertex] += area;
-    }
+    const std::vector<Eigen::Vector3d> normals = surface_normals(boundary.surface);
     const OutsideProbe probe(mesh, map);
     std::vector<std::int32_t> labels(mesh.rest_positions.size(), -1);
     for (std::size_t v = 0; v < boundary.nodes.size(); ++v)
-        labels[boundary.nodes[v]] = probe.label_beyond(boundary.surface.vertices[v], normals[v].normalized());
+        labels[boundary.nodes[v]] = probe.label_beyond(boundary.surface.vertices[v], normals[v]);
     return labels;
 }
 
