@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # tests/fuzz.sh [RUNS [READER ...]]: gives each reader RUNS inputs (10^6 without a number), each at most a second long, under
 # AddressSanitizer and UndefinedBehaviorSanitizer, and prints what came of it. MORE_SEEDS=FOLDER: files of real patients
-# to begin with, in FOLDER/<reader>.
+# to begin with, in FOLDER/<reader>. SEED=N: another run than that of seed 1.
 set -euo pipefail
 runs=${1:-1000000}
 shift $(($# > 0))

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """palpate condense: rules that hold and let touch, elements, bodies it refuses, and what an interrupt leaves."""
+import contextlib
 import itertools
 import json
 import os
@@ -252,8 +253,11 @@ class Condense(unittest.TestCase):
         seen = []
 
         def being_written(process):
+            # It has no name yet, but a process's open files tell where they lie and how long they are.
+            files = pathlib.Path(f"/proc/{process.pid}/fd")
             while process.poll() is None and not seen:
-                seen.extend(path for path in self.folder.glob(".part*") if path.name.endswith(self.body.name))
+                with contextlib.suppress(FileNotFoundError):
+                    seen.extend(file for file in files.iterdir() if os.readlink(file).startswith(f"{self.folder}/#") and file.stat().st_size > 0)
 
         for _ in range(5):  # a busy machine may let it finish before the signal arrives
             code, said = self.interrupt(being_written)

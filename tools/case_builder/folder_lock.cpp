@@ -33,11 +33,21 @@ struct flock range_of(const std::string& what) {
     return range;
 }
 
+[[noreturn]] void refuse(const std::filesystem::path& folder, int error) {
+    throw SystemFailure({folder.string(), "cannot be locked: " + std::generic_category().message(error),
+                         "a file system with locks, so that no two builds mix their files",
+                         "choose a folder on another one, such as a local disk"});
+}
+
 }  // namespace
 
 FolderLock::FolderLock(const std::filesystem::path& folder, const std::string& what) : file_(opened(folder)) {
     struct flock range = range_of(what);
-    while (fcntl(file_, F_OFD_SETLKW, &range) != 0 && errno == EINTR) {
+    while (fcntl(file_, F_OFD_SETLKW, &range) != 0) {
+        if (errno == EINTR) continue;
+        const int error = errno;
+        close(file_);
+        refuse(folder, error);
     }
 }
 
@@ -48,9 +58,10 @@ FolderLock::~FolderLock() {
 bool FolderLock::held_by_another(const std::filesystem::path& folder, const std::string& what) {
     const int file = opened(folder);
     struct flock range = range_of(what);
-    const bool held = fcntl(file, F_OFD_GETLK, &range) == 0 && range.l_type != F_UNLCK;
+    const int error = fcntl(file, F_OFD_GETLK, &range) == 0 ? 0 : errno;
     close(file);
-    return held;
+    if (error != 0) refuse(folder, error);
+    return range.l_type != F_UNLCK;
 }
 
 }  // namespace palpate::case_builder

@@ -7,16 +7,15 @@ namespace palpate::case_builder {
 
 /// Keeps other processes from doing the same work in the same folder: waits until none of them holds `what`.
 /// The system frees it when the process ends, however it does. The folder gets a file "lock", which stays.
-/// Where the file system has no locks nobody waits; outputs appear whole all the same.
 class FolderLock {
   public:
-    /// Throws SystemFailure if the file cannot be made.
+    /// Throws SystemFailure if the file cannot be made, or on a file system without locks.
     FolderLock(const std::filesystem::path& folder, const std::string& what);
     FolderLock(const FolderLock&) = delete;
     FolderLock& operator=(const FolderLock&) = delete;
     ~FolderLock();
 
-    /// Tells without waiting whether another process holds `what`.
+    /// Tells without waiting whether another process holds `what`. Throws as the constructor does.
     static bool held_by_another(const std::filesystem::path& folder, const std::string& what);
 
   private:

@@ -9,6 +9,7 @@
 #include "formats/toml_file/quoted.hpp"
 #include "tools/case_builder/case_check.hpp"
 #include "tools/case_builder/cautions.hpp"
+#include "tools/case_builder/folder_lock.hpp"
 #include "tools/case_builder/forecast.hpp"
 #include "tools/case_builder/kept_case.hpp"
 #include "tools/case_builder/overrides.hpp"
@@ -83,7 +84,14 @@ case_builder::StageRecord run(const Build& build, const case_builder::Stage& sta
     }
 }
 
+// While one build is at its parts another waits, for with the same parts it might be of another version of
+// the case.
 std::vector<case_builder::StageRecord> run_all(const Build& build) {
+    const std::filesystem::path& parts = build.paths.parts;
+    std::filesystem::create_directories(parts);
+    if (case_builder::FolderLock::held_by_another(parts, "build"))
+        spdlog::info("waits for another build in {}", parts.string());
+    const case_builder::FolderLock lock(parts, "build");
     std::filesystem::remove(case_builder::failure_page(build.paths));
     std::vector<case_builder::StageRecord> records;
     for (const case_builder::Stage& stage : build.stages) {

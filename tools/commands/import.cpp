@@ -67,6 +67,7 @@ nlohmann::ordered_json run_import(const stages::ImportRequest& request, cli::Ses
     };
     if (request.list)
         return describe(list_series(request.input, note), !session.json && isatty(STDOUT_FILENO) == 1);
+    require_ending(request.output, request.labels ? ".seg.nrrd" : ".nrrd");
     cli::StagedFile staged = session.stage(request.output);
     nlohmann::ordered_json result = import_image(
         request, options, staged.path(),

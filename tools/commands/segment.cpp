@@ -106,6 +106,7 @@ ordered_json run_segment(const stages::SegmentRequest& request, cli::Session& se
     const std::vector<StructureRecipe> structures = structures_of(request);
     if (request.volume.empty() && request.labels.empty())
         throw UsageError({"--volume", "not given, nor --labels", "at least one of them", ""});
+    require_ending(request.output, ".seg.nrrd");
     set_imaging_threads(session.threads);
     auto staged = session.stage(request.output);
     std::optional<cli::StagedFile> preview;

@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Builds that are killed, run twice at once, or read meanwhile: an asset is whole at every moment."""
 import json
+import os
+import pathlib
+import shutil
 import subprocess
 import threading
+import time
 import unittest
 
 from crash import BIN, Crashes, run
@@ -10,7 +14,7 @@ from crash import BIN, Crashes, run
 
 class SomeCrashes(Crashes):
     def test_killed_at_some_moments_a_build_loses_nothing_and_the_next_completes(self):
-        self.try_kills(3, seed=1)
+        self.try_kills(4, seed=1)
 
     def test_two_builds_at_once_make_one_sound_asset(self):
         both = [subprocess.Popen(self.build(), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) for _ in range(2)]
@@ -18,7 +22,36 @@ class SomeCrashes(Crashes):
             _, said = process.communicate(timeout=200)
             self.assertEqual(process.returncode, 0, said)
         self.assertSound()
-        self.assertEqual(list(self.folder.rglob(".part*")), [])
+        self.assertEqual(self.left(), [])
+
+    def test_two_builds_at_once_of_a_case_that_changes_meanwhile_make_one_of_the_two(self):
+        said = []
+        for modulus, cell in ((6.3, 8), (9, 9)):
+            self.write_case(modulus, cell)
+            said.append(subprocess.Popen(self.build(), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True))
+            time.sleep(0.5)  # it has read its case
+        for process in said:
+            _, message = process.communicate(timeout=200)
+            self.assertEqual(process.returncode, 0, message)
+        self.assertSound()
+        made = self.inspected()
+        shutil.rmtree(self.folder / "case.parts")
+        self.assertBuilds()
+        self.assertEqual(made, self.inspected())  # of the second, which waited for the first
+
+    def test_where_folders_have_no_locks_a_build_is_refused_and_the_asset_kept(self):
+        self.assertBuilds()
+        before = self.asset.read_bytes()
+        self.write_case(9)
+        plain = pathlib.Path(os.environ["PALPATE_BUILD"]) / "tests" / "plain_disk.so"
+        refused = run(*self.build(), env=dict(os.environ, LD_PRELOAD=str(plain), NO_LOCKS="1"))
+        self.assertEqual(refused.returncode, 1, refused.stderr)
+        self.assertRegex(refused.stderr, r"case\.parts: cannot be locked: No locks available.*local disk")
+        self.assertEqual(self.asset.read_bytes(), before)
+
+    def inspected(self):
+        seen = json.loads(run(BIN / "palpate", "inspect", self.asset, "--json", "-", "--quiet").stdout)
+        return {key: seen[key] for key in ("bodies", "regions", "certificates")} | {"case": seen["provenance"]["build"]["case"]}
 
     def test_a_reader_meanwhile_has_the_old_asset_or_the_new_one(self):
         self.assertEqual(run(*self.build()).returncode, 0)

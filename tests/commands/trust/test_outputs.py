@@ -17,6 +17,8 @@ sys.path.insert(0, "..")
 import test_asset_commands as assets  # noqa: E402
 
 BIN, OK, FAILED, INVALID = assets.BIN, assets.OK, assets.FAILED, assets.INVALID
+# Programs that run in it find no files without names.
+PLAIN_DISK = dict(os.environ, LD_PRELOAD=str(pathlib.Path(os.environ["PALPATE_BUILD"]) / "tests" / "plain_disk.so"))
 
 
 class Outputs(unittest.TestCase):
@@ -66,12 +68,21 @@ class Outputs(unittest.TestCase):
         self.assertFalse((self.folder / "-").exists())
 
     def test_a_pipe_gets_the_whole_file(self):
+        self.assertPipeGetsAll(os.environ)
+
+    def test_a_pipe_gets_the_whole_file_where_files_need_names(self):
+        private = self.folder / "tmp"
+        private.mkdir()
+        self.assertPipeGetsAll(dict(PLAIN_DISK, TMPDIR=str(private)))
+        self.assertEqual(list(private.iterdir()), [])
+
+    def assertPipeGetsAll(self, env):
         expected, pipe = self.written(), self.folder / "pipe.obb.h5"
         os.mkfifo(pipe)
         got = []
         reader = threading.Thread(target=lambda: got.append(pipe.read_bytes()))
         reader.start()
-        made = self.obb(pipe)
+        made = self.obb(pipe, env=env)
         reader.join(timeout=60)
         self.assertEqual((made.returncode, got), (OK, [expected]), made.stderr)
         self.assertTrue(stat.S_ISFIFO(pipe.stat().st_mode))
@@ -90,18 +101,42 @@ class Outputs(unittest.TestCase):
         self.assertIn("Broken pipe", ran.stderr)
         self.assertEqual(list(private.iterdir()), [])
 
-    def test_an_interrupt_before_a_pipe_is_read_leaves_nothing(self):
+    def waiting(self, env):
+        """A process that has its JSON staged and is held up at its output, a pipe that nobody reads, and what is staged."""
         private, pipe = self.folder / "tmp", self.folder / "pipe.obb.h5"
         private.mkdir()
         os.mkfifo(pipe)
-        waiting = subprocess.Popen([BIN / "palpate-obb", self.folder / "skull.vtp", "-o", pipe, "--quiet"],
-                                   env=dict(os.environ, TMPDIR=str(private)), stderr=subprocess.DEVNULL)
+        running = subprocess.Popen([BIN / "palpate-obb", self.folder / "skull.vtp", "-o", pipe, "--quiet", "--json",
+                                    self.folder / "result.json"], env=dict(env, TMPDIR=str(private)), stderr=subprocess.DEVNULL)
+        self.addCleanup(running.wait)
+        self.addCleanup(running.kill)
+        # Opening the pipe to write, it waits for a reader.
+        waits = lambda: "wait_for_partner" in pathlib.Path(f"/proc/{running.pid}/wchan").read_text()
         end = time.monotonic() + 60
-        while not list(private.glob("*/.part*")) and time.monotonic() < end:
+        while not waits() and time.monotonic() < end:
             time.sleep(0.02)
-        waiting.terminate()
-        self.assertEqual(waiting.wait(timeout=60), 130)
-        self.assertEqual(list(private.iterdir()), [])
+        self.assertTrue(waits())
+        return running, self.staged() + self.staged(private)
+
+    def test_an_interrupt_before_a_pipe_is_read_leaves_nothing(self):
+        for env, count in ((os.environ, 0), (PLAIN_DISK, 2)):
+            with self.subTest(staged=count), tempfile.TemporaryDirectory() as folder:
+                before, self.folder = self.folder, pathlib.Path(folder)
+                shutil.copy(before / "skull.vtp", folder)
+                running, staged = self.waiting(env)
+                self.assertEqual(len(staged), count, staged)
+                running.terminate()
+                self.assertEqual(running.wait(timeout=60), 130)
+                self.assertEqual(self.staged() + self.staged(self.folder / "tmp"), [])
+                self.folder = before
+
+    def test_a_killed_process_leaves_nothing(self):
+        running, staged = self.waiting(os.environ)
+        self.assertEqual(staged, [])
+        running.kill()
+        running.wait()
+        self.assertEqual(self.staged() + self.staged(self.folder / "tmp"), [])
+        self.assertFalse((self.folder / "result.json").exists())
 
     def test_what_a_link_leads_to_is_replaced_whole(self):
         elsewhere = self.folder / "elsewhere"
@@ -121,28 +156,26 @@ class Outputs(unittest.TestCase):
         (self.folder / "b.obb.h5").symlink_to(self.folder / "a.obb.h5")
         self.assertEqual(self.obb(self.folder / "a.obb.h5").returncode, INVALID)
 
-    def test_what_a_killed_process_left_is_removed_by_the_next_and_what_lives_is_not(self):
-        # Held up at its output, a pipe that nobody reads, the process has its JSON staged.
-        pipe = self.folder / "pipe.obb.h5"
-        os.mkfifo(pipe)
-        running = subprocess.Popen([BIN / "palpate-obb", self.folder / "skull.vtp", "-o", pipe, "--quiet", "--json",
-                                    self.folder / "result.json"])
-        self.addCleanup(running.wait)
-        self.addCleanup(running.kill)
-        end = time.monotonic() + 60
-        while not self.staged() and time.monotonic() < end:
-            time.sleep(0.02)
-        staged = self.staged()
-        self.assertRegex(" ".join(staged), rf"^\.part-[0-9a-f]{{8}}-{running.pid}\.0-result\.json$")
+    def test_what_a_killed_process_left_where_files_need_names_is_removed_by_the_next_and_what_lives_is_not(self):
+        running, staged = self.waiting(PLAIN_DISK)
+        self.assertRegex(" ".join(staged), rf"^\.part-[0-9a-f]{{8}}-{running.pid}\.0-result\.json "
+                                           rf"\.part-[0-9a-f]{{8}}-{running.pid}\.0-pipe\.obb\.h5$")
+        here = self.staged()
         elsewhere = self.folder / ".part-00000000-1.0-of-another-machine"  # whose locks may not be seen here
         elsewhere.write_text("staged")
         self.assertEqual(self.obb(self.folder / "one.obb.h5").returncode, OK)
-        self.assertEqual(self.staged(), sorted([elsewhere.name, *staged]))
+        self.assertEqual(self.staged(), sorted([elsewhere.name, *here]))
         elsewhere.unlink()
         running.send_signal(signal.SIGKILL)
         running.wait()
-        self.assertEqual(self.staged(), staged)
+        self.assertEqual(self.staged(), here)
         self.assertEqual(self.obb(self.folder / "two.obb.h5").returncode, OK)
+        self.assertEqual(self.staged(), [])
+
+    def test_a_disk_without_locks_or_files_without_names_gets_whole_files(self):
+        made = self.obb(self.folder / "one.obb.h5", env=dict(PLAIN_DISK, NO_LOCKS="1"))
+        self.assertEqual(made.returncode, OK, made.stderr)
+        self.assertEqual((self.folder / "one.obb.h5").read_bytes(), self.written())
         self.assertEqual(self.staged(), [])
 
     def test_a_file_of_another_that_looks_staged_is_kept(self):
@@ -193,18 +226,20 @@ class Outputs(unittest.TestCase):
     @unittest.skipUnless(shutil.which("strace"), "strace is not installed")
     def test_a_power_cut_finds_the_old_file_or_the_new_one(self):
         # Content before the name, the name before success: in this order, to the disk.
-        trace, output = self.folder / "trace", self.folder / "tree.obb.h5"
-        traced = subprocess.run(["strace", "-f", "-y", "-e", "trace=fsync,rename", "-o", trace, BIN / "palpate-obb",
-                                 self.folder / "skull.vtp", "-o", output], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        if "ptrace" in traced.stderr:
-            self.skipTest("processes must not be traced here")
-        calls = [line.split(maxsplit=1)[1] for line in trace.read_text().splitlines() if "(" in line]
-        named = [i for i, call in enumerate(calls) if call.startswith("rename(") and call.split('"')[3] == str(output)]
-        self.assertEqual(len(named), 1, calls)
-        kept = lambda call, path: call.startswith("fsync(") and f"<{path}>" in call and call.endswith("= 0")
-        staged = calls[named[0]].split('"')[1]
-        self.assertTrue(any(kept(call, staged) for call in calls[:named[0]]), calls)
-        self.assertTrue(any(kept(call, self.folder) for call in calls[named[0]:]), calls)
+        for env in (os.environ, PLAIN_DISK):
+            trace, output = self.folder / "trace", self.folder / "tree.obb.h5"
+            traced = subprocess.run(["strace", "-f", "-y", "-e", "trace=fsync,rename", "-o", trace, BIN / "palpate-obb",
+                                     self.folder / "skull.vtp", "-o", output, "--force"], stdout=subprocess.PIPE,
+                                    stderr=subprocess.PIPE, text=True, env=env)
+            if "ptrace" in traced.stderr:
+                self.skipTest("processes must not be traced here")
+            calls = [line.split(maxsplit=1)[1] for line in trace.read_text().splitlines() if "(" in line]
+            named = [i for i, call in enumerate(calls) if call.startswith("rename(") and call.split('"')[3] == str(output)]
+            self.assertEqual(len(named), 1, calls)
+            kept = [call.startswith("fsync(") and call.endswith("= 0") for call in calls]
+            holds = lambda call: f"<{self.folder}>" not in call  # not the folder's names, but the file's content
+            self.assertTrue(any(kept[i] and holds(calls[i]) for i in range(named[0])), calls)
+            self.assertTrue(any(kept[i] and not holds(calls[i]) for i in range(named[0], len(calls))), calls)
 
 
 if __name__ == "__main__":

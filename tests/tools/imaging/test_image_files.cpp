@@ -270,9 +270,9 @@ TEST(ImageFiles, directions_slightly_off_are_made_orthonormal_and_reported) {
 }
 
 TEST(ImageFiles, outputs_with_another_ending_are_refused) {
-    EXPECT_THROW(write_volume("volume.mha", ramp_volume()), InvalidInput);
-    EXPECT_THROW(write_label_map("labels.nrrd", small_map()), InvalidInput);
-    EXPECT_THROW(write_nifti_labels("labels.nrrd", small_map()), InvalidInput);
+    EXPECT_THROW(require_ending("volume.mha", ".nrrd"), InvalidInput);
+    EXPECT_THROW(require_ending("labels.nrrd", ".seg.nrrd"), InvalidInput);
+    EXPECT_NO_THROW(require_ending("labels.seg.nrrd", ".nrrd"));
 }
 
 TEST(ImageFiles, a_file_that_cannot_be_written_whole_is_a_system_failure) {

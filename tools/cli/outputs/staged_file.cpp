@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstring>
 #include <fstream>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
@@ -18,8 +19,7 @@
 namespace palpate::cli {
 namespace {
 
-// Paths the signal handler may remove, files and then the folder they are in: fixed memory, published by the
-// atomic flag.
+// Paths the signal handler may remove: fixed memory, published by the atomic flag.
 struct Slot {
     std::array<char, PATH_MAX> path;
     std::atomic<bool> used{false};
@@ -32,7 +32,7 @@ std::atomic<bool> soft{false}, asked{false};
 
 void remove_staged() {
     for (Slot& slot : slots)
-        if (slot.used.load() && unlink(slot.path.data()) != 0) rmdir(slot.path.data());
+        if (slot.used.load()) unlink(slot.path.data());
 }
 
 extern "C" void remove_and_exit(int) {
@@ -73,23 +73,21 @@ StagedFile::StagedFile(const std::filesystem::path& target, bool replace) : targ
     if (!replace && !target_.is_pipe && std::filesystem::exists(target_.path))
         throw InvalidInput({target.string(), "exists already", "", "choose another name or pass --force"});
     const std::filesystem::path folder =
-        target_.is_pipe ? make_private_folder(target) : folder_of(target_.path);
+        target_.is_pipe ? std::filesystem::temp_directory_path() : folder_of(target_.path);
     if (!std::filesystem::is_directory(folder))
         throw InvalidInput(
             {target.string(), "its folder does not exist", "", "make it first: mkdir -p " + folder.string()});
-    if (!target_.is_pipe) remove_orphans(folder);
+    remove_orphans(folder);
     staged_ = create_staged(folder, target_.path);
-    slot_ = claim_slot(staged_.path.string());
-    if (target_.is_pipe) folder_slot_ = claim_slot(folder.string());
+    if (staged_.has_name) slot_ = claim_slot(staged_.path.string());
+    if (target_.is_pipe) fchmod(staged_.descriptor, 0600);  // nobody else looks into it there
 }
 
 StagedFile::~StagedFile() {
     std::error_code ignored;
-    std::filesystem::remove(staged_.path, ignored);
-    if (target_.is_pipe) std::filesystem::remove(staged_.path.parent_path(), ignored);
+    if (staged_.has_name) std::filesystem::remove(staged_.path, ignored);
     close(staged_.descriptor);
-    for (const int slot : {slot_, folder_slot_})
-        if (slot >= 0) slots[slot].used.store(false);
+    if (slot_ >= 0) slots[slot_].used.store(false);
 }
 
 void StagedFile::write_text(const std::string& text) const {
@@ -102,6 +100,10 @@ void StagedFile::write_text(const std::string& text) const {
 void StagedFile::commit() {
     if (target_.is_pipe) return copy_into_pipe(staged_.path, target_.path);
     flush_to_disk(staged_.path, target_.path);
+    if (!staged_.has_name) {
+        give_name(staged_, folder_of(target_.path), target_.path);
+        slot_ = claim_slot(staged_.path.string());
+    }
     std::filesystem::rename(staged_.path, target_.path);
     flush_to_disk(folder_of(target_.path), target_.path);
 }

@@ -9,10 +9,11 @@
 
 namespace palpate::cli {
 
-/// An output that appears whole or not at all: written under a temporary name in the target's folder, flushed
-/// to disk and renamed by commit(), removed otherwise, also on SIGINT and SIGTERM; what a killed process left
-/// there is removed by the next one that writes into the folder. A link is followed: what it leads to is
-/// replaced. A pipe, such as a FIFO or /dev/stdout before another command, gets the finished file's bytes.
+/// An output that appears whole or not at all: written into a file without a name on the target's disk,
+/// flushed and put in its place by commit(), and gone otherwise, however the process ends. Where the system
+/// has no such files it has a hidden name, is removed on SIGINT and SIGTERM, and what a killed process left
+/// is removed by the next one that writes into the folder. A link is followed: what it leads to is replaced.
+/// A pipe, such as a FIFO or /dev/stdout before another command, gets the finished file's bytes.
 class StagedFile {
   public:
     /// Throws InvalidInput if `target` exists and `replace` is false, if its folder is missing, or if it is a
@@ -22,7 +23,7 @@ class StagedFile {
     StagedFile& operator=(const StagedFile&) = delete;
     ~StagedFile();
 
-    /// Where to write; ends in the target's name, so that writers that look at the extension find it.
+    /// Where to write, by any writer that does not look at the name and writes into what is there.
     const std::filesystem::path& path() const { return staged_.path; }
 
     /// Writes the whole content; throws SystemFailure if it does not fit.
@@ -33,8 +34,8 @@ class StagedFile {
 
   private:
     OutputTarget target_;
-    StagedName staged_;  ///< locked while this lives
-    int slot_ = -1, folder_slot_ = -1;
+    Staged staged_;  ///< locked while this lives
+    int slot_ = -1;
 };
 
 /// Makes SIGINT, SIGTERM and SIGHUP remove all staged files and exit with 130. Called once by Command::run().

@@ -29,7 +29,7 @@ class StagedFolder {
 
   private:
     std::filesystem::path target_;
-    StagedName staged_;  ///< locked while this lives
+    Staged staged_;  ///< locked while this lives
 };
 
 }  // namespace palpate::cli

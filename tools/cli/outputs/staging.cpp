@@ -4,10 +4,13 @@
 #include <array>
 #include <cerrno>
 #include <cstdio>
-#include <cstdlib>
+#include <cstring>
 #include <fcntl.h>
 #include <fstream>
 #include <functional>
+#include <map>
+#include <optional>
+#include <string>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <system_error>
@@ -17,6 +20,8 @@
 
 namespace palpate::cli {
 namespace {
+
+constexpr int most_attempts = 100;
 
 // Tells machines that share a folder apart: a lock of one may say nothing to another.
 const std::string& machine() {
@@ -75,11 +80,31 @@ int create(const std::filesystem::path& path, bool is_folder) {
     return folder;
 }
 
+// The target that each file without a name is for, by its path, for messages.
+std::map<std::string, std::string>& targets() {
+    static std::map<std::string, std::string> known;
+    return known;
+}
+
+constexpr const char* descriptors = "/proc/self/fd/";
+
+std::optional<Staged> create_nameless(const std::filesystem::path& folder,
+                                      const std::filesystem::path& target) {
+    const int file = open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+    if (file < 0) return std::nullopt;
+    const std::string path = descriptors + std::to_string(file);
+    if (access(path.c_str(), W_OK) != 0 || lock(file, false) == Lock::of_another) {  // no /proc
+        close(file);
+        return std::nullopt;
+    }
+    targets()[path] = target.string();
+    return Staged{file, path, false};
+}
+
 // Another process that looks for orphans may be quicker with the lock, or even have removed a folder before
 // it is open; then under another name.
-StagedName create_locked(const std::filesystem::path& folder, const std::filesystem::path& target,
-                         bool is_folder) {
-    constexpr int most_attempts = 100;
+Staged create_named(const std::filesystem::path& folder, const std::filesystem::path& target,
+                    bool is_folder) {
     for (int attempt = 0;; ++attempt) {
         const auto path = folder / (staged_prefix(attempt) + target.filename().string());
         const int file = create(path, is_folder);
@@ -108,12 +133,25 @@ void remove_orphans(const std::filesystem::path& folder) {
     }
 }
 
-StagedName create_staged(const std::filesystem::path& folder, const std::filesystem::path& target) {
-    return create_locked(folder, target, false);
+Staged create_staged(const std::filesystem::path& folder, const std::filesystem::path& target) {
+    if (const auto nameless = create_nameless(folder, target)) return *nameless;
+    return create_named(folder, target, false);
 }
 
-StagedName create_staged_folder(const std::filesystem::path& folder, const std::filesystem::path& target) {
-    return create_locked(folder, target, true);
+Staged create_staged_folder(const std::filesystem::path& folder, const std::filesystem::path& target) {
+    return create_named(folder, target, true);
+}
+
+void give_name(Staged& staged, const std::filesystem::path& folder, const std::filesystem::path& target) {
+    for (int attempt = 0;; ++attempt) {
+        const auto path = folder / (staged_prefix(attempt) + target.filename().string());
+        if (linkat(AT_FDCWD, staged.path.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0) {
+            staged.path = path;
+            staged.has_name = true;
+            return;
+        }
+        if (errno != EEXIST || attempt == most_attempts) fail_to_write(target, errno);
+    }
 }
 
 void flush_to_disk(const std::filesystem::path& path, const std::filesystem::path& target) {
@@ -124,16 +162,18 @@ void flush_to_disk(const std::filesystem::path& path, const std::filesystem::pat
     if (!flushed) fail_to_write(target, error);
 }
 
-std::filesystem::path make_private_folder(const std::filesystem::path& target) {
-    std::string name = std::filesystem::temp_directory_path() / "palpate-XXXXXX";
-    if (mkdtemp(name.data()) == nullptr) fail_to_write(target, errno);
-    return name;
-}
-
 std::string with_final_names(std::string message) {
     for (auto at = message.find(staged_prefix()); at != std::string::npos;
          at = message.find(staged_prefix(), at))
         message.erase(at, message.find('-', at + staged_prefix().size()) + 1 - at);
+    for (auto at = message.find(descriptors); at != std::string::npos; at = message.find(descriptors, at)) {
+        const auto end = message.find_first_not_of("0123456789", at + std::strlen(descriptors));
+        const auto known = targets().find(message.substr(at, end - at));
+        if (known == targets().end())
+            ++at;
+        else
+            message.replace(at, known->first.size(), known->second);
+    }
     return message;
 }
 

@@ -117,19 +117,21 @@ struct FoundImage {
 FoundImage read_image(const std::filesystem::path& path, ImageKind kind = ImageKind::found_out,
                       const NoteSink& note = {}, const ReadOptions& options = {});
 
-/// Writes gzip-compressed NRRD in LPS, as int16 if every value is an integer that fits, else as float32.
-/// Nothing but geometry and values is written. The path must end in ".nrrd".
-/// Throws InvalidInput for another ending, SystemFailure if the file could not be written whole.
+/// Throws InvalidInput unless the name of an output has the ending by which others will know what it is.
+void require_ending(const std::filesystem::path& output, std::string_view ending);
+
+/// Writes gzip-compressed NRRD (".nrrd") in LPS, as int16 if every value is an integer that fits, else as
+/// float32. Nothing but geometry and values is written. Throws SystemFailure if the file could not be written
+/// whole.
 void write_volume(const std::filesystem::path& path, const Volume& volume);
 
 /// Writes a .seg.nrrd that 3D Slicer opens as a segmentation, one layer, uint8 or uint16. Nothing but
-/// geometry, values, names and colours is written. The path must end in ".seg.nrrd". Throws as
-/// write_volume() does.
+/// geometry, values, names and colours is written. Throws as write_volume() does.
 void write_label_map(const std::filesystem::path& path, const LabelMap& map);
 
 /// Writes gzip-compressed NIfTI-1, uint8 or uint16, whose RAS affine is the grid's LPS one turned about z.
-/// Nothing but geometry, in float32, and values is written: names go into a bids_label_table(). The path must
-/// end in ".nii.gz". Throws as write_volume() does.
+/// Nothing but geometry, in float32, and values is written: names go into a bids_label_table(). ITK wants
+/// a path that ends in ".nii.gz". Throws as write_volume() does.
 void write_nifti_labels(const std::filesystem::path& path, const LabelMap& map);
 
 /// Limits the threads that imaging functions use; results do not depend on it.

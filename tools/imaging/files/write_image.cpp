@@ -30,12 +30,6 @@ bool ends_whole(const std::filesystem::path& path, std::uint64_t bytes) {
     return stream && stored == static_cast<std::uint32_t>(bytes);
 }
 
-void require_ending(const std::filesystem::path& path, std::string_view ending) {
-    if (!path.string().ends_with(ending))
-        throw InvalidInput(
-            {path.string(), "has another ending", std::string(ending), "name the output accordingly"});
-}
-
 // `before` are the bytes that the gzip stream has ahead of the voxels.
 template <typename ImageIO, typename Voxel>
 void write_packed(const std::filesystem::path& path, const ImageGrid& grid, std::span<const Voxel> voxels,
@@ -89,8 +83,13 @@ std::vector<std::uint8_t> as_bytes(const LabelMap& map) {
 
 }  // namespace
 
+void require_ending(const std::filesystem::path& output, std::string_view ending) {
+    if (!output.string().ends_with(ending))
+        throw InvalidInput(
+            {output.string(), "has another ending", std::string(ending), "name the output accordingly"});
+}
+
 void write_volume(const std::filesystem::path& path, const Volume& volume) {
-    require_ending(path, ".nrrd");
     constexpr float low = std::numeric_limits<std::int16_t>::min();
     constexpr float high = std::numeric_limits<std::int16_t>::max();
     const bool integral = std::ranges::all_of(volume.values, [](float value) {
@@ -104,7 +103,6 @@ void write_volume(const std::filesystem::path& path, const Volume& volume) {
 }
 
 void write_label_map(const std::filesystem::path& path, const LabelMap& map) {
-    require_ending(path, ".seg.nrrd");
     std::map<std::string, std::string> header{
         {"Segmentation_MasterRepresentation", "Binary labelmap"},
         {"Segmentation_ContainedRepresentationNames", "Binary labelmap|"},
@@ -126,7 +124,6 @@ void write_label_map(const std::filesystem::path& path, const LabelMap& map) {
 }
 
 void write_nifti_labels(const std::filesystem::path& path, const LabelMap& map) {
-    require_ending(path, ".nii.gz");
     if (!fits_bytes(map)) return write_nifti<std::uint16_t>(path, map.grid, map.labels);
     write_nifti<std::uint8_t>(path, map.grid, as_bytes(map));
 }

@@ -142,7 +142,6 @@ std::vector<Seed> read_seeds(const std::filesystem::path& path) {
 }
 
 void write_seeds(const std::filesystem::path& path, std::span<const Seed> seeds) {
-    if (!path.filename().string().ends_with(".mrk.json")) refuse(path, "is no list of points", ".mrk.json");
     json points = json::array();
     for (const Seed& seed : seeds) {
         const std::string id = std::to_string(points.size() + 1);
