@@ -35,8 +35,9 @@ BENCHMARKS = "tests/benchmarks/README.md"
 
 
 def pages(root):
-    found = [root / "README.md", root / "CONTRIBUTING.md", root / "CHANGELOG.md", *sorted((root / "docs").glob("*.md")),
-             *sorted((root / "formats").glob("*/SPEC.md")), root / BENCHMARKS]
+    found = [root / "README.md", root / "CONTRIBUTING.md", root / "CHANGELOG.md", *sorted((root / "docs").rglob("*.md")),
+             *sorted((root / "formats").glob("*/SPEC.md")), root / BENCHMARKS,
+             root / "tests/fuzz/README.md"]
     return {path: path.read_text() for path in found if path.exists()}
 
 

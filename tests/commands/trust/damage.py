@@ -13,6 +13,7 @@ from sample_asset import SampleAsset  # noqa: E402
 TOUCH = pathlib.Path(os.environ["PALPATE_BIN"]) / "palpate-touch"
 OK, INVALID = 0, 3
 FELT = ("device", "mm"), ("tool", "mm"), ("force", "n")
+SUPERBLOCK = 48  # bytes with which an HDF5 file begins, before what is in it
 HEADERS = 65536  # bytes in which HDF5 keeps most of what it says of datasets
 
 
@@ -29,7 +30,7 @@ class DamagedBytes(SampleAsset):
             return OK, "", [[row[f"{what}_{axis}_{unit}"] for what, unit in FELT for axis in "xyz"] for row in csv.DictReader(rows)]
 
     def try_changes(self, count, seed):
-        """1 to 4 bytes at a time, half of them in the headers: refused with a reason, or the same to the last digit."""
+        """1 to 4 bytes at a time, half of them in the headers: refused with what is damaged, or the same to the last digit."""
         code, message, whole = self.felt(self.asset)
         self.assertEqual(code, OK, message)
         self.assertGreater(sum(any(float(value) for value in tick[-3:]) for tick in whole), 100, "ticks with force")
@@ -48,5 +49,7 @@ class DamagedBytes(SampleAsset):
             refused += 1
             self.assertEqual(code, INVALID, f"bytes {places} of seed {seed}: {message}")
             self.assertIn(str(damaged), message, f"bytes {places} of seed {seed}")
+            if min(places) >= SUPERBLOCK:
+                self.assertIn(f"{damaged}: /", message, f"no dataset or group is named; bytes {places} of seed {seed}")
         print(f"{refused} of {count} damaged assets refused, the others felt the same", file=sys.stderr)
         self.assertGreater(refused, 0)

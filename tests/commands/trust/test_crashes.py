@@ -49,6 +49,29 @@ class SomeCrashes(Crashes):
         self.assertRegex(refused.stderr, r"case\.parts: cannot be locked: No locks available.*local disk")
         self.assertEqual(self.asset.read_bytes(), before)
 
+    @unittest.skipUnless(os.geteuid() == 0, "mounting a small disk needs root")
+    def test_a_disk_that_is_full_loses_nothing_and_the_next_build_completes(self):
+        disk = self.folder / "disk"
+        disk.mkdir()
+        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=32m", "none", disk], stderr=subprocess.PIPE, text=True)
+        if mounted.returncode != 0:
+            self.skipTest(f"no small disk can be mounted: {mounted.stderr.strip()}")
+        self.addCleanup(subprocess.run, ["umount", disk], check=True)
+        self.asset, full = disk / "case.vtkhdf", disk / "full"
+        self.assertBuilds()
+        before = self.asset.read_bytes()
+        for number, room in enumerate((0, 30_000, 300_000), 1):
+            with self.subTest(room=room):
+                self.change("cell", number)
+                free = os.statvfs(disk)
+                full.write_bytes(bytes(free.f_bavail * free.f_bsize - room))
+                refused = run(*self.build())
+                self.assertEqual(refused.returncode, 1, refused.stderr)
+                self.assertRegex(refused.stderr, "No space left on device|could not be written|cannot be written")
+                self.assertEqual((self.asset.read_bytes(), self.left()), (before, []))
+                full.unlink()
+        self.assertBuilds()
+
     def inspected(self):
         seen = json.loads(run(BIN / "palpate", "inspect", self.asset, "--json", "-", "--quiet").stdout)
         return {key: seen[key] for key in ("bodies", "regions", "certificates")} | {"case": seen["provenance"]["build"]["case"]}
