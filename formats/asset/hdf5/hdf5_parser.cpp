@@ -64,7 +64,11 @@ class Parser {
         : file_(file), file_name_(file_name), unclaimed_(file.size()) {}
 
     std::map<std::string, Hdf5Object> parse() {
-        add_object("/", superblock(), 0);
+        try {
+            add_object("/", superblock(), 0);
+        } catch (const EndOfBytes&) {
+            refuse("has a header that breaks off", "", "the file is damaged; copy or make it again");
+        }
         return std::move(objects_);
     }
 
@@ -248,7 +252,7 @@ class Parser {
         if (!visited_.insert(address).second) refuse("has a header that continues in itself");
         const Bytes block = claim(address, size);
         if (block.size() < 4 + checksum_size || text_of(block.first(4)) != "OCHK")
-            refuse("has a header that breaks off");
+            refuse("has a header that breaks off", "", "the file is damaged; copy or make it again");
         check_checksum(block);
         return block.subspan(4, block.size() - 4 - checksum_size);
     }
@@ -376,12 +380,7 @@ class Parser {
 }  // namespace
 
 std::map<std::string, Hdf5Object> parse_hdf5(std::span<const std::byte> bytes, const std::string& file_name) {
-    try {
-        return Parser(bytes, file_name).parse();
-    } catch (const EndOfBytes&) {
-        throw InvalidInput(
-            {file_name, "an HDF5 header breaks off", "", "the file is damaged; copy or make it again"});
-    }
+    return Parser(bytes, file_name).parse();
 }
 
 }  // namespace palpate::asset

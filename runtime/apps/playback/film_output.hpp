@@ -8,6 +8,7 @@
 #include "runtime/visual/playback/film.hpp"
 #include "runtime/visual/train_window.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/cli/outputs/staged_folder.hpp"
 
 namespace palpate::apps {
 
@@ -19,9 +20,6 @@ class FilmOutput {
     /// something where the folder is to be: --force empties no folder.
     FilmOutput(const std::filesystem::path& video, const std::filesystem::path& pictures, int rate,
                const cli::Session& session);
-    FilmOutput(const FilmOutput&) = delete;
-    FilmOutput& operator=(const FilmOutput&) = delete;
-    ~FilmOutput();
 
     bool asked() const { return !films_.empty(); }
     /// Adds what the window shows.
@@ -30,7 +28,7 @@ class FilmOutput {
 
   private:
     std::optional<cli::StagedFile> video_;
-    std::filesystem::path folder_, staged_folder_;
+    std::optional<cli::StagedFolder> pictures_;
     std::vector<std::unique_ptr<visual::Film>> films_;
 };
 
