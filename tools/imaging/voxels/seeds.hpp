@@ -23,9 +23,9 @@ struct Seed {
 /// schema 1.0.3 and its fcsv format (CoordinateSystem 0 is RAS, 1 is LPS).
 std::vector<Seed> read_seeds(const std::filesystem::path& path);
 
-/// Writes one list that 3D Slicer opens (.mrk.json), in LPS, points in the given order. A label that ends like
-/// a numbered one ("x-2") gets its point's number behind, so that it is read back whole. Throws SystemFailure
-/// if the file could not be written whole.
+/// Writes one list that 3D Slicer opens (.mrk.json), in LPS, points in the given order. A label that ends
+/// like a numbered one ("x-2") gets its point's number behind, so that it is read back whole. Throws
+/// SystemFailure if the file could not be written whole.
 void write_seeds(const std::filesystem::path& path, std::span<const Seed> seeds);
 
 /// Tells whether two labels are the same, ignoring case.
