@@ -23,12 +23,13 @@ covered=$(tests/coverage.sh) || status=1
 echo "$covered"
 run_preset tsan
 # Much of what follows waits for clocks and windows; meanwhile clang-tidy takes what is idle.
-nice -n 19 tests/house/tidy.sh formats runtime >build/tidy.log &
+setsid nice -n 19 tests/house/tidy.sh formats runtime >build/tidy.log &
 tidy=$!
-trap 'kill $tidy 2>/dev/null || true' EXIT
+trap 'kill -- -$tidy' EXIT
 run_preset release
 echo; echo "== clang-tidy"
 wait $tidy || status=1
+trap - EXIT
 tidied=$(cat build/tidy.log)
 echo "$tidied"
 # The skip reasons stand between ctest's summary and the end; say the summary of all three last.

@@ -256,7 +256,7 @@ class Condense(unittest.TestCase):
             # It has no name yet, but a process's open files tell where they lie and how long they are.
             files = pathlib.Path(f"/proc/{process.pid}/fd")
             while process.poll() is None and not seen:
-                with contextlib.suppress(FileNotFoundError):
+                with contextlib.suppress(OSError):
                     seen.extend(file for file in files.iterdir() if os.readlink(file).startswith(f"{self.folder}/#") and file.stat().st_size > 0)
 
         for _ in range(5):  # a busy machine may let it finish before the signal arrives

@@ -5,10 +5,11 @@
 #include <chrono>
 #include <csignal>
 #include <fcntl.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <system_error>
+#include <unistd.h>
 
 #include "formats/model/errors.hpp"
 #include "tools/cli/outputs/staged_file.hpp"
@@ -16,16 +17,22 @@
 namespace palpate::case_builder {
 namespace {
 
+// The child is killed where this process is, for it works under this one's locks.
 pid_t spawn(const std::filesystem::path& program, const std::vector<std::string>& arguments) {
     std::vector<char*> argv{const_cast<char*>(program.c_str())};
     for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
-    pid_t child = 0;
-    const int error = posix_spawn(&child, program.c_str(), &actions, nullptr, argv.data(), environ);
-    posix_spawn_file_actions_destroy(&actions);
+    const int nothing = open("/dev/null", O_WRONLY | O_CLOEXEC);
+    int error = access(program.c_str(), X_OK) == 0 ? 0 : errno;
+    const pid_t parent = getpid();
+    const pid_t child = error == 0 ? fork() : -1;
+    if (child == 0) {
+        prctl(PR_SET_PDEATHSIG, SIGKILL);
+        if (getppid() == parent && dup2(nothing, STDOUT_FILENO) >= 0) execv(program.c_str(), argv.data());
+        _exit(127);
+    }
+    if (error == 0 && child < 0) error = errno;
+    close(nothing);
     if (error != 0)
         throw SystemFailure({program.string(), "cannot be started: " + std::generic_category().message(error),
                              "", "build or install all of Palpate"});

@@ -41,8 +41,10 @@ struct flock range_of(const std::string& what) {
 
 }  // namespace
 
-FolderLock::FolderLock(const std::filesystem::path& folder, const std::string& what) : file_(opened(folder)) {
+FolderLock::FolderLock(const std::filesystem::path& folder, const std::string& what, Hold hold)
+    : file_(opened(folder)) {
     struct flock range = range_of(what);
+    if (hold == Hold::shared) range.l_type = F_RDLCK;
     while (fcntl(file_, F_OFD_SETLKW, &range) != 0) {
         if (errno == EINTR) continue;
         const int error = errno;

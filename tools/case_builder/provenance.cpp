@@ -73,7 +73,8 @@ std::vector<std::string> changed_since(const KeptBuild& then, const CaseFile& ca
     const Json now = provenance(case_file, {});
     std::vector<std::string> changed;
     for (const auto& [name, digest] : now["inputs"].items())
-        if (const auto found = then.inputs.find(name); found == then.inputs.end() || found->second != digest)
+        if (const auto found = then.inputs.find(name);
+            found == then.inputs.end() || found->second != digest.get<std::string>())
             changed.push_back(name.substr(0, name.rfind("_sha256")));
     if (then.structures != now["structures"]) changed.emplace_back("structures");
     if (changed.empty() && then.case_text != case_file.kept) changed.emplace_back("case");

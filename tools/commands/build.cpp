@@ -90,7 +90,7 @@ std::vector<case_builder::StageRecord> run_all(const Build& build) {
     const std::filesystem::path& parts = build.paths.parts;
     std::filesystem::create_directories(parts);
     if (case_builder::FolderLock::held_by_another(parts, "build"))
-        spdlog::info("waits for another build in {}", parts.string());
+        spdlog::warn("waits for another build in {}", parts.string());
     const case_builder::FolderLock lock(parts, "build");
     std::filesystem::remove(case_builder::failure_page(build.paths));
     std::vector<case_builder::StageRecord> records;
@@ -113,8 +113,11 @@ const case_builder::Stage& stage_named(const Build& build, const std::string& na
                       fmt::format("one of '{}'", fmt::join(names, "', '")), ""});
 }
 
-// One stage of the build, whose inputs other runs have made. What failed before and would again is not tried.
+// One stage of the build, whose inputs other runs have made, perhaps beside other stages of it. What failed
+// before and would again is not tried.
 case_builder::StageRecord run_one(const Build& build, const std::string& name) {
+    std::filesystem::create_directories(build.paths.parts);
+    const case_builder::FolderLock lock(build.paths.parts, "build", case_builder::FolderLock::Hold::shared);
     const case_builder::Stage& stage = stage_named(build, name);
     case_builder::prepare(stage, build.case_file, build.paths, build.stages, build.runner);
     if (const auto failure = build.runner.failed(stage); failure && case_builder::is_lasting(*failure)) {

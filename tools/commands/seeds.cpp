@@ -133,7 +133,11 @@ ordered_json run_seeds(SeedsRequest request, cli::Session& session) {
     bool written = false;
     settings.save = [&](std::span<const Seed> placed) {
         cli::StagedFile staged(output, session.force || written);
-        write_seeds(staged.path(), placed);
+        try {
+            write_seeds(staged.path(), placed);
+        } catch (const SystemFailure&) {  // the window knows no temporary names
+            cli::fail_to_write(output, ENOSPC);
+        }
         staged.commit();
         written = true;
         return output.string();

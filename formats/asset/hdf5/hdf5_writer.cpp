@@ -100,8 +100,8 @@ Hdf5Writer::Hdf5Writer(const std::filesystem::path& path) : file_name_(path.stri
     H5Pset_alignment(access, 1, 64);
     H5Pset_file_locking(access, false,
                         true);  // the file is the caller's own; network file systems lack locks
-    // The driver for POSIX files looks up what links lead to, which what a file without a name has in /proc
-    // does not bear.
+    // HDF5's usual driver asks realpath() what a link leads to, which fails for the /proc/self/fd of a file
+    // without a name.
     H5Pset_fapl_stdio(access);
     file_ = require(H5Fcreate(file_name_.c_str(), H5F_ACC_TRUNC, creation, access));
 }

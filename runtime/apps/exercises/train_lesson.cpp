@@ -164,7 +164,7 @@ void TrainLesson::grant(Wish wish) {
             editor_->tell(texts::translated("saved to {}", exercise_file_.string()));
         }
     } catch (const std::exception& error) {
-        editor_->tell(error.what());
+        editor_->tell(cli::with_final_names(error.what()));
         return;
     }
     const std::size_t index = lesson_.put(*exercise);

@@ -29,7 +29,7 @@ class SomeCrashes(Crashes):
         for modulus, cell in ((6.3, 8), (9, 9)):
             self.write_case(modulus, cell)
             said.append(subprocess.Popen(self.build(), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True))
-            time.sleep(0.5)  # it has read its case
+            self.await_stage()
         for process in said:
             _, message = process.communicate(timeout=200)
             self.assertEqual(process.returncode, 0, message)
@@ -38,6 +38,22 @@ class SomeCrashes(Crashes):
         shutil.rmtree(self.folder / "case.parts")
         self.assertBuilds()
         self.assertEqual(made, self.inspected())  # of the second, which waited for the first
+
+    def await_stage(self):
+        """Until a build is at its first stage, and holds its folder."""
+        end = time.monotonic() + 60
+        while not list(self.folder.glob("case.parts/*.request.json")) and time.monotonic() < end:
+            time.sleep(0.02)
+
+    def test_a_build_that_is_killed_takes_its_stage_along(self):
+        killed = subprocess.Popen(self.build(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.await_stage()
+        killed.kill()
+        killed.wait()
+        time.sleep(0.5)
+        of_ours = [line for line in run("ps", "-eo", "args").stdout.splitlines() if str(self.folder) in line]
+        self.assertEqual(of_ours, [])
+        self.assertBuilds()
 
     def test_where_folders_have_no_locks_a_build_is_refused_and_the_asset_kept(self):
         self.assertBuilds()
@@ -68,6 +84,7 @@ class SomeCrashes(Crashes):
                 refused = run(*self.build())
                 self.assertEqual(refused.returncode, 1, refused.stderr)
                 self.assertRegex(refused.stderr, "No space left on device|could not be written|cannot be written")
+                self.assertNotIn("/proc/self", refused.stderr)
                 self.assertEqual((self.asset.read_bytes(), self.left()), (before, []))
                 full.unlink()
         self.assertBuilds()

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <map>
 #include <string>
+#include <sys/stat.h>
 
 #include "tests/formats/scratch.hpp"
 #include "tests/tools/imaging/hand_written_images.hpp"
@@ -29,6 +30,25 @@ TEST(ReadVolume, what_is_no_volume_is_called_so_however_large_its_lines_are) {
              {"v.nrrd", "NRRD0004\n#"}, {"v.mha", "NDims = 3\nComment = "}, {"w.mha", "NDims = 3 "}}) {
         write_bytes(folder / name, start + std::string(3 << 20, ' ') + "x");
         EXPECT_SAYS(test::volume_refusal(folder / name), "more than 8192 lines or 1 MiB") << name;
+    }
+}
+
+// Reading them would have no end.
+TEST(ReadVolume, voxels_in_pipes_or_the_standard_input_are_refused) {
+    const Scratch folder;
+    ASSERT_EQ(mkfifo((folder / "slice007.raw").c_str(), 0600), 0);
+    write_bytes(folder / "slice001.raw", "voxels");
+    for (const std::string file :
+         {"-", "slice007.raw", "slice%03d.raw 1 9 2", "slice%03d.raw 9 1 -2",
+          "LIST\nslice001.raw\nslice007.raw", "LIST 2\nslice001.raw\n\nslice007.raw"}) {
+        write_bytes(folder / "v.nhdr",
+                    "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\ndata file: " + file);
+        EXPECT_SAYS(test::volume_refusal(folder / "v.nhdr"), "keeps its voxels in what is no file") << file;
+    }
+    for (const std::string file : {"slice%c.raw 1 9 1", "slice%d%d.raw 1 9 1", "slice%333d.raw 1 9 1"}) {
+        write_bytes(folder / "v.nhdr",
+                    "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\ndata file: " + file);
+        EXPECT_SAYS(test::volume_refusal(folder / "v.nhdr"), "by a pattern of another kind") << file;
     }
 }
 

@@ -9,7 +9,6 @@
 #include <csignal>
 #include <cstring>
 #include <fstream>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
@@ -57,6 +56,14 @@ int claim_slot(const std::string& path) {
     return -1;
 }
 
+void release_slot(int slot) {
+    if (slot >= 0) slots[static_cast<std::size_t>(slot)].used.store(false);
+}
+
+[[noreturn]] void refuse_to_replace(const std::filesystem::path& target) {
+    throw InvalidInput({target.string(), "exists already", "", "choose another name or pass --force"});
+}
+
 // Hands a finished file to whoever reads a pipe.
 void copy_into_pipe(const std::filesystem::path& staged, const std::filesystem::path& pipe) {
     std::signal(SIGPIPE, SIG_IGN);  // a reader that goes is an error like others
@@ -69,25 +76,24 @@ void copy_into_pipe(const std::filesystem::path& staged, const std::filesystem::
 
 }  // namespace
 
-StagedFile::StagedFile(const std::filesystem::path& target, bool replace) : target_(output_target(target)) {
-    if (!replace && !target_.is_pipe && std::filesystem::exists(target_.path))
-        throw InvalidInput({target.string(), "exists already", "", "choose another name or pass --force"});
+StagedFile::StagedFile(const std::filesystem::path& target, bool replace)
+    : target_(output_target(target)), replace_(replace) {
+    if (!replace && !target_.is_pipe && std::filesystem::exists(target_.path)) refuse_to_replace(target);
     const std::filesystem::path folder =
         target_.is_pipe ? std::filesystem::temp_directory_path() : folder_of(target_.path);
     if (!std::filesystem::is_directory(folder))
         throw InvalidInput(
             {target.string(), "its folder does not exist", "", "make it first: mkdir -p " + folder.string()});
     remove_orphans(folder);
-    staged_ = create_staged(folder, target_.path);
+    staged_ = create_staged(folder, target_.path, target_.is_pipe);
     if (staged_.has_name) slot_ = claim_slot(staged_.path.string());
-    if (target_.is_pipe) fchmod(staged_.descriptor, 0600);  // nobody else looks into it there
 }
 
 StagedFile::~StagedFile() {
     std::error_code ignored;
     if (staged_.has_name) std::filesystem::remove(staged_.path, ignored);
     close(staged_.descriptor);
-    if (slot_ >= 0) slots[slot_].used.store(false);
+    release_slot(slot_);
 }
 
 void StagedFile::write_text(const std::string& text) const {
@@ -100,12 +106,29 @@ void StagedFile::write_text(const std::string& text) const {
 void StagedFile::commit() {
     if (target_.is_pipe) return copy_into_pipe(staged_.path, target_.path);
     flush_to_disk(staged_.path, target_.path);
-    if (!staged_.has_name) {
-        give_name(staged_, folder_of(target_.path), target_.path);
-        slot_ = claim_slot(staged_.path.string());
+    const std::filesystem::path folder = folder_of(target_.path);
+    // What must not replace a file gets the target's name at once, what may a hidden one first.
+    if (!replace_ && !staged_.has_name) {
+        if (!give_name(staged_, target_.path, target_.path)) refuse_to_replace(target_.path);
+        return flush_to_disk(folder, target_.path);
     }
-    std::filesystem::rename(staged_.path, target_.path);
-    flush_to_disk(folder_of(target_.path), target_.path);
+    if (!staged_.has_name) take_hidden_name(folder);
+    if (!replace_ && std::filesystem::exists(target_.path)) refuse_to_replace(target_.path);
+    if (rename(staged_.path.c_str(), target_.path.c_str()) != 0) fail_to_write(target_.path, errno);
+    flush_to_disk(folder, target_.path);
+}
+
+void StagedFile::take_hidden_name(const std::filesystem::path& folder) {
+    for (int attempt = 0;; ++attempt) {
+        const std::filesystem::path name = staged_name(folder, target_.path, attempt);
+        slot_ = claim_slot(name.string());
+        if (give_name(staged_, name, target_.path)) {
+            staged_ = {staged_.descriptor, name};
+            return;
+        }
+        release_slot(slot_);
+        if (attempt == most_attempts) fail_to_write(target_.path, EEXIST);
+    }
 }
 
 void remove_staged_files_on_interrupt() {

@@ -29,11 +29,15 @@ class StagedFile {
     /// Writes the whole content; throws SystemFailure if it does not fit.
     void write_text(const std::string& text) const;
 
-    /// Flushes and renames; throws SystemFailure if the file is missing or cannot be flushed.
+    /// Flushes it and puts it in its place. Throws InvalidInput if it must not replace a file that came there
+    /// meanwhile, SystemFailure if it cannot.
     void commit();
 
   private:
+    void take_hidden_name(const std::filesystem::path& folder);
+
     OutputTarget target_;
+    bool replace_;
     Staged staged_;  ///< locked while this lives
     int slot_ = -1;
 };

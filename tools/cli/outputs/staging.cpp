@@ -21,8 +21,6 @@
 namespace palpate::cli {
 namespace {
 
-constexpr int most_attempts = 100;
-
 // Tells machines that share a folder apart: a lock of one may say nothing to another.
 const std::string& machine() {
     static const std::string name = [] {
@@ -70,8 +68,11 @@ bool is_still(int file, const std::filesystem::path& path) {
            opened.st_dev == named.st_dev;
 }
 
-int create(const std::filesystem::path& path, bool is_folder) {
-    if (!is_folder) return open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+int create_file(const std::filesystem::path& path, mode_t mode) {
+    return open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+}
+
+int create_folder(const std::filesystem::path& path) {
     if (mkdir(path.c_str(), 0777) != 0) return -1;
     const int folder = open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NOFOLLOW);
     const int error = errno;
@@ -88,12 +89,13 @@ std::map<std::string, std::string>& targets() {
 
 constexpr const char* descriptors = "/proc/self/fd/";
 
+// Nothing where the file system has no such files, or no /proc gives them a path.
 std::optional<Staged> create_nameless(const std::filesystem::path& folder,
-                                      const std::filesystem::path& target) {
-    const int file = open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+                                      const std::filesystem::path& target, mode_t mode) {
+    const int file = open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, mode);
     if (file < 0) return std::nullopt;
     const std::string path = descriptors + std::to_string(file);
-    if (access(path.c_str(), W_OK) != 0 || lock(file, false) == Lock::of_another) {  // no /proc
+    if (access(path.c_str(), F_OK) != 0 || lock(file, false) == Lock::of_another) {
         close(file);
         return std::nullopt;
     }
@@ -103,11 +105,12 @@ std::optional<Staged> create_nameless(const std::filesystem::path& folder,
 
 // Another process that looks for orphans may be quicker with the lock, or even have removed a folder before
 // it is open; then under another name.
-Staged create_named(const std::filesystem::path& folder, const std::filesystem::path& target,
-                    bool is_folder) {
+template <typename Create>
+Staged create_named(const std::filesystem::path& folder, const std::filesystem::path& target, bool is_folder,
+                    const Create& create) {
     for (int attempt = 0;; ++attempt) {
-        const auto path = folder / (staged_prefix(attempt) + target.filename().string());
-        const int file = create(path, is_folder);
+        const auto path = staged_name(folder, target, attempt);
+        const int file = create(path);
         if (file < 0 && ((errno != EEXIST && errno != ENOENT) || attempt == most_attempts))
             fail_to_write(target, errno);
         if (file < 0) continue;
@@ -133,25 +136,27 @@ void remove_orphans(const std::filesystem::path& folder) {
     }
 }
 
-Staged create_staged(const std::filesystem::path& folder, const std::filesystem::path& target) {
-    if (const auto nameless = create_nameless(folder, target)) return *nameless;
-    return create_named(folder, target, false);
+Staged create_staged(const std::filesystem::path& folder, const std::filesystem::path& target,
+                     bool is_private) {
+    const mode_t mode = is_private ? 0600 : 0666;
+    if (const auto nameless = create_nameless(folder, target, mode)) return *nameless;
+    return create_named(folder, target, false,
+                        [mode](const std::filesystem::path& path) { return create_file(path, mode); });
 }
 
 Staged create_staged_folder(const std::filesystem::path& folder, const std::filesystem::path& target) {
-    return create_named(folder, target, true);
+    return create_named(folder, target, true, create_folder);
 }
 
-void give_name(Staged& staged, const std::filesystem::path& folder, const std::filesystem::path& target) {
-    for (int attempt = 0;; ++attempt) {
-        const auto path = folder / (staged_prefix(attempt) + target.filename().string());
-        if (linkat(AT_FDCWD, staged.path.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0) {
-            staged.path = path;
-            staged.has_name = true;
-            return;
-        }
-        if (errno != EEXIST || attempt == most_attempts) fail_to_write(target, errno);
-    }
+std::filesystem::path staged_name(const std::filesystem::path& folder, const std::filesystem::path& target,
+                                  int attempt) {
+    return folder / (staged_prefix(attempt) + target.filename().string());
+}
+
+bool give_name(const Staged& staged, const std::filesystem::path& name, const std::filesystem::path& target) {
+    if (linkat(AT_FDCWD, staged.path.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) return true;
+    if (errno != EEXIST) fail_to_write(target, errno);
+    return false;
 }
 
 void flush_to_disk(const std::filesystem::path& path, const std::filesystem::path& target) {

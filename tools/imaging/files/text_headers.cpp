@@ -5,6 +5,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <functional>
 #include <sstream>
@@ -44,17 +45,36 @@ void read_lines(const std::filesystem::path& path, const std::function<bool(cons
     }
 }
 
-void check_files_of_nrrd(const std::filesystem::path& path, const std::string& value) {
-    constexpr double most_files = 65536;
-    std::istringstream words(value.substr(std::min(value.size(), value.rfind('%'))));
-    double first = 0, last = 0, step = 1;
-    if (std::string pattern;
-        words >> pattern >> first >> last >> step && !(std::abs((last - first) / step) <= most_files))
-        refuse(path, "keeps its voxels in more than 65536 files", "");
+// Reading from a pipe or a device may have no end; "-" is the standard input.
+void check_file_of_nrrd(const std::filesystem::path& path, const std::string& name) {
     std::error_code none;
-    if (const auto file = path.parent_path() / value;
-        std::filesystem::exists(file, none) && !std::filesystem::is_regular_file(file, none))
+    const auto file = path.parent_path() / name;
+    if (name == "-" || (std::filesystem::exists(file, none) && !std::filesystem::is_regular_file(file, none)))
         refuse(path, "keeps its voxels in what is no file", "a file");
+}
+
+// "slice%03d.raw 1 120 1": a file for each number.
+void check_pattern_of_nrrd(const std::filesystem::path& path, const std::string& value) {
+    constexpr double most_files = 65536;
+    const std::size_t percent = value.rfind('%');
+    if (percent == std::string::npos) return;
+    std::istringstream words(value.substr(percent));
+    std::string ending;
+    double first = 0, last = 0, step = 1;
+    if (!(words >> ending >> first >> last >> step)) return;
+    if (!(std::abs((last - first) / step) <= most_files))
+        refuse(path, "keeps its voxels in more than 65536 files", "");
+    const std::size_t letter = ending.find_first_not_of("0123456789", 1);
+    const std::string width = ending.substr(1, letter - 1);
+    if (letter == std::string::npos || ending[letter] != 'd' || width.size() > 2 ||
+        value.find('%') != percent)
+        refuse(path, "names its files by a pattern of another kind", "one with %d");
+    const std::size_t digits = width.empty() ? 0 : std::stoul(width);
+    for (double number = first; step > 0 ? number <= last : number >= last; number += step) {
+        const std::string text = std::to_string(static_cast<std::int64_t>(number));
+        const std::string filled(digits - std::min(digits, text.size()), width.starts_with('0') ? '0' : ' ');
+        check_file_of_nrrd(path, value.substr(0, percent) + filled + text + ending.substr(letter + 1));
+    }
 }
 
 // What MetaIO takes for the name of a field where a line begins: up to a separator or a carriage return, and
@@ -76,11 +96,17 @@ void check_dimensions(const std::filesystem::path& path, std::string line) {
 }  // namespace
 
 void require_short_nrrd_header(const std::filesystem::path& path) {
+    bool lists_files = false;  // to the end of the header
     read_lines(path, [&](const std::string& line) {
         const std::string field = in_lower_case(line);
-        if (field.starts_with("data file:") || field.starts_with("datafile:"))
-            check_files_of_nrrd(path, trimmed(line.substr(line.find(':') + 1)));
-        return trimmed(line).empty();
+        if (lists_files && !trimmed(line).empty()) check_file_of_nrrd(path, trimmed(line));
+        if (field.starts_with("data file:") || field.starts_with("datafile:")) {
+            const std::string value = trimmed(line.substr(line.find(':') + 1));
+            check_file_of_nrrd(path, value);
+            check_pattern_of_nrrd(path, value);
+            lists_files = value.starts_with("LIST");
+        }
+        return !lists_files && trimmed(line).empty();
     });
 }
 

@@ -5,8 +5,8 @@
 namespace palpate::imaging {
 
 /// Throws InvalidInput where NrrdIO would not come to an end with a header: of more than 8192 lines or 1 MiB,
-/// each of which it holds against each other, or of a pattern of more than 65536 files; or with what is no
-/// file.
+/// each of which it holds against each other, or of a pattern of more than 65536 files; or where one of its
+/// files is no file but a pipe, a device or the standard input.
 void require_short_nrrd_header(const std::filesystem::path& path);
 
 /// Throws InvalidInput where MetaIO would not come to an end with a header, which has as many lines and 1 to
