@@ -135,8 +135,9 @@ ordered_json run_seeds(SeedsRequest request, cli::Session& session) {
         cli::StagedFile staged(output, session.force || written);
         try {
             write_seeds(staged.path(), placed);
-        } catch (const SystemFailure&) {  // the window knows no temporary names
-            cli::fail_to_write(output, ENOSPC);
+        } catch (const SystemFailure&) {  // which has the temporary path
+            throw SystemFailure(
+                {output.string(), "could not be written", "", "check free space and permissions"});
         }
         staged.commit();
         written = true;

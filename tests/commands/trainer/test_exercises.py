@@ -194,7 +194,8 @@ class Exercises(TrainerCase):
         after = self.steady_yellow(window)
         self.x("xdotool", "key", "q")
         self.finish(process)
-        self.assertLess(after, before + 100)
+        # The region has some 90 000 where it is shown; a notice that comes or fades may have a thousand or two.
+        self.assertLess(after, before + 20_000)
 
     def test_mouse_and_keys_lead_through_the_pages(self):
         process, window = self.open_window()
