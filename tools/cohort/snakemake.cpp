@@ -4,6 +4,7 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <fstream>
@@ -81,6 +82,8 @@ Running start(const std::vector<std::string>& command, const std::filesystem::pa
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+    // Python would leave what it compiled of the log handler in the installation, if it may write there.
+    setenv("PYTHONDONTWRITEBYTECODE", "1", 0);
     Running running{0, ends[0]};
     const int error = posix_spawnp(&running.pid, argv[0], &actions, &attributes, argv.data(), environ);
     posix_spawnattr_destroy(&attributes);
