@@ -9,6 +9,7 @@ import threading
 import time
 import unittest
 
+import small_disk
 from crash import BIN, Crashes, run
 
 
@@ -67,12 +68,7 @@ class SomeCrashes(Crashes):
 
     @unittest.skipUnless(os.geteuid() == 0, "mounting a small disk needs root")
     def test_a_disk_that_is_full_loses_nothing_and_the_next_build_completes(self):
-        disk = self.folder / "disk"
-        disk.mkdir()
-        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=32m", "none", disk], stderr=subprocess.PIPE, text=True)
-        if mounted.returncode != 0:
-            self.skipTest(f"no small disk can be mounted: {mounted.stderr.strip()}")
-        self.addCleanup(subprocess.run, ["umount", disk], check=True)
+        disk = small_disk.mounted(self, self.folder / "disk", "32m")
         self.asset, full = disk / "case.vtkhdf", disk / "full"
         self.assertBuilds()
         before = self.asset.read_bytes()

@@ -16,6 +16,7 @@ import time
 import unittest
 
 sys.path.insert(0, "..")
+import small_disk  # noqa: E402
 import test_asset_commands as assets  # noqa: E402
 
 BIN, OK, FAILED, INVALID = assets.BIN, assets.OK, assets.FAILED, assets.INVALID
@@ -220,12 +221,7 @@ class Outputs(unittest.TestCase):
 
     @unittest.skipUnless(os.geteuid() == 0, "mounting a small disk needs root")
     def test_a_full_disk_leaves_the_earlier_file(self):
-        disk = self.folder / "disk"
-        disk.mkdir()
-        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=4k", "none", disk], stderr=subprocess.PIPE, text=True)
-        if mounted.returncode != 0:
-            self.skipTest(f"no small disk can be mounted: {mounted.stderr.strip()}")
-        self.addCleanup(subprocess.run, ["umount", disk], check=True)
+        disk = small_disk.mounted(self, self.folder / "disk", "4k")
         earlier = disk / "tree.obb.h5"
         earlier.write_text("earlier")
         self.assertFailsAndKeeps(earlier, self.obb(earlier, "--force"))
