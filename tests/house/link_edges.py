@@ -22,6 +22,7 @@ ROOMS = {
     "elasticity": {"model"},
     "provenance": {"json"},
     "asset": {"model", "hdf5", "openssl", "threads"},
+    "stl_file": {"model"},
     "toml_file": {"model", "toml"},
     "recording": {"model", "asset"},
     "vtk_blocks": {"vtk"},
@@ -70,7 +71,7 @@ EXECUTABLES = {
 }
 HEAVY = {"itk", "cgal", "cholmod", "metis", "vtk"}
 LEAN = {"palpate_drawing", "palpate_provenance", "palpate_records", "palpate_model", "palpate_elasticity", "palpate_asset", "palpate_recording", "palpate_cli", "palpate_realtime", "palpate_collision",
-        "palpate_haptics", "palpate_devices", "palpate_openigtlink", "palpate_session", "palpate_toml_file", "palpate_training", "palpate_doctor", "palpate-touch",
+        "palpate_haptics", "palpate_devices", "palpate_openigtlink", "palpate_session", "palpate_stl_file", "palpate_toml_file", "palpate_training", "palpate_doctor", "palpate-touch",
         "palpate-doctor"}
 # These two draw, so VTK is theirs; nothing else that is heavy.
 DRAWING = {"palpate_visual", "palpate-train"}
