@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""sample_data/unpack.py on tiny packages of the same layout as Debian's, so that no network is needed."""
+"""sample_data/unpack.py on tiny packages of the same layout as Debian's, so that no network is needed; tools.py."""
 import gzip
 import io
+import math
 import os
 import pathlib
 import plistlib
@@ -13,7 +14,8 @@ import tarfile
 import tempfile
 import unittest
 
-UNPACK = pathlib.Path(os.environ["PALPATE_SOURCE"]) / "sample_data" / "unpack.py"
+SAMPLE_DATA = pathlib.Path(os.environ["PALPATE_SOURCE"]) / "sample_data"
+UNPACK = SAMPLE_DATA / "unpack.py"
 
 
 def add(tar, name, data):
@@ -110,6 +112,72 @@ class Unpack(unittest.TestCase):
         self.assertIn("unpack.py: ", result.stderr)
         self.assertNotIn("Traceback", result.stderr)
         self.assertEqual(os.listdir(self.out), [])
+
+
+def triangles(path):
+    """Of binary STL: corners, mm."""
+    data = path.read_bytes()
+    count, = struct.unpack_from("<I", data, 80)
+    assert len(data) == 84 + 50 * count
+    numbers = [struct.unpack_from("<12f", data, 84 + 50 * n) for n in range(count)]
+    return [(row[3:6], row[6:9], row[9:12]) for row in numbers]
+
+
+def volume(surface):
+    return sum(a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
+               for a, b, c in surface) / 6
+
+
+class Tools(unittest.TestCase):
+    NAMES = ["drill", "endoscope", "forceps", "peg", "probe"]
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.out = pathlib.Path(temporary.name) / "tools"
+        self.write()
+
+    def write(self):
+        subprocess.run([sys.executable, SAMPLE_DATA / "tools.py", self.out], check=True, stdout=subprocess.DEVNULL, timeout=60)
+
+    def surface(self, name):
+        return triangles(self.out / f"{name}.stl")
+
+    def test_each_is_a_closed_surface_without_needless_corners(self):
+        self.assertEqual(sorted(os.listdir(self.out)), [f"{name}.stl" for name in self.NAMES])
+        for name in self.NAMES:
+            edges = [edge for a, b, c in self.surface(name) for edge in ((a, b), (b, c), (c, a))]
+            self.assertEqual(len(set(edges)), len(edges), name)
+            self.assertEqual({(b, a) for a, b in edges}, set(edges), name)
+            self.assertFalse([edge for edge in edges if edge[0] == edge[1]], name)
+
+    def test_each_faces_outwards_as_its_normals_say(self):
+        self.assertAlmostEqual(volume(self.surface("peg")), 4000)
+        ball = 4 / 3 * math.pi * 3**3
+        self.assertAlmostEqual(volume(self.surface("probe")) / (ball + math.pi * 2**2 * (120 - 3)), 1, delta=0.02)
+        for name in self.NAMES:
+            self.assertGreater(volume(self.surface(name)), 0, name)
+            data = (self.out / f"{name}.stl").read_bytes()
+            for n, (a, b, c) in enumerate(self.surface(name)):
+                x, y, z = struct.unpack_from("<3f", data, 84 + 50 * n)
+                self.assertAlmostEqual(math.hypot(x, y, z), 1, delta=1e-6)
+                u, v = [q - p for p, q in zip(a, b)], [q - p for p, q in zip(a, c)]
+                along = (x * (u[1] * v[2] - u[2] * v[1]) + y * (u[2] * v[0] - u[0] * v[2]) + z * (u[0] * v[1] - u[1] * v[0]))
+                self.assertGreater(along, 0, name)
+
+    def test_the_tip_is_at_the_origin_and_the_shaft_goes_up(self):
+        lowest = {"drill": -2, "endoscope": -2 * math.tan(math.radians(30)), "forceps": -1, "peg": 0, "probe": -3}
+        highest = {"drill": 70, "endoscope": 150, "forceps": 150, "peg": 40, "probe": 120}
+        for name in self.NAMES:
+            heights = [corner[2] for triangle in self.surface(name) for corner in triangle]
+            self.assertAlmostEqual(min(heights), lowest[name], places=3)
+            self.assertAlmostEqual(max(heights), highest[name], places=3)
+
+    def test_the_same_bytes_are_written_again(self):
+        before = {name: (self.out / f"{name}.stl").read_bytes() for name in self.NAMES}
+        self.write()
+        self.assertEqual({name: (self.out / f"{name}.stl").read_bytes() for name in self.NAMES}, before)
+        self.assertFalse(list(SAMPLE_DATA.glob("__pycache__")))
 
 
 if __name__ == "__main__":
