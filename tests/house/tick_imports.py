@@ -17,6 +17,7 @@ from pathlib import Path
 # Target folder: object -> why it is the tick's.
 TICK = {
     "runtime/collision/CMakeFiles/palpate_collision.dir": {
+        "distance_field_queries": "signed distance and its gradient, by a field",
         "neighbourhood": "sweeps against the triangles next to the tool",
         "rounded_triangle": "a point against one triangle that is round at its edges",
         "segment_queries": "segments against segments and triangles",
