@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A BIDS dataset becomes a cohort, and the cohort a BIDS dataset of derivatives."""
 import fcntl
-import gzip
 import json
 import os
 import re
 import shutil
-import struct
 import subprocess
 import time
 import unittest
 
+from nifti import nrrd_as_nifti, read_nifti, read_nrrd
 from small_cohort import BIN, CASE, PHANTOM, SmallCohort
 
 NAMES = "index\tname\n{}\tliver\n{}\ttumour\n"
@@ -18,43 +17,6 @@ NAMES = "index\tname\n{}\tliver\n{}\ttumour\n"
 DSEG = re.compile(r"sub-[0-9a-zA-Z]+(/ses-[0-9a-zA-Z]+)?/anat/sub-[0-9a-zA-Z]+(_ses-[0-9a-zA-Z]+)?(_task-[0-9a-zA-Z]+)?(_acq-[0-9a-zA-Z]+)?"
                   r"(_ce-[0-9a-zA-Z]+)?(_rec-[0-9a-zA-Z]+)?(_run-\d+)?(_space-[0-9a-zA-Z]+)?(_seg-[0-9a-zA-Z]+)?(_desc-[0-9a-zA-Z]+)?"
                   r"_dseg\.(nii\.gz|tsv|json)")
-
-
-def read_nrrd(path):
-    """Size, voxel-to-LPS matrix (3 rows of 4) and raw bytes of a packed NRRD as Palpate writes it; its type in NIfTI's numbers."""
-    head, _, data = path.read_bytes().partition(b"\n\n")
-    fields = dict(line.split(": ", 1) for line in head.decode().splitlines() if ": " in line)
-    size = [int(n) for n in fields["sizes"].split()]
-    axes = [[float(x) for x in axis.split(",")] for axis in re.findall(r"\(([^)]*)\)", fields["space directions"])]
-    origin = [float(x) for x in fields["space origin"].strip("()").split(",")]
-    kind = {"unsigned char": 2, "uint8": 2, "short": 4, "int16": 4, "float": 16, "unsigned short": 512, "uint16": 512}[fields["type"]]
-    return size, [[axes[0][r], axes[1][r], axes[2][r], origin[r]] for r in range(3)], gzip.decompress(data), kind
-
-
-def nrrd_as_nifti(source, target):
-    """A second writer of NIfTI: RAS is LPS with x and y turned round."""
-    size, lps, voxels, kind = read_nrrd(source)
-    ras = [[-x for x in lps[0]], [-x for x in lps[1]], lps[2]]
-    header = bytearray(352)
-    struct.pack_into("<i", header, 0, 348)
-    struct.pack_into("<8h", header, 40, 3, *size, 1, 1, 1, 1)
-    struct.pack_into("<2h", header, 70, kind, 8 * {2: 1, 4: 2, 16: 4, 512: 2}[kind])
-    struct.pack_into("<8f", header, 76, 1, *(sum(lps[r][a] ** 2 for r in range(3)) ** 0.5 for a in range(3)), 0, 0, 0, 0)
-    struct.pack_into("<3f", header, 108, 352, 1, 0)
-    header[123] = 2
-    struct.pack_into("<2h", header, 252, 0, 1)
-    struct.pack_into("<12f", header, 280, *(x for row in ras for x in row))
-    header[344:348] = b"n+1\0"
-    target.parent.mkdir(parents=True, exist_ok=True)
-    target.write_bytes(gzip.compress(bytes(header) + voxels, mtime=0))
-
-
-def read_nifti(path):
-    """A second reader: size, sform as LPS, raw bytes."""
-    data = gzip.decompress(path.read_bytes())
-    rows = struct.unpack_from("<12f", data, 280)
-    ras = [rows[4 * r:4 * r + 4] for r in range(3)]
-    return list(struct.unpack_from("<3h", data, 42)), [[-x for x in ras[0]], [-x for x in ras[1]], list(ras[2])], data[352:]
 
 
 def files_of(folder):
