@@ -9,9 +9,7 @@ from collections import namedtuple
 
 COLUMN = 30  # where the help's descriptions begin
 WIDTH = 110  # of notes
-# Commands whose examples need nothing but what the first tutorial leaves.
-RUN = ("export", "inspect", "tissues")
-NOT_RUN = "an example with files of the reader's; house.docs_commands holds its options against the program"
+EXAMPLES = "<!-- examples: tests/commands/docs/test_examples.py -->"  # where they run
 KINDS = {"TEXT": "text", "FLOAT": "number", "INT": "integer", "UINT": "integer from 0 on",
          "FLOAT:POSITIVE": "number above 0", "FLOAT:NONNEGATIVE": "number from 0 on", "INT:POSITIVE": "integer above 0"}
 Option = namedtuple("Option", "names takes default needs meaning")
@@ -134,8 +132,7 @@ def section(name, text, common):
     notes, _, last = text.notes.rpartition("\n\n")  # the last paragraph, on exit codes, is the page's beginning
     if not last.startswith("Positions are LPS mm."):
         notes = text.notes
-    lines += [f"<!-- not run: {NOT_RUN} -->"] if name not in RUN else []
-    lines += ["```sh", *text.examples, "```", ""]
+    lines += [EXAMPLES, "```sh", *text.examples, "```", ""]
     return lines + (["<!-- not output: notes of --help -->", "```text", *wrapped(notes), "```", ""] if notes.strip() else [])
 
 

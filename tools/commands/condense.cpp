@@ -43,9 +43,9 @@ int main(int argc, char** argv) {
          .summary = "Computes the surface compliance C = (K^-1)_ss of a tetrahedral body, exact or "
                     "compressed, with its certificate.",
          .examples = {"palpate condense liver.vtu --material liver:6.3,0.45 --material tumour:30,0.45 "
-                      "--fixed sphere:20,60,-40,50 -o liver.body.h5",
+                      "--fixed sphere:-14,30,20,30 -o liver.body.h5",
                       "palpate condense wall.vtu --material wall:7.8,0.49 --element quadratic "
-                      "--fixed touching:skull --contact touching:background -o wall.body.h5"},
+                      "--fixed touching:skull --contact touching:airway -o wall.body.h5"},
          .notes = fmt::format(
              "Rules that pick nodes: {}.\n--fixed and --contact take the same rules, and several add up. "
              "Rules pick surface nodes; nodes:FILE may hold interior ones too. Only the nodes of the contact "

@@ -260,8 +260,8 @@ int main(int argc, char** argv) {
          .summary =
              "Drafts a case file that builds at once, from a scan, a label map, tetrahedra or a surface",
          .examples = {"palpate init totalseg.nii.gz --organ liver -o liver.toml",
-                      "palpate init ct_series/ --organ liver --seed -60,10,40 -o liver.toml",
-                      "palpate init head_ct.nrrd --organ nasopharynx -o nasopharynx.toml",
+                      "palpate init ct_series/ --organ liver --seed -30,-8,-4 -o liver.toml",
+                      "palpate init head_ct.nrrd --organ nasopharynx --seed 0,-5,-40 -o nasopharynx.toml",
                       "palpate init mri.nii.gz --organ brain -o brain.toml",
                       "palpate init prostate.stl -o prostate.toml"},
          .notes = "A label map (any that 'palpate import --labels' reads; TotalSegmentator's names are "

@@ -145,14 +145,14 @@ int main(int argc, char** argv) {
         {.name = "segment",
          .summary = "Makes a label map of named structures from a volume, by recipes",
          .examples =
-             {"palpate segment --volume volume.nrrd --structure 'skull: recipe=bone threshold_hu=226' -o "
-              "labels.seg.nrrd",
+             {"palpate segment --volume head.nrrd --structure 'skull: recipe=bone threshold_hu=226' -o "
+              "skull.seg.nrrd",
               "palpate segment --volume volume.nrrd --structure 'liver: recipe=liver "
-              "seeds=-60,10,40;-20,-30,45' "
+              "seeds=-30,-8,-4;-2,-14,-8 lesion_seeds_mm=-22,-10,4' "
               "--structure 'tumour: recipe=tumour inside=liver seeds_file=tumour.mrk.json' -o "
               "labels.seg.nrrd",
               "palpate segment --labels prior.seg.nrrd --structure 'liver: recipe=import' --structure "
-              "'tumour: recipe=sphere inside=liver center_mm=80,90,140 radius_mm=12' -o labels.seg.nrrd"},
+              "'tumour: recipe=sphere inside=liver center_mm=-4,-14,-6 radius_mm=8' -o labels.seg.nrrd"},
          .notes = recipe_help()});
     stages::SegmentRequest request;
     declare(command, request);

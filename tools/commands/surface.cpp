@@ -37,7 +37,7 @@ int main(int argc, char** argv) {
         {.name = "surface",
          .summary = "Extracts the closed triangle surface of a rigid structure.",
          .examples = {"palpate surface --volume head.nrrd --isovalue 226 --keep-largest -o skull.vtp",
-                      "palpate surface --labels abdomen.seg.nrrd --label kidney -o kidney.vtp",
+                      "palpate surface --labels abdomen.seg.nrrd --label spine -o spine.vtp",
                       "palpate surface --surface-file skull.stl --unit cm --max-triangles 100000 "
                       "--max-distance 0.5 -o skull.vtp"},
          .notes =

@@ -6,6 +6,8 @@ An HTML comment in the line above a block is not seen by readers and tells the t
     <!-- not run: WHY -->       it cannot run in a test
     <!-- slow: WHY -->          it runs in the slow tests alone
     <!-- window -->             each of its lines opens a window, which closes at Q
+    <!-- clicks -->             the same, after a click in the middle of its first slice and S
+    <!-- examples: WHERE -->    each of its lines is an example by itself, which that test runs
     <!-- exit N: WHY -->        its last line ends with that code
     <!-- not output: WHY -->    of a text block: it is not what the block before it prints
 
@@ -15,7 +17,7 @@ import re
 from dataclasses import dataclass
 
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```", re.MULTILINE | re.DOTALL)
-REMARK = re.compile(r"<!-- (not run|slow|window|exit \d+|not output)(?:: (.+?))? -->\n\Z")
+REMARK = re.compile(r"<!-- (not run|slow|window|clicks|examples|exit \d+|not output)(?:: (.+?))? -->\n\Z")
 LANGUAGES = ("sh", "python")  # that run
 # What differs by machine: times and sizes of memory.
 VARIES = re.compile(r"(?<![\w.])\d[\d.]*(?= ?(?:us|µs|ms|s|min|MB|GB|MB/s)\b)")
@@ -30,7 +32,7 @@ class BadPage(Exception):
 @dataclass
 class Block:
     page: str
-    line: int  # of its fence
+    line: int  # of its fence; 0 if it is on no page
     language: str
     code: str
     remark: str = ""  # what the comment above it begins with
@@ -38,7 +40,7 @@ class Block:
     output: str | None = None  # what it is said to print
 
     def __str__(self):
-        return f"{self.page}:{self.line}"
+        return f"{self.page}:{self.line}" if self.line else self.page
 
 
 def blocks_of(page, text):
@@ -49,7 +51,7 @@ def blocks_of(page, text):
         block = Block(page, line, found[1], found[2])
         if above := REMARK.search(text[:found.start()]):
             block.remark, block.reason = above[1], above[2] or ""
-        if block.remark in ("not run", "slow", "not output") and not block.reason:
+        if block.remark in ("not run", "slow", "examples", "not output") and not block.reason:
             raise BadPage(f"{block}: '{block.remark}' needs a reason")
         if block.language in LANGUAGES:
             blocks.append(block)

@@ -20,6 +20,8 @@ BIN = pathlib.Path(os.environ["PALPATE_BIN"])
 BUILD = pathlib.Path(os.environ["PALPATE_BUILD"])
 LONGEST_S = 280  # of a block
 WINDOW_S = 60  # until a window opens, and closes
+STATUS_PIXELS = 30  # high is the line below the slices
+WINDOWS = ("window", "clicks")  # remarks of blocks that open one
 # What a block needs besides palpate, by a word of it.
 NEEDS = {"palpate batch": ["snakemake"], "sbatch": ["sbatch"], "xvfb-run": ["xvfb-run"]}
 
@@ -37,7 +39,7 @@ class Pages:
         self.done = {}  # page -> its folder
         self.wrong = {}  # page -> what was thrown
         self.locks = collections.defaultdict(threading.Lock)  # page -> held while it runs
-        self.ran, self.not_run = [], []  # blocks; (block, reason)
+        self.ran, self.not_run, self.elsewhere = [], [], []  # blocks; (block, reason); blocks of examples
 
     def close(self):
         shutil.rmtree(self.home, ignore_errors=True)
@@ -69,7 +71,9 @@ class Pages:
             folder.mkdir()
         for block in blocks_of(page, text):
             reason = self.reason_against(block)
-            if reason:
+            if block.remark == "examples":
+                self.elsewhere.append(block)
+            elif reason:
                 self.not_run.append((block, reason))
             else:
                 self.run(block, folder)
@@ -80,12 +84,12 @@ class Pages:
         if block.remark == "not run" or block.remark == "slow" and not self.slow:
             return block.reason
         needed = [tool for word, tools in NEEDS.items() if word in block.code for tool in tools]
-        needed += ["Xvfb", "xdotool"] if block.remark == "window" else []
+        needed += ["Xvfb", "xdotool"] if block.remark in WINDOWS else []
         missing = [tool for tool in needed if not shutil.which(tool)]
         return f"not installed here: {', '.join(missing)}" if missing else ""
 
     def run(self, block, folder):
-        if block.remark == "window":
+        if block.remark in WINDOWS:
             for line in block.code.replace("\\\n", " ").splitlines():
                 self.open_and_close(block, line, folder)
             return
@@ -109,6 +113,14 @@ class Pages:
         """A script that takes an asset gets the page's."""
         return [str(folder / "case.vtkhdf")] if "sys.argv[1]" in block.code else []
 
+    def click_and_save(self, window, display):
+        """Places a seed in the middle of the axial slice, which a cube's volume has in the upper left quarter above the status line."""
+        said = subprocess.run(["xdotool", "getwindowgeometry", "--shell", window], env=self.environment() | display, capture_output=True, text=True)
+        shape = dict(line.split("=") for line in said.stdout.split())
+        place = [str(int(shape["WIDTH"]) // 4), str((int(shape["HEIGHT"]) - STATUS_PIXELS) // 4)]
+        subprocess.run(["xdotool", "windowfocus", window, "mousemove", "--window", window, *place, "click", "1", "sleep", "1", "key", "s"],
+                       env=self.environment() | display, check=True)
+
     def open_and_close(self, block, line, folder):
         if not line.partition("#")[0].strip():
             return
@@ -127,6 +139,8 @@ class Pages:
                     if not window:
                         raise Wrong(f"{block}: no window opens:\n{line}\n{pathlib.Path(log.name).read_text()[-2000:]}")
                     time.sleep(2)
+                    if block.remark == "clicks":
+                        self.click_and_save(window, display)
                     until = time.monotonic() + WINDOW_S
                     while process.poll() is None and time.monotonic() < until:
                         subprocess.run(["xdotool", "windowfocus", window, "key", "q"], env=self.environment() | display, capture_output=True)

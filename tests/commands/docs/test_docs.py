@@ -35,14 +35,14 @@ class Docs(unittest.TestCase):
             print(f"ran: {block} in {block.seconds:.1f} s")
         for block, reason in sorted(runner.not_run, key=lambda row: str(row[0])):
             print(f"not run: {block}: {reason}")
-        print(f"{len(runner.ran)} blocks ran, {len(runner.not_run)} did not")
+        print(f"{len(runner.ran)} blocks ran, {len(runner.not_run)} did not, {len(runner.elsewhere)} have examples, which test_examples.py runs")
         self.assertFalse(errors, "\n\n".join(errors))
         return runner
 
     def test_every_block_runs_or_says_why_not(self):
         runner = self.run_pages(ONLY or pages())
         found = sum(len(blocks_of(page, (SOURCE / page).read_text())) for page in runner.done)
-        self.assertEqual(len(runner.ran) + len(runner.not_run), found)
+        self.assertEqual(len(runner.ran) + len(runner.not_run) + len(runner.elsewhere), found)
         self.assertTrue(ONLY or len(runner.ran) >= LEAST_BLOCKS)
 
 
@@ -80,6 +80,7 @@ class Judge(unittest.TestCase):
         runner = self.judge("<!-- not run: no device -->\n```sh\nfalse\n```\n\n<!-- slow: an hour -->\n```sh\nfalse\n```\n")
         self.assertEqual([reason for _, reason in runner.not_run], ["no device", "an hour"])
         self.assertEqual(runner.ran, [])
+        self.assertEqual(len(self.judge("<!-- examples: another test -->\n```sh\nfalse\n```\n").elsewhere), 1)
         self.assert_wrong("<!-- not run -->\n```sh\nfalse\n```\n", "needs a reason", BadPage)
         self.assert_wrong("<!-- not run: a comment that is not just above -->\n\n```sh\nfalse\n```\n", "exit code 1")
 
