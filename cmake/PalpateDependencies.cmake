@@ -61,6 +61,8 @@ if(PALPATE_TOOLS)
     endforeach()
     # CGAL Mesh_3: multi-domain Delaunay refinement with sliver removal, from any labelling function.
     find_package(CGAL 5.5 REQUIRED)
+    # FCL: distance and overlap of meshes by other people's code, a judge in `palpate bench sixdof`.
+    find_package(fcl 0.7 REQUIRED)
     # CHOLMOD (supernodal Cholesky), METIS (ordering), LAPACK (dpotri): condensation at the machine's limit.
     find_path(PALPATE_CHOLMOD_INCLUDE cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
     find_library(PALPATE_CHOLMOD_LIBRARY cholmod REQUIRED)

@@ -15,6 +15,7 @@
 #include "formats/records/certificate.hpp"
 #include "formats/records/haptic_settings.hpp"
 #include "formats/records/material.hpp"
+#include "formats/records/tool_settings.hpp"
 
 namespace palpate {
 
@@ -74,12 +75,22 @@ inline std::vector<RelaxationTerm> relaxation_of(const DeformableBody& body, std
     return terms;
 }
 
+/// What a hand holds, where it turns by itself and gives torque.
+struct ToolBody {
+    /// Closed, in the tool's frame T: origin at the tip's centre, z along the shaft, mm. Empty: the ball or
+    /// rod of the case's haptic settings.
+    TriangleMesh surface;
+    ToolSettings settings;
+};
+
 /// Everything a trainer needs to touch one patient.
 struct Case {
     std::string name;
     std::vector<RigidBody> rigid_bodies;
     std::vector<DeformableBody> deformable_bodies;
     HapticSettings haptics;
+    std::optional<ToolBody>
+        tool{};  ///< of no asset: chosen for a run; none: a ball or rod that its device turns
     std::optional<Scan> scan{};
     std::string
         provenance;  ///< JSON: tool and library versions, options, input digests; no identity, no paths

@@ -22,6 +22,23 @@ std::vector<std::int64_t> shape_of(std::int64_t rows, Visited) {
     return {rows, static_cast<std::int64_t>(Visited::width)};
 }
 
+ToolBody read_tool(const Hdf5File& file) {
+    ToolBody tool;
+    read_fields(file, "/tool", tool_fields, tool.settings);
+    if (const auto error = first_error(tool_fields, tool.settings))
+        file.refuse("/tool", error->name + " " + error->found, error->expected);
+    if (!file.contains("/tool/vertices")) return tool;
+    const auto vertices = file.dataset<double>("/tool/vertices", {Hdf5File::any, 3});
+    const auto triangles = file.dataset<std::int32_t>("/tool/triangles", {Hdf5File::any, 3});
+    if (vertices.empty() || triangles.empty()) file.refuse("/tool", "has no triangle");
+    tool.surface.vertices.resize(vertices.size() / 3);
+    tool.surface.triangles.resize(triangles.size() / 3);
+    std::ranges::copy(vertices, tool.surface.vertices.front().data());
+    std::ranges::copy(triangles, tool.surface.triangles.front().data());
+    check_surface(tool.surface, file.name() + ": /tool");
+    return tool;
+}
+
 RecordingHead read_head(const Hdf5File& file) {
     const auto schema = file.attribute<std::int32_t>("/", "schema");
     if (schema != recording_schema)
@@ -36,6 +53,7 @@ RecordingHead read_head(const Hdf5File& file) {
     check_name(head.case_name, file.name());
     read_fields(file, "/haptics", haptic_fields, head.haptics);
     check_haptics(head.haptics, file.name() + ": /haptics");
+    if (file.contains("/tool")) head.tool = read_tool(file);
     const auto tools = file.attribute<std::int32_t>("/", "tools");
     if (tools < 1 || tools > most_recorded_tools) file.refuse("/", std::to_string(tools) + " tools");
     head.devices.resize(tools);

@@ -3,10 +3,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "formats/model/body.hpp"
 #include "formats/records/device_limits.hpp"
 #include "formats/records/haptic_settings.hpp"
 #include "formats/records/tick_result.hpp"
@@ -32,6 +34,7 @@ struct RecordingHead {
     double coupling_stiffness = 0;        ///< N/mm, of the virtual coupling
     HapticSettings haptics;               ///< the asset's
     std::vector<RecordedDevice> devices;  ///< one for each tool
+    std::optional<ToolBody> tool{};       ///< what was held, if it had a body of its own
 };
 
 /// What a recording still holds of a run, oldest first.

@@ -35,6 +35,17 @@ Hdf5Shape extents_of(std::int64_t rows, Visited) {
     return shape;
 }
 
+void write_tool(Hdf5Writer& writer, const ToolBody& tool) {
+    writer.group("/tool");
+    write_fields(writer, "/tool", tool_fields, tool.settings);
+    const auto& [vertices, triangles] = tool.surface;
+    if (triangles.empty()) return;
+    writer.dataset<double>("/tool/vertices", {vertices.front().data(), 3 * vertices.size()},
+                           {vertices.size(), 3}, "mm");
+    writer.dataset<std::int32_t>("/tool/triangles", {triangles.front().data(), 3 * triangles.size()},
+                                 {triangles.size(), 3});
+}
+
 void write_head(Hdf5Writer& writer, const RecordingHead& head) {
     writer.attribute("/", "schema", std::int32_t{recording_schema});
     writer.attribute("/", "palpate_version", head.palpate_version);
@@ -46,6 +57,7 @@ void write_head(Hdf5Writer& writer, const RecordingHead& head) {
     writer.attribute("/", "coupling_stiffness", head.coupling_stiffness);
     writer.group("/haptics");
     write_fields(writer, "/haptics", haptic_fields, head.haptics);
+    if (head.tool) write_tool(writer, *head.tool);
     std::vector<std::string> names;
     for (const RecordedDevice& device : head.devices) names.push_back(device.name);
     writer.texts("/devices/name", names, {names.size()});

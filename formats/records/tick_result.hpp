@@ -112,10 +112,13 @@ struct Tick {
     double time = 0;                                 // s
     std::array<double, 3> device_position{0, 0, 0};  // mm
     std::array<double, 3> shaft{0, 0, 0};
+    std::array<double, 4> orientation{0, 0, 0, 0};
     std::array<double, 3> tool_position{0, 0, 0};  // mm
-    std::array<double, 3> force{0, 0, 0};          // N
-    double depth = 0;                              // mm
-    double residual = 0;                           // mm
+    std::array<double, 4> tool_orientation{0, 0, 0, 0};
+    std::array<double, 3> force{0, 0, 0};   // N
+    std::array<double, 3> torque{0, 0, 0};  // N mm
+    double depth = 0;                       // mm
+    double residual = 0;                    // mm
     std::int64_t detected_tick = -1;
     std::int32_t body = -1;
     std::int32_t contact_count = 0;
@@ -134,6 +137,10 @@ inline constexpr std::tuple tick_fields{
     Field("time", &Tick::time, "s", "since the loop started"),
     Field("device_position", &Tick::device_position, "mm", "of the tool's centre as the device has it"),
     Field("shaft", &Tick::shaft, "", "unit vector from the tip along the tool's shaft; zero: not known"),
+    Field("orientation", &Tick::orientation, "",
+          "of the tool as the device has it: unit quaternion x, y, z, w that turns the tool's frame, whose z "
+          "is the shaft, to the patient's; zero: not known")
+        .since(1, {0, 0, 0, 0}),
     Field("buttons", &Tick::buttons, "", "one bit each, the lowest for the first").stored_as<std::int64_t>(),
     Field("faults", &Tick::faults, "",
           "flags of formats/records/fault.hpp: the force is on its way to zero, or there")
@@ -141,7 +148,11 @@ inline constexpr std::tuple tick_fields{
     Field("status", &Tick::status, "", "flags of TickStatus: what was unusual about contacts and force")
         .stored_as<std::int32_t>(),
     Field("tool_position", &Tick::tool_position, "mm", "at the other end of the virtual coupling"),
+    Field("tool_orientation", &Tick::tool_orientation, "",
+          "the same at the other end of the virtual coupling; zero: the tool does not turn by itself")
+        .since(1, {0, 0, 0, 0}),
     Field("force", &Tick::force, "N", "on the device"),
+    Field("torque", &Tick::torque, "N mm", "on the device about device_position").since(1, {0, 0, 0}),
     Field("depth", &Tick::depth, "mm", "of the device below the deepest touched rest surface"),
     Field("residual", &Tick::residual, "mm", "worst violation of the contact conditions"),
     Field("body", &Tick::body, "", "the deepest touched, -1 for none; rigid bodies first"),

@@ -40,7 +40,7 @@ std::string RunKeys::take_next_method() {
     const auto methods = haptics::contact_methods();
     auto at = &run_.model().method() - methods.data();
     do at = (at + 1) % std::ssize(methods);
-    while (methods[at].can.most_tools < run_.model().tool_count());
+    while (methods[at].can.most_tools < run_.model().tool_count() || !methods[at].can.feels_tissue);
     run_.change_method(methods[at].name);
     return translated("contact '{}': {}", methods[at].name, looked_up(methods[at].sentence.data()));
 }

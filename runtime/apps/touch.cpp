@@ -7,6 +7,7 @@
 
 #include "formats/asset/hdf5/signature.hpp"
 #include "formats/model/errors.hpp"
+#include "formats/stl_file/read_stl.hpp"
 #include "runtime/apps/servo_pulse.hpp"
 #include "runtime/apps/start_recording.hpp"
 #include "runtime/apps/tell_statuses.hpp"
@@ -49,6 +50,22 @@ void run_in_real_time(Session& run, double seconds, const Session::Sink& take) {
     run.pump(see);
 }
 
+// What is held instead of the case's ball; nothing where no tool was named.
+std::optional<ToolBody> tool_of(const TouchOptions& options) {
+    if (options.tool.empty()) return std::nullopt;
+    return ToolBody{has_surface(options.tool) ? stl_file::read_stl(options.tool) : TriangleMesh{},
+                    options.tool_settings};
+}
+
+// What a method leaves out that the case has.
+void tell_unfelt(const Case& patient_case, const HapticModel& model) {
+    if (model.method().can.feels_tissue || patient_case.deformable_bodies.empty()) return;
+    std::string names;
+    for (const DeformableBody& body : patient_case.deformable_bodies)
+        names += (names.empty() ? "'" : ", '") + body.name + "'";
+    spdlog::warn("scheme '{}' feels rigid bodies alone: nothing is felt of {}", model.method().name, names);
+}
+
 Json touch(const TouchOptions& options, cli::Session& session) {
     TouchOutputs outputs(options.log, options.curve, session);
     const auto trusted = asset::read_public_keys(options.trusted);
@@ -61,10 +78,12 @@ Json touch(const TouchOptions& options, cli::Session& session) {
                  .tool_count = tools_of(options, device),
                  .virtual_clock = options.virtual_clock,
                  .trusted_keys = trusted,
+                 .tool = tool_of(options),
                  .stream = options.stream},
                 [](const std::string& sentence) { spdlog::warn("{}", sentence); });
     const Case& patient_case = run.patient_case();
     const HapticModel& model = run.model();
+    tell_unfelt(patient_case, model);
     const TouchPlan plan = plan_of(options, device.kind, patient_case, model);
     if (!options.virtual_clock) cli::end_softly_on_interrupt();
     run.hold(device.open(request_of(options, device.kind, plan, model)));
@@ -124,13 +143,16 @@ int main(int argc, char** argv) {
         {.name = "touch",
          .summary = "Touches an asset at 1 kHz with a simulated or a real device, without a window",
          .examples = {"palpate touch case.vtkhdf --script press --seconds 10 --log run.csv --curve force.svg",
-                      "palpate touch case.vtkhdf --script hand.txt --json stats.json"},
+                      "palpate touch case.vtkhdf --script hand.txt --json stats.json",
+                      "palpate touch case.vtkhdf --tool probe.stl --script slide --json stats.json"},
          .notes =
              "Scripts: 'press' goes in along the surface's normal, holds 0.5 s and leaves, over and over; "
              "'slide' presses once and slides 4 mm to either side; 'tremble' presses and trembles there as "
              "a hand does, 8 to 12 Hz; 'let-go' presses, lets go of the device, and takes hold again "
              "outside; 'random' pushes, slides and leaves; a file has rows 'x y z' (mm), one per "
-             "millisecond, or 't x y z' (s, mm); with --column N it is a recording of one axis at 1 kHz, "
+             "millisecond, or 't x y z' (s, mm), either followed by a quaternion 'qx qy qz qw' that turns "
+             "the "
+             "tool; with --column N it is a recording of one axis at 1 kHz, "
              "which moves along the surface's normal. Without --device the hand is infinitely stiff: it is "
              "where the script says, whatever the force.\n"
              "Devices: " +
@@ -150,6 +172,7 @@ int main(int argc, char** argv) {
     const TouchHandles given = declare(command, options);
     return command.run(argc, argv, [&](cli::Session& session) {
         options.seconds_given = given.seconds.given();
+        if (has_surface(options.tool) && !given.scheme.given()) options.scheme = "shell";
         if (given.replay.given())
             cli::refuse_beside(command, "--replay",
                                std::array{given.asset, given.log, given.curve, given.replay},

@@ -67,6 +67,10 @@ Json peak_json(const TickResult& peak, const Case& patient_case, const HapticMod
     return {{"t_s", peak.time},
             {"device_mm", numbers(peak.device_position)},
             {"force_n", numbers(peak.force)},
+            {"torque_n_mm", numbers(peak.torque)},
+            {"device_orientation", peak.orientation},
+            {"tool_mm", numbers(peak.tool_position)},
+            {"tool_orientation", peak.tool_orientation},
             {"depth_mm", peak.depth},
             {"coupling_stiffness_n_per_mm", model.coupling()},
             {"contacts", contacts}};
@@ -76,6 +80,7 @@ Json peak_json(const TickResult& peak, const Case& patient_case, const HapticMod
 
 Json tool_json(const RunRecord& record, const Case& patient_case, const HapticModel& model) {
     return {{"force_peak_n", record.peak_force()},
+            {"torque_peak_n_mm", record.peak_torque()},
             {"force_step_max_n", record.largest_force_step()},
             {"penetration", {{"device_mm", record.device_depth()}, {"tool_mm", record.tool_depth()}}},
             {"statuses", record.statuses().by_name()},

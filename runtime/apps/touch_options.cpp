@@ -2,6 +2,7 @@
 #include "runtime/apps/touch_options.hpp"
 
 #include "runtime/session/device_list.hpp"
+#include "tools/cli/record_options.hpp"
 
 namespace palpate::apps {
 
@@ -25,7 +26,14 @@ TouchHandles declare(cli::Command& command, TouchOptions& options) {
         "x,y,z: touch the surface point nearest to it; the most compliant place in reach if not given", "mm");
     command.option("--second", options.second,
                    "what a second tool on the same bodies does: a file as for --script");
-    command.option("--scheme", options.scheme, "how contact is found: " + haptics::contact_method_names());
+    const cli::Option scheme = command.option("--scheme", options.scheme,
+                                              "how contact is found: " + haptics::contact_method_names() +
+                                                  "; with --tool FILE 'shell' unless this is given");
+    command.option(
+        "--tool", options.tool,
+        "an instrument that turns by itself and gives torque: 'rod', the case's tip and shaft, or the "
+        "closed surface that it has (.stl, mm: its tip's centre at the origin, its shaft along z)");
+    cli::record_options(command, tool_fields, options.tool_settings, "of --tool: ");
     command.option("--device", options.device,
                    session::device_usages([](const devices::DeviceKind&) { return true; }, true));
     command.option(
@@ -41,13 +49,13 @@ TouchHandles declare(cli::Command& command, TouchOptions& options) {
                    "PORT or ADDRESS:PORT at which 3D Slicer and others see the session over OpenIGTLink");
     command.output("--record", options.record, "every tick, from the start on (.h5)");
     command.option("--record-seconds", options.record_seconds,
-                   "how much of the run's end a recording holds: 46 MB a minute and tool", "s");
+                   "how much of the run's end a recording holds: 51 MB a minute and tool", "s");
     const cli::Option replay = command.input(
         "--replay", options.replay,
         "recording to give the forces of again, as fast as possible; no option of a run goes with it (.h5)");
     command.flag("--virtual-clock", options.virtual_clock,
                  "tick as fast as possible; forces do not depend on the machine");
-    return {asset, seconds, log, curve, replay};
+    return {asset, seconds, log, curve, replay, scheme};
 }
 
 }  // namespace palpate::apps

@@ -14,18 +14,19 @@ namespace palpate::apps {
 /// What the user asked of touch.
 struct TouchOptions {
     std::filesystem::path asset, log, curve, record, replay;
-    std::string script = "press", body, target, second, scheme{haptics::usual_contact_method}, device, shaft,
-                stream;
+    std::string script = "press", tool, body, target, second, scheme{haptics::usual_contact_method}, device,
+                shaft, stream;
     std::vector<std::filesystem::path> trusted;
     double seconds = 10, depth = 3, speed = 20, record_seconds = 300;
     std::uint64_t seed = 1;
     std::optional<std::size_t> column;
+    ToolSettings tool_settings;
     bool seconds_given = false, virtual_clock = false;
 };
 
 /// Those of which it counts whether they were given.
 struct TouchHandles {
-    cli::Option asset, seconds, log, curve, replay;
+    cli::Option asset, seconds, log, curve, replay, scheme;
 };
 
 /// Adds the options of touch to its command, set to what `options` holds.

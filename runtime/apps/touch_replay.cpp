@@ -27,7 +27,8 @@ nlohmann::ordered_json replay_recording(const std::filesystem::path& file, const
                                         std::span<const std::string> trusted_keys, TouchOutputs& outputs,
                                         cli::Session& session) {
     const recording::Recording recording = recording::read_recording(file);
-    const Case patient_case = asset::read_asset(asset, trusted_keys);
+    Case patient_case = asset::read_asset(asset, trusted_keys);
+    patient_case.tool = recording.head.tool;
     const auto model = model_of(recording, file, asset, patient_case);
     std::vector<RunRecord> records = outputs.records_of(*model);
     StatusCounts statuses;

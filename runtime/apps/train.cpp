@@ -286,7 +286,7 @@ int main(int argc, char** argv) {
         "--record", options.record,
         "every tick, for --play and 'palpate touch --replay' (.h5); kept however the trainer ends");
     command.option("--record-seconds", options.record_seconds,
-                   "how much of the end a recording holds: 46 MB a minute", "s");
+                   "how much of the end a recording holds: 51 MB a minute", "s");
     const auto screenshot =
         command.output("--screenshot", options.screenshot, "picture of the window at the end (.png)");
     const auto check_playback =

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "formats/model/errors.hpp"
+#include "runtime/devices/set_orientation.hpp"
 
 namespace palpate::devices {
 namespace {
@@ -55,6 +56,7 @@ DynamicDevice::DynamicDevice(DeviceModel model, HandImpedance impedance, std::sh
     assert(hand_ != nullptr);
     const HandWish wish = hand_->at(0);
     held_ = wish.holds;
+    orientation_ = wish.orientation;
     hand_position_ = position_ = wish.position;
     const double mass = 1e-3 * model_.mass_kg;  // N s²/mm
     held_transition_ = transition_of(mass, model_.damping + impedance_.damping, impedance_.stiffness);
@@ -70,12 +72,15 @@ DynamicDevice::DynamicDevice(DeviceModel model, HandImpedance impedance, HandPat
 realtime::DeviceState DynamicDevice::read(double time) noexcept {
     const std::int64_t last = std::llround(time / step_s);
     while (steps_ < last) {
-        step(hand_->at(static_cast<double>(++steps_) * step_s));
+        const HandWish wish = hand_->at(static_cast<double>(++steps_) * step_s);
+        orientation_ = wish.orientation;
+        step(wish);
         warm_up();
     }
 
     realtime::DeviceState state;
     state.shaft = shaft_;
+    set_orientation(state, orientation_);
     state.time = time;
     state.faults = warm_ ? motors_warm : no_fault;
     Eigen::Map<Vector3d> reading(state.position.data());

@@ -30,7 +30,8 @@ struct HandImpedance {
 /// moves uniformly and friction keeps its direction; the rest is solved exactly. The motors' temperature
 /// obeys T' = (F² / F_c² - T) / tau, exactly, with the force F_c that they bear for ever: T = 1 is their
 /// limit. From there until they have cooled to cool_enough the state carries motors_warm; the motors
-/// themselves go on. Same calls, same bits.
+/// themselves go on. The tool turns as the hand wishes: the wrist's own dynamics, and torque, are not
+/// simulated. Same calls, same bits.
 class DynamicDevice final : public realtime::Device {
   public:
     static constexpr double step_s = 1e-3 / 16;
@@ -79,6 +80,7 @@ class DynamicDevice final : public realtime::Device {
     bool held_;
     Eigen::Vector3d hand_position_, position_;
     Eigen::Vector3d slack_ = Eigen::Vector3d::Zero();  // from the wish to where the hand took hold
+    Eigen::Quaterniond orientation_{0, 0, 0, 0};
     Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero(), force_ = Eigen::Vector3d::Zero();
     double heating_ = 0;      // F² / F_c²
     double temperature_ = 0;  // T

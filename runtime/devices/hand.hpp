@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <string>
 
@@ -11,8 +11,9 @@ namespace palpate::devices {
 
 /// What a hand wants at one moment.
 struct HandWish {
-    Eigen::Vector3d position;  ///< mm, in the frame of the device it holds
-    bool holds = true;         ///< false: it has let go
+    Eigen::Vector3d position;                    ///< mm, in the frame of the device it holds
+    bool holds = true;                           ///< false: it has let go
+    Eigen::Quaterniond orientation{0, 0, 0, 0};  ///< of the tool in that frame; zero: not known
 };
 
 /// Where a hand that holds a simulated device wants to be.
@@ -29,7 +30,9 @@ class ScriptedHand final : public Hand {
   public:
     explicit ScriptedHand(HandPath path) : path_(std::move(path)) {}
     std::string name() const override { return "scripted hand"; }
-    HandWish at(double time) noexcept override { return {path_.at(time), path_.holds_at(time)}; }
+    HandWish at(double time) noexcept override {
+        return {path_.at(time), path_.holds_at(time), path_.orientation_at(time)};
+    }
 
   private:
     HandPath path_;

@@ -2,6 +2,7 @@
 #include "runtime/devices/hand_path.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <functional>
@@ -14,7 +15,15 @@
 namespace palpate::devices {
 namespace {
 
+using Eigen::Quaterniond;
 using Eigen::Vector3d;
+
+constexpr double unit_tolerance = 1e-9;          // of quaternions in double
+constexpr double written_unit_tolerance = 1e-3;  // of those that people write
+
+bool is_known(const Quaterniond& orientation) {
+    return !orientation.coeffs().isZero(0);
+}
 
 // The numbers of one row; nothing if something else stands there.
 std::optional<std::vector<double>> numbers_of(std::string line) {
@@ -32,6 +41,16 @@ std::optional<std::vector<double>> numbers_of(std::string line) {
         numbers.push_back(number);
     }
     return numbers;
+}
+
+// Of four numbers x, y, z, w.
+Quaterniond written_orientation(const std::string& where, const double* q) {
+    const Quaterniond orientation(q[3], q[0], q[1], q[2]);
+    const double norm = orientation.norm();
+    if (!(std::abs(norm - 1) <= written_unit_tolerance))
+        throw InvalidInput(
+            {where, "a quaternion of length " + std::to_string(norm), "1, as qx qy qz qw", ""});
+    return orientation.normalized();
 }
 
 // Calls `take` with what stands where and the numbers, for each row that has some.
@@ -52,23 +71,37 @@ void for_each_row(const std::filesystem::path& file, const char* expected,
 
 HandPath::HandPath(std::vector<Key> keys) : keys_(std::move(keys)) {
     if (keys_.empty()) throw InvalidInput({"hand path", "it has no positions", "one or more", ""});
-    for (std::size_t i = 0; i < keys_.size(); ++i)
+    for (std::size_t i = 0; i < keys_.size(); ++i) {
+        const auto refuse = [&](const char* found, const char* expected) {
+            throw InvalidInput({"hand path", "key " + std::to_string(i) + found, expected, ""});
+        };
         if (!std::isfinite(keys_[i].time) || !keys_[i].position.allFinite() ||
             (i > 0 && keys_[i].time <= keys_[i - 1].time))
-            throw InvalidInput({"hand path",
-                                "key " + std::to_string(i) +
-                                    " is not finite or not later than its "
-                                    "predecessor",
-                                "finite positions at rising times", ""});
+            refuse(" is not finite or not later than its predecessor", "finite positions at rising times");
+        const bool known = is_known(keys_[i].orientation);
+        if (known != is_known(keys_.front().orientation) ||
+            (known && !(std::abs(keys_[i].orientation.norm() - 1) <= unit_tolerance)))
+            refuse(" has an orientation that is no unit quaternion, or alone has one",
+                   "unit quaternions at all keys or at none");
+    }
+}
+
+HandPath::Between HandPath::between(double time) const noexcept {
+    const auto after = std::ranges::upper_bound(keys_, time, {}, &Key::time);
+    if (after == keys_.begin()) return {keys_.front(), keys_.front(), 0};
+    const Key& a = *(after - 1);
+    if (after == keys_.end()) return {a, a, 0};
+    return {a, *after, (time - a.time) / (after->time - a.time)};
 }
 
 Vector3d HandPath::at(double time) const noexcept {
-    const auto after = std::ranges::upper_bound(keys_, time, {}, &Key::time);
-    if (after == keys_.begin()) return keys_.front().position;
-    if (after == keys_.end()) return keys_.back().position;
-    const Key& a = *(after - 1);
-    const double part = (time - a.time) / (after->time - a.time);
-    return a.position + part * (after->position - a.position);
+    const auto [a, b, part] = between(time);
+    return a.position + part * (b.position - a.position);
+}
+
+Quaterniond HandPath::orientation_at(double time) const noexcept {
+    const auto [a, b, part] = between(time);
+    return is_known(a.orientation) ? a.orientation.slerp(part, b.orientation) : a.orientation;
 }
 
 bool HandPath::holds_at(double time) const noexcept {
@@ -78,23 +111,32 @@ bool HandPath::holds_at(double time) const noexcept {
 
 HandPath mapped_path(const HandPath& path, const Eigen::Isometry3d& X_BA) {
     std::vector<HandPath::Key> keys(path.keys().begin(), path.keys().end());
-    for (HandPath::Key& key : keys) key.position = X_BA * key.position;
+    const Quaterniond R_BA(X_BA.linear());
+    for (HandPath::Key& key : keys) {
+        key.position = X_BA * key.position;
+        if (is_known(key.orientation)) key.orientation = (R_BA * key.orientation).normalized();
+    }
     return HandPath(std::move(keys));
 }
 
 HandPath read_hand_path(const std::filesystem::path& file) {
     std::vector<HandPath::Key> keys;
     std::size_t columns = 0;
+    constexpr std::array<std::size_t, 4> widths{3, 4, 7, 8};
     for_each_row(file, "x y z (mm) or t x y z (s, mm)", [&](const std::string& where, const auto& row) {
-        if (columns == 0 && (row.size() == 3 || row.size() == 4)) columns = row.size();
+        if (columns == 0 && std::ranges::find(widths, row.size()) != widths.end()) columns = row.size();
         if (row.size() != columns)
             throw InvalidInput({where, std::to_string(row.size()) + " numbers",
-                                columns == 0 ? "3 (x y z, mm) or 4 (t x y z, s and mm)"
-                                             : std::to_string(columns) + ", as in the rows before",
+                                columns == 0
+                                    ? "3 (x y z, mm) or 4 (t x y z, s and mm), or 4 more (qx qy qz qw)"
+                                    : std::to_string(columns) + ", as in the rows before",
                                 columns == 0 ? "of a recording of one axis name its --column" : ""});
         HandPath::Key key;
-        key.time = columns == 4 ? row.front() : 1e-3 * static_cast<double>(keys.size() + 1);
-        key.position = {row[columns - 3], row[columns - 2], row[columns - 1]};
+        const bool timed = columns % 4 == 0;
+        const double* p = row.data() + (timed ? 1 : 0);
+        key.time = timed ? row.front() : 1e-3 * static_cast<double>(keys.size() + 1);
+        key.position = {p[0], p[1], p[2]};
+        if (columns > 4) key.orientation = written_orientation(where, p + 3);
         if (!keys.empty() && key.time <= keys.back().time)
             throw InvalidInput({where, "time " + std::to_string(key.time) + " s does not rise",
                                 "more than " + std::to_string(keys.back().time) + " s", ""});

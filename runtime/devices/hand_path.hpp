@@ -9,29 +9,41 @@
 namespace palpate::devices {
 
 /// Where a scripted hand is at each time: straight lines between keys, standing still before and after.
+/// Where orientations are known, it turns from one to the next by the shortest way at a constant rate.
 class HandPath {
   public:
     struct Key {
         double time = 0;           ///< s
         Eigen::Vector3d position;  ///< mm, in the path's frame: P, or that of the device it moves
         bool holds = true;         ///< from this key to the next, whether the hand holds the device
+        Eigen::Quaterniond orientation{0, 0, 0, 0};  ///< R of the tool's frame in the path's; zero: not known
     };
 
-    /// Throws InvalidInput if there is no key, a number is not finite, or times do not rise strictly.
+    /// Throws InvalidInput if there is no key, a number is not finite, times do not rise strictly, or some
+    /// orientations are known, as unit quaternions, and some are not.
     explicit HandPath(std::vector<Key> keys);
 
     /// Position at `time` (s). Realtime-safe; logarithmic in the keys.
     Eigen::Vector3d at(double time) const noexcept;
+    /// Orientation at `time` (s), zero where the path has none. Realtime-safe; logarithmic in the keys.
+    Eigen::Quaterniond orientation_at(double time) const noexcept;
     /// Whether the hand holds the device at `time` (s); before the first key as from it on. Realtime-safe.
     bool holds_at(double time) const noexcept;
     double duration() const noexcept { return keys_.back().time; }  ///< s
     std::span<const Key> keys() const noexcept { return keys_; }
 
   private:
+    // The keys before and after, and how much of the way between them is gone.
+    struct Between {
+        const Key &before, &after;
+        double part;
+    };
+    Between between(double time) const noexcept;
+
     std::vector<Key> keys_;
 };
 
-/// The path through a rigid motion: `X_BA` takes positions from the path's frame A to B.
+/// The path through a rigid motion: `X_BA` takes positions and orientations from the path's frame A to B.
 HandPath mapped_path(const HandPath& path, const Eigen::Isometry3d& X_BA);
 
 /// Where and how a script touches a surface, for a tool of radius r.
@@ -88,8 +100,9 @@ HandPath recorded_axis_path(const TouchPoint& target, const ScriptSettings& sett
 std::vector<double> read_column(const std::filesystem::path& file, std::size_t column);
 
 /// Reads a path from text: rows "x y z" (mm), one per millisecond, the first for the first tick, or "t x y
-/// z" (s, mm); commas or blanks between, '#' and '%' start comments. Throws InvalidInput naming file and
-/// line.
+/// z" (s, mm); either followed by "qx qy qz qw", a quaternion of unit length to 1e-3 that turns the tool's
+/// frame, whose z axis is the shaft, to the patient's. Commas or blanks between, '#' and '%' start comments.
+/// Throws InvalidInput naming file and line.
 HandPath read_hand_path(const std::filesystem::path& file);
 
 }  // namespace palpate::devices

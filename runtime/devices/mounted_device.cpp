@@ -21,7 +21,8 @@ Device& there(const std::unique_ptr<Device>& device) {
 
 }  // namespace
 
-MountedDevice::MountedDevice(Device& device, const Eigen::Isometry3d& X_PD) : device_(device), X_PD_(X_PD) {
+MountedDevice::MountedDevice(Device& device, const Eigen::Isometry3d& X_PD)
+    : device_(device), X_PD_(X_PD), R_PD_(X_PD.linear()) {
     assert(X_PD.linear().isUnitary(rigid_tolerance) && X_PD.linear().determinant() > 0);
 }
 
@@ -44,6 +45,7 @@ DeviceState MountedDevice::read(double time) noexcept {
     DeviceState state = device_.read(time);
     state.position = array_of(X_PD_ * vector_of(state.position));
     state.shaft = array_of(X_PD_.linear() * vector_of(state.shaft));
+    state.orientation = array_of(R_PD_ * quaternion_of(state.orientation));
     return state;
 }
 

@@ -8,8 +8,8 @@
 
 namespace palpate::devices {
 
-/// A device at its place in the patient: maps positions and directions from its frame D to P, and forces
-/// back. Lengths and forces keep their size.
+/// A device at its place in the patient: maps positions, directions and orientations from its frame D to P,
+/// and forces back. Lengths and forces keep their size.
 class MountedDevice final : public realtime::Device {
   public:
     /// `device` must outlive this. `X_PD`: a rigid motion (asserted), mm.
@@ -29,6 +29,7 @@ class MountedDevice final : public realtime::Device {
     std::unique_ptr<realtime::Device> owned_;  // null: another's
     realtime::Device& device_;
     Eigen::Isometry3d X_PD_;
+    Eigen::Quaterniond R_PD_;
 };
 
 /// Where a device is mounted that is turned by R_PD, and whose point `p_D` is at `p_P` (both mm).

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "formats/model/errors.hpp"
+#include "runtime/devices/set_orientation.hpp"
 
 namespace palpate::devices {
 
@@ -21,6 +22,7 @@ realtime::DeviceState SimulatedDevice::read(double time) noexcept {
     state.time = time;
     state.position = {p[0], p[1], p[2]};
     state.shaft = shaft_;
+    set_orientation(state, path_.orientation_at(time));
     return state;
 }
 

@@ -19,8 +19,10 @@ class ForceLimiter {
     /// The largest force is max_force, or what max_force_rate takes to zero within ramp_ticks if that is
     /// less.
     explicit ForceLimiter(const HapticSettings& settings) noexcept
-        : max_force_(std::min(settings.max_force, ramp_ticks * settings.max_force_rate)),
-          max_step_(settings.max_force_rate) {}
+        : ForceLimiter(settings.max_force, settings.max_force_rate) {}
+    /// The same of a torque, N mm.
+    explicit ForceLimiter(const ToolSettings& settings) noexcept
+        : ForceLimiter(settings.max_torque, settings.max_torque_rate) {}
 
     /// Lowers the largest force (N) to what a device bears.
     void lower_to(double max_force) noexcept { max_force_ = std::min(max_force_, max_force); }
@@ -36,6 +38,8 @@ class ForceLimiter {
                           std::uint32_t& status) noexcept;
 
   private:
+    ForceLimiter(double most, double most_a_tick) noexcept
+        : max_force_(std::min(most, ramp_ticks * most_a_tick)), max_step_(most_a_tick) {}
     Eigen::Vector3d ramp_to_zero() noexcept;
 
     double max_force_;

@@ -26,6 +26,20 @@ HapticSettings checked(const Case& patient_case) {
     return patient_case.haptics;
 }
 
+double reach_of_tip(const Case& patient_case, const ContactCapabilities& can) {
+    if (!can.has_radius) return 0;
+    if (!patient_case.tool || patient_case.tool->surface.triangles.empty())
+        return patient_case.haptics.tool_radius;
+    double lowest = 0;
+    for (const Eigen::Vector3d& vertex : patient_case.tool->surface.vertices)
+        lowest = std::min(lowest, vertex.z());
+    return -lowest;
+}
+
+ToolSettings tool_settings(const Case& patient_case) {
+    return patient_case.tool ? patient_case.tool->settings : ToolSettings{};
+}
+
 // Refuses what the method cannot have.
 const ContactMethodEntry& checked(const ContactMethodEntry& method, std::size_t tool_count,
                                   const std::string& case_name) {
@@ -56,8 +70,9 @@ HapticModel::HapticModel(const Case& patient_case, std::string_view method, std:
     : settings_(checked(patient_case)),
       method_(checked(find_contact_method(method), tool_count, patient_case.name)),
       coupling_(settings_.coupling_stiffness),
+      contact_radius_(reach_of_tip(patient_case, method_.can)),
       bodies_(patient_case, method_.can.spreads_loads),
-      tools_(tool_count, Tool{ForceLimiter(settings_)}),
+      tools_(tool_count, Tool{ForceLimiter(settings_), ForceLimiter(tool_settings(patient_case))}),
       poses_(tool_count),
       forces_(tool_count),
       contact_(method_.make(patient_case, bodies_, tool_count)),
@@ -82,6 +97,7 @@ std::int64_t HapticModel::memory_ticks() const noexcept {
 void HapticModel::reset() noexcept {
     for (Tool& tool : tools_) {
         tool.limiter.reset();
+        tool.torque_limiter.reset();
         tool.lost = false;
     }
     contact_->reset();

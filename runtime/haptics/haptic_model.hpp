@@ -76,8 +76,9 @@ class HapticModel {
     const HapticSettings& settings() const noexcept { return settings_; }
     /// Its line in the table of contact methods: name and capabilities.
     const ContactMethodEntry& method() const noexcept { return method_; }
-    /// The tool's radius as contact knows it, mm: 0 where the method knows a point.
-    double contact_radius() const noexcept { return method_.can.has_radius ? settings_.tool_radius : 0; }
+    /// How far the tool goes beyond its tip's centre, mm: its radius, or how far its body does against the
+    /// shaft; 0 where the method knows a point.
+    double contact_radius() const noexcept { return contact_radius_; }
     std::size_t tool_count() const noexcept { return tools_.size(); }
     std::size_t body_count() const noexcept { return bodies_.surfaces.size(); }
     std::size_t rigid_count() const noexcept { return bodies_.rigid_count(); }
@@ -96,7 +97,7 @@ class HapticModel {
 
   private:
     struct Tool {
-        ForceLimiter limiter;
+        ForceLimiter limiter, torque_limiter;
         Eigen::Vector3d last_tip = Eigen::Vector3d::Zero();  // the last that was to be trusted
         bool lost = false;                                   // the last position was not
     };
@@ -106,6 +107,7 @@ class HapticModel {
     HapticSettings settings_;
     const ContactMethodEntry& method_;
     double coupling_;
+    double contact_radius_;
     ContactBodies bodies_;
     std::vector<Tool> tools_;
     std::vector<ContactPose> poses_;  // of this tick, as are the forces

@@ -34,9 +34,13 @@ void HapticModel::tick(std::span<const realtime::DeviceState> devices, std::span
     ++tick_;
     contact_->tick(poses_, coupling_, results, forces_);
     if (method_.can.keeps_energy) observer_.damp(poses_, coupling_, results, forces_);
-    for (std::size_t t = 0; t < tools_.size(); ++t)
-        results[t].force =
-            array_of(tools_[t].limiter.limit(forces_[t], results[t].faults, results[t].status));
+    for (std::size_t t = 0; t < tools_.size(); ++t) {
+        TickResult& result = results[t];
+        result.force = array_of(tools_[t].limiter.limit(forces_[t], result.faults, result.status));
+        if (method_.can.turns)
+            result.torque = array_of(
+                tools_[t].torque_limiter.limit(vector_of(result.torque), result.faults, result.status));
+    }
     if (method_.can.keeps_energy) observer_.hold(results);
 }
 
@@ -45,6 +49,9 @@ ContactPose HapticModel::begin(Tool& tool, const realtime::DeviceState& device, 
     result.time = device.time;
     result.device_position = result.tool_position = device.position;
     result.shaft = device.shaft;
+    result.orientation = device.orientation;
+    result.tool_orientation = {0, 0, 0, 0};
+    result.torque = {0, 0, 0};
     result.buttons = device.buttons;
     result.detected_tick = -1;
     result.depth = 0;
@@ -52,8 +59,11 @@ ContactPose HapticModel::begin(Tool& tool, const realtime::DeviceState& device, 
     result.body = -1;
     result.contact_count = 0;
     result.status = tick_ok;
-    ContactPose pose{.tip = vector_of(device.position), .shaft = vector_of(device.shaft)};
-    if (!pose.tip.allFinite() || !pose.shaft.allFinite()) result.faults |= invalid_position;
+    ContactPose pose{.tip = vector_of(device.position),
+                     .shaft = vector_of(device.shaft),
+                     .orientation = quaternion_of(device.orientation)};
+    if (!pose.tip.allFinite() || !pose.shaft.allFinite() || !pose.orientation.coeffs().allFinite())
+        result.faults |= invalid_position;
     if (result.faults & distrusted_position) {
         tool.lost = true;
         return pose;

@@ -53,10 +53,13 @@ std::optional<std::span<const std::byte>> content_of(const MessageHead& head,
     return body.subspan(before, body.size() - before - after);
 }
 
-PoseReading checked(const Eigen::Vector3d& tip_ras, const Eigen::Vector3d& z_ras) {
+// `axes_ras`: a rotation; zero where the message has none.
+PoseReading checked(const Eigen::Vector3d& tip_ras, const Eigen::Matrix3d& axes_ras) {
     if (!tip_ras.allFinite()) return {{}, "its position is not a finite number"};
     if (tip_ras.cwiseAbs().maxCoeff() > farthest_mm) return {{}, "its position is farther than 100 m"};
-    return {ToolPose{flip_lps_ras(tip_ras), flip_lps_ras(-z_ras)}, {}};
+    ToolPose pose{flip_lps_ras(tip_ras), flip_lps_ras(-axes_ras.col(2))};
+    if (!axes_ras.isZero(0)) pose.orientation = Eigen::Quaterniond(flip_axes(axes_ras)).normalized();
+    return {pose, {}};
 }
 
 PoseReading read_transform(std::span<const std::byte> content) {
@@ -70,7 +73,7 @@ PoseReading read_transform(std::span<const std::byte> content) {
     const double error = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
     if (error > rotation_tolerance || R.determinant() < 0)
         return {{}, "the axes of its matrix are no rotation, as a mirror or a scale is none"};
-    return checked(X.col(3), R.col(2).normalized());
+    return checked(X.col(3), Eigen::Quaterniond(R).normalized().toRotationMatrix());
 }
 
 // Three numbers of position, then none, three or four of a quaternion (x, y, z, w).
@@ -80,12 +83,12 @@ PoseReading read_position(std::span<const std::byte> content) {
     std::array<double, 7> number{};
     for (std::size_t i = 0; i < content.size() / 4; ++i) number[i] = big_endian_float(content.subspan(4 * i));
     const Eigen::Vector3d tip(number[0], number[1], number[2]);
-    if (content.size() == 12) return checked(tip, Eigen::Vector3d::Zero());
+    if (content.size() == 12) return checked(tip, Eigen::Matrix3d::Zero());
     const Eigen::Vector3d xyz(number[3], number[4], number[5]);
     const double w = content.size() == 28 ? number[6] : std::sqrt(std::max(0.0, 1 - xyz.squaredNorm()));
     const Eigen::Quaterniond q(w, xyz.x(), xyz.y(), xyz.z());
     if (!(std::abs(q.norm() - 1) <= rotation_tolerance)) return {{}, "its quaternion is no rotation"};
-    return checked(tip, q.normalized() * Eigen::Vector3d::UnitZ());
+    return checked(tip, q.normalized().toRotationMatrix());
 }
 
 }  // namespace

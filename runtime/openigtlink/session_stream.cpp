@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
 #include "runtime/openigtlink/tool_pose.hpp"
 
@@ -18,6 +19,11 @@ constexpr double shortest_arrow = 1e-3;  // N: keeps the matrix of a force of ze
 
 Eigen::Vector3d ras(const std::array<double, 3>& lps) {
     return flip_lps_ras(Eigen::Map<const Eigen::Vector3d>(lps.data()));
+}
+
+// Of a tool whose orientation is known, in a message.
+Eigen::Matrix3d axes_of(const Eigen::Quaterniond& orientation) {
+    return flip_axes(orientation.normalized().toRotationMatrix());
 }
 
 std::string fixed(double value, int digits) {
@@ -145,11 +151,16 @@ void SessionStream::append_tool(const Shown& shown, std::size_t tool, std::uint6
     const std::string number = tool == 0 ? "" : std::to_string(tool + 1);
     const Eigen::Vector3d at_tool = ras(result.tool_position), at_device = ras(result.device_position);
     const Eigen::Vector3d force = ras(result.force), shaft = ras(result.shaft);
-    if (!(at_tool.allFinite() && at_device.allFinite() && force.allFinite() && shaft.allFinite())) return;
+    const Eigen::Quaterniond q_device = quaternion_of(result.orientation);
+    const Eigen::Quaterniond q_tool = quaternion_of(result.tool_orientation);
+    if (!(at_tool.allFinite() && at_device.allFinite() && force.allFinite() && shaft.allFinite() &&
+          q_device.coeffs().allFinite()))
+        return;
 
-    const Eigen::Matrix3d axes = rotation_with_z(-shaft);
-    append_transform(frame_, {"PalpateTool" + number, time}, axes, at_tool);
-    append_transform(frame_, {"PalpateDevice" + number, time}, axes, at_device);
+    const Eigen::Matrix3d led = q_device.coeffs().isZero(0) ? rotation_with_z(-shaft) : axes_of(q_device);
+    append_transform(frame_, {"PalpateTool" + number, time},
+                     q_tool.coeffs().isZero(0) ? led : axes_of(q_tool), at_tool);
+    append_transform(frame_, {"PalpateDevice" + number, time}, led, at_device);
 
     const std::string force_name = "PalpateForce" + number;
     Eigen::Matrix3d arrow = rotation_with_z(force.normalized());

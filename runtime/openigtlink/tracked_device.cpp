@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
 
 namespace palpate::openigtlink {
@@ -21,10 +22,6 @@ constexpr std::size_t most_heard = 16;          // kinds of messages remembered
 std::int64_t now_ns() noexcept {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(steady_clock::now().time_since_epoch())
         .count();
-}
-
-std::array<double, 3> as_array(const Eigen::Vector3d& v) {
-    return {v.x(), v.y(), v.z()};
 }
 
 }  // namespace
@@ -70,6 +67,7 @@ realtime::DeviceState TrackedDevice::read(double time) noexcept {
     state.time = time;
     state.position = latest.position;
     state.shaft = latest.shaft;
+    state.orientation = latest.orientation;
     state.faults = latest.faults;
     if (now_ns() - latest.received_ns > std::chrono::nanoseconds(patience_.pose).count())
         state.faults |= device_lost;
@@ -178,8 +176,9 @@ void TrackedDevice::take_pose(const MessageHead& head, std::span<const std::byte
         ++report_.refused;
         return;
     }
-    pose_.position = as_array(reading.pose->tip);
-    pose_.shaft = as_array(reading.pose->shaft);
+    pose_.position = array_of(reading.pose->tip);
+    pose_.shaft = array_of(reading.pose->shaft);
+    pose_.orientation = array_of(reading.pose->orientation);
     publish(no_fault);
     {
         const std::lock_guard lock(mutex_);

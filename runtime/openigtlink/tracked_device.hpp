@@ -65,6 +65,7 @@ class TrackedDevice final : public realtime::Device {
   private:
     struct Latest {
         std::array<double, 3> position{0, 0, 0}, shaft{0, 0, 0};
+        std::array<double, 4> orientation{0, 0, 0, 0};
         std::int64_t received_ns = 0;  // 0: never
         std::uint32_t faults = device_lost;
     };

@@ -14,8 +14,11 @@ struct DeviceState {
     double time = 0;                          ///< s since the loop started
     std::array<double, 3> position{0, 0, 0};  ///< of the tool's centre, p_D, mm
     std::array<double, 3> shaft{0, 0, 0};     ///< unit, from the tip along the tool's shaft; zero: not known
-    std::uint32_t buttons = 0;                ///< one bit each, the lowest for the first
-    std::uint32_t faults = no_fault;          ///< Fault flags
+    /// Unit quaternion (x, y, z, w) of the rotation R_DT from the tool's frame T, whose z axis is the shaft;
+    /// zero: not known.
+    std::array<double, 4> orientation{0, 0, 0, 0};
+    std::uint32_t buttons = 0;        ///< one bit each, the lowest for the first
+    std::uint32_t faults = no_fault;  ///< Fault flags
 };
 
 /// Whether a device knows where it is.

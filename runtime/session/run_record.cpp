@@ -28,7 +28,8 @@ std::string csv_field(const std::string& text) {
 void write_log_head(std::ostream& log) {
     log << "t_s,device_x_mm,device_y_mm,device_z_mm,tool_x_mm,tool_y_mm,tool_z_mm,force_x_n,force_y_n,"
            "force_z_n,depth_mm,contacts,body,triangle,tick_us,wake_us,status,tool,"
-           "faults\n";
+           "faults,torque_x_n_mm,torque_y_n_mm,torque_z_n_mm,device_qx,device_qy,device_qz,device_qw,"
+           "tool_qx,tool_qy,tool_qz,tool_qw\n";
 }
 
 void RunRecord::add(const TickResult& result) {
@@ -39,6 +40,7 @@ void RunRecord::add(const TickResult& result) {
         largest_force_step_ =
             std::max(largest_force_step_, (vector_of(result.force) - vector_of(last_force_)).norm());
     last_force_ = result.force;
+    peak_torque_ = std::max(peak_torque_, vector_of(result.torque).norm());
     last_tick_ = result.tick;
     device_depth_ = std::max(device_depth_, result.depth);
     tool_depth_ = std::max(tool_depth_, tool_depth_of(result));
@@ -55,6 +57,7 @@ double RunRecord::tool_depth_of(const TickResult& result) const {
     const double radius = model_.contact_radius();
     const Vector3d tool = vector_of(result.tool_position);
     double depth = result.residual;
+    if (model_.method().can.has_surface) return depth;  // that of its deepest point
     for (std::size_t body = 0; body < model_.rigid_count(); ++body) {
         const collision::CollisionSurface& surface = model_.surface(body);
         const bool outside = surface.is_outside(tool);
@@ -69,15 +72,18 @@ void RunRecord::write_row(const TickResult& r) {
     const auto& d = r.device_position;
     const auto& t = r.tool_position;
     const auto& f = r.force;
+    const auto &held = r.orientation, &turned = r.tool_orientation;
     fmt::memory_buffer row;
     fmt::format_to(
         std::back_inserter(row),
         "{:.3f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.5f},{:.5f},{:.5f},{:.4f},{},{},{},{:.2f},"
-        "{:.2f},{},{},{}\n",
+        "{:.2f},{},{},{},{:.3f},{:.3f},{:.3f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f}\n",
         r.time, d[0], d[1], d[2], t[0], t[1], t[2], f[0], f[1], f[2], r.depth, r.contact_count,
         r.body < 0 ? "" : csv_field(model_.body_name(static_cast<std::size_t>(r.body))),
         r.contact_count > 0 ? r.contacts[0].triangle : -1, 1e-3 * static_cast<double>(r.tick_ns),
-        1e-3 * static_cast<double>(r.wake_latency_ns), status_text(r.status), r.tool, fault_names(r.faults));
+        1e-3 * static_cast<double>(r.wake_latency_ns), status_text(r.status), r.tool, fault_names(r.faults),
+        r.torque[0], r.torque[1], r.torque[2], held[0], held[1], held[2], held[3], turned[0], turned[1],
+        turned[2], turned[3]);
     log_->write(row.data(), static_cast<std::streamsize>(row.size()));
 }
 

@@ -25,6 +25,7 @@ class RunRecord {
     std::vector<CurvePoint> curve() const { return curve_.points(); }
     const TickResult& peak() const { return peak_; }       ///< the tick with the largest force
     double peak_force() const;                             ///< N
+    double peak_torque() const { return peak_torque_; }    ///< N mm
     double device_depth() const { return device_depth_; }  ///< deepest below any rest surface, mm
     /// Deepest that the surface of the tool's tip went below the surface it touched: below a rigid one, or
     /// what the contact solver left of a deformable one, mm.
@@ -44,6 +45,7 @@ class RunRecord {
     std::array<double, 3> last_force_{0, 0, 0};
     static constexpr std::int64_t no_tick = -2;  // nor before the first
     std::int64_t last_tick_ = no_tick;
+    double peak_torque_ = 0;
     double device_depth_ = 0;
     double tool_depth_ = 0;
     double largest_force_step_ = 0;

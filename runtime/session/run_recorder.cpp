@@ -19,7 +19,8 @@ recording::RecordingHead recording_head(const std::filesystem::path& asset, cons
                                   .clock = clock,
                                   .coupling_stiffness = model.coupling(),
                                   .haptics = model.settings(),
-                                  .devices = {}};
+                                  .devices = {},
+                                  .tool = patient_case.tool};
     for (const Device* device : devices) head.devices.push_back({device->name(), device->limits()});
     return head;
 }
@@ -28,6 +29,7 @@ DeviceState state_of(const Tick& tick) {
     return {.time = tick.time,
             .position = tick.device_position,
             .shaft = tick.shaft,
+            .orientation = tick.orientation,
             .buttons = tick.buttons,
             .faults = tick.faults};
 }

@@ -15,6 +15,12 @@
 namespace palpate::session {
 namespace {
 
+Case case_of(const SessionRequest& request) {
+    Case patient_case = asset::load_asset(request.asset, request.trusted_keys);
+    patient_case.tool = request.tool;
+    return patient_case;
+}
+
 // A model of a case whose compliances have been found to answer as their meshes do, meanwhile.
 std::unique_ptr<haptics::HapticModel> sound_model(const Case& patient_case, const SessionRequest& request) {
     auto judged = std::async(std::launch::async, [&] {
@@ -32,7 +38,7 @@ std::unique_ptr<haptics::HapticModel> sound_model(const Case& patient_case, cons
 Session::Session(SessionRequest request, std::function<void(const std::string&)> tell)
     : request_(std::move(request)),
       tell_(std::move(tell)),
-      case_(asset::load_asset(request_.asset, request_.trusted_keys)),
+      case_(case_of(request_)),
       model_(models_.emplace_back(sound_model(case_, request_)).get()) {}
 
 Session::~Session() {

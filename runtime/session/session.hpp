@@ -30,6 +30,7 @@ struct SessionRequest {
     bool virtual_clock = false;  ///< ticks as fast as possible; forces do not depend on the machine
     std::vector<std::string> trusted_keys{};  ///< of read_public_keys(), one of which must have signed the
                                               ///< asset; none: no signature is asked for
+    std::optional<ToolBody> tool{};           ///< what is held, for a method with which tools turn
     std::string stream{};                     ///< "PORT" or "ADDRESS:PORT" of a live stream; empty: none
 };
 

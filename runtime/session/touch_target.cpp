@@ -21,11 +21,16 @@ using Eigen::Vector3d;
 constexpr double full_clearance = 5;  // mm
 
 std::size_t find_body(const HapticModel& model, const std::string& name) {
-    if (name.empty()) return model.rigid_count() < model.body_count() ? model.rigid_count() : 0;
+    const bool feels_tissue = model.method().can.feels_tissue;
+    if (name.empty())
+        return feels_tissue && model.rigid_count() < model.body_count() ? model.rigid_count() : 0;
     std::vector<std::string> names;
     for (std::size_t body = 0; body < model.body_count(); ++body) {
         names.push_back(model.body_name(body));
-        if (names.back() == name) return body;
+        if (names.back() != name) continue;
+        if (body < model.rigid_count() || feels_tissue) return body;
+        throw UsageError({"--body", "'" + name + "' is not rigid", "a rigid body",
+                          "contact method '" + std::string(model.method().name) + "' feels no other"});
     }
     std::string near;
     for (const std::string& candidate : nearest_names(name, names))

@@ -17,7 +17,7 @@ from pathlib import Path
 # Target folder: object -> why it is the tick's.
 TICK = {
     "runtime/collision/CMakeFiles/palpate_collision.dir": {
-        "distance_field_queries": "signed distance and its gradient, by a field",
+        "distance_field_queries": "distance by voxels",
         "neighbourhood": "sweeps against the triangles next to the tool",
         "rounded_triangle": "a point against one triangle that is round at its edges",
         "segment_queries": "segments against segments and triangles",
@@ -43,6 +43,8 @@ TICK = {
         "force_limiter": "force and slew limits",
         "haptic_tick": "one tick, from positions to forces",
         "passivity_observer": "no more energy out than in",
+        "shell/shell_equilibrium": "a whole tool, brought to rest",
+        "shell/shell_watch": "which points of it are inside a body",
     },
     "runtime/realtime/CMakeFiles/palpate_realtime.dir": {
         "histogram": "what a tick spent",

@@ -8,6 +8,7 @@
 #include "tools/experiments/puncture/many_approaches.hpp"
 #include "tools/experiments/puncture/puncture.hpp"
 #include "tools/experiments/realtime.hpp"
+#include "tools/experiments/sixdof/sixdof.hpp"
 #include "tools/experiments/stability/passivity.hpp"
 #include "tools/experiments/stability/split.hpp"
 #include "tools/experiments/stability/stability.hpp"
@@ -27,6 +28,7 @@ const std::vector<Experiment> experiments{
      puncture},
     {"realtime", "ten minutes against the clock beside four busy processes, with and without priority",
      realtime},
+    {"sixdof", "whole tools that turn, with `shell`: ticks, depth judged by FCL, fast approaches", sixdof},
     {"split", "two deformable bodies: the published split by force ratio against exact contact", split},
     {"stability", "jumps, pulls, roughness and energy of force by scheme, and 10 minutes at random",
      stability},
@@ -84,6 +86,8 @@ int main(int argc, char** argv) {
     command.option("experiment", name, "which one").required();
     command.input("--surface", options.surfaces, "triangles of a bone (.vtp), LPS mm");
     command.input("--case", options.cases, "assets (.vtkhdf)");
+    command.input("--tool", options.tools,
+                  "closed surfaces of instruments (.stl), mm: tip at 0, shaft along z");
     command.input("--path", options.path, "hand path: rows 'x y z' (mm), one per millisecond");
     command.output("-o,--output", options.output, "folder for the table (.md) and the pictures (.svg)");
     command.option("--seed", options.seed, "of everything random");

@@ -15,6 +15,7 @@ namespace palpate::experiments {
 struct Options {
     std::vector<std::filesystem::path> surfaces;  ///< triangles (.vtp), LPS mm
     std::vector<std::filesystem::path> cases;     ///< assets (.vtkhdf)
+    std::vector<std::filesystem::path> tools;     ///< closed surfaces of instruments (.stl), tool's frame, mm
     std::filesystem::path path;                   ///< recorded hand path
     std::filesystem::path output = "bench";       ///< folder for the table (.md) and the pictures (.svg)
     std::uint64_t seed = 1;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "formats/model/arrays.hpp"
+
 namespace palpate::devices {
 namespace {
 
@@ -30,6 +32,22 @@ std::string text_of(const HdApi& api, unsigned parameter) {
     const char* text = api.get_string(parameter);
     const bool failed = take_hd_errors(api).code != success;
     return failed || !text ? "" : text;
+}
+
+// How the stylus is turned, by the axes of its transform, which lie one after the other and may be of any
+// length.
+void take_axes(const std::array<double, 16>& transform, DeviceState& state) {
+    const Eigen::Map<const Eigen::Matrix4d> X(transform.data());
+    Eigen::Vector3d x = X.block<3, 1>(0, 0), z = X.block<3, 1>(0, 2);
+    if (!(z.norm() > 0)) return;
+    z.normalize();
+    state.shaft = array_of(z);
+    x -= x.dot(z) * z;
+    if (!(x.norm() > 0)) return;
+    x.normalize();
+    Eigen::Matrix3d R;
+    R << x, z.cross(x), z;
+    state.orientation = array_of(Eigen::Quaterniond(R));
 }
 
 }  // namespace
@@ -150,8 +168,7 @@ DeviceState HdDevice::read(double time) noexcept {
     // cone with the tip at the origin and its body along +z, with this transform as it is.
     std::array<double, 16> transform{};
     api_.get_doubles(current_transform, transform.data());
-    const double length = std::hypot(transform[8], transform[9], transform[10]);
-    if (length > 0) state.shaft = {transform[8] / length, transform[9] / length, transform[10] / length};
+    take_axes(transform, state);
     int buttons = 0;
     api_.get_integers(current_buttons, &buttons);
     state.buttons = static_cast<std::uint32_t>(buttons);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -14,8 +14,10 @@ namespace palpate::haptics {
 struct ContactPose {
     Eigen::Vector3d tip{0, 0, 0};    ///< p_P, mm
     Eigen::Vector3d shaft{0, 0, 0};  ///< unit, from the tip along the shaft, frame P; zero: not known
-    bool trusted = false;            ///< false: nobody knows where it is; the rest says nothing
-    bool jumped = false;             ///< it came from afar by a way that nobody saw: contact starts anew
+    Eigen::Quaterniond orientation{0, 0, 0,
+                                   0};  ///< R_PT of the tool's frame, its z the shaft; zero: not known
+    bool trusted = false;               ///< false: nobody knows where it is; the rest says nothing
+    bool jumped = false;                ///< it came from afar by a way that nobody saw: contact starts anew
 };
 
 /// How contact with a patient's surfaces is found, kept and answered: what differs between the lines of the
@@ -33,9 +35,10 @@ class ContactMethod {
     /// Servo's side, 1 kHz: writes the force on each device before any limit (N, frame P) to `forces`, zero
     /// on entry, for tools at `poses` behind virtual couplings of stiffness `coupling` (N/mm). Appends
     /// contacts to the tools' results and raises their depth, body, residual and status; moves tool_position
-    /// from the device to where the tool is, where the method tells the two apart; may add faults. A tool
-    /// that is not trusted feels nothing and its result stays as it is. As many poses, results and forces as
-    /// tools (unchecked). One thread; realtime-safe: no allocation, lock or I/O.
+    /// from the device to where the tool is, where the method tells the two apart, and where the tool turns
+    /// by itself writes tool_orientation and the torque (N mm, about the tip) before any limit; may add
+    /// faults. A tool that is not trusted feels nothing and its result stays as it is. As many poses, results
+    /// and forces as tools (unchecked). One thread; realtime-safe: no allocation, lock or I/O.
     virtual void tick(std::span<const ContactPose> poses, double coupling, std::span<TickResult> results,
                       std::span<Eigen::Vector3d> forces) noexcept = 0;
 

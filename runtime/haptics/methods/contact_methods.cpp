@@ -9,6 +9,7 @@
 #include "formats/records/shown_text.hpp"
 #include "runtime/haptics/methods/continuous_contact.hpp"
 #include "runtime/haptics/methods/published_contact.hpp"
+#include "runtime/haptics/methods/shell_contact.hpp"
 
 namespace palpate::haptics {
 namespace {
@@ -37,8 +38,14 @@ constexpr std::array table{
          .spreads_loads = true,
          .sums_rigid_walls = true,
          .creeps = true,
+         .turns = true,
          .keeps_energy = true},
         make_continuous},
+    ContactMethodEntry{
+        "shell",
+        shown_text("is published: a whole tool that turns, as points against voxels of rigid bodies"),
+        {.has_radius = true, .feels_tissue = false, .turns = true, .has_surface = true},
+        make_shell},
 };
 
 }  // namespace

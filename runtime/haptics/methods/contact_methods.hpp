@@ -20,6 +20,9 @@ struct ContactCapabilities {
     bool needs_detection = false;   ///< ContactMethod::detect() must be called 30 times a second
     bool sums_rigid_walls = false;  ///< where only rigid walls hold the tip, one contact is their resultant
     bool creeps = false;            ///< as tissue does that relaxes
+    bool feels_tissue = true;       ///< and not rigid bodies alone
+    bool turns = false;             ///< a tool may turn by itself, with a torque: Case::tool
+    bool has_surface = false;       ///< and have a surface of its own
     bool keeps_energy = false;  ///< gives hands no more than they gave it: PassivityObserver holds it to that
     std::size_t most_tools = std::numeric_limits<std::size_t>::max();
 };

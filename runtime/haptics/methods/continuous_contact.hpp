@@ -18,13 +18,16 @@ namespace palpate::haptics {
 /// Contact found in every tick: a tool is a sphere, or a row of spheres where it has a shaft. Each holds a
 /// god-object on the rigid bodies and one on all bodies as if they were rigid; where only the tip touches,
 /// and only rigid bodies, the force is that of the virtual coupling, stiffness * (proxy - device), otherwise
-/// tools and tissue are brought to rest together (ContactEquilibrium). The shaft turns as the device says;
-/// the torque that would turn it back is not rendered. A tool that jumped does not feel a body that it is in
-/// until it has been clear of it.
+/// tools and tissue are brought to rest together (ContactEquilibrium). The shaft turns as the device says,
+/// and the torque that would turn it back is not rendered; a tool that turns by itself, Case::tool, hangs on
+/// a spring of torsion besides, which has its rest among the others, and gives torque. A tool that jumped
+/// does not feel a body that it is in until it has been clear of it.
 class ContinuousContact final : public ContactMethod {
   public:
-    /// `bodies` must outlive this. Of the settings it reads radius, shaft and friction.
-    ContinuousContact(const ContactBodies& bodies, const HapticSettings& settings, std::size_t tool_count);
+    /// `bodies` must outlive this. Of the settings it reads radius, shaft and friction. `torsion`: rad / (N
+    /// mm) that a tool turns by under a torque; 0: as its device.
+    ContinuousContact(const ContactBodies& bodies, const HapticSettings& settings, std::size_t tool_count,
+                      double torsion = 0);
     ~ContinuousContact() override;
 
     void reset() noexcept override;
@@ -67,11 +70,13 @@ class ContinuousContact final : public ContactMethod {
     bool within_reach(std::size_t tool, const Eigen::Vector3d& force) const noexcept;
     Eigen::Vector3d friction_of(const Part& part) const noexcept;
     bool kept_by_tissue(const Part& part) const noexcept;
+    void tell_turn(std::size_t tool, const ContactPose& pose, TickResult& result) const noexcept;
     Eigen::Vector3d wall_friction(Tool& tool, const Eigen::Vector3d& force) noexcept;
 
     const ContactBodies& bodies_;
     Friction friction_;
     double coupling_ = 0;  // of this tick, N/mm
+    double torsion_;       // rad / (N mm) that a tool turns by against its device; 0: it does not
     std::vector<const collision::CollisionSurface*> rigid_surfaces_, all_surfaces_;
     std::vector<Tool> tools_;
     ContactEquilibrium equilibrium_;

@@ -49,9 +49,10 @@ bool ContinuousContact::hold_off_rigid(std::span<TickResult> results) noexcept {
     for (std::size_t t = 0; t < tools_.size(); ++t) {
         TickResult& result = results[t];
         if (!equilibrium_.touches_tissue(t)) continue;
-        const Vector3d push = (equilibrium_.press(t) + equilibrium_.drag(t)) / coupling_;
+        const Vector3d pushed = (equilibrium_.press(t) + equilibrium_.drag(t)) / coupling_;
         for (std::size_t p = 0; p < tools_[t].parts_felt; ++p) {
             Part& part = tools_[t].parts[p];
+            const Vector3d push = pushed + (equilibrium_.off(t, p) - equilibrium_.off(t, 0));
             const auto touch = part.on_rigid.touch_on_the_way(rigid_surfaces_, part.device + push);
             if (!touch) continue;
             const auto at = static_cast<std::size_t>(result.contact_count);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "formats/model/errors.hpp"
 #include "runtime/haptics/methods/continuous_contact.hpp"
 
 namespace palpate::haptics {
@@ -21,9 +22,10 @@ std::vector<double> spheres_of(const HapticSettings& settings, std::size_t most_
 }  // namespace
 
 ContinuousContact::ContinuousContact(const ContactBodies& bodies, const HapticSettings& settings,
-                                     std::size_t tool_count)
+                                     std::size_t tool_count, double torsion)
     : bodies_(bodies),
       friction_{settings.friction_at_rest, settings.friction_sliding},
+      torsion_(torsion),
       equilibrium_(bodies, settings.tool_radius, friction_, tool_count,
                    spheres_of(settings, most_spheres).size()) {
     for (const auto& surface : bodies.surfaces) {
@@ -48,7 +50,16 @@ void ContinuousContact::reset() noexcept {
 
 std::unique_ptr<ContactMethod> make_continuous(const Case& patient_case, const ContactBodies& bodies,
                                                std::size_t tool_count) {
-    return std::make_unique<ContinuousContact>(bodies, patient_case.haptics, tool_count);
+    double torsion = 0;
+    if (patient_case.tool) {
+        if (!patient_case.tool->surface.triangles.empty())
+            throw InvalidInput({patient_case.name,
+                                "a tool with a surface of its own, which contact method "
+                                "'continuous' does not feel",
+                                "the case's ball or rod", "use contact method 'shell'"});
+        torsion = 1 / patient_case.tool->settings.torsional_stiffness;
+    }
+    return std::make_unique<ContinuousContact>(bodies, patient_case.haptics, tool_count, torsion);
 }
 
 }  // namespace palpate::haptics

@@ -4,6 +4,7 @@
 
 #include "formats/model/arrays.hpp"
 #include "runtime/haptics/methods/continuous_contact.hpp"
+#include "runtime/haptics/shell/tool_pose.hpp"
 
 namespace palpate::haptics {
 namespace {
@@ -20,7 +21,7 @@ constexpr double farthest_return = 5;  // mm: a sphere of the shaft found again 
 void ContinuousContact::tick(std::span<const ContactPose> poses, double coupling,
                              std::span<TickResult> results, std::span<Vector3d> forces) noexcept {
     coupling_ = coupling;
-    equilibrium_.begin_tick(coupling);
+    equilibrium_.begin_tick(coupling, torsion_);
     for (std::size_t t = 0; t < tools_.size(); ++t) place(t, poses[t]);
     for (std::size_t t = 0; t < tools_.size(); ++t) follow(t, results[t]);
     bool solve = false;
@@ -40,9 +41,19 @@ void ContinuousContact::tick(std::span<const ContactPose> poses, double coupling
         if (tools_[t].parts_felt == 0) continue;
         forces[t] = force_of(t, results[t]);
         results[t].tool_position = array_of(tools_[t].parts[0].device + forces[t] / coupling_);
+        if (torsion_ > 0) tell_turn(t, poses[t], results[t]);
     }
     write_neighbours(results);
     equilibrium_.end_tick();
+}
+
+// How the tool is turned against its device, and the torque that this takes.
+void ContinuousContact::tell_turn(std::size_t t, const ContactPose& pose, TickResult& result) const noexcept {
+    const Eigen::Quaterniond device = orientation_of(pose);
+    const bool found = result.contact_count > 0 && !(result.status & contact_unsolved);
+    const Vector3d turn = found ? equilibrium_.turn(t) : Vector3d::Zero();
+    result.torque = array_of(Vector3d(turn / torsion_));
+    result.tool_orientation = array_of(moved({Vector3d::Zero(), device}, rotation(turn)).orientation);
 }
 
 // Of the bodies that press each other, the first tool that pushes tissue tells.

@@ -31,6 +31,7 @@ FILES = {
     "nasopharynx.vtkhdf": "palpate build nasopharynx.toml --volume head_ct.nrrd -o nasopharynx.vtkhdf",
     "case.vtkhdf": "cp liver.vtkhdf case.vtkhdf",
     "stats.json force.svg": "palpate touch head.vtkhdf --seconds 2 --virtual-clock --json stats.json --curve force.svg",
+    "probe.stl": "tools.py .",
     "run.h5": "palpate touch case.vtkhdf --seconds 3 --virtual-clock --record run.h5",
 }
 

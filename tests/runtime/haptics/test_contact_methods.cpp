@@ -48,6 +48,7 @@ TEST_P(EveryMethod, feels_bodies_and_nothing_while_the_device_is_lost_and_alloca
     double felt = 0, felt_lost = 0;
     std::size_t allocated = 0;
     for (const double x : {-25.0, 10.0}) {
+        if (x > 0 && !GetParam().can.feels_tissue) continue;
         const double top = x < 0 ? 0 : 20;
         for (int tick = 0; tick < 1500; ++tick) {
             const double depth = tick < 100 || tick > 1400 ? -3 : 1;
@@ -93,11 +94,13 @@ TEST_P(EveryMethod, detects_only_where_it_says_it_needs_to) {
 
 TEST_P(EveryMethod, gives_the_same_forces_again_after_a_reset) {
     HapticModel model(plate_and_cube(), GetParam().name);
+    const Eigen::Vector3d start =
+        GetParam().can.feels_tissue ? Eigen::Vector3d(10, 9, 22) : Eigen::Vector3d(-25, 9, 2);
     const auto run = [&] {
         std::vector<std::array<double, 3>> forces;
         TickResult result{};
         for (int tick = 0; tick < 200; ++tick) {
-            model.tick(held_at({10 + 0.01 * tick, 9, 22 - 0.02 * tick}), result);
+            model.tick(held_at(start + Eigen::Vector3d(0.01 * tick, 0, -0.02 * tick)), result);
             if (tick % 33 == 32) model.detect();
             forces.push_back(result.force);
         }

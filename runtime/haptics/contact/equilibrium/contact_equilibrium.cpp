@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/haptics/contact/equilibrium/contact_equilibrium.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 #include <utility>
@@ -15,7 +16,9 @@
 // corner a ball lies inside the surface and goes with it (inner_balls.cpp), and q_t and rho_t are centre and
 // radius of the ball nearest to y of those between them.
 // The force on the device is -dV/dd = K (x - d): its work round a closed loop is zero. Rest positions,
-// anchors and smoothed normals have no part in it.
+// anchors and smoothed normals have no part in it. A tool that turns by itself, by the rotation vector theta
+// from its device's orientation, adds 1/2 kappa |theta|² and has its spheres at x + exp(theta) r; to A that
+// adds l_k . l_l / kappa with the levers l = (exp(theta) r) x n, and the torque on the device is kappa theta.
 //
 // g_t is differentiable wherever y is off the balls' centres: its gradient by x is n = (y - q_t) / |y - q_t|,
 // -w_i n by u_i, w the barycentric weights of q_t, and p n by s, p the sum of w over the vertices that give
@@ -72,6 +75,9 @@ void ContactEquilibrium::forget(std::size_t t) noexcept {
     bank_ = in_row_ = carried_ = 0;
     tool.touching = tool.at_rest = false;
     tool.off.setZero();
+    tool.turn.setZero();
+    tool.drag_turn.setZero();
+    swing(tool);
     tool.press.setZero();
     tool.drag.setZero();
     for (Part& part : tool.parts)
@@ -87,8 +93,9 @@ void ContactEquilibrium::forget(std::size_t t) noexcept {
         }
 }
 
-void ContactEquilibrium::begin_tick(double stiffness) noexcept {
+void ContactEquilibrium::begin_tick(double stiffness, double torsion) noexcept {
     coupling_ = stiffness;
+    torsion_ = torsion;
     spare_iterations_ = spare_iterations;
     rows_.clear();
     groups_.clear();
@@ -116,6 +123,8 @@ void ContactEquilibrium::pull(std::size_t t, std::span<const Sphere> spheres) no
         part.last_device = part.sphere.device;
         if (p < tool.was_felt) moved = std::max(moved, (spheres[p].device - part.last_device).norm());
         part.sphere = spheres[p];
+        part.arm = spheres[p].device - spheres[0].device;
+        tool.longest_arm = p == 0 ? 0 : std::max(tool.longest_arm, part.arm.norm());
         for (const GodObject::Touch& touch : spheres[p].if_rigid->touches())
             meets = meets || touch.surface >= bodies_.rigid_count();
         meets = meets || spheres[p].kept_by_tissue;
@@ -134,6 +143,15 @@ void ContactEquilibrium::pull(std::size_t t, std::span<const Sphere> spheres) no
     tool.near = tool.cold ? first_reach : 2 * moved;
     tool.held_reach = tool.cold ? 0 : (tool.last_tip - tool.parts[0].last_device).norm() + moved;
     tool.off = tool.cold ? Vector3d::Zero() : Vector3d(tool.last_tip - spheres[0].device);
+    if (tool.cold) tool.turn.setZero();
+    swing(tool);
+}
+
+// Turns the spheres' arms as the tool is turned.
+void ContactEquilibrium::swing(Tool& tool) noexcept {
+    const double angle = tool.turn.norm();
+    for (Part& part : tool.parts)
+        part.swung = angle > 0 ? Vector3d(Eigen::AngleAxisd(angle, tool.turn / angle) * part.arm) : part.arm;
 }
 
 bool ContactEquilibrium::add_wall(std::size_t tool, Contact& contact) noexcept {
@@ -144,6 +162,7 @@ bool ContactEquilibrium::add_wall(std::size_t tool, Contact& contact) noexcept {
     row.part = contact.part;
     row.triangle = contact.triangle;
     row.normal = normal_of(contact);
+    row.lever = tools_[tool].parts[static_cast<std::size_t>(contact.part)].swung.cross(row.normal);
     row.gap = static_cast<double>(contact.gap);
     row.wall = &contact;
     rows_.cut(walls);

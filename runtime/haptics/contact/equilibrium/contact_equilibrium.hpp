@@ -43,8 +43,9 @@ class ContactEquilibrium {
     void reset() noexcept;
     void forget(std::size_t tool) noexcept;
 
-    /// Starts a tick behind virtual couplings of `stiffness` (N/mm), without tools or walls.
-    void begin_tick(double stiffness) noexcept;
+    /// Starts a tick behind virtual couplings of `stiffness` (N/mm), without tools or walls. `torsion`: by
+    /// how much a tool turns against its device under a torque, rad / (N mm); 0: as the device says.
+    void begin_tick(double stiffness, double torsion = 0) noexcept;
     /// Places a tool: its spheres that are felt, the tip first.
     void pull(std::size_t tool, std::span<const Sphere> spheres) noexcept;
     /// Adds a half-space of a rigid body that holds part contact.part of a tool: contact.gap says how far the
@@ -65,6 +66,12 @@ class ContactEquilibrium {
     /// What presses the tool, and what friction on tissue adds, N.
     const Eigen::Vector3d& press(std::size_t tool) const noexcept { return tools_[tool].press; }
     const Eigen::Vector3d& drag(std::size_t tool) const noexcept { return tools_[tool].drag; }
+    /// How a tool is turned against its device, a rotation vector, rad.
+    const Eigen::Vector3d& turn(std::size_t tool) const noexcept { return tools_[tool].turn; }
+    /// How far a sphere of it is off where its device has it, mm.
+    Eigen::Vector3d off(std::size_t tool, std::size_t part) const noexcept {
+        return off_of(tools_[tool], tools_[tool].parts[part]);
+    }
     /// How far the tool was off its device before this tick, plus how far the device went since, mm: contact
     /// that friction holds goes no farther off.
     double held_reach(std::size_t tool) const noexcept { return tools_[tool].held_reach; }
@@ -110,9 +117,10 @@ class ContactEquilibrium {
         std::array<std::int32_t, 3> slots{};
         Eigen::Vector3d weights = Eigen::Vector3d::Zero();
         Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-        double radius = 0;    // of the sphere and of the ball that it meets, mm
-        double distance = 0;  // between their surfaces, mm
-        double gap = 0;       // that forces must open, mm
+        Eigen::Vector3d lever = Eigen::Vector3d::Zero();  // of the sphere, r x n about the tip, mm
+        double radius = 0;                                // of the sphere and of the ball that it meets, mm
+        double distance = 0;                              // between their surfaces, mm
+        double gap = 0;                                   // that forces must open, mm
         // How much of its point gives way: so much of what its sphere sinks in counts here. And the square of
         // that part's slope along face or edge, 1/mm².
         double part_giving_way = 1, slope_squared = 0;
@@ -176,6 +184,8 @@ class ContactEquilibrium {
     struct Part {
         Sphere sphere;
         Eigen::Vector3d last_device = Eigen::Vector3d::Zero();
+        // From the tip as the device has it, and turned as the tool is, mm.
+        Eigen::Vector3d arm = Eigen::Vector3d::Zero(), swung = Eigen::Vector3d::Zero();
         std::vector<Touch> touches;  // by deformable body
     };
     struct Tool {
@@ -183,6 +193,10 @@ class ContactEquilibrium {
         std::size_t felt = 0, was_felt = 0;  // of the parts: in this tick, in the last one
         Eigen::Vector3d off = Eigen::Vector3d::Zero();
         Offsets next_off = no_offsets(), difference = no_offsets();  // of the answers to `off`
+        Eigen::Vector3d turn = Eigen::Vector3d::Zero();              // rad, from the device's orientation on
+        Offsets next_turn = no_offsets(), turn_difference = no_offsets();
+        Eigen::Vector3d drag_turn = Eigen::Vector3d::Zero();  // of it what friction on tissue does
+        double longest_arm = 0;                               // mm, of the parts that are felt
         Eigen::Vector3d last_tip = Eigen::Vector3d::Zero();
         Eigen::Vector3d press = Eigen::Vector3d::Zero(), drag = Eigen::Vector3d::Zero();  // N
         double held_reach = 0;
@@ -209,8 +223,16 @@ class ContactEquilibrium {
     // How the sphere is sunk in if nothing presses it, mm: by what earlier presses left behind.
     Eigen::Vector3d local_dent(const Touch& touch, const DeformedPatch& patch) const noexcept;
     void remember_pushes() noexcept;
+    static Eigen::Vector3d off_of(const Tool& tool, const Part& part) noexcept {
+        return tool.off + (part.swung - part.arm);
+    }
+    // The same as forces answer with it, which turn the tool in proportion, but for what friction does.
+    Eigen::Vector3d pressed_off_of(const Tool& tool, const Part& part) const noexcept {
+        return tool.off - tool.drag / coupling_ + (tool.turn - tool.drag_turn).cross(part.swung);
+    }
+    static void swing(Tool& tool) noexcept;
     Eigen::Vector3d centre_of(const Tool& tool, const Part& part, const Touch& touch) const noexcept {
-        return part.sphere.device + tool.off + touch.sunk;
+        return part.sphere.device + off_of(tool, part) + touch.sunk;
     }
     void look_around(std::size_t tool, std::size_t part, std::size_t soft) noexcept;
     bool gather(std::size_t tool, std::size_t part, std::size_t soft, bool walks) noexcept;
@@ -278,7 +300,7 @@ class ContactEquilibrium {
     const ContactBodies& bodies_;
     double radius_;
     Friction friction_;
-    double coupling_ = 0;
+    double coupling_ = 0, torsion_ = 0;
     std::vector<DeformedPatch> patches_;
     NeighbourContact neighbours_;
     std::vector<Tool> tools_;

@@ -4,6 +4,7 @@
 // Where a sphere presses, friction holds it and the tissue together: the drag on the tool is what undoes the
 // way that they have gone past each other, along with the coupling and the tissue's own compliance, until
 // that is more than Coulomb's law lets it be.
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "runtime/haptics/contact/equilibrium/contact_equilibrium.hpp"
@@ -38,8 +39,8 @@ Vector3d ContactEquilibrium::slip_of(const Group& group, const Bearings& bearing
     Vector3d slip = touch.slip;
     if (touch.pressed) {
         const Tool& tool = tools_[static_cast<std::size_t>(group.tool)];
-        slip +=
-            tool.parts[static_cast<std::size_t>(group.part)].sphere.device + tool.off - touch.rubbed_centre;
+        const Part& part = tool.parts[static_cast<std::size_t>(group.part)];
+        slip += part.sphere.device + off_of(tool, part) - touch.rubbed_centre;
         const DeformedPatch& patch = patch_of(group);
         for (const auto& [slot, share] : bearings)
             slip -= share * (patch.displacement(slot) - patch.displacement_before(slot));
@@ -72,7 +73,9 @@ void ContactEquilibrium::rub(std::size_t iterate) noexcept {
         const Vector3d slip = slip_of(group, bearings);
         if (const double way = slip.norm(); way > 0) {
             const Vector3d along = slip / way;
-            double compliance = 1 / coupling_;
+            const Tool& tool = tools_[static_cast<std::size_t>(group.tool)];
+            const Part& part = tool.parts[static_cast<std::size_t>(group.part)];
+            double compliance = 1 / coupling_ + torsion_ * part.swung.cross(along).squaredNorm();
             for (const auto& [slot, share] : bearings)
                 for (const auto& [loaded, other] : bearings)
                     compliance += share * other * along.dot(patch.response(slot, loaded, along));
@@ -103,7 +106,8 @@ void ContactEquilibrium::keep_hold() noexcept {
         touch.slip = touch.slides ? Vector3d::Zero() : slip_of(group, bearings_of(group, touch.press));
         touch.slid = touch.slides;
         touch.pressed = true;
-        touch.rubbed_centre = tool.parts[static_cast<std::size_t>(group.part)].sphere.device + tool.off;
+        const Part& part = tool.parts[static_cast<std::size_t>(group.part)];
+        touch.rubbed_centre = part.sphere.device + off_of(tool, part);
     }
 }
 

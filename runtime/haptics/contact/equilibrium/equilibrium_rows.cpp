@@ -36,12 +36,13 @@ void ContactEquilibrium::gather_at_rest(std::size_t t, std::size_t p) noexcept {
         row.triangle = touch.foot.triangle;
         row.weights = touch.foot.barycentric;
         row.normal = touch.normal;
+        row.lever = part.swung.cross(row.normal);
         const RoundedTriangle round = patch.rounded(row.triangle, patch.corners(row.slots));
         row.radius = radius_ + row.weights.dot(round.radii);
         find_part_giving_way(row, patch, round.centres);
-        row.gap =
-            touch.normal.dot(part.sphere.if_rigid->position() - part.sphere.device -
-                             tools_[t].drag / coupling_ - row.part_giving_way * part.touches[soft].sunk_free);
+        row.gap = touch.normal.dot(part.sphere.if_rigid->position() - part.sphere.device -
+                                   tools_[t].drag / coupling_ - tools_[t].drag_turn.cross(part.swung) -
+                                   row.part_giving_way * part.touches[soft].sunk_free);
         for (Index i = 0; i < 3; ++i)
             row.gap += row.weights[i] *
                        row.normal.dot(patch.held_displacement(row.slots[static_cast<std::size_t>(i)]));
@@ -185,10 +186,11 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
         row.slots = slots;
         row.weights = ball.barycentric;
         row.normal = (centre - ball.centre) / ball.distance;
+        row.lever = part.swung.cross(row.normal);
         row.radius = radius_ + ball.radius;
         row.distance = distance - radius_;
         find_part_giving_way(row, patch, round.centres);
-        row.gap = row.normal.dot(tool.off - tool.drag / coupling_ +
+        row.gap = row.normal.dot(pressed_off_of(tool, part) +
                                  row.part_giving_way * (touch.sunk - touch.sunk_free)) -
                   row.distance;
         for (Index i = 0; i < 3; ++i) {
@@ -220,7 +222,8 @@ bool ContactEquilibrium::watched_are_clear() const noexcept {
         const Tool& tool = tools_[static_cast<std::size_t>(row.tool)];
         const Touch& touch = touch_of(row);
         const DeformedPatch& patch = patch_of(row);
-        double distance = row.normal.dot(tool.off - tool.drag / coupling_ +
+        const Part& part = tool.parts[static_cast<std::size_t>(row.part)];
+        double distance = row.normal.dot(pressed_off_of(tool, part) +
                                          row.part_giving_way * (touch.sunk - touch.sunk_free)) -
                           row.gap;
         for (Index i = 0; i < 3; ++i) {
@@ -278,7 +281,12 @@ std::int64_t ContactEquilibrium::key_of(const Row& row) noexcept {
 
 // What is left of a wall's gap once tissue drags the tool.
 double ContactEquilibrium::gap_of_wall(const Row& row) const noexcept {
-    return row.gap - row.normal.dot(tools_[static_cast<std::size_t>(row.tool)].drag) / coupling_;
+    const Tool& tool = tools_[static_cast<std::size_t>(row.tool)];
+    const Part& part = tool.parts[static_cast<std::size_t>(row.part)];
+    // What turning moves the sphere beyond what is in proportion to the torque.
+    const Vector3d besides = part.swung - part.arm - tool.turn.cross(part.swung);
+    return row.gap - row.normal.dot(tool.drag) / coupling_ -
+           row.normal.dot(besides + tool.drag_turn.cross(part.swung));
 }
 
 void ContactEquilibrium::solve_rows() noexcept {
@@ -319,7 +327,9 @@ void ContactEquilibrium::fill_column(std::size_t l) noexcept {
                 opens += row.part_giving_way * pressing.part_giving_way *
                          (touch_of(row).sinking * pressing.normal);
         }
-        *column++ = row.normal.dot(opens);
+        *column = row.normal.dot(opens);
+        if (row.tool == pressing.tool) *column += torsion_ * row.lever.dot(pressing.lever);
+        ++column;
     }
     for (std::size_t k = 0; k < neighbours_.row_count(); ++k)
         *column++ = pressing.patch >= 0 ? neighbours_.closing(k, pressing.patch, field_) : 0;

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "formats/model/arrays.hpp"
+#include "runtime/realtime/device.hpp"
+
+namespace palpate::devices {
+
+/// Writes a tool's orientation to a state, and with it where its shaft goes; nothing where the orientation is
+/// not known, which is zero. Realtime-safe.
+inline void set_orientation(realtime::DeviceState& state, const Eigen::Quaterniond& orientation) noexcept {
+    if (orientation.coeffs().isZero(0)) return;
+    state.orientation = array_of(orientation);
+    state.shaft = array_of(Eigen::Vector3d(orientation * Eigen::Vector3d::UnitZ()));
+}
+
+}  // namespace palpate::devices

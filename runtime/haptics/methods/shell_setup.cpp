@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a whole tool against rigid bodies is made of: fields and points.
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include "formats/model/errors.hpp"
+#include "runtime/haptics/methods/shell_contact.hpp"
+#include "runtime/haptics/shell/rod.hpp"
+
+namespace palpate::haptics {
+namespace {
+
+ToolSettings checked(const Case& patient_case) {
+    if (patient_case.rigid_bodies.empty())
+        throw InvalidInput({patient_case.name, "no rigid body, and contact method 'shell' feels no other",
+                            "a case with rigid anatomy", "use contact method 'continuous'"});
+    const ToolSettings settings = patient_case.tool ? patient_case.tool->settings : ToolSettings{};
+    if (const auto error = first_error(tool_fields, settings))
+        throw InvalidInput({option_name(error->name), error->found, error->expected, ""});
+    return settings;
+}
+
+std::vector<collision::ShellPoint> points_of(const Case& patient_case, const ToolSettings& settings) {
+    if (patient_case.tool && !patient_case.tool->surface.triangles.empty())
+        return collision::point_shell(patient_case.tool->surface,
+                                      static_cast<std::size_t>(settings.shell_points))
+            .points;
+    const TriangleMesh rod = rod_surface(patient_case.haptics.tool_radius, patient_case.haptics.shaft_length);
+    // Half a voxel apart; a small ball needs no thousands.
+    const double wanted = area_of(rod) / (0.25 * settings.voxel * settings.voxel);
+    return collision::point_shell(
+               rod, static_cast<std::size_t>(std::clamp(wanted, 100.0, double(settings.shell_points))))
+        .points;
+}
+
+}  // namespace
+
+ShellContact::ShellContact(const Case& patient_case, const ContactBodies& bodies, std::size_t tool_count)
+    : bodies_(bodies), settings_(checked(patient_case)), points_(points_of(patient_case, settings_)) {
+    const std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
+    fields_.reserve(bodies.rigid_count());
+    for (std::size_t body = 0; body < bodies.rigid_count(); ++body)
+        fields_.emplace_back(*bodies.surfaces[body], settings_.voxel, band_voxels * settings_.voxel, threads);
+    tools_.reserve(tool_count);
+    for (std::size_t t = 0; t < tool_count; ++t)
+        tools_.push_back({.watch = ShellWatch(points_, fields_, longest_step(settings_)),
+                          .pose = {},
+                          .hints = std::vector<std::int32_t>(fields_.size(), -1)});
+}
+
+ShellContact::~ShellContact() = default;
+
+std::unique_ptr<ContactMethod> make_shell(const Case& patient_case, const ContactBodies& bodies,
+                                          std::size_t tool_count) {
+    return std::make_unique<ShellContact>(patient_case, bodies, tool_count);
+}
+
+}  // namespace palpate::haptics

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "runtime/collision/distance_field.hpp"
+#include "runtime/collision/point_shell.hpp"
+#include "runtime/haptics/shell/tool_pose.hpp"
+
+namespace palpate::haptics {
+
+/// A point of a tool's shell at a body.
+struct ShellTouch {
+    std::int32_t point = 0;                              ///< of the shell
+    std::int32_t body = 0;                               ///< whose field
+    double distance = 0;                                 ///< mm, below zero inside
+    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  ///< of the distance, per mm, frame P
+    Eigen::Vector3d arm = Eigen::Vector3d::Zero();       ///< from the tool's origin to the point, mm, frame P
+};
+
+/// Finds those points of one tool's shell that are inside a body or close to it, looking only at points that
+/// may have got there: a point that is clear by some way is not looked at again before the tool has moved so
+/// far. Everything is allocated on construction; look() is realtime-safe.
+class ShellWatch {
+  public:
+    /// Points and fields must outlive this. `close`: mm from a body, within which points are found; less than
+    /// the fields' band.
+    ShellWatch(std::span<const collision::ShellPoint> points,
+               std::span<const collision::DistanceField> fields, double close);
+
+    /// Forgets where the tool was.
+    void reset() noexcept;
+
+    /// Finds what is close at `pose`, in ascending order of the points.
+    void look(const ToolPose& pose) noexcept;
+    std::span<const ShellTouch> close() const noexcept { return found_; }
+    /// Whether any of it is inside.
+    bool touches() const noexcept;
+
+    /// How far a motion moves any point of the shell at most, mm.
+    double reach_of(const Twist& motion) const noexcept;
+    /// mm; no motion of less takes a point that is not near close to a body.
+    static constexpr double slack = 1;
+    /// Whether any point is near a body.
+    bool is_near() const noexcept { return !near_.empty(); }
+
+  private:
+    struct Watched {
+        float arm;   // mm, from the tool's origin
+        float wake;  // mm on the odometer, at which the point may be close to a body
+    };
+    float odometer(const Watched& watched) const noexcept;
+    void gather() noexcept;
+    void look_at(std::int32_t point, const ToolPose& pose, const Eigen::Matrix3d& R_PT) noexcept;
+
+    std::span<const collision::ShellPoint> points_;
+    std::span<const collision::DistanceField> fields_;
+    double close_;
+    double longest_arm_ = 0;
+    ToolPose pose_;                                    // that was looked at
+    double moved_ = 0, turned_ = 0;                    // mm and rad since the odometer's zero
+    double moved_gathered_ = 0, turned_gathered_ = 0;  // when near points were gathered
+    bool gathered_ = false;
+    std::vector<Watched> watched_;    // of each point
+    std::vector<std::int32_t> near_;  // points that may be close within `slack` of where they were gathered
+    std::vector<ShellTouch> found_;
+};
+
+}  // namespace palpate::haptics
