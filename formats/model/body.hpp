@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -95,5 +96,19 @@ struct Case {
     std::string
         provenance;  ///< JSON: tool and library versions, options, input digests; no identity, no paths
 };
+
+/// Whether what is held has a surface of its own.
+inline bool has_instrument(const Case& patient_case) {
+    return patient_case.tool && !patient_case.tool->surface.triangles.empty();
+}
+
+/// How far what is held goes beyond its tip's centre, against its shaft, mm.
+inline double tip_reach(const Case& patient_case) {
+    if (!has_instrument(patient_case)) return patient_case.haptics.tool_radius;
+    double lowest = 0;
+    for (const Eigen::Vector3d& vertex : patient_case.tool->surface.vertices)
+        lowest = std::min(lowest, vertex.z());
+    return -lowest;
+}
 
 }  // namespace palpate

@@ -7,7 +7,6 @@
 
 #include "formats/asset/hdf5/signature.hpp"
 #include "formats/model/errors.hpp"
-#include "formats/stl_file/read_stl.hpp"
 #include "runtime/apps/servo_pulse.hpp"
 #include "runtime/apps/start_recording.hpp"
 #include "runtime/apps/tell_statuses.hpp"
@@ -50,22 +49,6 @@ void run_in_real_time(Session& run, double seconds, const Session::Sink& take) {
     run.pump(see);
 }
 
-// What is held instead of the case's ball; nothing where no tool was named.
-std::optional<ToolBody> tool_of(const TouchOptions& options) {
-    if (options.tool.empty()) return std::nullopt;
-    return ToolBody{has_surface(options.tool) ? stl_file::read_stl(options.tool) : TriangleMesh{},
-                    options.tool_settings};
-}
-
-// What a method leaves out that the case has.
-void tell_unfelt(const Case& patient_case, const HapticModel& model) {
-    if (model.method().can.feels_tissue || patient_case.deformable_bodies.empty()) return;
-    std::string names;
-    for (const DeformableBody& body : patient_case.deformable_bodies)
-        names += (names.empty() ? "'" : ", '") + body.name + "'";
-    spdlog::warn("scheme '{}' feels rigid bodies alone: nothing is felt of {}", model.method().name, names);
-}
-
 Json touch(const TouchOptions& options, cli::Session& session) {
     TouchOutputs outputs(options.log, options.curve, session);
     const auto trusted = asset::read_public_keys(options.trusted);
@@ -78,12 +61,12 @@ Json touch(const TouchOptions& options, cli::Session& session) {
                  .tool_count = tools_of(options, device),
                  .virtual_clock = options.virtual_clock,
                  .trusted_keys = trusted,
-                 .tool = tool_of(options),
+                 .tool = tool_body(options.tool),
                  .stream = options.stream},
                 [](const std::string& sentence) { spdlog::warn("{}", sentence); });
     const Case& patient_case = run.patient_case();
     const HapticModel& model = run.model();
-    tell_unfelt(patient_case, model);
+    tell_unfelt(patient_case, options.scheme);
     const TouchPlan plan = plan_of(options, device.kind, patient_case, model);
     if (!options.virtual_clock) cli::end_softly_on_interrupt();
     run.hold(device.open(request_of(options, device.kind, plan, model)));
@@ -144,7 +127,7 @@ int main(int argc, char** argv) {
          .summary = "Touches an asset at 1 kHz with a simulated or a real device, without a window",
          .examples = {"palpate touch case.vtkhdf --script press --seconds 10 --log run.csv --curve force.svg",
                       "palpate touch case.vtkhdf --script hand.txt --json stats.json",
-                      "palpate touch case.vtkhdf --tool probe.stl --script slide --json stats.json"},
+                      "palpate touch case.vtkhdf --instrument probe.stl --script slide --json stats.json"},
          .notes =
              "Scripts: 'press' goes in along the surface's normal, holds 0.5 s and leaves, over and over; "
              "'slide' presses once and slides 4 mm to either side; 'tremble' presses and trembles there as "
@@ -172,11 +155,12 @@ int main(int argc, char** argv) {
     const TouchHandles given = declare(command, options);
     return command.run(argc, argv, [&](cli::Session& session) {
         options.seconds_given = given.seconds.given();
-        if (has_surface(options.tool) && !given.scheme.given()) options.scheme = "shell";
+        if (options.tool.has_surface() && !given.scheme.given()) options.scheme = "shell";
         if (given.replay.given())
             cli::refuse_beside(command, "--replay",
                                std::array{given.asset, given.log, given.curve, given.replay},
                                "a recording says itself what the run was like");
+        check(command, options.tool, options.scheme);
         refuse_idle_options(command, options);
         return touch(options, session);
     });

@@ -2,7 +2,6 @@
 #include "runtime/apps/touch_options.hpp"
 
 #include "runtime/session/device_list.hpp"
-#include "tools/cli/record_options.hpp"
 
 namespace palpate::apps {
 
@@ -28,12 +27,8 @@ TouchHandles declare(cli::Command& command, TouchOptions& options) {
                    "what a second tool on the same bodies does: a file as for --script");
     const cli::Option scheme = command.option("--scheme", options.scheme,
                                               "how contact is found: " + haptics::contact_method_names() +
-                                                  "; with --tool FILE 'shell' unless this is given");
-    command.option(
-        "--tool", options.tool,
-        "an instrument that turns by itself and gives torque: 'rod', the case's tip and shaft, or the "
-        "closed surface that it has (.stl, mm: its tip's centre at the origin, its shaft along z)");
-    cli::record_options(command, tool_fields, options.tool_settings, "of --tool: ");
+                                                  "; with --instrument FILE 'shell' unless this is given");
+    declare(command, options.tool);
     command.option("--device", options.device,
                    session::device_usages([](const devices::DeviceKind&) { return true; }, true));
     command.option(

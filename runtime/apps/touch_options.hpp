@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/apps/tool_option.hpp"
 #include "runtime/haptics/haptic_model.hpp"
 #include "tools/cli/command.hpp"
 
@@ -14,13 +15,13 @@ namespace palpate::apps {
 /// What the user asked of touch.
 struct TouchOptions {
     std::filesystem::path asset, log, curve, record, replay;
-    std::string script = "press", tool, body, target, second, scheme{haptics::usual_contact_method}, device,
-                shaft, stream;
+    std::string script = "press", body, target, second, scheme{haptics::usual_contact_method}, device, shaft,
+                stream;
     std::vector<std::filesystem::path> trusted;
     double seconds = 10, depth = 3, speed = 20, record_seconds = 300;
     std::uint64_t seed = 1;
     std::optional<std::size_t> column;
-    ToolSettings tool_settings;
+    ToolOption tool;
     bool seconds_given = false, virtual_clock = false;
 };
 

@@ -92,16 +92,6 @@ std::size_t tools_of(const TouchOptions& options, const DeviceChoice& device) {
 }
 
 void refuse_idle_options(const cli::Command& command, const TouchOptions& options) {
-    const ContactCapabilities& can = find_contact_method(options.scheme, "--scheme").can;
-    if (!options.tool.empty() && !can.turns)
-        throw UsageError({"--tool", "with --scheme " + options.scheme, "--scheme continuous or shell",
-                          "with no other do tools turn"});
-    if (has_surface(options.tool) && !can.has_surface)
-        throw UsageError({"--tool", options.tool + " with --scheme " + options.scheme,
-                          "--scheme shell, or --tool rod",
-                          "no other scheme feels a surface of the tool's own"});
-    std::vector<std::string> of_turning;
-    for_each_field(tool_fields, [&](const auto& field) { of_turning.push_back(option_name(field.name)); });
     constexpr std::array of_scripts{"--script", "--column", "--depth", "--speed", "--shaft", "--seed"};
     const bool physical = !choose_device(options.device, "--device").kind.simulated;
     for (const cli::Parameter& parameter : command.parameters()) {
@@ -109,8 +99,6 @@ void refuse_idle_options(const cli::Command& command, const TouchOptions& option
         const std::string name = parameter.option.name();
         if (physical && std::ranges::find(of_scripts, name) != of_scripts.end())
             throw UsageError({name, "with --device " + options.device, "a simulated device", ""});
-        if (options.tool.empty() && std::ranges::find(of_turning, name) != of_turning.end())
-            throw UsageError({name, "without --tool", "--tool FILE beside it", ""});
         if (name == "--record-seconds" && options.record.empty())
             throw UsageError({name, "without --record", "--record FILE beside it", ""});
     }

@@ -27,11 +27,6 @@ void refuse_idle_options(const cli::Command& command, const TouchOptions& option
 /// Throws UsageError for options that contradict each other, or the device that options.device names.
 void refuse_contradictions(const TouchOptions& options, const session::DeviceChoice& device);
 
-/// Whether --tool names a surface, and not the case's own rod.
-inline bool has_surface(const std::string& tool) {
-    return !tool.empty() && tool != "rod";
-}
-
 /// How many tools there are.
 std::size_t tools_of(const TouchOptions& options, const session::DeviceChoice& device);
 

@@ -20,6 +20,7 @@
 #include "runtime/apps/run_keys.hpp"
 #include "runtime/apps/start_recording.hpp"
 #include "runtime/apps/tell_statuses.hpp"
+#include "runtime/apps/tool_option.hpp"
 #include "runtime/apps/train_run.hpp"
 #include "runtime/devices/mounted_device.hpp"
 #include "runtime/devices/simulation.hpp"
@@ -51,6 +52,7 @@ struct Options {
     PlaybackOptions playback;
     std::string size = "1280x720", script, second, body, target, scheme{usual_contact_method}, device, stream;
     double seconds = 0, record_seconds = 300;
+    ToolOption tool;
 };
 
 std::pair<int, int> size_of(const std::string& text) {
@@ -118,12 +120,14 @@ Json train(const Options& options, cli::Session& session) {
     find_contact_method(options.scheme, "--scheme");
     const std::size_t tools = options.second.empty() ? device.tool_count : 2;
     const auto trusted = asset::read_public_keys(options.trusted);
+    const auto tool = tool_body(options.tool);
     // Reading and opening a window take about as long, and two processors do both at once.
     auto reading = std::async(std::launch::async, [&] {
         return std::make_unique<Session>(SessionRequest{.asset = options.asset,
                                                         .method = options.scheme,
                                                         .tool_count = tools,
                                                         .trusted_keys = trusted,
+                                                        .tool = tool,
                                                         .stream = options.stream},
                                          [](const std::string& sentence) { spdlog::warn("{}", sentence); });
     });
@@ -134,9 +138,10 @@ Json train(const Options& options, cli::Session& session) {
     std::optional<ExpertGhost> ghost;
     if (!options.playback.ghost.empty()) ghost.emplace(options.playback.ghost, options.asset);
     const Case& patient_case = run.patient_case();
+    tell_unfelt(patient_case, options.scheme);
     const TouchTarget target = start_of(options, run);
     const TouchPoint& place = target.place;
-    const Eigen::Vector3d start = start_outside(place, run.model().settings().tool_radius);
+    const Eigen::Vector3d start = start_outside(place, tip_reach(patient_case));
     WindowSettings window_settings{.start = start,
                                    .sight = first_sight(patient_case, run.model(), place.point, place.normal),
                                    .cautions = provenance::cautions_in(patient_case.provenance),
@@ -273,7 +278,10 @@ int main(int argc, char** argv) {
     command.option("--device", options.device, device_usages([](const DeviceKind&) { return true; }, true));
     command.option("--stream", options.stream,
                    "PORT or ADDRESS:PORT at which 3D Slicer and others see the session over OpenIGTLink");
-    command.option("--scheme", options.scheme, "how contact is found: " + contact_method_names());
+    const auto scheme = command.option("--scheme", options.scheme,
+                                       "how contact is found: " + contact_method_names() +
+                                           "; with --instrument FILE 'shell' unless this is given");
+    declare(command, options.tool);
     command.input("--exercises", options.lesson.exercises,
                   "exercises of your own (.toml); those that every patient offers if not given");
     command.option("--exercise", options.lesson.exercise, "begin with this one instead of the start page");
@@ -293,6 +301,8 @@ int main(int argc, char** argv) {
         declare_playback(command, options.playback, {asset, size, seconds, screenshot});
     return command.run(argc, argv, [&](cli::Session& session) {
         check_playback();
+        if (options.tool.has_surface() && !scheme.given()) options.scheme = "shell";
+        check(command, options.tool, options.scheme);
         if (options.playback.play.empty()) return train(options, session);
         return play_recording(options.playback,
                               {.asset = options.asset,

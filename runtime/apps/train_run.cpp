@@ -51,6 +51,7 @@ void fill_frame(const TrainRun& run, std::span<const TickResult* const> ticks, V
     frame.depth = tick.depth;
     frame.overruns = tick.overruns;
     if (run.shows_shaft) frame.shaft = vector_of(tick.shaft);
+    frame.tool_orientation = quaternion_of(tick.tool_orientation);
     frame.faults = run.session.recent_faults(tick.time);
     frame.statuses = run.session.statuses().recent(tick.time);
     frame.recording = run.keys.recording();

@@ -26,16 +26,6 @@ HapticSettings checked(const Case& patient_case) {
     return patient_case.haptics;
 }
 
-double reach_of_tip(const Case& patient_case, const ContactCapabilities& can) {
-    if (!can.has_radius) return 0;
-    if (!patient_case.tool || patient_case.tool->surface.triangles.empty())
-        return patient_case.haptics.tool_radius;
-    double lowest = 0;
-    for (const Eigen::Vector3d& vertex : patient_case.tool->surface.vertices)
-        lowest = std::min(lowest, vertex.z());
-    return -lowest;
-}
-
 ToolSettings tool_settings(const Case& patient_case) {
     return patient_case.tool ? patient_case.tool->settings : ToolSettings{};
 }
@@ -70,7 +60,7 @@ HapticModel::HapticModel(const Case& patient_case, std::string_view method, std:
     : settings_(checked(patient_case)),
       method_(checked(find_contact_method(method), tool_count, patient_case.name)),
       coupling_(settings_.coupling_stiffness),
-      contact_radius_(reach_of_tip(patient_case, method_.can)),
+      contact_radius_(method_.can.has_radius ? tip_reach(patient_case) : 0),
       bodies_(patient_case, method_.can.spreads_loads),
       tools_(tool_count, Tool{ForceLimiter(settings_), ForceLimiter(tool_settings(patient_case))}),
       poses_(tool_count),

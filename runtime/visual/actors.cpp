@@ -46,6 +46,10 @@ void place(vtkActor* actor, const Vector3d& origin, const Eigen::Matrix3d& axes)
 
 }  // namespace
 
+void place(vtkActor* actor, const Vector3d& origin, const Eigen::Quaterniond& orientation) {
+    place(actor, origin, orientation.toRotationMatrix());
+}
+
 void vertex_normals(std::span<const Eigen::Vector3f> positions, std::span<const Triangle> triangles,
                     std::span<Eigen::Vector3f> normals) {
     std::ranges::fill(normals, Eigen::Vector3f::Zero());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <span>
 #include <vector>
 #include <vtkActor.h>
@@ -26,6 +26,9 @@ vtkSmartPointer<vtkPolyData> poly_data(const TriangleMesh& surface, const Eigen:
 vtkSmartPointer<vtkActor> actor(vtkPolyData* data, const Rgb& colour);
 
 void set_colour(vtkActor* actor, const Rgb& colour);
+
+/// Places an actor, turned, its origin at `origin` (mm).
+void place(vtkActor* actor, const Eigen::Vector3d& origin, const Eigen::Quaterniond& orientation);
 
 /// Places what was modelled along the x axis: turned to `way` (unit), scaled, its origin at `origin`.
 void place_along(vtkActor* actor, const Eigen::Vector3d& origin, const Eigen::Vector3d& way, double scale);

@@ -78,7 +78,7 @@ Scene::Scene(const Case& patient_case, const Sight& sight, std::int64_t rigid_bu
                .shaft_way = shaft_way_},
               renderer, front) {
     // What is near and small comes first: software rendering then shades little that is covered later.
-    add_tool(renderer, front);
+    add_tool(patient_case, sight, renderer, front);
     for (const DeformableBody& body : patient_case.deformable_bodies)
         soft_.emplace_back(body, sight.toward_eye, grain_of(sight), renderer);
     add_rigid(patient_case, sight, rigid_budget, renderer);
@@ -117,15 +117,19 @@ void Scene::show_regions(bool on) {
     for (const auto& region : regions_) region->SetVisibility(on);
 }
 
-void Scene::add_tool(vtkRenderer* renderer, vtkRenderer* front) {
-    tool_ = ball(tool_radius_, blue, 24);
+void Scene::add_tool(const Case& patient_case, const Sight& sight, vtkRenderer* renderer,
+                     vtkRenderer* front) {
+    is_instrument_ = has_instrument(patient_case);
+    tool_ = is_instrument_ ? actor(poly_data(patient_case.tool->surface, sight.toward_eye), steel)
+                           : ball(tool_radius_, blue, 24);
     device_ = ball(0.6 * tool_radius_, white, 10);
     device_->GetProperty()->SetRepresentationToWireframe();
 
     shaft_ = tool_shaft(tool_radius_, shaft_length_, steel);
     arrow_ = force_arrow(1, white);
     arrow_->GetProperty()->SetAmbient(0.4);
-    for (const auto& part : {tool_, shaft_}) renderer->AddActor(part);
+    renderer->AddActor(tool_);
+    if (!is_instrument_) renderer->AddActor(shaft_);
     spring_ = coil(white);
     for (const auto& part : {device_, arrow_, spring_}) front->AddActor(part);
 }
@@ -134,9 +138,8 @@ void Scene::update(const VisualFrame& frame) {
     constexpr double spring_share = 0.05;  // of the tool's radius: a shorter spring is not seen
     for (std::size_t i = 0; i < soft_.size(); ++i) soft_[i].deform(frame.displacements[i]);
     others_.update(frame.other_tools);
-    place_along(tool_, frame.tool_position, Vector3d::UnitX(), 1);
+    place_tool(frame);
     place_along(device_, frame.device_position, Vector3d::UnitX(), 1);
-    place_along(shaft_, frame.tool_position, frame.shaft.isZero() ? shaft_way_ : frame.shaft, 1);
     const bool stretched =
         tool_shown_ && (frame.device_position - frame.tool_position).norm() > spring_share * tool_radius_;
     spring_->SetVisibility(stretched);
@@ -153,6 +156,20 @@ void Scene::update(const VisualFrame& frame) {
     // The root keeps small forces visible.
     place_along(arrow_, frame.tool_position + way * tool_radius_, way, arrow_length_ * std::sqrt(share));
     set_colour(arrow_, force_colour(share));
+}
+
+// A tool that turns by itself is drawn as it is turned.
+void Scene::place_tool(const VisualFrame& frame) {
+    const bool turns = !frame.tool_orientation.coeffs().isZero(0);
+    Vector3d shaft = frame.shaft.isZero() ? shaft_way_ : frame.shaft;
+    if (turns) shaft = frame.tool_orientation * Vector3d::UnitZ();
+    place_along(shaft_, frame.tool_position, shaft, 1);
+    Eigen::Quaterniond held = Eigen::Quaterniond::Identity();  // a ball looks alike from everywhere
+    if (turns)
+        held = frame.tool_orientation;
+    else if (is_instrument_)
+        held = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), shaft);
+    place(tool_, frame.tool_position, held);
 }
 
 std::vector<vtkActor*> Scene::bodies() const {

@@ -48,7 +48,8 @@ class Scene {
   private:
     void add_rigid(const Case& patient_case, const Sight& sight, std::int64_t budget, vtkRenderer* renderer);
     void add_regions(const Case& patient_case, const Sight& sight, vtkRenderer* front);
-    void add_tool(vtkRenderer* renderer, vtkRenderer* front);
+    void add_tool(const Case& patient_case, const Sight& sight, vtkRenderer* renderer, vtkRenderer* front);
+    void place_tool(const VisualFrame& frame);
 
     double tool_radius_;         // mm
     double max_force_;           // N
@@ -60,7 +61,7 @@ class Scene {
     std::vector<RigidSurface> rigid_;
     std::vector<vtkSmartPointer<vtkActor>> regions_;
     std::string region_names_;
-    bool tool_shown_ = true;
+    bool tool_shown_ = true, is_instrument_ = false;
     vtkSmartPointer<vtkActor> tool_, shaft_, device_, arrow_, spring_;
 };
 

@@ -66,7 +66,7 @@ struct TrainWindow::Parts {
           const WindowSettings& window_settings)
         : opened(std::move(opened_window)),
           settings(window_settings),
-          hand(window_settings.start, patient_case.haptics.tool_radius),
+          hand(window_settings.start, tip_reach(patient_case)),
           rigid_count(patient_case.rigid_bodies.size()),
           case_name(patient_case.name),
           scene(patient_case, window_settings.sight, window_settings.rigid_budget, renderer, front),

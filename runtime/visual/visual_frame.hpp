@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -16,6 +16,7 @@ struct VisualFrame {
     Eigen::Vector3d device_position = Eigen::Vector3d::Zero();  ///< p_P, mm
     Eigen::Vector3d tool_position = Eigen::Vector3d::Zero();    ///< p_P, mm
     Eigen::Vector3d shaft = Eigen::Vector3d::Zero();  ///< unit, from the tip along the tool; zero: not known
+    Eigen::Quaterniond tool_orientation{0, 0, 0, 0};  ///< R_PT where the tool turns by itself; else zero
     Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< on the device, frame P, N
     double depth = 0;                                 ///< below the rest surface, mm
     double tick_rate_hz = 0;

@@ -58,7 +58,7 @@ ROOMS = {
     "session": {"model", "asset", "elasticity", "recording", "drawing", "json", "realtime", "collision", "haptics", "devices", "openigtlink"},
     "training": {"model", "asset", "session", "toml_file", "json"},
 }
-ROOMS["experiments"] = {"asset", "drawing", "cli", "session", "fem", "meshing", "obb", "cgal_peer", "fcl"}  # measures both sides
+ROOMS["experiments"] = {"asset", "drawing", "cli", "session", "stl_file", "fem", "meshing", "obb", "cgal_peer", "fcl"}  # measures both sides
 COMMANDS = {"model", "archive", "asset", "elasticity", "imaging", "meshing", "obb", "fem", "report", "cli", "case_builder", "cohort", "draft", "inspection", "requests", "stage_images", "stage_shapes",
             "stage_bodies", "stage_cases", "seeds", "tissue", "toml_file", "json"}
 APPS = {"model", "asset", "recording", "stl_file", "cli", "realtime", "collision", "haptics", "devices", "openigtlink", "session", "json"}

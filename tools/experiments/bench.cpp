@@ -86,7 +86,7 @@ int main(int argc, char** argv) {
     command.option("experiment", name, "which one").required();
     command.input("--surface", options.surfaces, "triangles of a bone (.vtp), LPS mm");
     command.input("--case", options.cases, "assets (.vtkhdf)");
-    command.input("--tool", options.tools,
+    command.input("--instrument", options.tools,
                   "closed surfaces of instruments (.stl), mm: tip at 0, shaft along z");
     command.input("--path", options.path, "hand path: rows 'x y z' (mm), one per millisecond");
     command.output("-o,--output", options.output, "folder for the table (.md) and the pictures (.svg)");

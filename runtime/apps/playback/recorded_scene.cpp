@@ -53,6 +53,7 @@ const Tick& RecordedScene::fill(visual::VisualFrame& frame, double time) {
     frame.device_position = vector_of(tick.device_position);
     frame.tool_position = vector_of(tick.tool_position);
     frame.shaft = vector_of(tick.shaft);
+    frame.tool_orientation = quaternion_of(tick.tool_orientation);
     frame.force = vector_of(tick.force);
     frame.depth = tick.depth;
     frame.overruns = tick.overruns;

@@ -50,15 +50,12 @@ void ContinuousContact::reset() noexcept {
 
 std::unique_ptr<ContactMethod> make_continuous(const Case& patient_case, const ContactBodies& bodies,
                                                std::size_t tool_count) {
-    double torsion = 0;
-    if (patient_case.tool) {
-        if (!patient_case.tool->surface.triangles.empty())
-            throw InvalidInput({patient_case.name,
-                                "a tool with a surface of its own, which contact method "
-                                "'continuous' does not feel",
-                                "the case's ball or rod", "use contact method 'shell'"});
-        torsion = 1 / patient_case.tool->settings.torsional_stiffness;
-    }
+    if (has_instrument(patient_case))
+        throw InvalidInput(
+            {patient_case.name,
+             "a tool with a surface of its own, which contact method 'continuous' does not feel",
+             "the case's ball or rod", "use contact method 'shell'"});
+    const double torsion = patient_case.tool ? 1 / patient_case.tool->settings.torsional_stiffness : 0;
     return std::make_unique<ContinuousContact>(bodies, patient_case.haptics, tool_count, torsion);
 }
 

@@ -22,7 +22,7 @@ ToolSettings checked(const Case& patient_case) {
 }
 
 std::vector<collision::ShellPoint> points_of(const Case& patient_case, const ToolSettings& settings) {
-    if (patient_case.tool && !patient_case.tool->surface.triangles.empty())
+    if (has_instrument(patient_case))
         return collision::point_shell(patient_case.tool->surface,
                                       static_cast<std::size_t>(settings.shell_points))
             .points;

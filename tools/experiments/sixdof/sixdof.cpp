@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "formats/model/arrays.hpp"
+#include "formats/stl_file/read_stl.hpp"
 #include "runtime/collision/point_shell.hpp"
 #include "runtime/haptics/shell/tool_pose.hpp"
 #include "tools/experiments/rigid_case.hpp"
@@ -193,7 +194,8 @@ Findings sixdof(const Options& options, cli::Session& session) {
         throw UsageError(
             {"--surface", std::to_string(options.surfaces.size()) + " are given", "one bone", ""});
     if (options.tools.empty())
-        throw UsageError({"--tool", "none is given", "closed surfaces of instruments (.stl), one or more",
+        throw UsageError({"--instrument", "none is given",
+                          "closed surfaces of instruments (.stl), one or more",
                           "sample_data/tools.py makes some"});
     const std::int64_t visits_wanted = options.seconds > 0 ? std::int64_t(options.seconds) : 60;
     const std::int64_t approaches = options.approaches > 0 ? options.approaches : 1000;
@@ -203,7 +205,7 @@ Findings sixdof(const Options& options, cli::Session& session) {
     for (const std::filesystem::path& file : options.tools)
         for (const std::int32_t points : shell_sizes) {
             session.progress.step(file.stem().string(), 0);
-            bone.tool = ToolBody{meshing::read_surface(file), {.shell_points = points}};
+            bone.tool = ToolBody{stl_file::read_stl(file), {.shell_points = points}};
             const std::int64_t begin = realtime::monotonic_ns();
             HapticModel model(bone, "shell");
             Row row;

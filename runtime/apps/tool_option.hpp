@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+
+#include "formats/model/body.hpp"
+#include "tools/cli/command.hpp"
+
+namespace palpate::apps {
+
+/// What a user holds instead of the ball or rod that a device turns: --instrument and how that is felt.
+struct ToolOption {
+    std::string tool;  ///< empty, "rod" or a file
+    ToolSettings settings{};
+
+    /// Whether it has a surface of its own.
+    bool has_surface() const { return !tool.empty() && tool != "rod"; }
+};
+
+/// Adds --instrument and its settings to a command.
+void declare(cli::Command& command, ToolOption& option);
+
+/// Throws UsageError if a setting is given without --instrument, or `scheme` does not feel such a tool.
+void check(const cli::Command& command, const ToolOption& option, const std::string& scheme);
+
+/// What is held; nothing without --instrument. Throws as read_stl().
+std::optional<ToolBody> tool_body(const ToolOption& option);
+
+/// Warns of what of a case is not felt with a scheme.
+void tell_unfelt(const Case& patient_case, const std::string& scheme);
+
+}  // namespace palpate::apps
