@@ -271,6 +271,26 @@ TEST_F(HdDeviceTest, a_pose_that_may_be_of_no_encoders_does_not_drag_the_tool) {
     EXPECT_THAT(device.read(0).position, ElementsAre(1, 2, 4));
 }
 
+// Beside the position, the pose has a transform, which a tool that turns would follow as readily.
+TEST_F(HdDeviceTest, a_pose_that_may_be_of_no_encoders_does_not_turn_the_tool) {
+    HdDevice& device = open();
+    behind().position = {1, 2, 3};
+    turn(Eigen::AngleAxisd(0.9, Vector3d(1, 1, 0).normalized()).toRotationMatrix());
+    const DeviceState good = device.read(0);
+    device.write({0, 0, 0});
+    behind().position = {0, -110, -35};
+    behind().joint_angles = {0, 0, 0};
+    turn(Eigen::Matrix3d::Identity());
+    for (int i = 0; i <= HdDevice::frozen_ticks + 5; ++i) {
+        const DeviceState state = device.read(0);
+        device.write({0, 0, 0});
+        EXPECT_EQ(state.orientation, good.orientation) << i;
+        EXPECT_EQ(state.shaft, good.shaft) << i;
+    }
+    behind().position = {1, 2, 4};
+    EXPECT_THAT(device.read(0).shaft, ElementsAre(0, 0, 1));
+}
+
 TEST_F(HdDeviceTest, a_driver_that_gives_no_position_and_says_nothing_is_noticed) {
     HdDevice& device = open();
     tick(device);
