@@ -247,6 +247,24 @@ TEST(SessionStream, a_tool_that_does_not_turn_by_itself_is_shown_as_its_device_i
         1e-6);
 }
 
+TEST(SessionStream, sends_no_orientation_that_is_no_number) {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const auto orientation : {&TickResult::orientation, &TickResult::tool_orientation}) {
+        SessionStream stream(any_port());
+        TickResult result = sample();
+        (result.*orientation)[2] = nan;
+        stream.publish(result, {});
+        WatchingPeer peer(stream.port());
+        EXPECT_EQ(peer.next().type, "STATUS");
+        result.*orientation = {0, 0, 0, 1};
+        result.tool_position = {7, 8, 9};
+        stream.publish(result, {});
+        const auto tool = peer.next("TRANSFORM", "PalpateTool").as<igtl::TransformMessage>();
+        ASSERT_TRUE(tool.IsNotNull());
+        EXPECT_EQ(column(*tool, 3), (std::array{-7.F, -8.F, 9.F}));  // the first frame that came
+    }
+}
+
 TEST(SessionStream, says_which_port_it_cannot_have) {
     const SessionStream first(any_port());
     StreamSettings same = any_port();
