@@ -259,6 +259,16 @@ TEST(Recording, of_a_tool_that_none_can_be_is_refused_and_the_dataset_named) {
                 HasSubstr("run.h5: /tool: shell_points is"));
 }
 
+TEST(Recording, of_a_tool_of_which_half_is_missing_is_refused_and_the_dataset_named) {
+    const Scratch scratch;
+    const auto path = scratch / "run.h5";
+    for (const char* missing : {"/tool/vertices", "/tool/triangles"}) {
+        make_recording_of(path, wedge());
+        take_out(path, {missing});
+        EXPECT_THAT(refusal([&] { read_recording(path); }), HasSubstr(std::string("run.h5: ") + missing));
+    }
+}
+
 TEST(Recording, of_a_tool_without_a_triangle_is_refused) {
     const Scratch scratch;
     const auto path = scratch / "run.h5";
