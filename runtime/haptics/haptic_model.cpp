@@ -37,7 +37,10 @@ double reach_of_tip(const Case& patient_case, const ContactCapabilities& can) {
 }
 
 ToolSettings tool_settings(const Case& patient_case) {
-    return patient_case.tool ? patient_case.tool->settings : ToolSettings{};
+    const ToolSettings settings = patient_case.tool ? patient_case.tool->settings : ToolSettings{};
+    if (const auto error = first_error(tool_fields, settings))
+        throw InvalidInput({option_name(error->name), error->found, error->expected, ""});
+    return settings;
 }
 
 // Refuses what the method cannot have.
