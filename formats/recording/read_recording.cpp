@@ -27,7 +27,7 @@ ToolBody read_tool(const Hdf5File& file) {
     read_fields(file, "/tool", tool_fields, tool.settings);
     if (const auto error = first_error(tool_fields, tool.settings))
         file.refuse("/tool", error->name + " " + error->found, error->expected);
-    if (!file.contains("/tool/vertices")) return tool;
+    if (!file.contains("/tool/vertices") && !file.contains("/tool/triangles")) return tool;
     const auto vertices = file.dataset<double>("/tool/vertices", {Hdf5File::any, 3});
     const auto triangles = file.dataset<std::int32_t>("/tool/triangles", {Hdf5File::any, 3});
     if (vertices.empty() || triangles.empty()) file.refuse("/tool", "has no triangle");

@@ -92,6 +92,7 @@ Json replay_json(const ReplayOutcome& outcome) {
               {"different_ticks", outcome.different_ticks},
               {"first_difference", nullptr},
               {"largest_difference_n", outcome.largest_difference},
+              {"largest_difference_n_mm", outcome.largest_torque_difference},
               {"started_at_tick", nullptr},
               {"missing_ticks", outcome.missing_ticks},
               {"skipped_ticks", outcome.skipped_ticks}};
@@ -100,7 +101,9 @@ Json replay_json(const ReplayOutcome& outcome) {
         json["first_difference"] = {{"tick", first->tick},
                                     {"tool", first->tool},
                                     {"recorded_n", numbers(first->recorded)},
-                                    {"replayed_n", numbers(first->replayed)}};
+                                    {"replayed_n", numbers(first->replayed)},
+                                    {"recorded_n_mm", numbers(first->recorded_torque)},
+                                    {"replayed_n_mm", numbers(first->replayed_torque)}};
     return json;
 }
 

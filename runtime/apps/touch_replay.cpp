@@ -21,6 +21,14 @@ std::string force_text(const std::array<double, 3>& f) {
     return fmt::format("({}, {}, {}) N", f[0], f[1], f[2]);
 }
 
+// A force, and a torque where there is one in run or replay.
+std::string felt_text(const ForceDifference& first, const std::array<double, 3>& force,
+                      const std::array<double, 3>& torque) {
+    constexpr std::array<double, 3> none{0, 0, 0};
+    if (first.recorded_torque == none && first.replayed_torque == none) return force_text(force);
+    return fmt::format("{} and ({}, {}, {}) N mm", force_text(force), torque[0], torque[1], torque[2]);
+}
+
 }  // namespace
 
 nlohmann::ordered_json replay_recording(const std::filesystem::path& file, const std::filesystem::path& asset,
@@ -51,8 +59,9 @@ nlohmann::ordered_json replay_recording(const std::filesystem::path& file, const
         session.shortfall = {
             file.string(),
             fmt::format("tick {} of tool {} gives {}; {} of {} ticks differ", first->tick, first->tool,
-                        force_text(first->replayed), outcome.different_ticks, outcome.ticks),
-            "the recorded " + force_text(first->recorded),
+                        felt_text(*first, first->replayed, first->replayed_torque), outcome.different_ticks,
+                        outcome.ticks),
+            "the recorded " + felt_text(*first, first->recorded, first->recorded_torque),
             "the recording is of palpate " + recording.head.palpate_version + ", this is " + cli::version() +
                 "; other versions, compilers and processors may round otherwise, and a file may have been "
                 "changed"};

@@ -27,7 +27,10 @@ HapticSettings checked(const Case& patient_case) {
 }
 
 ToolSettings tool_settings(const Case& patient_case) {
-    return patient_case.tool ? patient_case.tool->settings : ToolSettings{};
+    const ToolSettings settings = patient_case.tool ? patient_case.tool->settings : ToolSettings{};
+    if (const auto error = first_error(tool_fields, settings))
+        throw InvalidInput({option_name(error->name), error->found, error->expected, ""});
+    return settings;
 }
 
 // Refuses what the method cannot have.

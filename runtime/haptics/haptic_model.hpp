@@ -31,8 +31,8 @@ double coupling_stiffness(const HapticSettings& settings, const DeviceLimits& de
 class HapticModel {
   public:
     /// `method`: a name of contact_methods(). Copies what it needs of the case; compliances are shared.
-    /// Throws InvalidInput if the case has no body, its haptic settings make no sense, or the method takes
-    /// fewer tools; UsageError if there is no such method. Linear in the surfaces.
+    /// Throws InvalidInput if the case has no body, its haptic settings or its tool's make no sense, or the
+    /// method takes fewer tools; UsageError if there is no such method. Linear in the surfaces.
     explicit HapticModel(const Case& patient_case, std::string_view method = usual_contact_method,
                          std::size_t tool_count = 1);
     HapticModel(const HapticModel&) = delete;

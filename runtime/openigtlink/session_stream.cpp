@@ -154,7 +154,7 @@ void SessionStream::append_tool(const Shown& shown, std::size_t tool, std::uint6
     const Eigen::Quaterniond q_device = quaternion_of(result.orientation);
     const Eigen::Quaterniond q_tool = quaternion_of(result.tool_orientation);
     if (!(at_tool.allFinite() && at_device.allFinite() && force.allFinite() && shaft.allFinite() &&
-          q_device.coeffs().allFinite()))
+          q_device.coeffs().allFinite() && q_tool.coeffs().allFinite()))
         return;
 
     const Eigen::Matrix3d led = q_device.coeffs().isZero(0) ? rotation_with_z(-shaft) : axes_of(q_device);

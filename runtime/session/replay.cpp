@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/session/replay.hpp"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "formats/asset/asset.hpp"
+#include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
 #include "runtime/session/run_recorder.hpp"
 
@@ -21,15 +20,29 @@ namespace {
 using namespace haptics;
 using namespace recording;
 
-using Bits = std::array<std::uint64_t, 3>;  // of a force
+using Vector = std::array<double, 3>;
 constexpr int free_ticks_to_start = 3;
 
 using Rows = std::span<const Tick>;  // of one tick, one for each tool
 
+bool is_zero(const Vector& v) {
+    return std::ranges::all_of(v, [](double x) { return x == 0; });
+}
+
 bool is_free(const Tick& row) {
-    const bool forceless = std::ranges::all_of(row.force, [](double f) { return f == 0; });
     return row.status == tick_ok && row.faults == no_fault && row.contact_count == 0 && row.depth == 0 &&
-           forceless;
+           is_zero(row.force) && is_zero(row.torque);
+}
+
+bool same_bits(const Vector& a, const Vector& b) {
+    using Bits = std::array<std::uint64_t, 3>;
+    return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
+}
+
+// A difference that is no number is the largest.
+void raise(double& largest, const Vector& a, const Vector& b) {
+    const double size = (vector_of(a) - vector_of(b)).norm();
+    if (!(size <= largest)) largest = size;
 }
 
 // The ticks that are there for every tool.
@@ -121,14 +134,13 @@ class Player {
             result.wake_latency_ns = row.wake_latency_ns;
             result.overruns = row.overruns;
             sink_(result);
-            if (std::bit_cast<Bits>(result.force) == std::bit_cast<Bits>(row.force)) continue;
+            if (same_bits(result.force, row.force) && same_bits(result.torque, row.torque)) continue;
             different = true;
             if (!outcome_.first_difference)
-                outcome_.first_difference = {row.tick, row.tool, row.force, result.force};
-            const double size = (Eigen::Map<const Eigen::Vector3d>(result.force.data()) -
-                                 Eigen::Map<const Eigen::Vector3d>(row.force.data()))
-                                    .norm();
-            if (!(size <= outcome_.largest_difference)) outcome_.largest_difference = size;
+                outcome_.first_difference = {row.tick,     row.tool,   row.force,
+                                             result.force, row.torque, result.torque};
+            raise(outcome_.largest_difference, result.force, row.force);
+            raise(outcome_.largest_torque_difference, result.torque, row.torque);
         }
         ++outcome_.ticks;
         if (different) ++outcome_.different_ticks;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
 #include <cmath>
 #include <csignal>
+#include <functional>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>
@@ -139,6 +141,22 @@ TEST(Recording, comes_back_as_it_was_written) {
     expect_rows(recording, 60, 5);
 }
 
+void edit(const std::filesystem::path& path, const std::function<void(hid_t)>& action) {
+    const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+    H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110);
+    const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, access);
+    action(file);
+    H5Fclose(file);
+    H5Pclose(access);
+}
+
+// Takes datasets out of a recording, as if it had been made before there were any.
+void take_out(const std::filesystem::path& path, std::initializer_list<const char*> datasets) {
+    edit(path, [&](hid_t file) {
+        for (const char* dataset : datasets) ASSERT_GE(H5Ldelete(file, dataset, H5P_DEFAULT), 0) << dataset;
+    });
+}
+
 // As before contacts told of a body that presses in the tool's place.
 TEST(Recording, without_the_columns_of_neighbours_means_that_the_tool_pressed) {
     const Scratch scratch;
@@ -148,13 +166,7 @@ TEST(Recording, without_the_columns_of_neighbours_means_that_the_tool_pressed) {
         RecordingWriter writer(path);
         add_rows(writer, 20, 5);
     }
-    const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
-    H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110);
-    const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, access);
-    for (const char* column : {"/contacts/other_body", "/contacts/other_vertex"})
-        ASSERT_GE(H5Ldelete(file, column, H5P_DEFAULT), 0);
-    H5Fclose(file);
-    H5Pclose(access);
+    take_out(path, {"/contacts/other_body", "/contacts/other_vertex"});
     const Recording recording = read_recording(path);
     ASSERT_GT(recording.contacts.size(), 0U);
     for (const Contact& contact : recording.contacts) {
@@ -162,6 +174,114 @@ TEST(Recording, without_the_columns_of_neighbours_means_that_the_tool_pressed) {
         EXPECT_EQ(contact.other_vertex, -1);
         EXPECT_FALSE(is_of_neighbour(contact));
     }
+}
+
+// As before tools turned by themselves.
+TEST(Recording, without_orientations_and_torque_means_that_they_are_not_known_and_zero) {
+    const Scratch scratch;
+    const auto path = scratch / "run.h5";
+    make_recording(path, two_tools(), 50);
+    {
+        RecordingWriter writer(path);
+        add_rows(writer, 20, 5);
+    }
+    take_out(path, {"/ticks/orientation", "/ticks/tool_orientation", "/ticks/torque"});
+    const Recording recording = read_recording(path);
+    EXPECT_FALSE(recording.head.tool.has_value());
+    ASSERT_EQ(recording.ticks.size(), 20U);
+    for (const Tick& row : recording.ticks) {
+        EXPECT_EQ(row.orientation, (std::array<double, 4>{0, 0, 0, 0}));
+        EXPECT_EQ(row.tool_orientation, (std::array<double, 4>{0, 0, 0, 0}));
+        EXPECT_EQ(row.torque, (std::array<double, 3>{0, 0, 0}));
+        EXPECT_NE(row.force, (std::array<double, 3>{0, 0, 0}));
+    }
+}
+
+// A closed surface of four triangles, and settings none of which is the default.
+ToolBody wedge() {
+    return {.surface = {.vertices = {{0, 0, 0}, {2, 0, 0.125}, {0, 3, -0.25}, {0.1, 0.2, 40}},
+                        .triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}},
+            .settings = {.shell_points = 321,
+                         .voxel = 0.7,
+                         .contact_stiffness = 12,
+                         .torsional_stiffness = 333,
+                         .max_torque = 111,
+                         .max_torque_rate = 22}};
+}
+
+void make_recording_of(const std::filesystem::path& path, const ToolBody& tool) {
+    RecordingHead head = two_tools();
+    head.tool = tool;
+    make_recording(path, head, 50);
+    RecordingWriter writer(path);
+    add_rows(writer, 20, 5);
+}
+
+TEST(Recording, holds_the_tool_that_was_held) {
+    const Scratch scratch;
+    for (const bool rod : {false, true}) {
+        ToolBody tool = wedge();
+        if (rod) tool.surface = {};
+        const auto path = scratch / "run.h5";
+        make_recording_of(path, tool);
+        const Recording recording = read_recording(path);
+        ASSERT_TRUE(recording.head.tool.has_value());
+        EXPECT_EQ(recording.head.tool->surface.vertices, tool.surface.vertices);
+        EXPECT_EQ(recording.head.tool->surface.triangles, tool.surface.triangles);
+        expect_same(recording.head.tool->settings, tool.settings, tool_fields);
+        expect_rows(recording, 20, 5);
+    }
+}
+
+TEST(Recording, of_a_tool_that_none_can_be_is_refused_and_the_dataset_named) {
+    const Scratch scratch;
+    const auto path = scratch / "run.h5";
+    const auto refusal_of = [&](auto spoil) {
+        ToolBody tool = wedge();
+        spoil(tool);
+        make_recording_of(path, tool);
+        return refusal([&] { read_recording(path); });
+    };
+    const double nan = std::nan("");
+    EXPECT_THAT(refusal_of([](ToolBody& tool) { tool.surface.triangles[1][2] = 4; }),
+                HasSubstr("run.h5: /tool/triangles"));
+    EXPECT_THAT(refusal_of([](ToolBody& tool) { tool.surface.triangles[3][0] = -1; }),
+                HasSubstr("run.h5: /tool/triangles"));
+    EXPECT_THAT(refusal_of([&](ToolBody& tool) { tool.surface.vertices[2].y() = nan; }),
+                HasSubstr("run.h5: /tool/vertices: point 2"));
+    EXPECT_THAT(refusal_of([](ToolBody& tool) { tool.surface.vertices[0].x() = 1e300; }),
+                HasSubstr("run.h5: /tool/vertices: point 0"));
+    EXPECT_THAT(refusal_of([](ToolBody& tool) { tool.settings.voxel = 0; }),
+                HasSubstr("run.h5: /tool: voxel is 0"));
+    EXPECT_THAT(refusal_of([&](ToolBody& tool) { tool.settings.max_torque = nan; }),
+                HasSubstr("run.h5: /tool: max_torque is nan"));
+    EXPECT_THAT(refusal_of([](ToolBody& tool) { tool.settings.shell_points = 1'000'000'000; }),
+                HasSubstr("run.h5: /tool: shell_points is"));
+}
+
+TEST(Recording, of_a_tool_of_which_half_is_missing_is_refused_and_the_dataset_named) {
+    const Scratch scratch;
+    const auto path = scratch / "run.h5";
+    for (const char* missing : {"/tool/vertices", "/tool/triangles"}) {
+        make_recording_of(path, wedge());
+        take_out(path, {missing});
+        EXPECT_THAT(refusal([&] { read_recording(path); }), HasSubstr(std::string("run.h5: ") + missing));
+    }
+}
+
+TEST(Recording, of_a_tool_without_a_triangle_is_refused) {
+    const Scratch scratch;
+    const auto path = scratch / "run.h5";
+    make_recording_of(path, wedge());
+    take_out(path, {"/tool/triangles"});
+    edit(path, [](hid_t file) {
+        const std::array<hsize_t, 2> none{0, 3};
+        const hid_t space = H5Screate_simple(2, none.data(), nullptr);
+        H5Dclose(
+            H5Dcreate2(file, "/tool/triangles", H5T_STD_I32LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+        H5Sclose(space);
+    });
+    EXPECT_THAT(refusal([&] { read_recording(path); }), HasSubstr("run.h5: /tool: has no triangle"));
 }
 
 TEST(Recording, keeps_the_newest_rows_when_it_has_wrapped) {
@@ -321,7 +441,9 @@ TEST(Recording, that_has_begun_is_not_written_again) {
 TEST(MutatedRecording, reads_or_is_refused) {
     const Scratch scratch;
     const auto path = scratch / "run.h5";
-    make_recording(path, two_tools(), 40);
+    RecordingHead head = two_tools();
+    head.tool = wedge();
+    make_recording(path, head, 40);
     {
         RecordingWriter writer(path);
         add_rows(writer, 100, 5);
@@ -330,7 +452,8 @@ TEST(MutatedRecording, reads_or_is_refused) {
     {
         const Hdf5File file(path);
         for (const auto& [name, object] : file.objects())
-            if (object.values && (name.starts_with("/count") || name.starts_with("/ticks")))
+            if (object.values &&
+                (name.starts_with("/count") || name.starts_with("/ticks") || name.starts_with("/tool")))
                 telling.emplace_back(object.values->bytes.data() - file.mapping().bytes().data(),
                                      object.values->bytes.size());
     }

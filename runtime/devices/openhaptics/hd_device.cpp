@@ -181,18 +181,22 @@ DeviceState HdDevice::read(double time) noexcept {
     if (warm_) state.faults |= motors_warm;
     if (is_frozen) state.faults |= pose_frozen;
     if (misplaced_) state.faults |= not_calibrated;
-    // The last position stands for one that is not there, and for one that may be of encoders without data:
-    // a tool must not be dragged there before the doubt has become a fault.
+    // The last pose stands for one that is not there, and for one that may be of encoders without data: a
+    // tool must not be dragged or turned there before the doubt has become a fault.
     const bool given = std::ranges::all_of(state.position, [](double x) { return std::isfinite(x); });
     const bool doubted = ticks_frozen_ > 0 && placed_;
     if (given && !doubted && !(state.faults & distrusted_position) && !speed_.plausible(state.position, time))
         state.faults |= implausible_speed;
     else if (given && !doubted) {
         position_ = state.position;
+        shaft_ = state.shaft;
+        orientation_ = state.orientation;
         placed_ = ticks_frozen_ == 0;
     }
     if (!given && !(state.faults & distrusted_position)) return state;
     state.position = position_;
+    state.shaft = shaft_;
+    state.orientation = orientation_;
     return state;
 }
 

@@ -81,8 +81,9 @@ class HdDevice final : public realtime::Device {
     int ticks_to_look_ = 0;
     int ticks_frozen_ = 0;
     SpeedWatch speed_;
-    std::array<double, 3> position_{0, 0, 0};  // the last good one
-    bool placed_ = false;                      // there has been one
+    std::array<double, 3> position_{0, 0, 0}, shaft_{0, 0, 0};  // the last good pose
+    std::array<double, 4> orientation_{0, 0, 0, 0};
+    bool placed_ = false;  // there has been one
 };
 
 }  // namespace palpate::devices

@@ -36,8 +36,8 @@ class ShellContact final : public ContactMethod {
     /// mm on either side of a surface where distances are known, in voxels.
     static constexpr double band_voxels = 3;
 
-    /// `bodies` must outlive this. Throws InvalidInput if there is no rigid body, if the tool's settings make
-    /// no sense, and as DistanceField.
+    /// `bodies` must outlive this; the tool's settings make sense (unchecked). Throws InvalidInput if there
+    /// is no rigid body, and as DistanceField.
     ShellContact(const Case& patient_case, const ContactBodies& bodies, std::size_t tool_count);
     ~ShellContact() override;
 

@@ -11,14 +11,11 @@
 namespace palpate::haptics {
 namespace {
 
-ToolSettings checked(const Case& patient_case) {
+ToolSettings settings_of(const Case& patient_case) {
     if (patient_case.rigid_bodies.empty())
         throw InvalidInput({patient_case.name, "no rigid body, and contact method 'shell' feels no other",
                             "a case with rigid anatomy", "use contact method 'continuous'"});
-    const ToolSettings settings = patient_case.tool ? patient_case.tool->settings : ToolSettings{};
-    if (const auto error = first_error(tool_fields, settings))
-        throw InvalidInput({option_name(error->name), error->found, error->expected, ""});
-    return settings;
+    return patient_case.tool ? patient_case.tool->settings : ToolSettings{};
 }
 
 std::vector<collision::ShellPoint> points_of(const Case& patient_case, const ToolSettings& settings) {
@@ -37,7 +34,7 @@ std::vector<collision::ShellPoint> points_of(const Case& patient_case, const Too
 }  // namespace
 
 ShellContact::ShellContact(const Case& patient_case, const ContactBodies& bodies, std::size_t tool_count)
-    : bodies_(bodies), settings_(checked(patient_case)), points_(points_of(patient_case, settings_)) {
+    : bodies_(bodies), settings_(settings_of(patient_case)), points_(points_of(patient_case, settings_)) {
     const std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
     fields_.reserve(bodies.rigid_count());
     for (std::size_t body = 0; body < bodies.rigid_count(); ++body)

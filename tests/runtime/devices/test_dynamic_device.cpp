@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
 #include "runtime/devices/dynamic_device.hpp"
 #include "tests/runtime/allocation_trap.hpp"
@@ -331,6 +332,33 @@ TEST(DynamicDevice, a_guided_hand_draws_it_to_its_target) {
     EXPECT_NEAR(device.velocity().x(), 200, 0.1);  // the hand's speed, when the spring has stopped swinging
     EXPECT_LT((position_read(device, 1500) - Vector3d(101, 2, 3)).norm(), 1e-6);
     EXPECT_EQ(device.name(), "simulated plain, guided by mouse and keyboard");
+}
+
+TEST(DynamicDevice, turns_as_the_hand_wishes_whatever_the_force) {
+    const auto about_x = [](double angle) {
+        return Eigen::Quaterniond(Eigen::AngleAxisd(angle, Vector3d::UnitX()));
+    };
+    const HandPath path({{0, {0, 0, 0}, true, about_x(0)}, {1, {0, 0, 0}, true, about_x(2)}});
+    DynamicDevice device(plain(), {}, path, {0, 1, 0});
+    for (int tick = 0; tick <= 1000; tick += 125) {
+        const realtime::DeviceState state = device.read(1e-3 * tick);
+        device.write({1, -2, 3});
+        const double angle = 2e-3 * tick;
+        EXPECT_LT((quaternion_of(state.orientation).coeffs() - about_x(angle).coeffs()).norm(),
+                  stepping_error);
+        EXPECT_LT((vector_of(state.shaft) - Vector3d(0, -std::sin(angle), std::cos(angle))).norm(),
+                  stepping_error);
+    }
+}
+
+TEST(DynamicDevice, has_the_orientation_of_its_hand_before_the_first_step_and_none_where_the_hand_has_none) {
+    const Eigen::Quaterniond held(Eigen::AngleAxisd(1, Vector3d::UnitY()));
+    DynamicDevice device(plain(), {}, HandPath({{0, {0, 0, 0}, true, held}}));
+    EXPECT_EQ(device.read(0).orientation, array_of(held));
+    DynamicDevice unturned(plain(), {}, at_origin(), {0, 1, 0});
+    unturned.read(0.01);
+    EXPECT_EQ(unturned.read(0.02).orientation, (std::array<double, 4>{0, 0, 0, 0}));
+    EXPECT_EQ(unturned.read(0.02).shaft, (std::array<double, 3>{0, 1, 0}));
 }
 
 TEST(DynamicDevice, tells_its_limits) {

@@ -86,6 +86,28 @@ TEST(MountedDevice, positions_and_shaft_come_from_d_to_p_and_everything_else_sta
     EXPECT_EQ(seen.time, 0.25);
 }
 
+TEST(MountedDevice, an_orientation_is_turned_with_the_device_and_its_z_stays_the_shaft) {
+    Probe probe;
+    const Eigen::Quaterniond R_DT(Eigen::AngleAxisd(2, Vector3d(1, -3, 2).normalized()));
+    probe.state.orientation = array_of(R_DT);
+    probe.state.shaft = array_of(Vector3d(R_DT * Vector3d::UnitZ()));
+    const Eigen::Isometry3d X_PD = some_mount();
+    MountedDevice mounted(probe, X_PD);
+    const DeviceState seen = mounted.read(0);
+    const Eigen::Quaterniond R_PT = quaternion_of(seen.orientation);
+    EXPECT_NEAR(R_PT.norm(), 1, mounting_error);
+    EXPECT_LT((R_PT.toRotationMatrix() - X_PD.linear() * R_DT.toRotationMatrix()).norm(), mounting_error);
+    EXPECT_LT((R_PT * Vector3d::UnitZ() - vector_of(seen.shaft)).norm(), mounting_error);
+}
+
+TEST(MountedDevice, an_orientation_that_is_not_known_stays_unknown) {
+    Probe probe;
+    probe.state.shaft = {0, 0.6, 0.8};
+    MountedDevice mounted(probe, some_mount());
+    // Zero is compared, not bits: -0 is as unknown as 0.
+    EXPECT_EQ(mounted.read(0).orientation, (std::array<double, 4>{0, 0, 0, 0}));
+}
+
 TEST(MountedDevice, a_force_goes_back_from_p_to_d_and_its_power_is_the_same_in_both) {
     Probe probe;
     MountedDevice mounted(probe, some_mount());

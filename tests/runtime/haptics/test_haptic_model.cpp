@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 #include <limits>
 #include <memory>
+#include <utility>
 
 #include "formats/model/errors.hpp"
 #include "runtime/haptics/haptic_model.hpp"
+#include "runtime/haptics/methods/contact_methods.hpp"
 #include "tests/formats/sample_case.hpp"
 #include "tests/runtime/allocation_trap.hpp"
 #include "tests/runtime/elastic_cube.hpp"
@@ -200,6 +202,27 @@ TEST(HapticModel, refuses_settings_and_cases_that_cannot_be_felt) {
         c.rigid_bodies.clear();
         c.deformable_bodies.clear();
     });
+}
+
+TEST(HapticModel, refuses_settings_of_a_tool_that_make_no_sense_whatever_the_method) {
+    const double nan = std::nan("");
+    for (const ContactMethodEntry& method : contact_methods()) {
+        for (const auto& [settings, option] :
+             {std::pair{ToolSettings{.torsional_stiffness = 0}, "--torsional-stiffness"},
+              {ToolSettings{.torsional_stiffness = nan}, "--torsional-stiffness"},
+              {ToolSettings{.max_torque = -1}, "--max-torque"},
+              {ToolSettings{.max_torque_rate = 0}, "--max-torque-rate"},
+              {ToolSettings{.shell_points = 3}, "--shell-points"}}) {
+            Case c = patient();
+            c.tool = ToolBody{.surface = {}, .settings = settings};
+            try {
+                const HapticModel model(c, method.name);
+                ADD_FAILURE() << "taken by " << method.name << ": " << option;
+            } catch (const InvalidInput& error) {
+                EXPECT_EQ(error.detail().culprit, option) << method.name;
+            }
+        }
+    }
 }
 
 }  // namespace

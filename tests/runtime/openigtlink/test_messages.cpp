@@ -65,12 +65,39 @@ TEST(ReadMessage, a_position_and_a_qtrans_give_the_same_pose) {
     expect_quarter_turn(pose_in(message("POSITION", "Stylus", three)));
 }
 
+// A third of a turn about (1, 1, 1): in RAS, x goes to y, y to z, z to x.
+constexpr Rows third_turn{{{0, 0, 1, 10}, {1, 0, 0, 20}, {0, 1, 0, 30}, {0, 0, 0, 1}}};
+
+// By hand: the message's axes in RAS are x = (0, 1, 0), y = (0, 0, 1), z = (1, 0, 0), in LPS x = (0, -1, 0),
+// y = (0, 0, 1), z = (-1, 0, 0). The tool's z is the shaft, against the message's: half a turn about x leaves
+// x, and turns y and z round. So R, by columns, is (0, -1, 0), (0, 0, -1), (1, 0, 0).
+void expect_third_turn(const PoseReading& reading) {
+    ASSERT_TRUE(reading.pose.has_value()) << reading.problem;
+    const Eigen::Quaterniond& orientation = reading.pose->orientation;
+    EXPECT_NEAR(orientation.norm(), 1, 1e-12);
+    expect_near(orientation * Eigen::Vector3d::UnitX(), {0, -1, 0});
+    expect_near(orientation * Eigen::Vector3d::UnitY(), {0, 0, -1});
+    expect_near(orientation * Eigen::Vector3d::UnitZ(), {1, 0, 0});
+    expect_near(reading.pose->shaft, {1, 0, 0});
+}
+
+TEST(ReadMessage, a_transform_a_qtrans_and_a_position_give_the_orientation_in_lps_whose_z_is_the_shaft) {
+    expect_third_turn(pose_in(transform_message("Stylus", third_turn)));
+    const Bytes position = position_message("Stylus", {10, 20, 30}, {0.5F, 0.5F, 0.5F, 0.5F});
+    expect_third_turn(pose_in(position));
+    expect_third_turn(pose_in(message("QTRANS", "Stylus", body_of(position))));
+    Bytes three = body_of(position);
+    three.resize(24);
+    expect_third_turn(pose_in(message("POSITION", "Stylus", three)));
+}
+
 TEST(ReadMessage, a_position_without_orientation_has_no_shaft) {
     Bytes body = body_of(position_message("Stylus", {10, 20, 30}, {0, 0, 0, 1}));
     body.resize(12);
     const PoseReading reading = pose_in(message("POSITION", "Stylus", body));
     expect_near(reading.pose.value().tip, {-10, -20, 30});
     EXPECT_EQ(reading.pose->shaft, Eigen::Vector3d(0, 0, 0));
+    EXPECT_EQ(reading.pose->orientation.coeffs(), Eigen::Vector4d(0, 0, 0, 0));
 }
 
 TEST(ReadMessage, a_message_of_version_2_is_read_between_its_extended_head_and_metadata) {
@@ -121,7 +148,9 @@ TEST(ReadMessage, a_float32_rotation_at_any_angle_is_taken) {
         for (Eigen::Index row = 0; row < 3; ++row)
             for (Eigen::Index column = 0; column < 3; ++column)
                 matrix[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)] = R(row, column);
-        ASSERT_TRUE(pose_in(transform_message("Stylus", matrix)).pose);
+        const PoseReading reading = pose_in(transform_message("Stylus", matrix));
+        ASSERT_TRUE(reading.pose);
+        expect_near(reading.pose->orientation * Eigen::Vector3d::UnitZ(), reading.pose->shaft);
     }
 }
 
@@ -147,7 +176,9 @@ TEST(ReadMessage, random_and_mutated_bytes_never_give_a_pose_that_is_no_number) 
             if (!reading.pose) continue;
             ++poses;
             ASSERT_TRUE(reading.pose->tip.allFinite());
-            ASSERT_NEAR(reading.pose->shaft.norm(), reading.pose->shaft.isZero(0) ? 0 : 1, 1e-12);
+            const double length = reading.pose->shaft.isZero(0) ? 0 : 1;
+            ASSERT_NEAR(reading.pose->shaft.norm(), length, 1e-12);
+            ASSERT_NEAR(reading.pose->orientation.norm(), length, 1e-12);
         }
     }
     EXPECT_GT(poses, 0);
@@ -180,6 +211,14 @@ TEST(RotationWithZ, is_a_rotation_whose_z_is_the_axis_even_against_z) {
         EXPECT_LE((R.col(2) - axis).norm(), 1e-14);
     }
     EXPECT_EQ(rotation_with_z({0, 0, 0}), Eigen::Matrix3d::Identity());
+}
+
+TEST(FlipAxes, gives_a_rotation_and_undoes_itself) {
+    const Eigen::Matrix3d R =
+        Eigen::AngleAxisd(1.2, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
+    EXPECT_NEAR(flip_axes(R).determinant(), 1, 1e-14);
+    EXPECT_EQ(flip_axes(flip_axes(R)), R);
+    EXPECT_EQ(flip_axes(R).col(2), flip_lps_ras(-R.col(2)));
 }
 
 TEST(ContactPoint, is_the_weighted_sum_of_the_vertices_given) {

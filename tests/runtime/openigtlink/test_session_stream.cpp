@@ -8,6 +8,7 @@
 #include <igtlTransformMessage.h>
 #include <limits>
 
+#include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
 #include "runtime/openigtlink/session_stream.hpp"
 #include "tests/runtime/openigtlink/igtl_peer.hpp"
@@ -209,6 +210,58 @@ TEST(SessionStream, can_be_followed_as_a_tracker) {
     for (std::size_t i = 0; i < 3; ++i) {
         EXPECT_NEAR(state.position[i], result.tool_position[i], 1e-6);
         EXPECT_NEAR(state.shaft[i], result.shaft[i], 1e-6);
+    }
+}
+
+TEST(SessionStream, of_a_tool_that_turns_the_orientation_comes_back_to_who_follows_it) {
+    SessionStream stream(any_port());
+    TickResult result = sample();
+    const Eigen::Quaterniond tool(Eigen::AngleAxisd(2.1, Eigen::Vector3d(1, 2, -3).normalized()));
+    const Eigen::Quaterniond device(Eigen::AngleAxisd(-0.8, Eigen::Vector3d(0, 1, 1).normalized()));
+    result.tool_orientation = array_of(tool);
+    result.orientation = array_of(device);
+    result.shaft = array_of(Eigen::Vector3d(device * Eigen::Vector3d::UnitZ()));
+    stream.publish(result, {});
+    for (const auto& [name, sent] : {std::pair{"PalpateTool", tool}, {"PalpateDevice", device}}) {
+        TrackedDevice follower({{"127.0.0.1", stream.port()}, name}, {long_enough, long_enough});
+        const realtime::DeviceState state = follower.read(0);
+        // q and -q are the same rotation.
+        EXPECT_NEAR(std::abs(quaternion_of(state.orientation).dot(sent)), 1, 1e-12) << name;
+        EXPECT_LT((quaternion_of(state.orientation).toRotationMatrix() - sent.toRotationMatrix()).norm(),
+                  1e-6)
+            << name;
+        EXPECT_LT((vector_of(state.shaft) - sent * Eigen::Vector3d::UnitZ()).norm(), 1e-6) << name;
+    }
+}
+
+// As of a rod that its device turns, or of a shell in a tick without a position.
+TEST(SessionStream, a_tool_that_does_not_turn_by_itself_is_shown_as_its_device_is_turned) {
+    SessionStream stream(any_port());
+    TickResult result = sample();
+    const Eigen::Quaterniond device(Eigen::AngleAxisd(1.3, Eigen::Vector3d(2, 0, 1).normalized()));
+    result.orientation = array_of(device);
+    stream.publish(result, {});
+    TrackedDevice follower({{"127.0.0.1", stream.port()}, "PalpateTool"}, {long_enough, long_enough});
+    EXPECT_LT(
+        (quaternion_of(follower.read(0).orientation).toRotationMatrix() - device.toRotationMatrix()).norm(),
+        1e-6);
+}
+
+TEST(SessionStream, sends_no_orientation_that_is_no_number) {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const auto orientation : {&TickResult::orientation, &TickResult::tool_orientation}) {
+        SessionStream stream(any_port());
+        TickResult result = sample();
+        (result.*orientation)[2] = nan;
+        stream.publish(result, {});
+        WatchingPeer peer(stream.port());
+        EXPECT_EQ(peer.next().type, "STATUS");
+        result.*orientation = {0, 0, 0, 1};
+        result.tool_position = {7, 8, 9};
+        stream.publish(result, {});
+        const auto tool = peer.next("TRANSFORM", "PalpateTool").as<igtl::TransformMessage>();
+        ASSERT_TRUE(tool.IsNotNull());
+        EXPECT_EQ(column(*tool, 3), (std::array{-7.F, -8.F, 9.F}));  // the first frame that came
     }
 }
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A replay gives the forces of a run again, bit for bit, from its start or from wherever it can be taken up.
+// A replay gives the forces and torques of a run again, bit for bit, from its start or from wherever it can
+// be taken up.
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <limits>
 #include <random>
@@ -50,6 +52,16 @@ HandPath wandering(unsigned seed, double seconds) {
     return HandPath(std::move(keys));
 }
 
+// The same way by a tool that turns, up to some 50 degrees off the vertical.
+HandPath turning(const HandPath& path, unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> tilt(-0.4, 0.4);
+    std::vector<HandPath::Key> keys(path.keys().begin(), path.keys().end());
+    for (HandPath::Key& key : keys)
+        key.orientation = Eigen::Quaterniond(1, tilt(random), tilt(random), tilt(random)).normalized();
+    return HandPath(std::move(keys));
+}
+
 // A device that fails now and then, in each of the ways that a model takes differently.
 class Unreliable final : public Device {
   public:
@@ -78,6 +90,7 @@ struct Trial {
     std::string_view scheme;
     std::size_t tools;
     std::int64_t ticks;
+    bool turns = false;  // as its hand wishes
 };
 
 // The rows of a run, and its model's limits.
@@ -86,8 +99,9 @@ Recording record(const Trial& trial, const sample::Scratch& scratch) {
     std::vector<std::unique_ptr<Unreliable>> devices;
     std::vector<Device*> held;
     for (std::size_t t = 0; t < trial.tools; ++t) {
-        devices.push_back(std::make_unique<Unreliable>(
-            wandering(static_cast<unsigned>(7 + t), 1e-3 * static_cast<double>(trial.ticks))));
+        const auto seed = static_cast<unsigned>(7 + t);
+        const HandPath path = wandering(seed, 1e-3 * static_cast<double>(trial.ticks));
+        devices.push_back(std::make_unique<Unreliable>(trial.turns ? turning(path, seed) : path));
         held.push_back(devices.back().get());
     }
     ServoLoop loop(model, held);
@@ -152,7 +166,8 @@ TEST_P(Replay, from_a_free_tick_in_the_middle_gives_the_same_forces) {
         compared += outcome.ticks;
         ASSERT_EQ(outcome.different_ticks, 0)
             << "without the first " << first << " rows, tick " << outcome.first_difference->tick
-            << " is off by up to " << outcome.largest_difference << " N";
+            << " is off by up to " << outcome.largest_difference << " N, "
+            << outcome.largest_torque_difference << " N mm";
     }
     EXPECT_GT(compared, 5 * GetParam().ticks);
 }
@@ -184,20 +199,63 @@ TEST_P(Replay, of_a_changed_input_differs_from_that_tick_on) {
     EXPECT_GT(outcome.largest_difference, 1e-9);
 }
 
+TEST_P(Replay, of_a_changed_torque_differs_in_that_tick_alone) {
+    const sample::Scratch scratch;
+    Recording recording = record(GetParam(), scratch);
+    Tick& row = recording.ticks[recording.ticks.size() / 2];
+    row.torque[1] += 1e-6;
+    const ReplayOutcome outcome = replayed(GetParam(), recording);
+    EXPECT_EQ(outcome.different_ticks, 1);
+    ASSERT_TRUE(outcome.first_difference.has_value());
+    EXPECT_EQ(outcome.first_difference->tick, row.tick);
+    EXPECT_EQ(outcome.first_difference->tool, row.tool);
+    EXPECT_EQ(outcome.first_difference->recorded_torque, row.torque);
+    EXPECT_EQ(outcome.first_difference->recorded, outcome.first_difference->replayed);
+    EXPECT_EQ(outcome.largest_difference, 0);
+    EXPECT_GT(outcome.largest_torque_difference, 0);
+}
+
+// Where tools do not turn, a recording may be older than the column of torques, which reads as zero.
+TEST_P(Replay, has_torques_where_the_tool_turns_by_itself_and_none_elsewhere) {
+    const sample::Scratch scratch;
+    Recording recording = record(GetParam(), scratch);
+    constexpr std::array<double, 3> none{0, 0, 0};
+    const auto twisted =
+        std::ranges::count_if(recording.ticks, [&](const Tick& row) { return row.torque != none; });
+    if (GetParam().patient_case.tool) {
+        EXPECT_GT(twisted, GetParam().ticks / 20);
+        return;
+    }
+    EXPECT_EQ(twisted, 0);
+    for (Tick& row : recording.ticks) row.torque = none;
+    EXPECT_EQ(replayed(GetParam(), recording).different_ticks, 0);
+}
+
 std::vector<Trial> runs() {
     Case pointed = ball_and_cube();
     pointed.haptics.shaft_length = 0;
     Case creeping = pointed;  // quickly enough to be forgotten between two touches
     for (const Label& region : creeping.deformable_bodies[0].mesh.region_names)
         creeping.deformable_bodies[0].relaxation.push_back({region.value, {0.3, 0.002}});
-    return {{ball_and_cube(), "continuous", 1, 6000},    {ball_and_cube(), "continuous", 2, 3000},
-            {pointed, "continuous", 1, 12000},           {creeping, "continuous", 1, 12000},
-            {ball_and_cube(), "single", 1, 12000},       {ball_and_cube(), "twice", 1, 12000},
-            {ball_and_cube(), "twice-renewed", 1, 12000}};
+    Case rod = ball_and_cube(), bar = ball_and_cube();
+    rod.tool = ToolBody{};
+    bar.rigid_bodies.push_back(rigid("floor", box({-20, -20, 5}, {60, 40, 21})));
+    bar.tool = ToolBody{.surface = box({-1, -1, 0}, {1, 1, 30}), .settings = {.shell_points = 500}};
+    return {{ball_and_cube(), "continuous", 1, 6000},
+            {ball_and_cube(), "continuous", 2, 3000},
+            {pointed, "continuous", 1, 12000},
+            {creeping, "continuous", 1, 12000},
+            {ball_and_cube(), "single", 1, 12000},
+            {ball_and_cube(), "twice", 1, 12000},
+            {ball_and_cube(), "twice-renewed", 1, 12000},
+            {rod, "continuous", 1, 6000, true},
+            {rod, "continuous", 2, 3000, true},
+            {bar, "shell", 1, 6000, true}};
 }
 
 std::string name_of(const testing::TestParamInfo<Trial>& info) {
-    constexpr std::array names{"shaft", "two_tools", "tip", "creeping", "single", "twice", "twice_renewed"};
+    constexpr std::array names{"shaft", "two_tools",     "tip",         "creeping",         "single",
+                               "twice", "twice_renewed", "turning_rod", "two_turning_rods", "shell"};
     return names[info.index];
 }
 

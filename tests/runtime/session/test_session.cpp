@@ -19,6 +19,7 @@
 #include "tests/formats/sample_case.hpp"
 #include "tests/formats/scratch.hpp"
 #include "tests/runtime/elastic_cube.hpp"
+#include "tests/runtime/haptics/held_tool.hpp"
 
 namespace palpate {
 namespace {
@@ -26,6 +27,8 @@ namespace {
 using namespace devices;
 using namespace recording;
 using namespace session;
+
+constexpr double turning_error = 1e-7;  // rad: angularDistance() is no better near zero
 
 std::filesystem::path sample_asset(const sample::Scratch& scratch) {
     Case patient_case = sample::sample_case();
@@ -41,6 +44,18 @@ void hold_a_press(Session& session) {
     const HandPath path = press_path(place, {.tool_radius = session.model().contact_radius(), .seconds = 2});
     session.hold(
         choose_device("touch").open({.tools = {scripted_tool(path, place.normal, {0, 0, 0})}, .limits = {}}));
+}
+
+// A press by a tool that all but lies on the surface, and turns about its shaft meanwhile.
+HandPath turning_press(const Session& session) {
+    const TouchPoint place = choose_touch_target(session.patient_case(), session.model(), "", {}).place;
+    const HandPath press = press_path(place, {.tool_radius = session.model().contact_radius(), .seconds = 2});
+    std::vector<HandPath::Key> keys(press.keys().begin(), press.keys().end());
+    const Eigen::Vector3d shaft = (0.1 * place.normal + place.tangent).normalized();
+    for (HandPath::Key& key : keys)
+        key.orientation = Eigen::AngleAxisd(key.time, shaft) *
+                          Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), shaft);
+    return HandPath(std::move(keys));
 }
 
 void record(Session& session, const std::filesystem::path& file) {
@@ -77,6 +92,53 @@ TEST(Session, ticks_records_and_counts_in_virtual_time_and_replays_bit_for_bit) 
         const ReplayOutcome outcome = replay(recording, *model, [](const TickResult&) {});
         EXPECT_EQ(outcome.ticks, 2000);
         EXPECT_EQ(outcome.different_ticks, 0) << method.name;
+    }
+}
+
+// What is held, and by which method it is felt.
+struct HeldBody {
+    const char* method;
+    ToolBody tool;
+};
+
+TEST(Session, a_tool_that_turns_is_as_its_hand_wishes_and_its_recording_alone_replays_bit_for_bit) {
+    const HeldBody bar{"shell", {.surface = box({-1, -1, 0}, {1, 1, 40}), .settings = {.shell_points = 500}}};
+    const HeldBody rod{"continuous", {}};
+    for (const auto& [method, tool] : {bar, rod}) {
+        const sample::Scratch scratch;
+        Case sample = sample::sample_case();
+        sample.deformable_bodies = {sample::true_elastic_cube(3)};
+        sample.haptics.shaft_length = 15;
+        const auto asset = scratch / "sample.vtkhdf", file = scratch / "run.h5";
+        asset::write_asset(asset, sample);
+        std::int64_t twisted = 0;
+        {
+            Session session({.asset = asset, .method = method, .virtual_clock = true, .tool = tool});
+            const HandPath path = turning_press(session);
+            session.hold(choose_device("touch").open(
+                {.tools = {scripted_tool(path, {0, 0, 1}, {0, 0, 0})}, .limits = {}}));
+            record(session, file);
+            session.run_virtual(2, [&](const TickResult& result) {
+                // The device stands turned in the patient, and its hand's way with it.
+                const Eigen::Quaterniond wish = path.orientation_at(result.time);
+                EXPECT_LT(wish.angularDistance(quaternion_of(result.orientation)), turning_error);
+                twisted += vector_of(result.torque).norm() > 0.01;  // N mm: the wall is soft
+            });
+        }
+        EXPECT_GT(twisted, 100) << method;
+        const Recording recording = read_recording(file);
+        ASSERT_TRUE(recording.head.tool.has_value());
+        EXPECT_EQ(recording.head.tool->surface.vertices, tool.surface.vertices);
+        Case patient_case = asset::read_asset(asset);
+        patient_case.tool = recording.head.tool;
+        const auto model = model_of(recording, file, asset, patient_case);
+        const ReplayOutcome outcome = replay(recording, *model, [](const TickResult&) {});
+        EXPECT_EQ(outcome.ticks, 2000);
+        EXPECT_EQ(outcome.different_ticks, 0) << method;
+        // It is the tool that makes the difference.
+        patient_case.tool.reset();
+        const auto without = model_of(recording, file, asset, patient_case);
+        EXPECT_GT(replay(recording, *without, [](const TickResult&) {}).different_ticks, 100) << method;
     }
 }
 

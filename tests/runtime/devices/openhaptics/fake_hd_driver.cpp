@@ -74,9 +74,11 @@ void get_doubles(unsigned parameter, double* values) {
         std::ranges::copy(device.position, values);
     else if (parameter == current_joint_angles)
         std::ranges::copy(device.joint_angles, values);
-    else if (parameter == current_transform)
+    else if (parameter == current_transform) {
+        std::ranges::copy(device.stylus_x, values);
+        std::ranges::copy(device.stylus_y, values + 4);
         std::ranges::copy(device.stylus, values + 8);
-    else if (parameter == motor_temperature)
+    } else if (parameter == motor_temperature)
         values[1] = device.temperature;  // of its second motor
     else if (parameter == nominal_max_force)
         *values = 3.3;

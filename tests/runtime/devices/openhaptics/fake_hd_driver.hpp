@@ -13,7 +13,8 @@ namespace palpate {
 struct FakeHdDevice {
     bool open = false, force_output = false, in_frame = false;
     std::array<double, 3> position{0, 0, 0}, joint_angles{0.1, 0.2, 0.3}, force{0, 0, 0};
-    std::array<double, 3> stylus{0, 0, 1};  ///< the transform's third column
+    std::array<double, 3> stylus{0, 0, 1};                       ///< the transform's third column
+    std::array<double, 3> stylus_x{1, 0, 0}, stylus_y{0, 1, 0};  ///< its first two
     int buttons = 0, frames = 0;
     double temperature = 0;
     unsigned calibration = devices::hdapi::calibration_ok;

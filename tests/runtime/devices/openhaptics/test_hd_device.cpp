@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 #include <limits>
 #include <memory>
+#include <numbers>
 
+#include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
 #include "runtime/devices/openhaptics/hd_device.hpp"
 #include "tests/runtime/allocation_trap.hpp"
@@ -15,8 +17,11 @@ namespace {
 using namespace devices;
 using namespace realtime;
 using namespace hdapi;
+using Eigen::Vector3d;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+
+constexpr double axes_error = 1e-12;  // of a rotation made of a matrix and back
 
 class HdDeviceTest : public testing::Test {
   protected:
@@ -36,6 +41,12 @@ class HdDeviceTest : public testing::Test {
             device.write({0, 0, 0});
         }
         return faults;
+    }
+    // Turns the stylus by R, its axes' lengths as given.
+    static void turn(const Eigen::Matrix3d& R, const Vector3d& lengths = Vector3d::Ones()) {
+        behind().stylus_x = array_of(Vector3d(lengths.x() * R.col(0)));
+        behind().stylus_y = array_of(Vector3d(lengths.y() * R.col(1)));
+        behind().stylus = array_of(Vector3d(lengths.z() * R.col(2)));
     }
     void close_all() { devices_.clear(); }
 
@@ -131,6 +142,35 @@ TEST_F(HdDeviceTest, the_state_is_the_drivers_and_the_shaft_the_stylus_own_z_axi
     EXPECT_EQ(state.buttons, 2u);
     EXPECT_EQ(state.time, 0.25);
     EXPECT_EQ(state.faults, no_fault);
+}
+
+TEST_F(HdDeviceTest, the_orientation_is_the_rotation_of_the_drivers_transform) {
+    HdDevice& device = open();
+    const Vector3d axis = Vector3d(1, 2, -2).normalized();
+    for (const double angle : {0.0, 0.4, 1.9, std::numbers::pi, 4.5}) {
+        const Eigen::Matrix3d R = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+        for (const Vector3d& lengths : {Vector3d(1, 1, 1), Vector3d(2, 0.5, 3)}) {
+            turn(R, lengths);
+            const DeviceState state = device.read(0);
+            const Eigen::Quaterniond orientation = quaternion_of(state.orientation);
+            EXPECT_NEAR(orientation.norm(), 1, axes_error);
+            EXPECT_LT((orientation.toRotationMatrix() - R).norm(), axes_error) << angle;
+            EXPECT_LT((orientation * Vector3d::UnitZ() - vector_of(state.shaft)).norm(), axes_error);
+        }
+    }
+}
+
+TEST_F(HdDeviceTest, a_transform_whose_x_axis_says_nothing_gives_the_shaft_alone) {
+    HdDevice& device = open();
+    turn(Eigen::AngleAxisd(0.7, Vector3d::UnitX()).toRotationMatrix());
+    const std::array<double, 3> shaft = behind().stylus;
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const std::array<double, 3>& x : {std::array{0.0, 0.0, 0.0}, {nan, 0.0, 0.0}}) {
+        behind().stylus_x = x;
+        const DeviceState state = device.read(0);
+        EXPECT_LT((vector_of(state.shaft) - vector_of(shaft)).norm(), axes_error);
+        EXPECT_THAT(state.orientation, ElementsAre(0, 0, 0, 0));
+    }
 }
 
 TEST_F(HdDeviceTest, frames_of_two_devices_overlap_and_each_gets_its_own_force) {
@@ -231,6 +271,26 @@ TEST_F(HdDeviceTest, a_pose_that_may_be_of_no_encoders_does_not_drag_the_tool) {
     EXPECT_THAT(device.read(0).position, ElementsAre(1, 2, 4));
 }
 
+// Beside the position, the pose has a transform, which a tool that turns would follow as readily.
+TEST_F(HdDeviceTest, a_pose_that_may_be_of_no_encoders_does_not_turn_the_tool) {
+    HdDevice& device = open();
+    behind().position = {1, 2, 3};
+    turn(Eigen::AngleAxisd(0.9, Vector3d(1, 1, 0).normalized()).toRotationMatrix());
+    const DeviceState good = device.read(0);
+    device.write({0, 0, 0});
+    behind().position = {0, -110, -35};
+    behind().joint_angles = {0, 0, 0};
+    turn(Eigen::Matrix3d::Identity());
+    for (int i = 0; i <= HdDevice::frozen_ticks + 5; ++i) {
+        const DeviceState state = device.read(0);
+        device.write({0, 0, 0});
+        EXPECT_EQ(state.orientation, good.orientation) << i;
+        EXPECT_EQ(state.shaft, good.shaft) << i;
+    }
+    behind().position = {1, 2, 4};
+    EXPECT_THAT(device.read(0).shaft, ElementsAre(0, 0, 1));
+}
+
 TEST_F(HdDeviceTest, a_driver_that_gives_no_position_and_says_nothing_is_noticed) {
     HdDevice& device = open();
     tick(device);
@@ -242,6 +302,7 @@ TEST_F(HdDeviceTest, a_transform_that_is_no_number_gives_no_shaft) {
     HdDevice& device = open();
     behind().stylus[1] = std::numeric_limits<double>::quiet_NaN();
     EXPECT_THAT(device.read(0).shaft, ElementsAre(0, 0, 0));
+    EXPECT_THAT(device.read(0).orientation, ElementsAre(0, 0, 0, 0));
 }
 
 TEST_F(HdDeviceTest, an_encoder_reset_is_never_done_unasked) {
