@@ -46,7 +46,7 @@ void place(vtkActor* actor, const Vector3d& origin, const Eigen::Matrix3d& axes)
 
 }  // namespace
 
-void place(vtkActor* actor, const Vector3d& origin, const Eigen::Quaterniond& orientation) {
+void place_turned(vtkActor* actor, const Vector3d& origin, const Eigen::Quaterniond& orientation) {
     place(actor, origin, orientation.toRotationMatrix());
 }
 

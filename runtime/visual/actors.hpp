@@ -28,7 +28,7 @@ vtkSmartPointer<vtkActor> actor(vtkPolyData* data, const Rgb& colour);
 void set_colour(vtkActor* actor, const Rgb& colour);
 
 /// Places an actor, turned, its origin at `origin` (mm).
-void place(vtkActor* actor, const Eigen::Vector3d& origin, const Eigen::Quaterniond& orientation);
+void place_turned(vtkActor* actor, const Eigen::Vector3d& origin, const Eigen::Quaterniond& orientation);
 
 /// Places what was modelled along the x axis: turned to `way` (unit), scaled, its origin at `origin`.
 void place_along(vtkActor* actor, const Eigen::Vector3d& origin, const Eigen::Vector3d& way, double scale);

@@ -169,7 +169,7 @@ void Scene::place_tool(const VisualFrame& frame) {
         held = frame.tool_orientation;
     else if (is_instrument_)
         held = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), shaft);
-    place(tool_, frame.tool_position, held);
+    place_turned(tool_, frame.tool_position, held);
 }
 
 std::vector<vtkActor*> Scene::bodies() const {

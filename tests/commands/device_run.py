@@ -14,7 +14,7 @@ import time
 import numpy as np
 
 from sample_asset import TESTS, SampleAsset
-from test_record import kept
+from recorded import kept
 
 BIN = pathlib.Path(os.environ["PALPATE_BIN"])
 LIBRARY = TESTS / "libpalpate_hd_conformance.so"

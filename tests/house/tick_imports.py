@@ -17,7 +17,7 @@ from pathlib import Path
 # Target folder: object -> why it is the tick's.
 TICK = {
     "runtime/collision/CMakeFiles/palpate_collision.dir": {
-        "distance_field_queries": "distance by voxels",
+        "field/distance_field_queries": "distance by voxels",
         "neighbourhood": "sweeps against the triangles next to the tool",
         "rounded_triangle": "a point against one triangle that is round at its edges",
         "segment_queries": "segments against segments and triangles",
@@ -67,6 +67,7 @@ HARMLESS = {
     "memcmp": "the same",
     "atan2": "arithmetic",
     "cbrt": "arithmetic",
+    "sincos": "arithmetic",
     "__gxx_personality_v0": "named by the unwind table of every noexcept function: an exception would end the program",
     "_ZSt9terminatev": "the same, as Clang has it",
     "_GLOBAL_OFFSET_TABLE_": "the linker's",

@@ -20,6 +20,13 @@ struct ContactPose {
     bool jumped = false;                ///< it came from afar by a way that nobody saw: contact starts anew
 };
 
+/// How a device holds its tool: as it says, or along its shaft, or upright. Realtime-safe.
+inline Eigen::Quaterniond orientation_of(const ContactPose& pose) noexcept {
+    if (!pose.orientation.coeffs().isZero(0)) return pose.orientation.normalized();
+    if (pose.shaft.isZero(0)) return Eigen::Quaterniond::Identity();
+    return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), pose.shaft);
+}
+
 /// How contact with a patient's surfaces is found, kept and answered: what differs between the lines of the
 /// table in contact_methods.hpp. A HapticModel owns one and adds what is common: faults, limits, what a
 /// result says of the device. Everything is allocated on construction. A class that derives from this one

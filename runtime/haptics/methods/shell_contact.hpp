@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "formats/model/body.hpp"
-#include "runtime/collision/distance_field.hpp"
-#include "runtime/collision/point_shell.hpp"
+#include "runtime/collision/field/distance_field.hpp"
+#include "runtime/collision/points/point_shell.hpp"
 #include "runtime/haptics/contact/contact_bodies.hpp"
 #include "runtime/haptics/methods/contact_method.hpp"
 #include "runtime/haptics/shell/shell_equilibrium.hpp"

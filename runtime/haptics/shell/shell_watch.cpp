@@ -26,7 +26,7 @@ void ShellWatch::reset() noexcept {
     moved_ = turned_ = 0;
     gathered_ = false;
     for (Watched& watched : watched_) watched.wake = 0;
-    found_.clear();
+    found_count_ = 0;
 }
 
 void ShellWatch::look(const ToolPose& pose) noexcept {
@@ -38,26 +38,26 @@ void ShellWatch::look(const ToolPose& pose) noexcept {
     pose_ = pose;
     const double since = moved_ - moved_gathered_ + (turned_ - turned_gathered_) * longest_arm_;
     if (!gathered_ || since > slack) gather();
-    found_.clear();
+    found_count_ = 0;
     const Eigen::Matrix3d R_PT = pose.orientation.toRotationMatrix();
-    for (const std::int32_t point : near_) {
+    for (const std::int32_t point : std::span(near_).first(near_count_)) {
         const Watched& watched = watched_[static_cast<std::size_t>(point)];
         if (watched.wake <= odometer(watched)) look_at(point, pose, R_PT);
     }
 }
 
 bool ShellWatch::touches() const noexcept {
-    return std::ranges::any_of(found_, [](const ShellTouch& found) { return found.distance < 0; });
+    return std::ranges::any_of(close(), [](const ShellTouch& found) { return found.distance < 0; });
 }
 
 void ShellWatch::gather() noexcept {
-    near_.clear();
+    near_count_ = 0;
     moved_gathered_ = moved_;
     turned_gathered_ = turned_;
     gathered_ = true;
     for (std::size_t i = 0; i < watched_.size(); ++i)
         if (watched_[i].wake <= odometer(watched_[i]) + static_cast<float>(slack))
-            near_.push_back(static_cast<std::int32_t>(i));
+            near_[near_count_++] = static_cast<std::int32_t>(i);
 }
 
 void ShellWatch::look_at(std::int32_t point, const ToolPose& pose, const Eigen::Matrix3d& R_PT) noexcept {
@@ -69,11 +69,14 @@ void ShellWatch::look_at(std::int32_t point, const ToolPose& pose, const Eigen::
         const collision::DistanceField& field = fields_[body];
         const collision::FieldSample sample = field.at(p);
         if (sample.distance < close_) {
-            found_.push_back({point, static_cast<std::int32_t>(body), sample.distance, sample.gradient, arm});
+            found_[found_count_++] = {point, static_cast<std::int32_t>(body), sample.distance,
+                                      sample.gradient, arm};
             clear = 0;
         } else {
             // The interpolant is that close only where the distance is so up to its error.
-            clear = std::min(clear, std::max(0.0, field.clearance(p) - field.error() - close_));
+            const double distance =
+                sample.distance < field.band() ? sample.distance - field.error() : field.clearance(p);
+            clear = std::min(clear, std::max(0.0, distance - field.error() - close_));
         }
     }
     Watched& watched = watched_[at];

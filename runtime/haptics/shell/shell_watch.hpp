@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "runtime/collision/distance_field.hpp"
-#include "runtime/collision/point_shell.hpp"
+#include "runtime/collision/field/distance_field.hpp"
+#include "runtime/collision/points/point_shell.hpp"
 #include "runtime/haptics/shell/tool_pose.hpp"
 
 namespace palpate::haptics {
@@ -36,7 +36,7 @@ class ShellWatch {
 
     /// Finds what is close at `pose`, in ascending order of the points.
     void look(const ToolPose& pose) noexcept;
-    std::span<const ShellTouch> close() const noexcept { return found_; }
+    std::span<const ShellTouch> close() const noexcept { return {found_.data(), found_count_}; }
     /// Whether any of it is inside.
     bool touches() const noexcept;
 
@@ -45,7 +45,7 @@ class ShellWatch {
     /// mm; no motion of less takes a point that is not near close to a body.
     static constexpr double slack = 1;
     /// Whether any point is near a body.
-    bool is_near() const noexcept { return !near_.empty(); }
+    bool is_near() const noexcept { return near_count_ > 0; }
 
   private:
     struct Watched {
@@ -64,9 +64,11 @@ class ShellWatch {
     double moved_ = 0, turned_ = 0;                    // mm and rad since the odometer's zero
     double moved_gathered_ = 0, turned_gathered_ = 0;  // when near points were gathered
     bool gathered_ = false;
-    std::vector<Watched> watched_;    // of each point
-    std::vector<std::int32_t> near_;  // points that may be close within `slack` of where they were gathered
-    std::vector<ShellTouch> found_;
+    std::vector<Watched> watched_;  // of each point
+    // The first near_count_ are points that may be close within `slack` of where they were gathered.
+    std::vector<std::int32_t> near_;
+    std::vector<ShellTouch> found_;  // the first found_count_
+    std::size_t near_count_ = 0, found_count_ = 0;
 };
 
 }  // namespace palpate::haptics

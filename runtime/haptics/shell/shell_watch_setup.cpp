@@ -14,8 +14,8 @@ ShellWatch::ShellWatch(std::span<const collision::ShellPoint> points,
         watched_.push_back({static_cast<float>(point.position.cast<double>().norm()), 0});
         longest_arm_ = std::max(longest_arm_, static_cast<double>(watched_.back().arm));
     }
-    near_.reserve(points.size());
-    found_.reserve(points.size() * fields.size());
+    near_.resize(points.size());
+    found_.resize(points.size() * fields.size());
 }
 
 }  // namespace palpate::haptics

@@ -3,8 +3,6 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "runtime/haptics/methods/contact_method.hpp"
-
 namespace palpate::haptics {
 
 /// Where a tool that turns is.
@@ -32,13 +30,6 @@ inline Twist rotation(const Eigen::Vector3d& turn) noexcept {
     Twist motion = Twist::Zero();
     motion.tail<3>() = turn;
     return motion;
-}
-
-/// How a device holds its tool: as it says, or along its shaft, or upright. Realtime-safe.
-inline Eigen::Quaterniond orientation_of(const ContactPose& pose) noexcept {
-    if (!pose.orientation.coeffs().isZero(0)) return pose.orientation.normalized();
-    if (pose.shaft.isZero(0)) return Eigen::Quaterniond::Identity();
-    return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), pose.shaft);
 }
 
 /// The pose after a motion. Realtime-safe.

@@ -10,7 +10,7 @@
 
 #include "formats/model/errors.hpp"
 #include "formats/model/tet_mesh.hpp"
-#include "runtime/collision/distance_field.hpp"
+#include "runtime/collision/field/distance_field.hpp"
 #include "tests/formats/sample_case.hpp"
 #include "tests/runtime/collision/collision_scene.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "formats/model/errors.hpp"
 #include "formats/model/tet_mesh.hpp"
-#include "runtime/collision/point_shell.hpp"
+#include "runtime/collision/points/point_shell.hpp"
 #include "runtime/collision/triangle_queries.hpp"
 #include "tests/formats/sample_case.hpp"
 

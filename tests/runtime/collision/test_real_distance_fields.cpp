@@ -9,7 +9,7 @@
 #include <iostream>
 #include <random>
 
-#include "runtime/collision/distance_field.hpp"
+#include "runtime/collision/field/distance_field.hpp"
 #include "tests/runtime/collision/collision_scene.hpp"
 #include "tools/meshing/files/imported_mesh.hpp"
 #include "tools/meshing/files/mesh_files.hpp"

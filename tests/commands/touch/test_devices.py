@@ -19,7 +19,7 @@ import numpy as np
 import openigtlink
 from device_run import (ASSET_REMOVED, BIN, DEVICE_LOST, FELT, PATIENCE, PRESS, RAMP, RAS, SLEW, TICK_LATE,
                         DeviceRun, wait_until)
-from test_record import kept
+from recorded import kept
 from x_server import XServer
 
 

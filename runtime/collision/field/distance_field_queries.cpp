@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "runtime/collision/distance_field.hpp"
+#include "runtime/collision/field/distance_field.hpp"
 
 namespace palpate::collision {
 

@@ -15,7 +15,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 MARKED = re.compile(r"(<!-- (\w+) (keys|attributes|columns|definitions): generated -->\n).*?(<!-- end -->)", re.DOTALL)
 
 
@@ -94,7 +94,7 @@ def main():
         if not arguments.check:
             page.write_text(new)
     print(f"{tables_found} tables in {len(pages)} pages, {stale} pages "
-          + ("stale; run docs/record_tables.py on build/<preset>/tests/record_tables" if stale and arguments.check else "changed"))
+          + ("stale; run docs/generator/record_tables.py on build/<preset>/tests/record_tables" if stale and arguments.check else "changed"))
     return 1 if arguments.check and stale or not tables_found else 0
 
 

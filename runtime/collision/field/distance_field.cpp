@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/collision/distance_field.hpp"
+#include "runtime/collision/field/distance_field.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""palpate touch --tool: whole instruments and the case's rod, which turn by themselves and give torque."""
+"""palpate touch --instrument: whole instruments and the case's rod, which turn by themselves and give torque."""
 
 import csv
 import json
@@ -69,7 +69,7 @@ class WholeTools(SampleAsset):
 
     def test_a_peg_beside_the_top_is_turned_by_its_lever_and_the_result_says_how(self):
         script = self.hand(BESIDE_THE_TOP.format("0 0 0 1"))
-        result, rows = self.logged("--tool", self.peg, "--script", script)
+        result, rows = self.logged("--instrument", self.peg, "--script", script)
         self.assertEqual(result["scheme"], "shell")
         self.assertEqual(result["statuses"], {})
         peak = result["peak"]
@@ -100,7 +100,7 @@ class WholeTools(SampleAsset):
         quarter_turn = self.hand(f"0 40 10 60 0 0 0 1\n1, 40, 10, 60, {half:.9f}, 0, 0, {half:.9f}\n")
         for device in ([], ["--device", "touch"]):
             with self.subTest(device=device):
-                _, rows = self.logged("--tool", self.peg, "--script", quarter_turn, *device)
+                _, rows = self.logged("--instrument", self.peg, "--script", quarter_turn, *device)
                 self.assertEqual(len(rows), 1000)
                 for tick in (0, 250, 499, 999):
                     angle = math.pi / 2 * 1e-3 * (tick + 1)
@@ -108,21 +108,21 @@ class WholeTools(SampleAsset):
                     for of in ("device", "tool"):  # in the air they are turned alike
                         self.assert_same_turn(self.quaternion(rows[tick], of), expected)
         ticks = self.hand("40 10 60 0 0 0 1\n40 10 60 1 0 0 0\n40 10 60 0 1 0 0\n")
-        _, rows = self.logged("--tool", self.peg, "--script", ticks)
+        _, rows = self.logged("--instrument", self.peg, "--script", ticks)
         for row, expected in zip(rows, (UPRIGHT, [1, 0, 0, 0], [0, 1, 0, 0]), strict=True):
             self.assert_same_turn(self.quaternion(row, "device"), expected)
 
     def test_a_script_with_a_quaternion_that_is_none_is_refused_with_its_line(self):
         for rows, message in (("40 10 60 0 0 0 1\n40 10 60 0 0 0 2\n", "hand.txt, line 2: a quaternion of length 2"),
                               ("40 10 60 0 0 0 1\n40 10 60\n", "hand.txt, line 2: 3 numbers")):
-            run = self.touch("--tool", self.peg, "--virtual-clock", "--script", self.hand(rows))
+            run = self.touch("--instrument", self.peg, "--virtual-clock", "--script", self.hand(rows))
             self.assertEqual(run.returncode, 3, run.stderr)
             self.assertIn(message, run.stderr)
 
     def test_the_rod_turns_where_it_is_asked_to_and_is_held_by_its_device_otherwise(self):
         # The sample's rod is a ball, which nothing turns.
         script = self.hand(BESIDE_THE_TOP.format("0 0 0 1"))
-        rod = self.result("--virtual-clock", "--tool", "rod", "--script", script)
+        rod = self.result("--virtual-clock", "--instrument", "rod", "--script", script)
         held = self.result("--virtual-clock", "--script", script)
         self.assertEqual(rod["scheme"], "continuous")
         self.assertEqual(held["torque_peak_n_mm"], 0)
@@ -143,7 +143,7 @@ class WholeTools(SampleAsset):
         script = self.hand(BESIDE_THE_TOP.format("0 0 0 1"))
         second = self.folder / "second.txt"
         second.write_text(script.read_text().replace(" 36 ", " 44 "))
-        run = self.result("--virtual-clock", "--tool", self.peg, "--script", script, "--second", second)
+        run = self.result("--virtual-clock", "--instrument", self.peg, "--script", script, "--second", second)
         for tool, sign in ((run, -1), (run["second"], 1)):
             force, torque = tool["peak"]["force_n"], tool["peak"]["torque_n_mm"]
             self.assertAlmostEqual(sign * torque[1], 4 * force[2], delta=4 * FACETS * force[2])
@@ -154,9 +154,9 @@ class WholeTools(SampleAsset):
         return path, run
 
     def test_a_recording_holds_the_tool_and_alone_replays_bit_for_bit(self):
-        shell = ("--tool", self.peg, "--script", self.hand(BESIDE_THE_TOP.format("0.1 0.2 0.3 0.927362")), "--voxel", 0.5,
+        shell = ("--instrument", self.peg, "--script", self.hand(BESIDE_THE_TOP.format("0.1 0.2 0.3 0.927362")), "--voxel", 0.5,
                  "--torsional-stiffness", 300)
-        rod = ("--tool", "rod", "--scheme", "continuous", "--seconds", 1, "--max-torque", 50)
+        rod = ("--instrument", "rod", "--scheme", "continuous", "--seconds", 1, "--max-torque", 50)
         for name, options in (("shell.h5", shell), ("rod.h5", rod)):
             with self.subTest(tool=name):
                 path, run = self.recorded(name, *options)
@@ -177,7 +177,7 @@ class WholeTools(SampleAsset):
             self.assertEqual(list(file["tool"]), [])
 
     def test_a_changed_torque_ends_with_exit_code_4_and_the_tick(self):
-        path, _ = self.recorded("changed.h5", "--tool", self.peg, "--script", self.hand(BESIDE_THE_TOP.format("0 0 0 1")))
+        path, _ = self.recorded("changed.h5", "--instrument", self.peg, "--script", self.hand(BESIDE_THE_TOP.format("0 0 0 1")))
         with h5py.File(path, "r+") as file:
             torque = file["ticks/torque"][500]
             self.assertGreater(norm(torque), 1)
@@ -195,27 +195,27 @@ class WholeTools(SampleAsset):
         self.assertAlmostEqual(replay["largest_difference_n_mm"], 1e-6, delta=1e-9)
 
     def test_refusals_name_the_culprit_and_the_next_step(self):
-        path, _ = self.recorded("refusals.h5", "--tool", self.peg, "--seconds", 0.1)
+        path, _ = self.recorded("refusals.h5", "--instrument", self.peg, "--seconds", 0.1)
         open_surface = self.folder / "open.stl"
         open_surface.write_text("solid open\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
                                 "endloop\nendfacet\nendsolid open\n")
-        peg = ["--tool", self.peg]
+        peg = ["--instrument", self.peg]
         cases = [
-            (["--tool", self.folder / "none.stl"], 3, ["none.stl: cannot be read", "check the path"]),
-            (["--tool", open_surface], 3, ["open.stl", "edge"]),
-            (["--tool", self.asset], 3, ["sample.vtkhdf"]),
-            ([*peg, "--scheme", "twice"], 2, ["--tool: with --scheme twice", "continuous or shell"]),
-            (["--tool", "rod", "--scheme", "single"], 2, ["--tool: with --scheme single", "continuous or shell"]),
-            ([*peg, "--scheme", "continuous"], 2, ["--tool", "peg.stl with --scheme continuous", "--scheme shell, or --tool rod"]),
-            (["--voxel", 2], 2, ["--voxel: without --tool", "--tool FILE beside it"]),
-            (["--max-torque", 10], 2, ["--max-torque: without --tool", "--tool FILE beside it"]),
+            (["--instrument", self.folder / "none.stl"], 3, ["none.stl: cannot be read", "check the path"]),
+            (["--instrument", open_surface], 3, ["open.stl", "edge"]),
+            (["--instrument", self.asset], 3, ["sample.vtkhdf"]),
+            ([*peg, "--scheme", "twice"], 2, ["--instrument: with --scheme twice", "continuous or shell"]),
+            (["--instrument", "rod", "--scheme", "single"], 2, ["--instrument: with --scheme single", "continuous or shell"]),
+            ([*peg, "--scheme", "continuous"], 2, ["--instrument", "peg.stl with --scheme continuous", "--scheme shell, or --instrument rod"]),
+            (["--voxel", 2], 2, ["--voxel: without --instrument", "--instrument rod or a file beside it"]),
+            (["--max-torque", 10], 2, ["--max-torque: without --instrument", "--instrument rod or a file beside it"]),
             ([*peg, "--voxel", 0], 3, ["--voxel: is 0", "0.1 to 10"]),
             ([*peg, "--shell-points", 10], 3, ["--shell-points: is 10", "100 to 100000"]),
-            (["--tool", "rod", "--torsional-stiffness", 0], 3, ["--torsional-stiffness: is 0", "1 to 100000"]),
+            (["--instrument", "rod", "--torsional-stiffness", 0], 3, ["--torsional-stiffness: is 0", "1 to 100000"]),
             ([*peg, "--body", "wall"], 2, ["--body: 'wall' is not rigid", "a rigid body", "'shell' feels no other"]),
             (["--scheme", "shell", "--body", "wall"], 2, ["--body: 'wall' is not rigid"]),
             ([*peg, "--body", "skul"], 2, ["no body 'skul'", "'skull'"]),
-            ([*peg, "--replay", path], 2, ["--replay", "--tool"]),
+            ([*peg, "--replay", path], 2, ["--replay", "--instrument"]),
         ]
         for options, code, messages in cases:
             with self.subTest(options=options):
@@ -228,7 +228,7 @@ class WholeTools(SampleAsset):
     def test_a_case_without_rigid_bodies_is_not_for_shell(self):
         soft = self.folder / "soft.vtkhdf"
         subprocess.run([TESTS / "write_sample_asset", soft, "soft"], check=True)
-        for options in (["--tool", self.peg], ["--scheme", "shell"]):
+        for options in (["--instrument", self.peg], ["--scheme", "shell"]):
             run = self.touch("--virtual-clock", *options, asset=soft)
             self.assertEqual(run.returncode, 3, run.stderr)
             self.assertIn("no rigid body", run.stderr)

@@ -13,17 +13,10 @@ import unittest
 import h5py
 import numpy as np
 
+from recorded import kept
 from sample_asset import TESTS, SampleAsset
 
 TOUCH = pathlib.Path(os.environ["PALPATE_BIN"]) / "palpate-touch"
-
-
-def kept(path, column):
-    """A column of a recording, oldest row first: the lines of formats/recording/SPEC.md."""
-    run = h5py.File(path)
-    rows = len(run["ticks/tick"])
-    written = run["count/ticks"][0]
-    return run[column][:][np.arange(max(0, written - rows + 1), written) % rows]
 
 
 class Record(SampleAsset):

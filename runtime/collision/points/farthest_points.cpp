@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/collision/farthest_points.hpp"
+#include "runtime/collision/points/farthest_points.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/collision/point_shell.hpp"
+#include "runtime/collision/points/point_shell.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include <string>
 
 #include "formats/model/errors.hpp"
-#include "runtime/collision/farthest_points.hpp"
+#include "runtime/collision/points/farthest_points.hpp"
 #include "runtime/collision/triangle_queries.hpp"
 
 namespace palpate::collision {

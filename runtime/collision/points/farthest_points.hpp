@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "runtime/collision/point_shell.hpp"
+#include "runtime/collision/points/point_shell.hpp"
 
 namespace palpate::collision {
 
