@@ -102,6 +102,12 @@ inline bool has_instrument(const Case& patient_case) {
     return patient_case.tool && !patient_case.tool->surface.triangles.empty();
 }
 
+/// How long the shaft of a tool without a surface of its own is, mm.
+inline double rod_length(const Case& patient_case) {
+    const bool chosen = patient_case.tool && patient_case.tool->settings.rod_length > 0;
+    return chosen ? patient_case.tool->settings.rod_length : patient_case.haptics.shaft_length;
+}
+
 /// How far what is held goes beyond its tip's centre, against its shaft, mm.
 inline double tip_reach(const Case& patient_case) {
     if (!has_instrument(patient_case)) return patient_case.haptics.tool_radius;

@@ -8,6 +8,7 @@ namespace palpate {
 
 /// How a tool that turns is felt: one with a body of its own, which touches with all of it.
 struct ToolSettings {
+    double rod_length = 0;
     std::int32_t shell_points = 5000;
     double voxel = 1;
     double contact_stiffness = 10;
@@ -17,13 +18,15 @@ struct ToolSettings {
 };
 
 inline constexpr std::tuple tool_fields{
+    Field("rod_length", &ToolSettings::rod_length, "mm",
+          "of a rod behind its tip; 0: the case's shaft_length", Range{.least = 0, .most = 1000}),
     Field("shell_points", &ToolSettings::shell_points, "", "points on the tool's surface that touch",
           Range{.least = 100, .most = 100'000}),
     Field("voxel", &ToolSettings::voxel, "mm", "edge of a voxel of the distance field of rigid anatomy",
           Range{.least = 0.1, .most = 10}),
     Field("contact_stiffness", &ToolSettings::contact_stiffness, "N/mm",
           "of one point of the tool against anatomy: how hard it pushes back per depth",
-          Range{.least = 0.1, .most = 1000}),
+          Range{.least = 1, .most = 1000}),
     Field("torsional_stiffness", &ToolSettings::torsional_stiffness, "N mm/rad",
           "virtual coupling of rotations, the spring from the device's orientation to the tool's",
           Range{.least = 1, .most = 100'000}),

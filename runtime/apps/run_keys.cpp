@@ -39,8 +39,13 @@ std::string RunKeys::turn_recording() {
 std::string RunKeys::take_next_method() {
     const auto methods = haptics::contact_methods();
     auto at = &run_.model().method() - methods.data();
+    const bool needs_surface = has_instrument(run_.patient_case());
+    const auto serves = [&](const haptics::ContactMethodEntry& method) {
+        return method.can.most_tools >= run_.model().tool_count() &&
+               (needs_surface ? method.can.has_surface : method.can.feels_tissue);
+    };
     do at = (at + 1) % std::ssize(methods);
-    while (methods[at].can.most_tools < run_.model().tool_count() || !methods[at].can.feels_tissue);
+    while (!serves(methods[at]));
     run_.change_method(methods[at].name);
     return translated("contact '{}': {}", methods[at].name, looked_up(methods[at].sentence.data()));
 }

@@ -46,6 +46,16 @@ std::optional<ToolBody> tool_body(const ToolOption& option) {
     return ToolBody{option.has_surface() ? stl_file::read_stl(option.tool) : TriangleMesh{}, option.settings};
 }
 
+void tell_misfit(const StatusCounts& statuses, std::int64_t ticks) {
+    const auto counts = statuses.by_name();
+    const auto inside = counts.find(status_text(starts_inside));
+    if (inside != counts.end() && inside->second == ticks)
+        spdlog::warn(
+            "the tool was inside a body in every tick and felt nothing: it does not fit where it begins; "
+            "hold it "
+            "otherwise with --shaft or a script of quaternions, or begin elsewhere with --target");
+}
+
 void tell_unfelt(const Case& patient_case, const std::string& scheme) {
     if (haptics::find_contact_method(scheme).can.feels_tissue || patient_case.deformable_bodies.empty())
         return;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <string>
 
 #include "formats/model/body.hpp"
+#include "formats/records/status_counts.hpp"
 #include "tools/cli/command.hpp"
 
 namespace palpate::apps {
@@ -28,5 +30,8 @@ std::optional<ToolBody> tool_body(const ToolOption& option);
 
 /// Warns of what of a case is not felt with a scheme.
 void tell_unfelt(const Case& patient_case, const std::string& scheme);
+
+/// Warns where a tool was inside a body from the run's first tick to its last.
+void tell_misfit(const StatusCounts& statuses, std::int64_t ticks);
 
 }  // namespace palpate::apps

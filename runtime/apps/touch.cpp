@@ -95,6 +95,7 @@ Json touch(const TouchOptions& options, cli::Session& session) {
     for (const realtime::SetupResult& setup : statistics.setup)
         if (!setup.ok) spdlog::warn("{}", setup.message);
     tell_statuses(run.statuses());
+    tell_misfit(records.front().statuses(), statistics.ticks);
     Json result{{"case", patient_case.name},
                 {"script", script},
                 {"scheme", options.scheme},

@@ -76,7 +76,9 @@ DeviceRequest request_of(const TouchOptions& options, const DeviceKind& device, 
     DeviceRequest request{.tools = {}, .limits = limits_asked_by(model.settings())};
     const Eigen::Vector3d up = plan.target ? plan.target->place.normal : anterior;
     if (!device.simulated) {  // several at one place, so that all reach what one does
-        const DevicePlace place{start_outside(plan.target->place, model.settings().tool_radius), upright(up)};
+        const DevicePlace place{
+            start_outside(plan.target->place, std::max(model.settings().tool_radius, model.contact_radius())),
+            upright(up)};
         request.tools.assign(model.tool_count(), HeldTool{.place = place});
         return request;
     }

@@ -69,7 +69,7 @@ HapticModel::HapticModel(const Case& patient_case, std::string_view method, std:
       poses_(tool_count),
       forces_(tool_count),
       contact_(method_.make(patient_case, bodies_, tool_count)),
-      observer_(tool_count, settings_.shaft_length) {}
+      observer_(tool_count, rod_length(patient_case)) {}
 
 void HapticModel::couple_to(std::span<const DeviceLimits> devices) {
     coupling_ = settings_.coupling_stiffness;

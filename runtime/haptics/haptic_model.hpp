@@ -99,7 +99,8 @@ class HapticModel {
     struct Tool {
         ForceLimiter limiter, torque_limiter;
         Eigen::Vector3d last_tip = Eigen::Vector3d::Zero();  // the last that was to be trusted
-        bool lost = false;                                   // the last position was not
+        Eigen::Quaterniond last_orientation{Eigen::Quaterniond::Identity()};
+        bool lost = false;  // the last position was not
     };
 
     ContactPose begin(Tool& tool, const realtime::DeviceState& device, TickResult& result) noexcept;

@@ -10,7 +10,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double farthest_return = 5;  // mm: found again farther off than this, a tool starts anew
+constexpr double farthest_return = 5;   // mm: found again farther off than this, a tool starts anew
+constexpr double farthest_turn = 0.35;  // rad: or turned by more
 
 }  // namespace
 
@@ -36,6 +37,7 @@ void HapticModel::tick(std::span<const realtime::DeviceState> devices, std::span
     if (method_.can.keeps_energy) observer_.damp(poses_, coupling_, results, forces_);
     for (std::size_t t = 0; t < tools_.size(); ++t) {
         TickResult& result = results[t];
+        if (!vector_of(result.torque).allFinite()) result.faults |= invalid_force;
         result.force = array_of(tools_[t].limiter.limit(forces_[t], result.faults, result.status));
         if (method_.can.turns)
             result.torque = array_of(
@@ -71,9 +73,12 @@ ContactPose HapticModel::begin(Tool& tool, const realtime::DeviceState& device, 
     pose.trusted = true;
     // The way there was not seen, so it says nothing about what lies between.
     const bool unseen = tool.lost || (result.faults & tick_late);
-    pose.jumped = unseen && (pose.tip - tool.last_tip).norm() > farthest_return;
+    const Eigen::Quaterniond orientation = orientation_of(pose);
+    pose.jumped = unseen && ((pose.tip - tool.last_tip).norm() > farthest_return ||
+                             orientation.angularDistance(tool.last_orientation) > farthest_turn);
     tool.lost = false;
     tool.last_tip = pose.tip;
+    tool.last_orientation = orientation;
     return pose;
 }
 

@@ -20,7 +20,7 @@ recording::RecordingHead recording_head(const std::filesystem::path& asset, cons
                                   .coupling_stiffness = model.coupling(),
                                   .haptics = model.settings(),
                                   .devices = {},
-                                  .tool = patient_case.tool};
+                                  .tool = model.method().can.turns ? patient_case.tool : std::nullopt};
     for (const Device* device : devices) head.devices.push_back({device->name(), device->limits()});
     return head;
 }

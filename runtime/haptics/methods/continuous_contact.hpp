@@ -71,7 +71,7 @@ class ContinuousContact final : public ContactMethod {
     Eigen::Vector3d friction_of(const Part& part) const noexcept;
     bool kept_by_tissue(const Part& part) const noexcept;
     void tell_turn(std::size_t tool, const ContactPose& pose, TickResult& result) const noexcept;
-    Eigen::Vector3d wall_friction(Tool& tool, const Eigen::Vector3d& force) noexcept;
+    Eigen::Vector3d wall_friction(std::size_t tool, const Eigen::Vector3d& force) noexcept;
 
     const ContactBodies& bodies_;
     Friction friction_;

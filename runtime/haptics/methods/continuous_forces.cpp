@@ -126,7 +126,8 @@ Vector3d ContinuousContact::friction_of(const Part& part) const noexcept {
 
 // The same of all parts of a tool on which `force` (N) acts besides, but for what would drag it into a wall
 // that it does not touch yet.
-Vector3d ContinuousContact::wall_friction(Tool& tool, const Vector3d& force) noexcept {
+Vector3d ContinuousContact::wall_friction(std::size_t t, const Vector3d& force) noexcept {
+    Tool& tool = tools_[t];
     constexpr int most_walls = 4;
     const auto parts = std::span(tool.parts).first(tool.parts_felt);
     Vector3d drag = Vector3d::Zero();
@@ -134,10 +135,11 @@ Vector3d ContinuousContact::wall_friction(Tool& tool, const Vector3d& force) noe
     if (drag == Vector3d::Zero()) return drag;
     for (int wall = 0;; ++wall) {
         std::optional<GodObject::Touch> touch;
-        for (Part& part : parts)
-            if (!touch)
-                touch =
-                    part.on_rigid.touch_on_the_way(rigid_surfaces_, part.device + (force + drag) / coupling_);
+        for (std::size_t p = 0; p < parts.size() && !touch; ++p) {
+            const Vector3d turned = equilibrium_.off(t, p) - equilibrium_.off(t, 0);
+            touch = parts[p].on_rigid.touch_on_the_way(rigid_surfaces_,
+                                                       parts[p].device + (force + drag) / coupling_ + turned);
+        }
         if (!touch) break;
         const double inwards = touch->normal.dot(drag);
         if (wall == most_walls || !(inwards < 0)) return Vector3d::Zero();

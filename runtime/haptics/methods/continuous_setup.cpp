@@ -56,7 +56,12 @@ std::unique_ptr<ContactMethod> make_continuous(const Case& patient_case, const C
              "a tool with a surface of its own, which contact method 'continuous' does not feel",
              "the case's ball or rod", "use contact method 'shell'"});
     const double torsion = patient_case.tool ? 1 / patient_case.tool->settings.torsional_stiffness : 0;
-    return std::make_unique<ContinuousContact>(bodies, patient_case.haptics, tool_count, torsion);
+    HapticSettings settings = patient_case.haptics;
+    settings.shaft_length = rod_length(patient_case);
+    if (patient_case.tool && !(settings.shaft_length > 0))
+        throw InvalidInput({patient_case.name, "its tool has no shaft, so that it has nothing to turn",
+                            "a shaft", "give --rod-length, or shaft_length_mm in the case file"});
+    return std::make_unique<ContinuousContact>(bodies, settings, tool_count, torsion);
 }
 
 }  // namespace palpate::haptics

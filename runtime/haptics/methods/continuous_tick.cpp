@@ -50,8 +50,7 @@ void ContinuousContact::tick(std::span<const ContactPose> poses, double coupling
 // How the tool is turned against its device, and the torque that this takes.
 void ContinuousContact::tell_turn(std::size_t t, const ContactPose& pose, TickResult& result) const noexcept {
     const Eigen::Quaterniond device = orientation_of(pose);
-    const bool found = result.contact_count > 0 && !(result.status & contact_unsolved);
-    const Vector3d turn = found ? equilibrium_.turn(t) : Vector3d::Zero();
+    const Vector3d& turn = equilibrium_.turn(t);
     result.torque = array_of(Vector3d(turn / torsion_));
     result.tool_orientation = array_of(moved({Vector3d::Zero(), device}, rotation(turn)).orientation);
 }
@@ -82,7 +81,7 @@ Vector3d ContinuousContact::force_of(std::size_t t, TickResult& result) noexcept
         result.residual = equilibrium_.residual();
         if (result.contact_count > walls) depth_in_tissue(tool, result);
         Vector3d force = press + equilibrium_.drag(t);
-        if (friction_.at_rest > 0) force += wall_friction(tool, force);
+        if (friction_.at_rest > 0) force += wall_friction(t, force);
         return force;
     }
     // The contacts contradict each other: nothing gives way, and the part that is held most decides.

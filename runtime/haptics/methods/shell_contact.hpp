@@ -33,7 +33,7 @@ class ShellContact final : public ContactMethod {
   public:
     /// Of a tool's touches, so many of the deepest become contacts of a result.
     static constexpr std::size_t most_told = 8;
-    /// mm on either side of a surface where distances are known, in voxels.
+    /// How far on either side of a surface distances are known at least, in voxels.
     static constexpr double band_voxels = 3;
 
     /// `bodies` must outlive this; the tool's settings make sense (unchecked). Throws InvalidInput if there
@@ -57,6 +57,7 @@ class ShellContact final : public ContactMethod {
     bool stays_clear(Tool& tool, const ContactPose& at, const ToolPose& device, TickResult& result) noexcept;
     void tell(Tool& tool, const ToolPose& device, TickResult& result) const noexcept;
     Contact contact_of(Tool& tool, const ShellTouch& touch) const noexcept;
+    double depth_at(const ToolPose& device, const ShellTouch& touch) const noexcept;
 
     const ContactBodies& bodies_;
     ToolSettings settings_;

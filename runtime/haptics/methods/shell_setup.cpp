@@ -23,7 +23,7 @@ std::vector<collision::ShellPoint> points_of(const Case& patient_case, const Too
         return collision::point_shell(patient_case.tool->surface,
                                       static_cast<std::size_t>(settings.shell_points))
             .points;
-    const TriangleMesh rod = rod_surface(patient_case.haptics.tool_radius, patient_case.haptics.shaft_length);
+    const TriangleMesh rod = rod_surface(patient_case.haptics.tool_radius, rod_length(patient_case));
     // Half a voxel apart; a small ball needs no thousands.
     const double wanted = area_of(rod) / (0.25 * settings.voxel * settings.voxel);
     return collision::point_shell(
@@ -31,14 +31,26 @@ std::vector<collision::ShellPoint> points_of(const Case& patient_case, const Too
         .points;
 }
 
+collision::DistanceField field_of(const ContactBodies& bodies, std::size_t body, double voxel, double band) {
+    const std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
+    try {
+        return {*bodies.surfaces[body], voxel, band, threads};
+    } catch (const InvalidInput& error) {
+        const auto& [culprit, found, expected, next_step] = error.detail();
+        throw InvalidInput({bodies.names[body] + ", " + culprit, found, expected, "--voxel: " + next_step});
+    }
+}
+
 }  // namespace
 
 ShellContact::ShellContact(const Case& patient_case, const ContactBodies& bodies, std::size_t tool_count)
     : bodies_(bodies), settings_(settings_of(patient_case)), points_(points_of(patient_case, settings_)) {
-    const std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
     fields_.reserve(bodies.rigid_count());
+    // Deep enough for the largest force on one point.
+    const double band = std::max(band_voxels * settings_.voxel,
+                                 2 * patient_case.haptics.max_force / settings_.contact_stiffness);
     for (std::size_t body = 0; body < bodies.rigid_count(); ++body)
-        fields_.emplace_back(*bodies.surfaces[body], settings_.voxel, band_voxels * settings_.voxel, threads);
+        fields_.push_back(field_of(bodies, body, settings_.voxel, band));
     tools_.reserve(tool_count);
     for (std::size_t t = 0; t < tool_count; ++t)
         tools_.push_back({.watch = ShellWatch(points_, fields_, longest_step(settings_)),

@@ -2,6 +2,7 @@
 // A tick of a whole tool against rigid bodies.
 #include <algorithm>
 #include <functional>
+#include <limits>
 
 #include "formats/model/arrays.hpp"
 #include "runtime/haptics/methods/shell_contact.hpp"
@@ -27,7 +28,9 @@ void ShellContact::tick(std::span<const ContactPose> poses, double coupling, std
         const ShellRest rest = bring_to_rest(tool.watch, {device, coupling, settings_.torsional_stiffness},
                                              settings_.contact_stiffness, longest_step(settings_), tool.pose);
         if (rest == ShellRest::unsettled) results[t].status |= contact_unsettled;
-        if (tool.watch.touches() || rest == ShellRest::on_its_way) {
+        if (!tool.watch.touches() && rest != ShellRest::on_its_way) {
+            tool.pose = device;  // to the bit, so that a replay may begin in any free tick
+        } else {
             forces[t] = coupling * (tool.pose.position - device.position);
             results[t].torque = array_of(Vector3d(
                 settings_.torsional_stiffness * rotation_between(device.orientation, tool.pose.orientation)));
@@ -66,10 +69,6 @@ void ShellContact::tell(Tool& tool, const ToolPose& device, TickResult& result) 
             result.residual = -touch.distance;
             result.body = touch.body;
         }
-        const collision::DistanceField& field = fields_[static_cast<std::size_t>(touch.body)];
-        const Vector3d held = points_[static_cast<std::size_t>(touch.point)].position.cast<double>();
-        result.depth =
-            std::max(result.depth, -field.at(device.position + device.orientation * held).distance);
         Contact contact;
         contact.part = touch.point;
         contact.body = touch.body;
@@ -82,16 +81,29 @@ void ShellContact::tell(Tool& tool, const ToolPose& device, TickResult& result) 
         contacts[told++] = contact;
         std::ranges::push_heap(contacts.first(told), shallower);
     }
+    std::ranges::sort_heap(contacts.first(told), shallower);  // the deepest first
     result.contact_count = static_cast<std::int32_t>(told);
     for (const ShellTouch& touch : tool.watch.close())
         for (Contact& contact : contacts.first(told))
-            if (contact.part == touch.point && contact.body == touch.body) contact = contact_of(tool, touch);
+            if (contact.part == touch.point && contact.body == touch.body) {
+                contact = contact_of(tool, touch);
+                result.depth = std::max(result.depth, depth_at(device, touch));
+            }
+}
+
+// How deep the device has a point of the tool below the body that it touches.
+double ShellContact::depth_at(const ToolPose& device, const ShellTouch& touch) const noexcept {
+    const collision::CollisionSurface& surface = *bodies_.surfaces[static_cast<std::size_t>(touch.body)];
+    const Vector3d held = points_[static_cast<std::size_t>(touch.point)].position.cast<double>();
+    const Vector3d p = device.position + device.orientation * held;
+    const auto nearest = surface.closest_point(p, std::numeric_limits<double>::max());
+    return nearest && !surface.is_outside(p, *nearest) ? nearest->distance : 0;
 }
 
 Contact ShellContact::contact_of(Tool& tool, const ShellTouch& touch) const noexcept {
     const auto body = static_cast<std::size_t>(touch.body);
-    const double steepness = touch.gradient.norm();
-    const Vector3d normal = steepness > 0 ? Vector3d(touch.gradient / steepness) : Vector3d::UnitZ();
+    const double steepness = touch.gradient().norm();
+    const Vector3d normal = steepness > 0 ? Vector3d(touch.gradient() / steepness) : Vector3d::UnitZ();
     Contact contact;
     contact.body = touch.body;
     contact.part = touch.point;

@@ -13,7 +13,7 @@ using Hessian = Eigen::Matrix<double, 6, 6>;
 constexpr int most_rounds = 16;
 constexpr int most_turns = 20;  // of the search in a round's model
 constexpr int most_halvings = 8;
-constexpr double settled_step = 1e-6;    // mm: less moves no force that a float shows
+constexpr double settled_step = 1e-5;    // mm: less moves no force that a hand feels
 constexpr double tolerated_step = 1e-3;  // mm: a search that ends with more is told of
 constexpr double round_off = 1e-12;      // of an energy
 
@@ -36,13 +36,6 @@ double energy_of(const Situation& at) noexcept {
                   at.coupling.torsional_stiffness * turn + at.contact_stiffness * contact);
 }
 
-// The slope of a point's distance by the tool's motion.
-Twist slope_of(const ShellTouch& touch) noexcept {
-    Twist slope;
-    slope << touch.gradient, touch.arm.cross(touch.gradient);
-    return slope;
-}
-
 // E after a motion in the model in which distances change in proportion to it: convex, quadratic by pieces.
 class Model {
   public:
@@ -56,7 +49,7 @@ class Model {
     double energy(const Twist& motion) const noexcept {
         double contact = 0;
         for (const ShellTouch& touch : at_.watch.close()) {
-            const double depth = std::min(touch.distance + slope_of(touch).dot(motion), 0.0);
+            const double depth = std::min(touch.distance + touch.slope.dot(motion), 0.0);
             contact += depth * depth;
         }
         return 0.5 * ((pulled_ + motion).cwiseAbs2().dot(spring_) + at_.contact_stiffness * contact);
@@ -67,7 +60,7 @@ class Model {
         Hessian H = spring_.asDiagonal();
         Twist gradient = spring_.cwiseProduct(pulled_);
         for (const ShellTouch& touch : at_.watch.close()) {
-            const Twist slope = slope_of(touch);
+            const Twist& slope = touch.slope;
             if (touch.distance + slope.dot(motion) >= 0) continue;
             gradient += at_.contact_stiffness * touch.distance * slope;
             H.selfadjointView<Eigen::Lower>().rankUpdate(slope, at_.contact_stiffness);
@@ -117,9 +110,8 @@ ShellRest bring_to_rest(ShellWatch& watch, const TurningCoupling& coupling, doub
         Twist step = Model(situation).least();
         left = watch.reach_of(step);
         if (left <= settled_step) return ShellRest::settled;
-        const double longest = watch.is_near() ? longest_step : ShellWatch::slack;
-        shortened = left > longest;
-        if (shortened) step *= longest / left;
+        shortened = left > longest_step;
+        if (shortened) step *= longest_step / left;
         const ToolPose from = pose;
         for (int halving = 0;; ++halving) {
             pose = moved(from, step);
@@ -129,10 +121,10 @@ ShellRest bring_to_rest(ShellWatch& watch, const TurningCoupling& coupling, doub
                 energy = lower;
                 break;
             }
-            if (halving == most_halvings) {  // no lower place is near
+            if (halving == most_halvings) {  // a minimum, at a kink of the field
                 pose = from;
                 watch.look(pose);
-                return left <= tolerated_step ? ShellRest::settled : ShellRest::unsettled;
+                return ShellRest::settled;
             }
             step *= 0.5;
         }

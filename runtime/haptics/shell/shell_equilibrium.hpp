@@ -25,12 +25,12 @@ enum class ShellRest {
 /// distance at point i; in rounds, each to the least of E where the distances of close points change in
 /// proportion to the motion (Gauss-Newton, points that come in or go out among them), halved until E goes
 /// down. The force on the device k (x - x_d) and the torque kappa theta are then gradients of the least
-/// energy with respect to the device's motions. No step takes a point farther than half a voxel where bodies
-/// are near, so that it does not pass through what is thicker than a voxel. Leaves in `watch` what is close
-/// to the pose. `contact_stiffness`: K, N/mm. `longest_step`: mm near bodies, no more than what `watch` takes
-/// for close. Realtime-safe; costs some 100 ns a round and point near a body. Sources: Wan, McNeely 2003,
-/// "Quasi-static approximation for 6 degrees-of-freedom haptic rendering" (a tool without mass); McNeely,
-/// Puterbaugh, Troy 1999 (points against voxels); Barbic, James 2008 (forces along the distance's gradient).
+/// energy with respect to the device's motions. No step takes a point farther than `longest_step`. Leaves in
+/// `watch` what is close to the pose. `contact_stiffness`: K, N/mm. `longest_step`: mm, no more than what
+/// `watch` takes for close. Realtime-safe; costs some 100 ns a round and point near a body. Sources: Wan,
+/// McNeely 2003, "Quasi-static approximation for 6 degrees-of-freedom haptic rendering" (a tool without
+/// mass); McNeely, Puterbaugh, Troy 1999 (points against voxels); Barbic, James 2008 (forces along the
+/// distance's gradient).
 ShellRest bring_to_rest(ShellWatch& watch, const TurningCoupling& coupling, double contact_stiffness,
                         double longest_step, ToolPose& pose) noexcept;
 

@@ -2,6 +2,7 @@
 #include "runtime/haptics/shell/shell_watch.hpp"
 
 #include <algorithm>
+#include <numbers>
 
 namespace palpate::haptics {
 
@@ -9,17 +10,12 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double odometer_end = 2000;  // mm, beyond which float32 has no thousandths
+constexpr double odometer_end = 1e6;  // mm, so that its rounding stays far below a step
 
 }  // namespace
 
 double ShellWatch::reach_of(const Twist& motion) const noexcept {
     return motion.head<3>().norm() + longest_arm_ * motion.tail<3>().norm();
-}
-
-// Rounded up, so that no point sleeps too long.
-float ShellWatch::odometer(const Watched& watched) const noexcept {
-    return 1.000001F * (static_cast<float>(moved_) + static_cast<float>(turned_) * watched.arm);
 }
 
 void ShellWatch::reset() noexcept {
@@ -29,12 +25,18 @@ void ShellWatch::reset() noexcept {
     found_count_ = 0;
 }
 
+void ShellWatch::wind_back() noexcept {
+    for (Watched& watched : watched_) watched.wake -= odometer(watched);
+    moved_ = turned_ = 0;
+    gathered_ = false;
+}
+
 void ShellWatch::look(const ToolPose& pose) noexcept {
     if (gathered_) {
         moved_ += (pose.position - pose_.position).norm();
         turned_ += rotation_between(pose_.orientation, pose.orientation).norm();
     }
-    if (moved_ + turned_ * longest_arm_ > odometer_end) reset();
+    if (moved_ + turned_ * longest_arm_ > odometer_end) wind_back();
     pose_ = pose;
     const double since = moved_ - moved_gathered_ + (turned_ - turned_gathered_) * longest_arm_;
     if (!gathered_ || since > slack) gather();
@@ -56,8 +58,16 @@ void ShellWatch::gather() noexcept {
     turned_gathered_ = turned_;
     gathered_ = true;
     for (std::size_t i = 0; i < watched_.size(); ++i)
-        if (watched_[i].wake <= odometer(watched_[i]) + static_cast<float>(slack))
+        if (watched_[i].wake <= odometer(watched_[i]) + slack)
             near_[near_count_++] = static_cast<std::int32_t>(i);
+}
+
+// How far a point may go before it can be close to a body, mm. The interpolant is off by at most the field's
+// error, and it is no steeper than sqrt(3): along each axis it changes by at most the way, as its samples do.
+double ShellWatch::way_until_close(const collision::DistanceField& field, const Vector3d& p,
+                                   double interpolant) const noexcept {
+    if (!(interpolant < field.band())) return std::max(0.0, field.clearance(p) - field.error() - close_);
+    return std::max((interpolant - close_) / std::numbers::sqrt3, interpolant - 2 * field.error() - close_);
 }
 
 void ShellWatch::look_at(std::int32_t point, const ToolPose& pose, const Eigen::Matrix3d& R_PT) noexcept {
@@ -69,18 +79,19 @@ void ShellWatch::look_at(std::int32_t point, const ToolPose& pose, const Eigen::
         const collision::DistanceField& field = fields_[body];
         const collision::FieldSample sample = field.at(p);
         if (sample.distance < close_) {
-            found_[found_count_++] = {point, static_cast<std::int32_t>(body), sample.distance,
-                                      sample.gradient, arm};
+            ShellTouch& touch = found_[found_count_++];
+            touch.point = point;
+            touch.body = static_cast<std::int32_t>(body);
+            touch.distance = sample.distance;
+            touch.slope << sample.gradient, arm.cross(sample.gradient);
+            touch.arm = arm;
             clear = 0;
         } else {
-            // The interpolant is that close only where the distance is so up to its error.
-            const double distance =
-                sample.distance < field.band() ? sample.distance - field.error() : field.clearance(p);
-            clear = std::min(clear, std::max(0.0, distance - field.error() - close_));
+            clear = std::min(clear, way_until_close(field, p, sample.distance));
         }
     }
     Watched& watched = watched_[at];
-    watched.wake = odometer(watched) + static_cast<float>(clear);
+    watched.wake = odometer(watched) + clear;
 }
 
 }  // namespace palpate::haptics

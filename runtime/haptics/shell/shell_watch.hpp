@@ -14,11 +14,14 @@ namespace palpate::haptics {
 
 /// A point of a tool's shell at a body.
 struct ShellTouch {
-    std::int32_t point = 0;                              ///< of the shell
-    std::int32_t body = 0;                               ///< whose field
-    double distance = 0;                                 ///< mm, below zero inside
-    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  ///< of the distance, per mm, frame P
-    Eigen::Vector3d arm = Eigen::Vector3d::Zero();       ///< from the tool's origin to the point, mm, frame P
+    std::int32_t point = 0;  ///< of the shell
+    std::int32_t body = 0;   ///< whose field
+    double distance = 0;     ///< mm, below zero inside
+    Twist slope =
+        Twist::Zero();  ///< of the distance by the tool's motion: its gradient g, then r x g, per mm and rad
+    Eigen::Vector3d arm = Eigen::Vector3d::Zero();  ///< r, from the tool's origin to the point, mm, frame P
+
+    Eigen::Vector3d gradient() const noexcept { return slope.head<3>(); }
 };
 
 /// Finds those points of one tool's shell that are inside a body or close to it, looking only at points that
@@ -44,16 +47,17 @@ class ShellWatch {
     double reach_of(const Twist& motion) const noexcept;
     /// mm; no motion of less takes a point that is not near close to a body.
     static constexpr double slack = 1;
-    /// Whether any point is near a body.
-    bool is_near() const noexcept { return near_count_ > 0; }
 
   private:
     struct Watched {
-        float arm;   // mm, from the tool's origin
-        float wake;  // mm on the odometer, at which the point may be close to a body
+        double arm;   // mm, from the tool's origin
+        double wake;  // mm on the odometer, at which the point may be close to a body
     };
-    float odometer(const Watched& watched) const noexcept;
+    double odometer(const Watched& watched) const noexcept { return moved_ + turned_ * watched.arm; }
+    void wind_back() noexcept;
     void gather() noexcept;
+    double way_until_close(const collision::DistanceField& field, const Eigen::Vector3d& p,
+                           double interpolant) const noexcept;
     void look_at(std::int32_t point, const ToolPose& pose, const Eigen::Matrix3d& R_PT) noexcept;
 
     std::span<const collision::ShellPoint> points_;

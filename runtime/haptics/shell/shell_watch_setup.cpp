@@ -11,8 +11,8 @@ ShellWatch::ShellWatch(std::span<const collision::ShellPoint> points,
     : points_(points), fields_(fields), close_(close) {
     watched_.reserve(points.size());
     for (const collision::ShellPoint& point : points) {
-        watched_.push_back({static_cast<float>(point.position.cast<double>().norm()), 0});
-        longest_arm_ = std::max(longest_arm_, static_cast<double>(watched_.back().arm));
+        watched_.push_back({point.position.cast<double>().norm(), 0});
+        longest_arm_ = std::max(longest_arm_, watched_.back().arm);
     }
     near_.resize(points.size());
     found_.resize(points.size() * fields.size());

@@ -5,7 +5,7 @@
 namespace palpate::experiments {
 
 /// Whole tools on a bone with `shell`: what a tick takes, how deep the tool goes by exact distances and by
-/// FCL, what work a closed path gives, and how many fast approaches it lets through.
+/// FCL, and how many fast approaches it lets through.
 Findings sixdof(const Options& options, cli::Session& session);
 
 }  // namespace palpate::experiments

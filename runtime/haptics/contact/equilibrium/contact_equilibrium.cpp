@@ -162,7 +162,6 @@ bool ContactEquilibrium::add_wall(std::size_t tool, Contact& contact) noexcept {
     row.part = contact.part;
     row.triangle = contact.triangle;
     row.normal = normal_of(contact);
-    row.lever = tools_[tool].parts[static_cast<std::size_t>(contact.part)].swung.cross(row.normal);
     row.gap = static_cast<double>(contact.gap);
     row.wall = &contact;
     rows_.cut(walls);

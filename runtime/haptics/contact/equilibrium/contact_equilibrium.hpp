@@ -248,10 +248,11 @@ class ContactEquilibrium {
     void fill_column(std::size_t row) noexcept;
     void fill_neighbours_column(std::size_t row) noexcept;
     // Of a row or a group of rows.
+    const Part& part_of(const auto& of) const noexcept {
+        return tools_[static_cast<std::size_t>(of.tool)].parts[static_cast<std::size_t>(of.part)];
+    }
     const Touch& touch_of(const auto& of) const noexcept {
-        return tools_[static_cast<std::size_t>(of.tool)]
-            .parts[static_cast<std::size_t>(of.part)]
-            .touches[static_cast<std::size_t>(of.patch)];
+        return part_of(of).touches[static_cast<std::size_t>(of.patch)];
     }
     Touch& touch_of(const auto& of) noexcept { return const_cast<Touch&>(std::as_const(*this).touch_of(of)); }
     const DeformedPatch& patch_of(const auto& of) const noexcept {

@@ -282,7 +282,7 @@ std::int64_t ContactEquilibrium::key_of(const Row& row) noexcept {
 // What is left of a wall's gap once tissue drags the tool.
 double ContactEquilibrium::gap_of_wall(const Row& row) const noexcept {
     const Tool& tool = tools_[static_cast<std::size_t>(row.tool)];
-    const Part& part = tool.parts[static_cast<std::size_t>(row.part)];
+    const Part& part = part_of(row);
     // What turning moves the sphere beyond what is in proportion to the torque.
     const Vector3d besides = part.swung - part.arm - tool.turn.cross(part.swung);
     return row.gap - row.normal.dot(tool.drag) / coupling_ -
@@ -294,6 +294,7 @@ void ContactEquilibrium::solve_rows() noexcept {
     std::array<std::size_t, max_contacts> warm;
     std::size_t warm_count = 0;
     for (std::size_t k = 0; k < n; ++k) {
+        if (rows_[k].wall) rows_[k].lever = part_of(rows_[k]).swung.cross(rows_[k].normal);
         lcp_.gaps()[static_cast<Index>(k)] = rows_[k].wall ? gap_of_wall(rows_[k]) : rows_[k].gap;
         if (is_active(rows_[k])) warm[warm_count++] = k;
     }

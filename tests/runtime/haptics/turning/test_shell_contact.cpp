@@ -23,7 +23,11 @@ constexpr double coupling = 0.5;  // N/mm, of wide_limits()
 // A bar of 2 by 2 by 40 mm along its shaft, its tip's face at z = 0 of the tool.
 ToolBody bar() {
     return {.surface = box({-1, -1, 0}, {1, 1, 40}),
-            .settings = {.shell_points = 2000, .max_torque = 9999, .max_torque_rate = 9999}};
+            .settings = {.shell_points = 2000,
+                         .voxel = 0.5,
+                         .contact_stiffness = 100,
+                         .max_torque = 9999,
+                         .max_torque_rate = 9999}};
 }
 
 Case plate_and_bar() {
@@ -105,7 +109,7 @@ TEST(Shell, forces_are_those_of_its_touches) {
     ASSERT_TRUE(watch.touches());
     Vector3d force = Vector3d::Zero(), moment = Vector3d::Zero();
     for (const ShellTouch& touch : watch.close()) {
-        const Vector3d f = -10 * std::min(touch.distance, 0.0) * touch.gradient;
+        const Vector3d f = -10 * std::min(touch.distance, 0.0) * touch.gradient();
         force += f;
         moment += touch.arm.cross(f);
     }

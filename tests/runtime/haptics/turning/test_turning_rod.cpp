@@ -34,11 +34,11 @@ realtime::DeviceState rod_at(const Vector3d& tip, const Vector3d& shaft) {
     return held_at(tip, shaft.normalized());
 }
 
-// Ticks until it rests, coming from 3 mm above.
-TickResult rest_at(HapticModel& model, const Vector3d& tip, const Vector3d& shaft) {
+// Ticks until it rests, coming from `height` mm above.
+TickResult rest_at(HapticModel& model, const Vector3d& tip, const Vector3d& shaft, double height = 3) {
     TickResult result{};
     for (int tick = 0; tick <= 400; ++tick) {
-        const double lift = 3 * std::max(0.0, 1 - tick / 300.0);
+        const double lift = height * std::max(0.0, 1 - tick / 300.0);
         model.tick(rod_at(tip + Vector3d(0, 0, lift), shaft), result);
     }
     return result;
@@ -132,6 +132,27 @@ TEST(TurningRod, walls_turn_it_too) {
     const Vector3d torque = vector_of(result.torque);
     EXPECT_GT(torque.y(), 1);
     EXPECT_LT((torque - moment_of(result, {-1, 0, 0})).norm(), 0.02 * torque.norm());
+}
+
+TEST(TurningRod, walls_turn_it_far_as_its_spring_says) {
+    Case c = plate();
+    c.haptics.shaft_length = 30;
+    c.tool = ToolBody{.surface = {},
+                      .settings = {.torsional_stiffness = 40, .max_torque = 9999, .max_torque_rate = 9999}};
+    HapticModel model(c);
+    const TickResult result = rest_at(model, {45, 0, -8}, {-1, 0, 0}, 12);
+    EXPECT_EQ(result.status, tick_ok);
+    const Vector3d torque = vector_of(result.torque);
+    EXPECT_GT(torque.norm() / 40, 0.3);  // rad
+    EXPECT_LT((torque - moment_of(result, {-1, 0, 0})).norm(), 0.02 * torque.norm());
+}
+
+TEST(TurningRod, without_a_shaft_there_is_nothing_to_turn) {
+    Case c = plate();
+    c.tool = ToolBody{};
+    EXPECT_THROW(HapticModel(c, "continuous"), InvalidInput);
+    c.tool->settings.rod_length = 20;
+    EXPECT_NO_THROW(HapticModel(c, "continuous"));
 }
 
 TEST(TurningRod, a_surface_of_its_own_is_refused) {
