@@ -120,9 +120,9 @@ class WholeTools(SampleAsset):
             self.assertIn(message, run.stderr)
 
     def test_the_rod_turns_where_it_is_asked_to_and_is_held_by_its_device_otherwise(self):
-        # The sample's rod is a ball, which nothing turns.
+        # Pressed with its tip alone a rod has no lever.
         script = self.hand(BESIDE_THE_TOP.format("0 0 0 1"))
-        rod = self.result("--virtual-clock", "--instrument", "rod", "--script", script)
+        rod = self.result("--virtual-clock", "--instrument", "rod", "--rod-length", 20, "--script", script)
         held = self.result("--virtual-clock", "--script", script)
         self.assertEqual(rod["scheme"], "continuous")
         self.assertEqual(held["torque_peak_n_mm"], 0)
@@ -156,7 +156,7 @@ class WholeTools(SampleAsset):
     def test_a_recording_holds_the_tool_and_alone_replays_bit_for_bit(self):
         shell = ("--instrument", self.peg, "--script", self.hand(BESIDE_THE_TOP.format("0.1 0.2 0.3 0.927362")), "--voxel", 0.5,
                  "--torsional-stiffness", 300)
-        rod = ("--instrument", "rod", "--scheme", "continuous", "--seconds", 1, "--max-torque", 50)
+        rod = ("--instrument", "rod", "--rod-length", 20, "--scheme", "continuous", "--seconds", 1, "--max-torque", 50)
         for name, options in (("shell.h5", shell), ("rod.h5", rod)):
             with self.subTest(tool=name):
                 path, run = self.recorded(name, *options)
@@ -205,13 +205,14 @@ class WholeTools(SampleAsset):
             (["--instrument", open_surface], 3, ["open.stl", "edge"]),
             (["--instrument", self.asset], 3, ["sample.vtkhdf"]),
             ([*peg, "--scheme", "twice"], 2, ["--instrument: with --scheme twice", "continuous or shell"]),
-            (["--instrument", "rod", "--scheme", "single"], 2, ["--instrument: with --scheme single", "continuous or shell"]),
+            (["--instrument", "rod", "--rod-length", 20, "--scheme", "single"], 2, ["--instrument: with --scheme single", "continuous or shell"]),
             ([*peg, "--scheme", "continuous"], 2, ["--instrument", "peg.stl with --scheme continuous", "--scheme shell, or --instrument rod"]),
+            (["--instrument", "rod"], 3, ["its tool has no shaft", "--rod-length"]),
             (["--voxel", 2], 2, ["--voxel: without --instrument", "--instrument rod or a file beside it"]),
             (["--max-torque", 10], 2, ["--max-torque: without --instrument", "--instrument rod or a file beside it"]),
             ([*peg, "--voxel", 0], 3, ["--voxel: is 0", "0.1 to 10"]),
             ([*peg, "--shell-points", 10], 3, ["--shell-points: is 10", "100 to 100000"]),
-            (["--instrument", "rod", "--torsional-stiffness", 0], 3, ["--torsional-stiffness: is 0", "1 to 100000"]),
+            (["--instrument", "rod", "--rod-length", 20, "--torsional-stiffness", 0], 3, ["--torsional-stiffness: is 0", "1 to 100000"]),
             ([*peg, "--body", "wall"], 2, ["--body: 'wall' is not rigid", "a rigid body", "'shell' feels no other"]),
             (["--scheme", "shell", "--body", "wall"], 2, ["--body: 'wall' is not rigid"]),
             ([*peg, "--body", "skul"], 2, ["no body 'skul'", "'skull'"]),
