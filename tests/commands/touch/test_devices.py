@@ -9,6 +9,7 @@ import signal
 import socket
 import struct
 import subprocess
+import sys
 import threading
 import time
 import unittest
@@ -16,11 +17,12 @@ import unittest
 import h5py
 import numpy as np
 
-import openigtlink
-from device_run import (ASSET_REMOVED, BIN, DEVICE_LOST, FELT, PATIENCE, PRESS, RAMP, RAS, SLEW, TICK_LATE,
+sys.path.insert(0, "..")
+import openigtlink  # noqa: E402
+from device_run import (ASSET_REMOVED, BIN, DEVICE_LOST, FELT, PATIENCE, PRESS, RAMP, RAS, SLEW, TICK_LATE,  # noqa: E402
                         DeviceRun, wait_until)
-from recorded import kept
-from x_server import XServer
+from recorded import kept  # noqa: E402
+from x_server import XServer  # noqa: E402
 
 
 class Devices(DeviceRun):

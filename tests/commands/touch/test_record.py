@@ -7,14 +7,16 @@ import os
 import pathlib
 import signal
 import subprocess
+import sys
 import time
 import unittest
 
 import h5py
 import numpy as np
 
-from recorded import kept
-from sample_asset import TESTS, SampleAsset
+sys.path.insert(0, "..")
+from recorded import kept  # noqa: E402
+from sample_asset import TESTS, SampleAsset  # noqa: E402
 
 TOUCH = pathlib.Path(os.environ["PALPATE_BIN"]) / "palpate-touch"
 

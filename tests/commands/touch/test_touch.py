@@ -8,10 +8,12 @@ import math
 import os
 import pathlib
 import subprocess
+import sys
 import unittest
 import xml.etree.ElementTree
 
-from sample_asset import SampleAsset
+sys.path.insert(0, "..")
+from sample_asset import SampleAsset  # noqa: E402
 
 TOUCH = pathlib.Path(os.environ["PALPATE_BIN"]) / "palpate-touch"
 

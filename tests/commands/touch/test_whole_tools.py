@@ -12,7 +12,8 @@ import unittest
 
 import h5py
 
-from sample_asset import TESTS, SampleAsset
+sys.path.insert(0, "..")
+from sample_asset import TESTS, SampleAsset  # noqa: E402
 
 TOUCH = pathlib.Path(os.environ["PALPATE_BIN"]) / "palpate-touch"
 TOOLS = pathlib.Path(os.environ["PALPATE_SOURCE"]) / "sample_data" / "tools.py"
