@@ -46,9 +46,11 @@ collision::DistanceField field_of(const ContactBodies& bodies, std::size_t body,
 ShellContact::ShellContact(const Case& patient_case, const ContactBodies& bodies, std::size_t tool_count)
     : bodies_(bodies), settings_(settings_of(patient_case)), points_(points_of(patient_case, settings_)) {
     fields_.reserve(bodies.rigid_count());
-    // Deep enough for the largest force on one point.
-    const double band = std::max(band_voxels * settings_.voxel,
-                                 2 * patient_case.haptics.max_force / settings_.contact_stiffness);
+    // So deep that a single point still holds a tool whose device is that far inside.
+    constexpr double deepest_device = 50;  // mm
+    const double band =
+        std::max(band_voxels * settings_.voxel,
+                 deepest_device * patient_case.haptics.coupling_stiffness / settings_.contact_stiffness);
     for (std::size_t body = 0; body < bodies.rigid_count(); ++body)
         fields_.push_back(field_of(bodies, body, settings_.voxel, band));
     tools_.reserve(tool_count);

@@ -57,8 +57,10 @@ HandPath turning(const HandPath& path, unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> tilt(-0.4, 0.4);
     std::vector<HandPath::Key> keys(path.keys().begin(), path.keys().end());
-    for (HandPath::Key& key : keys)
-        key.orientation = Eigen::Quaterniond(1, tilt(random), tilt(random), tilt(random)).normalized();
+    for (HandPath::Key& key : keys) {
+        const double x = tilt(random), y = tilt(random), z = tilt(random);  // in this order by every compiler
+        key.orientation = Eigen::Quaterniond(1, x, y, z).normalized();
+    }
     return HandPath(std::move(keys));
 }
 
@@ -223,7 +225,7 @@ TEST_P(Replay, has_torques_where_the_tool_turns_by_itself_and_none_elsewhere) {
     const auto twisted =
         std::ranges::count_if(recording.ticks, [&](const Tick& row) { return row.torque != none; });
     if (GetParam().patient_case.tool) {
-        EXPECT_GT(twisted, GetParam().ticks / 20);
+        EXPECT_GT(twisted, GetParam().ticks / 40);
         return;
     }
     EXPECT_EQ(twisted, 0);
@@ -240,7 +242,8 @@ std::vector<Trial> runs() {
     Case rod = ball_and_cube(), bar = ball_and_cube();
     rod.tool = ToolBody{};
     bar.rigid_bodies.push_back(rigid("floor", box({-20, -20, 5}, {60, 40, 21})));
-    bar.tool = ToolBody{.surface = box({-1, -1, 0}, {1, 1, 30}), .settings = {.shell_points = 500}};
+    bar.tool =
+        ToolBody{.surface = box({-1, -1, 0}, {1, 1, 30}), .settings = {.shell_points = 500, .voxel = 2}};
     return {{ball_and_cube(), "continuous", 1, 6000},
             {ball_and_cube(), "continuous", 2, 3000},
             {pointed, "continuous", 1, 12000},
