@@ -26,6 +26,10 @@ const std::map<std::string, std::size_t> type_sizes{
     {"vtkidtype", 4},     {"long", 8},           {"unsigned_long", 8}, {"vtktypeint64", 8},
     {"vtktypeuint64", 8}, {"float", 4},          {"double", 8}};
 
+constexpr std::array<std::string_view, 11> sections{"points",   "cells",           "polygons",   "lines",
+                                                    "vertices", "triangle_strips", "cell_types", "field",
+                                                    "metadata", "cell_data",       "point_data"};
+
 // Those whose next word is a name, which may be a keyword.
 const std::set<std::string> named_attributes{
     "scalars",       "vectors",    "normals",      "tensors",    "tensors6",    "texture_coordinates",
@@ -43,6 +47,7 @@ class LegacyCheck {
         std::set<std::string> seen;
         while (!file_.at_end()) {
             const std::string keyword = lower_case(file_.word());
+            require_whole_name(keyword);
             if (keyword == "field") check_fields();
             if (keyword == "metadata") skip_metadata(1);
             if (keyword == "cell_data" || keyword == "point_data") in_attributes_ = true;
@@ -77,6 +82,13 @@ class LegacyCheck {
         if (found == type_sizes.end())
             file_.fail(fmt::format("values of type '{}'", type.substr(0, 40)), "such as float or int", again);
         return found->second;
+    }
+
+    // VTK looks at how a section's name begins, and reads what follows.
+    void require_whole_name(const std::string& keyword) const {
+        for (const std::string_view name : sections)
+            if (keyword.starts_with(name) && keyword != name)
+                file_.fail(fmt::format("a section '{}'", keyword.substr(0, 40)), std::string(name), again);
     }
 
     // VTK's readers use what is not there where an array of a field breaks off, and allocate what a text
