@@ -243,7 +243,7 @@ std::vector<Trial> runs() {
     rod.tool = ToolBody{};
     bar.rigid_bodies.push_back(rigid("floor", box({-20, -20, 5}, {60, 40, 21})));
     bar.tool =
-        ToolBody{.surface = box({-1, -1, 0}, {1, 1, 30}), .settings = {.shell_points = 500, .voxel = 2}};
+        ToolBody{.surface = box({-1, -1, 0}, {1, 1, 30}), .settings = {.shell_points = 150, .voxel = 4}};
     return {{ball_and_cube(), "continuous", 1, 6000},
             {ball_and_cube(), "continuous", 2, 3000},
             {pointed, "continuous", 1, 12000},
