@@ -35,8 +35,7 @@ nlohmann::ordered_json replay_recording(const std::filesystem::path& file, const
                                         std::span<const std::string> trusted_keys, TouchOutputs& outputs,
                                         cli::Session& session) {
     const recording::Recording recording = recording::read_recording(file);
-    Case patient_case = asset::read_asset(asset, trusted_keys);
-    patient_case.tool = recording.head.tool;
+    const Case patient_case = recorded_case(recording, file, asset, trusted_keys);
     const auto model = model_of(recording, file, asset, patient_case);
     std::vector<RunRecord> records = outputs.records_of(*model);
     StatusCounts statuses;

@@ -170,6 +170,14 @@ void check_asset(const Recording& recording, const std::filesystem::path& file,
              digest + ", that of " + asset.string(), "replay it on the asset that was touched"});
 }
 
+Case recorded_case(const Recording& recording, const std::filesystem::path& file,
+                   const std::filesystem::path& asset, std::span<const std::string> trusted_keys) {
+    check_asset(recording, file, asset);
+    Case patient_case = asset::read_asset(asset, trusted_keys);
+    patient_case.tool = recording.head.tool;
+    return patient_case;
+}
+
 std::unique_ptr<HapticModel> model_of(const Recording& recording, const std::filesystem::path& file,
                                       const std::filesystem::path& asset, const Case& patient_case) {
     check_asset(recording, file, asset);

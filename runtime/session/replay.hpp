@@ -6,6 +6,8 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
 
 #include "formats/recording/recording.hpp"
 #include "formats/records/tick_result.hpp"
@@ -39,7 +41,12 @@ struct ReplayOutcome {
 void check_asset(const recording::Recording& recording, const std::filesystem::path& file,
                  const std::filesystem::path& asset);
 
-/// A model as the recorded run had it, fresh. `asset`: the file that `patient_case` is from. Throws
+/// The case that a recording in `file` is of, read from `asset`, with the tool that was held. Throws as
+/// check_asset() and read_asset().
+Case recorded_case(const recording::Recording& recording, const std::filesystem::path& file,
+                   const std::filesystem::path& asset, std::span<const std::string> trusted_keys = {});
+
+/// A model as the recorded run had it, fresh. `patient_case`: recorded_case() of `asset`. Throws
 /// as check_asset(), and InvalidInput if it couples differently.
 std::unique_ptr<haptics::HapticModel> model_of(const recording::Recording& recording,
                                                const std::filesystem::path& file,

@@ -212,10 +212,8 @@ Json play_recording(const PlaybackOptions& options, const PlaybackWindow& shown,
         open_window(width, height, texts::translated("reading {}", options.play.filename().string()));
     session.progress.step("reading the recording", 0);
     const recording::Recording recording = recording::read_recording(options.play);
-    check_asset(recording, options.play, shown.asset);
     session.progress.step("reading the case", 0.3);
-    Case patient_case = asset::read_asset(shown.asset, shown.trusted_keys);
-    patient_case.tool = recording.head.tool;
+    const Case patient_case = recorded_case(recording, options.play, shown.asset, shown.trusted_keys);
     const auto model = model_of(recording, options.play, shown.asset, patient_case);
     RecordedScene scene(recording, options.play, options.tool, *model, patient_case);
     std::optional<ExpertGhost> ghost;

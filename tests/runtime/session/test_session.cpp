@@ -87,7 +87,7 @@ TEST(Session, ticks_records_and_counts_in_virtual_time_and_replays_bit_for_bit) 
         const Recording recording = read_recording(file);
         EXPECT_EQ(recording.head.clock, "virtual");
         EXPECT_EQ(recording.head.scheme, method.name);
-        const Case patient_case = asset::read_asset(asset);
+        const Case patient_case = recorded_case(recording, file, asset);
         const auto model = model_of(recording, file, asset, patient_case);
         const ReplayOutcome outcome = replay(recording, *model, [](const TickResult&) {});
         EXPECT_EQ(outcome.ticks, 2000);
@@ -129,8 +129,7 @@ TEST(Session, a_tool_that_turns_is_as_its_hand_wishes_and_its_recording_alone_re
         const Recording recording = read_recording(file);
         ASSERT_TRUE(recording.head.tool.has_value());
         EXPECT_EQ(recording.head.tool->surface.vertices, tool.surface.vertices);
-        Case patient_case = asset::read_asset(asset);
-        patient_case.tool = recording.head.tool;
+        Case patient_case = recorded_case(recording, file, asset);
         const auto model = model_of(recording, file, asset, patient_case);
         const ReplayOutcome outcome = replay(recording, *model, [](const TickResult&) {});
         EXPECT_EQ(outcome.ticks, 2000);
