@@ -6,15 +6,16 @@
 
 namespace palpate {
 
-/// How a tool that turns is felt: one with a body of its own, which touches with all of it.
+/// How a tool that turns by itself is felt: a rod, or an instrument, which touches with all of its surface.
 struct ToolSettings {
     double rod_length = 0;
     std::int32_t shell_points = 5000;
     double voxel = 1;
     double contact_stiffness = 10;
-    double torsional_stiffness = 450;  // 0.5 N/mm, a Touch's, 30 mm from the tip
-    double max_torque = 170;           // a Premium 1.5/6DOF's about its weakest axis, the stylus' own
-    double max_torque_rate = 25;
+    double torsional_stiffness = 450;  // a Touch's 0.5 N/mm, 30 mm from the tip
+    // A choice: as quoted for a Premium 1.5/6DOF about its stylus, whose data sheet was not at hand.
+    double max_torque = 170;
+    double max_torque_rate = 25;  // all of it within 7 ms; a choice
 };
 
 inline constexpr std::tuple tool_fields{

@@ -11,6 +11,7 @@
 #include "formats/records/material.hpp"
 #include "formats/records/quality_contract.hpp"
 #include "formats/records/tick_result.hpp"
+#include "formats/records/tool_settings.hpp"
 #include "runtime/training/metrics.hpp"
 
 namespace {
@@ -70,6 +71,7 @@ int main() {
                       {"relaxation", rows_of<RelaxationTerm>(relaxation_fields)},
                       {"certificate", rows_of<Certificate>(certificate_fields)},
                       {"feel", rows_of<FeltRegion>(felt_region_fields)},
+                      {"tool", rows_of<ToolSettings>(tool_fields)},
                       {"device_limits", rows_of<DeviceLimits>(device_limit_fields)},
                       {"tick", rows_of<Tick>(tick_fields)},
                       {"contact", rows_of<Contact>(contact_fields)},
