@@ -15,9 +15,7 @@ class FclJudge {
     FclJudge(const TriangleMesh& surface, const TriangleMesh& tool);
     ~FclJudge();
 
-    /// Whether any triangle of the tool at X_PT meets one of the surface.
-    bool overlap(const Eigen::Isometry3d& X_PT) const;
-    /// The distance of the two, mm; 0 where they overlap.
+    /// The distance of the two with the tool at X_PT, mm; 0 where a triangle of one meets one of the other.
     double distance(const Eigen::Isometry3d& X_PT) const;
 
   private:

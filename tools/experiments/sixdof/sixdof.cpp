@@ -8,7 +8,7 @@
 #include "formats/model/arrays.hpp"
 #include "formats/stl_file/read_stl.hpp"
 #include "runtime/collision/points/point_shell.hpp"
-#include "runtime/haptics/shell/tool_pose.hpp"
+#include "runtime/devices/simulated_device.hpp"
 #include "tools/experiments/rigid_case.hpp"
 #include "tools/experiments/sixdof/fcl_judge.hpp"
 #include "tools/experiments/sixdof/tool_visits.hpp"
@@ -52,14 +52,6 @@ struct Row {
     std::int64_t ticks = 0, touching = 0, approaches = 0, lost = 0;
     realtime::Histogram times{};
 };
-
-realtime::DeviceState state_at(const devices::HandPath& path, double time) {
-    realtime::DeviceState state;
-    state.time = time;
-    state.position = array_of(path.at(time));
-    state.orientation = array_of(path.orientation_at(time));
-    return state;
-}
 
 Eigen::Isometry3d pose_in(const TickResult& result) {
     Eigen::Isometry3d X_PT = Eigen::Isometry3d::Identity();
@@ -123,9 +115,10 @@ void press(HapticModel& model, const std::vector<ToolVisit>& visits, const Judge
         std::size_t step = 0;
         for (const ToolVisit& visit : visits) {
             model.reset();
+            devices::SimulatedDevice hand(visit.path, {});
             const auto ticks = static_cast<std::int64_t>(1000 * visit.path.duration());
             for (std::int64_t tick = 0; tick < ticks; ++tick) {
-                const auto state = state_at(visit.path, 1e-3 * static_cast<double>(tick));
+                const realtime::DeviceState state = hand.read(1e-3 * static_cast<double>(tick));
                 const std::uint64_t took = nanoseconds_of([&] { model.tick(state, result); });
                 if (tick > 0) times.record(step++, took);  // in the first, every point is looked at
                 if (pass > 0) continue;
@@ -144,15 +137,19 @@ void press(HapticModel& model, const std::vector<ToolVisit>& visits, const Judge
 bool is_lost(HapticModel& model, const ToolVisit& visit, double reach) {
     model.reset();
     TickResult result{};
+    devices::SimulatedDevice hand(visit.path, {});
     const auto ticks = static_cast<std::int64_t>(1000 * visit.path.duration());
     for (std::int64_t tick = 0; tick <= ticks; ++tick)
-        model.tick(state_at(visit.path, 1e-3 * static_cast<double>(tick)), result);
+        model.tick(hand.read(1e-3 * static_cast<double>(tick)), result);
     return visit.place.direction.dot(vector_of(result.tool_position) - visit.place.entry) + reach >
            lost_depth;
 }
 
+double us(const Row& row, double share) {
+    return 1e-3 * static_cast<double>(row.times.percentile(share));
+}
+
 Json json_of(const Row& row) {
-    const auto us = [&](double share) { return 1e-3 * static_cast<double>(row.times.percentile(share)); };
     return {{"tool", row.tool},
             {"triangles", row.triangles},
             {"points", row.points},
@@ -161,10 +158,10 @@ Json json_of(const Row& row) {
             {"set_up_s", row.set_up_s},
             {"ticks", row.ticks},
             {"touching", row.touching},
-            {"p50_us", us(0.5)},
-            {"p99_us", us(0.99)},
-            {"p99.9_us", us(0.999)},
-            {"max_us", us(1)},
+            {"p50_us", us(row, 0.5)},
+            {"p99_us", us(row, 0.99)},
+            {"p99.9_us", us(row, 0.999)},
+            {"max_us", us(row, 1)},
             {"told_mm", row.told},
             {"deepest_mm", row.deepest},
             {"judged", row.judged},
@@ -178,14 +175,13 @@ Json json_of(const Row& row) {
 }
 
 std::string row_of(const Row& row) {
-    const auto us = [&](double share) { return 1e-3 * static_cast<double>(row.times.percentile(share)); };
     return fmt::format(
         "| {} | {} | {} | {:.2f} | {:g} | {:.1f} | {} | {} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.3f} | "
         "{:.3f} | {} of "
         "{} | {:.3f} | {:.3f} | {:.2f} | {:.0f} | {} of {} |\n",
         row.tool, row.triangles, row.points, row.gap, row.voxel, row.set_up_s, row.ticks, row.touching,
-        us(0.5), us(0.99), us(0.999), us(1), row.told, row.deepest, row.unfelt, row.judged,
-        row.unfelt_deepest, row.apart, row.force, row.torque, row.lost, row.approaches);
+        us(row, 0.5), us(row, 0.99), us(row, 0.999), us(row, 1), row.told, row.deepest, row.unfelt,
+        row.judged, row.unfelt_deepest, row.apart, row.force, row.torque, row.lost, row.approaches);
 }
 
 }  // namespace
