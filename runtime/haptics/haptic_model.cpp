@@ -64,6 +64,7 @@ HapticModel::HapticModel(const Case& patient_case, std::string_view method, std:
       method_(checked(find_contact_method(method), tool_count, patient_case.name)),
       coupling_(settings_.coupling_stiffness),
       contact_radius_(method_.can.has_radius ? tip_reach(patient_case) : 0),
+      turns_(method_.can.has_surface || (method_.can.turns && patient_case.tool)),
       bodies_(patient_case, method_.can.spreads_loads),
       tools_(tool_count, Tool{ForceLimiter(settings_), ForceLimiter(tool_settings(patient_case))}),
       poses_(tool_count),

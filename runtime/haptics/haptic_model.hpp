@@ -55,8 +55,9 @@ class HapticModel {
     /// the results except tick_ns, wake_latency_ns and overruns. As many states and results as tools
     /// (asserted). Where a device has a fault, or with any of `faults` (Fault flags) all of them, the force
     /// goes to zero, see ForceLimiter; contacts are followed as long as the position is trusted. A tool that
-    /// is found again more than 5 mm away starts anew: it does not feel a body that it is in until it has
-    /// been clear of it. One thread; realtime-safe: no allocation, lock or I/O.
+    /// is found again more than 5 mm away, or turned by more than 20 degrees, starts anew: it does not feel a
+    /// body that it is in until it has been clear of it. One thread; realtime-safe: no allocation, lock or
+    /// I/O.
     void tick(std::span<const realtime::DeviceState> devices, std::span<TickResult> results,
               std::uint32_t faults = no_fault) noexcept;
     /// The same with one tool.
@@ -98,9 +99,8 @@ class HapticModel {
   private:
     struct Tool {
         ForceLimiter limiter, torque_limiter;
-        Eigen::Vector3d last_tip = Eigen::Vector3d::Zero();  // the last that was to be trusted
-        Eigen::Quaterniond last_orientation{Eigen::Quaterniond::Identity()};
-        bool lost = false;  // the last position was not
+        ContactPose last{};  // that was to be trusted
+        bool lost = false;   // the last position was not
     };
 
     ContactPose begin(Tool& tool, const realtime::DeviceState& device, TickResult& result) noexcept;
@@ -109,6 +109,7 @@ class HapticModel {
     const ContactMethodEntry& method_;
     double coupling_;
     double contact_radius_;
+    bool turns_;  // tools, by themselves
     ContactBodies bodies_;
     std::vector<Tool> tools_;
     std::vector<ContactPose> poses_;  // of this tick, as are the forces

@@ -37,11 +37,11 @@ void HapticModel::tick(std::span<const realtime::DeviceState> devices, std::span
     if (method_.can.keeps_energy) observer_.damp(poses_, coupling_, results, forces_);
     for (std::size_t t = 0; t < tools_.size(); ++t) {
         TickResult& result = results[t];
-        if (!vector_of(result.torque).allFinite()) result.faults |= invalid_force;
+        if (turns_ && !vector_of(result.torque).allFinite()) result.faults |= invalid_force;
         result.force = array_of(tools_[t].limiter.limit(forces_[t], result.faults, result.status));
-        if (method_.can.turns)
-            result.torque = array_of(
-                tools_[t].torque_limiter.limit(vector_of(result.torque), result.faults, result.status));
+        if (!turns_) continue;
+        result.torque =
+            array_of(tools_[t].torque_limiter.limit(vector_of(result.torque), result.faults, result.status));
     }
     if (method_.can.keeps_energy) observer_.hold(results);
 }
@@ -73,12 +73,10 @@ ContactPose HapticModel::begin(Tool& tool, const realtime::DeviceState& device, 
     pose.trusted = true;
     // The way there was not seen, so it says nothing about what lies between.
     const bool unseen = tool.lost || (result.faults & tick_late);
-    const Eigen::Quaterniond orientation = orientation_of(pose);
-    pose.jumped = unseen && ((pose.tip - tool.last_tip).norm() > farthest_return ||
-                             orientation.angularDistance(tool.last_orientation) > farthest_turn);
+    pose.jumped = unseen && ((pose.tip - tool.last.tip).norm() > farthest_return ||
+                             orientation_of(pose).angularDistance(orientation_of(tool.last)) > farthest_turn);
     tool.lost = false;
-    tool.last_tip = pose.tip;
-    tool.last_orientation = orientation;
+    tool.last = pose;
     return pose;
 }
 

@@ -35,6 +35,7 @@ TICK = {
         "contact/equilibrium/equilibrium_iterates": "the same, the way there",
         "contact/equilibrium/equilibrium_rows": "the same, what may press",
         "contact/equilibrium/equilibrium_sinking": "the same, how far spheres sink in",
+        "contact/equilibrium/equilibrium_turning": "the same, tools that turn",
         "contact/equilibrium/neighbour_contact": "bodies beside each other",
         "contact/deformable_contact": "compliance and displacements of an elastic body",
         "contact/equilibrium/deformed_patch": "the part of a surface that tools are near",

@@ -27,7 +27,7 @@ class ContinuousContact final : public ContactMethod {
     /// `bodies` must outlive this. Of the settings it reads radius, shaft and friction. `torsion`: rad / (N
     /// mm) that a tool turns by under a torque; 0: as its device.
     ContinuousContact(const ContactBodies& bodies, const HapticSettings& settings, std::size_t tool_count,
-                      double torsion = 0);
+                      double torsion);
     ~ContinuousContact() override;
 
     void reset() noexcept override;

@@ -4,7 +4,7 @@
 
 #include "formats/model/arrays.hpp"
 #include "runtime/haptics/methods/continuous_contact.hpp"
-#include "runtime/haptics/shell/tool_pose.hpp"
+#include "runtime/haptics/tool_pose.hpp"
 
 namespace palpate::haptics {
 namespace {
@@ -49,10 +49,9 @@ void ContinuousContact::tick(std::span<const ContactPose> poses, double coupling
 
 // How the tool is turned against its device, and the torque that this takes.
 void ContinuousContact::tell_turn(std::size_t t, const ContactPose& pose, TickResult& result) const noexcept {
-    const Eigen::Quaterniond device = orientation_of(pose);
     const Vector3d& turn = equilibrium_.turn(t);
     result.torque = array_of(Vector3d(turn / torsion_));
-    result.tool_orientation = array_of(moved({Vector3d::Zero(), device}, rotation(turn)).orientation);
+    result.tool_orientation = array_of(turned(orientation_of(pose), turn));
 }
 
 // Of the bodies that press each other, the first tool that pushes tissue tells.

@@ -2,6 +2,7 @@
 // What a whole tool against rigid bodies is made of: fields and points.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <thread>
 
 #include "formats/model/errors.hpp"
@@ -10,6 +11,8 @@
 
 namespace palpate::haptics {
 namespace {
+
+constexpr double fewest_points = 100;  // of a rod
 
 ToolSettings settings_of(const Case& patient_case) {
     if (patient_case.rigid_bodies.empty())
@@ -23,12 +26,12 @@ std::vector<collision::ShellPoint> points_of(const Case& patient_case, const Too
         return collision::point_shell(patient_case.tool->surface,
                                       static_cast<std::size_t>(settings.shell_points))
             .points;
-    const TriangleMesh rod = rod_surface(patient_case.haptics.tool_radius, rod_length(patient_case));
+    const double radius = patient_case.haptics.tool_radius, length = rod_length(patient_case);
+    const double area = 2 * std::numbers::pi * radius * (2 * radius + length);
     // Half a voxel apart; a small ball needs no thousands.
-    const double wanted = area_of(rod) / (0.25 * settings.voxel * settings.voxel);
-    return collision::point_shell(
-               rod, static_cast<std::size_t>(std::clamp(wanted, 100.0, double(settings.shell_points))))
-        .points;
+    const double wanted = std::clamp(area / (0.25 * settings.voxel * settings.voxel), fewest_points,
+                                     static_cast<double>(settings.shell_points));
+    return collision::point_shell(rod_surface(radius, length), static_cast<std::size_t>(wanted)).points;
 }
 
 collision::DistanceField field_of(const ContactBodies& bodies, std::size_t body, double voxel, double band) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A tick of a whole tool against rigid bodies.
 #include <algorithm>
-#include <functional>
+#include <array>
 #include <limits>
 
 #include "formats/model/arrays.hpp"
@@ -60,35 +60,18 @@ bool ShellContact::stays_clear(Tool& tool, const ContactPose& at, const ToolPose
 void ShellContact::tell(Tool& tool, const ToolPose& device, TickResult& result) const noexcept {
     result.tool_position = array_of(tool.pose.position);
     result.tool_orientation = array_of(tool.pose.orientation);
-    const std::span contacts(result.contacts.data(), most_told);
-    const auto shallower = [](const Contact& a, const Contact& b) { return a.gap > b.gap; };
-    std::size_t told = 0;  // a heap, the shallowest first
-    for (const ShellTouch& touch : tool.watch.close()) {
-        if (touch.distance >= 0) continue;
-        if (-touch.distance > result.residual) {
+    std::array<ShellTouch, most_told> deepest;
+    const auto found = std::ranges::partial_sort_copy(tool.watch.close(), deepest, {}, &ShellTouch::distance,
+                                                      &ShellTouch::distance);
+    for (const ShellTouch& touch : std::span(deepest.begin(), found.out)) {
+        if (touch.distance >= 0) break;
+        if (result.contact_count == 0) {
             result.residual = -touch.distance;
             result.body = touch.body;
         }
-        Contact contact;
-        contact.part = touch.point;
-        contact.body = touch.body;
-        contact.gap = static_cast<float>(-touch.distance);
-        if (told == most_told) {
-            if (contact.gap <= contacts.front().gap) continue;
-            std::ranges::pop_heap(contacts, shallower);
-            --told;
-        }
-        contacts[told++] = contact;
-        std::ranges::push_heap(contacts.first(told), shallower);
+        result.contacts[static_cast<std::size_t>(result.contact_count++)] = contact_of(tool, touch);
+        result.depth = std::max(result.depth, depth_at(device, touch));
     }
-    std::ranges::sort_heap(contacts.first(told), shallower);  // the deepest first
-    result.contact_count = static_cast<std::int32_t>(told);
-    for (const ShellTouch& touch : tool.watch.close())
-        for (Contact& contact : contacts.first(told))
-            if (contact.part == touch.point && contact.body == touch.body) {
-                contact = contact_of(tool, touch);
-                result.depth = std::max(result.depth, depth_at(device, touch));
-            }
 }
 
 // How deep the device has a point of the tool below the body that it touches.

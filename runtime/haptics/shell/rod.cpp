@@ -45,15 +45,4 @@ TriangleMesh rod_surface(double radius, double length) {
     return mesh;
 }
 
-double area_of(const TriangleMesh& surface) {
-    double area = 0;
-    for (const Triangle& t : surface.triangles) {
-        const Vector3d& a = surface.vertices[static_cast<std::size_t>(t[0])];
-        area += 0.5 * (surface.vertices[static_cast<std::size_t>(t[1])] - a)
-                          .cross(surface.vertices[static_cast<std::size_t>(t[2])] - a)
-                          .norm();
-    }
-    return area;
-}
-
 }  // namespace palpate::haptics

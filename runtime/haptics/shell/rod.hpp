@@ -8,7 +8,4 @@ namespace palpate::haptics {
 /// thick, of `length` >= 0 along +z, ending in another ball; mm. 24 corners around.
 TriangleMesh rod_surface(double radius, double length);
 
-/// The area of a surface, mm².
-double area_of(const TriangleMesh& surface);
-
 }  // namespace palpate::haptics

@@ -2,6 +2,7 @@
 #include "runtime/haptics/shell/shell_watch.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numbers>
 
 namespace palpate::haptics {
@@ -10,7 +11,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double odometer_end = 1e6;  // mm, so that its rounding stays far below a step
+constexpr double slack = 1;  // mm: no motion of less takes a point that is not near close to a body
 
 }  // namespace
 
@@ -25,18 +26,11 @@ void ShellWatch::reset() noexcept {
     found_count_ = 0;
 }
 
-void ShellWatch::wind_back() noexcept {
-    for (Watched& watched : watched_) watched.wake -= odometer(watched);
-    moved_ = turned_ = 0;
-    gathered_ = false;
-}
-
 void ShellWatch::look(const ToolPose& pose) noexcept {
     if (gathered_) {
         moved_ += (pose.position - pose_.position).norm();
         turned_ += rotation_between(pose_.orientation, pose.orientation).norm();
     }
-    if (moved_ + turned_ * longest_arm_ > odometer_end) wind_back();
     pose_ = pose;
     const double since = moved_ - moved_gathered_ + (turned_ - turned_gathered_) * longest_arm_;
     if (!gathered_ || since > slack) gather();
@@ -74,7 +68,7 @@ void ShellWatch::look_at(std::int32_t point, const ToolPose& pose, const Eigen::
     const auto at = static_cast<std::size_t>(point);
     const Vector3d arm = R_PT * points_[at].position.cast<double>();
     const Vector3d p = pose.position + arm;
-    double clear = odometer_end;
+    double clear = std::numeric_limits<double>::infinity();
     for (std::size_t body = 0; body < fields_.size(); ++body) {
         const collision::DistanceField& field = fields_[body];
         const collision::FieldSample sample = field.at(p);

@@ -8,7 +8,7 @@
 
 #include "runtime/collision/field/distance_field.hpp"
 #include "runtime/collision/points/point_shell.hpp"
-#include "runtime/haptics/shell/tool_pose.hpp"
+#include "runtime/haptics/tool_pose.hpp"
 
 namespace palpate::haptics {
 
@@ -45,8 +45,6 @@ class ShellWatch {
 
     /// How far a motion moves any point of the shell at most, mm.
     double reach_of(const Twist& motion) const noexcept;
-    /// mm; no motion of less takes a point that is not near close to a body.
-    static constexpr double slack = 1;
 
   private:
     struct Watched {
@@ -54,7 +52,6 @@ class ShellWatch {
         double wake;  // mm on the odometer, at which the point may be close to a body
     };
     double odometer(const Watched& watched) const noexcept { return moved_ + turned_ * watched.arm; }
-    void wind_back() noexcept;
     void gather() noexcept;
     double way_until_close(const collision::DistanceField& field, const Eigen::Vector3d& p,
                            double interpolant) const noexcept;
@@ -69,7 +66,7 @@ class ShellWatch {
     double moved_gathered_ = 0, turned_gathered_ = 0;  // when near points were gathered
     bool gathered_ = false;
     std::vector<Watched> watched_;  // of each point
-    // The first near_count_ are points that may be close within `slack` of where they were gathered.
+    // The first near_count_ are points that may be close a little way from where they were gathered.
     std::vector<std::int32_t> near_;
     std::vector<ShellTouch> found_;  // the first found_count_
     std::size_t near_count_ = 0, found_count_ = 0;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/haptics/contact/equilibrium/contact_equilibrium.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 #include <utility>
@@ -77,7 +76,7 @@ void ContactEquilibrium::forget(std::size_t t) noexcept {
     tool.off.setZero();
     tool.turn.setZero();
     tool.drag_turn.setZero();
-    swing(tool);
+    if (turns()) swing(tool);
     tool.press.setZero();
     tool.drag.setZero();
     for (Part& part : tool.parts)
@@ -123,8 +122,6 @@ void ContactEquilibrium::pull(std::size_t t, std::span<const Sphere> spheres) no
         part.last_device = part.sphere.device;
         if (p < tool.was_felt) moved = std::max(moved, (spheres[p].device - part.last_device).norm());
         part.sphere = spheres[p];
-        part.arm = spheres[p].device - spheres[0].device;
-        tool.longest_arm = p == 0 ? 0 : std::max(tool.longest_arm, part.arm.norm());
         for (const GodObject::Touch& touch : spheres[p].if_rigid->touches())
             meets = meets || touch.surface >= bodies_.rigid_count();
         meets = meets || spheres[p].kept_by_tissue;
@@ -143,15 +140,7 @@ void ContactEquilibrium::pull(std::size_t t, std::span<const Sphere> spheres) no
     tool.near = tool.cold ? first_reach : 2 * moved;
     tool.held_reach = tool.cold ? 0 : (tool.last_tip - tool.parts[0].last_device).norm() + moved;
     tool.off = tool.cold ? Vector3d::Zero() : Vector3d(tool.last_tip - spheres[0].device);
-    if (tool.cold) tool.turn.setZero();
-    swing(tool);
-}
-
-// Turns the spheres' arms as the tool is turned.
-void ContactEquilibrium::swing(Tool& tool) noexcept {
-    const double angle = tool.turn.norm();
-    for (Part& part : tool.parts)
-        part.swung = angle > 0 ? Vector3d(Eigen::AngleAxisd(angle, tool.turn / angle) * part.arm) : part.arm;
+    if (turns()) pull_arms(tool);
 }
 
 bool ContactEquilibrium::add_wall(std::size_t tool, Contact& contact) noexcept {

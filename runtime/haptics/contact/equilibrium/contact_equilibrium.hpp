@@ -45,7 +45,7 @@ class ContactEquilibrium {
 
     /// Starts a tick behind virtual couplings of `stiffness` (N/mm), without tools or walls. `torsion`: by
     /// how much a tool turns against its device under a torque, rad / (N mm); 0: as the device says.
-    void begin_tick(double stiffness, double torsion = 0) noexcept;
+    void begin_tick(double stiffness, double torsion) noexcept;
     /// Places a tool: its spheres that are felt, the tip first.
     void pull(std::size_t tool, std::span<const Sphere> spheres) noexcept;
     /// Adds a half-space of a rigid body that holds part contact.part of a tool: contact.gap says how far the
@@ -117,10 +117,9 @@ class ContactEquilibrium {
         std::array<std::int32_t, 3> slots{};
         Eigen::Vector3d weights = Eigen::Vector3d::Zero();
         Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-        Eigen::Vector3d lever = Eigen::Vector3d::Zero();  // of the sphere, r x n about the tip, mm
-        double radius = 0;                                // of the sphere and of the ball that it meets, mm
-        double distance = 0;                              // between their surfaces, mm
-        double gap = 0;                                   // that forces must open, mm
+        double radius = 0;    // of the sphere and of the ball that it meets, mm
+        double distance = 0;  // between their surfaces, mm
+        double gap = 0;       // that forces must open, mm
         // How much of its point gives way: so much of what its sphere sinks in counts here. And the square of
         // that part's slope along face or edge, 1/mm².
         double part_giving_way = 1, slope_squared = 0;
@@ -184,7 +183,7 @@ class ContactEquilibrium {
     struct Part {
         Sphere sphere;
         Eigen::Vector3d last_device = Eigen::Vector3d::Zero();
-        // From the tip as the device has it, and turned as the tool is, mm.
+        // Where tools turn: from the tip as the device has it, and turned as the tool is, mm.
         Eigen::Vector3d arm = Eigen::Vector3d::Zero(), swung = Eigen::Vector3d::Zero();
         std::vector<Touch> touches;  // by deformable body
     };
@@ -223,14 +222,26 @@ class ContactEquilibrium {
     // How the sphere is sunk in if nothing presses it, mm: by what earlier presses left behind.
     Eigen::Vector3d local_dent(const Touch& touch, const DeformedPatch& patch) const noexcept;
     void remember_pushes() noexcept;
-    static Eigen::Vector3d off_of(const Tool& tool, const Part& part) noexcept {
-        return tool.off + (part.swung - part.arm);
+    bool turns() const noexcept { return torsion_ > 0; }
+    Eigen::Vector3d off_of(const Tool& tool, const Part& part) const noexcept {
+        return turns() ? Eigen::Vector3d(tool.off + (part.swung - part.arm)) : tool.off;
     }
-    // The same as forces answer with it, which turn the tool in proportion, but for what friction does.
+    // Of that what friction on tissue does, and the rest, as forces answer: they turn a tool in proportion.
+    Eigen::Vector3d dragged_off_of(const Tool& tool, const Part& part) const noexcept {
+        const Eigen::Vector3d off = tool.drag / coupling_;
+        return turns() ? Eigen::Vector3d(off + tool.drag_turn.cross(part.swung)) : off;
+    }
     Eigen::Vector3d pressed_off_of(const Tool& tool, const Part& part) const noexcept {
-        return tool.off - tool.drag / coupling_ + (tool.turn - tool.drag_turn).cross(part.swung);
+        const Eigen::Vector3d off = tool.off - tool.drag / coupling_;
+        return turns() ? Eigen::Vector3d(off + (tool.turn - tool.drag_turn).cross(part.swung)) : off;
     }
+    // In equilibrium_turning.cpp, of tools that turn by themselves.
     static void swing(Tool& tool) noexcept;
+    static void pull_arms(Tool& tool) noexcept;
+    void find_levers() noexcept;
+    void add_levers(std::size_t column) noexcept;
+    double answer_turns(std::size_t iterate) noexcept;
+    void relax_turn(Tool& tool, const Weights& weights, double step) const noexcept;
     Eigen::Vector3d centre_of(const Tool& tool, const Part& part, const Touch& touch) const noexcept {
         return part.sphere.device + off_of(tool, part) + touch.sunk;
     }
@@ -305,10 +316,11 @@ class ContactEquilibrium {
     std::vector<DeformedPatch> patches_;
     NeighbourContact neighbours_;
     std::vector<Tool> tools_;
-    FixedList<Row, most_rows> rows_;                   // of this iteration, walls first
-    FixedList<Row, most_rows> watched_;                // near, but hardly pressing: looked after, not solved
-    FixedList<Group, max_contacts> groups_;            // of those on tissue
-    std::vector<std::vector<std::uint32_t>> visited_;  // by patch and triangle: the search that saw it last
+    FixedList<Row, most_rows> rows_;                    // of this iteration, walls first
+    std::array<Eigen::Vector3d, max_contacts> levers_;  // r x n about the tip of each, mm, where tools turn
+    FixedList<Row, most_rows> watched_;                 // near, but hardly pressing: looked after, not solved
+    FixedList<Group, max_contacts> groups_;             // of those on tissue
+    std::vector<std::vector<std::uint32_t>> visited_;   // by patch and triangle: the search that saw it last
     std::uint32_t search_ = 0;
     FixedList<std::int32_t, most_rows> queue_;
     std::array<std::int64_t, max_contacts> active_{};  // keys of rows that pressed in the last solution

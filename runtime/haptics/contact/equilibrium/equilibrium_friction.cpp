@@ -39,7 +39,7 @@ Vector3d ContactEquilibrium::slip_of(const Group& group, const Bearings& bearing
     Vector3d slip = touch.slip;
     if (touch.pressed) {
         const Tool& tool = tools_[static_cast<std::size_t>(group.tool)];
-        const Part& part = tool.parts[static_cast<std::size_t>(group.part)];
+        const Part& part = part_of(group);
         slip += part.sphere.device + off_of(tool, part) - touch.rubbed_centre;
         const DeformedPatch& patch = patch_of(group);
         for (const auto& [slot, share] : bearings)
@@ -73,9 +73,8 @@ void ContactEquilibrium::rub(std::size_t iterate) noexcept {
         const Vector3d slip = slip_of(group, bearings);
         if (const double way = slip.norm(); way > 0) {
             const Vector3d along = slip / way;
-            const Tool& tool = tools_[static_cast<std::size_t>(group.tool)];
-            const Part& part = tool.parts[static_cast<std::size_t>(group.part)];
-            double compliance = 1 / coupling_ + torsion_ * part.swung.cross(along).squaredNorm();
+            double compliance = 1 / coupling_;
+            if (turns()) compliance += torsion_ * part_of(group).swung.cross(along).squaredNorm();
             for (const auto& [slot, share] : bearings)
                 for (const auto& [loaded, other] : bearings)
                     compliance += share * other * along.dot(patch.response(slot, loaded, along));
@@ -106,7 +105,7 @@ void ContactEquilibrium::keep_hold() noexcept {
         touch.slip = touch.slides ? Vector3d::Zero() : slip_of(group, bearings_of(group, touch.press));
         touch.slid = touch.slides;
         touch.pressed = true;
-        const Part& part = tool.parts[static_cast<std::size_t>(group.part)];
+        const Part& part = part_of(group);
         touch.rubbed_centre = part.sphere.device + off_of(tool, part);
     }
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The way to the equilibrium: what forces answer to a state, and which state is next; part of the tick.
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -20,17 +19,12 @@ constexpr double slight_step = 0.01;  // of what is to be made good
 
 // What the present forces make of tools and tissue; returns by how much that differs from where they are, mm.
 double ContactEquilibrium::answer(std::size_t iterate) noexcept {
-    for (Tool& tool : tools_) {
-        tool.next_off[iterate].setZero();
-        tool.next_turn[iterate].setZero();
-    }
+    for (Tool& tool : tools_) tool.next_off[iterate].setZero();
     for (DeformedPatch& patch : patches_) patch.begin_answer(iterate);
     for (const Row& row : rows_) {
         if (!(row.force > 0)) continue;
         const Vector3d push = row.force * row.normal;
-        Tool& tool = tools_[static_cast<std::size_t>(row.tool)];
-        tool.next_off[iterate] += push / coupling_;
-        tool.next_turn[iterate] += torsion_ * row.force * row.lever;
+        tools_[static_cast<std::size_t>(row.tool)].next_off[iterate] += push / coupling_;
         if (row.patch < 0) continue;
         DeformedPatch& patch = patch_of(row);
         for (std::size_t i = 0; i < 3; ++i)
@@ -44,15 +38,9 @@ double ContactEquilibrium::answer(std::size_t iterate) noexcept {
         for (const Part& part : tool.parts)
             for (const Touch& touch : part.touches)
                 tool.next_off[iterate] += touch.next_drag[iterate] / coupling_;
-        for (const Part& part : tool.parts)
-            for (const Touch& touch : part.touches)
-                tool.next_turn[iterate] += torsion_ * part.swung.cross(touch.next_drag[iterate]);
         if (tool.felt == 0) tool.off = tool.next_off[iterate];
-        if (tool.felt == 0) tool.turn = tool.next_turn[iterate];
         tool.difference[iterate] = tool.next_off[iterate] - tool.off;
-        tool.turn_difference[iterate] = tool.next_turn[iterate] - tool.turn;
-        change = std::max({change, tool.difference[iterate].lpNorm<Eigen::Infinity>(),
-                           tool.longest_arm * tool.turn_difference[iterate].lpNorm<Eigen::Infinity>()});
+        change = std::max(change, tool.difference[iterate].lpNorm<Eigen::Infinity>());
         for (Part& part : std::span(tool.parts).first(tool.felt))
             for (Touch& touch : part.touches) {
                 touch.sunk_difference[iterate] = touch.next_sunk[iterate] - touch.sunk;
@@ -60,6 +48,7 @@ double ContactEquilibrium::answer(std::size_t iterate) noexcept {
                 change = std::max(change, touch.sunk_difference[iterate].lpNorm<Eigen::Infinity>());
             }
     }
+    if (turns()) change = std::max(change, answer_turns(iterate));
     for (DeformedPatch& patch : patches_) change = std::max(change, patch.end_answer(iterate));
     return change;
 }
@@ -77,8 +66,9 @@ void ContactEquilibrium::compare(std::size_t iteration) noexcept {
     const auto with = [&](std::size_t other) {
         double sum = 0;
         for (const Tool& tool : tools_) {
-            sum += tool.difference[newest].dot(tool.difference[other]) +
-                   tool.longest_arm * tool.longest_arm *
+            sum += tool.difference[newest].dot(tool.difference[other]);
+            if (turns())
+                sum += tool.longest_arm * tool.longest_arm *
                        tool.turn_difference[newest].dot(tool.turn_difference[other]);
             for (const Part& part : std::span(tool.parts).first(tool.felt))
                 for (const Touch& touch : part.touches)
@@ -170,7 +160,8 @@ double ContactEquilibrium::departure(const Weights& weights, std::size_t from) c
         return (combined(weights, answers) - answers[from]).norm();
     };
     for (const Tool& tool : tools_) {
-        most = std::max({most, depart(tool.next_off), tool.longest_arm * depart(tool.next_turn)});
+        most = std::max(most, depart(tool.next_off));
+        if (turns()) most = std::max(most, tool.longest_arm * depart(tool.next_turn));
         for (const Part& part : std::span(tool.parts).first(tool.felt))
             for (const Touch& touch : part.touches)
                 most = std::max({most, depart(touch.next_sunk), depart(touch.next_drag) / coupling_});
@@ -183,8 +174,9 @@ double ContactEquilibrium::departure(const Weights& weights, std::size_t from) c
 bool ContactEquilibrium::climbs(const Weights& weights, std::size_t newest) const noexcept {
     double along = 0;
     for (const Tool& tool : tools_) {
-        along += (combined(weights, tool.next_off) - tool.off).dot(tool.difference[newest]) +
-                 tool.longest_arm * tool.longest_arm *
+        along += (combined(weights, tool.next_off) - tool.off).dot(tool.difference[newest]);
+        if (turns())
+            along += tool.longest_arm * tool.longest_arm *
                      (combined(weights, tool.next_turn) - tool.turn).dot(tool.turn_difference[newest]);
         for (const Part& part : std::span(tool.parts).first(tool.felt))
             for (const Touch& touch : part.touches)
@@ -197,25 +189,24 @@ bool ContactEquilibrium::climbs(const Weights& weights, std::size_t newest) cons
 // Goes to a combination of answers, at most `longest` mm.
 void ContactEquilibrium::relax_to(const Weights& weights, double longest) noexcept {
     double way = 0;
-    for (const Tool& tool : tools_)
-        way = std::max({way, (combined(weights, tool.next_off) - tool.off).norm(),
-                        tool.longest_arm * (combined(weights, tool.next_turn) - tool.turn).norm()});
+    for (const Tool& tool : tools_) {
+        way = std::max(way, (combined(weights, tool.next_off) - tool.off).norm());
+        if (turns())
+            way = std::max(way, tool.longest_arm * (combined(weights, tool.next_turn) - tool.turn).norm());
+    }
     const double step = way > longest ? longest / way : 1;
     for (Tool& tool : tools_) {
         tool.off += step * (combined(weights, tool.next_off) - tool.off);
-        tool.turn += step * (combined(weights, tool.next_turn) - tool.turn);
-        swing(tool);
         for (Part& part : std::span(tool.parts).first(tool.felt))
             for (Touch& touch : part.touches)
                 touch.sunk += step * (combined(weights, touch.next_sunk) - touch.sunk);
         tool.drag.setZero();
-        tool.drag_turn.setZero();
         for (Part& part : tool.parts)
             for (Touch& touch : part.touches) {
                 touch.drag += step * (combined(weights, touch.next_drag) - touch.drag);
                 tool.drag += touch.drag;
-                tool.drag_turn += torsion_ * part.swung.cross(touch.drag);
             }
+        if (turns()) relax_turn(tool, weights, step);
     }
     for (DeformedPatch& patch : patches_) patch.relax_to(weights, step);
 }

@@ -36,12 +36,11 @@ void ContactEquilibrium::gather_at_rest(std::size_t t, std::size_t p) noexcept {
         row.triangle = touch.foot.triangle;
         row.weights = touch.foot.barycentric;
         row.normal = touch.normal;
-        row.lever = part.swung.cross(row.normal);
         const RoundedTriangle round = patch.rounded(row.triangle, patch.corners(row.slots));
         row.radius = radius_ + row.weights.dot(round.radii);
         find_part_giving_way(row, patch, round.centres);
         row.gap = touch.normal.dot(part.sphere.if_rigid->position() - part.sphere.device -
-                                   tools_[t].drag / coupling_ - tools_[t].drag_turn.cross(part.swung) -
+                                   dragged_off_of(tools_[t], part) -
                                    row.part_giving_way * part.touches[soft].sunk_free);
         for (Index i = 0; i < 3; ++i)
             row.gap += row.weights[i] *
@@ -186,7 +185,6 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
         row.slots = slots;
         row.weights = ball.barycentric;
         row.normal = (centre - ball.centre) / ball.distance;
-        row.lever = part.swung.cross(row.normal);
         row.radius = radius_ + ball.radius;
         row.distance = distance - radius_;
         find_part_giving_way(row, patch, round.centres);
@@ -222,7 +220,7 @@ bool ContactEquilibrium::watched_are_clear() const noexcept {
         const Tool& tool = tools_[static_cast<std::size_t>(row.tool)];
         const Touch& touch = touch_of(row);
         const DeformedPatch& patch = patch_of(row);
-        const Part& part = tool.parts[static_cast<std::size_t>(row.part)];
+        const Part& part = part_of(row);
         double distance = row.normal.dot(pressed_off_of(tool, part) +
                                          row.part_giving_way * (touch.sunk - touch.sunk_free)) -
                           row.gap;
@@ -282,19 +280,20 @@ std::int64_t ContactEquilibrium::key_of(const Row& row) noexcept {
 // What is left of a wall's gap once tissue drags the tool.
 double ContactEquilibrium::gap_of_wall(const Row& row) const noexcept {
     const Tool& tool = tools_[static_cast<std::size_t>(row.tool)];
+    const double gap = row.gap - row.normal.dot(tool.drag) / coupling_;
+    if (!turns()) return gap;
+    // What turning moves the sphere beyond what is in proportion to what presses it.
     const Part& part = part_of(row);
-    // What turning moves the sphere beyond what is in proportion to the torque.
-    const Vector3d besides = part.swung - part.arm - tool.turn.cross(part.swung);
-    return row.gap - row.normal.dot(tool.drag) / coupling_ -
-           row.normal.dot(besides + tool.drag_turn.cross(part.swung));
+    return gap -
+           row.normal.dot(off_of(tool, part) - tool.off - (tool.turn - tool.drag_turn).cross(part.swung));
 }
 
 void ContactEquilibrium::solve_rows() noexcept {
     const std::size_t n = rows_.size();
+    if (turns()) find_levers();
     std::array<std::size_t, max_contacts> warm;
     std::size_t warm_count = 0;
     for (std::size_t k = 0; k < n; ++k) {
-        if (rows_[k].wall) rows_[k].lever = part_of(rows_[k]).swung.cross(rows_[k].normal);
         lcp_.gaps()[static_cast<Index>(k)] = rows_[k].wall ? gap_of_wall(rows_[k]) : rows_[k].gap;
         if (is_active(rows_[k])) warm[warm_count++] = k;
     }
@@ -328,10 +327,9 @@ void ContactEquilibrium::fill_column(std::size_t l) noexcept {
                 opens += row.part_giving_way * pressing.part_giving_way *
                          (touch_of(row).sinking * pressing.normal);
         }
-        *column = row.normal.dot(opens);
-        if (row.tool == pressing.tool) *column += torsion_ * row.lever.dot(pressing.lever);
-        ++column;
+        *column++ = row.normal.dot(opens);
     }
+    if (turns()) add_levers(l);
     for (std::size_t k = 0; k < neighbours_.row_count(); ++k)
         *column++ = pressing.patch >= 0 ? neighbours_.closing(k, pressing.patch, field_) : 0;
 }

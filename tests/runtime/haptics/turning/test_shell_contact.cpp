@@ -85,8 +85,9 @@ TEST(Shell, a_bar_that_touches_with_its_far_end_turns_and_gives_the_torque_of_it
     EXPECT_GT(result.contact_count, 0);
     // Balance of moments about the tool's tip: kappa theta = sum r x f, with all of the force at the rim.
     const Vector3d rim(20, 0, 0), arm = rim - tool_of(result);
-    EXPECT_NEAR(torque_of(result).y(), arm.cross(force_of(result)).y(), 0.03 * torque_of(result).norm());
-    EXPECT_LT(torque_of(result).head<1>().norm(), 0.03 * torque_of(result).norm());
+    const double tolerance = 0.03 * torque_of(result).norm();  // voxels round the rim: 0.9 mm of 30
+    EXPECT_NEAR(torque_of(result).y(), arm.cross(force_of(result)).y(), tolerance);
+    EXPECT_LT(std::abs(torque_of(result).x()), tolerance);
     const Quaterniond tool = quaternion_of(result.tool_orientation);
     EXPECT_NEAR(ToolSettings{}.torsional_stiffness * rotation_between(lying, tool).norm(),
                 torque_of(result).norm(), 1e-6);
@@ -113,6 +114,7 @@ TEST(Shell, forces_are_those_of_its_touches) {
         force += f;
         moment += touch.arm.cross(f);
     }
+    // What the search leaves out that ends at steps of 1e-5 mm.
     EXPECT_NEAR((force - coupling * (pose.position - device.position)).norm(), 0, 1e-4);
     EXPECT_NEAR((moment - 450 * rotation_between(device.orientation, pose.orientation)).norm(), 0, 1e-2);
 }
@@ -215,15 +217,22 @@ TEST(Shell, refuses_a_case_without_rigid_bodies_and_settings_that_make_no_sense)
 }
 
 TEST(Shell, a_rod_is_closed_and_as_long_as_asked) {
+    constexpr double volume_cut = 0.04, area_cut = 0.03;  // by 24 corners around and 12 rings over the balls
     for (const double length : {0.0, 30.0}) {
         const TriangleMesh rod = rod_surface(2, length);
         double volume = 0;
         for (const Triangle& t : rod.triangles)
             volume += rod.vertices[t[0]].dot(rod.vertices[t[1]].cross(rod.vertices[t[2]])) / 6;
         const double exact = std::numbers::pi * 4 * (8.0 / 3 + length);
-        EXPECT_NEAR(volume, exact, 0.04 * exact) << length;
-        const double area = 4 * std::numbers::pi * (4 + length);
-        EXPECT_NEAR(area_of(rod), area, 0.03 * area) << length;
+        EXPECT_NEAR(volume, exact, volume_cut * exact) << length;
+        double area = 0;
+        for (const Triangle& t : rod.triangles)
+            area += (rod.vertices[t[1]] - rod.vertices[t[0]])
+                        .cross(rod.vertices[t[2]] - rod.vertices[t[0]])
+                        .norm() /
+                    2;
+        const double exact_area = 4 * std::numbers::pi * (4 + length);
+        EXPECT_NEAR(area, exact_area, area_cut * exact_area) << length;
     }
 }
 

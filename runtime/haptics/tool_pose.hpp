@@ -25,23 +25,17 @@ inline Eigen::Vector3d rotation_between(const Eigen::Quaterniond& from,
     return factor * turn.vec();
 }
 
-/// A motion that only turns, rad.
-inline Twist rotation(const Eigen::Vector3d& turn) noexcept {
-    Twist motion = Twist::Zero();
-    motion.tail<3>() = turn;
-    return motion;
+/// The orientation after a rotation vector (rad, frame P). Realtime-safe.
+inline Eigen::Quaterniond turned(const Eigen::Quaterniond& orientation,
+                                 const Eigen::Vector3d& turn) noexcept {
+    const double angle = turn.norm();
+    if (!(angle > 0)) return orientation;
+    return (Eigen::Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) * orientation).normalized();
 }
 
 /// The pose after a motion. Realtime-safe.
 inline ToolPose moved(const ToolPose& pose, const Twist& motion) noexcept {
-    const Eigen::Vector3d turn = motion.tail<3>();
-    const double angle = turn.norm();
-    ToolPose after = pose;
-    after.position += motion.head<3>();
-    if (angle > 0)
-        after.orientation =
-            (Eigen::Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) * pose.orientation).normalized();
-    return after;
+    return {pose.position + motion.head<3>(), turned(pose.orientation, motion.tail<3>())};
 }
 
 }  // namespace palpate::haptics

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tools that turn by themselves: their arms and levers, and how forces turn them; part of the tick.
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "runtime/haptics/contact/equilibrium/contact_equilibrium.hpp"
+
+namespace palpate::haptics {
+
+using Eigen::Index;
+using Eigen::Vector3d;
+
+// Turns the spheres' arms as the tool is turned.
+void ContactEquilibrium::swing(Tool& tool) noexcept {
+    const double angle = tool.turn.norm();
+    Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+    if (angle > 0) R = Eigen::AngleAxisd(angle, tool.turn / angle).toRotationMatrix();
+    for (Part& part : tool.parts) part.swung = R * part.arm;
+}
+
+// Takes the arms as a tool's device has them.
+void ContactEquilibrium::pull_arms(Tool& tool) noexcept {
+    tool.longest_arm = 0;
+    for (Part& part : std::span(tool.parts).first(tool.felt)) {
+        part.arm = part.sphere.device - tool.parts[0].sphere.device;
+        tool.longest_arm = std::max(tool.longest_arm, part.arm.norm());
+    }
+    if (tool.cold) tool.turn.setZero();
+    swing(tool);
+}
+
+void ContactEquilibrium::find_levers() noexcept {
+    for (std::size_t k = 0; k < rows_.size(); ++k)
+        levers_[k] = part_of(rows_[k]).swung.cross(rows_[k].normal);
+}
+
+// By how much more a force of one row opens the others of its tool, for it turns the tool.
+void ContactEquilibrium::add_levers(std::size_t column) noexcept {
+    for (std::size_t k = 0; k < rows_.size(); ++k)
+        if (rows_[k].tool == rows_[column].tool)
+            lcp_.matrix()(static_cast<Index>(k), static_cast<Index>(column)) +=
+                torsion_ * levers_[k].dot(levers_[column]);
+}
+
+// How the present forces turn the tools; returns by how much that differs from how they are, mm of their
+// farthest spheres.
+double ContactEquilibrium::answer_turns(std::size_t iterate) noexcept {
+    for (Tool& tool : tools_) tool.next_turn[iterate].setZero();
+    for (std::size_t k = 0; k < rows_.size(); ++k)
+        tools_[static_cast<std::size_t>(rows_[k].tool)].next_turn[iterate] +=
+            torsion_ * rows_[k].force * levers_[k];
+    double change = 0;
+    for (Tool& tool : tools_) {
+        for (const Part& part : tool.parts)
+            for (const Touch& touch : part.touches)
+                tool.next_turn[iterate] += torsion_ * part.swung.cross(touch.next_drag[iterate]);
+        if (tool.felt == 0) tool.turn = tool.next_turn[iterate];
+        tool.turn_difference[iterate] = tool.next_turn[iterate] - tool.turn;
+        change = std::max(change, tool.longest_arm * tool.turn_difference[iterate].lpNorm<Eigen::Infinity>());
+    }
+    return change;
+}
+
+// Goes to a combination of answers, after the drags have.
+void ContactEquilibrium::relax_turn(Tool& tool, const Weights& weights, double step) const noexcept {
+    tool.turn += step * (combined(weights, tool.next_turn) - tool.turn);
+    swing(tool);
+    tool.drag_turn.setZero();
+    for (const Part& part : tool.parts)
+        for (const Touch& touch : part.touches) tool.drag_turn += torsion_ * part.swung.cross(touch.drag);
+}
+
+}  // namespace palpate::haptics
