@@ -100,5 +100,6 @@ if(PALPATE_TESTS)
         set(palpate_data_default "${PROJECT_SOURCE_DIR}/../shared/data")
     endif()
     set(PALPATE_DATA "${palpate_data_default}" CACHE PATH "Real volumes for tests; tests that need them are skipped where they are absent")
-    set(PALPATE_TEST_ENVIRONMENT "PALPATE_DATA=${PALPATE_DATA};PALPATE_BIN=${CMAKE_BINARY_DIR}/bin;PALPATE_SOURCE=${PROJECT_SOURCE_DIR};PALPATE_BUILD=${CMAKE_BINARY_DIR}")
+    # One thread of linear algebra each but where a test says otherwise: there are as many tests at once as cores.
+    set(PALPATE_TEST_ENVIRONMENT "PALPATE_THREADS=1;OPENBLAS_NUM_THREADS=1;PALPATE_DATA=${PALPATE_DATA};PALPATE_BIN=${CMAKE_BINARY_DIR}/bin;PALPATE_SOURCE=${PROJECT_SOURCE_DIR};PALPATE_BUILD=${CMAKE_BINARY_DIR}")
 endif()

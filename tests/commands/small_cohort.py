@@ -53,7 +53,7 @@ class SmallCohort(unittest.TestCase):
 
     def command(self, *options, out="out"):
         return [BIN / "palpate", "batch", self.folder / "patients.tsv", "-o", self.folder / out, "--json", self.folder / "result.json", "--force",
-                *options]
+                "--threads", "2", *options]
 
     def batch(self, *options, out="out", code=0, env=None):
         ran = subprocess.run(self.command(*options, out=out), text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=250, env=env,

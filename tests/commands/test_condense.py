@@ -9,6 +9,7 @@ import signal
 import subprocess
 import tempfile
 import unittest
+import unittest.mock
 
 import h5py
 import numpy
@@ -189,6 +190,17 @@ class Condense(unittest.TestCase):
         self.assertEqual(quadratic["certificate"]["free_dofs"], 3 * (9 ** 3 - 9 ** 2))  # nodes of 0.5 mm cells
         # The larger space's minimum is lower (Ritz), so a force on one node always does more work.
         self.assertGreater(numpy.linalg.eigvalsh(soft - stiff).min(), 0)
+
+    def test_as_many_threads_are_taken_as_are_given_or_as_the_environment_says(self):
+        self.write_organ()
+        rule = "--fixed", "plane:0,0,0,0,0,-1"
+        with unittest.mock.patch.dict(os.environ, PALPATE_THREADS="3"):
+            self.assertEqual(self.result_of(*rule)["plan"]["threads"], 3)
+            self.assertEqual(self.result_of(*rule, "--threads", "2", "--force")["plan"]["threads"], 2)
+        self.body.unlink()
+        for text in ("two", "0", "-1", "2x"):
+            with unittest.mock.patch.dict(os.environ, PALPATE_THREADS=text):
+                self.assert_refused(USAGE, ("PALPATE_THREADS", "an integer above 0"), *rule)
 
     def test_wrong_rules_are_usage_errors(self):
         self.write_organ()

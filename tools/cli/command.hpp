@@ -60,7 +60,7 @@ std::string identifier(std::string name);
 
 /// What one run of a command may use.
 struct Session {
-    int threads = 1;  ///< --threads, or all cores
+    int threads = 1;  ///< --threads, or the variable PALPATE_THREADS, or all cores
     bool threads_given = false;
     bool force = false;  ///< --force: existing outputs may be replaced
     bool quiet = false;  ///< --quiet
