@@ -43,7 +43,7 @@ class Init(unittest.TestCase):
 
     def assertBuilds(self, name):
         asset = (self.folder / name).with_suffix(".vtkhdf")
-        built = run(BIN / "palpate", "build", self.folder / name, "-o", asset, "--force")
+        built = run(BIN / "palpate", "build", self.folder / name, "-o", asset, "--force", "--virtual-clock")
         self.assertEqual(built.returncode, 0, built.stderr)
         seen = json.loads(run(BIN / "palpate", "inspect", asset, "--json", "-").stdout)
         return seen, asset.with_suffix(".html").read_text()
@@ -182,7 +182,7 @@ class InitWindow(unittest.TestCase):
         return said
 
     def assertFelt(self, case):
-        """Builds at once, and pushes back; what inspect says of the asset."""
+        """Builds at once, by the real clock, and pushes back; what inspect says of the asset."""
         asset = case.with_suffix(".vtkhdf")
         built = run(BIN / "palpate", "build", case, "-o", asset)
         self.assertEqual(built.returncode, 0, built.stderr)
