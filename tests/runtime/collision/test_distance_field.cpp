@@ -13,6 +13,7 @@
 #include "runtime/collision/field/distance_field.hpp"
 #include "tests/formats/sample_case.hpp"
 #include "tests/runtime/collision/collision_scene.hpp"
+#include "tests/runtime/samples.hpp"
 
 namespace palpate {
 namespace {
@@ -22,7 +23,7 @@ using Eigen::Vector3d;
 using Eigen::Vector3i;
 
 constexpr double voxel = 0.7, band = 2.5;  // mm
-constexpr int points = 10000;
+constexpr int points = samples_of(10000);
 
 // mm: positions on the grid are rounded in double, at coordinates up to 100 mm, and so are distances.
 constexpr double rounding = 1e-10;

@@ -9,6 +9,7 @@
 #include "runtime/collision/tree_pairs.hpp"
 #include "tests/formats/sample_case.hpp"
 #include "tests/runtime/collision/collision_scene.hpp"
+#include "tests/runtime/samples.hpp"
 
 namespace palpate {
 namespace {
@@ -74,8 +75,8 @@ TEST(TreePairs, pairs_are_those_of_all_triangles) {
     std::vector<SurfacePair> pairs(all);
     std::mt19937 generator(3);
     std::normal_distribution<double> axis;
-    std::size_t touching = 0, apart = 0;
-    for (int i = 0; i < 10000; ++i) {
+    int touching = 0, apart = 0;
+    for (int i = 0; i < samples_of(10000); ++i) {
         Eigen::Isometry3d X_AB = Eigen::Isometry3d::Identity();
         X_AB.translation() =
             Scene::middle + (i % 3 ? 15 : 4) * Vector3d(axis(generator), axis(generator), axis(generator));
@@ -115,8 +116,8 @@ TEST(TreePairs, pairs_are_those_of_all_triangles) {
         ASSERT_EQ(surfaces_touch(a, b, X_AB, margin), count > 0);
         ++(count > 0 ? touching : apart);
     }
-    EXPECT_GT(touching, 1000U);
-    EXPECT_GT(apart, 1000U);
+    EXPECT_GT(touching, samples_of(1000));
+    EXPECT_GT(apart, samples_of(1000));
 }
 
 TEST(TreePairs, more_pairs_than_fit_are_counted) {

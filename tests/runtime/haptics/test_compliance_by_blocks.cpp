@@ -17,6 +17,7 @@
 #include "tests/runtime/allocation_trap.hpp"
 #include "tests/runtime/elastic_cube.hpp"
 #include "tests/runtime/haptics/held_tool.hpp"
+#include "tests/runtime/samples.hpp"
 
 namespace palpate {
 namespace {
@@ -103,7 +104,7 @@ TEST(ComplianceByBlocks, neither_ticks_nor_displacements_allocate) {
     std::size_t allocated = 0;
     {
         const AllocationTrap trap;
-        for (int tick = 0; tick < 20000; ++tick) {
+        for (int tick = 0; tick < samples_of(20000); ++tick) {
             const double t = 1e-3 * tick;
             go(*model, result,
                {10 + 9 * std::sin(1.1 * t), 10 + 9 * std::sin(2.3 * t), 22 + 2 * std::cos(5.1 * t)});
@@ -113,7 +114,7 @@ TEST(ComplianceByBlocks, neither_ticks_nor_displacements_allocate) {
         allocated = trap.count();
     }
     EXPECT_EQ(allocated, 0U);
-    EXPECT_GT(touching, 5000);
+    EXPECT_GT(touching, samples_of(5000));
 }
 
 // Every third node that could be one is no contact node, so that contact nodes and vertices are numbered

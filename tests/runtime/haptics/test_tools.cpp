@@ -10,6 +10,7 @@
 #include "tests/runtime/allocation_trap.hpp"
 #include "tests/runtime/haptics/equilibrium_oracle.hpp"
 #include "tests/runtime/haptics/held_tool.hpp"
+#include "tests/runtime/samples.hpp"
 
 namespace palpate {
 namespace {
@@ -302,14 +303,14 @@ TEST(TwoTools, with_shafts_and_friction_never_allocate_in_a_tick) {
     std::size_t allocated = 0;
     {
         const AllocationTrap trap;
-        for (int tick = 0; tick < 20000; ++tick) {
+        for (int tick = 0; tick < samples_of(20000); ++tick) {
             model->tick(two_wandering(tick), results);
             touching += results[0].contact_count > 0 && results[1].contact_count > 0;
         }
         allocated = trap.count();
     }
     EXPECT_EQ(allocated, 0U);
-    EXPECT_GT(touching, 1500);
+    EXPECT_GT(touching, samples_of(1500));
 }
 
 TEST(TwoTools, are_never_pulled_by_what_they_touch) {
@@ -317,7 +318,7 @@ TEST(TwoTools, are_never_pulled_by_what_they_touch) {
     std::array<TickResult, 2> results{};
     model.tick(std::array{held_at({10, 10, 60}), held_at({20, 10, 60})}, results);
     int unsolved = 0;
-    for (int tick = 0; tick < 20000; ++tick) {
+    for (int tick = 0; tick < samples_of(20000); ++tick) {
         model.tick(two_wandering(tick), results);
         for (const TickResult& result : results) {
             ASSERT_TRUE(force_of(result).allFinite()) << tick;
@@ -326,7 +327,7 @@ TEST(TwoTools, are_never_pulled_by_what_they_touch) {
         }
     }
     RecordProperty("unsolved", unsolved);
-    EXPECT_LT(unsolved, 400);  // 1 %
+    EXPECT_LT(unsolved, samples_of(400));  // 1 %
 }
 
 using Record = std::vector<std::array<TickResult, 2>>;
