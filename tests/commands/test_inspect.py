@@ -65,22 +65,22 @@ def pixels(path):
             assert (depth, colour) == (8, 2)
         packed += body if kind == b"IDAT" else b""
         at += length + 12
-    raw = numpy.frombuffer(zlib.decompress(packed), numpy.uint8).reshape(height, 1 + 3 * width)
-    rows = numpy.zeros((height + 1, width + 1, 3), int)  # a row above and a column before, of zeros
+    raw, across = zlib.decompress(packed), 3 * width
+    rows, above = [], bytes(across + 3)  # each after a pixel of zeros
     for y in range(height):
-        line, kind = raw[y, 1:].reshape(width, 3).astype(int), raw[y, 0]
-        for x in range(width) if kind in (1, 3, 4) else ():
-            left, up, corner = rows[y + 1, x], rows[y, x + 1], rows[y, x]
+        kind, *line = raw[y * (across + 1):(y + 1) * (across + 1)]
+        row = [0, 0, 0]
+        for x, value in enumerate(line):
+            left, up, corner = row[x], above[x + 3], above[x]
             if kind == 4:
-                guess = left + up - corner
-                a, b, c = abs(guess - left), abs(guess - up), abs(guess - corner)
-                guess = numpy.where((a <= b) & (a <= c), left, numpy.where(b <= c, up, corner))
+                a, b, c = abs(up - corner), abs(left - corner), abs(left + up - 2 * corner)
+                guess = left if a <= b and a <= c else up if b <= c else corner
             else:
-                guess = left if kind == 1 else (left + up) // 2
-            rows[y + 1, x + 1] = (line[x] + guess) % 256
-        if kind in (0, 2):
-            rows[y + 1, 1:] = (line + (rows[y, 1:] if kind == 2 else 0)) % 256
-    return rows[1:, 1:]
+                guess = (0, left, up, (left + up) // 2)[kind]
+            row.append((value + guess) % 256)
+        rows.append(row[3:])
+        above = row
+    return numpy.array(rows).reshape(height, width, 3)
 
 
 class InspectCommand(unittest.TestCase):
