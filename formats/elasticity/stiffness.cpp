@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/elasticity/stiffness.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <ranges>
 #include <string>
 
+#include "formats/elasticity/shape_gradients.hpp"
 #include "formats/model/errors.hpp"
 
 namespace palpate::elasticity {
@@ -23,61 +22,23 @@ Lame lame_parameters(const Material& material) {
     return {e * nu / ((1 + nu) * (1 - 2 * nu)), e / (2 * (1 + nu))};
 }
 
-// Gradients of the barycentric coordinates, one a column, 1/mm.
-using BarycentricGradients = Eigen::Matrix<double, 3, 4>;
-// Gradients of all shape functions at one point, stacked as the degrees of freedom are, 1/mm.
-using ShapeGradients = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 30, 1>;
-
 using ElementStiffness = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 30, 30>;
 
-struct Geometry {
-    BarycentricGradients gradients;
-    double volume;  // mm³
-};
-
-Geometry geometry_of(const std::array<Eigen::Vector3d, 4>& p) {
-    Eigen::Matrix3d edges;
-    edges << p[1] - p[0], p[2] - p[0], p[3] - p[0];
-    Geometry geometry;
-    geometry.gradients.rightCols<3>() = edges.inverse().transpose();
-    geometry.gradients.col(0) = -geometry.gradients.rightCols<3>().rowwise().sum();
-    geometry.volume = edges.determinant() / 6;
-    return geometry;
-}
-
-// Corners: N_i = L_i (2 L_i - 1); middles: N_ij = 4 L_i L_j.
-ShapeGradients quadratic_gradients(const BarycentricGradients& g, const Eigen::Vector4d& point) {
-    ShapeGradients gradients(30);
-    for (Eigen::Index i = 0; i < 4; ++i) gradients.segment<3>(3 * i) = (4 * point[i] - 1) * g.col(i);
-    for (std::size_t e = 0; e < 6; ++e) {
-        const auto i = static_cast<Eigen::Index>(tetrahedron_edges[e][0]),
-                   j = static_cast<Eigen::Index>(tetrahedron_edges[e][1]);
-        gradients.segment<3>(3 * (4 + static_cast<Eigen::Index>(e))) =
-            4 * (point[j] * g.col(i) + point[i] * g.col(j));
-    }
-    return gradients;
-}
-
 // The integral of g_a g_bᵀ for all nodes a, b.
-ElementStiffness integral_of_gradient_products(const Geometry& geometry, int nodes_per_element) {
+ElementStiffness integral_of_gradient_products(const TetrahedronShape& shape, int nodes_per_element) {
     if (nodes_per_element == 4) {
-        const ShapeGradients gradients = geometry.gradients.reshaped();
-        return geometry.volume * gradients * gradients.transpose();
+        const auto gradients = shape.gradients.reshaped();
+        return shape.volume * gradients * gradients.transpose();
     }
-    // Hammer & Stroud: four points of equal weight, one near each corner; their barycentric coordinates.
-    const double near = (5 + 3 * std::sqrt(5.0)) / 20, far = (5 - std::sqrt(5.0)) / 20;
     Eigen::Matrix<double, 30, 4> gradients;
-    for (Eigen::Index q = 0; q < 4; ++q) {
-        Eigen::Vector4d point = Eigen::Vector4d::Constant(far);
-        point[q] = near;
-        gradients.col(q) = quadratic_gradients(geometry.gradients, point);
-    }
-    return geometry.volume / 4 * gradients * gradients.transpose();
+    for (Eigen::Index q = 0; q < 4; ++q)
+        gradients.col(q) = quadratic_gradients(shape.gradients, quadrature_point(q)).reshaped();
+    return shape.volume / 4 * gradients * gradients.transpose();
 }
 
 ElementStiffness element_stiffness(const std::array<Eigen::Vector3d, 4>& corners, const Lame& lame,
                                    int nodes_per_element) {
-    const ElementStiffness products = integral_of_gradient_products(geometry_of(corners), nodes_per_element);
+    const ElementStiffness products = integral_of_gradient_products(shape_of(corners), nodes_per_element);
     ElementStiffness stiffness = lame.lambda * products;
     for (Eigen::Index a = 0; a < products.rows(); a += 3)
         for (Eigen::Index b = 0; b < products.cols(); b += 3) {
@@ -86,12 +47,6 @@ ElementStiffness element_stiffness(const std::array<Eigen::Vector3d, 4>& corners
             stiffness.block<3, 3>(a, b).diagonal().array() += lame.mu * product.trace();
         }
     return stiffness;
-}
-
-std::array<Eigen::Vector3d, 4> corners(const TetMesh& mesh, std::size_t t) {
-    std::array<Eigen::Vector3d, 4> points;
-    for (std::size_t c = 0; c < 4; ++c) points[c] = mesh.rest_positions[mesh.tetrahedra[t][c]];
-    return points;
 }
 
 std::string region_name(const TetMesh& mesh, std::int32_t value) {
@@ -174,8 +129,8 @@ LowerSparse assemble_stiffness(const TetMesh& mesh, std::span<const RegionMateri
     std::fill_n(stiffness.valuePtr(), entries, 0.0);
 
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
-        const ElementStiffness element =
-            element_stiffness(corners(mesh, t), lame.at(mesh.regions[t]), discretisation.nodes_per_element);
+        const ElementStiffness element = element_stiffness(corners_of(mesh, t), lame.at(mesh.regions[t]),
+                                                           discretisation.nodes_per_element);
         const auto nodes = nodes_of_element(discretisation, t);
         for (std::size_t a = 0; a < nodes.size(); ++a)
             for (std::size_t b = 0; b < nodes.size(); ++b) {
