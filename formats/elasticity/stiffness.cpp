@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <ranges>
+#include <set>
 #include <string>
 
 #include "formats/elasticity/shape_gradients.hpp"
@@ -55,9 +56,10 @@ std::string region_name(const TetMesh& mesh, std::int32_t value) {
     return "region " + std::to_string(value);
 }
 
-std::map<std::int32_t, Lame> checked_materials(const TetMesh& mesh,
-                                               std::span<const RegionMaterial> materials) {
-    std::map<std::int32_t, Lame> lame;
+}  // namespace
+
+void require_sound_materials(const TetMesh& mesh, std::span<const RegionMaterial> materials) {
+    std::set<std::int32_t> known;
     for (const auto& [region, material] : materials) {
         const std::string culprit = "material of " + region_name(mesh, region);
         if (!(material.youngs_modulus > 0))
@@ -67,17 +69,14 @@ std::map<std::int32_t, Lame> checked_materials(const TetMesh& mesh,
         if (!(material.poissons_ratio > -1 && material.poissons_ratio < 0.5))
             throw InvalidInput({culprit, "Poisson's ratio " + std::to_string(material.poissons_ratio),
                                 "between -1 and 0.5, both excluded", "soft tissue is usually 0.45 to 0.49"});
-        if (!lame.try_emplace(region, lame_parameters(material)).second)
+        if (!known.insert(region).second)
             throw InvalidInput({culprit, "given twice", "one material a region", "leave one out"});
     }
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
-        if (!lame.contains(mesh.regions[t]))
+        if (!known.contains(mesh.regions[t]))
             throw InvalidInput({"region '" + region_name(mesh, mesh.regions[t]) + "'", "has no material", "",
                                 "give it a Young's modulus and a Poisson's ratio"});
-    return lame;
 }
-
-}  // namespace
 
 Eigen::MatrixXd tetrahedron_stiffness(const std::array<Eigen::Vector3d, 4>& corners, const Material& material,
                                       ElementOrder order) {
@@ -97,7 +96,9 @@ std::vector<std::int32_t> number_free_nodes(std::size_t node_count,
 LowerSparse assemble_stiffness(const TetMesh& mesh, std::span<const RegionMaterial> materials,
                                const Discretisation& discretisation,
                                std::span<const std::int32_t> position_of_node) {
-    const auto lame = checked_materials(mesh, materials);
+    require_sound_materials(mesh, materials);
+    std::map<std::int32_t, Lame> lame;
+    for (const auto& [region, material] : materials) lame[region] = lame_parameters(material);
     const NodeGraph graph = node_graph(discretisation, position_of_node);
     const std::size_t count = graph.offsets.size() - 1;
     // The lower triangle's neighbours of a position: itself and those after it.

@@ -25,10 +25,14 @@ using LowerSparse = Eigen::SparseMatrix<double, Eigen::ColMajor, std::int64_t>;
 Eigen::MatrixXd tetrahedron_stiffness(const std::array<Eigen::Vector3d, 4>& corners, const Material& material,
                                       ElementOrder order);
 
+/// Throws InvalidInput for a modulus <= 0, a Poisson's ratio outside (-1, 0.5), a region with two materials,
+/// or one of the mesh without any.
+void require_sound_materials(const TetMesh& mesh, std::span<const RegionMaterial> materials);
+
 /// Assembles the stiffness of all nodes with position_of_node[node] >= 0, at rows 3 * position ...; the
 /// others are held and drop out. position_of_node has discretisation.node_count entries, and positions must
-/// be 0 ... n-1, each once. Result: lower triangle, 3n x 3n, N/mm. Throws InvalidInput for a modulus <= 0, a
-/// Poisson's ratio outside (-1, 0.5) or a region without material; discretise() has refused bad tetrahedra.
+/// be 0 ... n-1, each once. Result: lower triangle, 3n x 3n, N/mm. Throws InvalidInput as
+/// require_sound_materials() does; discretise() has refused bad tetrahedra.
 LowerSparse assemble_stiffness(const TetMesh& mesh, std::span<const RegionMaterial> materials,
                                const Discretisation& discretisation,
                                std::span<const std::int32_t> position_of_node);

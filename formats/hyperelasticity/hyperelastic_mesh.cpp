@@ -16,6 +16,7 @@ HyperelasticMesh::HyperelasticMesh(const DeformableBody& body)
     : discretisation_(discretise(body)),
       positions_(number_free_nodes(discretisation_.node_count, discretisation_.fixed_nodes)),
       dofs_(3 * static_cast<Index>(discretisation_.node_count - discretisation_.fixed_nodes.size())) {
+    require_sound_materials(body.mesh, body.materials);
     std::map<std::int32_t, Moduli> moduli;
     for (const auto& [region, material] : body.materials) moduli[region] = moduli_of(material);
     for (std::size_t t = 0; t < body.mesh.tetrahedra.size(); ++t)

@@ -17,7 +17,8 @@ namespace palpate::hyperelasticity {
 /// positions(); fixed nodes stay where they are.
 class HyperelasticMesh {
   public:
-    /// Elements of the body's own order. Throws InvalidInput as discretise() and assemble_stiffness() do.
+    /// Elements of the body's own order. Throws InvalidInput as discretise() and require_sound_materials()
+    /// do.
     explicit HyperelasticMesh(const DeformableBody& body);
 
     const elasticity::Discretisation& discretisation() const noexcept { return discretisation_; }
@@ -27,7 +28,8 @@ class HyperelasticMesh {
 
     /// Writes the forces (N) that hold the tissue in a displacement u (mm), dW/du, and returns the energy W
     /// (N mm); infinite, and the forces say nothing, where it turns an element inside out. Linear elements:
-    /// exact; quadratic ones by the four points that integrate their stiffness. No allocation.
+    /// exact; quadratic ones by the four points that integrate their stiffness, between which nothing is seen
+    /// of what is turned inside out. No allocation.
     double forces(const Eigen::VectorXd& displacements, Eigen::VectorXd& forces) const noexcept;
 
   private:
