@@ -4,8 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
 
 #include "formats/elasticity/stiffness.hpp"
+#include "formats/model/errors.hpp"
 
 namespace palpate::hyperelasticity {
 namespace {
@@ -14,13 +18,21 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr double sufficient = 1e-4;        // of the decrease that the slope promises
-constexpr double shortest_step = 1e-3;     // of the quasi-Newton step
+constexpr int most_trials = 30;            // along a direction
 constexpr double energy_rounding = 1e-12;  // relative
+
+// Of a regular tetrahedron of the mesh's mean volume.
+double mean_edge(const TetMesh& mesh) {
+    double six_volumes = 0;
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) six_volumes += six_volume(mesh, t);
+    return std::cbrt(std::numbers::sqrt2 * six_volumes / static_cast<double>(mesh.tetrahedra.size()));
+}
 
 }  // namespace
 
 Equilibrium::Equilibrium(const DeformableBody& body)
     : mesh_(body),
+      edge_(mean_edge(body.mesh)),
       permuted_(mesh_.dofs()),
       displacements_(VectorXd::Zero(mesh_.dofs())),
       internal_(VectorXd::Zero(mesh_.dofs())),
@@ -30,9 +42,16 @@ Equilibrium::Equilibrium(const DeformableBody& body)
       tried_internal_(mesh_.dofs()),
       steps_(mesh_.dofs(), remembered),
       changes_(mesh_.dofs(), remembered) {
+    // Left to turn, it may have a factor all the same, by rounding.
+    if (body.fixed_nodes.size() < 3)
+        throw InvalidInput({body.name, "holds " + std::to_string(body.fixed_nodes.size()) + " nodes",
+                            "at least 3, not in a line", "fix more of its nodes"});
     factor_.compute(
         elasticity::assemble_stiffness(body.mesh, body.materials, mesh_.discretisation(), mesh_.positions())
             .cast<float>());
+    if (factor_.info() != Eigen::Success)
+        throw InvalidInput({body.name, "its stiffness is not positive definite in single precision", "",
+                            "hold more nodes, or take Poisson's ratio further from 0.5"});
 }
 
 void Equilibrium::reset() noexcept {
@@ -68,29 +87,24 @@ void Equilibrium::set_direction() noexcept {
     }
 }
 
-double Equilibrium::approach(const VectorXd& loads, double settled, int most) noexcept {
-    double moved = 0;
-    for (int step = 0; step < most; ++step) {
-        residual_ = loads - internal_;
-        set_direction();
-        double slope = direction_.dot(residual_);
-        if (!(slope > 0)) {  // the steps that are known mislead
-            known_ = 0;
-            set_direction();
-            slope = direction_.dot(residual_);
+// Takes the longest part of the direction, halved as need be, that lowers the energy; false if none does.
+// What turns elements inside out is an edge long at most when it is tried again. Where rounding hides what
+// energy is won, the slope at the end tells of it (Hager, Zhang, SIAM J. Optim. 16:170-192, 2005, eq. 4.1).
+bool Equilibrium::descend(const VectorXd& loads, double slope) noexcept {
+    const double work = loads.dot(displacements_), before = energy_ - work;
+    const double rounding = energy_rounding * (std::abs(energy_) + std::abs(work));
+    double part = 1;
+    for (int trial = 0; trial < most_trials; ++trial, part /= 2) {
+        tried_ = displacements_ + part * direction_;
+        const double energy = mesh_.forces(tried_, tried_internal_), after = energy - loads.dot(tried_);
+        if (energy == std::numeric_limits<double>::infinity()) {
+            part = std::min(part, 2 * edge_ / direction_.lpNorm<Eigen::Infinity>());
+            continue;
         }
-        const double before = energy_ - loads.dot(displacements_);
-        const double rounding = energy_rounding * (energy_ + std::abs(loads.dot(displacements_)));
-        double part = 1, after = 0;
-        for (;; part /= 2) {
-            tried_ = displacements_ + part * direction_;
-            after = mesh_.forces(tried_, tried_internal_);
-            if (after - loads.dot(tried_) <= before - sufficient * part * slope + rounding) break;
-            if (part < shortest_step) {
-                known_ = 0;
-                return direction_.lpNorm<Eigen::Infinity>();
-            }
-        }
+        const bool lower = after <= before - sufficient * part * slope;
+        if (!lower && !(after <= before + rounding &&
+                        direction_.dot(tried_internal_ - loads) <= (1 - 2 * sufficient) * slope))
+            continue;
         const double curvature = part * direction_.dot(tried_internal_ - internal_);
         if (curvature > 0) {
             newest_ = (newest_ + 1) % remembered;
@@ -101,11 +115,29 @@ double Equilibrium::approach(const VectorXd& loads, double settled, int most) no
         }
         displacements_.swap(tried_);
         internal_.swap(tried_internal_);
-        energy_ = after;
-        moved = part * direction_.lpNorm<Eigen::Infinity>();
-        if (moved < settled) break;
+        energy_ = energy;
+        return true;
     }
-    return moved;
+    return false;
+}
+
+double Equilibrium::approach(const VectorXd& loads, double settled, int most) noexcept {
+    double missing = std::numeric_limits<double>::infinity();
+    for (int step = 0; step < most && !(missing < settled); ++step) {
+        residual_ = loads - internal_;
+        set_direction();
+        double slope = direction_.dot(residual_);
+        bool lower = slope > 0 && descend(loads, slope);
+        if (!lower && known_ > 0) {  // the steps that are known mislead
+            known_ = 0;
+            set_direction();
+            slope = direction_.dot(residual_);
+            lower = slope > 0 && descend(loads, slope);
+        }
+        if (std::isfinite(slope)) missing = direction_.lpNorm<Eigen::Infinity>();
+        if (!lower) break;
+    }
+    return missing;
 }
 
 }  // namespace palpate::hyperelasticity
