@@ -25,4 +25,9 @@ bool calculix_is_installed();
 /// answer.
 CalculixAnswer ask_calculix(const ElasticSystem& system, const Supports& supports);
 
+/// Displacements (3n, mm) of neo-Hookean tissue (formats/hyperelasticity/neo_hookean.hpp) at rest under nodal
+/// forces (3n, N), held at the body's fixed nodes, as ccx has them: NLGEOM, forces balanced to 1e-7. Throws
+/// as ask_calculix().
+Eigen::VectorXd ask_calculix_neo_hookean(const DeformableBody& body, const Eigen::VectorXd& forces);
+
 }  // namespace palpate::test
