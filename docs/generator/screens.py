@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Takes the pictures of the trainer's screens that docs/screens.md shows: the demo's cases in real windows of three sizes.
 
-    docs/screens.py [SCREEN ...]        (pipelines/demo.sh before it; all screens without a name)
+    docs/generator/screens.py [SCREEN ...]        (pipelines/demo.sh before it; all screens without a name)
 
 PALPATE_BIN has the programs, build/release/bin without it. Each screen is reached as a user would, by mouse and keys, in an X server
 of its own; software rendering leaves out detail in large windows, and the pictures show that.
@@ -14,7 +14,7 @@ import tempfile
 import time
 from pathlib import Path
 
-SOURCE = Path(__file__).resolve().parent.parent
+SOURCE = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(SOURCE / "tests/commands"))
 from x_server import XServer  # noqa: E402
 
