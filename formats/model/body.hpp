@@ -92,6 +92,8 @@ struct Case {
     HapticSettings haptics;
     std::optional<ToolBody>
         tool{};  ///< of no asset: chosen for a run; none: a ball or rod that its device turns
+    /// Names of the deformable bodies whose tissue is neo-Hookean in a run; of no asset.
+    std::vector<std::string> hyperelastic{};
     std::optional<Scan> scan{};
     std::string
         provenance;  ///< JSON: tool and library versions, options, input digests; no identity, no paths

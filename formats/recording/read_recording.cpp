@@ -54,6 +54,7 @@ RecordingHead read_head(const Hdf5File& file) {
     read_fields(file, "/haptics", haptic_fields, head.haptics);
     check_haptics(head.haptics, file.name() + ": /haptics");
     if (file.contains("/tool")) head.tool = read_tool(file);
+    if (file.contains("/hyperelastic")) head.hyperelastic = file.texts("/hyperelastic", {Hdf5File::any});
     const auto tools = file.attribute<std::int32_t>("/", "tools");
     if (tools < 1 || tools > most_recorded_tools) file.refuse("/", std::to_string(tools) + " tools");
     head.devices.resize(tools);

@@ -35,6 +35,7 @@ struct RecordingHead {
     HapticSettings haptics;               ///< the asset's
     std::vector<RecordedDevice> devices;  ///< one for each tool
     std::optional<ToolBody> tool{};       ///< what was held, if it had a body of its own
+    std::vector<std::string> hyperelastic{};  ///< deformable bodies whose tissue was neo-Hookean
 };
 
 /// What a recording still holds of a run, oldest first.

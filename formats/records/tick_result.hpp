@@ -161,7 +161,9 @@ inline constexpr std::tuple tick_fields{
     Field("first_contact", &Tick::first_contact, "",
           "how many contacts were recorded before this tick's; 0 in a running loop"),
     Field("detected_tick", &Tick::detected_tick, "",
-          "published schemes: of whose position a detection came in this tick; -1 for none"),
+          "of whose position (published schemes) or forces (large deformation) an answer of the loop beside "
+          "the "
+          "ticks came in this tick; -1 for none"),
     Field("tick_ns", &Tick::tick_ns, "ns", "read, contact, force, write; handing this row over comes after"),
     Field("wake_latency_ns", &Tick::wake_latency_ns, "ns", "woken this long after the deadline"),
     Field("overruns", &Tick::overruns, "", "periods skipped so far").stored_as<std::int64_t>()};

@@ -7,6 +7,7 @@
 
 #include "formats/asset/hdf5/signature.hpp"
 #include "formats/model/errors.hpp"
+#include "runtime/apps/options/large_option.hpp"
 #include "runtime/apps/servo_pulse.hpp"
 #include "runtime/apps/start_recording.hpp"
 #include "runtime/apps/tell_statuses.hpp"
@@ -62,6 +63,7 @@ Json touch(const TouchOptions& options, cli::Session& session) {
                  .virtual_clock = options.virtual_clock,
                  .trusted_keys = trusted,
                  .tool = tool_body(options.tool),
+                 .hyperelastic = options.hyperelastic,
                  .stream = options.stream},
                 [](const std::string& sentence) { spdlog::warn("{}", sentence); });
     const Case& patient_case = run.patient_case();
@@ -162,6 +164,7 @@ int main(int argc, char** argv) {
                                std::array{given.asset, given.log, given.curve, given.replay},
                                "a recording says itself what the run was like");
         check(command, options.tool, options.scheme);
+        check_large_deformation(options.hyperelastic, options.scheme);
         refuse_idle_options(command, options);
         return touch(options, session);
     });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/apps/touch_options.hpp"
 
+#include "runtime/apps/options/large_option.hpp"
 #include "runtime/session/device_list.hpp"
 
 namespace palpate::apps {
@@ -29,6 +30,7 @@ TouchHandles declare(cli::Command& command, TouchOptions& options) {
                                               "how contact is found: " + haptics::contact_method_names() +
                                                   "; with --instrument FILE 'shell' unless this is given");
     declare(command, options.tool);
+    declare_large_deformation(command, options.hyperelastic);
     command.option("--device", options.device,
                    session::device_usages([](const devices::DeviceKind&) { return true; }, true));
     command.option(

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/apps/tool_option.hpp"
+#include "runtime/apps/options/tool_option.hpp"
 #include "runtime/haptics/haptic_model.hpp"
 #include "tools/cli/command.hpp"
 
@@ -22,6 +22,7 @@ struct TouchOptions {
     std::uint64_t seed = 1;
     std::optional<std::size_t> column;
     ToolOption tool;
+    std::vector<std::string> hyperelastic;
     bool seconds_given = false, virtual_clock = false;
 };
 

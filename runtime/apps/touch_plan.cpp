@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "formats/model/errors.hpp"
-#include "runtime/apps/point_option.hpp"
+#include "runtime/apps/options/point_option.hpp"
 #include "runtime/devices/mounted_device.hpp"
 #include "runtime/devices/simulation.hpp"
 #include "runtime/session/hand_script.hpp"

@@ -14,13 +14,14 @@
 #include "formats/provenance/cautions.hpp"
 #include "runtime/apps/exercises/train_lesson.hpp"
 #include "runtime/apps/first_sight.hpp"
+#include "runtime/apps/options/large_option.hpp"
+#include "runtime/apps/options/point_option.hpp"
+#include "runtime/apps/options/tool_option.hpp"
 #include "runtime/apps/playback/expert_ghost.hpp"
 #include "runtime/apps/playback/train_playback.hpp"
-#include "runtime/apps/point_option.hpp"
 #include "runtime/apps/run_keys.hpp"
 #include "runtime/apps/start_recording.hpp"
 #include "runtime/apps/tell_statuses.hpp"
-#include "runtime/apps/tool_option.hpp"
 #include "runtime/apps/train_run.hpp"
 #include "runtime/devices/mounted_device.hpp"
 #include "runtime/devices/simulation.hpp"
@@ -53,6 +54,7 @@ struct Options {
     std::string size = "1280x720", script, second, body, target, scheme{usual_contact_method}, device, stream;
     double seconds = 0, record_seconds = 300;
     ToolOption tool;
+    std::vector<std::string> hyperelastic;
 };
 
 std::pair<int, int> size_of(const std::string& text) {
@@ -128,6 +130,7 @@ Json train(const Options& options, cli::Session& session) {
                                                         .tool_count = tools,
                                                         .trusted_keys = trusted,
                                                         .tool = tool,
+                                                        .hyperelastic = options.hyperelastic,
                                                         .stream = options.stream},
                                          [](const std::string& sentence) { spdlog::warn("{}", sentence); });
     });
@@ -282,6 +285,7 @@ int main(int argc, char** argv) {
                                        "how contact is found: " + contact_method_names() +
                                            "; with --instrument FILE 'shell' unless this is given");
     declare(command, options.tool);
+    declare_large_deformation(command, options.hyperelastic);
     command.input("--exercises", options.lesson.exercises,
                   "exercises of your own (.toml); those that every patient offers if not given");
     command.option("--exercise", options.lesson.exercise, "begin with this one instead of the start page");
@@ -303,6 +307,7 @@ int main(int argc, char** argv) {
         check_playback();
         if (options.tool.has_surface() && !scheme.given()) options.scheme = "shell";
         check(command, options.tool, options.scheme);
+        check_large_deformation(options.hyperelastic, options.scheme);
         if (options.playback.play.empty()) return train(options, session);
         return play_recording(options.playback,
                               {.asset = options.asset,

@@ -7,7 +7,7 @@ namespace palpate::haptics {
 
 void CollisionLoop::start() {
     thread_ = std::thread([this] {
-        realtime::PeriodicClock clock(period_ns);
+        realtime::PeriodicClock clock(period_ns_);
         while (!stop_requested_.load(std::memory_order_relaxed)) {
             clock.wait();
             detect_();

@@ -6,17 +6,26 @@
 #include <thread>
 #include <utility>
 
+#include "runtime/haptics/methods/contact_method.hpp"
+
 namespace palpate::haptics {
 
-/// The published collision loop: a thread that calls `detect` 30 times a second, with 30 as its fixed rate
-/// (§4.2 of the paper named in published_contact.hpp). A period that `detect` overruns is skipped.
+/// A thread beside the ticks that calls `detect` once a period; one that `detect` overruns is skipped.
 class CollisionLoop {
   public:
-    static constexpr std::int64_t rate_hz = 30;
-    static constexpr std::int64_t period_ns = 1'000'000'000 / rate_hz;
+    /// Of what answers positions: 30 times a second is the published loop's fixed rate (§4.2 of the paper
+    /// named in published_contact.hpp).
+    static constexpr std::int64_t published_period_ns = 1'000'000'000 / 30;
+    /// Of what answers forces: the older an answer, the less a hand that moves can trust it.
+    static constexpr std::int64_t force_period_ns = 10'000'000;
+
+    static constexpr std::int64_t period_of(Detects detects) noexcept {
+        return detects == Detects::forces ? force_period_ns : published_period_ns;
+    }
 
     /// `detect` must not throw; what it refers to must outlive the loop.
-    explicit CollisionLoop(std::function<void()> detect) : detect_(std::move(detect)) {}
+    CollisionLoop(std::function<void()> detect, std::int64_t period_ns)
+        : detect_(std::move(detect)), period_ns_(period_ns) {}
     CollisionLoop(const CollisionLoop&) = delete;
     CollisionLoop& operator=(const CollisionLoop&) = delete;
     ~CollisionLoop() { stop(); }
@@ -28,6 +37,7 @@ class CollisionLoop {
 
   private:
     std::function<void()> detect_;
+    std::int64_t period_ns_;
     std::atomic<bool> stop_requested_{false};
     std::thread thread_;
 };

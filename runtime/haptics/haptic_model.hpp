@@ -50,6 +50,8 @@ class HapticModel {
 
     /// Numbers its ticks as if it had ticked as often as `before`. Not beside a running tick of either.
     void count_on_from(const HapticModel& before) noexcept { tick_ = before.tick_; }
+    /// Numbers its next tick so. Not beside a running tick.
+    void count_from(std::int64_t tick) noexcept { tick_ = tick; }
 
     /// Computes the forces for one state of each tool: finds contacts, solves them, limits the forces. Fills
     /// the results except tick_ns, wake_latency_ns and overruns. As many states and results as tools
@@ -65,11 +67,13 @@ class HapticModel {
         tick({&device, 1}, {&result, 1});
     }
 
-    /// The collision loop of a method that needs detection, to be called 30 times a second from one thread,
-    /// which may be another than tick()'s; nothing for others.
+    /// What detect() answers.
+    Detects detects() const noexcept { return contact_->detects(); }
+    /// The collision loop where there is something to detect, to be called 30 times a second from one thread,
+    /// which may be another than tick()'s; nothing elsewhere.
     void detect() noexcept;
     /// The same for a given position of a given tick, as a replay (TickResult::detected_tick) or a loop that
-    /// is late has it.
+    /// is late has it; or for the forces of that tick, which this model must have ticked lately.
     void detect_at(const std::array<double, 3>& device, std::int64_t tick) noexcept;
 
     /// Free ticks after which nothing is left of a touch where tissue creeps; 0 where nothing does.
@@ -95,6 +99,12 @@ class HapticModel {
     /// per touched degree of freedom.
     void surface_displacement(std::size_t body, const TickResult& result,
                               std::span<Eigen::Vector3f> displacements) const noexcept;
+    /// Adds what the contacts of all tools displace it by beyond its compliance, where it is hyperelastic and
+    /// this model ticks. For one thread, beside a running tick.
+    void add_beyond(std::size_t body, std::span<const TickResult* const> results,
+                    std::span<Eigen::Vector3f> displacements) const {
+        contact_->add_beyond(body - rigid_count(), results, displacements);
+    }
 
   private:
     struct Tool {

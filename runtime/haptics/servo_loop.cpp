@@ -26,8 +26,7 @@ ServoLoop::ServoLoop(HapticModel& model, std::span<Device* const> devices, Servo
       servo_(servo ? *servo : own_servo_),
       states_(devices.size()),
       results_(devices.size()),
-      outlet_(devices.size(), ring_capacity),
-      collision_([this] { model_.load()->detect(); }) {
+      outlet_(devices.size(), ring_capacity) {
     couple(model);
 }
 
@@ -49,8 +48,14 @@ void ServoLoop::start() {
     servo_.start([this](const ServoTick& wake) { step(wake); });
     running_ = true;
     std::ranges::copy(servo_.setup(), std::back_inserter(statistics_.setup));
-    detecting_ = model_.load()->method().can.needs_detection;
-    if (detecting_) collision_.start();
+    detect_beside(*model_.load());
+}
+
+void ServoLoop::detect_beside(HapticModel& model) {
+    collision_.reset();
+    if (model.detects() == Detects::nothing) return;
+    collision_.emplace([&model] { model.detect(); }, CollisionLoop::period_of(model.detects()));
+    collision_->start();
 }
 
 bool ServoLoop::change_model(HapticModel& model) {
@@ -60,7 +65,7 @@ bool ServoLoop::change_model(HapticModel& model) {
     while (next_model_.load() != nullptr && std::chrono::steady_clock::now() < give_up)
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     if (next_model_.exchange(nullptr) != nullptr) return false;
-    if (model.method().can.needs_detection && !std::exchange(detecting_, true)) collision_.start();
+    detect_beside(model);
     return true;
 }
 
@@ -72,7 +77,7 @@ void ServoLoop::stop() {
     while (!released_.load() && std::chrono::steady_clock::now() < give_up)
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     servo_.stop();
-    collision_.stop();
+    collision_.reset();
 }
 
 void ServoLoop::run_virtual(std::int64_t ticks, const std::function<void(const TickResult&)>& sink,
@@ -80,8 +85,9 @@ void ServoLoop::run_virtual(std::int64_t ticks, const std::function<void(const T
     for (std::int64_t tick = 1; tick <= ticks; ++tick) {
         step(wake(tick));
         for (const TickResult& result : results_) sink(result);
-        if (tick * period_ns / CollisionLoop::period_ns > (tick - 1) * period_ns / CollisionLoop::period_ns)
-            model_.load()->detect();
+        HapticModel& model = *model_.load();
+        const std::int64_t detection_ns = CollisionLoop::period_of(model.detects());
+        if (tick * period_ns / detection_ns > (tick - 1) * period_ns / detection_ns) model.detect();
     }
     for (Device* device : devices_) device->write({0, 0, 0});
 }

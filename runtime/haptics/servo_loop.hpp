@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,8 +31,8 @@ struct ServoStatistics {
 };
 
 /// The haptic loop: at 1 kHz reads the devices, ticks the model, writes the forces, and publishes the results
-/// to the visual side (latest value) and to a logger (every value); for a contact method that needs
-/// detection also the collision loop at 30 Hz. Model, devices and servo must outlive the loop and are its own
+/// to the visual side (latest value) and to a logger (every value); for a contact method that
+/// detects also the collision loop. Model, devices and servo must outlive the loop and are its own
 /// while it runs.
 class ServoLoop {
   public:
@@ -67,9 +68,9 @@ class ServoLoop {
     bool change_model(HapticModel& model);
 
     /// Runs `ticks` ticks in the calling thread as fast as possible, the k-th, from 1 on, at `wake(k)`; by
-    /// default one period after the other. A method that needs detection detects 30 times in a thousand
-    /// ticks. `sink` gets each tool's result of each tick. Instead of start(): for tests and for runs that
-    /// must not depend on the machine.
+    /// default one period after the other. A method that detects does so as often as its collision loop would
+    /// in that time. `sink` gets each tool's result of each tick. Instead of start(): for tests and for runs
+    /// that must not depend on the machine.
     void run_virtual(std::int64_t ticks, const std::function<void(const TickResult&)>& sink,
                      const std::function<realtime::ServoTick(std::int64_t)>& wake = in_time);
     /// A wake-up that is never late.
@@ -97,6 +98,7 @@ class ServoLoop {
     void count_stopping() noexcept;
     void change_over(HapticModel& next) noexcept;
     void couple(HapticModel& model) const;
+    void detect_beside(HapticModel& model);
 
     std::atomic<HapticModel*> model_;
     std::atomic<HapticModel*> next_model_{nullptr};  // that change_model() waits for
@@ -106,7 +108,7 @@ class ServoLoop {
     std::vector<realtime::DeviceState> states_;  // one per tool, as are the results
     std::vector<TickResult> results_;
     TickOutlet outlet_;
-    CollisionLoop collision_;
+    std::optional<CollisionLoop> collision_;  // where the model detects
     realtime::ServoCallbacks callbacks_;
     ServoStatistics statistics_;
     std::atomic<std::uint32_t> faults_{no_fault};  // that other threads have told of
@@ -114,7 +116,7 @@ class ServoLoop {
     std::atomic<bool> stopping_{false}, released_{false};
     int ticks_stopping_ = 0, ticks_changing_ = 0;  // the servo's, as is the next
     bool model_is_new_ = false;                    // since the last tick
-    bool running_ = false, detecting_ = false;
+    bool running_ = false;
 };
 
 }  // namespace palpate::haptics

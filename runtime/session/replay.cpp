@@ -67,7 +67,6 @@ class Player {
   public:
     Player(const Recording& recording, HapticModel& model, const std::function<void(const TickResult&)>& sink)
         : ticks_(whole_ticks(recording)),
-          detects_(model.method().can.needs_detection),
           model_(model),
           sink_(sink),
           states_(model.tool_count()),
@@ -97,10 +96,11 @@ class Player {
   private:
     bool start(Rows rows) {
         const bool first = rows[0].tick == 0;
-        if (!first && (free_ticks_ < free_ticks_to_start + model_.memory_ticks() ||
-                       (detects_ && rows[0].detected_tick < 0)))
-            return false;
+        if (!first && free_ticks_ < free_ticks_to_start + model_.memory_ticks()) return false;
+        if (!first && model_.detects() != Detects::nothing && rows[0].detected_tick < 0) return false;
         model_.reset();
+        model_.count_from(rows[0].tick);
+        first_tick_ = rows[0].tick;
         if (!tick(rows)) return false;
         // A tool within a hair of a surface counts as inside for a fresh model.
         const bool clear = std::ranges::none_of(
@@ -117,6 +117,10 @@ class Player {
             const auto detected =
                 std::ranges::lower_bound(ticks_, wanted, {}, [](Rows r) { return r[0].tick; });
             if (detected == ticks_.end() || (*detected)[0].tick != wanted) return false;
+            // Of forces from before the start, nothing is known but that there were none.
+            if (model_.detects() == Detects::forces && wanted < first_tick_ &&
+                !std::ranges::all_of(*detected, is_free))
+                return false;
             model_.detect_at((*detected)[0].device_position, wanted);
         }
         std::ranges::transform(rows, states_.begin(), state_of);
@@ -147,12 +151,12 @@ class Player {
     }
 
     std::vector<Rows> ticks_;
-    bool detects_;
     HapticModel& model_;
     const std::function<void(const TickResult&)>& sink_;
     std::vector<realtime::DeviceState> states_;
     std::vector<TickResult> results_;
     bool running_ = false;
+    std::int64_t first_tick_ = 0;
     std::int64_t free_ticks_ = 0;
     ReplayOutcome outcome_;
 };
@@ -175,6 +179,7 @@ Case recorded_case(const Recording& recording, const std::filesystem::path& file
     check_asset(recording, file, asset);
     Case patient_case = asset::read_asset(asset, trusted_keys);
     patient_case.tool = recording.head.tool;
+    patient_case.hyperelastic = recording.head.hyperelastic;
     return patient_case;
 }
 

@@ -21,6 +21,7 @@ recording::RecordingHead recording_head(const std::filesystem::path& asset, cons
                                   .haptics = model.settings(),
                                   .devices = {},
                                   .tool = model.method().can.turns ? patient_case.tool : std::nullopt};
+    if (model.method().can.deforms_far) head.hyperelastic = patient_case.hyperelastic;
     for (const Device* device : devices) head.devices.push_back({device->name(), device->limits()});
     return head;
 }

@@ -18,6 +18,12 @@ namespace {
 Case case_of(const SessionRequest& request) {
     Case patient_case = asset::load_asset(request.asset, request.trusted_keys);
     patient_case.tool = request.tool;
+    patient_case.hyperelastic = request.hyperelastic;
+    if (request.hyperelastic == std::vector<std::string>{"all"}) {
+        patient_case.hyperelastic.clear();
+        for (const DeformableBody& body : patient_case.deformable_bodies)
+            patient_case.hyperelastic.push_back(body.name);
+    }
     return patient_case;
 }
 

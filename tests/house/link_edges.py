@@ -20,6 +20,7 @@ ROOMS = {
     "records": set(),
     "model": {"records"},
     "elasticity": {"model"},
+    "hyperelasticity": {"model", "elasticity"},
     "provenance": {"json"},
     "asset": {"model", "hdf5", "openssl", "threads"},
     "stl_file": {"model"},
@@ -48,7 +49,7 @@ ROOMS = {
     "hd_conformance": {"model", "devices", "json"},
     "realtime": {"records"},
     "collision": {"model"},
-    "haptics": {"model", "records", "collision", "realtime"},
+    "haptics": {"model", "records", "hyperelasticity", "collision", "realtime"},
     "devices": {"model", "realtime"},
     "doctor": {"model", "realtime", "haptics", "devices", "json"},
     "openigtlink": {"model", "realtime", "haptics", "devices", "igtl"},
@@ -70,7 +71,7 @@ EXECUTABLES = {
     "palpate-bench": {"experiments"},
 }
 HEAVY = {"itk", "cgal", "cholmod", "metis", "vtk"}
-LEAN = {"palpate_drawing", "palpate_provenance", "palpate_records", "palpate_model", "palpate_elasticity", "palpate_asset", "palpate_recording", "palpate_cli", "palpate_realtime", "palpate_collision",
+LEAN = {"palpate_drawing", "palpate_provenance", "palpate_records", "palpate_model", "palpate_elasticity", "palpate_hyperelasticity", "palpate_asset", "palpate_recording", "palpate_cli", "palpate_realtime", "palpate_collision",
         "palpate_haptics", "palpate_devices", "palpate_openigtlink", "palpate_session", "palpate_stl_file", "palpate_toml_file", "palpate_training", "palpate_doctor", "palpate-touch",
         "palpate-doctor"}
 # These two draw, so VTK is theirs; nothing else that is heavy.

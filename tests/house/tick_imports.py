@@ -40,6 +40,8 @@ TICK = {
         "contact/deformable_contact": "compliance and displacements of an elastic body",
         "contact/equilibrium/deformed_patch": "the part of a surface that tools are near",
         "contact/equilibrium/deformed_patch_creep": "what is left of earlier forces on it",
+        "contact/equilibrium/deformed_patch_large": "and how it leans on a shape of large deformation",
+        "contact/large/large_deformation": "shapes taken in, forces told",
         "contact/god_object": "the tool that stays outside",
         "force_limiter": "force and slew limits",
         "haptic_tick": "one tick, from positions to forces",

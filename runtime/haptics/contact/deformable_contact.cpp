@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "runtime/haptics/contact/fixed_list.hpp"
+
 namespace palpate::haptics {
 namespace {
 
@@ -28,37 +30,43 @@ std::int64_t DeformableContact::memory_ticks() const noexcept {
 
 void DeformableContact::surface_displacement(std::span<const Contact> contacts,
                                              std::span<Vector3f> displacements) const noexcept {
-    std::array<NodeForce, most_loaded> forces;
+    FixedList<SurfaceForce, 4 * max_contacts> forces;
+    append_forces(contacts, forces);
+    displace({forces.data(), forces.size()}, displacements);
+}
+
+void DeformableContact::displace(std::span<const SurfaceForce> forces,
+                                 std::span<Vector3f> displacements) const noexcept {
+    std::array<NodeForce, most_loaded> loads;
     std::size_t count = 0;
-    const auto load = [&](std::int32_t vertex, const Vector3f& force) {
+    each_load(forces, [&](std::int32_t vertex, const Vector3f& force) {
         const std::int32_t block = blocks_[vertex];
         if (block < 0) return;
-        const auto end = forces.begin() + static_cast<std::ptrdiff_t>(count);
-        const auto known = std::ranges::find(forces.begin(), end, block, &NodeForce::node);
+        const auto end = loads.begin() + static_cast<std::ptrdiff_t>(count);
+        const auto known = std::ranges::find(loads.begin(), end, block, &NodeForce::node);
         if (known != end)
             known->force += force;
-        else if (count < forces.size())
-            forces[count++] = {block, force};
-    };
-    const auto spread = [&](std::int32_t vertex, float weight, const Vector3f& push) {
-        if (!spread_) return load(vertex, weight * push);
-        for (const LoadSpread::Share& share : spread_->shares(vertex))
-            load(share.vertex, weight * share.weight * push);
-    };
-    for (const Contact& contact : contacts) {
-        if (!(contact.force > 0)) continue;
-        const Vector3f push = -reaction_of(contact).cast<float>();
-        if (contact.other_body == body_index_) spread(contact.other_vertex, 1, -push);
-        if (contact.body != body_index_) continue;
-        for (std::size_t i = 0; i < 3 && contact.vertices[i] >= 0; ++i)
-            spread(contact.vertices[i], contact.weights[i], push);
-    }
+        else if (count < loads.size())
+            loads[count++] = {block, force};
+    });
     std::ranges::fill(displacements, Vector3f::Zero());
     const auto contact_nodes = static_cast<std::size_t>(node_count(compliance_));
-    add_displacements(compliance_, std::span(forces).first(count), displacements.first(contact_nodes));
+    add_displacements(compliance_, std::span(loads).first(count), displacements.first(contact_nodes));
     // Contact nodes are surface vertices in the same order, so that each goes up to its vertex in place.
     for (std::size_t v = displacements.size(); v-- > 0;)
         displacements[v] = blocks_[v] >= 0 ? displacements[blocks_[v]] : Vector3f::Zero();
+}
+
+void DeformableContact::average(std::span<const Vector3f> field, std::span<Vector3f> means) const noexcept {
+    if (!spread_) {
+        std::ranges::copy(field, means.begin());
+        return;
+    }
+    for (std::size_t v = 0; v < means.size(); ++v) {
+        means[v].setZero();
+        for (const LoadSpread::Share& share : spread_->shares(static_cast<std::int32_t>(v)))
+            means[v] += share.weight * field[static_cast<std::size_t>(share.vertex)];
+    }
 }
 
 }  // namespace palpate::haptics

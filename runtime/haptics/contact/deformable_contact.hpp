@@ -14,6 +14,12 @@
 
 namespace palpate::haptics {
 
+/// A force on a surface vertex, before it is spread, N.
+struct SurfaceForce {
+    std::int32_t vertex = 0;
+    Eigen::Vector3f force{0, 0, 0};
+};
+
 /// A deformable body's side of contact: its surface at rest, and how that gives way on its condensed
 /// compliance.
 class DeformableContact {
@@ -26,6 +32,36 @@ class DeformableContact {
     /// See HapticModel::surface_displacement(); contacts between other bodies are ignored. Thread-safe.
     void surface_displacement(std::span<const Contact> contacts,
                               std::span<Eigen::Vector3f> displacements) const noexcept;
+    /// The same under forces on surface vertices.
+    void displace(std::span<const SurfaceForce> forces,
+                  std::span<Eigen::Vector3f> displacements) const noexcept;
+    /// Calls `take` with each vertex that forces go to once they are spread, and its share (N); a vertex may
+    /// come several times.
+    template <typename Take>
+    void each_load(std::span<const SurfaceForce> forces, const Take& take) const noexcept {
+        for (const SurfaceForce& of : forces) {
+            if (!spread_) {
+                take(of.vertex, of.force);
+                continue;
+            }
+            for (const LoadSpread::Share& share : spread_->shares(of.vertex))
+                take(share.vertex, Eigen::Vector3f(share.weight * of.force));
+        }
+    }
+    /// Appends the forces of contacts that press this body, or with which it presses another.
+    template <typename Forces>
+    void append_forces(std::span<const Contact> contacts, Forces& forces) const noexcept {
+        for (const Contact& contact : contacts) {
+            if (!(contact.force > 0)) continue;
+            const Eigen::Vector3f push = -reaction_of(contact).cast<float>();
+            if (contact.other_body == body_index_) forces.push_back({contact.other_vertex, -push});
+            if (contact.body != body_index_) continue;
+            for (std::size_t i = 0; i < 3 && contact.vertices[i] >= 0; ++i)
+                forces.push_back({contact.vertices[i], Eigen::Vector3f(contact.weights[i] * push)});
+        }
+    }
+    /// Writes the mean of a field of the surface's vertices as contact feels it at each.
+    void average(std::span<const Eigen::Vector3f> field, std::span<Eigen::Vector3f> means) const noexcept;
 
     std::int32_t body_index() const noexcept { return body_index_; }
     /// How it spreads loads; null if it does not.

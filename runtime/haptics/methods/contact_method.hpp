@@ -27,6 +27,13 @@ inline Eigen::Quaterniond orientation_of(const ContactPose& pose) noexcept {
     return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), pose.shaft);
 }
 
+/// What a collision loop answers.
+enum class Detects {
+    nothing,    ///< nothing: it is not needed
+    positions,  ///< where the device was in a tick
+    forces,     ///< what pressed tissue in a tick
+};
+
 /// How contact with a patient's surfaces is found, kept and answered: what differs between the lines of the
 /// table in contact_methods.hpp. A HapticModel owns one and adds what is common: faults, limits, what a
 /// result says of the device. Everything is allocated on construction. A class that derives from this one
@@ -49,12 +56,19 @@ class ContactMethod {
     virtual void tick(std::span<const ContactPose> poses, double coupling, std::span<TickResult> results,
                       std::span<Eigen::Vector3d> forces) noexcept = 0;
 
-    /// Collision loop's side, of a method that needs detection: to be called 30 times a second from one
-    /// thread, which may be another than tick()'s. No allocation or lock.
+    /// What the collision loop has to find beside the ticks.
+    virtual Detects detects() const noexcept { return Detects::nothing; }
+    /// Collision loop's side, of a method that detects: to be called 30 times a second from one thread, which
+    /// may be another than tick()'s. No allocation or lock.
     virtual void detect() noexcept {}
-    /// The same for a given position (p_P, mm) of a given tick, as a replay or a loop that is late has it.
-    /// Instead of detect().
+    /// The same for a given position (p_P, mm) of a given tick, or for its forces, which it must have ticked
+    /// lately, as a replay or a loop that is late has it. Instead of detect().
     virtual void detect_at(const std::array<double, 3>& /*device*/, std::int64_t /*tick*/) noexcept {}
+
+    /// Picture's side, one thread: adds to the displacements of deformable body `soft` (mm, by surface
+    /// vertex) what the contacts of the tools' results displace it by beyond its compliance.
+    virtual void add_beyond(std::size_t /*soft*/, std::span<const TickResult* const> /*results*/,
+                            std::span<Eigen::Vector3f> /*displacements*/) {}
 };
 
 }  // namespace palpate::haptics

@@ -17,7 +17,7 @@ namespace {
 using Tested = PublishedContact::Tested;
 using Face = PublishedContact::Face;
 
-constexpr ContactCapabilities of_published{.needs_detection = true, .most_tools = 1};
+constexpr ContactCapabilities of_published{.most_tools = 1};
 
 constexpr std::array table{
     ContactMethodEntry{"single", shown_text("is published: inside or outside at 30 Hz decides"), of_published,
@@ -36,6 +36,7 @@ constexpr std::array table{
         shown_text("is ours: every tick sweeps the tool from the last to the present position"),
         {.has_radius = true,
          .spreads_loads = true,
+         .deforms_far = true,
          .sums_rigid_walls = true,
          .creeps = true,
          .turns = true,

@@ -17,7 +17,7 @@ namespace palpate::haptics {
 struct ContactCapabilities {
     bool has_radius = false;        ///< a tool is a sphere of its radius; otherwise a point
     bool spreads_loads = false;     ///< on tissue, so that it does not feel the mesh: LoadSpread
-    bool needs_detection = false;   ///< ContactMethod::detect() must be called 30 times a second
+    bool deforms_far = false;       ///< tissue may be neo-Hookean: Case::hyperelastic
     bool sums_rigid_walls = false;  ///< where only rigid walls hold the tip, one contact is their resultant
     bool creeps = false;            ///< as tissue does that relaxes
     bool feels_tissue = true;       ///< and not rigid bodies alone

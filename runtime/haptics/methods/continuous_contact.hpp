@@ -11,6 +11,7 @@
 #include "runtime/haptics/contact/contact_bodies.hpp"
 #include "runtime/haptics/contact/equilibrium/contact_equilibrium.hpp"
 #include "runtime/haptics/contact/god_object.hpp"
+#include "runtime/haptics/contact/large/large_deformation.hpp"
 #include "runtime/haptics/methods/contact_method.hpp"
 
 namespace palpate::haptics {
@@ -26,13 +27,19 @@ class ContinuousContact final : public ContactMethod {
   public:
     /// `bodies` must outlive this. Of the settings it reads radius, shaft and friction. `torsion`: rad / (N
     /// mm) that a tool turns by under a torque; 0: as its device.
-    ContinuousContact(const ContactBodies& bodies, const HapticSettings& settings, std::size_t tool_count,
-                      double torsion);
+    /// Of the case it reads which bodies are hyperelastic.
+    ContinuousContact(const Case& patient_case, const ContactBodies& bodies, const HapticSettings& settings,
+                      std::size_t tool_count, double torsion);
     ~ContinuousContact() override;
 
     void reset() noexcept override;
     void tick(std::span<const ContactPose> poses, double coupling, std::span<TickResult> results,
               std::span<Eigen::Vector3d> forces) noexcept override;
+    Detects detects() const noexcept override { return large_.any() ? Detects::forces : Detects::nothing; }
+    void detect() noexcept override;
+    void detect_at(const std::array<double, 3>& device, std::int64_t tick) noexcept override;
+    void add_beyond(std::size_t soft, std::span<const TickResult* const> results,
+                    std::span<Eigen::Vector3f> displacements) override;
 
   private:
     static constexpr std::size_t most_spheres = 49;  // of a tool
@@ -80,6 +87,7 @@ class ContinuousContact final : public ContactMethod {
     std::vector<const collision::CollisionSurface*> rigid_surfaces_, all_surfaces_;
     std::vector<Tool> tools_;
     ContactEquilibrium equilibrium_;
+    LargeDeformation large_;
     FixedList<ContactEquilibrium::Sphere, most_spheres> spheres_;  // of the tool that is being placed
 };
 

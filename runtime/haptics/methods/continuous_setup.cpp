@@ -21,13 +21,14 @@ std::vector<double> spheres_of(const HapticSettings& settings, std::size_t most_
 
 }  // namespace
 
-ContinuousContact::ContinuousContact(const ContactBodies& bodies, const HapticSettings& settings,
-                                     std::size_t tool_count, double torsion)
+ContinuousContact::ContinuousContact(const Case& patient_case, const ContactBodies& bodies,
+                                     const HapticSettings& settings, std::size_t tool_count, double torsion)
     : bodies_(bodies),
       friction_{settings.friction_at_rest, settings.friction_sliding},
       torsion_(torsion),
       equilibrium_(bodies, settings.tool_radius, friction_, tool_count,
-                   spheres_of(settings, most_spheres).size()) {
+                   spheres_of(settings, most_spheres).size()),
+      large_(patient_case, bodies) {
     for (const auto& surface : bodies.surfaces) {
         if (all_surfaces_.size() < bodies.rigid_count()) rigid_surfaces_.push_back(surface.get());
         all_surfaces_.push_back(surface.get());
@@ -45,7 +46,21 @@ ContinuousContact::~ContinuousContact() = default;
 
 void ContinuousContact::reset() noexcept {
     for (std::size_t t = 0; t < tools_.size(); ++t) forget(t);
+    large_.reset(equilibrium_);
     equilibrium_.reset();
+}
+
+void ContinuousContact::detect() noexcept {
+    if (large_.any()) large_.answer();
+}
+
+void ContinuousContact::detect_at(const std::array<double, 3>& /*device*/, std::int64_t tick) noexcept {
+    if (large_.any()) large_.answer_tick(tick);
+}
+
+void ContinuousContact::add_beyond(std::size_t soft, std::span<const TickResult* const> results,
+                                   std::span<Eigen::Vector3f> displacements) {
+    large_.add_beyond(soft, results, displacements);
 }
 
 std::unique_ptr<ContactMethod> make_continuous(const Case& patient_case, const ContactBodies& bodies,
@@ -61,7 +76,7 @@ std::unique_ptr<ContactMethod> make_continuous(const Case& patient_case, const C
     if (patient_case.tool && !(settings.shaft_length > 0))
         throw InvalidInput({patient_case.name, "its tool has no shaft, so that it has nothing to turn",
                             "a shaft", "give --rod-length, or shaft_length_mm in the case file"});
-    return std::make_unique<ContinuousContact>(bodies, settings, tool_count, torsion);
+    return std::make_unique<ContinuousContact>(patient_case, bodies, settings, tool_count, torsion);
 }
 
 }  // namespace palpate::haptics

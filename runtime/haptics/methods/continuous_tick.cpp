@@ -21,6 +21,7 @@ constexpr double farthest_return = 5;  // mm: a sphere of the shaft found again 
 void ContinuousContact::tick(std::span<const ContactPose> poses, double coupling,
                              std::span<TickResult> results, std::span<Vector3d> forces) noexcept {
     coupling_ = coupling;
+    if (large_.any()) large_.take(equilibrium_, results);
     equilibrium_.begin_tick(coupling, torsion_);
     for (std::size_t t = 0; t < tools_.size(); ++t) place(t, poses[t]);
     for (std::size_t t = 0; t < tools_.size(); ++t) follow(t, results[t]);
@@ -45,6 +46,7 @@ void ContinuousContact::tick(std::span<const ContactPose> poses, double coupling
     }
     write_neighbours(results);
     equilibrium_.end_tick();
+    if (large_.any()) large_.tell(equilibrium_, results[0].tick);
 }
 
 // How the tool is turned against its device, and the torque that this takes.

@@ -84,6 +84,7 @@ class PublishedContact final : public ContactMethod {
 
     /// Tests the device position of the latest tick on every body: one query of each surface. The same as
     /// answer(asked()).
+    Detects detects() const noexcept override { return Detects::positions; }
     void detect() noexcept override;
     void detect_at(const std::array<double, 3>& device, std::int64_t tick) noexcept override;
 

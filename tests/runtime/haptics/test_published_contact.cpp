@@ -328,7 +328,8 @@ TEST(PublishedContact, a_tick_never_allocates) {
 TEST(PublishedContact, detections_of_a_second_thread_reach_the_servo) {
     Published plate_contact(published_plate(), "single");
     plate_contact.tick(height(1.5));
-    CollisionLoop loop([&]() noexcept { plate_contact.contact().detect(); });
+    CollisionLoop loop([&]() noexcept { plate_contact.contact().detect(); },
+                       CollisionLoop::published_period_ns);
     loop.start();
     double force = 0;
     for (int tick = 0; tick < 2000 && force == 0; ++tick) {
@@ -341,12 +342,12 @@ TEST(PublishedContact, detections_of_a_second_thread_reach_the_servo) {
 
 TEST(CollisionLoop, detects_until_it_is_stopped) {
     std::atomic<int> calls = 0;
-    CollisionLoop loop([&] { ++calls; });
+    CollisionLoop loop([&] { ++calls; }, CollisionLoop::published_period_ns);
     loop.start();
     while (calls < 2) std::this_thread::yield();
     loop.stop();
     const int counted = calls;
-    std::this_thread::sleep_for(std::chrono::nanoseconds(2 * CollisionLoop::period_ns));
+    std::this_thread::sleep_for(std::chrono::nanoseconds(2 * CollisionLoop::published_period_ns));
     EXPECT_EQ(calls, counted);
 }
 

@@ -261,6 +261,11 @@ Case creeping() {  // quickly enough to be forgotten between two touches
         c.deformable_bodies[0].relaxation.push_back({region.value, {0.3, 0.002}});
     return c;
 }
+Case far() {
+    Case c = ball_and_cube();
+    c.hyperelastic = {c.deformable_bodies[0].name};
+    return c;
+}
 Case with_rod() {
     Case c = ball_and_cube();
     c.tool = ToolBody{};
@@ -277,6 +282,7 @@ constexpr std::array runs{Trial{"shaft", ball_and_cube, "continuous", 1, 6000},
                           Trial{"two_tools", ball_and_cube, "continuous", 2, 3000},
                           Trial{"tip", pointed, "continuous", 1, 12000},
                           Trial{"creeping", creeping, "continuous", 1, 12000},
+                          Trial{"hyperelastic", far, "continuous", 1, 6000},
                           Trial{"single", ball_and_cube, "single", 1, 12000},
                           Trial{"twice", ball_and_cube, "twice", 1, 12000},
                           Trial{"twice_renewed", ball_and_cube, "twice-renewed", 1, 12000},

@@ -82,8 +82,9 @@ TickRun pass_of(HapticModel& model, std::span<const HandPath> paths, Counted cou
         const auto step = static_cast<std::size_t>(run.ticks);
         if (counted == Counted::all || rows > 0) tick.record(step, spent);
         const std::int64_t next = (run.ticks + 1) * period_ns;
-        if (model.method().can.needs_detection &&
-            next / CollisionLoop::period_ns > (next - period_ns) / CollisionLoop::period_ns)
+        if (model.detects() != haptics::Detects::nothing &&
+            next / CollisionLoop::published_period_ns >
+                (next - period_ns) / CollisionLoop::published_period_ns)
             detect.record(step, nanoseconds_of([&] { model.detect(); }));
     }
     const auto touching = static_cast<double>(std::max<std::int64_t>(1, run.touching));

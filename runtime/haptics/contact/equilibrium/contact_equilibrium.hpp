@@ -43,6 +43,14 @@ class ContactEquilibrium {
     void reset() noexcept;
     void forget(std::size_t tool) noexcept;
 
+    /// From now on deformable body `soft` leans on a shape of large deformation, which must outlive that.
+    void take_shape(std::size_t soft, const LargeShape* shape) noexcept { patches_[soft].take_shape(shape); }
+    /// Calls `take` with each vertex of deformable body `soft` and what presses it, N; some may come twice.
+    template <typename Take>
+    void each_force(std::size_t soft, const Take& take) const noexcept {
+        patches_[soft].each_force(take);
+    }
+
     /// Starts a tick behind virtual couplings of `stiffness` (N/mm), without tools or walls. `torsion`: by
     /// how much a tool turns against its device under a torque, rad / (N mm); 0: as the device says.
     void begin_tick(double stiffness, double torsion) noexcept;

@@ -54,11 +54,13 @@ void DeformedPatch::reset() noexcept {
     size_ = 0;
     tick_ = 0;
     remembers_ = false;
+    load_ = part_ = 0;
 }
 
 void DeformedPatch::begin_tick() noexcept {
     ++tick_;
     std::copy_n(moved_.begin(), size_, before_.begin());
+    if (shape_ != nullptr) lean();
     if (body_->creeps()) creep();
     drop_one();  // in a tick is enough
 }
@@ -101,6 +103,8 @@ void DeformedPatch::drop(std::int32_t slot) noexcept {
     left_forces_[slot] = left_forces_[last];
     left_moves_[slot] = left_moves_[last];
     lasting_[slot] = lasting_[last];
+    leans_[slot] = leans_[last];
+    leant_[slot] = leant_[last];
     forces_.move(last, slot);
     held_.move(last, slot);
     for (Answer& answer : answers_) {
@@ -154,7 +158,9 @@ std::int32_t DeformedPatch::slot_of(std::int32_t vertex) noexcept {
                           growth(creeps_as_[slot], creeps_as_[loaded]) *
                               body_->compliance_between(vertex, vertices_[loaded]));
         held_moved_[slot] = displacement_under(held_, slot);
+        leans_[slot] = leant_[slot] = lasting_[slot] = beyond_at(vertex);
         if (body_->creeps()) enter_creep(slot);
+        held_moved_[slot] += lasting_[slot];
         before_[slot] = moved_[slot] = displacement_under(forces_, slot) + held_moved_[slot];
         for (Answer& answer : answers_) {
             answer.held_moved[slot] = displacement_under(answer.held, slot) + lasting_[slot];
@@ -189,6 +195,7 @@ Vector3d DeformedPatch::look_at_vertex(std::int32_t vertex) const noexcept {
     const std::int32_t slot = slots_[vertex];
     Vector3d at = body_->rest_position(vertex);
     if (slot != no_slot) return at + moved_[slot];
+    at += beyond_at(vertex);
     const auto add = [&](std::int32_t loaded, const Vector3d& force) {
         at += (growth(body_->creep_of(vertex), creeps_as_[loaded]) *
                (body_->compliance_between(vertex, vertices_[loaded]) * force.cast<float>()))
@@ -336,7 +343,7 @@ void DeformedPatch::hold(std::size_t iterate, std::int32_t slot, const Vector3d&
 void DeformedPatch::end_hold(std::size_t iterate) noexcept {
     Answer& answer = answers_[iterate];
     displace(answer.held, answer.held_moved);
-    if (!body_->creeps()) return;
+    if (!body_->creeps() && shape_ == nullptr) return;
     for (std::int32_t slot = 0; slot < size_; ++slot) answer.held_moved[slot] += lasting_[slot];
 }
 

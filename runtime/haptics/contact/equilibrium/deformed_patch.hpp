@@ -9,6 +9,7 @@
 #include "runtime/collision/rounded_triangle.hpp"
 #include "runtime/haptics/contact/deformable_contact.hpp"
 #include "runtime/haptics/contact/fixed_list.hpp"
+#include "runtime/haptics/contact/large_shape.hpp"
 
 namespace palpate::haptics {
 
@@ -34,6 +35,15 @@ class DeformedPatch {
     /// Starts a tick: the displacements so far are those before it, what creeps goes on by a tick, and
     /// vertices that nobody has looked at for some time go.
     void begin_tick() noexcept;
+
+    /// From now on the tissue leans on a shape of large deformation, which must outlive that; null: on none.
+    void take_shape(const LargeShape* shape) noexcept;
+    /// Calls `take` with each vertex and what presses it, N; a vertex may come twice.
+    template <typename Take>
+    void each_force(const Take& take) const noexcept {
+        for (const Forces* forces : {&forces_, &held_})
+            for (const std::int32_t slot : forces->loaded) take(vertices_[slot], forces->at[slot]);
+    }
 
     /// The slots of a triangle's corners, which come in if they are new; false where there is no room left.
     bool slots_of(std::int32_t triangle, std::array<std::int32_t, 3>& slots) noexcept;
@@ -179,6 +189,13 @@ class DeformedPatch {
     void set_block(std::int32_t slot, std::int32_t loaded, const Eigen::Matrix3f& compliance) const noexcept;
     void drop(std::int32_t slot) noexcept;
     void drop_one() noexcept;
+    // In deformed_patch_large.cpp.
+    double load() const noexcept;
+    void lean() noexcept;
+    Eigen::Vector3d beyond_at(std::int32_t vertex) const noexcept {
+        if (shape_ == nullptr) return Eigen::Vector3d::Zero();
+        return part_ * shape_->beyond[static_cast<std::size_t>(vertex)].cast<double>();
+    }
     // In deformed_patch_creep.cpp.
     void creep() noexcept;
     void enter_creep(std::int32_t slot) noexcept;
@@ -205,8 +222,14 @@ class DeformedPatch {
     std::vector<Answer> answers_;
     std::int32_t size_ = 0;
     std::int64_t tick_ = 0;
+    // Large deformation: the shape on which it leans, how much of that shape's load there is and how much of
+    // it counts; by slot, how far it displaces beyond the compliance now and did when it came, mm.
+    const LargeShape* shape_ = nullptr;
+    double load_ = 0, part_ = 0;
+    int leaning_ticks_ = 0;
+    std::vector<Eigen::Vector3d> leans_, leant_;
     // Creep, by slot: as what, what is left of the forces on it and of its displacement, and what of that
-    // lasts, mm.
+    // lasts, with what it leans, mm.
     std::vector<const TickCreep*> creeps_as_;
     std::vector<CreepHistory> left_forces_, left_moves_;
     std::vector<Eigen::Vector3d> lasting_;

@@ -36,7 +36,8 @@ void DeformedPatch::creep() noexcept {
         if (creep == nullptr) continue;
         left_forces_[slot].take(*creep, forces_.at[slot] + held_.at[slot]);
         left_moves_[slot].take(*creep, sum_[slot].head<3>().cast<double>() / creep->now);
-        const Vector3d lasting = left_moves_[slot].lasting(*creep), more = lasting - lasting_[slot];
+        const Vector3d lasting = left_moves_[slot].lasting(*creep) + leans_[slot],
+                       more = lasting - lasting_[slot];
         lasting_[slot] = lasting;
         held_moved_[slot] += more;
         moved_[slot] += more;
@@ -46,7 +47,6 @@ void DeformedPatch::creep() noexcept {
 void DeformedPatch::enter_creep(std::int32_t slot) noexcept {
     const TickCreep* const creep = creeps_as_[slot];
     left_forces_[slot] = left_moves_[slot] = {};
-    lasting_[slot].setZero();
     if (creep == nullptr) return;
     for (std::int32_t other = 0; other < size_; ++other) {
         if (creeps_as_[other] != creep || other == slot) continue;
@@ -54,8 +54,7 @@ void DeformedPatch::enter_creep(std::int32_t slot) noexcept {
             if (const Vector3d& left = left_forces_[other].left[k]; left != Vector3d::Zero())
                 left_moves_[slot].left[k] += response(slot, other, left) / creep->now;
     }
-    lasting_[slot] = left_moves_[slot].lasting(*creep);
-    held_moved_[slot] += lasting_[slot];
+    lasting_[slot] += left_moves_[slot].lasting(*creep);
 }
 
 // How far what is left of the forces on a vertex displaces it, mm.
@@ -70,7 +69,12 @@ void DeformedPatch::release() noexcept {
     if (!remembers_) return reset();
     for (Forces* forces : {&forces_, &held_}) forces->clear();
     for (Answer& answer : answers_) answer.clear();
-    for (std::int32_t slot = 0; slot < size_; ++slot) moved_[slot] = held_moved_[slot] = lasting_[slot];
+    load_ = part_ = 0;
+    for (std::int32_t slot = 0; slot < size_; ++slot) {
+        lasting_[slot] -= leans_[slot];
+        leans_[slot] = leant_[slot] = Vector3d::Zero();
+        moved_[slot] = held_moved_[slot] = lasting_[slot];
+    }
 }
 
 }  // namespace palpate::haptics

@@ -18,6 +18,8 @@ DeformedPatch::DeformedPatch(const DeformableContact& body)
       forces_(most_vertices),
       held_(most_vertices),
       answers_(iterates, Answer(most_vertices)),
+      leans_(most_vertices, Eigen::Vector3d::Zero()),
+      leant_(most_vertices, Eigen::Vector3d::Zero()),
       creeps_as_(most_vertices),
       left_forces_(most_vertices),
       left_moves_(most_vertices),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/apps/tool_option.hpp"
+#include "runtime/apps/options/tool_option.hpp"
 
 #include <algorithm>
 #include <spdlog/spdlog.h>

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/apps/options/large_option.hpp"
+
+#include "formats/model/errors.hpp"
+#include "runtime/haptics/methods/contact_methods.hpp"
+
+namespace palpate::apps {
+
+void declare_large_deformation(cli::Command& command, std::vector<std::string>& bodies) {
+    command.option(
+        "--large-deformation", bodies,
+        "deformable bodies by name, or 'all', whose tissue is neo-Hookean instead of linear: solved "
+        "beside the tick, right where tissue is deformed by more than a few per cent of its size");
+}
+
+void check_large_deformation(const std::vector<std::string>& bodies, const std::string& scheme) {
+    if (!bodies.empty() && !haptics::find_contact_method(scheme, "--scheme").can.deforms_far)
+        throw UsageError(
+            {"--large-deformation", "with --scheme " + scheme, "--scheme continuous", "no other knows it"});
+}
+
+}  // namespace palpate::apps

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "formats/model/body.hpp"
+#include "formats/records/tick_result.hpp"
+#include "runtime/haptics/contact/contact_bodies.hpp"
+#include "runtime/haptics/contact/equilibrium/contact_equilibrium.hpp"
+#include "runtime/haptics/contact/large/large_tissue.hpp"
+#include "runtime/haptics/contact/large_shape.hpp"
+#include "runtime/realtime/triple_buffer.hpp"
+
+namespace palpate::haptics {
+
+/// Large deformation beside the tick: a loop of 30 Hz or more finds where neo-Hookean tissue rests under the
+/// forces of the newest tick; ticks take that in as a displacement beyond their compliance, and so answer
+/// changes of force by the compliance and what they change the displacement beyond by. Where the hand rests,
+/// the force is that of the hyperelastic tissue. Three sides, each for one thread: the tick's, the loop's and
+/// the picture's.
+class LargeDeformation {
+  public:
+    /// Of the case's hyperelastic bodies. `bodies` must outlive this. Throws InvalidInput if one of them is
+    /// no deformable body of the case; as LargeTissue. Some seconds for a large body.
+    LargeDeformation(const Case& patient_case, const ContactBodies& bodies);
+    ~LargeDeformation();
+
+    bool any() const noexcept { return !tissues_.empty(); }
+
+    /// Back to rest. Not beside any other side.
+    void reset(ContactEquilibrium& equilibrium) noexcept;
+
+    /// Tick's side, before it begins: hands newly found shapes to the equilibrium and says in the results of
+    /// which tick's forces they are. Realtime-safe.
+    void take(ContactEquilibrium& equilibrium, std::span<TickResult> results) noexcept;
+    /// Tick's side, at its end: tells the loop which forces are there now. Realtime-safe.
+    void tell(const ContactEquilibrium& equilibrium, std::int64_t tick) noexcept;
+
+    /// Loop's side: answers the forces of the newest tick. No allocation.
+    void answer() noexcept;
+    /// The same for a tick of the last thousand, none of whose forces is known otherwise: for replays, in the
+    /// tick's thread.
+    void answer_tick(std::int64_t tick) noexcept;
+
+    /// Picture's side: adds to the displacements of deformable body `soft` (mm, by surface vertex) what it is
+    /// displaced beyond its compliance under the contacts of the tools' results.
+    void add_beyond(std::size_t soft, std::span<const TickResult* const> results,
+                    std::span<Eigen::Vector3f> displacements);
+
+  private:
+    static constexpr std::size_t remembered = 1024;  // ticks
+    using Forces = FixedList<SurfaceForce, 384>;
+    // Of one tick, by body of `softs_`.
+    struct Loads {
+        std::int64_t tick = -1;
+        std::vector<Forces> of_body;
+    };
+    struct Shapes {
+        std::int64_t tick = -1;  // whose forces they answer
+        std::vector<LargeShape> of_body;
+    };
+    static Loads none(std::size_t bodies);
+    Shapes rest() const;
+    void answer(const Loads& loads) noexcept;
+    static void copy(const Loads& from, Loads& to) noexcept;
+
+    const ContactBodies& bodies_;
+    std::vector<std::size_t> softs_;  // which deformable bodies; what follows by body is in their order
+    std::vector<std::unique_ptr<LargeTissue>> tissues_;
+    std::vector<Loads> past_;  // by tick modulo `remembered`
+    realtime::TripleBuffer<Loads> loads_;
+    realtime::TripleBuffer<Shapes> shapes_, drawn_;
+    std::vector<SurfaceForce> drawn_forces_;
+    std::int64_t answered_ = -1;  // the tick that the loop answered last
+};
+
+}  // namespace palpate::haptics
