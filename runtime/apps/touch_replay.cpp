@@ -68,6 +68,7 @@ nlohmann::ordered_json replay_recording(const std::filesystem::path& file, const
     nlohmann::ordered_json result{{"case", patient_case.name},
                                   {"script", "replay"},
                                   {"scheme", recording.head.scheme},
+                                  {"large_deformation", recording.head.hyperelastic},
                                   {"device", recording.head.devices.front().name},
                                   {"coupling_stiffness_n_per_mm", model->coupling()},
                                   {"clock", recording.head.clock},

@@ -223,7 +223,8 @@ Json train(const Options& options, cli::Session& session) {
                 {"faults", run.faults_json()},
                 {"attempts", lesson.attempts()},
                 {"recorded_by_key", run_keys.recordings()},
-                {"scheme", run.model().method().name}};
+                {"scheme", run.model().method().name},
+                {"large_deformation", patient_case.hyperelastic}};
     if (const auto rows = run.recorded_rows())
         result["recording"] = {{"rows", *rows}, {"lost_rows", statistics.lost_records}};
     return result;

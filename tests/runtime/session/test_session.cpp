@@ -162,6 +162,33 @@ TEST(Session, hands_out_every_tick_of_the_real_clock_once_and_in_order) {
     EXPECT_EQ(read_recording(scratch / "run.h5").head.clock, "real");
 }
 
+TEST(Session, with_large_deformation_replays_what_it_felt_beside_the_real_clock) {
+    const sample::Scratch scratch;
+    const auto asset = sample_asset(scratch), file = scratch / "run.h5";
+    std::int64_t ticks = 0, felt = 0, answers = 0;
+    {
+        Session session({.asset = asset, .hyperelastic = {"all"}});
+        hold_a_press(session);
+        record(session, file);
+        session.start();
+        while (ticks < 1500) {
+            session.pump([&](const TickResult& result) {
+                ++ticks;
+                felt += vector_of(result.force).norm() > 0;
+                answers += result.detected_tick >= 0;
+            });
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        }
+    }
+    EXPECT_GT(felt, 100);
+    EXPECT_GT(answers, 10);
+    const Recording recording = read_recording(file);
+    EXPECT_EQ(recording.head.hyperelastic.size(), 1U);
+    const Case patient_case = recorded_case(recording, file, asset);
+    const auto model = model_of(recording, file, asset, patient_case);
+    EXPECT_EQ(replay(recording, *model, [](const TickResult&) {}).different_ticks, 0);
+}
+
 TEST(Session, tells_of_a_fault_once) {
     const sample::Scratch scratch;
     const auto asset = sample_asset(scratch);
