@@ -39,6 +39,16 @@ ToolBody read_tool(const Hdf5File& file) {
     return tool;
 }
 
+std::vector<std::string> read_hyperelastic(const Hdf5File& file) {
+    const auto count = file.attribute<std::int32_t>("/", "hyperelastic_bodies");
+    if (count < 1 || count > most_hyperelastic)
+        file.refuse("/", std::to_string(count) + " hyperelastic bodies",
+                    "1 to " + std::to_string(most_hyperelastic));
+    std::vector<std::string> names = file.texts("/hyperelastic", {count});
+    for (const std::string& name : names) check_name(name, file.name() + ": /hyperelastic");
+    return names;
+}
+
 RecordingHead read_head(const Hdf5File& file) {
     const auto schema = file.attribute<std::int32_t>("/", "schema");
     if (schema != recording_schema)
@@ -54,7 +64,7 @@ RecordingHead read_head(const Hdf5File& file) {
     read_fields(file, "/haptics", haptic_fields, head.haptics);
     check_haptics(head.haptics, file.name() + ": /haptics");
     if (file.contains("/tool")) head.tool = read_tool(file);
-    if (file.contains("/hyperelastic")) head.hyperelastic = file.texts("/hyperelastic", {Hdf5File::any});
+    if (file.contains("/hyperelastic")) head.hyperelastic = read_hyperelastic(file);
     const auto tools = file.attribute<std::int32_t>("/", "tools");
     if (tools < 1 || tools > most_recorded_tools) file.refuse("/", std::to_string(tools) + " tools");
     head.devices.resize(tools);

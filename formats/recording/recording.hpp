@@ -17,6 +17,8 @@ namespace palpate::recording {
 
 /// Most tools of one run.
 inline constexpr std::int32_t most_recorded_tools = 64;
+/// Most bodies that it says to be hyperelastic.
+inline constexpr std::int32_t most_hyperelastic = 1024;
 
 /// A device as it was when the run began.
 struct RecordedDevice {

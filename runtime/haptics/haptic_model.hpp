@@ -69,8 +69,8 @@ class HapticModel {
 
     /// What detect() answers.
     Detects detects() const noexcept { return contact_->detects(); }
-    /// The collision loop where there is something to detect, to be called 30 times a second from one thread,
-    /// which may be another than tick()'s; nothing elsewhere.
+    /// The collision loop where there is something to detect, to be called once a period
+    /// (CollisionLoop::period_of()) from one thread, which may be another than tick()'s; nothing elsewhere.
     void detect() noexcept;
     /// The same for a given position of a given tick, as a replay (TickResult::detected_tick) or a loop that
     /// is late has it; or for the forces of that tick, which this model must have ticked lately.

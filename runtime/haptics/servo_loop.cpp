@@ -48,13 +48,15 @@ void ServoLoop::start() {
     servo_.start([this](const ServoTick& wake) { step(wake); });
     running_ = true;
     std::ranges::copy(servo_.setup(), std::back_inserter(statistics_.setup));
-    detect_beside(*model_.load());
+    detect_beside(model_.load()->detects());
 }
 
-void ServoLoop::detect_beside(HapticModel& model) {
+void ServoLoop::detect_beside(Detects detects) {
+    if (detects == detected_) return;
+    detected_ = detects;
     collision_.reset();
-    if (model.detects() == Detects::nothing) return;
-    collision_.emplace([&model] { model.detect(); }, CollisionLoop::period_of(model.detects()));
+    if (detects == Detects::nothing) return;
+    collision_.emplace([this] { model_.load()->detect(); }, CollisionLoop::period_of(detects));
     collision_->start();
 }
 
@@ -65,7 +67,7 @@ bool ServoLoop::change_model(HapticModel& model) {
     while (next_model_.load() != nullptr && std::chrono::steady_clock::now() < give_up)
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     if (next_model_.exchange(nullptr) != nullptr) return false;
-    detect_beside(model);
+    detect_beside(model.detects());
     return true;
 }
 

@@ -98,7 +98,7 @@ class ServoLoop {
     void count_stopping() noexcept;
     void change_over(HapticModel& next) noexcept;
     void couple(HapticModel& model) const;
-    void detect_beside(HapticModel& model);
+    void detect_beside(Detects detects);
 
     std::atomic<HapticModel*> model_;
     std::atomic<HapticModel*> next_model_{nullptr};  // that change_model() waits for
@@ -116,6 +116,7 @@ class ServoLoop {
     std::atomic<bool> stopping_{false}, released_{false};
     int ticks_stopping_ = 0, ticks_changing_ = 0;  // the servo's, as is the next
     bool model_is_new_ = false;                    // since the last tick
+    Detects detected_ = Detects::nothing;          // by the collision loop
     bool running_ = false;
 };
 

@@ -20,8 +20,8 @@ void DrawnShape::follow(const haptics::HapticModel& model, double time,
             model.surface_displacement(model.rigid_count() + i, *tick, of_one_tool_);
             for (std::size_t v = 0; v < of_one_tool_.size(); ++v) displacements[i][v] += of_one_tool_[v];
         }
-        model.add_beyond(model.rigid_count() + i, ticks, displacements[i]);
         if (model.method().can.creeps) creep_[i].follow(time, displacements[i]);
+        model.add_beyond(model.rigid_count() + i, ticks, displacements[i]);
     }
 }
 

@@ -12,6 +12,7 @@
 #include "formats/asset/asset.hpp"
 #include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
+#include "runtime/haptics/contact/large_shape.hpp"
 #include "runtime/session/run_recorder.hpp"
 
 namespace palpate::session {
@@ -117,6 +118,8 @@ class Player {
             const auto detected =
                 std::ranges::lower_bound(ticks_, wanted, {}, [](Rows r) { return r[0].tick; });
             if (detected == ticks_.end() || (*detected)[0].tick != wanted) return false;
+            if (model_.detects() == Detects::forces && rows[0].tick - wanted >= remembered_ticks)
+                return false;
             // Of forces from before the start, nothing is known but that there were none.
             if (model_.detects() == Detects::forces && wanted < first_tick_ &&
                 !std::ranges::all_of(*detected, is_free))

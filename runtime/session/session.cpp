@@ -19,7 +19,10 @@ Case case_of(const SessionRequest& request) {
     Case patient_case = asset::load_asset(request.asset, request.trusted_keys);
     patient_case.tool = request.tool;
     patient_case.hyperelastic = request.hyperelastic;
-    if (request.hyperelastic == std::vector<std::string>{"all"}) {
+    if (std::ranges::find(request.hyperelastic, "all") != request.hyperelastic.end()) {
+        if (patient_case.deformable_bodies.empty())
+            throw InvalidInput(
+                {request.asset.string(), "has no deformable body", "", "leave out --large-deformation"});
         patient_case.hyperelastic.clear();
         for (const DeformableBody& body : patient_case.deformable_bodies)
             patient_case.hyperelastic.push_back(body.name);

@@ -213,7 +213,8 @@ Json play_recording(const PlaybackOptions& options, const PlaybackWindow& shown,
     session.progress.step("reading the recording", 0);
     const recording::Recording recording = recording::read_recording(options.play);
     session.progress.step("reading the case", 0.3);
-    const Case patient_case = recorded_case(recording, options.play, shown.asset, shown.trusted_keys);
+    Case patient_case = recorded_case(recording, options.play, shown.asset, shown.trusted_keys);
+    patient_case.hyperelastic.clear();  // it shows what contacts make of the compliance
     const auto model = model_of(recording, options.play, shown.asset, patient_case);
     RecordedScene scene(recording, options.play, options.tool, *model, patient_case);
     std::optional<ExpertGhost> ghost;

@@ -3,14 +3,18 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "runtime/haptics/contact/deformable_contact.hpp"
 
 namespace palpate::haptics {
 
-/// Where neo-Hookean tissue rests under the forces f of one tick, told as what it adds to the answer C f of
-/// its compliance. Fields are by surface vertex, mm.
+/// Of so many ticks the forces are kept, for replays.
+inline constexpr std::int64_t remembered_ticks = 1024;
+
+/// Where the search for rest of neo-Hookean tissue has come under forces f, which follow those of the ticks;
+/// told as what it adds to the answer C f of its compliance. Fields are by surface vertex, mm.
 struct LargeShape {
     explicit LargeShape(std::size_t vertices = 0) { reset(vertices); }
 
@@ -26,14 +30,10 @@ struct LargeShape {
     std::vector<Eigen::Vector3f> beyond;  ///< u - C f, averaged so
     std::vector<Eigen::Vector3f> drawn;   ///< u - C f
 
-    /// How much of f's load others are: (others . u) / (f . u), within 0 ... most_load. Realtime-safe.
-    template <typename Forces>
-    double load_of(const Forces& forces) const noexcept {
-        if (!(work > 0)) return 0;
-        double along = 0;
-        for (const SurfaceForce& of : forces)
-            along += static_cast<double>(of.force.dot(moved[static_cast<std::size_t>(of.vertex)]));
-        return std::clamp(along / work, 0.0, most_load);
+    /// How much of f's load other forces are, whose product with u (`moved`) is `along`, N mm: along / (f .
+    /// u), within 0 ... most_load. Realtime-safe.
+    double load_of(double along) const noexcept {
+        return work > 0 ? std::clamp(along / work, 0.0, most_load) : 0;
     }
     /// How much of u - C f counts under a part `load` of f: all of it under f; otherwise as a function of the
     /// second order has it, for nothing is beyond C f to the first. Where tissue stiffens so much that it

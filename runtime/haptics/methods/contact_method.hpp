@@ -58,8 +58,9 @@ class ContactMethod {
 
     /// What the collision loop has to find beside the ticks.
     virtual Detects detects() const noexcept { return Detects::nothing; }
-    /// Collision loop's side, of a method that detects: to be called 30 times a second from one thread, which
-    /// may be another than tick()'s. No allocation or lock.
+    /// Collision loop's side, of a method that detects: to be called once a period
+    /// (CollisionLoop::period_of()) from one thread, which may be another than tick()'s. No allocation or
+    /// lock.
     virtual void detect() noexcept {}
     /// The same for a given position (p_P, mm) of a given tick, or for its forces, which it must have ticked
     /// lately, as a replay or a loop that is late has it. Instead of detect().

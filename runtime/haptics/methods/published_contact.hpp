@@ -82,9 +82,9 @@ class PublishedContact final : public ContactMethod {
     /// from before it, whenever it comes.
     void lose() noexcept;
 
+    Detects detects() const noexcept override { return Detects::positions; }
     /// Tests the device position of the latest tick on every body: one query of each surface. The same as
     /// answer(asked()).
-    Detects detects() const noexcept override { return Detects::positions; }
     void detect() noexcept override;
     void detect_at(const std::array<double, 3>& device, std::int64_t tick) noexcept override;
 

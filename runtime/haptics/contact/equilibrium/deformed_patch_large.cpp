@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tissue that leans on a shape of large deformation; part of the tick.
 //
-// Such a shape says where hyperelastic tissue rests under the forces f* of some ticks ago: u*. A tick answers
-// its forces f by u = C f + s (u* - C f*), s a function of the part p of f* that f has, s(1) = 1. So where
-// the hand rests, and f* comes to f, u comes to the hyperelastic answer, whatever s is; s makes what changes
-// meanwhile right to the second order. It is counted as held: p is that of the tick before, smoothed so that
-// the one cannot swing about the other. A new shape comes in over some ticks.
+// Such a shape says where hyperelastic tissue has come to rest, or is about to, under forces f* that follow
+// those of the ticks: u*. A tick answers its forces f by u = C f + s (u* - C f*), s a function of the part p
+// of f* that f has, s(1) = 1. So where the hand rests, and f* comes to f, u comes to the hyperelastic answer,
+// whatever s is; s makes what changes meanwhile right to the second order. It is counted as held: p is that
+// of the tick before, smoothed so that the one cannot swing about the other. A new shape comes in over some
+// ticks.
 #include <algorithm>
 
 #include "runtime/haptics/contact/equilibrium/deformed_patch.hpp"
@@ -28,11 +29,11 @@ void DeformedPatch::take_shape(const LargeShape* shape) noexcept {
 }
 
 double DeformedPatch::load() const noexcept {
-    FixedList<SurfaceForce, 2 * static_cast<std::size_t>(most_vertices)> forces;
+    double along = 0;
     each_force([&](std::int32_t vertex, const Vector3d& force) {
-        forces.push_back({vertex, force.cast<float>()});
+        along += force.dot(shape_->moved[static_cast<std::size_t>(vertex)].cast<double>());
     });
-    return shape_->load_of(forces);
+    return shape_->load_of(along);
 }
 
 void DeformedPatch::lean() noexcept {

@@ -9,15 +9,17 @@ void LargeDeformation::take(ContactEquilibrium& equilibrium, std::span<TickResul
     const Shapes& shapes = shapes_.front();
     for (std::size_t k = 0; k < softs_.size(); ++k) equilibrium.take_shape(softs_[k], &shapes.of_body[k]);
     for (TickResult& result : results) result.detected_tick = shapes.tick;
+    taken_ = shapes.tick;
 }
 
 void LargeDeformation::tell(const ContactEquilibrium& equilibrium, std::int64_t tick) noexcept {
     Loads& now = past_[static_cast<std::size_t>(tick) % remembered];
     now.tick = tick;
+    now.taken = taken_;
     for (std::size_t k = 0; k < softs_.size(); ++k) {
         now.of_body[k].clear();
         equilibrium.each_force(softs_[k], [&](std::int32_t vertex, const Eigen::Vector3d& force) {
-            if (!now.of_body[k].full()) now.of_body[k].push_back({vertex, force.cast<float>()});
+            now.of_body[k].push_back({vertex, force.cast<float>()});
         });
     }
     copy(now, loads_.back());
@@ -26,6 +28,7 @@ void LargeDeformation::tell(const ContactEquilibrium& equilibrium, std::int64_t 
 
 void LargeDeformation::copy(const Loads& from, Loads& to) noexcept {
     to.tick = from.tick;
+    to.taken = from.taken;
     for (std::size_t k = 0; k < from.of_body.size(); ++k) {
         to.of_body[k].clear();
         for (const SurfaceForce& force : from.of_body[k]) to.of_body[k].push_back(force);

@@ -17,7 +17,7 @@
 
 namespace palpate::haptics {
 
-/// Large deformation beside the tick: a loop of 30 Hz or more finds where neo-Hookean tissue rests under the
+/// Large deformation beside the tick: a loop finds where neo-Hookean tissue rests under the
 /// forces of the newest tick; ticks take that in as a displacement beyond their compliance, and so answer
 /// changes of force by the compliance and what they change the displacement beyond by. Where the hand rests,
 /// the force is that of the hyperelastic tissue. Three sides, each for one thread: the tick's, the loop's and
@@ -40,10 +40,11 @@ class LargeDeformation {
     /// Tick's side, at its end: tells the loop which forces are there now. Realtime-safe.
     void tell(const ContactEquilibrium& equilibrium, std::int64_t tick) noexcept;
 
-    /// Loop's side: answers the forces of the newest tick. No allocation.
+    /// Loop's side: goes on towards the answer to the forces of the newest tick, once the tick has taken the
+    /// last one: a replay knows of no other. Bodies one after the other. No allocation.
     void answer() noexcept;
-    /// The same for a tick of the last thousand, none of whose forces is known otherwise: for replays, in the
-    /// tick's thread.
+    /// The same for the forces of one of the last remembered_ticks, for replays, in the tick's thread; of one
+    /// that was not ticked there were none.
     void answer_tick(std::int64_t tick) noexcept;
 
     /// Picture's side: adds to the displacements of deformable body `soft` (mm, by surface vertex) what it is
@@ -52,11 +53,12 @@ class LargeDeformation {
                     std::span<Eigen::Vector3f> displacements);
 
   private:
-    static constexpr std::size_t remembered = 1024;  // ticks
-    using Forces = FixedList<SurfaceForce, 384>;
+    static constexpr std::size_t remembered = remembered_ticks;
+    using Forces = FixedList<SurfaceForce, 2 * static_cast<std::size_t>(DeformedPatch::most_vertices)>;
     // Of one tick, by body of `softs_`.
     struct Loads {
         std::int64_t tick = -1;
+        std::int64_t taken = -1;  // whose answer the tick has taken last
         std::vector<Forces> of_body;
     };
     struct Shapes {
@@ -72,10 +74,12 @@ class LargeDeformation {
     std::vector<std::size_t> softs_;  // which deformable bodies; what follows by body is in their order
     std::vector<std::unique_ptr<LargeTissue>> tissues_;
     std::vector<Loads> past_;  // by tick modulo `remembered`
+    Loads free_;               // of a tick without forces
     realtime::TripleBuffer<Loads> loads_;
     realtime::TripleBuffer<Shapes> shapes_, drawn_;
     std::vector<SurfaceForce> drawn_forces_;
-    std::int64_t answered_ = -1;  // the tick that the loop answered last
+    std::int64_t taken_ = -1;     // the tick's: whose answer it took last
+    std::int64_t answered_ = -1;  // the loop's: the tick that it answered last
 };
 
 }  // namespace palpate::haptics

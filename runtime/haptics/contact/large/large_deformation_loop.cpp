@@ -10,14 +10,16 @@ namespace {
 
 std::vector<std::size_t> hyperelastic_bodies(const Case& patient_case) {
     std::vector<std::size_t> softs;
+    const auto& bodies = patient_case.deformable_bodies;
     for (const std::string& name : patient_case.hyperelastic) {
-        const auto& bodies = patient_case.deformable_bodies;
         const auto body = std::ranges::find(bodies, name, &DeformableBody::name);
-        std::string known;
-        for (const DeformableBody& other : bodies) known += (known.empty() ? "'" : ", '") + other.name + "'";
-        if (body == bodies.end())
+        if (body == bodies.end()) {
+            std::string known;
+            for (const DeformableBody& other : bodies)
+                known += (known.empty() ? "'" : ", '") + other.name + "'";
             throw InvalidInput({patient_case.name, "no deformable body '" + name + "'",
                                 known.empty() ? "none: it has rigid ones alone" : known, ""});
+        }
         softs.push_back(static_cast<std::size_t>(body - bodies.begin()));
     }
     std::ranges::sort(softs);
@@ -31,7 +33,8 @@ LargeDeformation::LargeDeformation(const Case& patient_case, const ContactBodies
     : bodies_(bodies),
       softs_(hyperelastic_bodies(patient_case)),
       past_(softs_.empty() ? 0 : remembered, none(softs_.size())),
-      loads_(none(softs_.size())),
+      free_(none(softs_.size())),
+      loads_(free_),
       shapes_(rest()),
       drawn_(rest()) {
     for (const std::size_t soft : softs_)
@@ -58,24 +61,24 @@ void LargeDeformation::reset(ContactEquilibrium& equilibrium) noexcept {
         equilibrium.take_shape(softs_[k], nullptr);
     }
     for (Loads& loads : past_) loads.tick = -1;
-    answered_ = -1;
-    loads_.back().tick = -1;
+    taken_ = answered_ = -1;
+    loads_.back().tick = loads_.back().taken = -1;
     loads_.publish();
+    for (LargeShape& shape : drawn_.back().of_body) shape.reset(shape.drawn.size());
+    drawn_.publish();
     shapes_.refresh();  // what was on its way answers forces that are forgotten
 }
 
 void LargeDeformation::answer() noexcept {
     const Loads& loads = loads_.read();
-    if (loads.tick > answered_) answer(loads);
+    if (loads.tick > answered_ && loads.taken == answered_) answer(loads);
 }
 
 void LargeDeformation::answer_tick(std::int64_t tick) noexcept {
-    Loads& then = past_[static_cast<std::size_t>(tick) % remembered];
-    if (then.tick != tick) {
-        then.tick = tick;
-        for (Forces& forces : then.of_body) forces.clear();
-    }
-    answer(then);
+    const Loads& then = past_[static_cast<std::size_t>(tick) % remembered];
+    if (then.tick == tick) return answer(then);
+    free_.tick = tick;
+    answer(free_);
 }
 
 void LargeDeformation::answer(const Loads& loads) noexcept {
@@ -100,7 +103,10 @@ void LargeDeformation::add_beyond(std::size_t soft, std::span<const TickResult* 
     drawn_forces_.clear();
     for (const TickResult* result : results)
         bodies_.deformable[soft].append_forces(result->active_contacts(), drawn_forces_);
-    const auto part = static_cast<float>(shape.part(shape.load_of(drawn_forces_)));
+    double along = 0;
+    for (const SurfaceForce& of : drawn_forces_)
+        along += static_cast<double>(of.force.dot(shape.moved[static_cast<std::size_t>(of.vertex)]));
+    const auto part = static_cast<float>(shape.part(shape.load_of(along)));
     for (std::size_t v = 0; v < displacements.size(); ++v) displacements[v] += part * shape.drawn[v];
 }
 

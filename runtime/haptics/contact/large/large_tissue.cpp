@@ -29,6 +29,7 @@ LargeTissue::LargeTissue(const DeformableBody& body, const DeformableContact& co
       answered_(linear_) {
     for (const std::int32_t node : body.boundary.nodes)
         places_.push_back(equilibrium_.mesh().positions()[static_cast<std::size_t>(node)]);
+    reset();
 }
 
 void LargeTissue::reset() noexcept {
@@ -57,11 +58,12 @@ void LargeTissue::take(std::span<const SurfaceForce> forces) noexcept {
 }
 
 void LargeTissue::follow(std::span<const SurfaceForce> forces, LargeShape& shape) noexcept {
-    if (forces.empty()) {
-        if (shape.work > 0) shape.reset(places_.size());
+    if (!forces.empty()) take(forces);
+    // What is no number must not stay.
+    if (forces.empty() || !loads_.allFinite()) {
+        shape.reset(places_.size());
         return reset();
     }
-    take(forces);
     equilibrium_.approach(loads_, settled, most_steps);
     const Eigen::VectorXd& moved = equilibrium_.displacements();
     double linear_work = 0;

@@ -21,8 +21,8 @@ class LargeTissue {
 
     void reset() noexcept;
 
-    /// Goes on from its last shape towards that under these forces, as far as a period of the collision loop
-    /// lets it, and writes where it has come. Without any force it is at rest.
+    /// Takes in these forces, goes two steps on from its last shape towards its rest under what it took in,
+    /// and writes where it has come. Without any force it is at rest.
     void follow(std::span<const SurfaceForce> forces, LargeShape& shape) noexcept;
 
   private:
