@@ -269,6 +269,24 @@ TEST(Recording, of_a_tool_of_which_half_is_missing_is_refused_and_the_dataset_na
     }
 }
 
+TEST(Recording, names_the_hyperelastic_bodies_and_refuses_names_that_no_body_has) {
+    const Scratch scratch;
+    const auto path = scratch / "run.h5";
+    const auto record_of = [&](const std::vector<std::string>& names) {
+        RecordingHead head = two_tools();
+        head.hyperelastic = names;
+        make_recording(path, head, 50);
+        RecordingWriter writer(path);
+        add_rows(writer, 20, 5);
+    };
+    for (const std::vector<std::string>& names : {std::vector<std::string>{}, {"liver", "gallbladder"}}) {
+        record_of(names);
+        EXPECT_EQ(read_recording(path).head.hyperelastic, names);
+    }
+    record_of({"li\nver"});
+    EXPECT_THAT(refusal([&] { read_recording(path); }), HasSubstr("run.h5: /hyperelastic"));
+}
+
 TEST(Recording, of_a_tool_without_a_triangle_is_refused) {
     const Scratch scratch;
     const auto path = scratch / "run.h5";
