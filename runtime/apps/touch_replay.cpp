@@ -36,7 +36,7 @@ nlohmann::ordered_json replay_recording(const std::filesystem::path& file, const
                                         cli::Session& session) {
     const recording::Recording recording = recording::read_recording(file);
     const Case patient_case = recorded_case(recording, file, asset, trusted_keys);
-    const auto model = model_of(recording, file, asset, patient_case);
+    const auto model = model_of(recording, file, patient_case);
     std::vector<RunRecord> records = outputs.records_of(*model);
     StatusCounts statuses;
     const ReplayOutcome outcome = replay(recording, *model, [&](const TickResult& result) {

@@ -48,9 +48,8 @@ class HapticModel {
     /// running tick or detection.
     void reset() noexcept;
 
-    /// Numbers its ticks as if it had ticked as often as `before`. Not beside a running tick of either.
-    void count_on_from(const HapticModel& before) noexcept { tick_ = before.tick_; }
-    /// Numbers its next tick so. Not beside a running tick.
+    /// The number of its next tick, and numbers it so. Not beside a running tick.
+    std::int64_t next_tick() const noexcept { return tick_; }
     void count_from(std::int64_t tick) noexcept { tick_ = tick; }
 
     /// Computes the forces for one state of each tool: finds contacts, solves them, limits the forces. Fills
@@ -73,8 +72,12 @@ class HapticModel {
     /// (CollisionLoop::period_of()) from one thread, which may be another than tick()'s; nothing elsewhere.
     void detect() noexcept;
     /// The same for a given position of a given tick, as a replay (TickResult::detected_tick) or a loop that
-    /// is late has it; or for the forces of that tick, which this model must have ticked lately.
+    /// is late has it; or for the forces of that tick, where this model keeps them.
     void detect_at(const std::array<double, 3>& device, std::int64_t tick) noexcept;
+
+    /// From now on the forces of the last remembered_ticks are kept for detect_at(). Allocates; not beside a
+    /// running tick or detection.
+    void keep_forces() { contact_->keep_forces(); }
 
     /// Free ticks after which nothing is left of a touch where tissue creeps; 0 where nothing does.
     std::int64_t memory_ticks() const noexcept;

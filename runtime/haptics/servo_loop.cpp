@@ -145,7 +145,7 @@ void ServoLoop::step(const ServoTick& wake) noexcept {
 void ServoLoop::change_over(HapticModel& next) noexcept {
     if (++ticks_changing_ <= ForceLimiter::ramp_ticks) return;
     ticks_changing_ = 0;
-    next.count_on_from(*model_.load());
+    next.count_from(model_.load()->next_tick());
     // Whoever asked may have given up meanwhile.
     HapticModel* asked = &next;
     HapticModel* before = model_.exchange(&next);

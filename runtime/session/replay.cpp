@@ -71,7 +71,9 @@ class Player {
           model_(model),
           sink_(sink),
           states_(model.tool_count()),
-          results_(model.tool_count()) {}
+          results_(model.tool_count()) {
+        model.keep_forces();
+    }
 
     ReplayOutcome play() {
         for (std::size_t k = 0; k < ticks_.size(); ++k) {
@@ -187,8 +189,7 @@ Case recorded_case(const Recording& recording, const std::filesystem::path& file
 }
 
 std::unique_ptr<HapticModel> model_of(const Recording& recording, const std::filesystem::path& file,
-                                      const std::filesystem::path& asset, const Case& patient_case) {
-    check_asset(recording, file, asset);
+                                      const Case& patient_case) {
     const RecordingHead& head = recording.head;
     const ContactMethodEntry& method = find_contact_method(head.scheme, file.string() + ": scheme");
     auto model = std::make_unique<HapticModel>(patient_case, method.name, head.devices.size());

@@ -46,11 +46,10 @@ void check_asset(const recording::Recording& recording, const std::filesystem::p
 Case recorded_case(const recording::Recording& recording, const std::filesystem::path& file,
                    const std::filesystem::path& asset, std::span<const std::string> trusted_keys = {});
 
-/// A model as the recorded run had it, fresh. `patient_case`: recorded_case() of `asset`. Throws
-/// as check_asset(), and InvalidInput if it couples differently.
+/// A model as the recorded run had it, fresh. `patient_case`: recorded_case(). Throws InvalidInput naming
+/// `file` if it couples differently.
 std::unique_ptr<haptics::HapticModel> model_of(const recording::Recording& recording,
-                                               const std::filesystem::path& file,
-                                               const std::filesystem::path& asset, const Case& patient_case);
+                                               const std::filesystem::path& file, const Case& patient_case);
 
 /// Feeds what the recorded devices said, and every fault of the run, to a fresh model and compares the
 /// forces and torques; a method that needs detection detects what it detected in the run. `sink` gets each

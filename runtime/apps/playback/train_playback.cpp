@@ -215,7 +215,7 @@ Json play_recording(const PlaybackOptions& options, const PlaybackWindow& shown,
     session.progress.step("reading the case", 0.3);
     Case patient_case = recorded_case(recording, options.play, shown.asset, shown.trusted_keys);
     patient_case.hyperelastic.clear();  // it shows what contacts make of the compliance
-    const auto model = model_of(recording, options.play, shown.asset, patient_case);
+    const auto model = model_of(recording, options.play, patient_case);
     RecordedScene scene(recording, options.play, options.tool, *model, patient_case);
     std::optional<ExpertGhost> ghost;
     if (!options.ghost.empty()) ghost.emplace(options.ghost, shown.asset);

@@ -62,8 +62,11 @@ class ContactMethod {
     /// (CollisionLoop::period_of()) from one thread, which may be another than tick()'s. No allocation or
     /// lock.
     virtual void detect() noexcept {}
-    /// The same for a given position (p_P, mm) of a given tick, or for its forces, which it must have ticked
-    /// lately, as a replay or a loop that is late has it. Instead of detect().
+    /// From now on what detect_at() needs of ticks is kept. Allocates; not beside a running tick or
+    /// detection.
+    virtual void keep_forces() {}
+    /// The same as detect() for a given position (p_P, mm) of a given tick, or for its forces where they are
+    /// kept, as a replay or a loop that is late has it. Instead of detect().
     virtual void detect_at(const std::array<double, 3>& /*device*/, std::int64_t /*tick*/) noexcept {}
 
     /// Picture's side, one thread: adds to the displacements of deformable body `soft` (mm, by surface

@@ -37,6 +37,7 @@ class ContinuousContact final : public ContactMethod {
               std::span<Eigen::Vector3d> forces) noexcept override;
     Detects detects() const noexcept override { return large_.any() ? Detects::forces : Detects::nothing; }
     void detect() noexcept override;
+    void keep_forces() override;
     void detect_at(const std::array<double, 3>& device, std::int64_t tick) noexcept override;
     void add_beyond(std::size_t soft, std::span<const TickResult* const> results,
                     std::span<Eigen::Vector3f> displacements) override;

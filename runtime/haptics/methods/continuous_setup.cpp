@@ -54,6 +54,10 @@ void ContinuousContact::detect() noexcept {
     if (large_.any()) large_.answer();
 }
 
+void ContinuousContact::keep_forces() {
+    large_.keep_forces();
+}
+
 void ContinuousContact::detect_at(const std::array<double, 3>& /*device*/, std::int64_t tick) noexcept {
     if (large_.any()) large_.answer_tick(tick);
 }

@@ -88,7 +88,7 @@ TEST(Session, ticks_records_and_counts_in_virtual_time_and_replays_bit_for_bit) 
         EXPECT_EQ(recording.head.clock, "virtual");
         EXPECT_EQ(recording.head.scheme, method.name);
         const Case patient_case = recorded_case(recording, file, asset);
-        const auto model = model_of(recording, file, asset, patient_case);
+        const auto model = model_of(recording, file, patient_case);
         const ReplayOutcome outcome = replay(recording, *model, [](const TickResult&) {});
         EXPECT_EQ(outcome.ticks, 2000);
         EXPECT_EQ(outcome.different_ticks, 0) << method.name;
@@ -130,13 +130,13 @@ TEST(Session, a_tool_that_turns_is_as_its_hand_wishes_and_its_recording_alone_re
         ASSERT_TRUE(recording.head.tool.has_value());
         EXPECT_EQ(recording.head.tool->surface.vertices, tool.surface.vertices);
         Case patient_case = recorded_case(recording, file, asset);
-        const auto model = model_of(recording, file, asset, patient_case);
+        const auto model = model_of(recording, file, patient_case);
         const ReplayOutcome outcome = replay(recording, *model, [](const TickResult&) {});
         EXPECT_EQ(outcome.ticks, 2000);
         EXPECT_EQ(outcome.different_ticks, 0) << method;
         // It is the tool that makes the difference.
         patient_case.tool.reset();
-        const auto without = model_of(recording, file, asset, patient_case);
+        const auto without = model_of(recording, file, patient_case);
         EXPECT_GT(replay(recording, *without, [](const TickResult&) {}).different_ticks, 100) << method;
     }
 }
@@ -185,7 +185,7 @@ TEST(Session, with_large_deformation_replays_what_it_felt_beside_the_real_clock)
     const Recording recording = read_recording(file);
     EXPECT_EQ(recording.head.hyperelastic.size(), 1U);
     const Case patient_case = recorded_case(recording, file, asset);
-    const auto model = model_of(recording, file, asset, patient_case);
+    const auto model = model_of(recording, file, patient_case);
     EXPECT_EQ(replay(recording, *model, [](const TickResult&) {}).different_ticks, 0);
 }
 

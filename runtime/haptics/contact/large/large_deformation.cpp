@@ -13,7 +13,7 @@ void LargeDeformation::take(ContactEquilibrium& equilibrium, std::span<TickResul
 }
 
 void LargeDeformation::tell(const ContactEquilibrium& equilibrium, std::int64_t tick) noexcept {
-    Loads& now = past_[static_cast<std::size_t>(tick) % remembered];
+    Loads& now = loads_.back();
     now.tick = tick;
     now.taken = taken_;
     for (std::size_t k = 0; k < softs_.size(); ++k) {
@@ -22,7 +22,7 @@ void LargeDeformation::tell(const ContactEquilibrium& equilibrium, std::int64_t 
             now.of_body[k].push_back({vertex, force.cast<float>()});
         });
     }
-    copy(now, loads_.back());
+    if (!past_.empty()) copy(now, past_[static_cast<std::size_t>(tick) % remembered]);
     loads_.publish();
 }
 

@@ -43,8 +43,10 @@ class LargeDeformation {
     /// Loop's side: goes on towards the answer to the forces of the newest tick, once the tick has taken the
     /// last one: a replay knows of no other. Bodies one after the other. No allocation.
     void answer() noexcept;
-    /// The same for the forces of one of the last remembered_ticks, for replays, in the tick's thread; of one
-    /// that was not ticked there were none.
+    /// From now on the forces of the last remembered_ticks are kept, for answer_tick(). Not beside any side.
+    void keep_forces();
+    /// The same for the forces of one of them, for replays, in the tick's thread; of one that was not ticked
+    /// there were none.
     void answer_tick(std::int64_t tick) noexcept;
 
     /// Picture's side: adds to the displacements of deformable body `soft` (mm, by surface vertex) what it is
@@ -73,7 +75,7 @@ class LargeDeformation {
     const ContactBodies& bodies_;
     std::vector<std::size_t> softs_;  // which deformable bodies; what follows by body is in their order
     std::vector<std::unique_ptr<LargeTissue>> tissues_;
-    std::vector<Loads> past_;  // by tick modulo `remembered`
+    std::vector<Loads> past_;  // by tick modulo `remembered`; empty: not kept
     Loads free_;               // of a tick without forces
     realtime::TripleBuffer<Loads> loads_;
     realtime::TripleBuffer<Shapes> shapes_, drawn_;

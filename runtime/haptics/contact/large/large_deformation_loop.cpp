@@ -32,7 +32,6 @@ std::vector<std::size_t> hyperelastic_bodies(const Case& patient_case) {
 LargeDeformation::LargeDeformation(const Case& patient_case, const ContactBodies& bodies)
     : bodies_(bodies),
       softs_(hyperelastic_bodies(patient_case)),
-      past_(softs_.empty() ? 0 : remembered, none(softs_.size())),
       free_(none(softs_.size())),
       loads_(free_),
       shapes_(rest()),
@@ -53,6 +52,10 @@ LargeDeformation::Shapes LargeDeformation::rest() const {
     for (const std::size_t soft : softs_)
         shapes.of_body.emplace_back(bodies_.deformable[soft].vertex_count());
     return shapes;
+}
+
+void LargeDeformation::keep_forces() {
+    if (any()) past_.assign(remembered, none(softs_.size()));
 }
 
 void LargeDeformation::reset(ContactEquilibrium& equilibrium) noexcept {

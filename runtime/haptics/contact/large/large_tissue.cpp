@@ -10,7 +10,7 @@ using Eigen::Index;
 using Eigen::Vector3f;
 
 constexpr double settled = 1e-4;  // mm: a step shorter than this ends the search
-constexpr int most_steps = 2;     // some 7 ms for an organ of 3 500 nodes
+constexpr int most_steps = 2;     // for an organ of 3 500 nodes three quarters of a period: rest_search.cpp
 // How much of a change of forces is taken, and how that changes where they swing and where they do not.
 constexpr double least_taken = 0.2, most_taken = 0.7, slower = 0.5, faster = 1.25;
 // Of its linear compliance, what a body keeps against a small force more: where it stiffens beyond that,
