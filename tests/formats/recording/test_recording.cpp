@@ -13,6 +13,7 @@
 #include "formats/asset/hdf5/hdf5_file.hpp"
 #include "formats/recording/columns.hpp"
 #include "formats/recording/recording_writer.hpp"
+#include "tests/formats/recording/recorded_rows.hpp"
 #include "tests/formats/scratch.hpp"
 
 namespace palpate {
@@ -23,90 +24,6 @@ using namespace recording;
 using sample::refusal;
 using sample::Scratch;
 using testing::HasSubstr;
-
-RecordingHead two_tools() {
-    return {.palpate_version = "1.2.3",
-            .case_name = "sample",
-            .asset_digest = std::string(64, 'a'),
-            .scheme = "continuous",
-            .clock = "real",
-            .coupling_stiffness = 0.4,
-            .haptics = {.tool_radius = 1.5, .friction_at_rest = 0.25, .shaft_length = 7},
-            .devices = {{"left", {.max_force = 3.3, .workspace_high = {1, 2, 3}}},
-                        {"right", {.max_stiffness = 0.5, .damping = 2e-4, .max_damping = 3e-3}}}};
-}
-
-// Values of which no two rows share any, told by the row's number alone.
-template <typename Row, typename Table>
-Row numbered(std::int64_t number, const Table& table) {
-    Row row;
-    int column = 0;
-    for_each_field(table, [&](const auto& field) {
-        using Held = Numbers<typename std::remove_cvref_t<decltype(field)>::Value>;
-        auto* values = reinterpret_cast<typename Held::Number*>(&(row.*field.member));
-        for (std::size_t i = 0; i < Held::width; ++i)
-            values[i] =
-                static_cast<typename Held::Number>(100 * number + 4 * column + static_cast<std::int64_t>(i));
-        ++column;
-    });
-    return row;
-}
-
-Contact contact_of(std::int64_t number) {
-    return numbered<Contact>(number, contact_fields);
-}
-
-Tick tick_of(std::int64_t row, std::int32_t contacts) {
-    auto tick = numbered<Tick>(row, tick_fields);
-    tick.tick = row / 2;
-    tick.tool = static_cast<std::int32_t>(row % 2);
-    tick.contact_count = contacts;
-    tick.detected_tick = tick.tick - 1;
-    return tick;
-}
-
-std::int32_t contacts_in(std::int64_t row, std::int32_t most) {
-    return static_cast<std::int32_t>(row * 7 % (most + 1));
-}
-
-void add_rows(RecordingWriter& writer, std::int64_t end, std::int32_t most_contacts, std::int64_t row = 0) {
-    std::int64_t contacts = 0;
-    for (; row < end; ++row) {
-        std::vector<Contact> points(static_cast<std::size_t>(contacts_in(row, most_contacts)));
-        for (Contact& point : points) point = contact_of(contacts++);
-        writer.add(tick_of(row, static_cast<std::int32_t>(points.size())), points);
-    }
-}
-
-template <typename Row, typename Table>
-void expect_same(const Row& found, const Row& expected, const Table& table) {
-    for_each_field(table, [&](const auto& field) {
-        EXPECT_EQ(found.*field.member, expected.*field.member) << field.name;
-    });
-}
-
-// Every kept row is what was added, and so are its contacts unless they are gone.
-void expect_rows(const Recording& recording, std::int64_t written, std::int32_t most_contacts) {
-    std::vector<std::int64_t> first_contact{0};
-    for (std::int64_t row = 0; row < written; ++row)
-        first_contact.push_back(first_contact.back() + contacts_in(row, most_contacts));
-    const std::int64_t first = written - std::ssize(recording.ticks);
-    for (std::size_t i = 0; i < recording.ticks.size(); ++i) {
-        const std::int64_t row = first + static_cast<std::int64_t>(i);
-        Tick expected = tick_of(row, contacts_in(row, most_contacts));
-        expected.first_contact = first_contact[static_cast<std::size_t>(row)];
-        expect_same(recording.ticks[i], expected, tick_fields);
-        const auto contacts = recording.contacts_of(recording.ticks[i]);
-        if (expected.first_contact < recording.contacts_before) {
-            EXPECT_TRUE(contacts.empty());
-            continue;
-        }
-        ASSERT_EQ(std::ssize(contacts), expected.contact_count);
-        for (std::size_t k = 0; k < contacts.size(); ++k)
-            expect_same(contacts[k], contact_of(expected.first_contact + static_cast<std::int64_t>(k)),
-                        contact_fields);
-    }
-}
 
 TEST(Recording, comes_back_as_it_was_written) {
     const Scratch scratch;
@@ -139,22 +56,6 @@ TEST(Recording, comes_back_as_it_was_written) {
     EXPECT_EQ(recording.contacts_before, 0);
     ASSERT_EQ(recording.ticks.size(), 60U);
     expect_rows(recording, 60, 5);
-}
-
-void edit(const std::filesystem::path& path, const std::function<void(hid_t)>& action) {
-    const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
-    H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110);
-    const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, access);
-    action(file);
-    H5Fclose(file);
-    H5Pclose(access);
-}
-
-// Takes datasets out of a recording, as if it had been made before there were any.
-void take_out(const std::filesystem::path& path, std::initializer_list<const char*> datasets) {
-    edit(path, [&](hid_t file) {
-        for (const char* dataset : datasets) ASSERT_GE(H5Ldelete(file, dataset, H5P_DEFAULT), 0) << dataset;
-    });
 }
 
 // As before contacts told of a body that presses in the tool's place.
@@ -195,111 +96,6 @@ TEST(Recording, without_orientations_and_torque_means_that_they_are_not_known_an
         EXPECT_EQ(row.torque, (std::array<double, 3>{0, 0, 0}));
         EXPECT_NE(row.force, (std::array<double, 3>{0, 0, 0}));
     }
-}
-
-// A closed surface of four triangles, and settings none of which is the default.
-ToolBody wedge() {
-    return {.surface = {.vertices = {{0, 0, 0}, {2, 0, 0.125}, {0, 3, -0.25}, {0.1, 0.2, 40}},
-                        .triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}},
-            .settings = {.shell_points = 321,
-                         .voxel = 0.7,
-                         .contact_stiffness = 12,
-                         .torsional_stiffness = 333,
-                         .max_torque = 111,
-                         .max_torque_rate = 22}};
-}
-
-void make_recording_of(const std::filesystem::path& path, const ToolBody& tool) {
-    RecordingHead head = two_tools();
-    head.tool = tool;
-    make_recording(path, head, 50);
-    RecordingWriter writer(path);
-    add_rows(writer, 20, 5);
-}
-
-TEST(Recording, holds_the_tool_that_was_held) {
-    const Scratch scratch;
-    for (const bool rod : {false, true}) {
-        ToolBody tool = wedge();
-        if (rod) tool.surface = {};
-        const auto path = scratch / "run.h5";
-        make_recording_of(path, tool);
-        const Recording recording = read_recording(path);
-        ASSERT_TRUE(recording.head.tool.has_value());
-        EXPECT_EQ(recording.head.tool->surface.vertices, tool.surface.vertices);
-        EXPECT_EQ(recording.head.tool->surface.triangles, tool.surface.triangles);
-        expect_same(recording.head.tool->settings, tool.settings, tool_fields);
-        expect_rows(recording, 20, 5);
-    }
-}
-
-TEST(Recording, of_a_tool_that_none_can_be_is_refused_and_the_dataset_named) {
-    const Scratch scratch;
-    const auto path = scratch / "run.h5";
-    const auto refusal_of = [&](auto spoil) {
-        ToolBody tool = wedge();
-        spoil(tool);
-        make_recording_of(path, tool);
-        return refusal([&] { read_recording(path); });
-    };
-    const double nan = std::nan("");
-    EXPECT_THAT(refusal_of([](ToolBody& tool) { tool.surface.triangles[1][2] = 4; }),
-                HasSubstr("run.h5: /tool/triangles"));
-    EXPECT_THAT(refusal_of([](ToolBody& tool) { tool.surface.triangles[3][0] = -1; }),
-                HasSubstr("run.h5: /tool/triangles"));
-    EXPECT_THAT(refusal_of([&](ToolBody& tool) { tool.surface.vertices[2].y() = nan; }),
-                HasSubstr("run.h5: /tool/vertices: point 2"));
-    EXPECT_THAT(refusal_of([](ToolBody& tool) { tool.surface.vertices[0].x() = 1e300; }),
-                HasSubstr("run.h5: /tool/vertices: point 0"));
-    EXPECT_THAT(refusal_of([](ToolBody& tool) { tool.settings.voxel = 0; }),
-                HasSubstr("run.h5: /tool: voxel is 0"));
-    EXPECT_THAT(refusal_of([&](ToolBody& tool) { tool.settings.max_torque = nan; }),
-                HasSubstr("run.h5: /tool: max_torque is nan"));
-    EXPECT_THAT(refusal_of([](ToolBody& tool) { tool.settings.shell_points = 1'000'000'000; }),
-                HasSubstr("run.h5: /tool: shell_points is"));
-}
-
-TEST(Recording, of_a_tool_of_which_half_is_missing_is_refused_and_the_dataset_named) {
-    const Scratch scratch;
-    const auto path = scratch / "run.h5";
-    for (const char* missing : {"/tool/vertices", "/tool/triangles"}) {
-        make_recording_of(path, wedge());
-        take_out(path, {missing});
-        EXPECT_THAT(refusal([&] { read_recording(path); }), HasSubstr(std::string("run.h5: ") + missing));
-    }
-}
-
-TEST(Recording, names_the_hyperelastic_bodies_and_refuses_names_that_no_body_has) {
-    const Scratch scratch;
-    const auto path = scratch / "run.h5";
-    const auto record_of = [&](const std::vector<std::string>& names) {
-        RecordingHead head = two_tools();
-        head.hyperelastic = names;
-        make_recording(path, head, 50);
-        RecordingWriter writer(path);
-        add_rows(writer, 20, 5);
-    };
-    for (const std::vector<std::string>& names : {std::vector<std::string>{}, {"liver", "gallbladder"}}) {
-        record_of(names);
-        EXPECT_EQ(read_recording(path).head.hyperelastic, names);
-    }
-    record_of({"li\nver"});
-    EXPECT_THAT(refusal([&] { read_recording(path); }), HasSubstr("run.h5: /hyperelastic"));
-}
-
-TEST(Recording, of_a_tool_without_a_triangle_is_refused) {
-    const Scratch scratch;
-    const auto path = scratch / "run.h5";
-    make_recording_of(path, wedge());
-    take_out(path, {"/tool/triangles"});
-    edit(path, [](hid_t file) {
-        const std::array<hsize_t, 2> none{0, 3};
-        const hid_t space = H5Screate_simple(2, none.data(), nullptr);
-        H5Dclose(
-            H5Dcreate2(file, "/tool/triangles", H5T_STD_I32LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
-        H5Sclose(space);
-    });
-    EXPECT_THAT(refusal([&] { read_recording(path); }), HasSubstr("run.h5: /tool: has no triangle"));
 }
 
 TEST(Recording, keeps_the_newest_rows_when_it_has_wrapped) {
