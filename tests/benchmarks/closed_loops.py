@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a hand gets back that goes round on frictionless tissue: the work of a closed loop, of what was stored by pressing.
 
-    closed_loops.py ASSET [--depth MM] [--radius MM] [--places N] [--held] [--edges]      (PALPATE_BIN has the programs)
+    closed_loops.py ASSET [--depth MM] [--radius MM] [--places N] [--held] [--edges] [--large-deformation]
+                                                                                         (PALPATE_BIN has the programs)
 
 At places drawn evenly over the surface, where all of it gives way or, with --held, triangles under the circle have held corners, where
 it is no edge (normals within 70 degrees) and nothing stands opposite or beside, an infinitely stiff hand goes straight in, then twice
@@ -61,11 +62,11 @@ def path(point, inward, radius, depth, circle):
     return np.array(down + turn), len(down), len(down) + steps
 
 
-def loop(asset, folder, positions, pressed, second):
+def loop(asset, folder, options, positions, pressed, second):
     """Work of the second round over the energy stored by pressing, and the largest step of force in it over the largest force."""
     np.savetxt(folder / "hand.txt", positions, "%.6f")
-    subprocess.run([PALPATE, "touch", asset, "--script", folder / "hand.txt", "--virtual-clock", "--log", folder / "log.csv", "--quiet", "--force"],
-                   check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    subprocess.run([PALPATE, "touch", asset, "--script", folder / "hand.txt", "--virtual-clock", "--log", folder / "log.csv", "--quiet", "--force",
+                    *options], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     with open(folder / "log.csv") as log:
         rows = [[float(row[f"{what}_{axis}"]) for what, axis in [*(("device", f"{c}_mm") for c in "xyz"), *(("force", f"{c}_n") for c in "xyz")]]
                 for row in csv.DictReader(log)]
@@ -85,10 +86,12 @@ def main():
     parser.add_argument("--places", type=int, default=24)
     parser.add_argument("--held", action="store_true", help="where triangles under the circle are held by some of their corners")
     parser.add_argument("--edges", action="store_true", help="on edges and beside others as well")
+    parser.add_argument("--large-deformation", action="store_true", help="of neo-Hookean tissue")
     arguments = parser.parse_args()
+    options = ["--large-deformation", "all"] if arguments.large_deformation else []
     chosen, tool = places(arguments.asset, arguments.places, arguments.radius, arguments.held, arguments.edges)
     with tempfile.TemporaryDirectory() as folder:
-        loops = [loop(arguments.asset, pathlib.Path(folder), *path(*place, tool, arguments.depth, arguments.radius)) for place in chosen]
+        loops = [loop(arguments.asset, pathlib.Path(folder), options, *path(*place, tool, arguments.depth, arguments.radius)) for place in chosen]
     kept = np.array([result for result in loops if result]) * 100
     print(f"{arguments.asset.stem}: tool {tool:g} mm, {arguments.depth:g} mm deep, {len(kept)} of {len(loops)} loops stayed in contact; "
           f"work of what was stored: median {np.median(kept[:, 0]):.2g} %, 90th percentile {np.percentile(kept[:, 0], 90):.2g} %, "
