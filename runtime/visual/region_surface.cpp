@@ -6,7 +6,7 @@
 
 namespace palpate::visual {
 
-TriangleMesh region_surface(const TetMesh& mesh, std::int32_t region) {
+BoundarySurface region_surface(const TetMesh& mesh, std::int32_t region) {
     std::map<Triangle, Triangle> open;  // sorted corners -> the face
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
         if (mesh.regions[t] != region) continue;
@@ -18,19 +18,19 @@ TriangleMesh region_surface(const TetMesh& mesh, std::int32_t region) {
             if (const auto [entry, added] = open.try_emplace(key, face); !added) open.erase(entry);
         }
     }
-    TriangleMesh surface;
-    std::map<std::int32_t, std::int32_t> vertex_of_node;
+    BoundarySurface found;
+    for (const auto& [key, face] : open) found.nodes.insert(found.nodes.end(), face.begin(), face.end());
+    std::ranges::sort(found.nodes);
+    found.nodes.erase(std::ranges::unique(found.nodes).begin(), found.nodes.end());
+    for (const std::int32_t node : found.nodes) found.surface.vertices.push_back(mesh.rest_positions[node]);
     for (const auto& [key, face] : open) {
         Triangle triangle;
-        for (std::size_t i = 0; i < face.size(); ++i) {
-            const auto [entry, added] =
-                vertex_of_node.try_emplace(face[i], static_cast<std::int32_t>(surface.vertices.size()));
-            if (added) surface.vertices.push_back(mesh.rest_positions[face[i]]);
-            triangle[i] = entry->second;
-        }
-        surface.triangles.push_back(triangle);
+        for (std::size_t i = 0; i < face.size(); ++i)
+            triangle[i] = static_cast<std::int32_t>(std::ranges::lower_bound(found.nodes, face[i]) -
+                                                    found.nodes.begin());
+        found.surface.triangles.push_back(triangle);
     }
-    return surface;
+    return found;
 }
 
 }  // namespace palpate::visual

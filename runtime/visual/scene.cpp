@@ -12,10 +12,8 @@
 #include <vtkPolyData.h>
 #include <vtkProperty.h>
 
-#include "formats/model/regions.hpp"
 #include "runtime/visual/actors.hpp"
 #include "runtime/visual/bodies/tissue_colours.hpp"
-#include "runtime/visual/region_surface.hpp"
 #include "runtime/visual/tools/tool_shapes.hpp"
 
 namespace palpate::visual {
@@ -98,23 +96,16 @@ void Scene::add_rigid(const Case& patient_case, const Sight& sight, std::int64_t
 }
 
 void Scene::add_regions(const Case& patient_case, const Sight& sight, vtkRenderer* front) {
-    // Yellow, reddish purple, bluish green: told apart by colour-blind people too (Okabe, Ito 2008).
-    const std::array<Rgb, 3> colours{Rgb(240, 228, 66), Rgb(204, 121, 167), Rgb(0, 158, 115)};
-    for (const DeformableBody& body : patient_case.deformable_bodies)
-        for (const Label& label : enclosed_regions(body.mesh)) {
-            const auto surface = region_surface(body.mesh, label.value);
-            const Rgb colour =
-                chosen_colour(body, label.value).value_or(colours[regions_.size() % colours.size()]);
-            regions_.push_back(actor(poly_data(surface, sight.toward_eye), colour));
-            regions_.back()->GetProperty()->BackfaceCullingOn();
-            regions_.back()->VisibilityOff();
-            front->AddActor(regions_.back());
-            region_names_ += (region_names_.empty() ? "" : ", ") + label.name;
-        }
+    std::size_t count = 0;
+    for (const DeformableBody& body : patient_case.deformable_bodies) {
+        regions_.emplace_back(body, sight.toward_eye, count, front);
+        for (const std::string& name : regions_.back().names())
+            region_names_ += (count++ == 0 ? "" : ", ") + name;
+    }
 }
 
 void Scene::show_regions(bool on) {
-    for (const auto& region : regions_) region->SetVisibility(on);
+    for (EnclosedRegions& regions : regions_) regions.show(on);
 }
 
 void Scene::add_tool(const Case& patient_case, const Sight& sight, vtkRenderer* renderer,
@@ -136,7 +127,10 @@ void Scene::add_tool(const Case& patient_case, const Sight& sight, vtkRenderer* 
 
 void Scene::update(const VisualFrame& frame) {
     constexpr double spring_share = 0.05;  // of the tool's radius: a shorter spring is not seen
-    for (std::size_t i = 0; i < soft_.size(); ++i) soft_[i].deform(frame.displacements[i]);
+    for (std::size_t i = 0; i < soft_.size(); ++i) {
+        soft_[i].deform(frame.displacements[i]);
+        regions_[i].follow(frame.displacements[i]);
+    }
     others_.update(frame.other_tools);
     place_tool(frame);
     place_along(device_, frame.device_position, Vector3d::UnitX(), 1);
@@ -147,7 +141,6 @@ void Scene::update(const VisualFrame& frame) {
 
     constexpr double felt = 0.01;  // N
     const double newtons = frame.force.norm();
-    for (const auto& region : regions_) region->GetProperty()->SetOpacity(newtons > felt ? 0.3 : 0.6);
     const bool pressed = tool_shown_ && newtons > felt;
     arrow_->SetVisibility(pressed);
     if (!pressed) return;

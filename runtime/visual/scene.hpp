@@ -9,6 +9,7 @@
 #include <vtkSmartPointer.h>
 
 #include "formats/model/body.hpp"
+#include "runtime/visual/bodies/enclosed_regions.hpp"
 #include "runtime/visual/bodies/rigid_surface.hpp"
 #include "runtime/visual/bodies/soft_surface.hpp"
 #include "runtime/visual/detail/detail.hpp"
@@ -21,8 +22,9 @@ namespace palpate::visual {
 /// The patient's bodies, the tool and the force, in frame P.
 class Scene {
   public:
-    /// `rigid_budget`: triangles that all rigid bodies together may have on the screen. `front` is drawn over
-    /// `renderer`: the force and the device show through whatever covers them.
+    /// `patient_case` must outlive it. `rigid_budget`: triangles that all rigid bodies together may have on
+    /// the screen. `front` is drawn over `renderer`: the force and the device show through whatever covers
+    /// them.
     Scene(const Case& patient_case, const Sight& sight, std::int64_t rigid_budget, vtkRenderer* renderer,
           vtkRenderer* front);
 
@@ -32,9 +34,7 @@ class Scene {
     void show_tool(bool on);
     /// What of `renderer` is the tool.
     std::array<vtkActor*, 2> tool_parts() const { return {tool_, shaft_}; }
-    /// Shows what deformable bodies enclose, as translucent bodies seen through all others; hidden at first.
-    /// They keep their rest shape, for a compliance says nothing of a body's inside; while the surface over
-    /// them is displaced they are fainter.
+    /// Shows what deformable bodies enclose, hidden at first; it moves with them.
     void show_regions(bool on);
     /// Their names, "tumour, cyst"; empty where nothing is enclosed.
     const std::string& region_names() const { return region_names_; }
@@ -59,7 +59,7 @@ class Scene {
     OtherTools others_;
     std::vector<SoftSurface> soft_;
     std::vector<RigidSurface> rigid_;
-    std::vector<vtkSmartPointer<vtkActor>> regions_;
+    std::vector<EnclosedRegions> regions_;  // of each deformable body
     std::string region_names_;
     bool tool_shown_ = true, is_instrument_ = false;
     vtkSmartPointer<vtkActor> tool_, shaft_, device_, arrow_, spring_;

@@ -336,7 +336,7 @@ struct TrainWindow::Parts {
         if (exercising) return overlay.tell(translated("in this exercise they stay hidden"));
         regions_shown = !regions_shown;
         scene.show_regions(regions_shown);
-        overlay.tell(regions_shown ? translated("seen through the surface, at rest: {}", names)
+        overlay.tell(regions_shown ? translated("seen through the surface: {}", names)
                                    : translated("{}: hidden", names));
     }
 

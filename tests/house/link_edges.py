@@ -53,7 +53,7 @@ ROOMS = {
     "devices": {"model", "realtime"},
     "doctor": {"model", "realtime", "haptics", "devices", "json"},
     "openigtlink": {"model", "realtime", "haptics", "devices", "igtl"},
-    "visual": {"model", "collision", "realtime", "texts", "vtk"},
+    "visual": {"model", "elasticity", "collision", "realtime", "texts", "vtk"},
     "sound": {"model", "openal"},
     "texts": set(),
     "session": {"model", "asset", "elasticity", "recording", "drawing", "json", "realtime", "collision", "haptics", "devices", "openigtlink"},

@@ -3,13 +3,11 @@
 #include <Eigen/Core>
 #include <array>
 #include <vector>
-#include <vtkFloatArray.h>
-#include <vtkPoints.h>
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
 
 #include "formats/model/body.hpp"
-#include "runtime/visual/actors.hpp"
+#include "runtime/visual/bodies/moving_surface.hpp"
 
 namespace palpate::visual {
 
@@ -22,7 +20,7 @@ class SoftSurface {
                 vtkRenderer* renderer);
 
     /// Moves the surface; one displacement (mm) per surface vertex.
-    void deform(const std::vector<Eigen::Vector3f>& displacements);
+    void deform(const std::vector<Eigen::Vector3f>& displacements) { surface_.displace(displacements); }
 
     /// As it is drawn now.
     vtkActor* actor() const { return grained_->GetVisibility() != 0 ? grained_ : plain_; }
@@ -34,11 +32,7 @@ class SoftSurface {
     std::array<vtkActor*, 2> actors() const { return {grained_, plain_}; }
 
   private:
-    std::vector<Eigen::Vector3f> rest_;
-    std::vector<Triangle> triangles_;
-    bool displaced_ = false;
-    vtkSmartPointer<vtkPoints> points_;
-    vtkSmartPointer<vtkFloatArray> normals_;
+    MovingSurface surface_;
     vtkSmartPointer<vtkActor> grained_, plain_;  // of the same data; one is shown
 };
 

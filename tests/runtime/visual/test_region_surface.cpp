@@ -29,13 +29,13 @@ TEST(RegionSurface, all_regions_but_the_largest_are_enclosed) {
 }
 
 TEST(RegionSurface, has_only_faces_towards_other_regions) {
-    const TriangleMesh surface = region_surface(two_regions(), 7);
+    const TriangleMesh surface = region_surface(two_regions(), 7).surface;
     EXPECT_EQ(surface.triangles.size(), 6U);
     EXPECT_EQ(surface.vertices.size(), 5U);
 }
 
 TEST(RegionSurface, is_oriented_outwards) {
-    const TriangleMesh surface = region_surface(two_regions(), 7);
+    const TriangleMesh surface = region_surface(two_regions(), 7).surface;
     double volume = 0;  // by the divergence theorem
     for (const Triangle& t : surface.triangles)
         volume += surface.vertices[t[0]].dot(surface.vertices[t[1]].cross(surface.vertices[t[2]])) / 6;
@@ -43,7 +43,7 @@ TEST(RegionSurface, is_oriented_outwards) {
 }
 
 TEST(RegionSurface, of_a_region_that_is_not_there_is_empty) {
-    EXPECT_TRUE(region_surface(two_regions(), 5).triangles.empty());
+    EXPECT_TRUE(region_surface(two_regions(), 5).surface.triangles.empty());
 }
 
 }  // namespace

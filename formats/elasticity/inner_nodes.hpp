@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "formats/model/body.hpp"
+
+namespace palpate::elasticity {
+
+/// How the inside of a body goes with its surface: no force acts within, so that displacements u_s of all of
+/// the boundary leave K_ii u_i = -K_is u_s. Of a surface that forces displace, u_i is what K u = f has there.
+/// Source: static condensation (Guyan, AIAA J. 3:380, 1965), read backwards.
+class InnerNodes {
+  public:
+    /// Assembles and factorises K_ii, the factor in float, as what is drawn is. Throws InvalidInput as
+    /// discretise() and require_sound_materials() do, and if K_ii has no Cholesky factor in single precision.
+    /// Cost: some 0.15 s for 3 500 nodes of linear tetrahedra.
+    explicit InnerNodes(const DeformableBody& body);
+
+    /// Returns the displacement of every mesh node, mm, from that of every vertex of the boundary's surface,
+    /// mm. Middle nodes of a quadratic body's boundary are taken halfway between those of their ends.
+    /// Unchecked: the number of vertices. Cost: one solve with the factor.
+    std::vector<Eigen::Vector3f> follow(std::span<const Eigen::Vector3f> surface) const;
+
+  private:
+    struct Factor;
+    std::vector<std::int32_t> boundary_nodes_;                 // mesh node of each surface vertex
+    std::vector<std::array<std::int32_t, 2>> boundary_edges_;  // surface vertices; empty if linear
+    std::vector<std::int32_t> positions_;  // of a mesh node among those within; behind them on the boundary
+    std::shared_ptr<const Factor> factor_;
+};
+
+}  // namespace palpate::elasticity
