@@ -29,10 +29,11 @@ enum TickStatus : std::uint32_t {
     coming_back = 1U << 5,        ///< after a fault, the force returns by and by
     energy_injected = 1U << 6,    ///< contact gave more energy than it got: a damper takes it back
     contact_unsettled = 1U << 7,  ///< the search for an equilibrium ended on its way, as where tissue snaps
+    large_unsettled = 1U << 8,    ///< tissue that is deformed far was answered late, or was not at rest yet
 };
 
 /// How many flags there are.
-inline constexpr std::size_t status_count = 8;
+inline constexpr std::size_t status_count = 9;
 
 /// What is said of a flag of TickStatus.
 struct StatusText {

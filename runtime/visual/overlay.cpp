@@ -69,14 +69,21 @@ std::string notice_of(const VisualFrame& frame) {
     return notice;
 }
 
+std::string title_of(const std::string& case_name, const VisualFrame& frame) {
+    if (frame.deforming_far.empty()) return case_name;
+    std::string bodies;
+    for (const std::string& name : frame.deforming_far) bodies += (bodies.empty() ? "" : ", ") + name;
+    return translated("{}, large deformation: {}", case_name, bodies);
+}
+
 double display_scale(int width, int height) {
     constexpr double smallest = 0.7;
     return std::max(smallest, std::min(width / 1280.0, height / 720.0));
 }
 
-Overlay::Overlay(const std::string& title, double max_force, std::span<const std::string> cautions,
+Overlay::Overlay(const std::string& case_name, double max_force, std::span<const std::string> cautions,
                  vtkRenderer* renderer)
-    : renderer_(renderer), max_force_(max_force) {
+    : case_name_(case_name), renderer_(renderer), max_force_(max_force) {
     make_bar(bar_frame_, whole_bar_points_, 0.3, renderer);
     make_bar(bar_, bar_points_, 1, renderer);
     place(force_, 0.017, 0.975, 30, false, true);
@@ -89,7 +96,7 @@ Overlay::Overlay(const std::string& title, double max_force, std::span<const std
     notice_->GetTextProperty()->SetColor(1, 0.75, 0.3);
     place(cautions_, 0.983, 0.92, 14, false, true);
     start_left_of_its_place(cautions_);
-    title_->SetInput(title.c_str());
+    title_->SetInput(case_name.c_str());
     const std::string text = cautions_text(cautions, cautions_width);
     cautions_->SetInput(
         (text.empty() ? translated("nothing is noted about how this case was made") : text).c_str());
@@ -154,6 +161,7 @@ void Overlay::update(const VisualFrame& frame, double frames_per_second, const S
                                   frames_per_second, level)
                            .c_str());
     notice_->SetInput(notice_of(frame).c_str());
+    title_->SetInput(title_of(case_name_, frame).c_str());
 }
 
 void Overlay::tell(const std::string& sentence) {

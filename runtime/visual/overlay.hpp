@@ -19,6 +19,9 @@ namespace palpate::visual {
 /// force, a line each; empty where there is nothing to say.
 std::string notice_of(const VisualFrame& frame);
 
+/// Names the case, and the bodies that are not linear tissue now.
+std::string title_of(const std::string& case_name, const VisualFrame& frame);
+
 /// How much larger texts and bars are than in a window of 1280x720 pixels: as the window, so that they take
 /// the same share of it; never so small that they cannot be read.
 double display_scale(int width, int height);
@@ -27,7 +30,7 @@ double display_scale(int width, int height);
 /// read, seldom enough to cost nothing.
 class Overlay {
   public:
-    Overlay(const std::string& title, double max_force, std::span<const std::string> cautions,
+    Overlay(const std::string& case_name, double max_force, std::span<const std::string> cautions,
             vtkRenderer* renderer);
 
     void update(const VisualFrame& frame, double frames_per_second, const ShownDetail& detail);
@@ -53,6 +56,7 @@ class Overlay {
         int size;  // points
     };
 
+    std::string case_name_;
     vtkRenderer* renderer_;
     std::vector<SizedText> texts_;
     double scale_ = 0;

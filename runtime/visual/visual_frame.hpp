@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "runtime/visual/lesson/lesson_view.hpp"
@@ -21,10 +22,11 @@ struct VisualFrame {
     double depth = 0;                                 ///< below the rest surface, mm
     double tick_rate_hz = 0;
     std::int64_t overruns = 0;
-    std::uint32_t faults = 0;    ///< Fault flags: why there is no force
-    std::uint32_t statuses = 0;  ///< TickStatus flags: what was unusual just now
-    bool recording = false;      ///< every tick is being kept
-    bool audible = false;        ///< the force is heard
+    std::uint32_t faults = 0;                ///< Fault flags: why there is no force
+    std::uint32_t statuses = 0;              ///< TickStatus flags: what was unusual just now
+    bool recording = false;                  ///< every tick is being kept
+    bool audible = false;                    ///< the force is heard
+    std::vector<std::string> deforming_far;  ///< names of bodies whose tissue is solved for large deformation
     /// Of every surface vertex of every deformable body, mm.
     std::vector<std::vector<Eigen::Vector3f>> displacements;
     LessonView lesson;                     ///< of an exercise

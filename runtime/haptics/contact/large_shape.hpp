@@ -21,11 +21,13 @@ struct LargeShape {
     void reset(std::size_t vertices) {
         work = 0;
         bend = 1;
+        settled = true;
         for (auto* field : {&moved, &beyond, &drawn}) field->assign(vertices, Eigen::Vector3f::Zero());
     }
 
     double work = 0;                      ///< f . u, N mm; 0: at rest
     double bend = 1;                      ///< how u - C f goes with the load, part()
+    bool settled = true;                  ///< whether another step would hardly move it
     std::vector<Eigen::Vector3f> moved;   ///< u, averaged as contact feels it
     std::vector<Eigen::Vector3f> beyond;  ///< u - C f, averaged so
     std::vector<Eigen::Vector3f> drawn;   ///< u - C f

@@ -46,7 +46,7 @@ void ContinuousContact::tick(std::span<const ContactPose> poses, double coupling
     }
     write_neighbours(results);
     equilibrium_.end_tick();
-    if (large_.any()) large_.tell(equilibrium_, results[0].tick);
+    if (large_.any()) large_.tell(equilibrium_, results);
 }
 
 // How the tool is turned against its device, and the torque that this takes.

@@ -29,6 +29,13 @@ TEST(Overlay, says_what_a_user_must_know_of_faults_and_statuses) {
               "a tool is in a body, which is not felt until the tool has been clear of it");
 }
 
+TEST(Overlay, names_the_bodies_that_are_not_linear) {
+    VisualFrame frame;
+    EXPECT_EQ(visual::title_of("liver", frame), "liver");
+    frame.deforming_far = {"liver", "gallbladder"};
+    EXPECT_EQ(visual::title_of("liver", frame), "liver, large deformation: liver, gallbladder");
+}
+
 TEST(Overlay, breaks_cautions_between_words_and_counts_characters_not_bytes) {
     EXPECT_EQ(cautions_text({}, 12), "");
     EXPECT_EQ(cautions_text(std::vector<std::string>{"‘äöü’ is made up", "no source"}, 13),

@@ -37,8 +37,9 @@ class LargeDeformation {
     /// Tick's side, before it begins: hands newly found shapes to the equilibrium and says in the results of
     /// which tick's forces they are. Realtime-safe.
     void take(ContactEquilibrium& equilibrium, std::span<TickResult> results) noexcept;
-    /// Tick's side, at its end: tells the loop which forces are there now. Realtime-safe.
-    void tell(const ContactEquilibrium& equilibrium, std::int64_t tick) noexcept;
+    /// Tick's side, at its end: tells the loop which forces are there now, and in the results of tools that
+    /// press hyperelastic bodies whether an answer is late or has not settled. Realtime-safe.
+    void tell(const ContactEquilibrium& equilibrium, std::span<TickResult> results) noexcept;
 
     /// Loop's side: goes on towards the answer to the forces of the newest tick, once the tick has taken the
     /// last one: a replay knows of no other. Bodies one after the other. No allocation.
@@ -67,9 +68,11 @@ class LargeDeformation {
         std::int64_t tick = -1;  // whose forces they answer
         std::vector<LargeShape> of_body;
     };
+    static constexpr std::int64_t late = 100;  // ticks: three of a loop's answers at 30 Hz
     static Loads none(std::size_t bodies);
     Shapes rest() const;
     void answer(const Loads& loads) noexcept;
+    bool presses_unsettled(const TickResult& result) const noexcept;
     static void copy(const Loads& from, Loads& to) noexcept;
 
     const ContactBodies& bodies_;
@@ -80,8 +83,9 @@ class LargeDeformation {
     realtime::TripleBuffer<Loads> loads_;
     realtime::TripleBuffer<Shapes> shapes_, drawn_;
     std::vector<SurfaceForce> drawn_forces_;
-    std::int64_t taken_ = -1;     // the tick's: whose answer it took last
-    std::int64_t answered_ = -1;  // the loop's: the tick that it answered last
+    std::int64_t taken_ = -1;       // the tick's: whose answer it took last
+    std::int64_t free_until_ = -1;  // the tick's: the last in which none of the bodies was pressed
+    std::int64_t answered_ = -1;    // the loop's: the tick that it answered last
 };
 
 }  // namespace palpate::haptics

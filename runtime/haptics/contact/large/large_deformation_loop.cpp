@@ -64,7 +64,7 @@ void LargeDeformation::reset(ContactEquilibrium& equilibrium) noexcept {
         equilibrium.take_shape(softs_[k], nullptr);
     }
     for (Loads& loads : past_) loads.tick = -1;
-    taken_ = answered_ = -1;
+    taken_ = answered_ = free_until_ = -1;
     loads_.back().tick = loads_.back().taken = -1;
     loads_.publish();
     for (LargeShape& shape : drawn_.back().of_body) shape.reset(shape.drawn.size());

@@ -10,7 +10,10 @@ using Eigen::Index;
 using Eigen::Vector3f;
 
 constexpr double settled = 1e-4;  // mm: a step shorter than this ends the search
-constexpr int most_steps = 2;     // for an organ of 3 500 nodes three quarters of a period: rest_search.cpp
+// A search that another step would move farther has not settled: of the largest displacement, what the
+// surface may be off by beside the true one, and in mm.
+constexpr double most_missing = 0.05, least_missing = 0.01;
+constexpr int most_steps = 2;  // for an organ of 3 500 nodes three quarters of a period: rest_search.cpp
 // How much of a change of forces is taken, and how that changes where they swing and where they do not.
 constexpr double least_taken = 0.2, most_taken = 0.7, slower = 0.5, faster = 1.25;
 // Of its linear compliance, what a body keeps against a small force more: where it stiffens beyond that,
@@ -64,8 +67,9 @@ void LargeTissue::follow(std::span<const SurfaceForce> forces, LargeShape& shape
         shape.reset(places_.size());
         return reset();
     }
-    equilibrium_.approach(loads_, settled, most_steps);
+    const double missing = equilibrium_.approach(loads_, settled, most_steps);
     const Eigen::VectorXd& moved = equilibrium_.displacements();
+    shape.settled = missing <= std::max(least_missing, most_missing * moved.lpNorm<Eigen::Infinity>());
     double linear_work = 0;
     for (std::size_t v = 0; v < places_.size(); ++v) {
         shape.drawn[v].setZero();

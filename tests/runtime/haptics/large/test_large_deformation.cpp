@@ -49,7 +49,7 @@ struct Felt {
         const Vector3d before = force_of(result), from = vector_of(result.device_position);
         model.tick(held_at(p), result);
         if (ticks > 0) work += (force_of(result) + before).dot(p - from) / 2;
-        if (++ticks % ticks_per_answer == 0) model.detect();
+        if (++ticks % ticks_per_answer == 0 && answers) model.detect();
         return result;
     }
     const TickResult& rest(const Vector3d& p, int count) {
@@ -74,7 +74,8 @@ struct Felt {
     std::size_t vertices;  // of the cube's surface
     TickResult result;
     int ticks = 0;
-    double work = 0;  // of the forces on the hand, N mm
+    bool answers = true;  // of the loop
+    double work = 0;      // of the forces on the hand, N mm
 };
 
 // Where the equilibrium itself has the surface under a tick's contacts.
@@ -187,6 +188,33 @@ TEST(LargeDeformation, gives_back_what_a_loop_took_and_steps_nowhere) {
         }
         EXPECT_LT(std::abs(felt.work - before), most_work * stored) << way;
     }
+}
+
+TEST(LargeDeformation, says_that_answers_stay_away_and_no_longer_once_they_come) {
+    Felt felt(far_cube(8));
+    felt.go(clear_of_it, pressed_far);
+    EXPECT_EQ(felt.rest(pressed_far, 200).status, tick_ok);
+    felt.answers = false;
+    constexpr int still_fresh = 80, stale = 120;  // ticks: a tenth of a second is late
+    EXPECT_EQ(felt.rest(pressed_far, still_fresh).status, tick_ok);
+    EXPECT_EQ(felt.rest(pressed_far, stale - still_fresh).status, large_unsettled);
+    felt.answers = true;
+    EXPECT_EQ(felt.rest(pressed_far, 2 * ticks_per_answer).status, tick_ok);
+    // Of a tool that touches nothing nothing is late.
+    felt.answers = false;
+    EXPECT_EQ(felt.rest(clear_of_it, stale).status, tick_ok);
+    EXPECT_EQ(felt.rest(pressed_far, 1).status & large_unsettled, 0U);
+}
+
+// Pushed in at once by a fifth of the cube's height, tissue needs more steps than one answer has.
+TEST(LargeDeformation, says_where_its_search_has_not_settled) {
+    Felt felt(far_cube(8));
+    felt.rest(clear_of_it, 20);
+    int told = 0;
+    for (int tick = 0; tick < 5 * ticks_per_answer; ++tick)
+        told += (felt.at(pressed_far).status & large_unsettled) != 0;
+    EXPECT_GT(told, 0);
+    EXPECT_EQ(felt.rest(pressed_far, 300).status, tick_ok);
 }
 
 TEST(LargeDeformation, forgets_all_once_nothing_is_touched) {
