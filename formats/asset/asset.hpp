@@ -42,6 +42,13 @@ Case load_asset(const std::filesystem::path& path, std::span<const std::string> 
 /// the file is no asset.
 std::string asset_digest(const std::filesystem::path& path);
 
+/// Writes to `scratch` (replaced) what was read from an asset, and returns where the asset is other than
+/// that: its datasets by their paths, attributes by "path@name", those of them that write_asset() does not
+/// write too, but for texts of variable length. What it does not write at all is left out, as a reader leaves
+/// it out. Throws as write_asset(), and SystemFailure where `scratch` cannot be written.
+std::vector<std::string> unlike_written_again(const std::filesystem::path& path, const Case& patient_case,
+                                              const std::filesystem::path& scratch);
+
 /// The datasets by their paths and the attributes by "path@name" in which two assets are not the same byte
 /// for byte, signatures aside. Throws InvalidInput if one is no asset.
 std::vector<std::string> differences(const std::filesystem::path& one, const std::filesystem::path& other);

@@ -2,11 +2,14 @@
 #include "formats/asset/validate.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <iterator>
+#include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
 
 #include "formats/model/errors.hpp"
@@ -59,6 +62,41 @@ void check_labels(const std::vector<Label>& labels, const std::string& where) {
 
 bool has_label(const std::vector<Label>& labels, std::int32_t value) {
     return std::ranges::binary_search(labels, value, {}, &Label::value);
+}
+
+// The character that starts a text of UTF-8, which is made shorter by it; none if there is no such.
+std::optional<char32_t> take_character(std::string_view& text) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const auto length = static_cast<std::size_t>(std::countl_one(byte(0)));
+    if (length == 0) {
+        const char32_t character = byte(0);
+        text.remove_prefix(1);
+        return character;
+    }
+    if (length == 1 || length > 4 || length > text.size()) return std::nullopt;
+    char32_t character = byte(0) & (0x7FU >> length);
+    for (std::size_t i = 1; i < length; ++i) {
+        if (byte(i) >> 6 != 2) return std::nullopt;
+        character = (character << 6) | (byte(i) & 0x3FU);
+    }
+    constexpr std::array<char32_t, 5> least{0, 0, 0x80, 0x800, 0x10000};
+    const bool surrogate = character >= 0xD800 && character <= 0xDFFF;
+    if (character < least[length] || character > 0x10FFFF || surrogate) return std::nullopt;
+    text.remove_prefix(length);
+    return character;
+}
+
+bool is_printable(std::string_view text) {
+    while (!text.empty()) {
+        const auto character = take_character(text);
+        if (!character) return false;
+        const char32_t c = *character;
+        const bool control = c < 0x20 || (c >= 0x7F && c <= 0x9F);
+        const bool turns_writing =
+            c == 0x200E || c == 0x200F || (c >= 0x202A && c <= 0x202E) || (c >= 0x2066 && c <= 0x2069);
+        if (control || turns_writing) return false;
+    }
+    return true;
 }
 
 void check_mesh(const TetMesh& mesh, const std::string& where) {
@@ -239,10 +277,9 @@ void check_box(const ObbNode& node, std::size_t index, const std::string& where)
 
 void check_name(const std::string& name, const std::string& where) {
     constexpr std::size_t longest = 255;
-    const bool printable = std::ranges::all_of(name, [](unsigned char c) { return c >= 0x20 && c != 0x7f; });
-    if (name.empty() || name.size() > longest || !printable)
+    if (name.empty() || name.size() > longest || !is_printable(name))
         refuse(where, "has a name that is empty, long or not printable",
-               "1 to 255 bytes without control characters");
+               "1 to 255 bytes of UTF-8 without control characters");
 }
 
 void check_hierarchical(const HierarchicalCompliance& compliance, const std::string& where) {
@@ -357,15 +394,17 @@ void check_enclosure(const ObbTree& tree, const TriangleMesh& surface, const std
             const auto child = static_cast<std::size_t>(tree.nodes[i].first);
             parent[child] = parent[child + 1] = static_cast<std::int32_t>(i);
         }
+    // How far the triangles reach along each box's axes.
+    std::vector<Eigen::Vector3d> reach(tree.nodes.size(), Eigen::Vector3d::Zero());
     const auto check_box_around = [&](std::int32_t index, std::span<const std::int32_t> triangles) {
         const ObbNode& box = tree.nodes[static_cast<std::size_t>(index)];
         const Eigen::Matrix3d axes = box.axes.cast<double>();
         const Eigen::Vector3d center = box.center.cast<double>(), half = box.half_extents.cast<double>();
-        double escape = 0;
+        Eigen::Vector3d& farthest = reach[static_cast<std::size_t>(index)];
         for (const std::int32_t t : triangles)
             for (const std::int32_t v : surface.triangles[t])
-                escape =
-                    std::max(escape, ((axes * (surface.vertices[v] - center)).cwiseAbs() - half).maxCoeff());
+                farthest = farthest.cwiseMax((axes * (surface.vertices[v] - center)).cwiseAbs());
+        const double escape = (farthest - half).maxCoeff();
         if (escape > farthest_escape)
             refuse(where,
                    "box " + std::to_string(index) + " leaves a triangle " + std::to_string(escape) +
@@ -379,6 +418,12 @@ void check_enclosure(const ObbTree& tree, const TriangleMesh& surface, const std
         const auto triangles =
             order.subspan(static_cast<std::size_t>(node.first), static_cast<std::size_t>(node.count));
         for (auto i = static_cast<std::int32_t>(leaf); i >= 0; i = parent[i]) check_box_around(i, triangles);
+    }
+    for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+        const double slack = (tree.nodes[i].half_extents.cast<double>() - reach[i]).maxCoeff();
+        if (slack > farthest_slack)
+            refuse(where, "box " + std::to_string(i) + " is " + std::to_string(slack) + " mm too large",
+                   "boxes that fit their triangles");
     }
 }
 

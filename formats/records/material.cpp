@@ -20,8 +20,9 @@ std::optional<FieldError> relaxation_error(std::span<const RelaxationTerm> terms
         last = term.time;
         sum += term.share;
     }
-    if (sum < 1) return std::nullopt;
-    return FieldError{"share", "is " + std::to_string(sum) + " in all terms together", "less than 1"};
+    if (sum <= most_relaxation) return std::nullopt;
+    return FieldError{"share", "is " + std::to_string(sum) + " in all terms together",
+                      std::to_string(most_relaxation) + " at most"};
 }
 
 std::string relaxation_text(std::span<const RelaxationTerm> terms) {

@@ -34,13 +34,17 @@ struct RelaxationTerm {
 inline constexpr std::tuple relaxation_fields{
     Field("share", &RelaxationTerm::share, "", "part of Young's modulus that is lost in time",
           Range{.least = 0, .most = 1, .ends_belong = false}),
-    Field("time", &RelaxationTerm::time, "s", "after which 1/e of that part is left", positive)};
+    Field("time", &RelaxationTerm::time, "s", "after which 1/e of that part is left",
+          Range{.least = 1e-3, .most = 1e6})};
+
+/// Part of Young's modulus that all terms of a material may take together.
+inline constexpr double most_relaxation = 0.99;
 
 /// Most terms of one material.
 inline constexpr std::size_t most_relaxation_terms = 4;
 
 /// Returns what makes no sense of a material's series; none if it is sound: at most most_relaxation_terms,
-/// in ascending order of their times, all different, and less than the whole modulus together.
+/// in ascending order of their times, all different, and most_relaxation at most together.
 std::optional<FieldError> relaxation_error(std::span<const RelaxationTerm> terms);
 
 /// "30 % in 1 s, 20 % in 10 s"; "none" without terms.

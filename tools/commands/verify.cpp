@@ -14,10 +14,12 @@
 #include "formats/model/errors.hpp"
 #include "tools/archive/privacy/find_identity.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/cli/outputs/staged_file.hpp"
 #include "tools/fem/certificate/certificate.hpp"
 #include "tools/fem/certificate/claims.hpp"
 #include "tools/fem/feel/feel.hpp"
 #include "tools/fem/solvers/dense_kernels.hpp"
+#include "tools/meshing/files/surface_repair.hpp"
 
 namespace {
 using namespace palpate;
@@ -114,6 +116,26 @@ void check_mechanics(Checks& checks, const DeformableBody& body, std::int32_t co
     }
 }
 
+// What no reader of ours looks at, such as units, may be wrong for another's.
+void check_writing(Checks& checks, const std::filesystem::path& asset, const Case& patient_case) {
+    const cli::StagedFile again(std::filesystem::temp_directory_path() / "palpate-verify.vtkhdf", true);
+    const auto unlike = asset::unlike_written_again(asset, patient_case, again.path());
+    checks.add("asset", "units, texts and values are those of the asset written again", unlike.empty(),
+               unlike.empty() ? "" : unlike.front(), "");
+}
+
+void check_sides(Checks& checks, const RigidBody& body) {
+    std::string wrong;
+    try {
+        const TriangleMesh sound = meshing::repaired_surface(body.surface, body.name);
+        if (sound.triangles != body.surface.triangles || sound.vertices != body.surface.vertices)
+            wrong = "triangles that face inwards, or vertices of no triangle or of two pieces";
+    } catch (const InvalidInput& error) {
+        wrong = error.what();
+    }
+    checks.add(body.name, "surface is closed and its triangles face outwards", wrong.empty(), wrong, "");
+}
+
 Json verify(const std::filesystem::path& asset, const std::vector<std::filesystem::path>& trusted,
             std::int32_t columns, std::int32_t loads, cli::Session& session) {
     set_linear_algebra_threads(session.threads);
@@ -132,6 +154,8 @@ Json verify(const std::filesystem::path& asset, const std::vector<std::filesyste
                fmt::format("at most {:g}", asset::farthest_escape));
     const auto shown = asset::vtk_grid_difference(asset, patient_case);
     checks.add("asset", "what ParaView shows are the bodies", !shown, shown.value_or(""), "");
+    check_writing(checks, asset, patient_case);
+    for (const RigidBody& body : patient_case.rigid_bodies) check_sides(checks, body);
     for (const DeformableBody& body : patient_case.deformable_bodies) {
         session.progress.step("solve " + body.name + " again", 0.5);
         checks.add(body.name, "compliance, mesh, material and boundary belong together", true,

@@ -45,7 +45,9 @@ int no_passphrase(char*, int, int, void*) {
 Octets bytes_of(const std::string& digits, std::size_t size) {
     Octets bytes(size);
     std::size_t read = 0;
-    const bool good = digits.size() == 2 * size &&
+    const bool lower_case =
+        std::ranges::none_of(digits, [](char digit) { return digit >= 'A' && digit <= 'F'; });
+    const bool good = lower_case && digits.size() == 2 * size &&
                       OPENSSL_hexstr2buf_ex(bytes.data(), size, &read, digits.c_str(), '\0') == 1 &&
                       read == size;
     ERR_clear_error();
