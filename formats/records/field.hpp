@@ -76,6 +76,9 @@ struct Field {
         Field<Record, T, Other> field(name, member, unit, meaning, range);
         field.schema = schema;
         field.absent = absent;
+        field.not_measured = not_measured;
+        field.written_unit = written_unit;
+        field.written_factor = written_factor;
         return field;
     }
 };

@@ -53,7 +53,8 @@ std::vector<double> TableReader::numbers(const std::string& key, std::size_t cou
     if (array != nullptr)
         for (const toml::node& item : *array)
             if (const auto value = item.value<double>()) values.push_back(*value);
-    if (values.size() != count) fail(table_, key, "cannot be read", std::to_string(count) + " numbers in mm");
+    if (values.size() != count)
+        fail(node(key), key, "cannot be read", std::to_string(count) + " numbers in mm");
     return values;
 }
 

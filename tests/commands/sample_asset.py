@@ -13,6 +13,7 @@ class SampleAsset(unittest.TestCase):
     """Gives its tests `folder`, a scratch folder of the class, and `asset` in it."""
 
     writer = "write_sample_asset"  # or "write_sample_case", whose compliance is made up
+    variant = ()  # a word that the writer knows
 
     @classmethod
     def setUpClass(cls):
@@ -20,4 +21,4 @@ class SampleAsset(unittest.TestCase):
         cls.addClassCleanup(temporary.cleanup)
         cls.folder = pathlib.Path(temporary.name)
         cls.asset = cls.folder / "sample.vtkhdf"
-        subprocess.run([TESTS / cls.writer, cls.asset], check=True)
+        subprocess.run([TESTS / cls.writer, cls.asset, *cls.variant], check=True)

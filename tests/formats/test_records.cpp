@@ -33,6 +33,36 @@ struct Spring {
 constexpr std::tuple spring_fields{Field("stiffness", &Spring::stiffness, "N/mm", "", positive),
                                    Field("rest_length", &Spring::rest_length, "mm", "").since(2, 5.0)};
 
+TEST(Field, stays_as_it_was_while_more_is_said_of_it) {
+    const auto field = Field("stiffness", &Spring::stiffness, "N/mm", "of a spring", positive)
+                           .since(3, 5.0)
+                           .none_is(-1.0)
+                           .written_in("kPa", 1e3)
+                           .stored_as<float>();
+    static_assert(std::is_same_v<decltype(field)::Storage, float>);
+    static_assert(std::is_same_v<decltype(field)::Value, double>);
+    EXPECT_STREQ(field.name, "stiffness");
+    EXPECT_EQ(field.member, &Spring::stiffness);
+    EXPECT_STREQ(field.unit, "N/mm");
+    EXPECT_STREQ(field.meaning, "of a spring");
+    EXPECT_EQ(to_string(field.range), "a positive number");
+    EXPECT_EQ(field.schema, 3);
+    EXPECT_EQ(field.absent, 5.0);
+    EXPECT_EQ(field.not_measured, -1.0);
+    EXPECT_STREQ(field.written_unit, "kPa");
+    EXPECT_EQ(field.written_factor, 1e3);
+    EXPECT_EQ(key_of(field), "stiffness_kpa");
+}
+
+TEST(Records, ranges_are_told_as_people_say_them) {
+    EXPECT_EQ(to_string(any_number), "a finite number");
+    EXPECT_EQ(to_string(not_negative), "0 or more");
+    EXPECT_EQ(to_string(Range{.most = 4}), "at most 4");
+    EXPECT_EQ(to_string(Range{.least = 0, .most = 180}), "0 to 180");
+    EXPECT_EQ(to_string(Range{.least = -1, .most = 0.5, .ends_belong = false}), "between -1 and 0.5");
+    EXPECT_EQ(to_string(Range{.least = 2, .ends_belong = false}), "more than 2");
+}
+
 TEST(Records, an_absent_field_means_what_its_table_says_and_not_the_present_default) {
     const Scratch scratch;
     {
@@ -70,7 +100,11 @@ TEST(Records, the_first_field_out_of_its_range_is_named_with_value_unit_and_rang
     }
     EXPECT_EQ(first_error(material_fields, Material{.youngs_modulus = 1, .poissons_ratio = 0.5})->expected,
               "between -1 and 0.5");
-    EXPECT_EQ(haptics_error({.friction_at_rest = 0.1, .friction_sliding = 0.2})->name, "friction_sliding");
+    const auto sliding = haptics_error({.friction_at_rest = 0.1, .friction_sliding = 0.2});
+    ASSERT_TRUE(sliding);
+    EXPECT_EQ(sliding->name, "friction_sliding");
+    EXPECT_EQ(sliding->found, "is 0.200000");
+    EXPECT_EQ(sliding->expected, "0 to friction_at_rest");
 }
 
 TEST(Records, a_relaxation_that_makes_no_sense_is_named) {
@@ -131,6 +165,37 @@ TEST(Records, tables_of_plain_doubles_name_every_member) {
     EXPECT_EQ(std::tuple_size_v<decltype(haptic_fields)> * sizeof(double), sizeof(HapticSettings));
     EXPECT_EQ(std::tuple_size_v<decltype(quality_fields)> * sizeof(double), sizeof(QualityContract));
     EXPECT_EQ(std::tuple_size_v<decltype(material_fields)> * sizeof(double), sizeof(Material));
+}
+
+TEST(Contact, pushes_the_tool_back_along_its_normal_and_by_friction_unless_a_neighbour_presses) {
+    Contact contact;
+    contact.normal = {0, 0, 1};
+    contact.force = 2;
+    contact.friction = {0.5F, 0, 0};
+    EXPECT_EQ(normal_of(contact), Eigen::Vector3d(0, 0, 1));
+    EXPECT_EQ(reaction_of(contact), Eigen::Vector3d(0.5, 0, 2));
+    EXPECT_FALSE(is_of_neighbour(contact));
+    EXPECT_EQ(force_on_tool(contact), Eigen::Vector3d(0.5, 0, 2));
+    contact.other_body = 0;
+    EXPECT_TRUE(is_of_neighbour(contact));
+    EXPECT_EQ(reaction_of(contact), Eigen::Vector3d(0.5, 0, 2));
+    EXPECT_EQ(force_on_tool(contact), Eigen::Vector3d(0, 0, 0));
+}
+
+TEST(TickResult, is_copied_with_the_contacts_that_count_and_no_others) {
+    TickResult from{}, to{};
+    from.tick = 7;
+    from.contact_count = 2;
+    for (std::size_t i = 0; i < 3; ++i) {
+        from.contacts[i].body = static_cast<std::int32_t>(10 + i);
+        to.contacts[i].body = static_cast<std::int32_t>(20 + i);
+    }
+    EXPECT_EQ(from.active_contacts().size(), 2U);
+    copy_active(from, to);
+    EXPECT_EQ(to.tick, 7);
+    EXPECT_EQ(to.active_contacts()[0].body, 10);
+    EXPECT_EQ(to.active_contacts()[1].body, 11);
+    EXPECT_EQ(to.contacts[2].body, 22);
 }
 
 TickResult tick_at(double time, std::uint32_t status, std::uint32_t faults = no_fault) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
 #include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -30,6 +31,22 @@ TEST(TomlFile, a_quoted_text_is_read_back) {
         const toml::table table = toml_file::parse_text("a = " + toml_file::quoted(text), "x.toml", "");
         EXPECT_EQ(table["a"].value<std::string>(), text);
     }
+}
+
+TEST(TomlFile, that_is_none_is_refused_with_where_it_goes_wrong_and_what_to_do) {
+    const sample::Scratch scratch;
+    const auto refusal = [&](const std::string& name) {
+        return sample::refusal([&] { toml_file::parse_file(scratch / name, "correct it"); });
+    };
+    EXPECT_EQ(refusal("gone.toml"), (scratch / "gone.toml").string() + ": cannot be read; check the path");
+    std::filesystem::create_directory(scratch / "folder");
+    EXPECT_EQ(refusal("folder"), (scratch / "folder").string() + ": is no file; check the path");
+    std::ofstream(scratch / "large.toml") << std::string((1 << 20) + 1, '#');
+    EXPECT_THAT(refusal("large.toml"),
+                HasSubstr("large.toml: has 1048577 bytes (expected 1048576 at most); check that"));
+    const std::string broken = outcome("a = 1\nb = = 2\n");
+    EXPECT_THAT(broken, HasSubstr("a.toml:2: "));
+    EXPECT_THAT(broken, ::testing::EndsWith("; correct it"));
 }
 
 TEST(TomlFile, full_stops_of_numbers_texts_and_comments_are_free) {

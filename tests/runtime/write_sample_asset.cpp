@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes the sample patient, with a true compliance, as an asset for tests of commands; without its skull if
-// asked to.
+// Writes the sample patient, with a true compliance, as an asset for tests of commands; if asked to, without
+// its skull, or with notes on how it was made.
 #include <iostream>
 #include <string_view>
 
@@ -9,14 +9,19 @@
 #include "tests/runtime/elastic_cube.hpp"
 
 int main(int argc, char** argv) {
-    const bool soft = argc == 3 && std::string_view(argv[2]) == "soft";
-    if (argc != 2 && !soft) {
-        std::cerr << "usage: write_sample_asset OUT.vtkhdf [soft]\n";
+    const std::string_view variant = argc == 3 ? argv[2] : "";
+    const bool soft = variant == "soft", noted = variant == "noted";
+    if (argc != 2 && !soft && !noted) {
+        std::cerr << "usage: write_sample_asset OUT.vtkhdf [soft | noted]\n";
         return 2;
     }
     palpate::Case patient_case = palpate::sample::sample_case();
     patient_case.deformable_bodies = {palpate::sample::true_elastic_cube(5)};
     if (soft) patient_case.rigid_bodies.clear();
+    if (noted)
+        patient_case.provenance =
+            R"({"notes":["The skull is a ball of 15 mm that no scan shows: place and size of it are made up.",)"
+            R"("The scan's values rise along each axis and stand for no tissue."]})";
     palpate::asset::write_asset(argv[1], patient_case);
     return 0;
 }

@@ -7,7 +7,10 @@ import subprocess
 import time
 import unittest
 
+import numpy as np
+
 from trainer_case import TRAIN, TrainerCase, yellow_pixels
+from recorded import kept  # found by trainer_case
 
 RADIUS = 1.5  # mm, of the sample's tool; the cube's free top is at z = 20 mm
 
@@ -64,6 +67,10 @@ class Exercises(TrainerCase):
 
     def finish(self, process):
         return super().finish(process)["attempts"]
+
+    def begun_at(self, attempt):
+        rows = (self.attempts / "T-1" / attempt["file"]).with_suffix(".csv").read_text().splitlines()
+        return np.array([float(value) for value in rows[1].split(",")[1:4]])  # behind the time
 
     def small_marks(self):
         path = self.folder / "marks.toml"
@@ -137,6 +144,32 @@ class Exercises(TrainerCase):
         self.assertLess(clumsy["metrics"]["score"], 60)
         idle = self.with_hand("scope", [(0, 50, 50, 50), (1, 50, 50, 50)], *exercise)
         self.assertEqual((idle["ending"], idle["metrics"]["score"]), ("cut short", 0))
+
+    def test_a_hand_is_led_back_to_the_first_gate_by_those_between(self):
+        # Around an edge of the cube, beside which the hand begins, close to the last gate.
+        gates = np.array([(10, -8, 10), (-8, -8, 10), (-8, 10, 10)])
+        path, recording = self.folder / "round.toml", self.folder / "round.h5"
+        path.write_text('schema = 1\n[[exercise]]\nname = "round"\ntask = "guide"\ntolerance_mm = 2\n'
+                        f"time_limit_s = 60\nplaces_mm = {gates.tolist()}\n")
+        process, _ = self.open_window("--exercises", path, "--exercise", "round", "--target", "0,10,10", "--record", recording)
+        self.x("xdotool", "key", "Return")  # begins at once, where the hand is
+        self.picture()
+        self.x("xdotool", "key", "n")  # from the beginning
+
+        def second_has_ended():
+            self.x("xdotool", "key", "e")  # says nothing to a countdown
+            return len(list(self.attempts.glob("T-1/*.json"))) == 2
+
+        self.wait_for(second_has_ended)
+        self.x("xdotool", "key", "q")
+        first, second = (self.begun_at(attempt) for attempt in self.finish(process))
+        self.assertGreater(np.linalg.norm(first - gates[0]), 10)
+        self.assertLess(np.linalg.norm(second - gates[0]), 0.1)
+        way = kept(recording, "ticks/device_position")
+        distances = np.linalg.norm(way[:, None] - gates, axis=2)
+        self.assertTrue((distances.min(axis=0) < 2).all(), distances.min(axis=0))
+        self.assertEqual(distances.argmin(axis=0).tolist(), sorted(distances.argmin(axis=0), reverse=True))
+        self.assertFalse(kept(recording, "ticks/force").any(), "straight on the cube is in the way")
 
     def test_what_is_hidden_is_found_with_the_m_key(self):
         (place,) = self.laid_out("find")["places_mm"]

@@ -9,6 +9,8 @@ import sys
 import time
 import unittest
 
+import numpy as np
+
 sys.path.insert(0, f"{os.environ['PALPATE_SOURCE']}/tests/commands")
 from sample_asset import SampleAsset  # noqa: E402
 from x_server import NEEDED, XServer  # noqa: E402
@@ -94,17 +96,24 @@ class TrainerCase(SampleAsset):
         self.x("xdotool", "key", "BackSpace")
         self.wait_for(lambda: not self.shows_page(window))
 
-    def picture(self):
-        """Red, green, blue, red, ... of the scene, coarse, as it is drawn after all that was sent so far."""
+    def take_picture(self, *conversion):
+        """Red, green, blue, red, ... of the window as it is drawn after all that was sent so far, converted so."""
         taken = lambda: list(filter(is_whole, self.folder.glob("palpate-sample-*.png")))
         before = set(taken())
         self.x("xdotool", "key", "F12")
         self.wait_for(lambda: set(taken()) - before)
         (path,) = set(taken()) - before
-        crop = ["-gravity", "center", "-crop", "100%x50%+0+0", "+repage", "-scale", "160x45!"]  # without the grain
-        rgb = subprocess.run(["convert", path, *crop, "-depth", "8", "rgb:-"], capture_output=True, check=True).stdout
+        rgb = subprocess.run(["convert", path, *conversion, "-depth", "8", "rgb:-"], capture_output=True, check=True).stdout
         path.unlink()
         return rgb
+
+    def picture(self):
+        """The scene so, coarse: without the grain."""
+        return self.take_picture("-gravity", "center", "-crop", "100%x50%+0+0", "+repage", "-scale", "160x45!")
+
+    def scene(self):
+        """All 1280x720 pixels so, in rows from above: (r, g, b) each."""
+        return np.frombuffer(self.take_picture(), np.uint8).reshape(720, 1280, 3).astype(int)
 
     def come_to_rest(self):
         """Waits until what was sent so far has been done, and returns the scene's picture then."""

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Image files written byte by byte from their specifications: an oracle that shares no code with the readers.
 #pragma once
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
+#include <numeric>
 #include <span>
 #include <string>
 #include <vector>
@@ -99,6 +101,18 @@ inline std::string nifti_file(const ImageGrid& grid, const std::string& voxels) 
     }
     std::memcpy(header.data() + 344, "n+1", 4);
     return header + voxels;
+}
+
+/// Values that all differ, in voxels whose edges do, on axes of no frame.
+inline Volume oblique_ramp() {
+    Volume volume;
+    volume.grid.size = {4, 5, 6};
+    volume.grid.spacing = {0.5, 0.75, 1.25};
+    volume.grid.origin = {-10.5, 20.25, 30.125};
+    volume.grid.direction = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, -2, 3).normalized()).toRotationMatrix();
+    volume.values.resize(volume.grid.voxel_count());
+    std::iota(volume.values.begin(), volume.values.end(), -7.0F);
+    return volume;
 }
 
 }  // namespace palpate::test

@@ -1,77 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the conformance library does, seen as an application sees it.
-#include <algorithm>
+// What the conformance library does, seen as an application sees it; test_hd_faults.cpp has its troubles.
 #include <array>
 #include <atomic>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "formats/model/errors.hpp"
 #include "tests/formats/scratch.hpp"
-#include "tests/runtime/devices/openhaptics/hd_library/hd_functions.hpp"
-#include "tests/runtime/devices/openhaptics/hd_library/hd_script.hpp"
-#include "tests/runtime/devices/openhaptics/hd_library/touch_angles.hpp"
+#include "tests/runtime/devices/openhaptics/hd_conformance.hpp"
 
 namespace palpate::hd {
 namespace {
 
-using Vector = std::array<double, 3>;
-
-std::string library_path() {
-    return PALPATE_HD_CONFORMANCE;
-}
-
-// The library, fresh for each test.
-class HdConformance : public testing::Test {
-  protected:
-    Functions hd{library_path()};
-
-    void configure(const std::string& json) {
-        const char* message = hd.configure(json.c_str());
-        ASSERT_EQ(message, nullptr) << message;
-    }
-    // A Touch at rest and open, of which `more` tells.
-    Handle open(const std::string& more = "", const std::string& clock = "virtual") {
-        configure(R"({"clock":")" + clock + R"(","devices":[{"name":"A")" + (more.empty() ? "" : ",") + more +
-                  "}]}");
-        return hd.hdInitDevice(nullptr);
-    }
-    unsigned error() { return hd.hdGetError().code; }
-    // Runs `action` once in the servo, and counts ticks.
-    template <class Action>
-    void in_servo(Action&& action) {
-        hd.hdScheduleSynchronous(
-            [](void* data) -> unsigned {
-                (*static_cast<std::remove_reference_t<Action>*>(data))();
-                return callback_done;
-            },
-            &action, 32767);
-    }
-    // One whole frame with this force.
-    void frame(Handle device, const Vector& force) {
-        hd.hdBeginFrame(device);
-        hd.hdSetDoublev(current_force, force.data());
-        hd.hdEndFrame(device);
-    }
-    // That many ticks with this force.
-    void push(Handle device, const Vector& force, int ticks) {
-        for (int tick = 0; tick < ticks; ++tick) in_servo([&] { frame(device, force); });
-    }
-    Vector rendered(Handle device) {
-        const Hardware at = hd.hardware(device);
-        return {at.rendered[0], at.rendered[1], at.rendered[2]};
-    }
-    ~HdConformance() override { hd.configure("{}"); }
-};
-
 TEST_F(HdConformance, exports_the_interface_and_nothing_else) {
-    FILE* pipe = popen(("nm -D --defined-only " + library_path()).c_str(), "r");
+    FILE* pipe = popen(("nm -D --defined-only " + conformance_library_path()).c_str(), "r");
     ASSERT_NE(pipe, nullptr);
     std::array<char, 512> line{};
     int found = 0;
@@ -125,14 +72,14 @@ TEST_F(HdConformance, refuses_to_open_as_the_script_says) {
 
 TEST_F(HdConformance, a_library_loaded_again_opens_nothing_and_a_file_may_be_its_script) {
     // Tests before this one in the same process hold it too: each look takes one hold more, then two go.
-    while (void* object = dlopen(library_path().c_str(), RTLD_NOW | RTLD_NOLOAD)) {
+    while (void* object = dlopen(conformance_library_path().c_str(), RTLD_NOW | RTLD_NOLOAD)) {
         dlclose(object);
         dlclose(object);
     }
     const sample::Scratch scratch;
     std::ofstream(scratch / "script.json") << R"({"devices":[{"name":"of the file"}]})";
     setenv("PALPATE_HD_SCRIPT", (scratch / "script.json").c_str(), 1);
-    Functions again(library_path());
+    Functions again(conformance_library_path());
     EXPECT_EQ(again.hdInitDevice(nullptr), invalid_handle);
     EXPECT_EQ(again.hdGetError().code, device_fault);
     unsetenv("PALPATE_HD_UNLOADED_IN");
@@ -457,156 +404,6 @@ TEST_F(HdConformance, two_devices_have_their_own_state_and_force) {
     EXPECT_EQ(rendered(right), (Vector{0, 0, 5}));
     EXPECT_EQ(hd.hardware(left).asked[1], 3);
     EXPECT_EQ(hd.hardware(right).position[0], 2);
-}
-
-// What one tick of trouble looks like: errors in the order they came, position, temperature, force.
-struct Seen {
-    std::vector<unsigned> errors;
-    Vector position{};
-    double temperature = 0;
-    bool force = false;
-    bool operator==(const Seen&) const = default;
-};
-
-TEST_F(HdConformance, each_fault_shows_in_its_way_and_vanishes) {
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    const Vector still{9, 0, 0}, moved{10, 0, 0};
-    const std::array<std::pair<const char*, Seen>, 9> faults{{
-        {"warm_motors", {{warm_motors}, moved, 1, false}},
-        {"comm_error", {{comm_error}, moved, 0.2, false}},
-        {"disconnect", {{comm_error}, still, 0.2, false}},
-        {"not_a_number", {{}, {nan, nan, nan}, 0.2, true}},
-        {"frozen_pose", {{}, {0, -110, -35}, 0.2, true}},
-        {"max_force", {{exceeded_max_force}, moved, 0.2, false}},
-        {"velocity", {{exceeded_velocity}, moved, 0.2, false}},
-        {"impulse", {{exceeded_impulse}, moved, 0.2, false}},
-        {"timer_error", {{timer_error}, moved, 0.2, true}},
-    }};
-    for (const auto& [name, expected] : faults) {
-        const Handle device = open(R"("hand":"rigid","path":[[0,0,0,0],[1,1000,0,0]],"faults":[{"fault":")" +
-                                   std::string(name) + R"(","from":0.01,"until":0.011}])");
-        hd.hdEnable(force_output);
-        hd.hdStartScheduler();
-        for (int tick = 1; tick <= 12; ++tick)
-            in_servo([&] {
-                Seen seen;
-                Vector temperatures{};
-                const Vector force{1, 0, 0};
-                hd.hdBeginFrame(device);
-                hd.hdGetDoublev(current_position, seen.position.data());
-                hd.hdGetDoublev(motor_temperature, temperatures.data());
-                hd.hdSetDoublev(current_force, force.data());
-                hd.hdEndFrame(device);
-                seen.temperature = temperatures[0];
-                seen.force = rendered(device)[0] > 0;
-                for (unsigned code = error(); code != success; code = error()) seen.errors.push_back(code);
-                const Seen well{{}, {1.0 * tick, 0, 0}, 0.2, true}, &right = tick == 10 ? expected : well;
-                EXPECT_EQ(seen.errors, right.errors) << name << ", tick " << tick;
-                EXPECT_EQ(seen.temperature, right.temperature) << name << ", tick " << tick;
-                EXPECT_EQ(seen.force, right.force) << name << ", tick " << tick;
-                for (std::size_t k = 0; k < 3; ++k)
-                    EXPECT_TRUE(std::isnan(right.position[k])
-                                    ? std::isnan(seen.position[k])
-                                    : std::abs(seen.position[k] - right.position[k]) < 1e-9)
-                        << name << ", tick " << tick << ": " << seen.position[k];
-            });
-    }
-}
-
-TEST_F(HdConformance, a_failed_frame_is_not_open) {
-    const Handle device = open(R"("faults":[{"fault":"frame_failure","from":0,"until":0.5}])");
-    hd.hdBeginFrame(device);
-    EXPECT_EQ(error(), frame_error);
-    Vector p{};
-    hd.hdGetDoublev(current_position, p.data());
-    EXPECT_EQ(error(), invalid_operation);
-}
-
-TEST_F(HdConformance, lost_calibration_comes_back) {
-    open(R"("styles":["inkwell"],"faults":[{"fault":"calibration_lost","from":0.001,"until":0.003}])");
-    hd.hdStartScheduler();
-    std::vector<unsigned> states;
-    for (int tick = 1; tick <= 4; ++tick) in_servo([&] { states.push_back(hd.hdCheckCalibration()); });
-    EXPECT_EQ(states, (std::vector<unsigned>{calibration_needs_manual_input, calibration_needs_manual_input,
-                                             calibration_ok, calibration_ok}));
-}
-
-TEST_F(HdConformance, a_stalled_scheduler_skips_the_time) {
-    for (const char* clock : {"virtual", "real"}) {
-        const Handle device =
-            open(R"("faults":[{"fault":"scheduler_stall","from":0.005,"until":0.1}])", clock);
-        hd.hdStartScheduler();
-        int ticks_inside = 0;
-        double time = 0;
-        while (time < 0.1)
-            in_servo([&] {
-                time = hd.hardware(device).time;
-                if (time > 0.005 && time < 0.1) ++ticks_inside;
-            });
-        // On the real clock a late tick may be the first inside, and then waits for the end.
-        EXPECT_LE(ticks_inside, 1) << clock;
-    }
-}
-
-TEST_F(HdConformance, pauses_after_so_many_ticks) {
-    configure(R"({"clock":"virtual","pause_after_ticks":7})");
-    const Handle device = hd.hdInitDevice(nullptr);
-    std::atomic<int> calls{0};
-    hd.hdScheduleAsynchronous(
-        [](void* data) -> unsigned {
-            ++*static_cast<std::atomic<int>*>(data);
-            return callback_continue;
-        },
-        &calls, 1);
-    hd.hdStartScheduler();
-    while (hd.hardware(device).time < 0.0069) {
-    }
-    hd.hdStopScheduler();
-    EXPECT_EQ(calls, 7);
-}
-
-TEST(HdScript, a_misspelt_script_is_refused_by_name) {
-    const auto refusal = [](const char* json) -> std::string {
-        try {
-            parse_script(json);
-            return "";
-        } catch (const Error& error) {
-            return error.what();
-        }
-    };
-    EXPECT_NE(refusal(R"({"clok":"real"})").find("clok"), std::string::npos);
-    EXPECT_NE(refusal(R"({"clock":"slow"})").find("real, virtual"), std::string::npos);
-    EXPECT_NE(refusal(R"({"devices":[{"model":"falcon"}]})").find("falcon"), std::string::npos);
-    EXPECT_NE(refusal(R"({"devices":[{"faults":[{"fault":"smoke"}]}]})").find("smoke"), std::string::npos);
-    EXPECT_NE(refusal("{").find("JSON"), std::string::npos);
-    EXPECT_NE(refusal(R"({"rate_hz":300})").find("500 or 1000"), std::string::npos);
-    EXPECT_EQ(refusal("{}"), "");
-}
-
-// The inkwell's pose that SOFA recorded (GeomagicDriver), and its angles.
-TEST(TouchAngles, give_the_recorded_pose_of_the_inkwell) {
-    const Vector angles = touch_angles({0, -65.5107, -88.1142});
-    EXPECT_NEAR(angles[0], 0, 1e-5);
-    EXPECT_NEAR(angles[1], 0.26889, 1e-5);
-    EXPECT_NEAR(angles[2], -0.370813, 1e-5);
-}
-
-TEST(TouchAngles, invert_the_way_from_angles_to_the_tip) {
-    for (double x = -80; x <= 80; x += 20)
-        for (double y = -60; y <= 60; y += 20)
-            for (double z = -35; z <= 35; z += 10) {
-                const Vector p = touch_position(touch_angles({x, y, z}));
-                EXPECT_NEAR(p[0], x, 1e-11);
-                EXPECT_NEAR(p[1], y, 1e-11);
-                EXPECT_NEAR(p[2], z, 1e-11);
-            }
-}
-
-TEST(TouchAngles, all_zero_are_where_a_device_without_encoder_data_seems_to_be) {
-    const Vector p = touch_position({0, 0, 0});
-    EXPECT_NEAR(p[0], 0, 1e-12);
-    EXPECT_NEAR(p[1], -110, 1e-12);
-    EXPECT_NEAR(p[2], -35, 1e-12);
 }
 
 }  // namespace

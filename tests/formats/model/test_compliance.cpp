@@ -167,6 +167,13 @@ TEST_P(BlocksOfEverySize, multiply_by_the_entries_that_they_give) {
     }
 }
 
+TEST(HierarchicalCompliance, is_allowed_the_error_that_was_asked_for_and_a_dense_one_that_of_float32) {
+    HierarchicalCompliance blocks;
+    blocks.accuracy = 1e-3;
+    EXPECT_EQ(allowed_error(blocks), 1e-3);
+    EXPECT_EQ(allowed_error(DenseCompliance{}), 1e-6);
+}
+
 TEST(HierarchicalCompliance, without_loads_displaces_nothing) {
     const HierarchicalCompliance blocks =
         sample::hierarchical(random_compliance(9, 1), shuffled(9, 2), 2, exact);
