@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "formats/model/errors.hpp"
+#include "formats/model/small_file.hpp"
 
 namespace palpate::cli {
 namespace {
@@ -21,37 +22,27 @@ std::filesystem::path followed(std::filesystem::path target) {
     return target;
 }
 
-// Throws unless a target is a file, a pipe or nothing yet; says whether it is a pipe.
-bool is_pipe(const std::filesystem::path& target) {
-    const auto refuse = [&](const std::string& found) {
-        throw InvalidInput({target.string(), found, "a file name or a pipe", "name the file to write"});
-    };
-    if (target == "-") refuse("is no file; /dev/stdout is, where it is a pipe");
-    using std::filesystem::file_type;
-    std::error_code error;
-    switch (std::filesystem::status(target, error).type()) {
-        case file_type::directory:
-            refuse("is a folder");
-            break;
-        case file_type::character:
-        case file_type::block:
-            refuse("is a device");
-            break;
-        case file_type::socket:
-            refuse("is a socket");
-            break;
-        case file_type::fifo:
-            return true;
-        default:
-            break;
-    }
-    return false;
+[[noreturn]] void refuse(const std::filesystem::path& target, const std::string& found,
+                         const std::string& expected) {
+    throw InvalidInput({target.string(), found, expected, "name the file to write"});
 }
 
 }  // namespace
 
 OutputTarget output_target(const std::filesystem::path& named) {
-    return is_pipe(named) ? OutputTarget{named, true} : OutputTarget{followed(named), false};
+    const char* const expected = "a file name or a pipe";
+    if (named == "-") refuse(named, "is no file; /dev/stdout is, where it is a pipe", expected);
+    std::error_code none;
+    if (std::filesystem::is_fifo(named, none)) return {named, true};
+    if (const std::string kind = other_kind(named); !kind.empty()) refuse(named, kind, expected);
+    return {followed(named), false};
+}
+
+std::filesystem::path seekable_target(const std::filesystem::path& named) {
+    const char* const expected = "a file name";
+    if (named == "-") refuse(named, "is no file", expected);
+    if (const std::string kind = other_kind(named); !kind.empty()) refuse(named, kind, expected);
+    return followed(named);
 }
 
 std::filesystem::path folder_of(const std::filesystem::path& file) {

@@ -14,6 +14,10 @@ struct OutputTarget {
 /// itself.
 OutputTarget output_target(const std::filesystem::path& named);
 
+/// Where a file goes that is sought in while it is written, or read again after that, links followed. Throws as
+/// output_target(), and for a pipe, which has only an end.
+std::filesystem::path seekable_target(const std::filesystem::path& named);
+
 /// The folder that a file is in, "." where its path has none.
 std::filesystem::path folder_of(const std::filesystem::path& file);
 
