@@ -7,8 +7,8 @@
 namespace palpate::apps {
 
 /// Makes a command's recording of `run`, of its last `seconds`, and opens it. It has its final name from here
-/// on, so that it is kept however the run ends. Throws InvalidInput if there is such a file without --force, or
-/// what is no file.
+/// on, so that it is kept however the run ends. Throws InvalidInput if there is such a file without --force,
+/// or what is no file.
 inline void start_recording(session::Session& run, const std::filesystem::path& named, double seconds,
                             const cli::Session& session) {
     const std::int64_t rows = session::recording_rows(seconds, run.model().tool_count());

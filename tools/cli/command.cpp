@@ -308,10 +308,12 @@ void Command::emit(nlohmann::ordered_json result, const Session& session, double
         json_file->commit();
     } else if (json_path_ == "-") {
         std::cout << result.dump(2) << '\n';
-    } else if (!session.text.empty()) {
-        std::cout << session.text;
-    } else {
-        print_result(result);
+    } else if (!stdout_is_taken() || !quiet_) {
+        std::ostream& told = stdout_is_taken() ? std::cerr : std::cout;
+        if (session.text.empty())
+            print_result(result, told);
+        else
+            told << session.text;
     }
 }
 
@@ -341,6 +343,7 @@ int Command::run(int argc, char** argv, const std::function<nlohmann::ordered_js
         session.json = !json_path_.empty();
         session.progress = Progress(quiet_);
         std::optional<StagedFile> json_file;
+        if (json_path_ == "-") take_stdout_as("--json -");
         if (!json_path_.empty() && json_path_ != "-") json_file.emplace(json_path_, force_);
         nlohmann::ordered_json result = job(session);
         session.progress.finish();

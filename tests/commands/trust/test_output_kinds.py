@@ -1,18 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is no place for an output is refused by its kind before work begins, and stdout carries one thing alone."""
 import contextlib
+import json
 import os
 import pathlib
 import socket
 import stat
+import subprocess
 import sys
+import tempfile
 import unittest
 
 sys.path.insert(0, "..")
 import sample_asset  # noqa: E402
 import test_asset_commands as assets  # noqa: E402
 
-BIN, OK, INVALID = assets.BIN, assets.OK, assets.INVALID
+BIN, OK, USAGE, INVALID = assets.BIN, assets.OK, assets.USAGE, assets.INVALID
+RESULT = "peak_memory_bytes"  # of every command's result
 
 
 @contextlib.contextmanager
@@ -69,6 +73,64 @@ class Kinds(sample_asset.SampleAsset):
         made = self.touch("--record", link, "--record-seconds", 1)
         self.assertEqual(made.returncode, OK, made.stderr)
         self.assertTrue(link.is_symlink() and stat.S_ISREG(file.stat().st_mode))
+
+    def assertAlone(self, made):
+        """What went to stdout is no command's result, which stderr has."""
+        self.assertEqual(made.returncode, OK, made.stderr)
+        self.assertNotIn(RESULT, made.stdout)
+        self.assertIn(RESULT, made.stderr)
+
+    def test_a_log_is_alone_in_stdout(self):
+        made = self.touch("--log", "/dev/stdout")
+        self.assertAlone(made)
+        columns = {line.count(",") for line in made.stdout.splitlines()}
+        self.assertEqual((len(columns), made.stdout.count("\n")), (1, 51), made.stdout[-200:])
+
+    def test_a_curve_is_alone_in_stdout(self):
+        made = self.touch("--curve", "/dev/stdout")
+        self.assertAlone(made)
+        self.assertTrue(made.stdout.startswith("<svg") and made.stdout.endswith("</svg>\n"), made.stdout[-200:])
+
+    def test_json_is_alone_in_stdout_by_whatever_name(self):
+        for name in ("-", "/dev/stdout", "/dev/fd/1"):
+            made = self.touch("--json", name)
+            self.assertEqual(made.returncode, OK, made.stderr)
+            self.assertEqual(json.loads(made.stdout)["ticks"], 50)
+
+    def test_stdout_takes_one_output(self):
+        for outputs in (("--log", "/dev/stdout", "--json", "-"), ("--log", "/dev/stdout", "--curve", "/proc/self/fd/1"),
+                        ("--json", "/dev/stdout", "--curve", "/dev/stdout")):
+            refused = self.touch(*outputs)
+            self.assertEqual((refused.returncode, refused.stdout), (USAGE, ""), refused.stderr)
+            self.assertIn("another output goes to stdout as well", refused.stderr)
+
+    def test_quiet_leaves_out_what_an_output_keeps_from_stdout(self):
+        made = self.touch("--log", "/dev/stdout", "--quiet")
+        self.assertEqual((made.returncode, made.stderr), (OK, ""))
+        self.assertNotIn(RESULT, made.stdout)
+
+
+class Stdout(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        assets.write_tetrahedron_surface(self.folder / "skull.vtp", 40)
+
+    def pack(self, output, *arguments, **streams):
+        command = [BIN / "palpate-pack", "--name", "case", "--rigid", f"skull={self.folder / 'skull.vtp'}", "-o", output, *arguments]
+        return subprocess.run(command, timeout=60, **{"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **streams})
+
+    def test_an_asset_is_alone_in_stdout_a_pipe_or_a_file(self):
+        self.assertEqual(self.pack(self.folder / "named.vtkhdf").returncode, OK)
+        expected = (self.folder / "named.vtkhdf").read_bytes()
+        piped = self.pack("/dev/stdout")
+        self.assertEqual((piped.returncode, piped.stdout), (OK, expected), piped.stderr)
+        self.assertIn(RESULT.encode(), piped.stderr)
+        with open(self.folder / "kept.vtkhdf", "wb") as file:
+            kept = self.pack("/dev/stdout", "--force", stdout=file)
+        self.assertEqual((kept.returncode, (self.folder / "kept.vtkhdf").read_bytes()), (OK, expected), kept.stderr)
+        self.assertIn(RESULT.encode(), kept.stderr)
 
 
 if __name__ == "__main__":

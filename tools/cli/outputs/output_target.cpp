@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/cli/outputs/output_target.hpp"
 
+#include <atomic>
 #include <string>
+#include <sys/stat.h>
 #include <system_error>
+#include <unistd.h>
 
 #include "formats/model/errors.hpp"
 #include "formats/model/small_file.hpp"
@@ -27,6 +30,15 @@ std::filesystem::path followed(std::filesystem::path target) {
     throw InvalidInput({target.string(), found, expected, "name the file to write"});
 }
 
+std::atomic<bool> stdout_taken{false};
+
+bool is_stdout(const std::filesystem::path& output) {
+    struct stat ours {
+    }, named{};
+    return fstat(STDOUT_FILENO, &ours) == 0 && stat(output.c_str(), &named) == 0 &&
+           ours.st_dev == named.st_dev && ours.st_ino == named.st_ino;
+}
+
 }  // namespace
 
 OutputTarget output_target(const std::filesystem::path& named) {
@@ -43,6 +55,19 @@ std::filesystem::path seekable_target(const std::filesystem::path& named) {
     if (named == "-") refuse(named, "is no file", expected);
     if (const std::string kind = other_kind(named); !kind.empty()) refuse(named, kind, expected);
     return followed(named);
+}
+
+void take_stdout_for(const std::filesystem::path& output) {
+    if (is_stdout(output)) take_stdout_as(output.string());
+}
+
+void take_stdout_as(const std::string& name) {
+    if (stdout_taken.exchange(true))
+        throw UsageError({name, "another output goes to stdout as well", "", "name a file for one of them"});
+}
+
+bool stdout_is_taken() {
+    return stdout_taken.load();
 }
 
 std::filesystem::path folder_of(const std::filesystem::path& file) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
+#include <string>
 
 namespace palpate::cli {
 
@@ -14,9 +15,19 @@ struct OutputTarget {
 /// itself.
 OutputTarget output_target(const std::filesystem::path& named);
 
-/// Where a file goes that is sought in while it is written, or read again after that, links followed. Throws as
-/// output_target(), and for a pipe, which has only an end.
+/// Where a file goes that is sought in while it is written, or read again after that, links followed. Throws
+/// as output_target(), and for a pipe, which has only an end.
 std::filesystem::path seekable_target(const std::filesystem::path& named);
+
+/// Gives stdout to an output if that goes there, as /dev/stdout or under the name of the pipe or file behind
+/// it. Throws UsageError if another output has it.
+void take_stdout_for(const std::filesystem::path& output);
+
+/// Gives it to what is written there under no path, such as the JSON of "--json -".
+void take_stdout_as(const std::string& name);
+
+/// Whether an output has stdout, so that what is told besides goes to stderr.
+bool stdout_is_taken();
 
 /// The folder that a file is in, "." where its path has none.
 std::filesystem::path folder_of(const std::filesystem::path& file);
