@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <fmt/format.h>
-#include <fstream>
 #include <iostream>
 #include <new>
 #include <nlohmann/json.hpp>
@@ -320,16 +319,23 @@ void Command::emit(nlohmann::ordered_json result, const Session& session, double
 int Command::run(int argc, char** argv, const std::function<nlohmann::ordered_json(Session&)>& job) {
     const std::string program = "palpate-" + text_.name;
     const auto start = std::chrono::steady_clock::now();
+    std::optional<StagedFile> error_file;
     const auto say = [&](const std::string& message) {
         const std::string text = program + ": " + with_final_names(message) + "\n";
         std::cerr << text;
-        if (!error_path_.empty() && !(std::ofstream(error_path_) << text))
-            std::cerr << program << ": " << error_path_ << ": cannot be written\n";
+        if (!error_file) return;
+        try {
+            error_file->write_text(text);
+            error_file->commit();
+        } catch (const std::exception& error) {
+            std::cerr << program << ": " << with_final_names(error.what()) << '\n';
+        }
     };
     try {
         if (const int code = parse(argc, argv); code >= 0) return code;
         set_up_logging(program, quiet_, verbose_);
         remove_staged_files_on_interrupt();
+        if (!error_path_.empty()) error_file.emplace(error_path_, force_);
         for (const Parameter& parameter : parameters_)
             if (parameter.kind == Parameter::Kind::input_file)
                 for (const std::string& path : parameter.option.words())

@@ -62,6 +62,34 @@ class Kinds(sample_asset.SampleAsset):
     def test_a_recording_of_the_trainer_needs_a_file(self):
         self.assertRefusesEach("palpate-train", self.asset, "--record")
 
+    def test_the_message_of_a_failure_goes_to_no_device_socket_or_folder(self):
+        self.assertRefusesEach("palpate-inspect", self.folder / "absent", "--error-file", but=("is a pipe",))
+
+    def fail(self, *arguments, **options):
+        return assets.run(BIN / "palpate-inspect", self.folder / "absent", "--error-file", *arguments, **options)
+
+    def test_the_message_of_a_failure_replaces_a_file_only_if_forced(self):
+        kept = self.folder / "kept.txt"
+        kept.write_text("kept")
+        refused = self.fail(kept)
+        self.assertEqual((refused.returncode, kept.read_text()), (INVALID, "kept"))
+        self.assertIn(f"{kept}: exists already", refused.stderr)
+        failed = self.fail(kept, "--force")
+        self.assertEqual(failed.returncode, INVALID)
+        self.assertIn("absent: no such file", failed.stderr)
+        self.assertEqual(kept.read_text(), failed.stderr)
+        self.assertIn("absent: no such file", self.fail("/dev/stdout").stdout)
+
+    def test_the_message_of_a_failure_is_no_file_named_dash(self):
+        refused = self.fail("-", cwd=self.folder)
+        self.assertEqual(refused.returncode, INVALID)
+        self.assertIn("-: is no file", refused.stderr)
+        self.assertFalse((self.folder / "-").exists())
+
+    def test_where_nothing_fails_there_is_no_message(self):
+        made = assets.run(BIN / "palpate-inspect", self.asset, "--error-file", self.folder / "none.txt")
+        self.assertEqual((made.returncode, (self.folder / "none.txt").exists()), (OK, False), made.stderr)
+
     def test_a_recording_is_not_sent_through_stdout(self):
         refused = self.touch("--record", "/dev/stdout")
         self.assertEqual((refused.returncode, refused.stdout), (INVALID, ""), refused.stderr)
