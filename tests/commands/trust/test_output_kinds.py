@@ -160,6 +160,18 @@ class Stdout(unittest.TestCase):
         self.assertEqual((kept.returncode, (self.folder / "kept.vtkhdf").read_bytes()), (OK, expected), kept.stderr)
         self.assertIn(RESULT.encode(), kept.stderr)
 
+    def init(self, output, *arguments):
+        return assets.run(BIN / "palpate-init", self.folder / "skull.vtp", "-o", output, *arguments)
+
+    def test_a_case_file_is_no_pipe(self):
+        pipe = self.folder / "pipe.toml"
+        os.mkfifo(pipe)
+        for force in ((), ("--force",)):
+            refused = self.init(pipe, *force)
+            self.assertEqual(refused.returncode, INVALID)
+            self.assertIn("pipe.toml: is a pipe (expected a file name)", refused.stderr)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["pipe.toml", "skull.vtp"])
+
 
 if __name__ == "__main__":
     unittest.main()
