@@ -332,7 +332,10 @@ int Command::run(int argc, char** argv, const std::function<nlohmann::ordered_js
         }
     };
     try {
-        if (const int code = parse(argc, argv); code >= 0) return code;
+        if (const int code = parse(argc, argv); code >= 0) {
+            flush_stdout();
+            return code;
+        }
         set_up_logging(program, quiet_, verbose_);
         remove_staged_files_on_interrupt();
         if (!error_path_.empty()) error_file.emplace(error_path_, force_);
@@ -356,9 +359,9 @@ int Command::run(int argc, char** argv, const std::function<nlohmann::ordered_js
         emit(std::move(result), session,
              std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
              json_file ? &*json_file : nullptr);
-        std::cout.flush();
+        flush_stdout();
         if (session.shortfall) throw QualityNotMet(*session.shortfall);
-        return std::cout ? ExitCode::ok : ExitCode::failed;
+        return ExitCode::ok;
     } catch (const UsageError& error) {
         say(error.what());
         return ExitCode::usage;

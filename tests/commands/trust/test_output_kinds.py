@@ -35,8 +35,6 @@ def no_files(folder):
 
 
 class Kinds(sample_asset.SampleAsset):
-    writer = "write_sample_case"
-
     def assertRefusesEach(self, program, *arguments, but=()):
         """Without waiting for a pipe's reader, and leaving all as it was, with --force too."""
         with no_files(self.folder) as kinds:
@@ -171,6 +169,17 @@ class Stdout(unittest.TestCase):
             self.assertEqual(refused.returncode, INVALID)
             self.assertIn("pipe.toml: is a pipe (expected a file name)", refused.stderr)
         self.assertEqual(sorted(os.listdir(self.folder)), ["pipe.toml", "skull.vtp"])
+
+    def test_a_result_that_stdout_does_not_take_is_told(self):
+        for program, *arguments in (("palpate-pack", "--name", "case", "--rigid", f"skull={self.folder / 'skull.vtp'}", "-o",
+                                     self.folder / "case.vtkhdf", "--force", "--quiet"), ("palpate-pack", "--version"), ("palpate-pack", "--help"),
+                                    ("palpate-pack", "--xml"), ("palpate", "--version"), ("palpate", "--help")):
+            with self.subTest(program=program, arguments=arguments), open("/dev/full", "w") as full:
+                ran = subprocess.run([BIN / program, *arguments], stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
+                self.assertEqual(ran.returncode, assets.FAILED)
+                self.assertEqual(ran.stderr.count("\n"), 1)
+                self.assertIn(f"{program}: stdout: could not be written: No space left on device", ran.stderr)
+        self.assertTrue((self.folder / "case.vtkhdf").exists())
 
 
 if __name__ == "__main__":

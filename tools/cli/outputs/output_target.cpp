@@ -2,6 +2,8 @@
 #include "tools/cli/outputs/output_target.hpp"
 
 #include <atomic>
+#include <cerrno>
+#include <iostream>
 #include <string>
 #include <sys/stat.h>
 #include <system_error>
@@ -68,6 +70,10 @@ void take_stdout_as(const std::string& name) {
 
 bool stdout_is_taken() {
     return stdout_taken.load();
+}
+
+void flush_stdout() {
+    if (!std::cout.flush()) fail_to_write("stdout", errno != 0 ? errno : EIO);
 }
 
 std::filesystem::path folder_of(const std::filesystem::path& file) {

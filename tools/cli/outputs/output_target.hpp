@@ -29,6 +29,9 @@ void take_stdout_as(const std::string& name);
 /// Whether an output has stdout, so that what is told besides goes to stderr.
 bool stdout_is_taken();
 
+/// Writes what std::cout holds. Throws SystemFailure if that, or anything before, did not get out.
+void flush_stdout();
+
 /// The folder that a file is in, "." where its path has none.
 std::filesystem::path folder_of(const std::filesystem::path& file);
 
