@@ -64,6 +64,12 @@ std::string finite_number(const std::string& text) {
     return std::isfinite(std::strtod(text.c_str(), nullptr)) ? "" : text + " is not a finite number";
 }
 
+// As a shell makes of a variable that is not set.
+void refuse_empty_path(const std::string& option, const std::vector<std::string>& paths) {
+    if (std::ranges::find(paths, "") != paths.end())
+        throw UsageError({option, "is given an empty path", "a file name", "leave it out, or name a file"});
+}
+
 template <typename T>
 nlohmann::ordered_json json_of(const T& value) {
     return value;
@@ -338,7 +344,13 @@ int Command::run(int argc, char** argv, const std::function<nlohmann::ordered_js
         }
         set_up_logging(program, quiet_, verbose_);
         remove_staged_files_on_interrupt();
+        for (const char* const option : {"--json", "--error-file"})
+            refuse_empty_path(option, app_->get_option(option)->results());
         if (!error_path_.empty()) error_file.emplace(error_path_, force_);
+        for (const Parameter& parameter : parameters_)
+            if (parameter.kind == Parameter::Kind::input_file ||
+                parameter.kind == Parameter::Kind::output_file)
+                refuse_empty_path(parameter.option.name(), parameter.option.words());
         for (const Parameter& parameter : parameters_)
             if (parameter.kind == Parameter::Kind::input_file)
                 for (const std::string& path : parameter.option.words())

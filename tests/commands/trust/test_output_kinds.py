@@ -123,6 +123,16 @@ class Kinds(sample_asset.SampleAsset):
             self.assertEqual(made.returncode, OK, made.stderr)
             self.assertEqual(json.loads(made.stdout)["ticks"], 50)
 
+    def test_an_empty_path_is_a_usage_error(self):
+        for option in ("--json", "--error-file", "--log", "--curve", "--record", "--replay", "--trusted"):
+            for words in ((option, ""), (f"{option}=",)):
+                refused = self.touch(*words)
+                self.assertEqual((refused.returncode, refused.stdout), (USAGE, ""), refused.stderr)
+                self.assertIn(option, refused.stderr)
+        refused = assets.run(BIN / "palpate-inspect", "")
+        self.assertEqual(refused.returncode, USAGE)
+        self.assertIn("file: is given an empty path", refused.stderr)
+
     def test_stdout_takes_one_output(self):
         for outputs in (("--log", "/dev/stdout", "--json", "-"), ("--log", "/dev/stdout", "--curve", "/proc/self/fd/1"),
                         ("--json", "/dev/stdout", "--curve", "/dev/stdout")):
