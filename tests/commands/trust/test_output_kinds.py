@@ -88,6 +88,34 @@ class Kinds(sample_asset.SampleAsset):
         made = assets.run(BIN / "palpate-inspect", self.asset, "--error-file", self.folder / "none.txt")
         self.assertEqual((made.returncode, (self.folder / "none.txt").exists()), (OK, False), made.stderr)
 
+    def test_a_folder_of_results_is_no_file_or_anything_else(self):
+        file, nowhere = self.folder / "file", self.folder / "nowhere"
+        file.write_text("kept")
+        nowhere.symlink_to(self.folder / "absent")
+        for program, *arguments in (("palpate-batch", file, "-o"), ("palpate-batch", file, "--check", "-o"), ("palpate-bench", "puncture", "-o"),
+                                    ("palpate-build", file, "-o", self.folder / "case.vtkhdf", "--parts")):
+            self.assertRefusesEach(program, *arguments, but=("is a folder",))
+            for target, said in ((file, f"{file}: is a file"), (file / "below", f"{file}: is a file"), ("-", "-: is no folder"),
+                                 (nowhere, f"{nowhere}: is a link that leads nowhere")):
+                refused = assets.run(BIN / program, *arguments, target, cwd=self.folder)
+                self.assertEqual(refused.returncode, INVALID, refused.stderr)
+                self.assertIn(said, refused.stderr)
+        self.assertEqual(file.read_text(), "kept")
+        file.unlink()
+        nowhere.unlink()
+
+    def test_a_build_names_the_kind_of_what_its_links_lead_to(self):
+        for name, ending in (("case.vtkhdf", ".vtkhdf"), ("case.html", ".html")):
+            link = self.folder / name
+            with no_files(self.folder) as kinds:
+                for target, kind in kinds.items():
+                    link.symlink_to(target)
+                    for force in ((), ("--force",)):
+                        refused = assets.run(BIN / "palpate-build", self.asset, "-o", self.folder / "case.vtkhdf", *force)
+                        self.assertEqual(refused.returncode, INVALID, refused.stderr)
+                        self.assertIn(f"{ending}: {kind}", refused.stderr)
+                    link.unlink()
+
     def test_a_recording_is_not_sent_through_stdout(self):
         refused = self.touch("--record", "/dev/stdout")
         self.assertEqual((refused.returncode, refused.stdout), (INVALID, ""), refused.stderr)

@@ -59,6 +59,20 @@ std::filesystem::path seekable_target(const std::filesystem::path& named) {
     return followed(named);
 }
 
+void require_folder_target(const std::filesystem::path& named) {
+    const auto refuse = [](const std::filesystem::path& path, const std::string& found) {
+        throw InvalidInput({path.string(), found, "a folder", "name the folder to write into"});
+    };
+    if (named == "-") refuse(named, "is no folder");
+    std::filesystem::path path = named;
+    for (std::error_code none; !path.empty() && !std::filesystem::is_directory(path, none);
+         path = path.parent_path()) {
+        if (const std::string kind = other_kind(path); !kind.empty()) refuse(path, kind);
+        if (std::filesystem::is_regular_file(path, none)) refuse(path, "is a file");
+        if (std::filesystem::is_symlink(path, none)) refuse(path, "is a link that leads nowhere");
+    }
+}
+
 void take_stdout_for(const std::filesystem::path& output) {
     if (is_stdout(output)) take_stdout_as(output.string());
 }

@@ -19,6 +19,10 @@ OutputTarget output_target(const std::filesystem::path& named);
 /// as output_target(), and for a pipe, which has only an end.
 std::filesystem::path seekable_target(const std::filesystem::path& named);
 
+/// Throws InvalidInput, naming its kind, for what is no folder and stands where a folder for outputs, or one
+/// above it, is to be, and for "-".
+void require_folder_target(const std::filesystem::path& named);
+
 /// Gives stdout to an output if that goes there, as /dev/stdout or under the name of the pipe or file behind
 /// it. Throws UsageError if another output has it.
 void take_stdout_for(const std::filesystem::path& output);
