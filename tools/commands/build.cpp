@@ -5,7 +5,9 @@
 #include <spdlog/spdlog.h>
 
 #include "formats/asset/asset.hpp"
+#include "formats/asset/hdf5/signature.hpp"
 #include "formats/model/errors.hpp"
+#include "formats/model/small_file.hpp"
 #include "formats/toml_file/quoted.hpp"
 #include "tools/case_builder/case_check.hpp"
 #include "tools/case_builder/cautions.hpp"
@@ -204,6 +206,7 @@ int main(int argc, char** argv) {
                                              std::filesystem::path(output).replace_extension(".html")};
         cli::require_folder_target(paths.parts);
         cli::seekable_target(paths.report);
+        if (!sign.empty()) require_small_file(sign, asset::most_key_bytes);
         std::optional<case_builder::KeptBuild> kept;
         if (case_builder::is_asset(case_path) && stage_name.empty()) kept = read_kept(case_path, output);
         std::vector<case_builder::Override> overrides = overrides_of(settings);

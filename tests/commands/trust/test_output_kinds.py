@@ -116,6 +116,18 @@ class Kinds(sample_asset.SampleAsset):
                         self.assertIn(f"{ending}: {kind}", refused.stderr)
                     link.unlink()
 
+    def test_a_key_is_a_file_and_nobody_waits_for_the_writer_of_a_pipe(self):
+        signing = (("palpate-pack", "--name", "case", "--rigid", f"skull={self.surface()}", "-o", self.folder / "signed.vtkhdf", "--sign"),
+                   ("palpate-build", self.asset, "-o", self.folder / "built.vtkhdf", "--sign"))
+        trusting = (("palpate-touch", self.asset, "--trusted"), ("palpate-verify", self.asset, "--trusted"))
+        for program, *arguments in signing + trusting:
+            self.assertRefusesEach(program, "--quiet", *arguments)
+        self.assertFalse((self.folder / "signed.vtkhdf").exists())
+
+    def surface(self):
+        assets.write_tetrahedron_surface(self.folder / "skull.vtp", 40)
+        return self.folder / "skull.vtp"
+
     def test_a_recording_is_not_sent_through_stdout(self):
         refused = self.touch("--record", "/dev/stdout")
         self.assertEqual((refused.returncode, refused.stdout), (INVALID, ""), refused.stderr)
