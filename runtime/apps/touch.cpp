@@ -51,6 +51,7 @@ void run_in_real_time(Session& run, double seconds, const Session::Sink& take) {
 }
 
 Json touch(const TouchOptions& options, cli::Session& session) {
+    if (!options.record.empty()) cli::seekable_target(options.record);
     TouchOutputs outputs(options.log, options.curve, session);
     const auto trusted = asset::read_public_keys(options.trusted);
     if (!options.replay.empty())

@@ -110,6 +110,7 @@ TouchTarget start_of(const Options& options, const Session& run) {
 Json train(const Options& options, cli::Session& session) {
     const auto asked = Clock::now();
     const auto [width, height] = size_of(options.size);
+    if (!options.record.empty()) cli::seekable_target(options.record);
     std::optional<cli::StagedFile> picture;
     if (!options.screenshot.empty()) picture.emplace(options.screenshot, session.force);
 

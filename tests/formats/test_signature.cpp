@@ -47,6 +47,16 @@ TEST_F(Signing, is_of_the_key_that_the_standard_derives_and_the_same_each_time) 
     EXPECT_TRUE(is_signed(digest, signature));
 }
 
+TEST_F(Signing, reads_no_key_out_of_what_is_no_small_file) {
+    const auto refused = [](const std::filesystem::path& file) {
+        return refusal([&] { sign_manifest(digest, file); }) + refusal([&] { read_public_keys({&file, 1}); });
+    };
+    EXPECT_THAT(refused("/dev/zero"), HasSubstr("/dev/zero: is a device"));
+    EXPECT_THAT(refused(scratch / "."), HasSubstr("is a folder"));
+    std::filesystem::resize_file(key, most_key_bytes + 1);
+    EXPECT_THAT(refused(key), HasSubstr("has 65537 bytes (expected 65536 at most)"));
+}
+
 TEST_F(Signing, does_not_hold_for_anything_else) {
     const Signature good = sign_manifest(digest, key);
     EXPECT_FALSE(is_signed(std::string(64, 'b'), good));

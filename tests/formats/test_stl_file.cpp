@@ -162,9 +162,9 @@ TEST(StlFile, a_file_that_is_none_is_refused) {
         return sample::refusal([&] { stl_file::read_stl(scratch / name); });
     };
     EXPECT_THAT(refusal("absent.stl"), HasSubstr("absent.stl: cannot be read"));
-    EXPECT_THAT(refusal("."), HasSubstr("is no file"));
+    EXPECT_THAT(refusal("."), HasSubstr("is a folder"));
     ASSERT_EQ(mkfifo((scratch / "pipe").c_str(), 0600), 0);
-    EXPECT_THAT(refusal("pipe"), HasSubstr("is no file"));
+    EXPECT_THAT(refusal("pipe"), HasSubstr("is a pipe"));
     std::ofstream(scratch / "large.stl") << "solid";
     std::filesystem::resize_file(scratch / "large.stl", 84 + 50 * (1 << 20) + 1);
     EXPECT_THAT(refusal("large.stl"), HasSubstr("has 52428885 bytes (expected 52428884 at most)"));

@@ -68,7 +68,11 @@ toml::table parsed(const Override& override) {
     try {
         return parse(override.value);
     } catch (const toml::parse_error&) {
+    }
+    try {
         return parse(toml_file::quoted(override.value));
+    } catch (const toml::parse_error&) {
+        fail(override, "has a value that is no UTF-8", "", "write it as UTF-8");
     }
 }
 

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <fmt/format.h>
-#include <fstream>
 #include <iostream>
 #include <new>
 #include <nlohmann/json.hpp>
@@ -63,6 +62,12 @@ std::int64_t peak_memory_bytes() {
 // Refuses "nan" and "inf", which CLI11 reads as numbers; an empty text means accepted.
 std::string finite_number(const std::string& text) {
     return std::isfinite(std::strtod(text.c_str(), nullptr)) ? "" : text + " is not a finite number";
+}
+
+// As a shell makes of a variable that is not set.
+void refuse_empty_path(const std::string& option, const std::vector<std::string>& paths) {
+    if (std::ranges::find(paths, "") != paths.end())
+        throw UsageError({option, "is given an empty path", "a file name", "leave it out, or name a file"});
 }
 
 template <typename T>
@@ -308,26 +313,44 @@ void Command::emit(nlohmann::ordered_json result, const Session& session, double
         json_file->commit();
     } else if (json_path_ == "-") {
         std::cout << result.dump(2) << '\n';
-    } else if (!session.text.empty()) {
-        std::cout << session.text;
-    } else {
-        print_result(result);
+    } else if (!stdout_is_taken() || !quiet_) {
+        std::ostream& told = stdout_is_taken() ? std::cerr : std::cout;
+        if (session.text.empty())
+            print_result(result, told);
+        else
+            told << session.text;
     }
 }
 
 int Command::run(int argc, char** argv, const std::function<nlohmann::ordered_json(Session&)>& job) {
     const std::string program = "palpate-" + text_.name;
     const auto start = std::chrono::steady_clock::now();
+    std::optional<StagedFile> error_file;
     const auto say = [&](const std::string& message) {
         const std::string text = program + ": " + with_final_names(message) + "\n";
         std::cerr << text;
-        if (!error_path_.empty() && !(std::ofstream(error_path_) << text))
-            std::cerr << program << ": " << error_path_ << ": cannot be written\n";
+        if (!error_file) return;
+        try {
+            error_file->write_text(text);
+            error_file->commit();
+        } catch (const std::exception& error) {
+            std::cerr << program << ": " << with_final_names(error.what()) << '\n';
+        }
     };
     try {
-        if (const int code = parse(argc, argv); code >= 0) return code;
+        if (const int code = parse(argc, argv); code >= 0) {
+            flush_stdout();
+            return code;
+        }
         set_up_logging(program, quiet_, verbose_);
         remove_staged_files_on_interrupt();
+        for (const char* const option : {"--json", "--error-file"})
+            refuse_empty_path(option, app_->get_option(option)->results());
+        if (!error_path_.empty()) error_file.emplace(error_path_, force_);
+        for (const Parameter& parameter : parameters_)
+            if (parameter.kind == Parameter::Kind::input_file ||
+                parameter.kind == Parameter::Kind::output_file)
+                refuse_empty_path(parameter.option.name(), parameter.option.words());
         for (const Parameter& parameter : parameters_)
             if (parameter.kind == Parameter::Kind::input_file)
                 for (const std::string& path : parameter.option.words())
@@ -341,15 +364,16 @@ int Command::run(int argc, char** argv, const std::function<nlohmann::ordered_js
         session.json = !json_path_.empty();
         session.progress = Progress(quiet_);
         std::optional<StagedFile> json_file;
+        if (json_path_ == "-") take_stdout_as("--json -");
         if (!json_path_.empty() && json_path_ != "-") json_file.emplace(json_path_, force_);
         nlohmann::ordered_json result = job(session);
         session.progress.finish();
         emit(std::move(result), session,
              std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
              json_file ? &*json_file : nullptr);
-        std::cout.flush();
+        flush_stdout();
         if (session.shortfall) throw QualityNotMet(*session.shortfall);
-        return std::cout ? ExitCode::ok : ExitCode::failed;
+        return ExitCode::ok;
     } catch (const UsageError& error) {
         say(error.what());
         return ExitCode::usage;

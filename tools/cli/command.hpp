@@ -124,8 +124,8 @@ class Command {
     const std::string& key_of(const std::string& option) const;
 
     /// Parses, runs `job`, writes its JSON result to stdout (as lines "name value", or as JSON with --json),
-    /// and returns the exit code. `job` returns an object; run() adds schema, version, seconds and peak
-    /// memory.
+    /// and returns the exit code. Where an output goes to stdout the lines go to stderr. `job` returns an
+    /// object; run() adds schema, version, seconds and peak memory.
     int run(int argc, char** argv, const std::function<nlohmann::ordered_json(Session&)>& job);
 
     const CommandText& text() const { return text_; }

@@ -31,6 +31,14 @@ void print_usage(std::ostream& stream) {
     for (const std::string& name : installed_commands()) stream << "  " << name << '\n';
 }
 
+int flushed() try {
+    palpate::cli::flush_stdout();
+    return palpate::cli::ExitCode::ok;
+} catch (const palpate::Error& error) {
+    std::cerr << "palpate: " << error.what() << '\n';
+    return palpate::cli::ExitCode::failed;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -41,11 +49,11 @@ int main(int argc, char** argv) {
     const std::string name = argv[1];
     if (name == "--help" || name == "-h" || name == "help") {
         print_usage(std::cout);
-        return palpate::cli::ExitCode::ok;
+        return flushed();
     }
     if (name == "--version") {
         std::cout << "palpate " << palpate::cli::version() << '\n';
-        return palpate::cli::ExitCode::ok;
+        return flushed();
     }
     const std::filesystem::path program = palpate::cli::programs_folder() / ("palpate-" + name);
     if (name.starts_with("-") || name.find('/') != std::string::npos || !std::filesystem::exists(program)) {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <iostream>
 #include <nlohmann/json.hpp>
+#include <ostream>
 
 namespace palpate::cli {
 namespace {
@@ -28,46 +28,46 @@ bool are_sentences(const nlohmann::ordered_json& value) {
 }
 
 // Rows of scalars under their keys, columns as wide as their widest cell; nested values are left to --json.
-void print_table(const nlohmann::ordered_json& rows, const std::string& name) {
+void print_table(const nlohmann::ordered_json& rows, const std::string& name, std::ostream& stream) {
     std::vector<std::string> keys;
     for (const auto& [key, cell] : rows.front().items())
         if (cell.is_primitive()) keys.push_back(key);
-    std::cout << '\n' << name << '\n';
+    stream << '\n' << name << '\n';
     std::vector<std::size_t> widths;
     for (const std::string& key : keys) {
         std::size_t width = key.size();
         for (const auto& row : rows)
             width = std::max(width, cell_text(row.value(key, nlohmann::ordered_json())).size());
         widths.push_back(width);
-        std::cout << fmt::format("  {:<{}}", key, width);
+        stream << fmt::format("  {:<{}}", key, width);
     }
     for (const auto& row : rows) {
-        std::cout << '\n';
+        stream << '\n';
         for (std::size_t k = 0; k < keys.size(); ++k)
-            std::cout << fmt::format("  {:<{}}", cell_text(row.value(keys[k], nlohmann::ordered_json())),
-                                     widths[k]);
+            stream << fmt::format("  {:<{}}", cell_text(row.value(keys[k], nlohmann::ordered_json())),
+                                  widths[k]);
     }
-    std::cout << "\n\n";
+    stream << "\n\n";
 }
 
-void print_lines(const nlohmann::ordered_json& value, const std::string& prefix) {
+void print_lines(const nlohmann::ordered_json& value, const std::string& prefix, std::ostream& stream) {
     for (const auto& [key, item] : value.items()) {
         const std::string name = prefix.empty() ? key : prefix + "." + key;
         if (item.is_object())
-            print_lines(item, name);
+            print_lines(item, name, stream);
         else if (is_table(item))
-            print_table(item, name);
+            print_table(item, name, stream);
         else if (are_sentences(item))
-            for (const auto& sentence : item) std::cout << name << ' ' << cell_text(sentence) << '\n';
+            for (const auto& sentence : item) stream << name << ' ' << cell_text(sentence) << '\n';
         else
-            std::cout << name << ' ' << cell_text(item) << '\n';
+            stream << name << ' ' << cell_text(item) << '\n';
     }
 }
 
 }  // namespace
 
-void print_result(const nlohmann::ordered_json& result) {
-    print_lines(result, "");
+void print_result(const nlohmann::ordered_json& result, std::ostream& stream) {
+    print_lines(result, "", stream);
 }
 
 }  // namespace palpate::cli

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "formats/model/errors.hpp"
@@ -35,6 +36,27 @@ std::vector<std::string> cells_of(const std::string& line) {
         cells.push_back(stripped(line.substr(start, end == std::string::npos ? end : end - start)));
     }
     return cells;
+}
+
+bool is_utf8(const std::string& text) {
+    try {
+        return !nlohmann::json(text).dump().empty();
+    } catch (const nlohmann::json::type_error&) {
+        return false;
+    }
+}
+
+// What a row says goes into JSON and TOML, which are UTF-8.
+void require_utf8(const std::vector<std::string>& cells, const std::vector<std::string>& columns, int line,
+                  const std::filesystem::path& path) {
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        const bool has_name = line > 1 && i < columns.size();
+        if ((has_name && columns[i].starts_with('#')) || is_utf8(cells[i])) continue;
+        throw InvalidInput(
+            {fmt::format("{}:{}", path.string(), line),
+             fmt::format("column {} is no UTF-8", has_name ? "'" + columns[i] + "'" : std::to_string(i + 1)),
+             "", "save the table as UTF-8"});
+    }
 }
 
 void require_columns(const std::vector<std::string>& columns, const std::filesystem::path& path) {
@@ -111,6 +133,7 @@ std::vector<Patient> parse_patient_table(std::istream& stream, const std::filesy
     for (int line = 1; std::getline(stream, text); ++line) {
         if (line == 1 && text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
         const std::vector<std::string> cells = cells_of(text);
+        require_utf8(cells, columns, line, path);
         if (line == 1) {
             require_columns(columns = cells, path);
         } else if (std::ranges::any_of(cells, [](const std::string& cell) { return !cell.empty(); })) {

@@ -24,7 +24,7 @@ struct Patient {
 /// ("deformable.liver.mesh.cell_size_mm"), whose cells go before the case file's values where they are not
 /// empty. A row whose `problem` is not empty has that as its mistake. Columns that begin with '#' are for
 /// people. Paths are absolute or relative to the table. Throws InvalidInput naming the column for a head that
-/// cannot be used; a row that cannot be keeps its mistake.
+/// cannot be used and for a cell that is no UTF-8; a row that cannot be keeps its mistake.
 std::vector<Patient> read_patient_table(const std::filesystem::path& path);
 
 /// The same of a table that is not written yet, or not there; `path` is where it would be.

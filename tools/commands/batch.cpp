@@ -248,6 +248,7 @@ int main(int argc, char** argv) {
             if (!dataset && option.given())
                 throw UsageError({option.name(), "with a table", "a BIDS dataset",
                                   "a table names case files, images and label maps itself"});
+        cli::require_folder_target(request.output);
         const Cohort cohort = cohort_of_request(request, !check, session.force);
         for (const PatientBuild& build : cohort.builds)
             if (!build.patient.mistake.empty())

@@ -5,7 +5,9 @@
 #include <spdlog/spdlog.h>
 
 #include "formats/asset/asset.hpp"
+#include "formats/asset/hdf5/signature.hpp"
 #include "formats/model/errors.hpp"
+#include "formats/model/small_file.hpp"
 #include "formats/toml_file/quoted.hpp"
 #include "tools/case_builder/case_check.hpp"
 #include "tools/case_builder/cautions.hpp"
@@ -42,6 +44,7 @@ void require_our_output(const case_builder::StageRunner& runner, const std::stri
 void require_asset_name(const std::filesystem::path& output) {
     if (output.extension() != ".vtkhdf")
         throw UsageError({output.string(), "is no name for an asset", "a name that ends in .vtkhdf", ""});
+    cli::seekable_target(output);
     if (output.has_parent_path() && !std::filesystem::is_directory(output.parent_path()))
         throw InvalidInput({output.string(), "its folder does not exist", "",
                             "make it first: mkdir -p " + output.parent_path().string()});
@@ -198,6 +201,12 @@ int main(int argc, char** argv) {
                  "other work");
     return command.run(argc, argv, [&](cli::Session& session) {
         require_asset_name(output);
+        if (parts.empty()) parts = std::filesystem::path(output).replace_extension(".parts");
+        const case_builder::BuildPaths paths{parts, output,
+                                             std::filesystem::path(output).replace_extension(".html")};
+        cli::require_folder_target(paths.parts);
+        cli::seekable_target(paths.report);
+        if (!sign.empty()) require_small_file(sign, asset::most_key_bytes);
         std::optional<case_builder::KeptBuild> kept;
         if (case_builder::is_asset(case_path) && stage_name.empty()) kept = read_kept(case_path, output);
         std::vector<case_builder::Override> overrides = overrides_of(settings);
@@ -214,9 +223,6 @@ int main(int argc, char** argv) {
         case_builder::check_case_file(case_path, case_file, overrides);
         if (stage_name.empty())
             for (const std::string& doubt : case_builder::doubts_of(case_file)) spdlog::warn("{}", doubt);
-        if (parts.empty()) parts = std::filesystem::path(output).replace_extension(".parts");
-        const case_builder::BuildPaths paths{parts, output,
-                                             std::filesystem::path(output).replace_extension(".html")};
         if (kept && !session.threads_given) session.threads = kept->threads.value_or(session.threads);
         const case_builder::StageRunner runner(cli::programs_folder(), parts, session.threads, session.quiet);
         if (!session.force) {

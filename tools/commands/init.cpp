@@ -227,6 +227,7 @@ nlohmann::ordered_json run_init(const InitRequest& request, cli::Session& sessio
     check(request);
     if (request.output.extension() != ".toml")
         throw UsageError({"--output", request.output.string(), "a name that ends in .toml", ""});
+    cli::seekable_target(request.output);  // the case is read again, to check it
     set_imaging_threads(session.threads);
     cli::StagedFile staged = session.stage(request.output);
     const draft::CaseDraft found = draft_of(request, session);

@@ -50,6 +50,7 @@ nlohmann::ordered_json run(const std::string& name, const Options& options, cli:
         throw UsageError({"--seconds", std::to_string(options.seconds), "0 or more", ""});
     if (options.approaches < 0)
         throw UsageError({"--approaches", std::to_string(options.approaches), "0 or more", ""});
+    cli::require_folder_target(options.output);
     std::filesystem::create_directories(options.output);
     cli::StagedFile table = session.stage(options.output / (name + ".md"));
     Findings findings = experiment.run(options, session);

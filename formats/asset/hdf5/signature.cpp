@@ -12,6 +12,7 @@
 
 #include "formats/asset/hdf5/digest.hpp"
 #include "formats/model/errors.hpp"
+#include "formats/model/small_file.hpp"
 
 namespace palpate::asset {
 namespace {
@@ -30,6 +31,7 @@ constexpr std::size_t key_bytes = 32, signature_bytes = 64;
 }
 
 Stream open_stream(const std::filesystem::path& file) {
+    require_small_file(file, most_key_bytes);
     Stream stream(std::fopen(file.c_str(), "rb"), std::fclose);
     if (!stream)
         throw InvalidInput({file.string(), "cannot be read", "", "check the path and its permissions"});

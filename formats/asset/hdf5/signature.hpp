@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -17,16 +18,20 @@ struct Signature {
     std::string public_key;
 };
 
+/// What a file with a key may have; of a pipe nobody knows whether its writer comes.
+inline constexpr std::uintmax_t most_key_bytes = 1 << 16;
+
 /// Signs a manifest's digest with a private key, a PEM file as `openssl genpkey -algorithm ed25519` writes
-/// it, without a passphrase. The same key and digest give the same signature. Throws InvalidInput if the file
-/// holds no such key.
+/// it, without a passphrase. The same key and digest give the same signature. Throws InvalidInput for
+/// what is no file, is larger than most_key_bytes or holds no such key.
 Signature sign_manifest(std::string_view manifest_sha256, const std::filesystem::path& private_key);
 
 /// Whether the signature is the public key's, of that digest.
 bool is_signed(std::string_view manifest_sha256, const Signature& signature);
 
 /// Reads public keys from PEM files, as `openssl pkey -pubout` writes them, one or more in each; 64
-/// hexadecimal digits a key. Throws InvalidInput for a file without one, and for keys of other kinds.
+/// hexadecimal digits a key. Throws InvalidInput for a file without one, one larger than
+/// most_key_bytes, what is no file, and for keys of other kinds.
 std::vector<std::string> read_public_keys(std::span<const std::filesystem::path> files);
 
 }  // namespace palpate::asset

@@ -72,6 +72,8 @@ TEST_F(Overrides, are_named_by_file_and_line_where_they_are_wrong) {
     EXPECT_NE(nowhere.find("nearest names: 'liver'"), std::string::npos) << nowhere;
     EXPECT_NE(message("schema.version=1").find("a table"), std::string::npos);
     EXPECT_NE(message("wide").find("KEY=VALUE"), std::string::npos);
+    EXPECT_NE(message("name=\xff").find("tables/patients.tsv:7: key 'name' has a value that is no UTF-8"),
+              std::string::npos);
 }
 
 }  // namespace

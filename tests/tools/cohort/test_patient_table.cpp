@@ -49,6 +49,16 @@ TEST_F(PatientTable, rows_name_case_files_and_values_that_go_before_theirs) {
     EXPECT_TRUE(patients[1].overrides.empty());
 }
 
+TEST_F(PatientTable, what_is_no_utf8_is_refused_with_row_and_column_but_in_notes) {
+    EXPECT_THAT(refusal("patient\tcase\tvolume\na\tc.toml\tx\xff\n"),
+                HasSubstr("patients.tsv:2: column 'volume' is no UTF-8; save the table as UTF-8"));
+    EXPECT_THAT(refusal("patient\tcase\nb\tc.toml\na\xe9\tc.toml\n"),
+                HasSubstr("patients.tsv:3: column 'patient' is no UTF-8"));
+    EXPECT_THAT(refusal("patient\tcase\nb\tc.toml\t\xe9\n"), HasSubstr(":2: column 3 is no UTF-8"));
+    EXPECT_THAT(refusal("patient\tcase\tgr\xfc\n"), HasSubstr(":1: column 3 is no UTF-8"));
+    EXPECT_EQ(read("patient\tcase\t#note\nb\tc.toml\tgr\xfc\n").at(0).mistake, "");
+}
+
 TEST_F(PatientTable, a_row_that_cannot_be_used_keeps_its_mistake_and_the_others_stay) {
     const auto patients = read(
         "patient\tcase\n"

@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/cli/outputs/output_target.hpp"
 
+#include <atomic>
+#include <cerrno>
+#include <iostream>
 #include <string>
+#include <sys/stat.h>
 #include <system_error>
+#include <unistd.h>
 
 #include "formats/model/errors.hpp"
+#include "formats/model/small_file.hpp"
 
 namespace palpate::cli {
 namespace {
@@ -21,37 +27,67 @@ std::filesystem::path followed(std::filesystem::path target) {
     return target;
 }
 
-// Throws unless a target is a file, a pipe or nothing yet; says whether it is a pipe.
-bool is_pipe(const std::filesystem::path& target) {
-    const auto refuse = [&](const std::string& found) {
-        throw InvalidInput({target.string(), found, "a file name or a pipe", "name the file to write"});
-    };
-    if (target == "-") refuse("is no file; /dev/stdout is, where it is a pipe");
-    using std::filesystem::file_type;
-    std::error_code error;
-    switch (std::filesystem::status(target, error).type()) {
-        case file_type::directory:
-            refuse("is a folder");
-            break;
-        case file_type::character:
-        case file_type::block:
-            refuse("is a device");
-            break;
-        case file_type::socket:
-            refuse("is a socket");
-            break;
-        case file_type::fifo:
-            return true;
-        default:
-            break;
-    }
-    return false;
+[[noreturn]] void refuse(const std::filesystem::path& target, const std::string& found,
+                         const std::string& expected) {
+    throw InvalidInput({target.string(), found, expected, "name the file to write"});
+}
+
+std::atomic<bool> stdout_taken{false};
+
+bool is_stdout(const std::filesystem::path& output) {
+    struct stat ours {
+    }, named{};
+    return fstat(STDOUT_FILENO, &ours) == 0 && stat(output.c_str(), &named) == 0 &&
+           ours.st_dev == named.st_dev && ours.st_ino == named.st_ino;
 }
 
 }  // namespace
 
 OutputTarget output_target(const std::filesystem::path& named) {
-    return is_pipe(named) ? OutputTarget{named, true} : OutputTarget{followed(named), false};
+    const char* const expected = "a file name or a pipe";
+    if (named == "-") refuse(named, "is no file; /dev/stdout is, where it is a pipe", expected);
+    std::error_code none;
+    if (std::filesystem::is_fifo(named, none)) return {named, true};
+    if (const std::string kind = other_kind(named); !kind.empty()) refuse(named, kind, expected);
+    return {followed(named), false};
+}
+
+std::filesystem::path seekable_target(const std::filesystem::path& named) {
+    const char* const expected = "a file name";
+    if (named == "-") refuse(named, "is no file", expected);
+    if (const std::string kind = other_kind(named); !kind.empty()) refuse(named, kind, expected);
+    return followed(named);
+}
+
+void require_folder_target(const std::filesystem::path& named) {
+    const auto refuse = [](const std::filesystem::path& path, const std::string& found) {
+        throw InvalidInput({path.string(), found, "a folder", "name the folder to write into"});
+    };
+    if (named == "-") refuse(named, "is no folder");
+    std::filesystem::path path = named;
+    for (std::error_code none; !path.empty() && !std::filesystem::is_directory(path, none);
+         path = path.parent_path()) {
+        if (const std::string kind = other_kind(path); !kind.empty()) refuse(path, kind);
+        if (std::filesystem::is_regular_file(path, none)) refuse(path, "is a file");
+        if (std::filesystem::is_symlink(path, none)) refuse(path, "is a link that leads nowhere");
+    }
+}
+
+void take_stdout_for(const std::filesystem::path& output) {
+    if (is_stdout(output)) take_stdout_as(output.string());
+}
+
+void take_stdout_as(const std::string& name) {
+    if (stdout_taken.exchange(true))
+        throw UsageError({name, "another output goes to stdout as well", "", "name a file for one of them"});
+}
+
+bool stdout_is_taken() {
+    return stdout_taken.load();
+}
+
+void flush_stdout() {
+    if (!std::cout.flush()) fail_to_write("stdout", errno != 0 ? errno : EIO);
 }
 
 std::filesystem::path folder_of(const std::filesystem::path& file) {

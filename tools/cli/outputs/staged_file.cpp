@@ -79,6 +79,7 @@ void copy_into_pipe(const std::filesystem::path& staged, const std::filesystem::
 StagedFile::StagedFile(const std::filesystem::path& target, bool replace)
     : target_(output_target(target)), replace_(replace) {
     if (!replace && !target_.is_pipe && std::filesystem::exists(target_.path)) refuse_to_replace(target);
+    take_stdout_for(target_.path);
     const std::filesystem::path folder =
         target_.is_pipe ? std::filesystem::temp_directory_path() : folder_of(target_.path);
     if (!std::filesystem::is_directory(folder))

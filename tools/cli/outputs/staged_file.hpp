@@ -17,7 +17,8 @@ namespace palpate::cli {
 class StagedFile {
   public:
     /// Throws InvalidInput if `target` exists and `replace` is false, if its folder is missing, or if it is a
-    /// folder, a device or a socket; SystemFailure if nothing can be written there.
+    /// folder, a device or a socket; UsageError if it is stdout and another output has that; SystemFailure if
+    /// nothing can be written there.
     StagedFile(const std::filesystem::path& target, bool replace);
     StagedFile(const StagedFile&) = delete;
     StagedFile& operator=(const StagedFile&) = delete;

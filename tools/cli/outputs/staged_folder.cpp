@@ -27,6 +27,7 @@ fs::path place_of(const fs::path& target) {
 }  // namespace
 
 StagedFolder::StagedFolder(const fs::path& target, bool replace) : target_(place_of(target)) {
+    require_folder_target(target);
     if (!replace && is_something(target_))
         throw InvalidInput({target.string(), "exists already", "", "choose another name or pass --force"});
     const fs::path parent = target_.parent_path();
