@@ -9,7 +9,8 @@ shift $(($# > 0))
 source "$(dirname "${BASH_SOURCE[0]}")/../pipelines/set_up.sh"
 readers=("$@")
 [ ${#readers[@]} -gt 0 ] ||
-    readers=(asset recording exercises stl message case_file table seeds label_table label_map mesh)
+    readers=(asset recording exercises stl message hand_path history case_file table bids recipes nodes seeds label_table
+             label_map mesh dicom)
 install_packages
 mkdir -p "$root/build"
 cd "$root"

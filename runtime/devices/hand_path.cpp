@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -58,10 +59,15 @@ void for_each_row(const std::filesystem::path& file, const char* expected,
                   const std::function<void(const std::string& where, const std::vector<double>& row)>& take) {
     std::ifstream stream(file);
     if (!stream) throw InvalidInput({file.string(), "cannot be read", "", "check path and permissions"});
-    std::string line;
-    for (std::size_t number = 1; std::getline(stream, line); ++number) {
+    constexpr std::size_t longest = 1 << 16;  // with the zero that getline() adds
+    const auto line = std::make_unique<char[]>(longest);
+    for (std::size_t number = 1; stream.getline(line.get(), longest) || stream.gcount() > 0; ++number) {
         const std::string where = file.string() + ", line " + std::to_string(number);
-        const auto row = numbers_of(line);
+        if (stream.fail())
+            throw InvalidInput(
+                {where, "more than " + std::to_string(longest - 1) + " characters", expected, ""});
+        const auto characters = static_cast<std::size_t>(stream.gcount()) - (stream.eof() ? 0 : 1);
+        const auto row = numbers_of({line.get(), characters});
         if (!row) throw InvalidInput({where, "not a finite number", expected, ""});
         if (!row->empty()) take(where, *row);
     }

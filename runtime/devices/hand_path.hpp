@@ -96,13 +96,13 @@ HandPath recorded_axis_path(const TouchPoint& target, const ScriptSettings& sett
                             std::span<const double> values);
 
 /// Reads one column (from 1) of a recording: rows of numbers, commas or blanks between; '#' and '%' start
-/// comments. Throws InvalidInput naming file and line.
+/// comments; a line has 65 535 characters at most. Throws InvalidInput naming file and line.
 std::vector<double> read_column(const std::filesystem::path& file, std::size_t column);
 
 /// Reads a path from text: rows "x y z" (mm), one per millisecond, the first for the first tick, or "t x y
 /// z" (s, mm); either followed by "qx qy qz qw", a quaternion of unit length to 1e-3 that turns the tool's
 /// frame, whose z axis is the shaft, to the patient's. Commas or blanks between, '#' and '%' start comments.
-/// Throws InvalidInput naming file and line.
+/// A line has 65 535 characters at most. Throws InvalidInput naming file and line.
 HandPath read_hand_path(const std::filesystem::path& file);
 
 }  // namespace palpate::devices

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "formats/asset/hdf5/digest.hpp"
+#include "formats/model/small_file.hpp"
 
 namespace palpate::training {
 namespace {
@@ -137,9 +138,11 @@ std::vector<PastAttempt> read_history(const std::filesystem::path& folder, const
     std::error_code missing;
     for (const auto& entry : std::filesystem::directory_iterator(folder, missing)) {
         if (entry.path().extension() != ".json") continue;
-        std::ifstream file(entry.path());
-        const Json json = Json::parse(file, nullptr, false);
         try {
+            constexpr std::uintmax_t most_bytes = 1 << 20;
+            require_small_file(entry.path(), most_bytes);
+            std::ifstream file(entry.path());
+            const Json json = Json::parse(file, nullptr, false);
             if (json.is_discarded() || json.at("schema") != schema) throw std::runtime_error("");
             const Json& score = json.at("metrics").at("score");
             if (json.at("case") != case_name || json.at("exercise").at("name") != exercise ||

@@ -47,8 +47,8 @@ struct PastAttempt {
 };
 
 /// A trainee's earlier attempts at an exercise on a case that have a score and were not cut short, by time:
-/// the .json files of a folder. Files that cannot be read or are something else are named to `tell` and left
-/// out. None if there is no such folder.
+/// the .json files of a folder. Files that cannot be read, are something else or have more than 1 MiB are
+/// named to `tell` and left out. None if there is no such folder.
 std::vector<PastAttempt> read_history(const std::filesystem::path& folder, const std::string& case_name,
                                       const std::string& exercise,
                                       const std::function<void(const std::string&)>& tell);

@@ -225,8 +225,9 @@ class Pack(AssetCommand):
         self.assertNothingLeft()
 
     def test_provenance_that_is_no_json_is_refused(self):
-        (self.folder / "given.json").write_text("{")
-        self.assertFails(self.pack("--provenance", self.folder / "given.json"), INVALID, "given.json", "JSON")
+        for text in ("{", "[]", '{"a":' * 100000 + "1" + "}" * 100000):
+            (self.folder / "given.json").write_text(text)
+            self.assertFails(self.pack("--provenance", self.folder / "given.json"), INVALID, "given.json", "JSON")
         self.assertNothingLeft()
 
     def test_a_tree_of_another_surface_is_refused(self):

@@ -126,7 +126,8 @@ class Segment(ImagingCommand):
 
     def test_bad_recipe_files_are_refused(self):
         recipes = pathlib.Path(self.inputs.name) / "bad.json"
-        for text, phrase in (("{", "not a JSON array"), ('[{"name": "a"}]', "no recipe"), ("[1]", "holds 1"),
+        for text, phrase in (("{", "not a JSON array"), ("[" * 100000 + "]" * 100000, "nested more than 32 deep"),
+                             ('[{"name": "a"}]', "no recipe"), ("[1]", "holds 1"),
                              ('[{"name": "a", "recipe": "bone", "color": 1}]', "unknown key 'color'"),
                              ('[{"name": "a", "recipe": "bone", "parameters": {"open_mm": null}}]', "open_mm")):
             recipes.write_text(text)

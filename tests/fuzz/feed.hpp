@@ -21,4 +21,8 @@ struct MemoryCap {
 void feed(std::span<const std::uint8_t> bytes, const std::string& name, MemoryCap cap,
           const std::function<void(const std::filesystem::path&)>& read);
 
+/// The same for a reader of a folder: it gets one of these files, named by their order.
+void feed_folder(std::span<const std::span<const std::uint8_t>> files, const std::string& name, MemoryCap cap,
+                 const std::function<void(const std::filesystem::path&)>& read);
+
 }  // namespace palpate::fuzz

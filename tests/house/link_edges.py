@@ -27,7 +27,7 @@ ROOMS = {
     "toml_file": {"model", "toml"},
     "recording": {"model", "asset"},
     "vtk_blocks": {"vtk"},
-    "imaging": {"model", "vtk_blocks", "itk", "hdf5", "dcmtk", "vtk", "json"},  # HDF5 is one of ITK's own
+    "imaging": {"model", "vtk_blocks", "itk", "hdf5", "dcmtk", "vtk", "json", "zlib"},  # HDF5 is one of ITK's own
     "archive": {"model", "asset", "imaging", "dcmtk", "hdf5", "zlib"},
     "meshing": {"model", "vtk_blocks", "cgal", "vtk", "json"},
     "obb": {"model"},

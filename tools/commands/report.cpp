@@ -11,6 +11,7 @@
 #include "formats/model/errors.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/imaging/files/image_files.hpp"
+#include "tools/imaging/files/shallow_json.hpp"
 #include "tools/meshing/measures/surface_distance.hpp"
 #include "tools/meshing/surfaces/surfaces.hpp"
 #include "tools/report/html.hpp"
@@ -34,11 +35,11 @@ std::string text_of(const std::filesystem::path& path) {
 }
 
 nlohmann::json json_of(const std::filesystem::path& path) {
-    try {
-        return nlohmann::json::parse(text_of(path));
-    } catch (const nlohmann::json::parse_error& error) {
-        throw InvalidInput({path.string(), error.what(), "JSON", "make it again with --json"});
-    }
+    const nlohmann::json document = read_json_file(path);
+    if (document.is_discarded())
+        throw InvalidInput({path.string(), "is no JSON, or nested more than 32 deep",
+                            "what --json of a command wrote", "make it again with --json"});
+    return document;
 }
 
 std::string svg_of(const std::filesystem::path& path) {

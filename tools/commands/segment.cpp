@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
@@ -21,44 +20,12 @@ namespace {
 using namespace palpate;
 using namespace palpate::imaging;
 using nlohmann::json;
-using nlohmann::ordered_json;  // cleaning steps apply in the order written
+using nlohmann::ordered_json;
 
-// One structure of a request or a recipe file.
-StructureRecipe recipe_of(const stages::StructureRequest& structure, const std::string& culprit) {
-    if (!structure.words.empty()) return parse_structure(structure.words);
-    StructureRecipe recipe{structure.name, structure.recipe, {}};
-    for (const auto& [key, value] : structure.parameters.items()) {
-        recipe.parameters[key] = recipe_value(value, culprit + ": " + key);
-        recipe.order.push_back(key);
-    }
-    return recipe;
-}
-
-std::vector<StructureRecipe> read_recipes(const std::filesystem::path& path) {
-    std::ifstream stream(path);
-    const ordered_json document = ordered_json::parse(stream, nullptr, false);
-    const auto refuse = [&](const std::string& found) {
-        return InvalidInput({path.string(), found,
-                             "[{\"name\": ..., \"recipe\": ..., \"parameters\": {...}}]",
-                             "see 'palpate segment --help'"});
-    };
-    if (!document.is_array()) throw refuse("is not a JSON array");
-    std::vector<StructureRecipe> structures;
-    for (const ordered_json& item : document) {
-        if (!item.is_object()) throw refuse("holds " + item.dump());
-        for (const auto& [key, value] : item.items())
-            if (key != "name" && key != "recipe" && key != "parameters")
-                throw refuse("has an unknown key '" + key + "'");
-        if (!item.contains("name") || !item["name"].is_string()) throw refuse("a structure has no name");
-        if (!item.contains("recipe") || !item["recipe"].is_string())
-            throw refuse("a structure has no recipe");
-        stages::StructureRequest structure{.words = "", .name = item["name"], .recipe = item["recipe"]};
-        structure.parameters = item.value("parameters", ordered_json::object());
-        if (!structure.parameters.is_object())
-            throw refuse("parameters of '" + structure.name + "' are no object");
-        structures.push_back(recipe_of(structure, path.string()));
-    }
-    return structures;
+StructureRecipe recipe_of(const stages::StructureRequest& structure) {
+    return structure.words.empty()
+               ? structure_recipe(structure.name, structure.recipe, structure.parameters, structure.name)
+               : parse_structure(structure.words);
 }
 
 std::string recipe_help() {
@@ -95,9 +62,9 @@ ordered_json describe(const LabelMap& map, const std::vector<std::string>& notes
 
 std::vector<StructureRecipe> structures_of(const stages::SegmentRequest& request) {
     std::vector<StructureRecipe> structures;
-    if (!request.recipes.empty()) structures = read_recipes(request.recipes);
+    if (!request.recipes.empty()) structures = read_recipe_file(request.recipes);
     for (const stages::StructureRequest& structure : request.structures)
-        structures.push_back(recipe_of(structure, structure.name));
+        structures.push_back(recipe_of(structure));
     if (structures.empty()) throw UsageError({"--structure", "none given", "at least one, or --recipes", ""});
     return structures;
 }

@@ -2,7 +2,6 @@
 #include "tools/stages/case.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -13,6 +12,7 @@
 #include "tools/fem/feel/feel.hpp"
 #include "tools/imaging/faces/face.hpp"
 #include "tools/imaging/files/image_files.hpp"
+#include "tools/imaging/files/shallow_json.hpp"
 #include "tools/imaging/voxels/scan_of.hpp"
 #include "tools/meshing/files/mesh_files.hpp"
 #include "tools/obb/build_obb_tree.hpp"
@@ -38,13 +38,10 @@ void refuse_paths(const Json& value, const std::string& culprit) {
 
 Json read_provenance(const std::filesystem::path& path) {
     if (path.empty()) return Json::object();
-    std::ifstream stream(path, std::ios::binary);
-    Json json;
-    try {
-        json = Json::parse(stream);
-    } catch (const Json::parse_error& error) {
-        throw InvalidInput({path.string(), error.what(), "JSON", "mend the file"});
-    }
+    auto json = imaging::read_json_file<Json>(path);
+    if (!json.is_object())
+        throw InvalidInput(
+            {path.string(), "is no JSON object, or nested more than 32 deep", "{...}", "mend the file"});
     if (json.contains("schema")) json.erase("schema");  // "palpate.mesh/1" is no path
     for (const auto& [key, value] : json.items()) {
         refuse_paths(key, path.string());
@@ -74,11 +71,13 @@ constexpr auto face_note =
 Json read_notes(const std::vector<std::filesystem::path>& files) {
     Json notes = Json::array();
     for (const std::filesystem::path& file : files) {
-        std::ifstream stream(file, std::ios::binary);
-        const Json result = Json::parse(stream, nullptr, false);
-        if (!result.is_object())
-            throw InvalidInput({file.string(), "is no result", "what --json of a command wrote", ""});
+        const auto result = imaging::read_json_file<Json>(file);
+        const auto refuse = [&] {
+            return InvalidInput({file.string(), "is no result", "what --json of a command wrote", ""});
+        };
+        if (!result.is_object()) throw refuse();
         for (const Json& note : result.value("notes", Json::array())) {
+            if (!note.is_string()) throw refuse();
             std::string kept;
             std::istringstream words(note.get<std::string>());
             for (std::string word; words >> word;)

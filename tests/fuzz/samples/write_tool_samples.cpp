@@ -2,6 +2,7 @@
 // write_fuzz_tool_samples FOLDER: small files that the readers of the tools take, in a folder for each
 // reader.
 #include "tests/formats/sample_case.hpp"
+#include "tests/fuzz/samples/dicom_samples.hpp"
 #include "tools/imaging/files/image_files.hpp"
 #include "tools/meshing/files/mesh_files.hpp"
 
@@ -24,5 +25,6 @@ int main(int argc, char** argv) {
     }
     imaging::write_label_map(folder / "label_map" / "labels.seg.nrrd", map);
     imaging::write_volume(folder / "label_map" / "volume.nrrd", volume);
+    fuzz::write_dicom_samples(folder / "dicom", map);
     return 0;
 }

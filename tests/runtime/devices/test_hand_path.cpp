@@ -194,6 +194,13 @@ TEST(ReadHandPath, refuses_rows_of_another_width_than_those_before) {
         EXPECT_NE(path_refusal(row).find("qx qy qz qw"), std::string::npos) << row;
 }
 
+TEST(ReadHandPath, lines_may_have_65535_characters) {
+    const std::string longest = "1 2 3 #" + std::string(65535 - 7, 'x');
+    EXPECT_EQ(read_hand_path(text_file(longest + "\n" + longest)).keys().size(), 2U);
+    EXPECT_NE(path_refusal(longest + "\n" + longest + "x\n").find("line 2: more than 65535 characters"),
+              std::string::npos);
+}
+
 TEST(ReadHandPath, names_file_and_line_of_what_is_wrong) {
     EXPECT_NE(path_refusal("1 2 3\n1 x 3\n").find("palpate_hand_path.txt, line 2"), std::string::npos);
     EXPECT_NE(path_refusal("1 2 3\n1 2 3 4\n").find("line 2: 4 numbers"), std::string::npos);
@@ -201,6 +208,7 @@ TEST(ReadHandPath, names_file_and_line_of_what_is_wrong) {
     EXPECT_NE(path_refusal("0 1 2 3\n0 1 2 3\n").find("line 2: time"), std::string::npos);
     EXPECT_NE(path_refusal("1 2 nan\n").find("line 1"), std::string::npos);
     EXPECT_NE(path_refusal("# nothing\n").find("no positions"), std::string::npos);
+    EXPECT_NE(path_refusal(std::string("1 2 3\n1 2 3\0 4\n", 16)).find("line 2"), std::string::npos);
     EXPECT_THROW(read_hand_path("/nowhere/path.txt"), InvalidInput);
 }
 

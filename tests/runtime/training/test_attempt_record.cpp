@@ -114,13 +114,17 @@ TEST_F(AttemptRecord, history_is_by_time_and_leaves_out_what_does_not_belong) {
     std::ofstream(scratch_ / "e.json") << "{ not json";
     write("f.json", {{"schema", "palpate.attempt/1"}, {"metrics", 3}});
     std::ofstream(scratch_ / "g.csv") << "time_s\n";
+    std::ofstream(scratch_ / "h.json")
+        << attempt_json(head("2026-03-05T09:30:00Z"), attempt(Ending::ended)).dump()
+        << std::string(std::size_t{1} << 20, ' ');
+    std::filesystem::create_symlink("/dev/zero", scratch_ / "i.json");
     std::vector<std::string> told;
     const auto history = read_history(scratch_ / "", "liver 3", "touch",
                                       [&](const std::string& sentence) { told.push_back(sentence); });
     ASSERT_EQ(history.size(), 2U);
     EXPECT_EQ(history[0].when, "2026-03-01T09:30:00Z");
     EXPECT_DOUBLE_EQ(history[1].score, 50);
-    EXPECT_EQ(told.size(), 2U);
+    EXPECT_EQ(told.size(), 4U);
     EXPECT_TRUE(read_history(scratch_ / "none", "x", "y", {}).empty());
 }
 

@@ -10,6 +10,7 @@
 
 #include "tools/archive/objects/placeholders.hpp"
 #include "tools/archive/privacy/searches.hpp"
+#include "tools/imaging/dicom/dicom_structure.hpp"
 
 namespace palpate::archive {
 namespace {
@@ -118,6 +119,7 @@ void search_item(DcmItem& item, const std::filesystem::path& file, const Machine
 }  // namespace
 
 bool search_dicom(const std::filesystem::path& file, const Machine& machine, Findings& findings) {
+    imaging::require_sound_dicom(file);
     OFLog::configure(OFLogger::OFF_LOG_LEVEL);
     DcmFileFormat format;
     if (format.loadFile(file.c_str()).bad()) return false;

@@ -2,10 +2,8 @@
 #include "tools/cohort/bids/bids_folder.hpp"
 
 #include <algorithm>
-#include <fstream>
 
 #include "formats/model/errors.hpp"
-#include "formats/model/small_file.hpp"
 #include "tools/imaging/files/shallow_json.hpp"
 
 namespace palpate::cohort {
@@ -61,16 +59,13 @@ bool is_bids_dataset(const fs::path& folder) {
 
 nlohmann::json dataset_description(const fs::path& dataset) {
     const fs::path path = description_of(dataset);
-    constexpr std::uintmax_t most_bytes = 16 << 20;
-    require_small_file(path, most_bytes);
-    std::ifstream stream(path);
-    if (!stream)
+    if (!is_there(path))
         throw InvalidInput({dataset.string(), "has no dataset_description.json",
                             "the folder of a BIDS dataset", "choose the folder that has it"});
-    nlohmann::json description = imaging::shallow_json(stream);
+    nlohmann::json description = imaging::read_json_file(path);
     if (!description.is_object())
-        throw InvalidInput({path.string(), "is no JSON object", "{\"Name\": ..., \"BIDSVersion\": ...}",
-                            "correct the file"});
+        throw InvalidInput({path.string(), "is no JSON object, or nested more than 32 deep",
+                            "{\"Name\": ..., \"BIDSVersion\": ...}", "correct the file"});
     return description;
 }
 

@@ -6,28 +6,22 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <gdcmAttribute.h>
-#include <gdcmReader.h>
-#include <gdcmTrace.h>
 #include <map>
 #include <set>
 #include <sstream>
 
 #include "formats/model/errors.hpp"
 #include "tools/imaging/dicom/dicom_codes.hpp"
+#include "tools/imaging/dicom/dicom_structure.hpp"
 #include "tools/imaging/files/read_image.hpp"
 
 namespace palpate::imaging {
 namespace {
 
-using gdcm::DataSet;
-using gdcm::Tag;
-
-std::string text(const DataSet& data, const Tag& tag) {
-    if (!data.FindDataElement(tag)) return {};
-    const gdcm::ByteValue* bytes = data.GetDataElement(tag).GetByteValue();
-    if (bytes == nullptr || bytes->GetPointer() == nullptr) return {};
-    std::string value(bytes->GetPointer(), bytes->GetLength());
+std::string text(const DicomSet& data, std::uint32_t tag) {
+    const auto found = data.values.find(tag);
+    if (found == data.values.end()) return {};
+    std::string value = found->second.bytes;
     const auto padding = [](char c) { return c == ' ' || c == '\0'; };
     while (!value.empty() && padding(value.back())) value.pop_back();
     value.erase(value.begin(), std::ranges::find_if_not(value, padding));
@@ -35,7 +29,7 @@ std::string text(const DataSet& data, const Tag& tag) {
 }
 
 // Exactly `count` finite numbers separated by backslashes.
-std::optional<std::vector<double>> numbers(const DataSet& data, const Tag& tag, std::size_t count) {
+std::optional<std::vector<double>> numbers(const DicomSet& data, std::uint32_t tag, std::size_t count) {
     std::vector<double> values;
     std::istringstream parts(text(data, tag));
     for (std::string part; std::getline(parts, part, '\\');) {
@@ -50,105 +44,93 @@ std::optional<std::vector<double>> numbers(const DataSet& data, const Tag& tag, 
     return values;
 }
 
-std::int32_t whole_number(const DataSet& data, const Tag& tag, std::int32_t otherwise) {
+std::int32_t whole_number(const DicomSet& data, std::uint32_t tag, std::int32_t otherwise) {
     const auto value = numbers(data, tag, 1);
     return value && std::abs((*value)[0]) < 1e9 ? static_cast<std::int32_t>((*value)[0]) : otherwise;
 }
 
-// 0 if it is missing.
-std::uint16_t unsigned_short(const DataSet& data, const Tag& tag) {
-    std::uint16_t value = 0;
-    const gdcm::ByteValue* bytes =
-        data.FindDataElement(tag) ? data.GetDataElement(tag).GetByteValue() : nullptr;
-    if (bytes != nullptr && bytes->GetLength() >= 2) bytes->GetBuffer(reinterpret_cast<char*>(&value), 2);
-    return value;
-}
-
-// GDCM aborts on pixel formats that cannot be.
-void check_pixel_format(const DataSet& data, const std::string& file) {
-    const int samples = unsigned_short(data, Tag(0x0028, 0x0002)),
-              allocated = unsigned_short(data, Tag(0x0028, 0x0100)),
-              stored = unsigned_short(data, Tag(0x0028, 0x0101)),
-              high = unsigned_short(data, Tag(0x0028, 0x0102)),
-              sign = unsigned_short(data, Tag(0x0028, 0x0103));
+DicomPixelFormat pixel_format(const DicomSet& data, const std::string& file) {
+    const int samples = unsigned_short(data, 0x00280002), allocated = unsigned_short(data, 0x00280100),
+              stored = unsigned_short(data, 0x00280101), high = unsigned_short(data, 0x00280102),
+              sign = unsigned_short(data, 0x00280103);
     const bool whole_bytes =
         allocated == 1 || allocated == 8 || allocated == 16 || allocated == 32 || allocated == 64;
-    if (samples > 4 || !whole_bytes || stored < 1 || stored > allocated || high >= allocated ||
-        high < stored - 1 || sign > 1)
+    if (samples == 2 || samples > 4 || !whole_bytes || stored < 1 || stored > allocated ||
+        high >= allocated || high < stored - 1 || sign > 1)
         throw InvalidInput({file,
                             fmt::format("{} samples of {} bits, {} of them used up to bit {}", samples,
                                         allocated, stored, high),
                             "a pixel format of DICOM", "copy or export the file again"});
+    return {allocated, stored, high, sign == 1, std::max(samples, 1)};
 }
 
-// The first item of a sequence; an empty set if there is none.
-DataSet item(const DataSet& data, const Tag& tag, std::size_t position = 0) {
-    if (!data.FindDataElement(tag)) return {};
-    const auto sequence = data.GetDataElement(tag).GetValueAsSQ();
-    if (!sequence || sequence->GetNumberOfItems() <= position) return {};
-    return sequence->GetItem(position + 1).GetNestedDataSet();
+// An item of a sequence; an empty set if there is none.
+const DicomSet& item(const DicomSet& data, std::uint32_t tag, std::size_t position = 0) {
+    static const DicomSet none;
+    const auto found = data.values.find(tag);
+    return found != data.values.end() && position < found->second.items.size() ? found->second.items[position]
+                                                                               : none;
 }
 
 // A number that may be missing, but not damaged.
-double number_or(double otherwise, const DataSet& data, const Tag& tag, const std::string& file) {
+double number_or(double otherwise, const DicomSet& data, std::uint32_t tag, const std::string& file) {
     if (text(data, tag).empty()) return otherwise;
     const auto value = numbers(data, tag, 1);
     if (!value)
-        throw InvalidInput(
-            {file, fmt::format("element ({:04x},{:04x}) is no number", tag.GetGroup(), tag.GetElement()),
-             "a finite number", "copy or export the file again"});
+        throw InvalidInput({file,
+                            fmt::format("element ({:04x},{:04x}) is no number", tag >> 16, tag & 0xffffU),
+                            "a finite number", "copy or export the file again"});
     return (*value)[0];
 }
 
 // What one set says of the slice: the file's own attributes, or those in its functional groups.
-void take_geometry(DicomSlice& slice, const DataSet& position, const DataSet& orientation,
-                   const DataSet& measures, const DataSet& rescale) {
-    if (const auto p = numbers(position, Tag(0x0020, 0x0032), 3)) slice.origin = {(*p)[0], (*p)[1], (*p)[2]};
-    if (const auto o = numbers(orientation, Tag(0x0020, 0x0037), 6))
+void take_geometry(DicomSlice& slice, const DicomSet& position, const DicomSet& orientation,
+                   const DicomSet& measures, const DicomSet& rescale) {
+    if (const auto p = numbers(position, 0x00200032, 3)) slice.origin = {(*p)[0], (*p)[1], (*p)[2]};
+    if (const auto o = numbers(orientation, 0x00200037, 6))
         slice.directions = Eigen::Map<const Eigen::Matrix<double, 3, 2>>(o->data());
-    if (const auto s = numbers(measures, Tag(0x0028, 0x0030), 2)) slice.spacing = {(*s)[1], (*s)[0]};
-    slice.intercept = number_or(slice.intercept, rescale, Tag(0x0028, 0x1052), slice.file);
-    if (const double slope = number_or(slice.slope, rescale, Tag(0x0028, 0x1053), slice.file); slope != 0)
+    if (const auto s = numbers(measures, 0x00280030, 2)) slice.spacing = {(*s)[1], (*s)[0]};
+    slice.intercept = number_or(slice.intercept, rescale, 0x00281052, slice.file);
+    if (const double slope = number_or(slice.slope, rescale, 0x00281053, slice.file); slope != 0)
         slice.slope = slope;
 }
 
-void take_functional_groups(DicomSlice& slice, const DataSet& groups) {
-    take_geometry(slice, item(groups, Tag(0x0020, 0x9113)), item(groups, Tag(0x0020, 0x9116)),
-                  item(groups, Tag(0x0028, 0x9110)), item(groups, Tag(0x0028, 0x9145)));
+void take_functional_groups(DicomSlice& slice, const DicomSet& groups) {
+    take_geometry(slice, item(groups, 0x00209113), item(groups, 0x00209116), item(groups, 0x00289110),
+                  item(groups, 0x00289145));
 }
 
-std::vector<DicomSlice> slices_of(const DataSet& data, const std::string& file) {
+std::vector<DicomSlice> slices_of(const DicomSet& data, const std::string& file) {
     DicomSlice slice;
     slice.file = file;
-    slice.size = {unsigned_short(data, Tag(0x0028, 0x0011)), unsigned_short(data, Tag(0x0028, 0x0010))};
+    slice.size = {unsigned_short(data, 0x00280011), unsigned_short(data, 0x00280010)};
     if (slice.size[0] == 0 || slice.size[1] == 0) return {};
     take_geometry(slice, data, data, data, data);
-    const std::int32_t frames = std::clamp(whole_number(data, Tag(0x0028, 0x0008), 1), 1, 65535);
+    const std::int32_t frames = std::clamp(whole_number(data, 0x00280008, 1), 1, 65535);
     if (frames == 1 && slice.origin) return {slice};
-    take_functional_groups(slice, item(data, Tag(0x5200, 0x9229)));
+    take_functional_groups(slice, item(data, 0x52009229));
     std::vector<DicomSlice> slices(static_cast<std::size_t>(frames), slice);
     for (std::size_t i = 0; i < slices.size(); ++i) {
         slices[i].frame = i;
-        take_functional_groups(slices[i], item(data, Tag(0x5200, 0x9230), i));
+        take_functional_groups(slices[i], item(data, 0x52009230, i));
     }
     return slices;
 }
 
 // The kind of a file that is no image of a volume; empty for an image.
-std::string other_kind(const DataSet& data) {
+std::string other_kind(const DicomSet& data) {
     static const std::set<std::string> kinds{"SEG",      "RTSTRUCT", "RTDOSE", "RTPLAN", "RTIMAGE",
                                              "RTRECORD", "SR",       "PR",     "KO",     "REG",
                                              "FID",      "DOC",      "RWV",    "ANN"};
-    const std::string modality = text(data, Tag(0x0008, 0x0060));
+    const std::string modality = text(data, 0x00080060);
     return kinds.contains(modality) ? modality : "";
 }
 
 // Files without series UID belong together if all of this is the same.
-std::string series_key(const DataSet& data, const std::string& uid, bool localizer) {
+std::string series_key(const DicomSet& data, const std::string& uid, bool localizer) {
     std::string key = uid;
     if (uid.empty())
-        for (const Tag& tag : {Tag(0x0020, 0x0011), Tag(0x0008, 0x103e), Tag(0x0008, 0x0060),
-                               Tag(0x0020, 0x0037), Tag(0x0028, 0x0030)})
+        for (const std::uint32_t tag : {0x00200011, 0x0008103e, 0x00080060, 0x00200037, 0x00280030})
             key.append("|").append(text(data, tag));
     return key + (localizer ? "|localizer" : "");
 }
@@ -165,6 +147,16 @@ std::vector<std::filesystem::path> files_below(const std::filesystem::path& path
         throw InvalidInput({path.string(), "cannot be listed: " + error.message(), "", "check the folder"});
     std::ranges::sort(files);
     return files;
+}
+
+// Nothing for a file that is no DICOM.
+std::optional<DicomSet> header_of(const std::filesystem::path& file) {
+    try {
+        return read_dicom_header(file);
+    } catch (const InvalidInput&) {
+        if (is_dicom(file)) throw;
+        return std::nullopt;
+    }
 }
 
 void complete_summary(DicomSeries& series) {
@@ -186,21 +178,12 @@ void complete_summary(DicomSeries& series) {
 }  // namespace
 
 std::vector<DicomSeries> scan_dicom(const std::filesystem::path& path, const NoteSink& note) {
-    gdcm::Trace::ErrorOff();
-    gdcm::Trace::WarningOff();
     std::map<std::string, DicomSeries> by_key;
     std::map<std::string, int> skipped;
     for (const std::filesystem::path& file : files_below(path)) {
-        if (!is_whole_dicom(file)) {
-            if (!is_dicom(file)) continue;
-            throw InvalidInput({file.string(), "is cut off or damaged",
-                                "a DICOM file that ends with its elements", "copy the file again"});
-        }
-        gdcm::Reader reader;
-        reader.SetFileName(file.c_str());
-        if (!reader.CanRead() || !reader.ReadUpToTag(Tag(0x7fe0, 0x0010))) continue;
-        const DataSet& data = reader.GetFile().GetDataSet();
-        if (data.IsEmpty()) continue;
+        const auto read = header_of(file);
+        if (!read) continue;
+        const DicomSet& data = *read;
         if (const std::string kind = other_kind(data); !kind.empty()) {
             ++skipped[kind];
             continue;
@@ -210,18 +193,19 @@ std::vector<DicomSeries> scan_dicom(const std::filesystem::path& path, const Not
             ++skipped["DICOMDIR or other"];
             continue;
         }
-        check_pixel_format(data, file.string());
-        const std::string uid = text(data, Tag(0x0020, 0x000e));
-        const bool localizer = text(data, Tag(0x0008, 0x0008)).find("LOCALIZER") != std::string::npos;
+        const DicomPixelFormat format = pixel_format(data, file.string());
+        for (DicomSlice& slice : slices) slice.format = format;
+        const std::string uid = text(data, 0x0020000e);
+        const bool localizer = text(data, 0x00080008).find("LOCALIZER") != std::string::npos;
         DicomSeries& series = by_key[series_key(data, uid, localizer)];
         if (series.slices.empty()) {
-            series.summary.number = text(data, Tag(0x0020, 0x0011));
-            series.summary.modality = modality_code(text(data, Tag(0x0008, 0x0060)));
-            series.summary.description = as_utf8(text(data, Tag(0x0008, 0x103e)));
+            series.summary.number = text(data, 0x00200011);
+            series.summary.modality = modality_code(text(data, 0x00080060));
+            series.summary.description = as_utf8(text(data, 0x0008103e));
             series.summary.uid = as_utf8(uid);
             series.summary.localizer = localizer;
         }
-        if (const std::string colours = text(data, Tag(0x0028, 0x0004));
+        if (const std::string colours = text(data, 0x00280004);
             !colours.empty() && !colours.starts_with("MONOCHROME"))
             series.colours = photometric_code(colours);
         series.slices.insert(series.slices.end(), slices.begin(), slices.end());

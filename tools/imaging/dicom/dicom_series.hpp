@@ -10,6 +10,13 @@
 
 namespace palpate::imaging {
 
+/// Integers of `stored` bits in `allocated` ones, up to bit `high`.
+struct DicomPixelFormat {
+    int allocated = 16, stored = 16, high = 15;
+    bool has_sign = false;
+    int samples = 1;  ///< values of a pixel
+};
+
 /// One slice: a file, or a frame of a file with several.
 struct DicomSlice {
     std::string file;
@@ -18,6 +25,7 @@ struct DicomSlice {
     std::optional<Eigen::Matrix<double, 3, 2>> directions;  ///< of growing column and row index, in P
     std::optional<Eigen::Vector2d> spacing;                 ///< between columns and between rows, mm
     std::array<std::int32_t, 2> size{0, 0};                 ///< columns, rows
+    DicomPixelFormat format;
     double slope = 1;
     double intercept = 0;
 };

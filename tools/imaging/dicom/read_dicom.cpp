@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <fmt/format.h>
-#include <gdcmImageReader.h>
 #include <set>
 
 #include "formats/model/errors.hpp"
+#include "tools/imaging/dicom/dicom_pixels.hpp"
 #include "tools/imaging/dicom/dicom_series.hpp"
 #include "tools/imaging/dicom/dicom_stack.hpp"
 #include "tools/imaging/files/read_image.hpp"
@@ -26,68 +26,33 @@ void rescale(const char* stored, const DicomSlice& slice, std::span<float> value
     }
 }
 
-bool rescale(gdcm::PixelFormat::ScalarType type, const char* stored, const DicomSlice& slice,
-             std::span<float> values) {
-    switch (type) {
-        case gdcm::PixelFormat::UINT8:
-            rescale<std::uint8_t>(stored, slice, values);
-            return true;
-        case gdcm::PixelFormat::INT8:
-            rescale<std::int8_t>(stored, slice, values);
-            return true;
-        case gdcm::PixelFormat::UINT16:
-            rescale<std::uint16_t>(stored, slice, values);
-            return true;
-        case gdcm::PixelFormat::INT16:
-            rescale<std::int16_t>(stored, slice, values);
-            return true;
-        case gdcm::PixelFormat::UINT32:
-            rescale<std::uint32_t>(stored, slice, values);
-            return true;
-        case gdcm::PixelFormat::INT32:
-            rescale<std::int32_t>(stored, slice, values);
-            return true;
-        case gdcm::PixelFormat::FLOAT32:
-            rescale<float>(stored, slice, values);
-            return true;
-        case gdcm::PixelFormat::FLOAT64:
-            rescale<double>(stored, slice, values);
-            return true;
+void rescale(const char* stored, const DicomSlice& slice, std::span<float> values) {
+    const bool has_sign = slice.format.has_sign;
+    switch (slice.format.allocated) {
+        case 8:
+            return has_sign ? rescale<std::int8_t>(stored, slice, values)
+                            : rescale<std::uint8_t>(stored, slice, values);
+        case 16:
+            return has_sign ? rescale<std::int16_t>(stored, slice, values)
+                            : rescale<std::uint16_t>(stored, slice, values);
         default:
-            return false;
+            return has_sign ? rescale<std::int32_t>(stored, slice, values)
+                            : rescale<std::uint32_t>(stored, slice, values);
     }
 }
 
 // The pixels of one file's slices, each to its place in the stack; returns their type.
 std::string read_pixels(const std::string& file, std::span<const DicomSlice> slices, const ImageGrid& grid,
                         std::span<float> values) {
-    const auto fail = [&](const std::string& found) {
-        return InvalidInput({file, found, "whole grey pixels that GDCM can decode",
-                             "copy the file again, or decompress it with 'gdcmconv --raw'"});
-    };
-    gdcm::ImageReader reader;
-    reader.SetFileName(file.c_str());
-    if (!reader.Read()) throw fail("its pixels cannot be read");
-    const gdcm::Image& image = reader.GetImage();
-    const gdcm::PixelFormat& format = image.GetPixelFormat();
+    const auto first = std::ranges::find(slices, file, &DicomSlice::file);
+    const auto frames = static_cast<std::size_t>(std::ranges::count(slices, file, &DicomSlice::file));
+    const std::vector<char> stored = stored_values(*first, frames);
     const std::size_t count = static_cast<std::size_t>(grid.size[0]) * static_cast<std::size_t>(grid.size[1]);
-    const std::size_t frames = image.GetNumberOfDimensions() > 2 ? image.GetDimension(2) : 1;
-    if (format.GetSamplesPerPixel() != 1 ||
-        image.GetBufferLength() < frames * count * std::size_t{format.GetPixelSize()})
-        throw fail("holds fewer pixels than its header claims");
-    const gdcm::ByteValue* raw =
-        reader.GetFile().GetDataSet().GetDataElement(gdcm::Tag(0x7fe0, 0x0010)).GetByteValue();
-    if (raw != nullptr && raw->GetLength() < frames * count * std::size_t{format.GetPixelSize()})
-        throw fail("holds fewer pixels than its header claims");
-    std::vector<char> buffer(image.GetBufferLength());
-    if (!image.GetBuffer(buffer.data())) throw fail("its pixels cannot be decoded");
     for (std::size_t k = 0; k < slices.size(); ++k)
-        if (slices[k].file == file &&
-            (slices[k].frame >= frames ||
-             !rescale(format.GetScalarType(), buffer.data() + slices[k].frame * count * format.GetPixelSize(),
-                      slices[k], values.subspan(k * count, count))))
-            throw fail(fmt::format("holds pixels of type {}", format.GetScalarTypeAsString()));
-    return in_lower_case(format.GetScalarTypeAsString());
+        if (slices[k].file == file)
+            rescale(stored.data() + slices[k].frame * (stored.size() / frames), slices[k],
+                    values.subspan(k * count, count));
+    return type_of(first->format);
 }
 
 void require_one_plane(const DicomSeries& series, const std::filesystem::path& path) {

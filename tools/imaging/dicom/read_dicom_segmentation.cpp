@@ -17,6 +17,7 @@
 
 #include "formats/model/errors.hpp"
 #include "tools/imaging/dicom/dicom_codes.hpp"
+#include "tools/imaging/dicom/dicom_structure.hpp"
 #include "tools/imaging/files/read_image.hpp"
 #include "tools/imaging/files/segment_painter.hpp"
 
@@ -32,6 +33,7 @@ struct Frame {
 class Source {
   public:
     explicit Source(const std::filesystem::path& path) : path_(path) {
+        require_sound_dicom(path);
         OFLog::configure(OFLogger::OFF_LOG_LEVEL);
         if (const OFCondition loaded = file_.loadFile(path.c_str()); loaded.bad())
             throw refuse(loaded.text());
@@ -191,13 +193,9 @@ ImageGrid Source::grid(const NoteSink& note) const {
 
 }  // namespace
 
-bool is_whole_dicom(const std::filesystem::path& path) {
-    OFLog::configure(OFLogger::OFF_LOG_LEVEL);
-    DcmFileFormat file;
-    return file.loadFile(path.c_str()).good();
-}
-
 bool is_dicom_segmentation(const std::filesystem::path& path) {
+    if (!is_dicom(path)) return false;
+    require_sound_dicom(path);
     OFLog::configure(OFLogger::OFF_LOG_LEVEL);
     DcmFileFormat file;
     OFString modality;

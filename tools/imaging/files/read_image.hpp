@@ -71,10 +71,6 @@ std::string in_lower_case(std::string text);
 /// Text of a header as UTF-8: what is none is taken as Latin-1, and control characters become spaces.
 std::string as_utf8(std::string_view text);
 
-/// Tells whether DCMTK can parse a file as DICOM to its end; GDCM pads pixels that are cut off, and aborts on
-/// some damaged headers.
-bool is_whole_dicom(const std::filesystem::path& path);
-
 /// Checks sizes and spacings, and makes the directions orthonormal; throws InvalidInput naming `path`.
 void check_geometry(ImageGrid& grid, const std::filesystem::path& path, const NoteSink& note);
 
