@@ -11,7 +11,6 @@ round a circle in the plane of the surface there, in steps of 0.02 mm. The work 
 the tissue are left out. With --edges, places on edges and with something opposite or beside count too.
 """
 import argparse
-import csv
 import os
 import pathlib
 import subprocess
@@ -22,6 +21,8 @@ import numpy as np
 
 PALPATE = pathlib.Path(os.environ.get("PALPATE_BIN", "build/release/bin")) / "palpate"
 STEP = 0.02  # mm
+HEAD = """| case | circle, mm | tool, mm | deep, mm | loops in contact | work of what was stored: median / 90 % / most | largest step of the largest force: median / most |
+|---|--:|--:|--:|--:|--:|--:|"""
 
 
 def places(asset, count, circle, held, edges):
@@ -46,7 +47,17 @@ def places(asset, count, circle, held, edges):
         open_there = (outward[around] @ outward[t]).min() > 0.3 and not beside.any() and not facing
         if suits and (edges or open_there):
             found.append((middle[t], -outward[t]))
-    return found[:count], radius
+            if len(found) == count:
+                break
+    return found, radius
+
+
+def logged(path, *names):
+    """Columns of a log of palpate touch, one row a tick: `?` in a name stands for x, y and z."""
+    with open(path) as log:
+        columns = log.readline().strip().split(",")
+        wanted = [columns.index(name.replace("?", axis)) for name in names for axis in "xyz"]
+        return np.split(np.loadtxt(log, delimiter=",", usecols=wanted), len(names), axis=1)
 
 
 def path(point, inward, radius, depth, circle):
@@ -67,10 +78,7 @@ def loop(asset, folder, options, positions, pressed, second):
     np.savetxt(folder / "hand.txt", positions, "%.6f")
     subprocess.run([PALPATE, "touch", asset, "--script", folder / "hand.txt", "--virtual-clock", "--log", folder / "log.csv", "--quiet", "--force",
                     *options], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    with open(folder / "log.csv") as log:
-        rows = [[float(row[f"{what}_{axis}"]) for what, axis in [*(("device", f"{c}_mm") for c in "xyz"), *(("force", f"{c}_n") for c in "xyz")]]
-                for row in csv.DictReader(log)]
-    where, force = np.array(rows)[:, :3], np.array(rows)[:, 3:]
+    where, force = logged(folder / "log.csv", "device_?_mm", "force_?_n")
     work = -0.5 * ((force[1:] + force[:-1]) * np.diff(where, axis=0)).sum(axis=1)  # by the hand
     size = np.linalg.norm(force, axis=1)[second:]
     if size.min() == 0:
@@ -92,10 +100,11 @@ def main():
     chosen, tool = places(arguments.asset, arguments.places, arguments.radius, arguments.held, arguments.edges)
     with tempfile.TemporaryDirectory() as folder:
         loops = [loop(arguments.asset, pathlib.Path(folder), options, *path(*place, tool, arguments.depth, arguments.radius)) for place in chosen]
-    kept = np.array([result for result in loops if result]) * 100
-    print(f"{arguments.asset.stem}: tool {tool:g} mm, {arguments.depth:g} mm deep, {len(kept)} of {len(loops)} loops stayed in contact; "
-          f"work of what was stored: median {np.median(kept[:, 0]):.2g} %, 90th percentile {np.percentile(kept[:, 0], 90):.2g} %, "
-          f"most {kept[:, 0].max():.2g} %; largest step of force: median {np.median(kept[:, 1]):.2g} %, most {kept[:, 1].max():.2g} %")
+    work, step = np.array([result for result in loops if result]).T * 100
+    case = arguments.asset.stem + ", part held" * arguments.held + ", edges too" * arguments.edges + ", large deformation" * arguments.large_deformation
+    print(HEAD)
+    print(f"| {case} | {arguments.radius:g} | {tool:g} | {arguments.depth:g} | {len(work)} of {len(loops)} | "
+          f"{np.median(work):.2g} / {np.percentile(work, 90):.2g} / {work.max():.2g} % | {np.median(step):.2g} / {step.max():.2g} % |")
 
 
 if __name__ == "__main__":

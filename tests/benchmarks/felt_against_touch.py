@@ -38,6 +38,7 @@ def main():
     parser.add_argument("assets", nargs="+", type=pathlib.Path)
     parser.add_argument("--places", type=int, default=36)
     arguments = parser.parse_args()
+    print("| case | places | median | within 10 % | within 20 % |\n|---|--:|--:|--:|--:|", flush=True)
     for asset in arguments.assets:
         with h5py.File(asset) as file:
             body, radius = file["palpate/bodies/deformable/0"], float(file["palpate/haptics"].attrs["tool_radius"])
@@ -52,8 +53,8 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             found = [ratio(asset, pathlib.Path(folder), points[v], -normals[v], radius, depth, float(stiffness[v])) for v in chosen]
         ratios = np.array([value for value in found if value])
-        print(f"{asset.stem}: {len(ratios)} of {len(found)} places; stored over rendered: median {np.median(ratios):.2f}, "
-              f"{(abs(ratios - 1) < 0.1).sum()} within 10 %, {(abs(ratios - 1) < 0.2).sum()} within 20 %")
+        within = [(abs(ratios - 1) < part).sum() for part in (0.1, 0.2)]
+        print(f"| {asset.stem} | {len(ratios)} | {np.median(ratios):.2f} | " + " | ".join(f"{count} of {len(ratios)}" for count in within) + " |", flush=True)
 
 
 if __name__ == "__main__":

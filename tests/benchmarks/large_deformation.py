@@ -66,6 +66,7 @@ def main():
     arguments = parser.parse_args()
     body = block()
     lines = ["| motion of the patch | neo-Hookean force, N | linear: force off by | surface off by |", "|---|--:|--:|--:|"]
+    print("\n".join(lines), flush=True)
     with tempfile.TemporaryDirectory() as folder:
         for name, motion in MOTIONS:
             (true, force), (linear, guess) = (solve(pathlib.Path(folder), body, motion, nonlinear) for nonlinear in (True, False))

@@ -9,14 +9,15 @@ at each quarter of the depth, with and without. Moving, linear: largest differen
 Held: after 0.3 s from the end. Virtual time: the figures are the same on every machine.
 """
 import argparse
-import csv
 import pathlib
 import subprocess
 import tempfile
 
 import numpy as np
-from closed_loops import PALPATE, places
+from closed_loops import PALPATE, logged, places
 
+HEAD = """| case | deep, mm | force, N | moving | linear | held | largest step while held |
+|---|--:|--:|--:|--:|--:|--:|"""
 QUARTERS = np.array([0.25, 0.5, 0.75, 1])
 SPEED, CLEAR = 50, 5  # mm/s; mm above the surface, where it sets out
 REACH, HOLD, END = 0.25, 0.8, 1.2  # s: to the next quarter, there; and at the end of the fast one
@@ -27,8 +28,8 @@ def forces(asset, folder, keys, large):
     (folder / "hand.txt").write_text("".join("%.6f %.9g %.9g %.9g\n" % (t, *p) for t, p in keys))
     subprocess.run([PALPATE, "touch", asset, "--script", folder / "hand.txt", "--virtual-clock", "--log", folder / "log.csv", "--quiet", "--force",
                     *(["--large-deformation", "all"] if large else [])], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    with open(folder / "log.csv") as log:
-        return np.array([[float(row[f"force_{axis}_n"]) for axis in "xyz"] for row in csv.DictReader(log)])
+    (force,) = logged(folder / "log.csv", "force_?_n")
+    return force
 
 
 def press(asset, folder, point, inward, radius, depth):
@@ -58,10 +59,9 @@ def main():
     chosen, radius = places(arguments.asset, arguments.places, circle=3, held=False, edges=False)
     with tempfile.TemporaryDirectory() as folder:
         found = np.array([press(arguments.asset, pathlib.Path(folder), *place, radius, arguments.depth) for place in chosen])
-    off = 100 * found[:, :4]
-    print(f"{arguments.asset.stem}: tool {radius:g} mm, {arguments.depth:g} mm deep, {len(found)} places, {found[:, 4].min():.2f} to "
-          f"{found[:, 4].max():.2f} N; off by, median and most: " +
-          ", ".join(f"{name} {np.median(values):.2g} / {values.max():.2g} %" for name, values in zip(("moving", "linear", "held", "step held"), off.T)))
+    print(HEAD)
+    print(f"| {arguments.asset.stem} | {arguments.depth:g} | {found[:, 4].min():.2f} to {found[:, 4].max():.2f} | " +
+          " | ".join(f"{np.median(values):.2g} / {values.max():.2g} %" for values in 100 * found[:, :4].T) + " |")
 
 
 if __name__ == "__main__":

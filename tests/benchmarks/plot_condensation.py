@@ -190,7 +190,7 @@ def main():
     parser.add_argument("--family", default="graded", help="drawn: bodies whose names begin so [default: graded]")
     parser.add_argument("--processor", action="store_true",
                         help="draw the processor's seconds: for a machine that other work shares")
-    parser.add_argument("--table", type=Path, help="Markdown page whose table is replaced")
+    parser.add_argument("--table", type=Path, help="Markdown page whose table is replaced; it is printed as well")
     options = parser.parse_args()
     lines = read_lines(options.lines)
     if options.output:
@@ -199,6 +199,7 @@ def main():
             sys.exit(f"plot_condensation.py: no exact or hierarchical measurement of a body named {options.family}...")
         draw(series, options.processor, options.output)
     if options.table:
+        print(table_of(lines))
         write_table(options.table, table_of(lines))
 
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // rest_search ASSET ...: what the search for the rest of neo-Hookean tissue takes of the period that its loop
-// has: the factor, and two warm steps while a press grows.
+// has: the factor, and two warm steps while a press grows (median).
 #include <algorithm>
 #include <chrono>
 #include <exception>
@@ -29,6 +29,8 @@ int main(int count, char** arguments) {
     using namespace palpate;
     if (count < 2) return 2;
     try {
+        fmt::print(
+            "| case: body | nodes | factor, s | two steps, ms | of the period |\n|---|--:|--:|--:|--:|\n");
         for (int argument = 1; argument < count; ++argument)
             for (const Case patient_case = asset::load_asset(arguments[argument]);
                  const DeformableBody& body : patient_case.deformable_bodies) {
@@ -45,10 +47,9 @@ int main(int count, char** arguments) {
                 }
                 std::ranges::sort(times);
                 const double period = 1e-6 * haptics::CollisionLoop::force_period_ns;
-                fmt::print(
-                    "{}: {} nodes, factor {:.2f} s, two steps {:.1f} ms (median), {:.2f} of the period\n",
-                    body.name, body.mesh.rest_positions.size(), 1e-3 * factor, times[answers / 2],
-                    times[answers / 2] / period);
+                fmt::print("| {}: {} | {} | {:.2f} | {:.1f} | {:.2f} |\n", patient_case.name, body.name,
+                           body.mesh.rest_positions.size(), 1e-3 * factor, times[answers / 2],
+                           times[answers / 2] / period);
             }
     } catch (const std::exception& error) {
         fmt::print(stderr, "rest_search: {}\n", error.what());

@@ -31,6 +31,8 @@ LABELS = SOURCE / "build/sample_data/liver.seg.nrrd"
 RADIUS, BELOW = 15.5, 2.0  # mm, of the case's tumour, and between it and the capsule
 NEAR = 10.0  # mm; as near counts as found
 SEED = 29  # of the draws that are judged
+HEAD = """| draw | stiffer there by, % | said | off, mm | evidence | without a tumour, said | its evidence |
+|---|--:|--:|--:|--:|--:|--:|"""
 
 
 # All but the press and the report.
@@ -113,6 +115,14 @@ def judge(place, with_tumour, none):
     return row
 
 
+def table_row(draw, row):
+    """What the hand said of a draw, as README.md has it."""
+    said, none = row["with"], row["none"]
+    place = "found" if row["right"] else "elsewhere" if said["found"] else "none"
+    return (f"| {draw} | {row['told_percent']:.0f} | {place} | {said['off_mm']} | {said['evidence']} | {'none' if row['right_none'] else 'found'} | "
+            f"{none['evidence']} |")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--draws", type=int, default=10)
@@ -125,12 +135,14 @@ def main():
     name = f"seed{options.seed}"
     random = np.random.default_rng(options.seed)
     rows = []
+    print(HEAD, flush=True)
     for i in range(options.draws):
         centre, place = draw(surface, others, random)
         rows.append({"centre_mm": centre.tolist(), "place_mm": place.round(1).tolist()} | judge(place, *pair(options.folder, f"{name}-{i}", centre)))
-        print(json.dumps(rows[-1]), flush=True)
-    print(f"with a tumour: right in {sum(row['right'] for row in rows)} of {len(rows)};"
-          f" without: right in {sum(row['right_none'] for row in rows)} of {len(rows)}")
+        print(table_row(i + 1, rows[-1]), flush=True)
+    print(f"\n| draws of seed {options.seed} | right |\n|---|--:|")
+    for what, key in (("tumour found", "right"), ("without a tumour, said none", "right_none")):
+        print(f"| {what}, {len(rows)} draws | {sum(row[key] for row in rows)} of {len(rows)} |")
     (options.folder / f"{name}.json").write_text(json.dumps(rows, indent=1))
 
 

@@ -67,7 +67,7 @@ Wall contact_wall(double stiffness) {
     return [=](double depth) { return force_at(touching - depth); };
 }
 
-// How the measured limits compare, over all rows of one period.
+// A row of how the measured limits compare, over all rows of one period.
 std::string comparison(const Json& rows, int period) {
     const auto range = [&](const char* of, const char* against) {
         double least = std::numeric_limits<double>::infinity(), most = 0;
@@ -79,9 +79,8 @@ std::string comparison(const Json& rows, int period) {
         }
         return fmt::format("{:.3f} … {:.3f}", least, most);
     };
-    return fmt::format("- T = {} ms: measured / (2b/T) {}, measured / eigenvalue {}, contact / measured {}\n",
-                       period, range("measured", "two_b_over_t"), range("measured", "eigenvalue"),
-                       range("contact", "measured"));
+    return fmt::format("| {} | {} | {} | {} |\n", period, range("measured", "two_b_over_t"),
+                       range("measured", "eigenvalue"), range("contact", "measured"));
 }
 
 Json limits_table(std::string& table, cli::Session& session) {
@@ -110,7 +109,8 @@ Json limits_table(std::string& table, cli::Session& session) {
                                 {"eigenvalue", exact},
                                 {"contact", contact}});
             }
-    table += "\n";
+    table +=
+        "\n| T, ms | measured / (2b/T) | measured / eigenvalue | contact / measured |\n|--:|--:|--:|--:|\n";
     for (const int period : refresh_periods) table += comparison(rows, period);
     table +=
         "\nA ratio to 2b/T of 1 or more says that the bound is safe. It grows where damping stops the mass "
