@@ -36,7 +36,7 @@ class DicomBytes {
     // Fewer than `count` only at the end.
     std::string read(std::uint64_t at, std::uint64_t count) {
         count = std::min(count, size_ - std::min(at, size_));
-        if (!unpacked_.empty()) return unpacked_.substr(at, count);
+        if (!unpacked_.empty()) return unpacked_.substr(std::min(at, size_), count);
         std::string bytes(count, '\0');
         stream_.seekg(static_cast<std::streamoff>(at));
         stream_.read(bytes.data(), static_cast<std::streamsize>(count));
