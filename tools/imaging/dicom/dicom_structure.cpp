@@ -100,6 +100,12 @@ bool has_short_length(std::string_view type) {
     return std::ranges::find(types, type) != types.end();
 }
 
+// A type that is not known is written as the long ones are (PS3.5, 7.1.2).
+bool is_of_later_years(std::string_view type) {
+    const auto capital = [](char c) { return c >= 'A' && c <= 'Z'; };
+    return std::ranges::all_of(type, capital) && !has_short_length(type);
+}
+
 class DicomWalk {
   public:
     explicit DicomWalk(const std::filesystem::path& path) : path_(path), bytes_(path) {}
@@ -198,7 +204,7 @@ class DicomWalk {
         std::uint64_t head = 8;
         if (end - at >= head && coding.with_types && !of_items) {
             element.type = bytes_.read(at + 4, 2);
-            if (has_long_length(element.type))
+            if (has_long_length(element.type) || is_of_later_years(element.type))
                 head = 12;
             else if (!has_short_length(element.type))
                 throw refuse(element, "has a type that DICOM does not know");
@@ -210,9 +216,16 @@ class DicomWalk {
         element.value = at + head;
         if (element.length != undefined_length && element.length > end - element.value)
             throw refuse(element, "is longer than what holds it");
-        if (element.length != undefined_length && element.length % 2 != 0)
-            throw refuse(element, "has an odd length");
         return element;
+    }
+
+    // Zeros to the file's end, as media and archives pad it.
+    bool is_padding(std::uint64_t at) {
+        constexpr std::uint64_t block = 1 << 16;
+        if (number(at, 4, false) != 0) return false;
+        for (; at < bytes_.size(); at += block)
+            if (bytes_.read(at, block).find_first_not_of('\0') != std::string::npos) return false;
+        return true;
     }
 
     // Elements from `at` to `end`, or to `delimiter` if that is not 0; returns where they end. `set` gets
@@ -220,6 +233,7 @@ class DicomWalk {
     std::uint64_t elements(std::uint64_t at, std::uint64_t end, const DicomCoding& coding,
                            std::uint32_t delimiter, int depth, DicomSet* set) {
         while (at < end) {
+            if (depth == 0 && is_padding(at)) return end;
             const WalkedElement element = element_at(at, coding, end);
             if (delimiter != 0 && element.tag == delimiter && element.length == 0) return element.value;
             if (element.tag >> 16 == 0xfffe) throw refuse(element, "stands where none of its kind may");

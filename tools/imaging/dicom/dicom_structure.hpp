@@ -27,11 +27,12 @@ struct DicomValue {
 std::uint16_t unsigned_short(const DicomSet& set, std::uint32_t tag);
 
 /// Follows a DICOM file's elements (PS3.5 chapter 7, PS3.10) from its first to its last byte, nested ones
-/// too, before GDCM or DCMTK sees it. Throws InvalidInput unless every element and item is of a known kind,
-/// even in length and within what holds it, sequences end as they say, none lies deeper than 32 others, and
-/// native pixels are as many as rows, columns, frames and bits claim. A file without preamble must begin with
-/// an element of group 2 or 8. Deflated files unpack to 1100 times their size at most. Cost: three short
-/// reads an element, none of values.
+/// too, before GDCM or DCMTK sees it. Throws InvalidInput unless every element and item is of a kind that can
+/// be, and within what holds it, sequences end as they say, none lies deeper than 32 others, and native
+/// pixels are as many as rows, columns, frames and bits claim. Odd lengths, types of two capitals that are
+/// not known and zeros behind the last element are let pass, as scanners and archives make them. A file
+/// without preamble must begin with an element of group 2 or 8. Deflated files unpack to 1100 times their
+/// size at most. Cost: three short reads an element, none of values.
 void require_sound_dicom(const std::filesystem::path& path);
 
 /// Reads the values of the groups 0008, 0020, 0028 and 5200, of which those of more than 4 KiB are left out;
