@@ -86,6 +86,10 @@ def loop(asset, folder, options, positions, pressed, second):
     return abs(work[second:].sum()) / work[:pressed].sum(), np.linalg.norm(np.diff(force[second:], axis=0), axis=1).max() / size.max()
 
 
+def two_digits(value):
+    return f"{float(f'{value:.2g}'):g}"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("asset", type=pathlib.Path)
@@ -104,7 +108,8 @@ def main():
     case = arguments.asset.stem + ", part held" * arguments.held + ", edges too" * arguments.edges + ", large deformation" * arguments.large_deformation
     print(HEAD)
     print(f"| {case} | {arguments.radius:g} | {tool:g} | {arguments.depth:g} | {len(work)} of {len(loops)} | "
-          f"{np.median(work):.2g} / {np.percentile(work, 90):.2g} / {work.max():.2g} % | {np.median(step):.2g} / {step.max():.2g} % |")
+          f"{' / '.join(map(two_digits, (np.median(work), np.percentile(work, 90), work.max())))} % | "
+          f"{' / '.join(map(two_digits, (np.median(step), step.max())))} % |")
 
 
 if __name__ == "__main__":
