@@ -13,7 +13,8 @@ namespace palpate::cli {
 class StagedFolder {
   public:
     /// Throws InvalidInput if `target` is there, but for an empty folder, and `replace` is false, if it
-    /// is no folder, or if the one that it goes into is missing; SystemFailure if nothing can be written there.
+    /// is no folder, or if the one that it goes into is missing; SystemFailure if nothing can be written
+    /// there.
     StagedFolder(const std::filesystem::path& target, bool replace);
     StagedFolder(const StagedFolder&) = delete;
     StagedFolder& operator=(const StagedFolder&) = delete;
