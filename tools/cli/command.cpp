@@ -18,6 +18,7 @@
 #include <sys/resource.h>
 #include <thread>
 #include <type_traits>
+#include <utility>
 
 #include "formats/model/errors.hpp"
 #include "formats/model/label_map.hpp"
@@ -326,11 +327,15 @@ int Command::run(int argc, char** argv, const std::function<nlohmann::ordered_js
     const std::string program = "palpate-" + text_.name;
     const auto start = std::chrono::steady_clock::now();
     std::optional<StagedFile> error_file;
+    const auto stage_error_file = [&] {  // once, for what is refused is told on stderr alone
+        if (!error_path_.empty()) error_file.emplace(std::exchange(error_path_, ""), force_);
+    };
     const auto say = [&](const std::string& message) {
         const std::string text = program + ": " + with_final_names(message) + "\n";
         std::cerr << text;
-        if (!error_file) return;
         try {
+            stage_error_file();
+            if (!error_file) return;
             error_file->write_text(text);
             error_file->commit();
         } catch (const std::exception& error) {
@@ -346,7 +351,7 @@ int Command::run(int argc, char** argv, const std::function<nlohmann::ordered_js
         remove_staged_files_on_interrupt();
         for (const char* const option : {"--json", "--error-file"})
             refuse_empty_path(option, app_->get_option(option)->results());
-        if (!error_path_.empty()) error_file.emplace(error_path_, force_);
+        stage_error_file();
         for (const Parameter& parameter : parameters_)
             if (parameter.kind == Parameter::Kind::input_file ||
                 parameter.kind == Parameter::Kind::output_file)

@@ -77,6 +77,9 @@ class Kinds(sample_asset.SampleAsset):
         self.assertIn("absent: no such file", failed.stderr)
         self.assertEqual(kept.read_text(), failed.stderr)
         self.assertIn("absent: no such file", self.fail("/dev/stdout").stdout)
+        early = self.fail(kept, "--force", "--request", self.folder / "none.json")
+        self.assertIn("none.json: no such file", early.stderr)
+        self.assertEqual(kept.read_text(), early.stderr)
 
     def test_the_message_of_a_failure_is_no_file_named_dash(self):
         refused = self.fail("-", cwd=self.folder)
