@@ -43,8 +43,8 @@ void TwoLevels::add_corners(const DeformableBody& body, const Discretisation& di
     const auto corners = std::make_shared<Corners>();
     corners->to_all = corners_to_all(discretisation, positions, corner_positions);
     if (corners->to_all.cols() > 3 * Eigen::Index{most_factorised_corners}) return;
-    corners->factor.compute(Eigen::SparseMatrix<double>(
-        assemble_stiffness(body.mesh, body.materials, linear, corner_positions)));
+    corners->factor.compute(
+        Eigen::SparseMatrix<double>(assemble_stiffness(body.mesh, body.materials, linear, corner_positions)));
     if (corners->factor.info() == Eigen::Success) corners_ = corners;
 }
 

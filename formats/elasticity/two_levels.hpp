@@ -14,11 +14,11 @@ namespace palpate::elasticity {
 /// Free corner nodes beyond which no factor is made: one of 20 000 takes some 15 s and 300 MB.
 inline constexpr std::int32_t most_factorised_corners = 20000;
 
-/// Preconditioner of conjugate gradients on the stiffness K: z = D^-1 r + T A^-1 Tᵀ r, D the diagonal of K. Of
-/// quadratic elements A is the stiffness of the linear ones between the same corners and T takes a middle node's
-/// displacement halfway between those of its edge's ends, so that A = Tᵀ K T; of linear ones the second part is
-/// left out. It is for Eigen::ConjugateGradient, whose names it has. Source: Yserentant, "On the multi-level
-/// splitting of finite element spaces", Numer. Math. 49 (1986).
+/// Preconditioner of conjugate gradients on the stiffness K: z = D^-1 r + T A^-1 Tᵀ r, D the diagonal of K.
+/// Of quadratic elements A is the stiffness of the linear ones between the same corners and T takes a middle
+/// node's displacement halfway between those of its edge's ends, so that A = Tᵀ K T; of linear ones the
+/// second part is left out. It is for Eigen::ConjugateGradient, whose names it has. Source: Yserentant, "On
+/// the multi-level splitting of finite element spaces", Numer. Math. 49 (1986).
 class TwoLevels {
   public:
     /// Adds the second part for a body of quadratic elements, whose middle nodes `discretisation` numbers;

@@ -24,8 +24,8 @@ struct SampledColumns {
 /// Picks contact degrees of freedom for `columns` columns; the same for the same seed.
 std::vector<Eigen::Index> sampled_dofs(const DeformableBody& body, std::int32_t columns, std::uint64_t seed);
 
-/// Worst difference of a stored column, one of `dofs`, to the same one solved again (3m x |dofs|), relative to
-/// its largest entry.
+/// Worst difference of a stored column, one of `dofs`, to the same one solved again (3m x |dofs|), relative
+/// to its largest entry.
 double worst_column_error(const SurfaceCompliance& compliance, const std::vector<Eigen::Index>& dofs,
                           const Eigen::MatrixXd& solved);
 

@@ -122,8 +122,9 @@ Trial tried(const DeformableBody& body, const SurfaceSolver& solver, const Surfa
         std::vector<ContactLoad> newtons;
         for (const Index dof : dofs)
             newtons.push_back({{static_cast<std::int32_t>(dof / 3), Eigen::Vector3f::Unit(dof % 3)}});
-        trial.worst_error = std::max(trial.worst_error, worst_column_error(compliance, dofs,
-                                                         solver.displacements(newtons).transpose()));
+        trial.worst_error =
+            std::max(trial.worst_error,
+                     worst_column_error(compliance, dofs, solver.displacements(newtons).transpose()));
     }
     return trial;
 }
@@ -193,8 +194,9 @@ HierarchicalCompliance condense_hierarchically(const DeformableBody& body, doubl
     // Blocks are truncated to a part of the accuracy, because near a contact errors of neighbouring blocks
     // add up; a second attempt is rarely needed.
     constexpr double share = 0.8, second_share = 0.7;
-    constexpr double margin = 0.9;    // certificate and verify solve for the same loads in another order
-    constexpr double definite = 0.1;  // what pulls where it is pressed is off by far more than its errors tell
+    constexpr double margin = 0.9;  // certificate and verify solve for the same loads in another order
+    constexpr double definite =
+        0.1;  // what pulls where it is pressed is off by far more than its errors tell
     const SurfaceSolver solver = surface_solver(body, progress);
     const ComplianceRows rows = [&](std::span<const std::int32_t> nodes) { return solver.rows(nodes); };
     double tolerance = share * accuracy;
