@@ -9,6 +9,7 @@
 
 #include "formats/elasticity/discretisation.hpp"
 #include "formats/elasticity/stiffness.hpp"
+#include "formats/elasticity/two_levels.hpp"
 #include "formats/model/errors.hpp"
 
 namespace palpate::elasticity {
@@ -17,7 +18,7 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 using Stiffness = Eigen::SparseMatrix<double>;
-using Gradients = Eigen::ConjugateGradient<Stiffness, Eigen::Lower>;
+using Gradients = Eigen::ConjugateGradient<Stiffness, Eigen::Lower, TwoLevels>;
 
 // How many random loads a compliance is asked, and how far they are solved, as a part of the residual.
 struct Question {
@@ -55,6 +56,8 @@ class MeshAnswers {
         for (const std::int32_t node : body.contact_nodes) rows_.push_back(3 * Index{positions[node]});
         stiffness_ = assemble_stiffness(body.mesh, body.materials, discretisation, positions);
         gradients_.setMaxIterations(most_iterations);
+        if (body.element_order == ElementOrder::quadratic)
+            gradients_.preconditioner().add_corners(body, discretisation, positions);
         gradients_.compute(stiffness_);
     }
 

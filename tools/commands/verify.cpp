@@ -28,8 +28,6 @@ using Json = nlohmann::ordered_json;
 
 // Round-off of float32 in what is stored and of another order of sums in what is solved again.
 constexpr double feel_limit = 1e-5;
-// Other columns than the certificate's own.
-constexpr std::uint64_t verify_seed = 90210;
 
 // The checks made so far, as the rows of a table.
 class Checks {
@@ -89,7 +87,7 @@ void check_mechanics(Checks& checks, const DeformableBody& body, std::int32_t co
         checks.add(body.name, what, error <= limit, error, fmt::format("at most {:g}", limit));
     };
     try {
-        const Certificate fresh = recertify(body, columns, loads, verify_seed);
+        const Certificate fresh = recertify(body, columns, loads, recheck_seed);
         checks.add(body.name, "stiffness is positive definite", true, fresh.free_dofs,
                    "free degrees of freedom");
         checks.add(body.name, "compliance is symmetric, max |C - C^T| / max |C|", fresh.asymmetry == 0,
@@ -103,7 +101,7 @@ void check_mechanics(Checks& checks, const DeformableBody& body, std::int32_t co
         add_error(fmt::format("residual of {} re-solved columns", columns), fresh.residual);
         add_error(fmt::format("displacements under {} re-solved contact loads", loads), fresh.load_error);
         add_error("the same, at the loaded nodes", fresh.contact_error);
-        const auto answer = elasticity::worst_answer(body, verify_seed);
+        const auto answer = elasticity::worst_answer(body, recheck_seed);
         checks.add(body.name, "what touch asks of C: worst contact node, part of its displacement",
                    answer && answer->part() <= elasticity::most_off, answer ? Json(answer->part()) : Json(),
                    fmt::format("at most {:g}", elasticity::most_off));

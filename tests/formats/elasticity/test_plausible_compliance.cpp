@@ -72,6 +72,14 @@ TEST(PlausibleCompliance, that_answers_with_no_number_is_off_without_bound) {
     EXPECT_EQ(elasticity::worst_answer(body, 3)->part(), std::numeric_limits<double>::infinity());
 }
 
+// Quadratic elements are solved on two levels; the cube's compliance is of linear ones, which are stiffer.
+TEST(PlausibleCompliance, of_linear_elements_is_refused_where_quadratic_ones_are_said) {
+    DeformableBody body = cube();
+    body.element_order = ElementOrder::quadratic;
+    for (std::uint64_t seed = 0; seed < draws; ++seed)
+        EXPECT_THROW(require_answers_of_mesh(body, "forged", seed), InvalidInput) << seed;
+}
+
 struct Forgery {
     const char* name;
     std::function<DeformableBody()> make;

@@ -24,14 +24,6 @@ Index dof_count(const DeformableBody& body) {
     return static_cast<Index>(3 * body.contact_nodes.size());
 }
 
-std::vector<Index> random_dofs(Index size, std::int32_t count, std::uint64_t seed) {
-    std::mt19937_64 random(seed);
-    std::vector<Index> dofs;
-    for (std::int32_t c = 0; c < count; ++c)
-        dofs.push_back(static_cast<Index>(random() % static_cast<std::uint64_t>(size)));
-    return dofs;
-}
-
 // Solutions of the body's stiffness by a factorisation that the condensation has no part in.
 class Judge {
   public:
@@ -158,13 +150,8 @@ double reciprocity_of(const SurfaceCompliance& compliance, std::uint64_t seed) {
 }
 
 double smallest_eigenvalue_on(const SurfaceCompliance& compliance, const ContactLoad& load) {
-    const auto size = static_cast<Index>(load.size());
-    MatrixXd patch(3 * size, 3 * size);
-    for (Index i = 0; i < size; ++i)
-        for (Index j = 0; j < size; ++j)
-            patch.block<3, 3>(3 * i, 3 * j) =
-                compliance_block(compliance, load[i].node, load[j].node).cast<double>();
-    return Eigen::SelfAdjointEigenSolver<MatrixXd>(patch, Eigen::EigenvaluesOnly).eigenvalues()[0];
+    return Eigen::SelfAdjointEigenSolver<MatrixXd>(compliance_on(compliance, load), Eigen::EigenvaluesOnly)
+        .eigenvalues()[0];
 }
 
 void try_loads(const DeformableBody& body, const Judge& judge, std::int32_t count, std::uint64_t seed,
@@ -195,7 +182,7 @@ void try_loads(const DeformableBody& body, const Judge& judge, std::int32_t coun
 MatrixXd certify_stored(const DeformableBody& body, const Judge& judge, const std::vector<Index>& dofs,
                         std::int32_t loads, std::uint64_t seed, Certificate& certificate) {
     const MatrixXd solved = judge.columns(dofs, dof_count(body));
-    certificate.residual = worst_residual(stored_columns(body.compliance, dofs), solved);
+    certificate.residual = worst_column_error(body.compliance, dofs, solved);
     certificate.asymmetry = asymmetry_of(body.compliance);
     certificate.reciprocity = reciprocity_of(body.compliance, seed);
     certificate.sampled_columns = static_cast<std::int32_t>(dofs.size());
@@ -206,8 +193,21 @@ MatrixXd certify_stored(const DeformableBody& body, const Judge& judge, const st
 
 }  // namespace
 
+std::vector<Index> sampled_dofs(const DeformableBody& body, std::int32_t columns, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    std::vector<Index> dofs;
+    for (std::int32_t c = 0; c < columns; ++c)
+        dofs.push_back(static_cast<Index>(random() % static_cast<std::uint64_t>(dof_count(body))));
+    return dofs;
+}
+
+double worst_column_error(const SurfaceCompliance& compliance, const std::vector<Index>& dofs,
+                          const MatrixXd& solved) {
+    return worst_residual(stored_columns(compliance, dofs), solved);
+}
+
 SampledColumns certificate_sample(const DeformableBody& body) {
-    return {random_dofs(dof_count(body), certificate_columns, certificate_seed), {}};
+    return {sampled_dofs(body, certificate_columns, certificate_seed), {}};
 }
 
 Certificate certify(const DeformableBody& body, const SampledColumns& columns) {
@@ -232,7 +232,7 @@ Certificate recertify(const DeformableBody& body, std::int32_t columns, std::int
     const Index size = dof_count(body);
     {
         const Judge judge(body);
-        certify_stored(body, judge, random_dofs(size, columns, seed), loads, seed, certificate);
+        certify_stored(body, judge, sampled_dofs(body, columns, seed), loads, seed, certificate);
     }
     certificate.largest_eigenvalue =
         largest_eigenvalue(size, [&](VectorXd& v) { v = product(body.compliance, v); });

@@ -12,12 +12,22 @@ namespace palpate::fem {
 inline constexpr std::int32_t certificate_columns = 16;
 inline constexpr std::int32_t certificate_loads = 1000;
 inline constexpr std::uint64_t certificate_seed = 20261;
+/// Picks other columns and loads for verify; condense_hierarchically() tries both seeds' before.
+inline constexpr std::uint64_t recheck_seed = 90210;
 
 /// Some columns of C.
 struct SampledColumns {
     std::vector<Eigen::Index> dofs;  ///< contact degrees of freedom
     Eigen::MatrixXd values;          ///< 3m x dofs.size(), mm/N, in double; empty where C was never in double
 };
+
+/// Picks contact degrees of freedom for `columns` columns; the same for the same seed.
+std::vector<Eigen::Index> sampled_dofs(const DeformableBody& body, std::int32_t columns, std::uint64_t seed);
+
+/// Worst difference of a stored column, one of `dofs`, to the same one solved again (3m x |dofs|), relative
+/// to its largest entry.
+double worst_column_error(const SurfaceCompliance& compliance, const std::vector<Eigen::Index>& dofs,
+                          const Eigen::MatrixXd& solved);
 
 /// Picks the columns of a certificate; `values` is left empty.
 SampledColumns certificate_sample(const DeformableBody& body);

@@ -91,4 +91,14 @@ LoadError error_of(const SurfaceCompliance& compliance, const ContactLoad& load,
     return {difference.norm() / exact.norm(), worst / largest};
 }
 
+Eigen::MatrixXd compliance_on(const SurfaceCompliance& compliance, const ContactLoad& load) {
+    const auto size = static_cast<Eigen::Index>(load.size());
+    Eigen::MatrixXd patch(3 * size, 3 * size);
+    for (Eigen::Index i = 0; i < size; ++i)
+        for (Eigen::Index j = 0; j < size; ++j)
+            patch.block<3, 3>(3 * i, 3 * j) =
+                compliance_block(compliance, load[i].node, load[j].node).cast<double>();
+    return patch;
+}
+
 }  // namespace palpate::fem

@@ -29,4 +29,7 @@ struct LoadError {
 LoadError error_of(const SurfaceCompliance& compliance, const ContactLoad& load,
                    const Eigen::VectorXd& exact);
 
+/// The part of a compliance that joins a load's nodes, 3|load| x 3|load|, mm/N.
+Eigen::MatrixXd compliance_on(const SurfaceCompliance& compliance, const ContactLoad& load);
+
 }  // namespace palpate::fem

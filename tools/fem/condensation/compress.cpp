@@ -26,6 +26,8 @@ constexpr std::int32_t largest_leaf = 32;  // nodes; halves and doubles of it to
 // Of the mean: a node behind held ones answers to no force but its own, and has this scale.
 constexpr double least_scale = 1e-4;
 
+// Factors are stored in steps of their columns' largest entries.
+constexpr double steps = 32767;
 // A block while it is made: split, of low rank, or dense.
 struct Part {
     std::vector<Part> parts;
@@ -141,8 +143,8 @@ class Compressor {
         entry_error_ = result_.accuracy / std::sqrt(sum / result_.node_count * (result_.depth + 1));
     }
 
-    // Error that one step, truncation or joining, may add to a block; it takes part in no more than depth
-    // + 1.
+    // Error that one step, truncation or joining, may add to a block, which takes part in no more than depth
+    // + 1; and then its rounding.
     LowRankTolerance tolerance(std::int32_t level, std::int32_t i, std::int32_t j) const {
         const auto dofs = [&](std::int32_t c) {
             return static_cast<double>(3 * (result_.begin(level, c + 1) - result_.begin(level, c)));
@@ -167,12 +169,19 @@ class Compressor {
         whole.parts.clear();
     }
 
-    // Takes the scales of a cluster's nodes back from a factor's rows.
-    MatrixXd unscaled(MatrixXd factor, std::int32_t level, std::int32_t cluster) const {
+    // Multiplies a factor's rows by what each of a cluster's nodes has.
+    MatrixXd multiplied(const std::vector<Eigen::Matrix3d>& of_nodes, MatrixXd factor, std::int32_t level,
+                        std::int32_t cluster) const {
         const std::int32_t first = result_.begin(level, cluster);
         for (Index node = 0; node < factor.rows() / 3; ++node)
-            factor.middleRows<3>(3 * node) = MatrixXd(scales_[first + node] * factor.middleRows<3>(3 * node));
+            factor.middleRows<3>(3 * node) =
+                MatrixXd(of_nodes[first + node] * factor.middleRows<3>(3 * node));
         return factor;
+    }
+
+    // Takes the scales of a cluster's nodes back from a factor's rows.
+    MatrixXd unscaled(MatrixXd factor, std::int32_t level, std::int32_t cluster) const {
+        return multiplied(scales_, std::move(factor), level, cluster);
     }
 
     void store(const Part& part, std::size_t index, std::int32_t level, std::int32_t i, std::int32_t j) {
@@ -196,22 +205,75 @@ class Compressor {
                     values_.push_back(static_cast<float>(dense(row, column)));
             return;
         }
-        const Index rank = part.low_rank->rank(), padded = (rank + 3) / 4 * 4;
+        const LowRank low_rank = fit_for_rounding(*part.low_rank, level, i, j);
+        const Index rank = low_rank.rank(), padded = (rank + 3) / 4 * 4;
         block.rank = static_cast<std::int32_t>(padded);
         block.factors = static_cast<std::int64_t>(factors_.size());
         Eigen::VectorXd scales = Eigen::VectorXd::Zero(padded);
         scales.head(rank).setOnes();
-        append_factor(unscaled(part.low_rank->u, level, i), scales);
-        append_factor(unscaled(part.low_rank->v, level, j), scales);
+        append_factor(low_rank.u, scales);
+        append_factor(low_rank.v, scales);
         for (const double scale : scales) values_.push_back(static_cast<float>(scale));
+    }
+
+    // The block with its scales taken back, so that its factors may be rounded. Steps of a column's largest
+    // entry are too coarse for its small ones where two soft nodes answer to each other, and to nothing else
+    // as strongly, across two clusters. What rounding leaves of such columns is put beside them:
+    // u vᵀ = [u] [v]ᵀ + (u - [u]) [v]ᵀ + [u] (v - [v])ᵀ, but for the product of both rests.
+    LowRank fit_for_rounding(const LowRank& scaled, std::int32_t level, std::int32_t i,
+                             std::int32_t j) const {
+        const LowRankTolerance limit = tolerance(level, i, j);
+        const LowRank whole{unscaled(scaled.u, level, i), unscaled(scaled.v, level, j)};
+        const LowRank rounded{in_steps(whole.u), in_steps(whole.v)};
+        const MatrixXd rest_u = whole.u - rounded.u, rest_v = whole.v - rounded.v;
+        const auto coarse = [&](const MatrixXd& rest, std::int32_t cluster, const MatrixXd& other,
+                                double most) {
+            return columns_to_mend(
+                multiplied(inverse_scales_, rest, level, cluster) * other.colwise().norm().asDiagonal(),
+                most);
+        };
+        std::vector<Index> of_u = coarse(rest_u, i, scaled.v, limit.row),
+                           of_v = coarse(rest_v, j, scaled.u, limit.column);
+        const auto room = static_cast<std::size_t>(HierarchicalCompliance::max_rank - whole.rank());
+        of_u.resize(std::min(of_u.size(), room));
+        of_v.resize(std::min(of_v.size(), room - of_u.size()));
+        LowRank fit{MatrixXd(whole.u.rows(), whole.rank() + std::ssize(of_u) + std::ssize(of_v)), {}};
+        fit.v.resize(whole.v.rows(), fit.u.cols());
+        fit.u << whole.u, rest_u(Eigen::all, of_u), rounded.u(Eigen::all, of_v);
+        fit.v << whole.v, rounded.v(Eigen::all, of_u), rest_v(Eigen::all, of_v);
+        return fit;
+    }
+
+    // The columns without which every row's Euclidean norm is within the limit, the worst row's largest
+    // entries first.
+    static std::vector<Index> columns_to_mend(MatrixXd errors, double limit) {
+        std::vector<Index> columns;
+        for (;;) {
+            Index row = 0, column = 0;
+            if (errors.size() == 0 || errors.rowwise().squaredNorm().maxCoeff(&row) <= limit * limit)
+                return columns;
+            errors.row(row).cwiseAbs().maxCoeff(&column);
+            errors.col(column).setZero();
+            columns.push_back(column);
+        }
+    }
+
+    static Eigen::RowVectorXd largest_of(const MatrixXd& factor) {
+        return factor.size() > 0 ? Eigen::RowVectorXd(factor.cwiseAbs().colwise().maxCoeff())
+                                 : Eigen::RowVectorXd::Zero(factor.cols());
+    }
+
+    static MatrixXd in_steps(MatrixXd factor) {
+        const Eigen::RowVectorXd largest = largest_of(factor);
+        for (Index k = 0; k < factor.cols(); ++k)
+            if (largest[k] > 0)
+                factor.col(k) = (factor.col(k) / largest[k] * steps).array().round() * (largest[k] / steps);
+        return factor;
     }
 
     // Rounds each column to 16 bits of its largest entry and multiplies its scale accordingly.
     void append_factor(const MatrixXd& factor, Eigen::VectorXd& scales) {
-        constexpr double steps = 32767;
-        const Eigen::RowVectorXd largest = factor.cols() > 0 && factor.rows() > 0
-                                               ? Eigen::RowVectorXd(factor.cwiseAbs().colwise().maxCoeff())
-                                               : Eigen::RowVectorXd::Zero(factor.cols());
+        const Eigen::RowVectorXd largest = largest_of(factor);
         for (Index row = 0; row < factor.rows(); ++row)
             for (Index k = 0; k < scales.size(); ++k)
                 factors_.push_back(
