@@ -21,8 +21,9 @@ std::optional<FieldError> relaxation_error(std::span<const RelaxationTerm> terms
         sum += term.share;
     }
     if (sum <= most_relaxation) return std::nullopt;
-    return FieldError{"share", "is " + std::to_string(sum) + " in all terms together",
-                      std::to_string(most_relaxation) + " at most"};
+    std::array<char, 32> most{};
+    std::snprintf(most.data(), most.size(), "%g at most", most_relaxation);
+    return FieldError{"share", "is " + std::to_string(sum) + " in all terms together", most.data()};
 }
 
 std::string relaxation_text(std::span<const RelaxationTerm> terms) {
