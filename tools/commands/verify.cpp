@@ -122,6 +122,18 @@ void check_writing(Checks& checks, const std::filesystem::path& asset, const Cas
                unlike.empty() ? "" : unlike.front(), "");
 }
 
+// The nodes of the surface, and they alone, have something beyond them.
+void check_outside(Checks& checks, const DeformableBody& body) {
+    const std::vector<std::int32_t>& labels = body.mesh.outside_labels;
+    std::vector<bool> is_outside(labels.size(), false);
+    if (!labels.empty())
+        for (const std::int32_t node : body.boundary.nodes) is_outside[static_cast<std::size_t>(node)] = true;
+    std::int64_t wrong = 0;
+    for (std::size_t node = 0; node < labels.size(); ++node) wrong += (labels[node] >= 0) != is_outside[node];
+    checks.add(body.name, "what lies beyond is told of surface nodes alone, nodes otherwise", wrong == 0,
+               wrong, "none");
+}
+
 void check_sides(Checks& checks, const RigidBody& body) {
     std::string wrong;
     try {
@@ -153,11 +165,14 @@ Json verify(const std::filesystem::path& asset, const std::vector<std::filesyste
     const auto shown = asset::vtk_grid_difference(asset, patient_case);
     checks.add("asset", "what ParaView shows are the bodies", !shown, shown.value_or(""), "");
     check_writing(checks, asset, patient_case);
+    checks.add("asset", "provenance is JSON or empty",
+               patient_case.provenance.empty() || Json::accept(patient_case.provenance), "", "");
     for (const RigidBody& body : patient_case.rigid_bodies) check_sides(checks, body);
     for (const DeformableBody& body : patient_case.deformable_bodies) {
         session.progress.step("solve " + body.name + " again", 0.5);
         checks.add(body.name, "compliance, mesh, material and boundary belong together", true,
                    body.contact_nodes.size(), "contact nodes");
+        check_outside(checks, body);
         check_mechanics(checks, body, columns, loads, session.threads);
     }
     if (!checks.failed().empty())

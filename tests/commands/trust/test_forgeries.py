@@ -56,15 +56,21 @@ def row_scaled(path, row, factor):
     return value(path, change)
 
 
-def without_last(path):
-    """A shorter dataset in the same place."""
+def resized(path, change):
+    """A dataset of another length in the same place."""
     def forge(file):
         values, attributes = file[path][...], dict(file[path].attrs)
         del file[path]
-        made = file.create_dataset(path, data=values[:-1])
+        made = file.create_dataset(path, data=change(values))
         for name, text in attributes.items():
             made.attrs[name] = text
     return forge
+
+
+def replace_text(file, path, text):
+    """Another text of the same length."""
+    length = file[path].dtype.itemsize
+    file[path][...] = numpy.array(text.encode().ljust(length), file[path].dtype)
 
 
 SETTINGS = ("tool_radius", "coupling_stiffness", "max_force", "max_force_rate")
@@ -98,7 +104,7 @@ PHYSICS = {
     "contact node out of range": entry(SOFT + "contact_nodes", -1, 10**6),
     "contact node negative": entry(SOFT + "contact_nodes", 0, -1),
     "contact nodes swapped": value(SOFT + "contact_nodes", lambda n: numpy.r_[n[1], n[0], n[2:]]),
-    "contact nodes fewer": without_last(SOFT + "contact_nodes"),
+    "contact nodes fewer": resized(SOFT + "contact_nodes", lambda nodes: nodes[:-1]),
     "surface triangle out of range": entry(SOFT + "surface_triangles", 0, LAST),
     "surface triangle negative": entry(SOFT + "surface_triangles", 0, -7),
     "surface turned inside out": value(SOFT + "surface_triangles", lambda t: t[:, ::-1]),
@@ -218,6 +224,8 @@ CLAIMS = {
     "positions in metres": attribute(SOFT + "rest_positions", "unit", lambda _: b"m"),
     "boxes in metres": attribute(HARD + "obb_tree/centers", "unit", lambda _: b"m"),
     "a picture in metres": attribute("VTKHDF/Points", "unit", lambda _: b"m"),
+    "nothing beyond the surface": lambda file: resized(SOFT + "outside_labels", lambda l: numpy.full(len(file[SOFT + "rest_positions"]), -1, l.dtype))(file),
+    "made by no JSON": lambda file: replace_text(file, "palpate/provenance", "{" * 9),
     "a picture of another version": attribute("VTKHDF", "Version", lambda _: [9, 9]),
     "another picture": entry("VTKHDF/Points", 0, 5.0),
     "another picture's regions": value("VTKHDF/CellData/region", lambda r: r * 0 + 1),
