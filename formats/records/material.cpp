@@ -20,7 +20,8 @@ std::optional<FieldError> relaxation_error(std::span<const RelaxationTerm> terms
         last = term.time;
         sum += term.share;
     }
-    if (sum <= most_relaxation) return std::nullopt;
+    constexpr double rounding = 1e-12;  // of a sum
+    if (sum <= most_relaxation + rounding) return std::nullopt;
     std::array<char, 32> most{};
     std::snprintf(most.data(), most.size(), "%g at most", most_relaxation);
     return FieldError{"share", "is " + std::to_string(sum) + " in all terms together", most.data()};

@@ -38,7 +38,7 @@ inline constexpr std::tuple relaxation_fields{
           Range{.least = 1e-3, .most = 1e6})};
 
 /// Part of Young's modulus that all terms of a material may take together.
-inline constexpr double most_relaxation = 0.99;
+inline constexpr double most_relaxation = 0.9999;
 
 /// Most terms of one material.
 inline constexpr std::size_t most_relaxation_terms = 4;

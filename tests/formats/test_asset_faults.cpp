@@ -109,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(
               [](auto& b) {
                   b.relaxation = {{2, {0.5, 1}}, {2, {0.5, 2}}};
               },
-              "in all terms together (expected 0.99 at most)"},
+              "in all terms together (expected 0.9999 at most)"},
         Fault{"relaxation_times_equal",
               [](auto& b) {
                   b.relaxation = {{2, {0.5, 1}}, {2, {0.2, 1}}};

@@ -119,6 +119,9 @@ TEST(Records, a_relaxation_that_makes_no_sense_is_named) {
     EXPECT_EQ(name({{1, 1}}), "share is 1.000000");
     EXPECT_EQ(name({{std::nan(""), 1}}), "share is nan");
     EXPECT_EQ(name({{0.5, 0}}), "time is 0.000000 s");
+    EXPECT_EQ(name({{0.5, 1e-9}}), "time is 0.000000 s");
+    EXPECT_EQ(name({{0.5, 1e300}}).substr(0, 9), "time is 1");
+    EXPECT_EQ(name({{0.5, 1}, {0.4999999, 2}}), "share is 1.000000 in all terms together");
     EXPECT_EQ(name({{0.5, 1}, {0.25, 1}}), "time is 1.000000 s after 1.000000");
     EXPECT_EQ(name({{0.5, 1}, {0.5, 2}}), "share is 1.000000 in all terms together");
     EXPECT_EQ(name({{0.1, 1}, {0.1, 2}, {0.1, 3}, {0.1, 4}, {0.1, 5}}), "relaxation has 5 terms");

@@ -40,7 +40,8 @@ TEST(TomlFile, that_is_none_is_refused_with_where_it_goes_wrong_and_what_to_do) 
     };
     EXPECT_EQ(refusal("gone.toml"), (scratch / "gone.toml").string() + ": cannot be read; check the path");
     std::filesystem::create_directory(scratch / "folder");
-    EXPECT_EQ(refusal("folder"), (scratch / "folder").string() + ": is no file; check the path");
+    EXPECT_EQ(refusal("folder"),
+              (scratch / "folder").string() + ": is a folder (expected a file); check the path");
     std::ofstream(scratch / "large.toml") << std::string((1 << 20) + 1, '#');
     EXPECT_THAT(refusal("large.toml"),
                 HasSubstr("large.toml: has 1048577 bytes (expected 1048576 at most); check that"));

@@ -29,9 +29,9 @@ TEST(SmallFile, is_one_of_no_more_bytes_than_asked_or_absent) {
               (scratch / "four").string() +
                   ": has 4 bytes (expected 3 at most); check that it is the file you mean");
     EXPECT_EQ(sample::refusal([&] { require_small_file(scratch.path(), 4); }),
-              scratch.path().string() + ": is no file; check the path");
+              scratch.path().string() + ": is a folder (expected a file); check the path");
     EXPECT_EQ(sample::refusal([] { require_small_file("/dev/zero", 4); }),
-              "/dev/zero: is no file; check the path");
+              "/dev/zero: is a device (expected a file); check the path");
 }
 
 }  // namespace

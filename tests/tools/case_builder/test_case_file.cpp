@@ -119,7 +119,7 @@ TEST(CaseFile, a_region_may_relax_by_a_series_that_makes_sense) {
              {"{ share = 0.3, time = 0.5 }", "time_s"},
              {"{ share = 0.3, time_s = 1, tau = 2 }", "tau"},
              {"{ share = 1.2, time_s = 1 }", "between 0 and 1"},
-             {"{ share = 0.6, time_s = 1 }, { share = 0.5, time_s = 2 }", "0.99 at most"},
+             {"{ share = 0.6, time_s = 1 }, { share = 0.5, time_s = 2 }", "0.9999 at most"},
              {"{ share = 0.2, time_s = 1e-300 }", "0.001 to 1e+06"},
              {"{ share = 0.2, time_s = 2 }, { share = 0.2, time_s = 1 }", "ascending times"}}) {
         const std::string found = message(with(text));
