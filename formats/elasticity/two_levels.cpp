@@ -14,7 +14,7 @@ Eigen::SparseMatrix<double> corners_to_all(const Discretisation& discretisation,
                                            std::span<const std::int32_t> positions,
                                            std::span<const std::int32_t> corner_positions) {
     std::vector<Eigen::Triplet<double>> entries;
-    std::int32_t nodes = 0, corners = 0;
+    Eigen::Index nodes = 0, corners = 0;
     const auto add = [&](std::int32_t position, std::int32_t corner, double part) {
         if (position < 0 || corner < 0) return;
         for (std::int32_t axis = 0; axis < 3; ++axis)

@@ -29,7 +29,7 @@ class TwoLevels {
                      std::span<const std::int32_t> positions);
 
     template <typename Matrix>
-    TwoLevels& analyzePattern(const Matrix&) {
+    TwoLevels& analyzePattern(const Matrix&) {  // NOLINT(readability-identifier-naming): what Eigen calls
         return *this;
     }
     /// Takes the diagonal of K.

@@ -20,7 +20,7 @@ EnclosedRegions::EnclosedRegions(const DeformableBody& body, const Eigen::Vector
     const std::array<Rgb, 3> colours{Rgb(240, 228, 66), Rgb(204, 121, 167), Rgb(0, 158, 115)};
     for (const Label& label : enclosed_regions(body.mesh)) {
         const BoundarySurface outline = region_surface(body.mesh, label.value);
-        const Rgb own = colours[(first + regions_.size()) % colours.size()];
+        const Rgb& own = colours[(first + regions_.size()) % colours.size()];
         MovingSurface surface(outline.surface, toward_eye);
         auto drawn = actor(surface.data(), chosen_colour(body, label.value).value_or(own));
         drawn->GetProperty()->BackfaceCullingOn();
