@@ -89,8 +89,8 @@ Case read_case(const Hdf5File& file) {
 }
 
 std::optional<std::string> signer_of(const Hdf5File& file) {
-    const bool is_signed_by_key = file.has_attribute("/palpate", "public_key");
-    if (!file.has_attribute("/palpate", "signature") && !is_signed_by_key) return std::nullopt;
+    if (!file.has_attribute("/palpate", "signature") && !file.has_attribute("/palpate", "public_key"))
+        return std::nullopt;
     const Signature signature{file.text_attribute("/palpate", "signature"),
                               file.text_attribute("/palpate", "public_key")};
     if (!is_signed(file.text_attribute("/palpate", "manifest_sha256"), signature))

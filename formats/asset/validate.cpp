@@ -2,17 +2,15 @@
 #include "formats/asset/validate.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <iterator>
-#include <optional>
 #include <span>
-#include <string_view>
 #include <utility>
 
 #include "formats/model/errors.hpp"
+#include "formats/model/reading/utf8.hpp"
 
 namespace palpate::asset {
 namespace {
@@ -62,41 +60,6 @@ void check_labels(const std::vector<Label>& labels, const std::string& where) {
 
 bool has_label(const std::vector<Label>& labels, std::int32_t value) {
     return std::ranges::binary_search(labels, value, {}, &Label::value);
-}
-
-// The character that starts a text of UTF-8, which is made shorter by it; none if there is no such.
-std::optional<char32_t> take_character(std::string_view& text) {
-    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-    const auto length = static_cast<std::size_t>(std::countl_one(byte(0)));
-    if (length == 0) {
-        const char32_t character = byte(0);
-        text.remove_prefix(1);
-        return character;
-    }
-    if (length == 1 || length > 4 || length > text.size()) return std::nullopt;
-    char32_t character = byte(0) & (0x7FU >> length);
-    for (std::size_t i = 1; i < length; ++i) {
-        if (byte(i) >> 6 != 2) return std::nullopt;
-        character = (character << 6) | (byte(i) & 0x3FU);
-    }
-    constexpr std::array<char32_t, 5> least{0, 0, 0x80, 0x800, 0x10000};
-    const bool surrogate = character >= 0xD800 && character <= 0xDFFF;
-    if (character < least[length] || character > 0x10FFFF || surrogate) return std::nullopt;
-    text.remove_prefix(length);
-    return character;
-}
-
-bool is_printable(std::string_view text) {
-    while (!text.empty()) {
-        const auto character = take_character(text);
-        if (!character) return false;
-        const char32_t c = *character;
-        const bool control = c < 0x20 || (c >= 0x7F && c <= 0x9F);
-        const bool turns_writing =
-            c == 0x200E || c == 0x200F || (c >= 0x202A && c <= 0x202E) || (c >= 0x2066 && c <= 0x2069);
-        if (control || turns_writing) return false;
-    }
-    return true;
 }
 
 void check_mesh(const TetMesh& mesh, const std::string& where) {

@@ -21,6 +21,14 @@ std::vector<Label> enclosed_regions(const TetMesh& mesh) {
     return enclosed;
 }
 
+BoundarySurface surface_of_region(const TetMesh& mesh, std::int32_t region) {
+    TetMesh part;
+    part.rest_positions = mesh.rest_positions;
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+        if (mesh.regions[t] == region) part.tetrahedra.push_back(mesh.tetrahedra[t]);
+    return boundary_surface(part);
+}
+
 std::vector<std::int32_t> nodes_of_region(const TetMesh& mesh, std::int32_t region) {
     std::vector<std::int32_t> nodes;
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "formats/model/errors.hpp"
-#include "formats/model/small_file.hpp"
+#include "formats/model/reading/small_file.hpp"
 #include "formats/stl_file/closed_surface.hpp"
 #include "formats/stl_file/facets.hpp"
 

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "formats/model/errors.hpp"
-#include "formats/model/small_file.hpp"
+#include "formats/model/reading/small_file.hpp"
 
 namespace palpate::toml_file {
 namespace {

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "formats/asset/hdf5/digest.hpp"
-#include "formats/model/small_file.hpp"
+#include "formats/model/reading/small_file.hpp"
 
 namespace palpate::training {
 namespace {

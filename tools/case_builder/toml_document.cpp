@@ -9,6 +9,7 @@
 
 #include "formats/model/errors.hpp"
 #include "formats/model/label_map.hpp"
+#include "formats/model/reading/utf8.hpp"
 #include "formats/toml_file/parse_file.hpp"
 #include "formats/toml_file/quoted.hpp"
 #include "tools/case_builder/kept_case.hpp"
@@ -65,14 +66,11 @@ toml::table parsed(const Override& override) {
     const auto parse = [&](const std::string& value) {
         return toml::parse(lines + "value = " + value, override.file.string());
     };
+    if (!is_utf8(override.value)) fail(override, "has a value that is no UTF-8", "", "write it as UTF-8");
     try {
         return parse(override.value);
     } catch (const toml::parse_error&) {
-    }
-    try {
         return parse(toml_file::quoted(override.value));
-    } catch (const toml::parse_error&) {
-        fail(override, "has a value that is no UTF-8", "", "write it as UTF-8");
     }
 }
 

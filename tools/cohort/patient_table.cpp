@@ -6,12 +6,12 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "formats/model/errors.hpp"
 #include "formats/model/label_map.hpp"
-#include "formats/model/small_file.hpp"
+#include "formats/model/reading/small_file.hpp"
+#include "formats/model/reading/utf8.hpp"
 #include "formats/toml_file/quoted.hpp"
 
 namespace palpate::cohort {
@@ -36,14 +36,6 @@ std::vector<std::string> cells_of(const std::string& line) {
         cells.push_back(stripped(line.substr(start, end == std::string::npos ? end : end - start)));
     }
     return cells;
-}
-
-bool is_utf8(const std::string& text) {
-    try {
-        return !nlohmann::json(text).dump().empty();
-    } catch (const nlohmann::json::type_error&) {
-        return false;
-    }
 }
 
 // What a row says goes into JSON and TOML, which are UTF-8.

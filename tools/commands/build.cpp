@@ -7,7 +7,7 @@
 #include "formats/asset/asset.hpp"
 #include "formats/asset/hdf5/signature.hpp"
 #include "formats/model/errors.hpp"
-#include "formats/model/small_file.hpp"
+#include "formats/model/reading/small_file.hpp"
 #include "formats/toml_file/quoted.hpp"
 #include "tools/case_builder/case_check.hpp"
 #include "tools/case_builder/cautions.hpp"

@@ -12,7 +12,7 @@
 
 #include "formats/asset/hdf5/digest.hpp"
 #include "formats/model/errors.hpp"
-#include "formats/model/small_file.hpp"
+#include "formats/model/reading/small_file.hpp"
 
 namespace palpate::asset {
 namespace {

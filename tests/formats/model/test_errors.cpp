@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "formats/model/errors.hpp"
-#include "formats/model/small_file.hpp"
+#include "formats/model/reading/small_file.hpp"
 #include "tests/formats/scratch.hpp"
 
 namespace palpate {

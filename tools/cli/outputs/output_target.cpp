@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "formats/model/errors.hpp"
-#include "formats/model/small_file.hpp"
+#include "formats/model/reading/small_file.hpp"
 
 namespace palpate::cli {
 namespace {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "formats/model/errors.hpp"
-#include "formats/model/small_file.hpp"
+#include "formats/model/reading/small_file.hpp"
 #include "tools/imaging/files/label_names.hpp"
 #include "tools/imaging/files/read_image.hpp"
 #include "tools/imaging/files/shallow_json.hpp"

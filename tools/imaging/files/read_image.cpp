@@ -10,6 +10,7 @@
 #include <itkObject.h>
 
 #include "formats/model/errors.hpp"
+#include "formats/model/reading/utf8.hpp"
 
 namespace palpate::imaging {
 namespace {
@@ -39,28 +40,6 @@ std::vector<float> float_values(StoredImage& image) {
             return values;
         },
         image.voxels);
-}
-
-// Well-formed UTF-8 (Unicode 15, table 3-7): no overlong forms, no surrogates, U+10FFFF at most.
-bool is_utf8(std::string_view text) {
-    int expected = 0;
-    unsigned lowest = 0x80, highest = 0xBF;  // of the next continuation
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (expected > 0) {
-            if (byte < lowest || byte > highest) return false;
-            --expected;
-            lowest = 0x80;
-            highest = 0xBF;
-        } else if (byte >= 0xC2 && byte <= 0xF4) {
-            expected = byte >= 0xF0 ? 3 : byte >= 0xE0 ? 2 : 1;
-            lowest = byte == 0xE0 ? 0xA0 : byte == 0xF0 ? 0x90 : 0x80;
-            highest = byte == 0xED ? 0x9F : byte == 0xF4 ? 0x8F : 0xBF;
-        } else if (byte >= 0x80) {
-            return false;
-        }
-    }
-    return expected == 0;
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "formats/model/errors.hpp"
-#include "formats/model/small_file.hpp"
+#include "formats/model/reading/small_file.hpp"
 
 namespace palpate::imaging {
 

@@ -10,7 +10,7 @@
 #include <set>
 
 #include "formats/model/errors.hpp"
-#include "formats/model/small_file.hpp"
+#include "formats/model/reading/small_file.hpp"
 #include "tools/imaging/files/shallow_json.hpp"
 #include "tools/imaging/files/trimmed.hpp"
 

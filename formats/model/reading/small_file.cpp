@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "formats/model/small_file.hpp"
+#include "formats/model/reading/small_file.hpp"
 
 #include <system_error>
 
