@@ -13,25 +13,26 @@ namespace palpate::elasticity {
 
 /// How the inside of a body goes with its surface: no force acts within, so that displacements u_s of all of
 /// the boundary leave K_ii u_i = -K_is u_s. Of a surface that forces displace, u_i is what K u = f has there.
-/// Source: static condensation (Guyan, AIAA J. 3:380, 1965), read backwards.
+/// Source: static condensation (Guyan, AIAA J. 3:380, 1965), read backwards. For one thread.
 class InnerNodes {
   public:
-    /// Assembles and factorises K_ii, the factor in float, as what is drawn is. Throws InvalidInput as
-    /// discretise() and require_sound_materials() do, and if K_ii has no Cholesky factor in single precision.
-    /// Cost: some 0.15 s for 3 500 nodes of linear tetrahedra.
+    /// Assembles the stiffness. Throws InvalidInput as discretise() and require_sound_materials() do.
     explicit InnerNodes(const DeformableBody& body);
 
     /// Returns the displacement of every mesh node, mm, from that of every vertex of the boundary's surface,
     /// mm. Middle nodes of a quadratic body's boundary are taken halfway between those of their ends.
-    /// Unchecked: the number of vertices. Cost: one solve with the factor.
-    std::vector<Eigen::Vector3f> follow(std::span<const Eigen::Vector3f> surface) const;
+    /// Conjugate gradients from where the last call ended, to 1e-6 of the residual or most_steps. Unchecked:
+    /// the number of vertices.
+    std::vector<Eigen::Vector3f> follow(std::span<const Eigen::Vector3f> surface);
+
+    /// Far beyond what tissue takes whose Poisson's ratio is up to 0.499.
+    static constexpr int most_steps = 2000;
 
   private:
-    struct Factor;
-    std::vector<std::int32_t> boundary_nodes_;                 // mesh node of each surface vertex
+    struct Within;
     std::vector<std::array<std::int32_t, 2>> boundary_edges_;  // surface vertices; empty if linear
     std::vector<std::int32_t> positions_;  // of a mesh node among those within; behind them on the boundary
-    std::shared_ptr<const Factor> factor_;
+    std::shared_ptr<Within> within_;
 };
 
 }  // namespace palpate::elasticity

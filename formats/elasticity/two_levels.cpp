@@ -39,10 +39,10 @@ Eigen::SparseMatrix<double> corners_to_all(const Discretisation& discretisation,
 void TwoLevels::add_corners(const DeformableBody& body, const Discretisation& discretisation,
                             std::span<const std::int32_t> positions) {
     const Discretisation linear = discretise(body.mesh, ElementOrder::linear, body.fixed_nodes);
+    if (linear.node_count - linear.fixed_nodes.size() > most_factorised_corners) return;
     const auto corner_positions = number_free_nodes(linear.node_count, linear.fixed_nodes);
     const auto corners = std::make_shared<Corners>();
     corners->to_all = corners_to_all(discretisation, positions, corner_positions);
-    if (corners->to_all.cols() > 3 * Eigen::Index{most_factorised_corners}) return;
     corners->factor.compute(
         Eigen::SparseMatrix<double>(assemble_stiffness(body.mesh, body.materials, linear, corner_positions)));
     if (corners->factor.info() == Eigen::Success) corners_ = corners;

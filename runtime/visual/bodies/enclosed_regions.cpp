@@ -7,7 +7,6 @@
 
 #include "formats/model/regions.hpp"
 #include "runtime/visual/bodies/tissue_colours.hpp"
-#include "runtime/visual/region_surface.hpp"
 
 namespace palpate::visual {
 
@@ -19,7 +18,7 @@ EnclosedRegions::EnclosedRegions(const DeformableBody& body, const Eigen::Vector
     // Yellow, reddish purple, bluish green: told apart by colour-blind people too (Okabe, Ito 2008).
     const std::array<Rgb, 3> colours{Rgb(240, 228, 66), Rgb(204, 121, 167), Rgb(0, 158, 115)};
     for (const Label& label : enclosed_regions(body.mesh)) {
-        const BoundarySurface outline = region_surface(body.mesh, label.value);
+        const BoundarySurface outline = surface_of_region(body.mesh, label.value);
         const Rgb& own = colours[(first + regions_.size()) % colours.size()];
         MovingSurface surface(outline.surface, toward_eye);
         auto drawn = actor(surface.data(), chosen_colour(body, label.value).value_or(own));

@@ -20,7 +20,7 @@ namespace palpate::visual {
 
 /// What a deformable body encloses, such as a tumour: translucent bodies seen through all others, hidden at
 /// first, which go with the body's surface as its tissue does. How far is worked out beside the frames, a
-/// frame or a few later than the surface; what it takes for that is made when they are first shown.
+/// frame or a few later than the surface.
 class EnclosedRegions {
   public:
     /// `body` must outlive it. A region without a colour of its own gets one of three by its number, `first`

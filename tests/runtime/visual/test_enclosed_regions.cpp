@@ -10,7 +10,6 @@
 
 #include "formats/model/regions.hpp"
 #include "runtime/visual/bodies/enclosed_regions.hpp"
-#include "runtime/visual/region_surface.hpp"
 #include "tests/runtime/elastic_cube.hpp"
 
 namespace palpate {
@@ -73,7 +72,7 @@ class EnclosedRegions : public ::testing::Test {
     }
 
     DeformableBody body_ = sample::true_elastic_cube(5);
-    BoundarySurface outline_ = visual::region_surface(body_.mesh, enclosed_regions(body_.mesh).front().value);
+    BoundarySurface outline_ = surface_of_region(body_.mesh, enclosed_regions(body_.mesh).front().value);
 };
 
 TEST_F(EnclosedRegions, go_with_the_tissue_around_them_once_it_is_known_how) {
