@@ -134,6 +134,17 @@ class Pack(AssetCommand):
         self.assertLess(figures["residual of 16 re-solved columns"], 1e-6)
         self.assertEqual({row["status"] for row in result["checks"]}, {"ok"})
 
+    def test_a_rigid_surface_that_verify_would_not_take_is_not_packed(self):
+        points = [(0, 0, 0), (9, 0, 0), (0, 9, 0), (0, 0, 9)]
+        sides = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+        for wrong, triangles in (("3 open edges", sides[:3]), ("4 triangles turned: their piece faced inwards", [side[::-1] for side in sides]),
+                                 ("1 triangles turned to the side of their neighbours", [sides[0][::-1], *sides[1:]])):
+            (self.folder / "given.vtp").write_text(grid("PolyData", points, "Polys", triangles))
+            refused = run(BIN / "palpate-pack", "--name", "case", "--rigid", f"skull={self.folder / 'given.vtp'}", "-o", self.asset)
+            self.assertFails(refused, INVALID, "given.vtp", wrong)
+            (self.folder / "given.vtp").unlink()
+            self.assertNothingLeft()
+
     def test_a_tool_of_another_radius_is_pressed_anew_without_condensing(self):
         feel = {}
         for radius in (1, 4):

@@ -137,9 +137,7 @@ void check_outside(Checks& checks, const DeformableBody& body) {
 void check_sides(Checks& checks, const RigidBody& body) {
     std::string wrong;
     try {
-        const TriangleMesh sound = meshing::repaired_surface(body.surface, body.name);
-        if (sound.triangles != body.surface.triangles || sound.vertices != body.surface.vertices)
-            wrong = "triangles that face inwards, or vertices of no triangle or of two pieces";
+        meshing::require_sound_surface(body.surface, body.name);
     } catch (const InvalidInput& error) {
         wrong = error.what();
     }

@@ -15,6 +15,7 @@
 #include "tools/imaging/files/shallow_json.hpp"
 #include "tools/imaging/voxels/scan_of.hpp"
 #include "tools/meshing/files/mesh_files.hpp"
+#include "tools/meshing/files/surface_repair.hpp"
 #include "tools/obb/build_obb_tree.hpp"
 
 namespace palpate::stages {
@@ -94,6 +95,7 @@ ObbTree tree_of(const BodyFiles& files, const TriangleMesh& surface) {
 
 RigidBody read_rigid(const BodyFiles& files) {
     RigidBody body{files.name, meshing::read_surface(files.body), {}};
+    meshing::require_sound_surface(body.surface, files.body.string());
     body.obb_tree = tree_of(files, body.surface);
     return body;
 }

@@ -222,6 +222,17 @@ TriangleMesh repaired_surface(TriangleMesh surface, const std::string& culprit,
     return surface;
 }
 
+void require_sound_surface(const TriangleMesh& surface, const std::string& culprit) {
+    std::string repairs;
+    repaired_surface(surface, culprit, [&](std::string_view note) {
+        repairs += repairs.empty() ? "" : ", ";
+        repairs += note.substr(culprit.size() + 2);  // behind the culprit's name
+    });
+    if (!repairs.empty())
+        throw InvalidInput({culprit, "needs repair: " + repairs, "closed, all triangles facing outwards",
+                            "mend it by 'palpate surface --surface-file'"});
+}
+
 TriangleMesh joined_vertices(const TriangleMesh& surface) {
     const auto coordinates = [&](std::int32_t v) {
         const Eigen::Vector3d& p = point(surface, v);
