@@ -225,8 +225,7 @@ Json train(const Options& options, cli::Session& session) {
                 {"attempts", lesson.attempts()},
                 {"recorded_by_key", run_keys.recordings()},
                 {"scheme", run.model().method().name},
-                {"large_deformation", run.model().method().can.deforms_far ? patient_case.hyperelastic
-                                                                           : std::vector<std::string>{}}};
+                {"large_deformation", run.deforming_far()}};
     if (const auto rows = run.recorded_rows())
         result["recording"] = {{"rows", *rows}, {"lost_rows", statistics.lost_records}};
     return result;

@@ -56,10 +56,7 @@ void fill_frame(const TrainRun& run, std::span<const TickResult* const> ticks, V
     frame.statuses = run.session.statuses().recent(tick.time);
     frame.recording = run.keys.recording();
     frame.audible = run.keys.sound().on();
-    if (run.session.model().method().can.deforms_far)
-        frame.deforming_far = run.session.patient_case().hyperelastic;
-    else
-        frame.deforming_far.clear();
+    frame.deforming_far = run.session.deforming_far();
     frame.lesson = run.lesson.view(frame.force.norm());
     frame.other_tools.clear();
     for (const TickResult* other : ticks.subspan(1)) frame.other_tools.push_back(other_tool_of(*other));

@@ -52,6 +52,10 @@ class Session {
 
     const Case& patient_case() const noexcept { return case_; }
     const haptics::HapticModel& model() const noexcept { return *model_; }
+    /// Names of the bodies whose tissue is solved for large deformation, with the scheme of now.
+    std::vector<std::string> deforming_far() const {
+        return model_->method().can.deforms_far ? case_.hyperelastic : std::vector<std::string>{};
+    }
     /// To try forces out before the session starts; whoever does resets it.
     haptics::HapticModel& model() noexcept { return *model_; }
 

@@ -10,8 +10,9 @@ using Eigen::Index;
 using Eigen::Vector3f;
 
 constexpr double settled = 1e-4;  // mm: a step shorter than this ends the search
-// A search that another step would move farther has not settled: of the largest displacement, what the
-// surface may be off by beside the true one, and in mm.
+// A search has settled where another step would move tissue by less than that part of the largest
+// displacement, which is what a surface may be off by a third of a second after the hand rests, or by so many
+// mm.
 constexpr double most_missing = 0.05, least_missing = 0.01;
 constexpr int most_steps = 2;  // for an organ of 3 500 nodes three quarters of a period: rest_search.cpp
 // How much of a change of forces is taken, and how that changes where they swing and where they do not.
