@@ -6,17 +6,12 @@ import subprocess
 import time
 import unittest
 
-from trainer_case import TRAIN, TrainerCase, difference, yellow_pixels
+from trainer_case import TRAIN, OpenedTrainer, difference, yellow_pixels
 
 BUTTON_ROW = 690  # pixels from the window's top
 
 
-class Controls(TrainerCase):
-    def open_window(self, *options):
-        process, window = super().open_window(*options)
-        self.leave_start_page(window)
-        return process, window
-
+class Controls(OpenedTrainer):
     def click(self, window, x, y=BUTTON_ROW):
         self.x("xdotool", "mousemove", "--window", window, x, y, "click", 1)
         time.sleep(0.6)

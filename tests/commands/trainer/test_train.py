@@ -11,17 +11,12 @@ import unittest
 import h5py
 import numpy as np
 
-from trainer_case import TRAIN, TrainerCase, difference, is_whole, yellow_pixels
+from trainer_case import TRAIN, OpenedTrainer, difference, is_whole, yellow_pixels
 
 ON_THE_ORGAN = 760, 250  # pixels of the first view
 
 
-class Train(TrainerCase):
-    def open_window(self, *options):
-        process, window = super().open_window(*options)
-        self.leave_start_page(window)
-        return process, window
-
+class Train(OpenedTrainer):
     def run_train(self, *options, environment=None):
         return subprocess.run(
             [TRAIN, *map(str, options)],

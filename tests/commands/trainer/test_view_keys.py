@@ -5,7 +5,7 @@ import unittest
 
 import numpy as np
 
-from trainer_case import TrainerCase
+from trainer_case import OpenedTrainer
 
 ZOOMED = 1.15**4  # times as large: four steps
 STEPPED = 0.02  # of a length on the screen: what a step of 15 % is told from
@@ -29,16 +29,7 @@ def tool(scene):
     return (b > g + 20) & (g > r + 20)
 
 
-class ViewKeys(TrainerCase):
-    def open_window(self):
-        process, window = super().open_window()
-        self.leave_start_page(window)
-        return process, window
-
-    def close(self, process):
-        self.x("xdotool", "key", "q")
-        return self.finish(process)
-
+class ViewKeys(OpenedTrainer):
     def seen(self):
         """How many pixels between texts and buttons are bone, tissue, tool, and where the tool is, pixels from the left."""
         scene = self.scene()[SCENE]

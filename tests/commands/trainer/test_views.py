@@ -4,7 +4,7 @@
 import time
 import unittest
 
-from trainer_case import TrainerCase, pixels
+from trainer_case import OpenedTrainer, pixels
 
 BESIDE_THE_CIRCLE, IN_THE_CIRCLE = (1150, 690), (640, 360)  # of an endoscope that fills 1280x720 pixels
 # Of one in the window's corner: 360 pixels wide, 22 from the right edge and 72 from below.
@@ -13,16 +13,7 @@ BLACK = (0, 0, 0)
 DETAIL = 50  # of a channel's 255: what grain and edges may change of a pixel where more or less is drawn
 
 
-class Views(TrainerCase):
-    def open_window(self):
-        process, window = super().open_window()
-        self.leave_start_page(window)
-        return process, window
-
-    def close(self, process):
-        self.x("xdotool", "key", "q")
-        return self.finish(process)
-
+class Views(OpenedTrainer):
     def press(self, *keys):
         for key in keys:
             self.x("xdotool", "key", key)

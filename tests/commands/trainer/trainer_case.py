@@ -142,3 +142,16 @@ class TrainerCase(SampleAsset):
         self.x("xdotool", "windowfocus", "--sync", window)
         self.x("xdotool", "mousemove", "--window", window, *BESIDE_THE_ORGAN)
         return window
+
+
+class OpenedTrainer(TrainerCase):
+    """A trainer whose start page has been left."""
+
+    def open_window(self, *options):
+        process, window = super().open_window(*options)
+        self.leave_start_page(window)
+        return process, window
+
+    def close(self, process):
+        self.x("xdotool", "key", "q")
+        return self.finish(process)

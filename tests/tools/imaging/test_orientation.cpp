@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/formats/scratch.hpp"
-#include "tests/tools/imaging/hand_written_dicom.hpp"
+#include "tests/tools/imaging/dicom/hand_written_dicom.hpp"
 #include "tools/imaging/files/image_files.hpp"
 #include "tools/imaging/voxels/label_statistics.hpp"
 

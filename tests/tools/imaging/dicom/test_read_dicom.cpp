@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <gdcmImageChangeTransferSyntax.h>
-#include <gdcmImageReader.h>
-#include <gdcmImageWriter.h>
 #include <gtest/gtest.h>
 
 #include "formats/model/errors.hpp"
 #include "tests/formats/scratch.hpp"
-#include "tests/tools/imaging/hand_written_dicom.hpp"
+#include "tests/tools/imaging/dicom/hand_written_dicom.hpp"
+#include "tests/tools/imaging/dicom/transcoded_dicom.hpp"
 #include "tests/tools/imaging/refusals.hpp"
 #include "tools/imaging/files/image_files.hpp"
 
@@ -145,19 +143,8 @@ TEST(Dicom, every_lossless_compression_reads_as_the_same_values) {
         SCOPED_TRACE(gdcm::TransferSyntax::GetTSString(syntax));
         const Scratch packed;
         for (const auto& entry : std::filesystem::directory_iterator(plain.path())) {
-            gdcm::ImageReader reader;
-            reader.SetFileName(entry.path().c_str());
-            ASSERT_TRUE(reader.Read());
-            gdcm::ImageChangeTransferSyntax change;
-            change.SetTransferSyntax(syntax);
-            change.SetInput(reader.GetImage());
-            ASSERT_TRUE(change.Change());
-            gdcm::ImageWriter writer;
-            const std::string name = packed / entry.path().filename();
-            writer.SetFileName(name.c_str());
-            writer.SetFile(reader.GetFile());
-            writer.SetImage(change.GetOutput());
-            ASSERT_TRUE(writer.Write());
+            test::write_bytes(packed / entry.path().filename(),
+                              test::transcoded(test::bytes_of(entry.path()), syntax));
         }
         const Volume volume = read_volume(packed.path());
         EXPECT_TRUE(same_grid(volume.grid, expected.grid));
@@ -412,29 +399,12 @@ TEST(Dicom, an_enhanced_file_of_several_frames_reads_as_the_same_volume) {
     const Volume expected = read_volume(slices.path());
     const std::vector<int> order{3, 0, 7, 1, 6, 2, 5, 4};
     std::vector<std::int16_t> stored;
-    std::vector<DicomData> frames;
-    for (const int k : order) {
+    for (const int k : order)
         for (int j = 0; j < grid.size[1]; ++j)
             for (int i = 0; i < grid.size[0]; ++i)
                 stored.push_back(static_cast<std::int16_t>(
                     std::lround(100 * (double{expected.values[grid.offset(i, j, k)]} - 300) / (k + 1))));
-        frames.push_back(
-            DicomData()
-                .sequence(0x00209113, {DicomData().text(0x00200032, "DS", test::decimals(place_of(grid, k)))})
-                .sequence(0x00289145, {DicomData()
-                                           .text(0x00281052, "DS", "300")
-                                           .text(0x00281053, "DS", test::decimals({0.01 * (k + 1)}))}));
-    }
-    const DicomData shared =
-        DicomData()
-            .sequence(0x00209116, {DicomData().text(0x00200037, "DS", test::orientation(grid))})
-            .sequence(0x00289110, {DicomData().text(0x00280030, "DS", test::decimals({0.5, 0.75}))});
-    test::write_bytes(folder / "enhanced.dcm", test::ct_pixels(grid, stored)
-                                                   .text(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.2.1")
-                                                   .text(0x00280008, "IS", "8")
-                                                   .sequence(0x52009229, {shared})
-                                                   .sequence(0x52009230, frames)
-                                                   .file());
+    test::write_bytes(folder / "enhanced.dcm", test::enhanced_ct(grid, stored, order).file());
     for (const auto& path : {folder.path(), folder / "enhanced.dcm"}) {
         const Volume volume = read_volume(path);
         EXPECT_TRUE(same_grid(volume.grid, expected.grid));

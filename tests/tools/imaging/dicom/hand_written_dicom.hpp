@@ -111,4 +111,49 @@ inline DicomData ct_slice(const ImageGrid& grid, const Eigen::Vector3d& origin,
         .text(0x00281053, "DS", decimals({slope}));
 }
 
+/// One file of all slices of a grid, their numbers in `order`, with functional groups (PS3.3 C.7.6.16): a
+/// value of slice k is 300 + 0.01 (k + 1) * stored.
+inline DicomData enhanced_ct(const ImageGrid& grid, std::span<const std::int16_t> stored,
+                             const std::vector<int>& order) {
+    std::vector<DicomData> frames;
+    for (const int k : order)
+        frames.push_back(
+            DicomData()
+                .sequence(0x00209113,
+                          {DicomData().text(0x00200032, "DS", decimals(grid.point_of({0, 0, 1.0 * k})))})
+                .sequence(0x00289145, {DicomData()
+                                           .text(0x00281052, "DS", "300")
+                                           .text(0x00281053, "DS", decimals({0.01 * (k + 1)}))}));
+    const DicomData shared =
+        DicomData()
+            .sequence(0x00209116, {DicomData().text(0x00200037, "DS", orientation(grid))})
+            .sequence(0x00289110,
+                      {DicomData().text(0x00280030, "DS", decimals({grid.spacing[1], grid.spacing[0]}))});
+    return ct_pixels(grid, stored)
+        .text(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.2.1")
+        .text(0x00280008, "IS", std::to_string(order.size()))
+        .sequence(0x52009229, {shared})
+        .sequence(0x52009230, frames);
+}
+
+/// A series as small as GDCM's codecs take: two slices, whose stored values differ by one.
+inline ImageGrid two_slices() {
+    ImageGrid grid;
+    grid.size = {12, 10, 2};
+    grid.spacing = {0.75, 0.5, 2};
+    grid.origin = {-40.5, 20.25, 310};
+    return grid;
+}
+
+inline std::vector<std::int16_t> values_of_slice(int k) {
+    std::vector<std::int16_t> values;
+    for (int n = 0; n < 120; ++n) values.push_back(static_cast<std::int16_t>(n * 37 % 101 - 50 + k));
+    return values;
+}
+
+inline DicomData slice_of_two(int k) {
+    const ImageGrid grid = two_slices();
+    return ct_slice(grid, grid.point_of({0, 0, 1.0 * k}), values_of_slice(k));
+}
+
 }  // namespace palpate::test

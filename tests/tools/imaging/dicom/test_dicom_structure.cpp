@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What GDCM and DCMTK must not see.
-#include <gdcmImageChangeTransferSyntax.h>
-#include <gdcmImageReader.h>
-#include <gdcmImageWriter.h>
 #include <gtest/gtest.h>
 
 #include "tests/formats/scratch.hpp"
-#include "tests/tools/imaging/hand_written_dicom.hpp"
+#include "tests/tools/imaging/dicom/hand_written_dicom.hpp"
+#include "tests/tools/imaging/dicom/transcoded_dicom.hpp"
 #include "tests/tools/imaging/refusals.hpp"
 #include "tools/imaging/files/image_files.hpp"
 
@@ -16,29 +14,15 @@ namespace {
 using namespace imaging;
 using sample::Scratch;
 using test::DicomData;
+using test::slice_of_two;
 
 constexpr std::uint32_t protocol_codes = 0x00400260;
-
-ImageGrid two_slices() {
-    ImageGrid grid;
-    grid.size = {12, 10, 2};
-    grid.spacing = {0.75, 0.5, 2};
-    grid.origin = {-40.5, 20.25, 310};
-    return grid;
-}
-
-DicomData slice(int k) {
-    const ImageGrid grid = two_slices();
-    std::vector<std::int16_t> stored;
-    for (int n = 0; n < 120; ++n) stored.push_back(static_cast<std::int16_t>(n * 37 % 101 - 50 + k));
-    return test::ct_slice(grid, grid.point_of({0, 0, 1.0 * k}), stored);
-}
 
 // The series with the first file changed.
 std::string first_file_refusal(const std::function<std::string(std::string)>& changed) {
     const Scratch folder;
-    test::write_bytes(folder / "0.dcm", changed(slice(0).file()));
-    test::write_bytes(folder / "1.dcm", slice(1).file());
+    test::write_bytes(folder / "0.dcm", changed(slice_of_two(0).file()));
+    test::write_bytes(folder / "1.dcm", slice_of_two(1).file());
     return test::volume_refusal(folder.path());
 }
 
@@ -59,31 +43,17 @@ std::string nested(int levels, const std::string& file) {
     return file.substr(0, pixels) + all + file.substr(pixels);
 }
 
-void write_in_syntax(const std::string& from, const std::string& to, gdcm::TransferSyntax::TSType syntax) {
-    gdcm::ImageReader reader;
-    reader.SetFileName(from.c_str());
-    ASSERT_TRUE(reader.Read());
-    gdcm::ImageChangeTransferSyntax change;
-    change.SetTransferSyntax(syntax);
-    change.SetInput(reader.GetImage());
-    ASSERT_TRUE(change.Change());
-    gdcm::ImageWriter writer;
-    writer.SetFileName(to.c_str());
-    writer.SetFile(reader.GetFile());
-    writer.SetImage(change.GetOutput());
-    ASSERT_TRUE(writer.Write());
-}
-
 TEST(DicomStructure, every_way_to_write_elements_reads_as_the_same_values) {
     const Scratch plain;
-    for (const int k : {0, 1}) test::write_bytes(plain / std::to_string(k), slice(k).file());
+    for (const int k : {0, 1}) test::write_bytes(plain / std::to_string(k), slice_of_two(k).file());
     const Volume expected = read_volume(plain.path());
     for (const auto syntax :
          {gdcm::TransferSyntax::ImplicitVRLittleEndian, gdcm::TransferSyntax::ExplicitVRBigEndian,
           gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian}) {
         SCOPED_TRACE(gdcm::TransferSyntax::GetTSString(syntax));
         const Scratch other;
-        for (const char* name : {"0", "1"}) write_in_syntax(plain / name, other / name, syntax);
+        for (const char* name : {"0", "1"})
+            test::write_bytes(other / name, test::transcoded(test::bytes_of(plain / name), syntax));
         const Volume volume = read_volume(other.path());
         EXPECT_TRUE(same_grid(volume.grid, expected.grid));
         EXPECT_EQ(volume.values, expected.values);
@@ -92,8 +62,8 @@ TEST(DicomStructure, every_way_to_write_elements_reads_as_the_same_values) {
 
 TEST(DicomStructure, sequences_may_lie_32_deep_and_deeper_ones_are_refused_before_a_stack_overflows) {
     const Scratch folder;
-    test::write_bytes(folder / "0.dcm", nested(32, slice(0).file()));
-    test::write_bytes(folder / "1.dcm", slice(1).file());
+    test::write_bytes(folder / "0.dcm", nested(32, slice_of_two(0).file()));
+    test::write_bytes(folder / "1.dcm", slice_of_two(1).file());
     EXPECT_EQ(read_volume(folder.path()).values.size(), 240U);
     for (const int levels : {33, 100000})
         EXPECT_SAYS(first_file_refusal([&](const std::string& file) { return nested(levels, file); }),
@@ -118,7 +88,7 @@ TEST(DicomStructure, elements_of_unknown_types_and_lengths_that_do_not_fit_are_r
     EXPECT_SAYS(
         first_file_refusal([&](const std::string& f) { return with(f, f.find("1.2.840.10008.1.2.1"), "9"); }),
         "transfer syntax 9.2.840.10008.1.2.1");
-    const DicomData loose = slice(0).text(protocol_codes, "SQ", "no item!");
+    const DicomData loose = slice_of_two(0).text(protocol_codes, "SQ", "no item!");
     EXPECT_SAYS(first_file_refusal([&](const std::string&) { return loose.file(); }),
                 "element (0040,0260) holds what is no item");
 }
@@ -133,8 +103,8 @@ TEST(DicomStructure, what_scanners_and_archives_do_though_the_standard_does_not_
                  return file.substr(0, pixels) + of_later_years + file.substr(pixels);
              }}) {
         const Scratch folder;
-        test::write_bytes(folder / "0.dcm", changed(slice(0).file()));
-        test::write_bytes(folder / "1.dcm", slice(1).file());
+        test::write_bytes(folder / "0.dcm", changed(slice_of_two(0).file()));
+        test::write_bytes(folder / "1.dcm", slice_of_two(1).file());
         EXPECT_EQ(read_volume(folder.path()).values.size(), 240U);
     }
     EXPECT_SAYS(first_file_refusal([](const std::string& f) { return f + std::string(9, '\0') + "x"; }),
@@ -142,8 +112,9 @@ TEST(DicomStructure, what_scanners_and_archives_do_though_the_standard_does_not_
 }
 
 TEST(DicomStructure, several_values_a_pixel_in_grey_are_refused) {
-    EXPECT_SAYS(first_file_refusal(
-                    [](const std::string&) { return slice(0).us(0x00280002, 2).us(0x00280010, 5).file(); }),
+    EXPECT_SAYS(first_file_refusal([](const std::string&) {
+                    return slice_of_two(0).us(0x00280002, 2).us(0x00280010, 5).file();
+                }),
                 "2 samples of 16 bits");
 }
 
@@ -154,8 +125,8 @@ TEST(DicomStructure, compressed_pixels_whose_heads_tell_another_size_are_refused
         SCOPED_TRACE(marker);
         const Scratch plain, folder;
         for (const char* name : {"0", "1"}) {
-            test::write_bytes(plain / name, slice(name[0] - '0').file());
-            write_in_syntax(plain / name, folder / name, syntax);
+            test::write_bytes(plain / name, slice_of_two(name[0] - '0').file());
+            test::write_bytes(folder / name, test::transcoded(test::bytes_of(plain / name), syntax));
         }
         const std::string file = test::bytes_of(folder / "0");
         const std::size_t at = file.find(marker, file.find(std::string("\xe0\x7f\x10\x00", 4)));

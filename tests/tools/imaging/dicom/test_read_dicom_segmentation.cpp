@@ -5,7 +5,7 @@
 
 #include "formats/model/errors.hpp"
 #include "tests/formats/scratch.hpp"
-#include "tests/tools/imaging/hand_written_dicom.hpp"
+#include "tests/tools/imaging/dicom/hand_written_dicom.hpp"
 #include "tests/tools/imaging/refusals.hpp"
 #include "tools/imaging/files/image_files.hpp"
 
