@@ -143,8 +143,8 @@ class Compressor {
         entry_error_ = result_.accuracy / std::sqrt(sum / result_.node_count * (result_.depth + 1));
     }
 
-    // Error that one step, truncation or joining, may add to a block, which takes part in no more than depth
-    // + 1; and then its rounding.
+    // Error that one step, truncation, joining or rounding, may add to a block; it takes part in some depth +
+    // 1 of them.
     LowRankTolerance tolerance(std::int32_t level, std::int32_t i, std::int32_t j) const {
         const auto dofs = [&](std::int32_t c) {
             return static_cast<double>(3 * (result_.begin(level, c + 1) - result_.begin(level, c)));
