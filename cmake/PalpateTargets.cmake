@@ -71,14 +71,14 @@ if(PALPATE_SANITIZERS)
     add_compile_definitions(PALPATE_SANITIZED)
 endif()
 
-# palpate_precompiled(<set> [OPTIMISED -O1] LINKS ... HEADERS ...): headers that are compiled once; a target takes a set
-# with PRECOMPILED <set>. Every file still includes what it uses: preset tidy reads it without them. OPTIMISED: how preset
-# release compiles the set and all who take it, for GCC keeps what a header was precompiled with, whatever a file asks for.
+# palpate_precompiled(<set> [OPTIONS ...] LINKS ... HEADERS ...): headers that are compiled once; a target takes a set with
+# PRECOMPILED <set>. Every file still includes what it uses: preset tidy reads it without them. OPTIONS: of the compiler, for
+# the set and all who take it, since a precompiled header serves only what is compiled as it was.
 function(palpate_precompiled set)
-    cmake_parse_arguments(arg "" "OPTIMISED" "LINKS;HEADERS" ${ARGN})
+    cmake_parse_arguments(arg "" "" "OPTIONS;LINKS;HEADERS" ${ARGN})
     add_library(palpate_precompiled_${set} OBJECT ${PROJECT_SOURCE_DIR}/cmake/precompiled.cpp)
-    set_target_properties(palpate_precompiled_${set} PROPERTIES PALPATE_OPTIMISED "${arg_OPTIMISED}")
-    target_compile_options(palpate_precompiled_${set} PRIVATE $<$<CONFIG:Release>:${arg_OPTIMISED}>)
+    set_target_properties(palpate_precompiled_${set} PROPERTIES PALPATE_OPTIONS "${arg_OPTIONS}")
+    target_compile_options(palpate_precompiled_${set} PRIVATE ${arg_OPTIONS})
     target_link_libraries(palpate_precompiled_${set} PRIVATE ${arg_LINKS} palpate_house)
     target_compile_features(palpate_precompiled_${set} PUBLIC cxx_std_20)
     target_precompile_headers(palpate_precompiled_${set} PRIVATE ${arg_HEADERS})
@@ -87,8 +87,8 @@ endfunction()
 function(palpate_reuse_precompiled target set)
     if(TARGET palpate_precompiled_${set})
         target_precompile_headers(${target} REUSE_FROM palpate_precompiled_${set})
-        get_target_property(optimised palpate_precompiled_${set} PALPATE_OPTIMISED)
-        target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:${optimised}>)
+        get_target_property(options palpate_precompiled_${set} PALPATE_OPTIONS)
+        target_compile_options(${target} PRIVATE ${options})
     endif()
 endfunction()
 
@@ -96,7 +96,7 @@ endfunction()
 #                 [INSTALL HEADERS ...])
 # Makes target palpate_<name> with alias Palpate::<name>. Headers are included as "<folder>/<name>/x.hpp"; those of an
 # installed library are listed. OBJECT_PER_FILE: the tick's rooms, whose objects tests/house/tick_imports.py reads,
-# also where a preset compiles several files at once.
+# also where a preset compiles several files at once; instrumented builds, which it cannot read, do that there too.
 function(palpate_library path)
     cmake_parse_arguments(arg "INSTALL;OBJECT_PER_FILE" "PRECOMPILED" "SOURCES;HEADERS;LINKS;PRIVATE_LINKS" ${ARGN})
     get_filename_component(name ${path} NAME)
@@ -112,7 +112,7 @@ function(palpate_library path)
         set(arg_PRECOMPILED values)
     endif()
     palpate_reuse_precompiled(${target} ${arg_PRECOMPILED})
-    if(arg_OBJECT_PER_FILE)
+    if(arg_OBJECT_PER_FILE AND NOT PALPATE_SANITIZERS)
         set_target_properties(${target} PROPERTIES UNITY_BUILD OFF)
     endif()
     if(arg_INSTALL)

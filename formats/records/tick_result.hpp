@@ -14,6 +14,8 @@
 
 namespace palpate {
 
+inline constexpr double tick_period = 1e-3;  ///< s
+
 /// Most contact points of one tick; more set TickStatus::contacts_cut.
 inline constexpr std::size_t max_contacts = 64;
 

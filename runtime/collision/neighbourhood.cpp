@@ -18,7 +18,7 @@ constexpr std::size_t few_gathered = 32, many_gathered = 96;
 constexpr std::size_t few = 6, many = 20;
 constexpr double first_margin = 0.3;                                          // mm
 constexpr double least_margin = 0.02, most_margin = 2, most_wide_margin = 4;  // mm
-constexpr double touching = 1e-3;  // mm: nearer, no direction leads from a triangle to the tool
+constexpr double no_direction = 1e-3;  // mm: nearer, no direction leads from a triangle to the tool
 constexpr double growth = 1.25;
 constexpr double rounded_normal = 2e-7;  // error of a product with one, relative to the largest coordinate
 constexpr int all_nodes = std::numeric_limits<int>::max();
@@ -147,7 +147,7 @@ bool Neighbourhood::choose_within(const Vector3d& p, double reach) noexcept {
         chosen &= distance <= far + plane_error * circle;
         if (!any(chosen)) continue;
         const Float4 share = beside > 0 ? beside / across : Float4{};
-        const Float4 scale = distance > static_cast<float>(touching) ? -1 / distance : Float4{};
+        const Float4 scale = distance > static_cast<float>(no_direction) ? -1 / distance : Float4{};
         const Float4 mx = scale * (height * nx + share * px), my = scale * (height * ny + share * py),
                      mz = scale * (height * nz + share * pz);
         const Float4 along = mx * nx + my * ny + mz * nz;
@@ -179,7 +179,7 @@ bool Neighbourhood::may_touch(const CollisionSurface& surface, std::size_t at, c
     const TriangleCorners t = surface.corners(slots_[at]);
     const TrianglePoint nearest = closest_point_on_triangle(from, t);
     const double distance = std::sqrt(nearest.squared_distance);
-    if (distance < touching) return true;
+    if (distance < no_direction) return true;
     const Vector3f normal = ((from - nearest.point) / distance).cast<float>();
     const Vector3d n = normal.cast<double>();
     // The normal is rounded to float32, or for some compilers is not, so both count.

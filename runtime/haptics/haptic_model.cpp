@@ -10,8 +10,6 @@
 namespace palpate::haptics {
 namespace {
 
-constexpr double period = 1e-3;  // s
-
 HapticSettings checked(const Case& patient_case) {
     if (const auto error = haptics_error(patient_case.haptics))
         throw InvalidInput({.culprit = patient_case.name,
@@ -55,7 +53,7 @@ double coupling_stiffness(const HapticSettings& settings, const DeviceLimits& de
         if (value > 0) stiffness = std::min(stiffness, value);
     };
     limit(device.max_stiffness, "its largest stiffness");
-    limit(2 * device.damping / period, "its stability limit, 2 damping / period,");
+    limit(2 * device.damping / tick_period, "its stability limit, 2 damping / period,");
     return stiffness;
 }
 

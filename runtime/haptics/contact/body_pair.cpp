@@ -19,8 +19,7 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-constexpr double touching = 1e-9;   // mm: nearer to a polygon than this, a node gives no direction
-constexpr double tolerance = 1e-9;  // mm: a violation below this is rounding
+constexpr double touching = 1e-9;  // mm: nearer to a polygon than this, a node gives no direction
 
 struct WeightedVertex {
     std::int32_t vertex;
@@ -125,7 +124,7 @@ Eigen::VectorXd complementary_forces(const Eigen::MatrixXd& A, const Eigen::Vect
         outside.minCoeff(&worst);
         const auto most_idle =
             std::ranges::max_element(rows, {}, [&](Index row) { return f[row] > 0 ? -1 : w[row]; });
-        if (outside[worst] >= -tolerance || !(w[*most_idle] > 0) || f[*most_idle] > 0) return f;
+        if (outside[worst] >= -ContactLcp::tolerance || !(w[*most_idle] > 0) || f[*most_idle] > 0) return f;
         *most_idle = worst;
     }
     return f;

@@ -10,7 +10,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double tolerance = 1e-9;  // mm: a violation below this is rounding
 constexpr double dependent =
     1e-5;  // a pivot below this part of its diagonal is float32 noise of the compliance
 

@@ -20,6 +20,7 @@ class ContactLcp {
   public:
     using Matrix = Eigen::Matrix<double, max_contacts, max_contacts>;
     using Vector = Eigen::Matrix<double, max_contacts, 1>;
+    static constexpr double tolerance = 1e-9;  ///< mm: a violation below this is rounding
 
     Matrix& matrix() noexcept { return A_; }
     Vector& gaps() noexcept { return delta_; }  ///< delta, mm

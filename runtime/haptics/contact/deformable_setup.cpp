@@ -7,8 +7,6 @@
 namespace palpate::haptics {
 using Eigen::Vector3f;
 
-constexpr double period = 1e-3;  // s
-
 DeformableContact::DeformableContact(const DeformableBody& body, const collision::CollisionSurface& surface,
                                      double tool_radius, std::int32_t body_index, bool spreads_load)
     : body_index_(body_index), compliance_(body.compliance), triangles_(body.boundary.surface.triangles) {
@@ -21,7 +19,7 @@ DeformableContact::DeformableContact(const DeformableBody& body, const collision
     for (const Eigen::Vector3d& vertex : body.boundary.surface.vertices)
         vertices_.push_back(vertex.cast<float>());
     SurfaceCreepSeries creep = surface_creep_of(body);
-    for (const std::vector<CreepTerm>& series : creep.series) creep_.emplace_back(series, period);
+    for (const std::vector<CreepTerm>& series : creep.series) creep_.emplace_back(series, tick_period);
     creep_of_vertex_ = std::move(creep.of_vertex);
 }
 

@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 constexpr double unsolved = 1e-3;      // mm of residual that is reported
 constexpr double unsettled = 1e-2;     // mm of change, likewise: 5 mN behind the usual coupling
-constexpr int most_rounds = 4;         // of contacts that only the solution of the others meets
+constexpr int most_hold_offs = 4;      // of contacts that only the solution of the others meets
 constexpr double farthest_return = 5;  // mm: a sphere of the shaft found again farther off starts anew
 
 }  // namespace
@@ -34,8 +34,8 @@ void ContinuousContact::tick(std::span<const ContactPose> poses, double coupling
     if (solve) {
         equilibrium_.solve();
         int round = 0;
-        for (; round < most_rounds && hold_off_rigid(results); ++round) equilibrium_.solve();
-        if (round == most_rounds && hold_off_rigid(results))
+        for (; round < most_hold_offs && hold_off_rigid(results); ++round) equilibrium_.solve();
+        if (round == most_hold_offs && hold_off_rigid(results))
             for (TickResult& result : results) result.status |= contact_unsolved;
     }
     for (std::size_t t = 0; t < tools_.size(); ++t) {

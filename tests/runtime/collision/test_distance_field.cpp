@@ -22,7 +22,7 @@ using namespace collision;
 using Eigen::Vector3d;
 using Eigen::Vector3i;
 
-constexpr double voxel = 0.7, band = 2.5;  // mm
+constexpr double voxel = sanitized ? 1.4 : 0.7, band = 2.5;  // mm
 constexpr int points = samples_of(10000);
 
 // mm: positions on the grid are rounded in double, at coordinates up to 100 mm, and so are distances.

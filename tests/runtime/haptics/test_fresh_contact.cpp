@@ -5,6 +5,7 @@
 #include <random>
 
 #include "tests/runtime/haptics/held_tool.hpp"
+#include "tests/runtime/samples.hpp"
 
 namespace palpate {
 namespace {
@@ -43,7 +44,7 @@ TEST(FreshContact, has_the_force_that_it_would_have_had_without_the_ones_before)
     haptics::HapticModel experienced(soft_and_hard()), fresh(soft_and_hard());
     std::mt19937 random(11);
     std::size_t most_contacts = 0, pressed = 0;
-    for (int contact = 0; contact < 400; ++contact) {
+    for (int contact = 0; contact < samples_of(400); ++contact) {
         fresh.reset();
         TickResult expected{}, found{};
         for (const DeviceState& state : push(random)) {
@@ -57,7 +58,7 @@ TEST(FreshContact, has_the_force_that_it_would_have_had_without_the_ones_before)
         ASSERT_EQ(force_of(found).norm(), 0);
     }
     EXPECT_GT(most_contacts, 2U);
-    EXPECT_GT(pressed, 4000U);
+    EXPECT_GT(pressed, static_cast<std::size_t>(samples_of(4000)));
 }
 
 }  // namespace

@@ -332,7 +332,7 @@ TEST(TwoTools, are_never_pulled_by_what_they_touch) {
 
 using Record = std::vector<std::array<TickResult, 2>>;
 
-constexpr int ticks = 2000;
+constexpr int ticks = samples_of(2000);
 
 Record wander_through(HapticModel& model, int count) {
     Record record;

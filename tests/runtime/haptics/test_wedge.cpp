@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tests/runtime/haptics/held_tool.hpp"
+#include "tests/runtime/samples.hpp"
 
 namespace palpate {
 namespace {
@@ -31,7 +32,7 @@ int push_into(const Case& c, const Vector3d& entrance, double spread) {
     TickResult result{};
     Vector3d device = entrance, goal = entrance;
     int touched = 0;
-    for (int tick = 0; tick < 20000; ++tick) {
+    for (int tick = 0; tick < samples_of(20000); ++tick) {
         if ((goal - device).norm() < 0.1) {
             const double x = axis(generator), y = axis(generator), z = axis(generator);
             goal = entrance + Vector3d(8 + 10 * x, 5 * y, spread * z);
@@ -61,7 +62,7 @@ TEST(Wedge, between_two_rigid_plates_a_tool_that_does_not_fit_stays_outside) {
     for (const double room : {0.5, 1.9, 2.0}) {
         Case c = plate();
         c.rigid_bodies.push_back(rigid("lid", box({-20, -20, room}, {20, 20, room + 10})));
-        EXPECT_GT(push_into(c, {-28, 0.3, room / 2}, 3), 5000) << room;
+        EXPECT_GT(push_into(c, {-28, 0.3, room / 2}, 3), samples_of(5000)) << room;
     }
 }
 
@@ -70,14 +71,14 @@ TEST(Wedge, that_narrows_stops_the_tool_where_it_fits_no_more) {
     TriangleMesh lid = box({-20, -20, 0}, {20, 20, 10});
     for (Vector3d& v : lid.vertices) v.z() += 0.1 + 0.1 * (20 - v.x());  // from 4.1 to 0.1 mm of room
     c.rigid_bodies.push_back(rigid("lid", lid));
-    EXPECT_GT(push_into(c, {-4, 0.3, 1.2}, 3), 5000);
+    EXPECT_GT(push_into(c, {-4, 0.3, 1.2}, 3), samples_of(5000));
 }
 
 TEST(Wedge, between_a_rigid_plate_and_the_fixed_side_of_tissue_keeps_forces_finite) {
     for (const double room : {0.5, 1.5, 1.99}) {
         Case c = soft_cube(3);
         c.rigid_bodies.push_back(rigid("floor", box({-10, -10, -room - 10}, {30, 30, -room})));
-        EXPECT_GT(push_into(c, {-8, 9.3, 1.1 - room}, 3), 5000) << room;
+        EXPECT_GT(push_into(c, {-8, 9.3, 1.1 - room}, 3), samples_of(5000)) << room;
     }
 }
 
@@ -85,7 +86,7 @@ TEST(Wedge, between_a_rigid_plate_and_soft_tissue_lets_the_tissue_give_way) {
     for (const double room : {0.5, 1.5, 1.99}) {
         Case c = soft_cube(3);
         c.rigid_bodies.push_back(rigid("lid", box({-2, -10, 20 + room}, {30, 30, 30 + room})));
-        EXPECT_GT(push_into(c, {-8, 9.3, 20 + room / 2}, 3), 5000) << room;
+        EXPECT_GT(push_into(c, {-8, 9.3, 20 + room / 2}, 3), samples_of(5000)) << room;
     }
 }
 
@@ -96,7 +97,7 @@ TEST(Wedge, between_bone_and_tissue_that_rub_keeps_the_tool_out_of_bone) {
         c.haptics.friction_at_rest = c.haptics.friction_sliding = 0.4;
         c.rigid_bodies.push_back(rigid("lid", box({-2, -10, 20 + room}, {30, 30, 30 + room})));
         c.rigid_bodies.push_back(rigid("post", box({-6, -10, 0}, {-5, 4, 40})));
-        EXPECT_GT(push_into(c, {-8, 9.3, 20 + room / 2}, 3), 5000) << room;
+        EXPECT_GT(push_into(c, {-8, 9.3, 20 + room / 2}, 3), samples_of(5000)) << room;
     }
 }
 
