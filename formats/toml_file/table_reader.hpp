@@ -25,7 +25,9 @@ class TableReader {
         known_.insert(key);
         const toml::node* node = table_.get(key);
         if (node == nullptr) return std::nullopt;
-        if (const auto value = node->value<T>()) return value;
+        // toml++ would take true for 1 and 1 for true.
+        if (node->is_boolean() == std::is_same_v<T, bool>)
+            if (const auto value = node->value<T>()) return value;
         fail(*node, key, "has the wrong type",
              std::is_same_v<T, std::string> ? "text"
              : std::is_same_v<T, bool>      ? "true or false"

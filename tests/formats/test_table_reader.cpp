@@ -57,6 +57,10 @@ TEST(TableReader, names_line_and_key_of_a_value_of_another_type_and_what_was_exp
               "case.toml:1: key 'a' has the wrong type (expected text)");
     EXPECT_EQ(refusal([](TableReader& r) { r.table("b").optional<bool>("c"); }),
               "case.toml:4: key 'c' of b has the wrong type (expected true or false)");
+    EXPECT_EQ(refusal([](TableReader& r) { r.optional<bool>("a"); }),
+              "case.toml:1: key 'a' has the wrong type (expected true or false)");
+    EXPECT_EQ(refusal_of("a = true\n", [](TableReader& r) { r.required<double>("a"); }),
+              "case.toml:1: key 'a' has the wrong type (expected a number)");
     EXPECT_EQ(refusal([](TableReader& r) { r.table("a"); }),
               "case.toml:1: key 'a' has the wrong type (expected a table)");
     EXPECT_EQ(refusal([](TableReader& r) { r.list("a"); }),

@@ -65,6 +65,12 @@ std::string finite_number(const std::string& text) {
     return std::isfinite(std::strtod(text.c_str(), nullptr)) ? "" : text + " is not a finite number";
 }
 
+void require_there(const std::string& path) {
+    std::error_code error;
+    if (std::filesystem::exists(path, error)) return;
+    throw InvalidInput({path, error ? error.message() : "no such file or folder", "", "check the path"});
+}
+
 // As a shell makes of a variable that is not set.
 void refuse_empty_path(const std::string& option, const std::vector<std::string>& paths) {
     if (std::ranges::find(paths, "") != paths.end())
@@ -358,9 +364,7 @@ int Command::run(int argc, char** argv, const std::function<nlohmann::ordered_js
                 refuse_empty_path(parameter.option.name(), parameter.option.words());
         for (const Parameter& parameter : parameters_)
             if (parameter.kind == Parameter::Kind::input_file)
-                for (const std::string& path : parameter.option.words())
-                    if (!std::filesystem::exists(path))
-                        throw InvalidInput({path, "no such file or folder", "", "check the path"});
+                for (const std::string& path : parameter.option.words()) require_there(path);
         Session session;
         session.threads = threads_ > 0 ? threads_ : usual_threads();
         session.threads_given = threads_ > 0;
@@ -392,6 +396,8 @@ int Command::run(int argc, char** argv, const std::function<nlohmann::ordered_js
         return ExitCode::interrupted;
     } catch (const std::bad_alloc&) {
         say("out of memory; use a coarser mesh or a machine with more memory");
+    } catch (const std::filesystem::filesystem_error& error) {
+        say(error.path1().string() + ": " + error.code().message() + "; check the path");
     } catch (const std::exception& error) {
         say(error.what());
     }

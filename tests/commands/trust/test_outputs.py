@@ -50,6 +50,12 @@ class Outputs(unittest.TestCase):
     def staged(self, folder=None):
         return sorted(p.name for p in (folder or self.folder).iterdir() if p.name.startswith(".part"))
 
+    def test_a_name_that_no_disk_takes_is_refused_with_it_and_what_to_do(self):
+        long = "n" * 300
+        for refused, code in ((self.obb(self.folder / f"{long}.h5"), FAILED), (assets.run(BIN / "palpate-inspect", long), INVALID)):
+            self.assertEqual(refused.returncode, code, refused.stderr)
+            self.assertRegex(refused.stderr, f"{long}.*: File name too long; check the path")
+
     def test_a_device_a_folder_and_a_socket_are_refused_by_their_kind(self):
         self.assertRefused("/dev/null", "is a device")
         self.assertRefused(self.folder, "is a folder")

@@ -218,7 +218,7 @@ void NeighbourContact::meet(std::size_t p, std::span<DeformedPatch> patches) noe
                          ? Vector3d((outside ? 1 : -1) * (centre - seen.closest.point) / seen.distance)
                          : unit_normal(seen.corners);
         const auto same = [&](const Row& other) {
-            return (other.point - row.point).squaredNorm() < one_point * same_place;
+            return (other.point - row.point).squaredNorm() < one_point * one_point;
         };
         if (std::any_of(rows_.begin() + first, rows_.end(), same) ||
             std::any_of(watched_.begin() + first_watched, watched_.end(), same))
