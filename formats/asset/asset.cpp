@@ -70,17 +70,32 @@ void check_case(const Case& patient_case, const std::string& where) {
     }
 }
 
+// One that is not in the row would be left out in silence.
+void require_members(const Hdf5File& file, const std::string& group, std::size_t count) {
+    const std::string prefix = group + '/';
+    std::size_t found = 0;
+    for (auto entry = file.objects().lower_bound(prefix);
+         entry != file.objects().end() && entry->first.starts_with(prefix); ++entry)
+        found += entry->first.find('/', prefix.size()) == std::string::npos;
+    if (found != count)
+        throw InvalidInput({file.name() + ": " + group,
+                            "has " + std::to_string(found) + " bodies, not all of them named in a row",
+                            "0, 1, ... without gaps", "pack the case again"});
+}
+
 Case read_case(const Hdf5File& file) {
     Case patient_case;
     patient_case.name = file.text_attribute("/palpate", "name");
     for (std::size_t i = 0; file.contains(rigid_path(i)); ++i)
         patient_case.rigid_bodies.push_back(read_rigid_body(file, rigid_path(i)));
+    require_members(file, "/palpate/bodies/rigid", patient_case.rigid_bodies.size());
     for (std::size_t i = 0; file.contains(deformable_path(i)); ++i) {
         DeformableBody body = read_condensed_body(file, deformable_path(i));
         body.obb_tree = read_obb_tree(file, deformable_path(i) + "/obb_tree", body.boundary.surface);
         body.feel = read_feel(file, deformable_path(i) + "/feel", body);
         patient_case.deformable_bodies.push_back(std::move(body));
     }
+    require_members(file, "/palpate/bodies/deformable", patient_case.deformable_bodies.size());
     read_fields(file, "/palpate/haptics", haptic_fields, patient_case.haptics);
     patient_case.scan = read_scan(file, scan_path);
     patient_case.provenance = file.texts("/palpate/provenance", {}).front();
@@ -135,6 +150,7 @@ void write_asset(const std::filesystem::path& path, const Case& patient_case,
     for (const RigidBody& body : patient_case.rigid_bodies) {
         check_name(body.name, where);
         check_surface(body.surface, where + ": " + body.name);
+        check_sides(body.surface, where + ": " + body.name);
         check_obb_tree(body.obb_tree, body.surface.triangles.size(), where + ": " + body.name + "/obb_tree");
         check_enclosure(body.obb_tree, body.surface, where + ": " + body.name + "/obb_tree");
     }
@@ -198,12 +214,15 @@ std::vector<std::string> unlike_written_again(const std::filesystem::path& path,
     write_asset(scratch, patient_case);
     const auto ours = Hdf5File(path).digests(), again = Hdf5File(scratch).digests();
     std::vector<std::string> unlike;
+    const auto dataset_of = [](const std::string& object) { return object.substr(0, object.find('@')); };
     for (const auto& [object, digest] : ours) {
         const auto found = again.find(object);
         // Of what is written, an attribute that is not.
-        const bool known = found != again.end() || again.contains(object.substr(0, object.find('@')));
+        const bool known = found != again.end() || again.contains(dataset_of(object));
         if (known && (found == again.end() || found->second != digest)) unlike.push_back(object);
     }
+    for (const auto& [object, digest] : again)
+        if (!ours.contains(object) && ours.contains(dataset_of(object))) unlike.push_back(object);
     return unlike;
 }
 

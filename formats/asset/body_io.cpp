@@ -298,6 +298,7 @@ RigidBody read_rigid_body(const Hdf5File& file, const std::string& path) {
     body.surface.vertices = read_rows<double, Eigen::Vector3d>(file, path + "/vertices");
     body.surface.triangles = read_rows<std::int32_t, Triangle>(file, path + "/triangles");
     check_surface(body.surface, file.name() + ": " + path);
+    check_sides(body.surface, file.name() + ": " + path);
     body.obb_tree = read_obb_tree(file, path + "/obb_tree", body.surface);
     return body;
 }

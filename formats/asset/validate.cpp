@@ -9,6 +9,8 @@
 #include <span>
 #include <utility>
 
+#include "formats/model/closure.hpp"
+#include "formats/model/disjoint_sets.hpp"
 #include "formats/model/errors.hpp"
 #include "formats/model/reading/utf8.hpp"
 
@@ -128,6 +130,29 @@ void check_region_colours(const DeformableBody& body, const std::string& where) 
                    "regions of the body, ascending");
 }
 
+// Whatever hangs together must be held; a node of nothing would be held by nothing.
+void check_held(const DeformableBody& body, const std::string& where) {
+    const std::size_t nodes = body.mesh.rest_positions.size();
+    DisjointSets parts(nodes);
+    std::vector<bool> used(nodes, false);
+    for (const Tetrahedron& tet : body.mesh.tetrahedra)
+        for (const std::int32_t node : tet) {
+            used[static_cast<std::size_t>(node)] = true;
+            parts.join(static_cast<std::size_t>(tet[0]), static_cast<std::size_t>(node));
+        }
+    std::vector<int> held(nodes, 0);
+    for (const std::int32_t node : body.fixed_nodes) ++held[parts.root(static_cast<std::size_t>(node))];
+    constexpr int enough = 3;  // nodes, if not in a line
+    for (std::size_t node = 0; node < nodes; ++node) {
+        if (!used[node])
+            refuse(where + "/tetrahedra", "node " + std::to_string(node) + " belongs to none of them");
+        if (held[parts.root(node)] < enough)
+            refuse(where + "/fixed_nodes",
+                   "the part of the body with node " + std::to_string(node) + " is not held",
+                   "3 fixed nodes or more");
+    }
+}
+
 void check_boundary(const DeformableBody& body, const std::string& where) {
     const BoundarySurface boundary = boundary_surface(body.mesh);
     if (body.boundary.nodes != boundary.nodes ||
@@ -135,8 +160,12 @@ void check_boundary(const DeformableBody& body, const std::string& where) {
         body.boundary.surface.vertices != boundary.surface.vertices)
         refuse(where + "/surface_triangles", "is not the boundary of the tetrahedra");
 
+    if (!faces_cancel(body.mesh, boundary))
+        refuse(where + "/tetrahedra", "a face is of three tetrahedra or more, or of two on its one side");
+
     check_ascending(body.fixed_nodes, body.mesh.rest_positions.size(), where + "/fixed_nodes");
     if (body.fixed_nodes.empty()) refuse(where + "/fixed_nodes", "is empty", "nodes that hold the body");
+    check_held(body, where);
     check_ascending(body.contact_nodes, body.mesh.rest_positions.size(), where + "/contact_nodes");
     for (const std::int32_t node : body.contact_nodes)
         if (!std::ranges::binary_search(boundary.nodes, node) ||
@@ -302,6 +331,11 @@ void check_surface(const TriangleMesh& surface, const std::string& where) {
     check_points(surface.vertices, where + "/vertices");
     if (surface.triangles.empty()) refuse(where + "/triangles", "is empty");
     check_indices(surface.triangles, surface.vertices.size(), where + "/triangles");
+}
+
+void check_sides(const TriangleMesh& surface, const std::string& where) {
+    if (!edges_cancel(surface)) refuse(where + "/triangles", "are not a closed surface of two sides");
+    if (!(enclosed_volume(surface) > 0)) refuse(where + "/triangles", "face inwards or hold no volume");
 }
 
 void check_obb_tree(const ObbTree& tree, std::size_t triangle_count, const std::string& where) {

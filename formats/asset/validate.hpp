@@ -23,6 +23,10 @@ inline constexpr double farthest_slack = 1;
 /// Vertices within farthest_coordinate, at least one triangle, vertex indices in range. O(triangles).
 void check_surface(const TriangleMesh& surface, const std::string& where);
 
+/// The surface of a rigid body that check_surface() has passed is closed, its triangles agree about sides,
+/// and it holds a volume: where they do not, its inside would be felt as outside. O(triangles).
+void check_sides(const TriangleMesh& surface, const std::string& where);
+
 /// A binary tree whose siblings are neighbours, children after parents, at most `deepest_obb_tree` levels;
 /// boxes finite with orthonormal axes; leaves of at most `most_leaf_triangles` that share out all triangles,
 /// each once. O(nodes + triangles).

@@ -28,30 +28,36 @@ struct Certificate {
 inline constexpr std::tuple certificate_fields{
     Field("residual", &Certificate::residual, "",
           "worst difference of a stored column to the same column solved again, relative to its largest "
-          "entry"),
+          "entry",
+          not_negative),
     Field("residual_double", &Certificate::residual_double, "",
-          "the same before rounding; -1 where the compliance was compressed at once and never was in double")
+          "the same before rounding; -1 where the compliance was compressed at once and never was in double",
+          not_negative)
         .none_is(-1),
     Field("asymmetry", &Certificate::asymmetry, "",
           "largest difference between the stored C and its transpose, relative to its largest entry; 0 by "
-          "construction"),
+          "construction",
+          not_negative),
     Field("smallest_eigenvalue", &Certificate::smallest_eigenvalue, "mm/N", "of C, estimated"),
     Field("largest_eigenvalue", &Certificate::largest_eigenvalue, "mm/N", "of C, estimated"),
     Field("condition_number", &Certificate::condition_number, "", "largest / smallest eigenvalue"),
     Field("reciprocity", &Certificate::reciprocity, "",
           "worst violation of Maxwell and Betti's theorem by random loads a and b on the stored matrix: "
-          "abs(aᵀCb - bᵀCa) / sqrt(aᵀCa bᵀCb)"),
+          "abs(aᵀCb - bᵀCa) / sqrt(aᵀCa bᵀCb)",
+          not_negative),
     Field("load_error", &Certificate::load_error, "",
           "worst error of the stored matrix' displacements under random contact loads, relative, 2-norm over "
-          "the whole contact surface"),
+          "the whole contact surface",
+          not_negative),
     Field("contact_error", &Certificate::contact_error, "",
-          "the same at the loaded nodes alone, largest entries in place of norms"),
+          "the same at the loaded nodes alone, largest entries in place of norms", not_negative),
     Field("sampled_loads", &Certificate::sampled_loads, "", "random contact loads"),
     Field("smallest_patch_eigenvalue", &Certificate::smallest_patch_eigenvalue, "mm/N",
           "of the stored matrix over the nodes of such a load, the smallest found"),
     Field("discretisation_error", &Certificate::discretisation_error, "",
           "part of a contact load's work that the elements miss, against richer ones, median over loads; -1 "
-          "where it was not estimated")
+          "where it was not estimated",
+          not_negative)
         .none_is(-1),
     Field("sampled_columns", &Certificate::sampled_columns, "", "columns that were solved again"),
     Field("free_dofs", &Certificate::free_dofs, "",

@@ -19,6 +19,10 @@ struct Range {
     constexpr bool contains(double value) const {
         return ends_belong ? value >= least && value <= most : value > least && value < most;
     }
+    /// The same in another unit, of which there are `factor` to one.
+    constexpr Range in_units(double factor) const {
+        return {.least = least * factor, .most = most * factor, .ends_belong = ends_belong};
+    }
 };
 inline constexpr Range any_number{};
 inline constexpr Range positive{.least = 0, .ends_belong = false};
@@ -103,6 +107,7 @@ std::optional<FieldError> first_error(const Table& table, const Record& record) 
     for_each_field(table, [&](const auto& field) {
         const auto value = static_cast<double>(record.*field.member);
         if (error || (std::isfinite(value) && field.range.contains(value))) return;
+        if (field.not_measured && value == static_cast<double>(*field.not_measured)) return;
         const std::string unit = *field.unit != '\0' ? " " + std::string(field.unit) : "";
         error = FieldError{field.name, "is " + std::to_string(value) + unit, to_string(field.range)};
     });

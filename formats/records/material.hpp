@@ -16,8 +16,11 @@ struct Material {
     double poissons_ratio = 0;
 };
 
+/// N/mm²: from far below mucus to above diamond. Outside, sums of compliances leave what a double holds.
+inline constexpr Range possible_modulus{.least = 1e-6, .most = 2e6};
+
 inline constexpr std::tuple material_fields{
-    Field("youngs_modulus", &Material::youngs_modulus, "N/mm²", "Young's modulus", positive)
+    Field("youngs_modulus", &Material::youngs_modulus, "N/mm²", "Young's modulus", possible_modulus)
         .written_in("kPa", 1e3),
     Field("poissons_ratio", &Material::poissons_ratio, "",
           "Poisson's ratio; linear tetrahedra lock as it approaches 0.5",

@@ -50,10 +50,12 @@ std::vector<double> TableReader::numbers(const std::string& key, std::size_t cou
     known_.insert(key);
     const toml::array* array = table_.get_as<toml::array>(key);
     std::vector<double> values;
-    if (array != nullptr)
-        for (const toml::node& item : *array)
-            if (const auto value = item.value<double>()) values.push_back(*value);
-    if (values.size() != count)
+    const auto finite = [&](const toml::node& item) {
+        if (!item.is_number()) return false;
+        values.push_back(*item.value<double>());
+        return std::isfinite(values.back());
+    };
+    if (array == nullptr || array->size() != count || !std::ranges::all_of(*array, finite))
         fail(node(key), key, "cannot be read", std::to_string(count) + " numbers in mm");
     return values;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -27,7 +28,12 @@ class TableReader {
         if (node == nullptr) return std::nullopt;
         // toml++ would take true for 1 and 1 for true.
         if (node->is_boolean() == std::is_same_v<T, bool>)
-            if (const auto value = node->value<T>()) return value;
+            if (const auto value = node->value<T>()) {
+                if constexpr (std::is_floating_point_v<T>)
+                    if (!std::isfinite(*value))
+                        fail(*node, key, std::isnan(*value) ? "is nan" : "is infinite", "a finite number");
+                return value;
+            }
         fail(*node, key, "has the wrong type",
              std::is_same_v<T, std::string> ? "text"
              : std::is_same_v<T, bool>      ? "true or false"

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <sstream>
 
@@ -20,9 +21,11 @@ using namespace devices;
 using namespace haptics;
 using namespace session;
 
-// At least one tick, so that there is something to report.
-void require_positive(double seconds) {
-    if (!(seconds >= 1e-3)) throw UsageError({"--seconds", std::to_string(seconds), "0.001 or more", ""});
+// At least one tick, so that there is something to report; a script is made as a whole before it is played.
+void require_playable(double seconds) {
+    constexpr double longest = 86400;
+    if (!(seconds >= 1e-3 && seconds <= longest))
+        throw UsageError({"--seconds", fmt::format("{:g}", seconds), "0.001 to 86400, a day", ""});
 }
 
 // From the tip along the shaft: as asked, or straight out of the place that is touched.
@@ -50,10 +53,10 @@ TouchPlan plan_of(const TouchOptions& options, const DeviceKind& device, const C
     if (device.simulated && !options.column && !is_made_to_measure(options.script)) {
         HandPath path = recorded_path(options.script);
         const double seconds = options.seconds_given ? options.seconds : path.duration();
-        require_positive(seconds);
+        require_playable(seconds);
         return {std::move(path), std::nullopt, seconds};
     }
-    if (!options.column) require_positive(options.seconds);
+    if (!options.column) require_playable(options.seconds);
     const TouchTarget target =
         choose_touch_target(patient_case, model, options.body, point_of("--target", options.target));
     if (!device.simulated) return {std::nullopt, target, options.seconds};
@@ -67,7 +70,7 @@ TouchPlan plan_of(const TouchOptions& options, const DeviceKind& device, const C
                 options.seconds};
     HandPath path = recorded_axis_path(options.script, *options.column, target.place, settings);
     const double seconds = options.seconds_given ? options.seconds : path.duration();
-    require_positive(seconds);
+    require_playable(seconds);
     return {std::move(path), target, seconds};
 }
 

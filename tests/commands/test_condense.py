@@ -256,7 +256,7 @@ class Condense(unittest.TestCase):
             with self.subTest(lines=lines):
                 code, said = self.interrupt(lambda process: reached.extend(process.stderr.readline() for _ in range(lines)))
                 self.assertEqual(code, INTERRUPTED, said)
-                self.assertIn("interrupted; nothing was left behind", said)
+                self.assertIn("interrupted; nothing half written was left behind", said)
                 self.assertEqual(list(self.folder.iterdir()), [self.mesh])
         self.assertTrue(any("factorising" in line for line in reached), reached)
 

@@ -53,6 +53,19 @@ void set_entry(DeformableBody& body, std::size_t row, std::size_t column, float 
     const_cast<float*>(std::get<DenseCompliance>(body.compliance).row(row))[column] = value;
 }
 
+// A tetrahedron beside the cube that hangs together with nothing.
+void add_island(DeformableBody& body) {
+    TetMesh& mesh = body.mesh;
+    const auto first = static_cast<std::int32_t>(mesh.rest_positions.size());
+    for (const Eigen::Vector3d& corner : {Eigen::Vector3d(60, 0, 0), Eigen::Vector3d(62, 0, 0),
+                                          Eigen::Vector3d(60, 2, 0), Eigen::Vector3d(60, 0, 2)})
+        mesh.rest_positions.push_back(corner);
+    mesh.tetrahedra.push_back({first, first + 1, first + 2, first + 3});
+    mesh.regions.push_back(mesh.regions[0]);
+    if (!mesh.outside_labels.empty()) mesh.outside_labels.resize(mesh.rest_positions.size(), 0);
+    body.boundary = boundary_surface(mesh);
+}
+
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 INSTANTIATE_TEST_SUITE_P(
@@ -67,6 +80,28 @@ INSTANTIATE_TEST_SUITE_P(
               "tetrahedra: entry 5 has index 125"},
         Fault{"tet_inverted", [](auto& b) { std::swap(b.mesh.tetrahedra[0][0], b.mesh.tetrahedra[0][1]); },
               "tetrahedron 0 is flat or inside out"},
+        Fault{"tet_three_times",
+              [](auto& b) {
+                  const std::size_t inner = b.mesh.tetrahedra.size() / 2;
+                  for (int i = 0; i < 2; ++i) {
+                      b.mesh.tetrahedra.push_back(b.mesh.tetrahedra[inner]);
+                      b.mesh.regions.push_back(b.mesh.regions[inner]);
+                  }
+                  b.boundary = boundary_surface(b.mesh);
+              },
+              "tetrahedra: a face is of three tetrahedra or more"},
+        Fault{"node_of_nothing",
+              [](auto& b) {
+                  b.mesh.rest_positions.emplace_back(1, 2, 3);
+                  b.mesh.outside_labels.push_back(-1);
+              },
+              "tetrahedra: node 125 belongs to none of them"},
+        Fault{"part_that_nothing_holds", [](auto& b) { add_island(b); },
+              "fixed_nodes: the part of the body with node 125 is not held"},
+        Fault{"held_by_two_nodes", [](auto& b) { b.fixed_nodes.resize(2); },
+              "is not held (expected 3 fixed nodes or more)"},
+        Fault{"modulus_that_overflows", [](auto& b) { b.materials[0].material.youngs_modulus = 1e-300; },
+              "youngs_modulus of region 1 is 0.000000 N/mm² (expected 1e-06 to 2e+06)"},
         Fault{"regions_short", [](auto& b) { b.mesh.regions.pop_back(); },
               "regions: 383 values (expected 384)"},
         Fault{"region_unnamed", [](auto& b) { b.mesh.regions[0] = 9; }, "region_names: does not name"},
@@ -120,15 +155,9 @@ INSTANTIATE_TEST_SUITE_P(
                   b.relaxation = {{3, {0.5, 1}}};
               },
               "a term of region 3 that the mesh does not have"},
-        Fault{"relaxation_unsorted",
-              [](auto& b) {
-                  b.relaxation = {{2, {0.5, 1}}, {1, {0.2, 1}}};
-              },
+        Fault{"relaxation_unsorted", [](auto& b) { b.relaxation = {{2, {0.5, 1}}, {1, {0.2, 1}}}; },
               "is not in the order of its regions"},
-        Fault{"relaxation_many",
-              [](auto& b) {
-                  b.relaxation.assign(9, {1, {0.01, 1}});
-              },
+        Fault{"relaxation_many", [](auto& b) { b.relaxation.assign(9, {1, {0.01, 1}}); },
               "relaxation: has 9 terms (expected 8 at most)"},
         Fault{"fixed_unsorted", [](auto& b) { std::swap(b.fixed_nodes[0], b.fixed_nodes[1]); },
               "fixed_nodes: entry 1"},

@@ -177,7 +177,7 @@ void check_materials(TableReader& body, const DeformableSpec& spec, const std::v
             const std::string key = key_of(field);
             mistakes.push_back(region.complaint(region.node(key), key,
                                                 fmt::format("is {:g}", value * field.written_factor),
-                                                to_string(field.range)));
+                                                to_string(field.range.in_units(field.written_factor))));
         });
     }
 }

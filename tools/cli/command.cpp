@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <fmt/format.h>
 #include <iostream>
+#include <limits>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <spdlog/sinks/stdout_sinks.h>
@@ -63,6 +64,23 @@ std::int64_t peak_memory_bytes() {
 // Refuses "nan" and "inf", which CLI11 reads as numbers; an empty text means accepted.
 std::string finite_number(const std::string& text) {
     return std::isfinite(std::strtod(text.c_str(), nullptr)) ? "" : text + " is not a finite number";
+}
+
+// Likewise of what T does not hold, such as -1, which CLI11 counts back from the largest.
+template <typename T>
+std::string whole_number(const std::string& text) {
+    T value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error == std::errc{} && end == text.data() + text.size()) return "";
+    return fmt::format("{} is not a whole number from {} to {}", text, std::numeric_limits<T>::min(),
+                       std::numeric_limits<T>::max());
+}
+
+// A file's own text must not command the terminal that a message about it is shown on.
+std::string without_controls(std::string message) {
+    for (char& c : message)
+        if (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') c = '?';
+    return message;
 }
 
 void require_there(const std::string& path) {
@@ -175,7 +193,7 @@ Command::Command(CommandText text)
         ->group(group);
     app_->add_option("--threads", threads_,
                      "threads for work that can use several [default: $PALPATE_THREADS, or all cores]")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number, "POSITIVE")
         ->group(group);
 }
 
@@ -224,7 +242,7 @@ Option Command::option(const std::string& names, T& value, const std::string& he
         option->check(finite_number);
     } else if constexpr (std::is_integral_v<T>) {
         kind = Parameter::Kind::integer;
-        option->default_str(fmt::format("{}", value));
+        option->default_str(fmt::format("{}", value))->check(whole_number<T>);
     } else if constexpr (std::is_same_v<T, std::string>) {
         if (!value.empty()) option->default_str(value);
     }
@@ -337,7 +355,7 @@ int Command::run(int argc, char** argv, const std::function<nlohmann::ordered_js
         if (!error_path_.empty()) error_file.emplace(std::exchange(error_path_, ""), force_);
     };
     const auto say = [&](const std::string& message) {
-        const std::string text = program + ": " + with_final_names(message) + "\n";
+        const std::string text = program + ": " + without_controls(with_final_names(message)) + "\n";
         std::cerr << text;
         try {
             stage_error_file();
@@ -348,13 +366,13 @@ int Command::run(int argc, char** argv, const std::function<nlohmann::ordered_js
             std::cerr << program << ": " << with_final_names(error.what()) << '\n';
         }
     };
+    remove_staged_files_on_interrupt();
     try {
         if (const int code = parse(argc, argv); code >= 0) {
             flush_stdout();
             return code;
         }
         set_up_logging(program, quiet_, verbose_);
-        remove_staged_files_on_interrupt();
         for (const char* const option : {"--json", "--error-file"})
             refuse_empty_path(option, app_->get_option(option)->results());
         stage_error_file();

@@ -2,9 +2,14 @@
 #include "tools/cli/option.hpp"
 
 #include <CLI/CLI.hpp>
+#include <cstdlib>
 #include <utility>
 
 namespace palpate::cli {
+
+std::string positive_number(const std::string& text) {
+    return std::strtod(text.c_str(), nullptr) > 0 ? "" : text + " is not a positive number";
+}
 
 Option Option::required() const {
     return Option(option_->required());
@@ -27,7 +32,7 @@ Option Option::range(double least, double most) const {
 }
 
 Option Option::positive() const {
-    return Option(option_->check(CLI::PositiveNumber));
+    return Option(option_->check(positive_number, "POSITIVE"));
 }
 
 Option Option::non_negative() const {

@@ -9,6 +9,9 @@ class Option;  // CLI11, whose headers stay in tools/cli
 
 namespace palpate::cli {
 
+/// CLI11's check of a number above 0: what is wrong with a text, empty if nothing is.
+std::string positive_number(const std::string& text);
+
 /// One option of a command: a handle, as cheap to copy as a pointer, valid as long as its Command. The rules
 /// that it is given are checked when the command line is read; what breaks one is told and ends in exit
 /// code 2.

@@ -43,7 +43,8 @@ std::shared_ptr<const std::byte> copied(int file, std::size_t size) {
 }  // namespace
 
 MappedFile::MappedFile(const std::filesystem::path& path, Held held) {
-    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    const int file =
+        open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // a pipe without a writer is told, too
     struct stat status {};
     const bool opened = file >= 0 && fstat(file, &status) == 0;
     const bool regular = opened && S_ISREG(status.st_mode);

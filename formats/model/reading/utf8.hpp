@@ -8,8 +8,8 @@ namespace palpate {
 /// most.
 bool is_utf8(std::string_view text);
 
-/// Whether it is so, and without control characters (C0, C1, U+007F) and those that turn the direction of
-/// writing, by which a name would look like another.
+/// Whether it is so, and without control characters (C0, C1, U+007F) and those that are not seen or turn the
+/// direction of writing, by which a name would look like another.
 bool is_printable(std::string_view text);
 
 }  // namespace palpate

@@ -20,11 +20,12 @@ TEST(Utf8, is_what_unicode_calls_well_formed) {
     EXPECT_TRUE(is_utf8(std::string(1, '\0')));
 }
 
-TEST(Utf8, is_printable_without_controls_and_what_turns_the_writing) {
+TEST(Utf8, is_printable_without_controls_and_what_is_not_seen_or_turns_the_writing) {
     for (const char* const good : {"", "Leber 2", "Läsion", "肝臓", "\xe2\x80\x93"})
         EXPECT_TRUE(is_printable(good)) << good;
     for (const char* const bad :
-         {"a\n", "\x1b[2J", "\x7f", "\xc2\x85", "\xe2\x80\xae", "\xe2\x81\xa6", "\xff"})
+         {"a\n", "\x1b[2J", "\x7f", "\xc2\x85", "\xe2\x80\xae", "\xe2\x81\xa6", "\xff", "a\u00ad", "\u061cb",
+          "\u200b", "\u2028", "\ufeffliver", "l\U000e0041"})
         EXPECT_FALSE(is_printable(bad)) << bad;
 }
 

@@ -99,7 +99,7 @@ TEST(CaseCheck, a_mistake_is_told_by_line_before_anything_is_built) {
              {"fixed = [{ touching = \"skull\" }, { box_mm = [0, 0, 0, 1, 2, 3] }]\n", "",
               ":21:", "'fixed' of deformable is missing"},
              {"label = \"liver\"\nyoung", "label = \"lever\"\nyoung", ":27:", "'liver'"},
-             {"youngs_modulus_kpa = 6\n", "youngs_modulus_kpa = -6\n", ":28:", "a positive number"},
+             {"youngs_modulus_kpa = 6\n", "youngs_modulus_kpa = -6\n", ":28:", "expected 0.001 to 2e+09"},
              {"poissons_ratio = 0.45", "poissons_ratio = 0.5", ":29:", "between -1 and 0.5"},
              {"volume = \"ct.nrrd\"", "volume = \"mr.nrrd\"", "mr.nrrd", "is not there"},
          }) {

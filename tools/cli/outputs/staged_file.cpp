@@ -41,7 +41,7 @@ extern "C" void remove_and_exit(int) {
         waitpid(child, nullptr, 0);
     }
     remove_staged();
-    constexpr char message[] = "\ninterrupted; nothing was left behind\n";
+    constexpr char message[] = "\ninterrupted; nothing half written was left behind\n";
     [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, message, sizeof(message) - 1);
     _exit(130);
 }
