@@ -109,7 +109,11 @@ std::vector<DicomSlice> slices_of(const DicomSet& data, const std::string& file)
     const std::int32_t frames = std::clamp(whole_number(data, 0x00280008, 1), 1, 65535);
     if (frames == 1 && slice.origin) return {slice};
     take_functional_groups(slice, item(data, 0x52009229));
-    std::vector<DicomSlice> slices(static_cast<std::size_t>(frames), slice);
+    // Of frames that the file does not tell of, two suffice to refuse it: they have no place, or both the
+    // same.
+    const auto told = data.values.find(0x52009230);
+    const std::size_t most = 2 + (told == data.values.end() ? 0 : told->second.items.size());
+    std::vector<DicomSlice> slices(std::min(static_cast<std::size_t>(frames), most), slice);
     for (std::size_t i = 0; i < slices.size(); ++i) {
         slices[i].frame = i;
         take_functional_groups(slices[i], item(data, 0x52009230, i));
