@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "formats/model/label_map.hpp"
+#include "formats/model/reading/small_file.hpp"
 #include "formats/records/material.hpp"
 #include "formats/toml_file/table_reader.hpp"
 #include "tools/case_builder/toml_document.hpp"
@@ -42,9 +43,18 @@ std::vector<std::string> names_of(const std::vector<Label>& labels) {
 
 void require_file(const TableReader& table, const std::string& key, const std::filesystem::path& file,
                   Mistakes& mistakes) {
-    if (file.empty() || std::filesystem::exists(file)) return;
-    mistakes.push_back(table.complaint(table.node(key), key, "names a file that is not there", "",
-                                       "looked for " + file.string()));
+    if (!table.has(key)) return;
+    const auto complain = [&](const std::string& found, const std::string& expected) {
+        mistakes.push_back(
+            table.complaint(table.node(key), key, found, expected, "looked for " + file.string()));
+    };
+    std::error_code none;  // what is too long for a path is none
+    if (table.raw()[key].value_or(std::string()).empty())
+        mistakes.push_back(table.complaint(table.node(key), key, "is empty", "the path of a file"));
+    else if (!std::filesystem::exists(file, none))
+        complain("names a file that is not there", "");
+    else if (const std::string kind = other_kind(file); !kind.empty())
+        complain(kind, "a file");
 }
 
 void require_label_of(const TableReader& table, const std::string& key, const std::string& name,
@@ -218,11 +228,22 @@ void check_rigid(TableReader& root, const CaseFile& case_file, const std::vector
 }
 
 // Inputs may have been given on the command line, so they are named by themselves.
-void check_inputs(const CaseFile& case_file, Mistakes& mistakes) {
-    for (const auto& file : {case_file.volume, case_file.labels})
-        if (file && !std::filesystem::exists(*file))
-            mistakes.push_back({file->string(), "is not there", "a volume or a label map",
-                                "correct [input], or pass --volume or --labels"});
+void check_inputs(TableReader& root, const CaseFile& case_file, Mistakes& mistakes) {
+    const TableReader input = root.table("input");
+    const char* const next_step = "correct [input], or pass --volume or --labels";
+    for (const auto& [key, file] : {std::pair("volume", case_file.volume), {"labels", case_file.labels}}) {
+        std::error_code none;  // what is too long for a path is none
+        if (!file) continue;
+        const bool folder_may_be = key == std::string("volume");
+        const std::string kind = other_kind(*file);
+        if (input.raw()[key].value_or(std::string("given")).empty())
+            mistakes.push_back(input.complaint(input.node(key), key, "is empty", "the path of an image"));
+        else if (!std::filesystem::exists(*file, none))
+            mistakes.push_back({file->string(), "is not there", "a volume or a label map", next_step});
+        else if (!kind.empty() && !(folder_may_be && std::filesystem::is_directory(*file, none)))
+            mistakes.push_back({file->string(), kind,
+                                folder_may_be ? "a file or a folder of DICOM slices" : "a file", next_step});
+    }
 }
 
 }  // namespace
@@ -233,7 +254,7 @@ void check_case_file(const std::filesystem::path& path, const CaseFile& case_fil
     TableReader root(document, path.string(), "");
     const std::vector<Label> labels = labels_of(case_file, case_file.structures.size());
     Mistakes mistakes;
-    check_inputs(case_file, mistakes);
+    check_inputs(root, case_file, mistakes);
     check_structures(root, case_file, mistakes);
     check_rigid(root, case_file, labels, mistakes);
     check_deformable(root, case_file, labels, mistakes);

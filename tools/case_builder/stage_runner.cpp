@@ -14,6 +14,7 @@
 
 #include "formats/asset/hdf5/digest.hpp"
 #include "formats/model/errors.hpp"
+#include "formats/model/reading/small_file.hpp"
 #include "tools/case_builder/child_process.hpp"
 #include "tools/case_builder/folder_lock.hpp"
 #include "tools/cli/command.hpp"
@@ -103,7 +104,11 @@ void throw_failure(const std::string& stage_name, int exit_code) {
 }
 
 std::string content_digest(const std::filesystem::path& path) {
-    if (!std::filesystem::is_directory(path)) return sha256_file(path);
+    if (!std::filesystem::is_directory(path)) {
+        if (const std::string kind = other_kind(path); !kind.empty())
+            throw InvalidInput({path.string(), kind, "a file or a folder", "check the path"});
+        return sha256_file(path);
+    }
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(path))
         if (entry.is_regular_file()) files.push_back(entry.path());

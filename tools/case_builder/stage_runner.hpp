@@ -39,7 +39,8 @@ bool is_lasting(const StageFailure& failure);
 /// Throws what a stage's exit code means: InvalidInput, QualityNotMet, cli::Interrupted ...
 [[noreturn]] void throw_failure(const std::string& stage_name, int exit_code);
 
-/// SHA-256 of a file's content; of a folder, of its files' relative names and digests.
+/// SHA-256 of a file's content; of a folder, of its files' relative names and digests. Throws InvalidInput
+/// for a pipe, a device or a socket, which may have no end.
 std::string content_digest(const std::filesystem::path& path);
 
 /// Runs stages in order, each only if its program, request or the content of an input changed since its

@@ -9,6 +9,7 @@
 
 #include "formats/asset/parts.hpp"
 #include "formats/model/errors.hpp"
+#include "formats/model/reading/small_file.hpp"
 #include "tools/imaging/files/image_files.hpp"
 #include "tools/meshing/files/imported_placement.hpp"
 
@@ -32,6 +33,8 @@ bool has_ending(const std::string& ending, std::initializer_list<std::string_vie
 
 FileKind kind_of_file(const std::filesystem::path& path) {
     if (std::filesystem::is_directory(path)) return FileKind::image;
+    if (const std::string kind = other_kind(path); !kind.empty())
+        throw InvalidInput({path.string(), kind, "a file or a folder of DICOM slices", "check the path"});
     const std::string ending = meshing::extension_of(path), head = head_of(path);
     if (asset::is_hdf5(path) || has_ending(ending, {".vtkhdf", ".h5"})) return FileKind::hdf5;
     if (ending == ".vtk" && head.find("POLYDATA") != std::string::npos) return FileKind::surface;

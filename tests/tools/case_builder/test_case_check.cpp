@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fstream>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "formats/model/errors.hpp"
 #include "tests/formats/scratch.hpp"
@@ -56,6 +57,7 @@ std::string with(const std::string& text, const std::string& in_its_place) {
 std::string mistakes_of(const std::string& text) {
     const sample::Scratch scratch;
     std::ofstream(scratch / "ct.nrrd") << "a volume";
+    mkfifo((scratch / "pipe").c_str(), 0600);
     std::ofstream(scratch / "case.toml") << text;
     try {
         check_case_file(scratch / "case.toml", read_case_file(scratch / "case.toml"));
@@ -102,6 +104,19 @@ TEST(CaseCheck, a_mistake_is_told_by_line_before_anything_is_built) {
              {"youngs_modulus_kpa = 6\n", "youngs_modulus_kpa = -6\n", ":28:", "expected 0.001 to 2e+09"},
              {"poissons_ratio = 0.45", "poissons_ratio = 0.5", ":29:", "between -1 and 0.5"},
              {"volume = \"ct.nrrd\"", "volume = \"mr.nrrd\"", "mr.nrrd", "is not there"},
+             {"volume = \"ct.nrrd\"", "volume = \"\"", ":4:", "'volume' of input is empty"},
+             {"{ touching = \"skull\" }", "{ nodes_file = \"\" }",
+              ":25:", "'nodes_file' of deformable.fixed is empty"},
+             // Nobody is to wait for their end.
+             {"volume = \"ct.nrrd\"", "volume = \"/dev/zero\"", "/dev/zero",
+              "is a device (expected a file or a folder"},
+             {"volume = \"ct.nrrd\"", "volume = \"ct.nrrd\"\nlabels = \"pipe\"", "pipe",
+              "is a pipe (expected a file)"},
+             {"volume = \"ct.nrrd\"", "volume = \"ct.nrrd\"\nlabels = \".\"", "",
+              "is a folder (expected a file)"},
+             {"{ touching = \"skull\" }", "{ nodes_file = \"pipe\" }", ":25:", "is a pipe (expected a file)"},
+             {"{ touching = \"skull\" }", "{ nodes_file = \"/dev/zero\" }", ":25:", "is a device"},
+             {"seeds_mm = [1, 2, 3]", "seeds_file = \"/\"", ":11:", "is a folder"},
          }) {
         const std::string found = mistakes_of(with(text, in_its_place));
         EXPECT_NE(found.find(line), std::string::npos) << in_its_place << "\n" << found;

@@ -60,6 +60,10 @@ class StageRunnerTest : public testing::Test {
     std::filesystem::path folder_;
 };
 
+TEST_F(StageRunnerTest, what_may_have_no_end_is_not_digested) {
+    EXPECT_THROW(content_digest("/dev/zero"), InvalidInput);
+}
+
 TEST_F(StageRunnerTest, runs_once_and_remembers_the_result) {
     EXPECT_TRUE(run().ran);
     const StageRecord again = run();

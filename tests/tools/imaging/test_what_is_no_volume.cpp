@@ -52,6 +52,19 @@ TEST(ReadVolume, voxels_in_pipes_or_the_standard_input_are_refused) {
     }
 }
 
+TEST(ReadVolume, pipes_and_devices_are_called_so) {
+    const Scratch folder;
+    const std::string pipe = folder / "scan.nrrd";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    for (const auto& [path, found] : {std::pair(pipe, "is a pipe"), {"/dev/zero", "is a device"}}) {
+        EXPECT_FALSE(imaging::is_dicom(path));
+        EXPECT_SAYS(test::volume_refusal(path), found);
+        EXPECT_SAYS(test::refusal_of([&] { imaging::read_image(path); }), found);
+        EXPECT_SAYS(test::refusal_of([&] { imaging::read_label_map(path); }), found);
+        EXPECT_SAYS(test::refusal_of([&] { imaging::list_series(path); }), found);
+    }
+}
+
 TEST(ReadVolume, texts_that_metaio_has_no_room_for_are_refused) {
     const Scratch folder;
     const std::string begin = "ObjectType = Image\nNDims = 3\n", text(255, 'a');

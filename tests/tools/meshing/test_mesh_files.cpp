@@ -2,6 +2,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 #include <limits>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "formats/model/errors.hpp"
@@ -67,6 +68,11 @@ void expect_same_labels(const std::vector<Label>& a, const std::vector<Label>& b
         EXPECT_EQ(a[i].name, b[i].name);
         EXPECT_EQ(a[i].colour, b[i].colour);
     }
+}
+
+TEST_F(MeshFiles, that_are_pipes_are_refused) {
+    ASSERT_EQ(mkfifo((folder_ / "a.vtu").c_str(), 0600), 0);
+    EXPECT_NE(message_of([&] { read_tetrahedra(folder_ / "a.vtu"); }).find("is a pipe"), std::string::npos);
 }
 
 TEST_F(MeshFiles, surface_survives_writing_and_reading_bit_for_bit) {

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "formats/model/errors.hpp"
+#include "formats/model/reading/small_file.hpp"
 
 namespace palpate::fem {
 namespace {
@@ -165,14 +166,18 @@ std::string_view without_comment_and_blanks(std::string_view line) {
 
 std::vector<ListedNode> read_node_list(const std::filesystem::path& file, std::size_t node_count,
                                        const std::string& rule) {
+    constexpr std::uintmax_t most_bytes = 256 << 20;
+    require_small_file(file, most_bytes);
     std::ifstream stream(file);
-    if (!stream || std::filesystem::is_directory(file))
+    if (!stream)
         throw InvalidInput({rule, "the file " + file.string() + " cannot be read",
                             "a text file of node indices", "check its name and permissions"});
+    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
     std::vector<ListedNode> nodes;
     std::size_t number = 0;
     for (std::string line; std::getline(stream, line);) {
         const std::string place = file.string() + ":" + std::to_string(++number);
+        if (number == 1 && line.starts_with(byte_order_mark)) line.erase(0, byte_order_mark.size());
         const std::string_view word = without_comment_and_blanks(line);
         if (word.empty()) continue;
         std::int64_t node = -1;

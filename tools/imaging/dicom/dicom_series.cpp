@@ -182,6 +182,7 @@ void complete_summary(DicomSeries& series) {
 }  // namespace
 
 std::vector<DicomSeries> scan_dicom(const std::filesystem::path& path, const NoteSink& note) {
+    require_image_source(path);
     std::map<std::string, DicomSeries> by_key;
     std::map<std::string, int> skipped;
     for (const std::filesystem::path& file : files_below(path)) {

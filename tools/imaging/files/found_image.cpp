@@ -62,11 +62,9 @@ FoundImage found_in_dicom(const std::filesystem::path& path, bool segmentation, 
 FoundImage read_image(const std::filesystem::path& path, ImageKind kind, const NoteSink& note,
                       const ReadOptions& options) {
     itk::Object::GlobalWarningDisplayOff();
-    std::error_code none;
-    if (!std::filesystem::exists(path, none))
-        throw InvalidInput({path.string(), "no such file or folder", "", "check the path"});
+    require_image_source(path);
     try {
-        if (std::filesystem::is_directory(path, none) || is_dicom(path)) {
+        if (std::error_code none; std::filesystem::is_directory(path, none) || is_dicom(path)) {
             const bool segmentation =
                 kind == ImageKind::labels || (kind == ImageKind::found_out && is_dicom_segmentation(path));
             return found_in_dicom(path, segmentation, note, options);

@@ -10,6 +10,7 @@
 #include <unordered_map>
 
 #include "formats/model/errors.hpp"
+#include "formats/model/reading/small_file.hpp"
 #include "tools/imaging/files/label_names.hpp"
 #include "tools/imaging/files/read_image.hpp"
 #include "tools/imaging/files/segment_painter.hpp"
@@ -155,7 +156,7 @@ LabelMap read_label_map(const std::filesystem::path& path, const NoteSink& note,
     itk::Object::GlobalWarningDisplayOff();
     if (std::error_code none; !std::filesystem::is_regular_file(path, none))
         throw InvalidInput({path.string(),
-                            std::filesystem::is_directory(path, none) ? "is a folder" : "no such file",
+                            std::filesystem::exists(path, none) ? palpate::other_kind(path) : "no such file",
                             "a file with a label map, as .seg.nrrd, .nii.gz or DICOM SEG", "check the path"});
     try {
         if (!is_dicom(path))

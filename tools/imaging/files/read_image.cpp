@@ -10,6 +10,7 @@
 #include <itkObject.h>
 
 #include "formats/model/errors.hpp"
+#include "formats/model/reading/small_file.hpp"
 #include "formats/model/reading/utf8.hpp"
 
 namespace palpate::imaging {
@@ -19,7 +20,9 @@ namespace {
 constexpr double round_off_tolerance = 1e-6;
 constexpr double repair_tolerance = 1e-3;
 
+// Nothing of what is no file, as of a pipe, whose bytes may never come.
 std::string first_bytes(const std::filesystem::path& path, std::size_t count) {
+    if (!palpate::other_kind(path).empty()) return {};
     std::string bytes(count, '\0');
     std::ifstream stream(path, std::ios::binary);
     stream.read(bytes.data(), static_cast<std::streamsize>(count));
@@ -72,6 +75,15 @@ bool is_dicom(const std::filesystem::path& path) {
 bool is_nifti(const std::filesystem::path& path) {
     const std::string name = in_lower_case(path.filename().string());
     return name.ends_with(".nii") || name.ends_with(".nii.gz");
+}
+
+void require_image_source(const std::filesystem::path& path) {
+    std::error_code none;
+    if (!std::filesystem::exists(path, none))
+        throw InvalidInput({path.string(), "no such file or folder", "", "check the path"});
+    if (const std::string kind = palpate::other_kind(path);
+        !kind.empty() && !std::filesystem::is_directory(path, none))
+        throw InvalidInput({path.string(), kind, "a file or a folder of DICOM slices", "check the path"});
 }
 
 void check_size(const std::array<std::int64_t, 3>& size, const std::filesystem::path& path) {
@@ -161,11 +173,9 @@ StoredImage read_image_file(const std::filesystem::path& path, const NoteSink& n
 
 Volume read_volume(const std::filesystem::path& path, const NoteSink& note, const ReadOptions& options) {
     itk::Object::GlobalWarningDisplayOff();
-    std::error_code none;
-    if (!std::filesystem::exists(path, none))
-        throw InvalidInput({path.string(), "no such file or folder", "", "check the path"});
+    require_image_source(path);
     try {
-        if (!std::filesystem::is_directory(path, none) && !is_dicom(path))
+        if (std::error_code none; !std::filesystem::is_directory(path, none) && !is_dicom(path))
             return volume_from(read_image_file(path, note, options), path);
         DicomImage image = read_dicom(path, note, options);
         check_values(image.volume, path);

@@ -74,6 +74,10 @@ std::string as_utf8(std::string_view text);
 /// Checks sizes and spacings, and makes the directions orthonormal; throws InvalidInput naming `path`.
 void check_geometry(ImageGrid& grid, const std::filesystem::path& path, const NoteSink& note);
 
+/// Throws InvalidInput if nothing is at `path`, or what is neither file nor folder and may have no end, as a
+/// pipe or a device, naming its kind.
+void require_image_source(const std::filesystem::path& path);
+
 /// Throws InvalidInput unless 2 ... 65535 voxels lie along each axis.
 void check_size(const std::array<std::int64_t, 3>& size, const std::filesystem::path& path);
 

@@ -158,6 +158,12 @@ TEST_F(NodeLists, name_nodes_one_a_line_with_comments) {
     EXPECT_EQ(fixed(small_block(), {rule("# the base\n7\n\n 3 # a corner\r\n7\n13")}), (Nodes{3, 7, 13}));
 }
 
+TEST_F(NodeLists, may_begin_with_a_byte_order_mark) {
+    EXPECT_EQ(fixed(small_block(), {rule("\xef\xbb\xbf"
+                                         "7\n3\n")}),
+              (Nodes{3, 7}));
+}
+
 TEST_F(NodeLists, name_file_line_and_value_of_what_is_no_node) {
     const TetMesh mesh = small_block();
     for (const char* word : {"27", "-1", "4.0", "4 5", "four", "99999999999999999999"}) {
@@ -174,7 +180,9 @@ TEST_F(NodeLists, without_a_node_or_a_file_are_refused) {
     const std::string missing = rule("") + ".not";
     EXPECT_NE(message([&] { fixed(mesh, {missing}); }).find("cannot be read"), std::string::npos);
     const std::string folder = "nodes:" + file_.parent_path().string();
-    EXPECT_NE(message([&] { fixed(mesh, {folder}); }).find("cannot be read"), std::string::npos);
+    EXPECT_NE(message([&] { fixed(mesh, {folder}); }).find("is a folder"), std::string::npos);
+    EXPECT_NE(message([&] { fixed(mesh, {"nodes:/dev/zero"}); }).find("is a device (expected a file)"),
+              std::string::npos);
 }
 
 TEST_F(NodeLists, may_hold_interior_nodes_but_not_let_them_be_touched) {

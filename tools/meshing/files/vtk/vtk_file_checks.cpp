@@ -12,6 +12,7 @@
 #include <string>
 
 #include "formats/model/errors.hpp"
+#include "formats/model/reading/small_file.hpp"
 #include "tools/meshing/files/scanner.hpp"
 #include "tools/meshing/files/text.hpp"
 #include "tools/meshing/files/vtk/legacy_arrays.hpp"
@@ -213,9 +214,16 @@ class LegacyCheck {
     std::int64_t lowest_corner_ = 0, highest_corner_ = -1;
 };
 
+// Reading from a pipe or a device may have no end.
+void require_file(const std::filesystem::path& path) {
+    if (const std::string kind = other_kind(path); !kind.empty())
+        throw InvalidInput({path.string(), kind, "a file", "check the path"});
+}
+
 }  // namespace
 
 std::size_t require_plausible_xml(const std::filesystem::path& path) {
+    require_file(path);
     std::ifstream stream(path, std::ios::binary);
     const std::string text(std::istreambuf_iterator<char>(stream), {});
     const std::string_view header = std::string_view(text).substr(0, text.find("<AppendedData"));
@@ -246,6 +254,7 @@ std::size_t require_plausible_xml(const std::filesystem::path& path) {
 }
 
 void require_sound_legacy(const std::filesystem::path& path) {
+    require_file(path);
     require_room_for_arrays(path);
     LegacyCheck(path).run();
 }
