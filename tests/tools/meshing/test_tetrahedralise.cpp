@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
 
 #include "formats/model/errors.hpp"
 #include "tests/tools/meshing/phantom.hpp"
+#include "tests/tools/refusal_of.hpp"
 #include "tools/meshing/contract/fidelity.hpp"
 #include "tools/meshing/measures/quality.hpp"
 #include "tools/meshing/tetrahedra/tetrahedralise.hpp"
@@ -215,6 +217,7 @@ TEST(Tetrahedralise, impossible_requests_are_refused) {
     EXPECT_THROW(tetrahedralise(map, label, {.cell_size = 0}), InvalidInput);
     EXPECT_THROW(tetrahedralise(map, label, {.cell_size = 0.05}), InvalidInput);  // hundreds of millions
     EXPECT_THROW(tetrahedralise(map, label, {.smoothing = 100}), InvalidInput);
+    EXPECT_THROW(tetrahedralise(map, label, {.smoothing = std::nan("")}), InvalidInput);
     EXPECT_THROW(tetrahedralise(map, label, {.facet_size = -1}), InvalidInput);
     EXPECT_THROW(tetrahedralise(map, label, {.facet_distance = -1}), InvalidInput);
     EXPECT_THROW(tetrahedralise(map, label, {.facet_angle_deg = 31}), InvalidInput);
@@ -223,6 +226,36 @@ TEST(Tetrahedralise, impossible_requests_are_refused) {
     EXPECT_THROW(tetrahedralise(map, label, {.regions = {{5, 2, 0}}}), InvalidInput);
     EXPECT_THROW(tetrahedralise(map, label, {.near = {{{{0, 0, 0}}, 0, 0, 1}}}), InvalidInput);
     EXPECT_THROW(tetrahedralise(map, label, {.near = {{{{0, 0, 0}}, 0, 1, 0}}}), InvalidInput);
+}
+
+TEST(Tetrahedralise, what_would_never_end_is_refused_by_what_makes_it_so) {
+    const LabelMap map = islands();
+    const std::array<std::int32_t, 1> label{5};
+    const auto voxel = static_cast<std::int32_t>(std::ranges::find(map.labels, 5) - map.labels.begin());
+    const std::int32_t columns = map.grid.size[0], rows = map.grid.size[1];
+    const Eigen::Vector3d inside = map.grid.point_of(
+        Eigen::Vector3i(voxel % columns, voxel / columns % rows, voxel / columns / rows).cast<double>());
+    const auto refusal = [&](const MeshSizing& sizing) {
+        return test::refusal_of([&] { tetrahedralise(map, label, sizing); });
+    };
+    const auto expect = [](const std::string& said, const std::string& phrase) {
+        EXPECT_NE(said.find(phrase), std::string::npos) << said;
+    };
+    const std::string thousandth = "a thousandth of a voxel's edge";
+    expect(refusal({.facet_distance = 1e-9}), thousandth);
+    expect(refusal({.facet_size = 1e-9}), thousandth);
+    expect(refusal({.near = {{{inside}, 0, 1e9, 1e-9}}}), thousandth);
+    expect(refusal({.regions = {{5, 1e-9}}}), thousandth);
+    const double fine = 0.002 * map.grid.spacing.minCoeff();
+    expect(refusal({.facet_size = fine}), "facet size: ");
+    expect(refusal({.near = {{{inside}, 0, 1e9, fine}}}), "cell size near a place: ");
+    expect(refusal({.near = {{{inside}, 0, 200 * fine, fine}}}), "cell size near a place: ");
+    expect(refusal({.regions = {{5, fine}}}), "cell size: ");
+    // Far from the body nothing becomes finer, however large the ball is.
+    const Eigen::Vector3d away = inside + Eigen::Vector3d(1e4, 0, 0);
+    EXPECT_GT(
+        tetrahedralise(map, label, {.cell_size = 20, .near = {{{away}, 0, 5e3, fine}}}).tetrahedra.size(),
+        0U);
 }
 
 }  // namespace

@@ -45,6 +45,7 @@ ContractedMesh mesh_to_contract(const LabelMap& map, std::span<const std::int32_
     sizing.min_dihedral_deg = std::min(
         reachable_deg,
         std::max({sizing.min_dihedral_deg, contract.min_dihedral_deg, 180 - contract.max_dihedral_deg}));
+    require_coarser_than_round_off(sizing, map.grid);
     if (sizing.facet_distance == 0)
         sizing.facet_distance =
             std::min(sizing.cell_size / 10,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <numbers>
 #include <set>
 
 #include "formats/model/errors.hpp"
@@ -46,10 +47,18 @@ double volume_of(const RegionLabels& labels, std::size_t region) {
            labels.grid.voxel_volume();
 }
 
-// Three times volume over surface, mm: the radius of a ball, 1.5 thicknesses of a sheet. The faces of voxels
-// add up to 1.5 times the area of the surface that they follow, averaged over its directions.
-std::vector<double> radii(const RegionLabels& labels) {
-    std::vector<double> area(labels.values.size() + 1, 0.0), result;
+struct RegionShape {
+    double volume = 0;  // mm³
+    double area = 0;    // mm², of its surface
+
+    // The radius of a ball, 1.5 thicknesses of a sheet, mm.
+    double radius() const { return 3 * volume / area; }
+};
+
+// The faces of voxels add up to 1.5 times the area of the surface that they follow, averaged over its
+// directions.
+std::vector<RegionShape> shapes_of(const RegionLabels& labels) {
+    std::vector<double> area(labels.values.size() + 1, 0.0);
     const std::array<std::size_t, 3> stride{1, static_cast<std::size_t>(labels.grid.size[0]),
                                             labels.grid.offset(0, 0, 1)};
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -62,14 +71,16 @@ std::vector<double> radii(const RegionLabels& labels) {
             area[next] += face;
         }
     }
+    std::vector<RegionShape> shapes;
     for (std::size_t region = 1; region < area.size(); ++region)
-        result.push_back(3 * volume_of(labels, region) / area[region]);
-    return result;
+        shapes.push_back({volume_of(labels, region), area[region]});
+    return shapes;
 }
 
 // The body's sizes; a cell larger than the body says nothing.
-LocalSizes body_sizes(const MeshSizing& sizing, double largest_radius) {
-    const double cell = std::min(sizing.cell_size, largest_radius);
+LocalSizes body_sizes(const MeshSizing& sizing, const std::vector<RegionShape>& shapes) {
+    const double cell =
+        std::min(sizing.cell_size, std::ranges::max(shapes, {}, &RegionShape::radius).radius());
     return {cell, sizing.facet_size > 0 ? sizing.facet_size : cell,
             sizing.facet_distance > 0 ? sizing.facet_distance : cell / 10};
 }
@@ -80,13 +91,14 @@ LocalSizes scaled(const LocalSizes& sizes, double cell_size) {
 }
 
 std::vector<LocalSizes> sizes_by_region(const MeshSizing& sizing, const LocalSizes& body,
-                                        const std::vector<double>& radius,
+                                        const std::vector<RegionShape>& shapes,
                                         const std::vector<std::int32_t>& values) {
     std::vector<LocalSizes> result;
-    for (std::size_t k = 0; k < radius.size(); ++k) {
+    for (std::size_t k = 0; k < shapes.size(); ++k) {
         const auto found = std::ranges::find(sizing.regions, values[k], &RegionSize::region);
         const RegionSize own = found == sizing.regions.end() ? RegionSize{} : *found;
-        LocalSizes sizes = scaled(body, own.cell_size > 0 ? own.cell_size : std::min(body.cell, radius[k]));
+        LocalSizes sizes =
+            scaled(body, own.cell_size > 0 ? own.cell_size : std::min(body.cell, shapes[k].radius()));
         sizes.facet *= own.surface_scale;
         sizes.distance *= own.surface_scale;
         result.push_back(sizes);
@@ -111,32 +123,93 @@ std::vector<Eigen::Vector3d> points_of(const NearSize& near, const LabelMap& map
     return points;
 }
 
-SizeField size_field(const MeshSizing& sizing, const MeshDomain& domain, const LabelMap& map) {
-    const std::vector<double> radius = radii(domain.labels);
-    const LocalSizes body = body_sizes(sizing, *std::ranges::max_element(radius));
-    double edge = body.cell;
-    for (const NearSize& near : sizing.near) edge = std::max(edge, near.within);
-    SizeField field(sizes_by_region(sizing, body, radius, domain.labels.values), edge);
-    for (const NearSize& near : sizing.near) {
-        const double apart = near.points.empty() ? 0.5 * near.within : 0;
-        for (const Eigen::Vector3d& p : points_of(near, map, apart))
-            field.add({p, near.within + apart, scaled(body, near.cell_size)});
-    }
-    return field;
+// The balls of a place, which may overlap.
+std::vector<FineBall> balls_of(const NearSize& near, const LocalSizes& body, const LabelMap& map) {
+    const double apart = near.points.empty() ? 0.5 * near.within : 0;
+    std::vector<FineBall> balls;
+    for (const Eigen::Vector3d& p : points_of(near, map, apart))
+        balls.push_back({p, near.within + apart, scaled(body, near.cell_size)});
+    return balls;
 }
 
-// Millions more than this take hours, and nothing can be done with them.
-void require_moderate(const MeshSizing& sizing, const RegionLabels& labels) {
-    constexpr double most = 20e6, per_cubed_size = 4.4;  // measured on a liver
-    double volume = 0;
-    for (std::size_t region = 1; region <= labels.values.size(); ++region)
-        volume += volume_of(labels, region);
-    const double expected = per_cubed_size * volume / std::pow(sizing.cell_size, 3);
-    if (expected > most)
-        throw InvalidInput({"cell size",
-                            fmt::format("{:g} mm would give some {:.0f} million tetrahedra", sizing.cell_size,
-                                        expected / 1e6),
-                            "20 million at most", "choose a larger --cell-size"});
+// mm³ of the regions inside balls: of balls that fall between voxels, their own.
+double volume_inside(const std::vector<FineBall>& balls, const RegionLabels& labels) {
+    double balls_volume = 0, largest = 0;
+    for (const FineBall& ball : balls) {
+        balls_volume += 4 * std::numbers::pi / 3 * std::pow(ball.radius, 3);
+        largest = std::max(largest, ball.radius);
+    }
+    if (largest < labels.grid.spacing.norm()) return balls_volume;
+    SizeField field({}, largest);
+    for (const FineBall& ball : balls) field.add(ball);
+    std::int64_t inside = 0;
+    std::size_t offset = 0;
+    for (std::int32_t k = 0; k < labels.grid.size[2]; ++k)
+        for (std::int32_t j = 0; j < labels.grid.size[1]; ++j)
+            for (std::int32_t i = 0; i < labels.grid.size[0]; ++i)
+                if (labels.regions[offset++] > 0 &&
+                    std::isfinite(field.at(labels.grid.point_of(Eigen::Vector3d(i, j, k)), 0).cell))
+                    ++inside;
+    return std::min(balls_volume, static_cast<double>(inside) * labels.grid.voxel_volume());
+}
+
+// Adds up the tetrahedra to expect. Millions more than 20 take hours, and nothing can be done with them.
+class Forecast {
+  public:
+    // `what` of `size` mm adds some; the first that makes them too many is refused.
+    void add(const char* what, double size, double tetrahedra, const char* next_step) {
+        constexpr double most = 20e6;
+        expected_ += tetrahedra;
+        if (expected_ > most)
+            throw InvalidInput(
+                {what,
+                 fmt::format("{:g} mm would give some {:.0f} million tetrahedra", size, expected_ / 1e6),
+                 "20 million at most", next_step});
+    }
+
+  private:
+    double expected_ = 0;
+};
+
+constexpr double per_cubed_size = 4.4, per_squared_size = 3;  // measured on a liver
+
+// A triangle of circumradius R lies R² / 2r off a surface of radius r.
+void add_surfaces(Forecast& forecast, const std::vector<LocalSizes>& regions,
+                  const std::vector<RegionShape>& shapes) {
+    for (std::size_t k = 0; k < shapes.size(); ++k) {
+        const LocalSizes& sizes = regions[k];
+        const double by_size = sizes.facet * sizes.facet,
+                     by_distance = 2 * sizes.distance * shapes[k].radius();
+        const double expected = per_squared_size * shapes[k].area / std::min(by_size, by_distance);
+        if (by_size < by_distance)
+            forecast.add("facet size", sizes.facet, expected, "choose a larger --facet-size");
+        else
+            forecast.add("facet distance", sizes.distance, expected, "choose a larger --facet-distance");
+    }
+}
+
+// Throws InvalidInput where more tetrahedra are to be expected than anyone can use.
+SizeField size_field(const MeshSizing& sizing, const RegionLabels& labels, const LabelMap& map) {
+    const std::vector<RegionShape> shapes = shapes_of(labels);
+    const LocalSizes body = body_sizes(sizing, shapes);
+    const std::vector<LocalSizes> regions = sizes_by_region(sizing, body, shapes, labels.values);
+    Forecast forecast;
+    for (std::size_t k = 0; k < shapes.size(); ++k)
+        forecast.add("cell size", regions[k].cell,
+                     per_cubed_size * shapes[k].volume / std::pow(regions[k].cell, 3),
+                     "choose a larger --cell-size");
+    add_surfaces(forecast, regions, shapes);
+    double edge = body.cell;
+    for (const NearSize& near : sizing.near) edge = std::max(edge, near.within);
+    SizeField field(regions, edge);
+    for (const NearSize& near : sizing.near) {
+        const std::vector<FineBall> balls = balls_of(near, body, map);
+        forecast.add("cell size near a place", near.cell_size,
+                     per_cubed_size * volume_inside(balls, labels) / std::pow(near.cell_size, 3),
+                     "choose a larger size or a shorter distance");
+        for (const FineBall& ball : balls) field.add(ball);
+    }
+    return field;
 }
 
 Label label_of(const LabelMap& map, std::int32_t value) {
@@ -169,6 +242,20 @@ void require_every_region(const RegionLabels& labels, const LabelMap& map, doubl
 
 }  // namespace
 
+void require_coarser_than_round_off(const MeshSizing& sizing, const ImageGrid& grid) {
+    const double least = grid.spacing.minCoeff() / 1000;
+    const auto require_more = [&](const char* field, double found) {
+        require(found >= least, field, found,
+                fmt::format("{:g} mm or more, a thousandth of a voxel's edge", least).c_str());
+    };
+    require_more("cell size", sizing.cell_size);
+    if (sizing.facet_size > 0) require_more("facet size", sizing.facet_size);
+    if (sizing.facet_distance > 0) require_more("facet distance", sizing.facet_distance);
+    for (const RegionSize& region : sizing.regions)
+        if (region.cell_size > 0) require_more("region cell size", region.cell_size);
+    for (const NearSize& near : sizing.near) require_more("cell size near a place", near.cell_size);
+}
+
 MeshDomain prepare_domain(const LabelMap& map, std::span<const std::int32_t> region_values, double smoothing,
                           double min_component_volume) {
     const double largest_edge = map.grid.spacing.maxCoeff();
@@ -184,6 +271,7 @@ MeshDomain prepare_domain(const LabelMap& map, std::span<const std::int32_t> reg
 TetMesh tetrahedralise(const LabelMap& map, std::span<const std::int32_t> region_values,
                        const MeshSizing& sizing, const ProgressCallback& progress) {
     check(sizing);
+    require_coarser_than_round_off(sizing, map.grid);
     return tetrahedralise(prepare_domain(map, region_values, sizing.smoothing, sizing.min_component_volume),
                           map, sizing, progress);
 }
@@ -193,8 +281,7 @@ TetMesh tetrahedralise(const MeshDomain& domain, const LabelMap& map, const Mesh
     check(sizing);
     const ProgressCallback progress = callback ? callback : [](std::string_view, double) {};
     const auto& [labels, smoothed] = domain;
-    require_moderate(sizing, labels);
-    SizeField sizes = size_field(sizing, domain, map);
+    SizeField sizes = size_field(sizing, labels, map);
     const double max_gap = sizing.max_gap > 0 ? sizing.max_gap : 0.6 * map.grid.spacing.norm();
 
     progress("seed surfaces", 0.2);

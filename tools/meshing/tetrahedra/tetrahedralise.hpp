@@ -50,6 +50,10 @@ struct MeshDomain {
     SmoothedLabels smoothed;  ///< whose surfaces are meshed
 };
 
+/// Throws InvalidInput for sizes and distances below a thousandth of a voxel's smallest edge, where nothing
+/// but round-off is left to mesh.
+void require_coarser_than_round_off(const MeshSizing& sizing, const ImageGrid& grid);
+
 /// Cuts regions out of a label map and smooths them. Throws InvalidInput for values without voxels, and for a
 /// region that has no piece of `min_component_volume` mm³.
 MeshDomain prepare_domain(const LabelMap& map, std::span<const std::int32_t> region_values, double smoothing,
@@ -64,8 +68,9 @@ MeshDomain prepare_domain(const LabelMap& map, std::span<const std::int32_t> reg
 /// touch in a point or an edge only are doubled. `outside_labels` holds what `map` says beyond the surface,
 /// up to two voxel diagonals away.
 ///
-/// Throws InvalidInput for values without voxels and sizes that are not positive. Sequential: equal inputs
-/// give equal bytes on every run. Cost: tests/benchmarks/README.md.
+/// Throws InvalidInput for values without voxels, sizes that are not positive, and sizes, distances and
+/// places for which more than 20 million tetrahedra are to be expected. Sequential: equal inputs give equal
+/// bytes on every run. Cost: tests/benchmarks/README.md.
 TetMesh tetrahedralise(const LabelMap& map, std::span<const std::int32_t> region_values,
                        const MeshSizing& sizing, const ProgressCallback& progress = {});
 
