@@ -112,6 +112,7 @@ nlohmann::ordered_json import_image(const ImportRequest& request, const ReadOpti
     if (request.labels) {
         LabelMap map = read_label_map(request.input, note, options);
         name_labels(map, request.label_names, note);
+        require_few_labels(map, request.input.string());
         progress("writing", 0.5);
         write_label_map(file, map);
         return describe(map);

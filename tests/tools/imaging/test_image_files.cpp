@@ -194,6 +194,22 @@ TEST(LabelMapFiles, values_without_a_segment_field_are_named_by_value) {
     }
 }
 
+TEST(LabelMapFiles, of_more_labels_than_a_header_may_list_are_not_written) {
+    const Scratch folder;
+    LabelMap map{ramp_volume().grid, {}, {}};
+    map.grid.size = {10, 10, 14};
+    map.labels.resize(map.grid.voxel_count());
+    for (std::uint16_t value = 1; value <= 1300; ++value) {
+        map.labels[value] = value;
+        map.names.push_back({value, fmt::format("label_{}", value), default_label_colour(value)});
+    }
+    write_label_map(folder / "l.seg.nrrd", map);
+    EXPECT_EQ(read_label_map(folder / "l.seg.nrrd").names.size(), 1300U);
+    map.names.push_back({1301, "one more", default_label_colour(1301)});
+    EXPECT_SAYS(refusal_of([&] { write_label_map(folder / "m.seg.nrrd", map); }),
+                "holds 1301 labels (expected 1300 at most); choose a label map, not a grey volume");
+}
+
 TEST(LabelMapFiles, grey_values_and_empty_maps_are_refused) {
     const Scratch folder;
     LabelMap map = small_map();

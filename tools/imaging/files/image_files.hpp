@@ -117,6 +117,10 @@ struct FoundImage {
 FoundImage read_image(const std::filesystem::path& path, ImageKind kind = ImageKind::found_out,
                       const NoteSink& note = {}, const ReadOptions& options = {});
 
+/// Throws InvalidInput naming `culprit` for a map of more than 1300 labels: the header that write_label_map()
+/// would write has more lines than NRRD readers take in an acceptable time, ours too.
+void require_few_labels(const LabelMap& map, const std::string& culprit);
+
 /// Throws InvalidInput unless the name of an output has the ending by which others will know what it is.
 void require_ending(const std::filesystem::path& output, std::string_view ending);
 
@@ -126,7 +130,7 @@ void require_ending(const std::filesystem::path& output, std::string_view ending
 void write_volume(const std::filesystem::path& path, const Volume& volume);
 
 /// Writes a .seg.nrrd that 3D Slicer opens as a segmentation, one layer, uint8 or uint16. Nothing but
-/// geometry, values, names and colours is written. Throws as write_volume() does.
+/// geometry, values, names and colours is written. Throws as write_volume() and require_few_labels() do.
 void write_label_map(const std::filesystem::path& path, const LabelMap& map);
 
 /// Writes gzip-compressed NIfTI-1, uint8 or uint16, whose RAS affine is the grid's LPS one turned about z.

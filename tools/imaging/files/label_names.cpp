@@ -90,10 +90,12 @@ void name_labels(LabelMap& map, const std::string& source, const NoteSink& note)
 
 void make_names_unique(LabelMap& map, const NoteSink& note) {
     std::set<std::string> seen;
+    std::map<std::string, int> number_of;  // next one of a name that repeats
     std::size_t repeated = 0;
     for (Label& label : map.names) {
         const std::string name = label.name;
-        for (int n = 2; !seen.insert(label.name).second; ++n) label.name = fmt::format("{}_{}", name, n);
+        while (!seen.insert(label.name).second)
+            label.name = fmt::format("{}_{}", name, number_of.try_emplace(name, 2).first->second++);
         repeated += label.name != name;
     }
     if (note && repeated > 0) note(fmt::format("{} labels repeat a name; numbered _2, _3 ...", repeated));

@@ -102,7 +102,17 @@ void write_volume(const std::filesystem::path& path, const Volume& volume) {
     write_nrrd<std::int16_t>(path, volume.grid, values, {});
 }
 
+void require_few_labels(const LabelMap& map, const std::string& culprit) {
+    constexpr std::size_t most = 1300;  // six lines each of the 8192 that text_headers.hpp allows
+    if (map.names.size() > most)
+        throw InvalidInput({culprit, fmt::format("holds {} labels", map.names.size()),
+                            fmt::format("{} at most", most),
+                            "choose a label map, not a grey volume, or some of its labels by --label-names "
+                            "5=liver,4=gallbladder"});
+}
+
 void write_label_map(const std::filesystem::path& path, const LabelMap& map) {
+    require_few_labels(map, path.string());
     std::map<std::string, std::string> header{
         {"Segmentation_MasterRepresentation", "Binary labelmap"},
         {"Segmentation_ContainedRepresentationNames", "Binary labelmap|"},
