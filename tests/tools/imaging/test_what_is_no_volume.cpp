@@ -3,6 +3,7 @@
 #include <map>
 #include <string>
 #include <sys/stat.h>
+#include <vector>
 
 #include "tests/formats/scratch.hpp"
 #include "tests/tools/imaging/hand_written_images.hpp"
@@ -62,6 +63,65 @@ TEST(ReadVolume, pipes_and_devices_are_called_so) {
         EXPECT_SAYS(test::refusal_of([&] { imaging::read_image(path); }), found);
         EXPECT_SAYS(test::refusal_of([&] { imaging::read_label_map(path); }), found);
         EXPECT_SAYS(test::refusal_of([&] { imaging::list_series(path); }), found);
+    }
+}
+
+// Nobody's header may turn other files of a machine into voxels.
+TEST(ReadVolume, voxels_outside_the_headers_folder_are_refused) {
+    const Scratch folder;
+    std::filesystem::create_directories(folder / "in/raw");
+    for (const char* file : {"out.raw", "in/raw/v.raw", "in/v.raw"}) write_bytes(folder / file, "abcdefgh");
+    const std::string nrrd = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\ndata file: ";
+    const std::string meta =
+        "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\nElementDataFile = ";
+    const auto refusals = [&](const std::string& file) {
+        write_bytes(folder / "in/v.nhdr", nrrd + file + "\n");
+        write_bytes(folder / "in/v.mhd", meta + file + "\n");
+        return test::volume_refusal(folder / "in/v.nhdr") + test::volume_refusal(folder / "in/v.mhd");
+    };
+    const std::string outside = "keeps its voxels outside its own folder";
+    for (const std::string& file : std::vector<std::string>{"/etc/passwd", "../out.raw", "raw/../../out.raw",
+                                                            (folder / "out.raw").string()}) {
+        const std::string said = refusals(file);
+        EXPECT_NE(said.find(outside), said.rfind(outside)) << file << said;
+    }
+    for (const std::string& file : std::vector<std::string>{"v.raw", "./v.raw", "raw/v.raw", "raw/../v.raw",
+                                                            (folder / "in/v.raw").string()})
+        EXPECT_EQ(refusals(file), "nothing was refusednothing was refused") << file;
+    write_bytes(folder / "in/v.nhdr", nrrd + "LIST\n../out.raw\n");
+    EXPECT_SAYS(test::volume_refusal(folder / "in/v.nhdr"), outside);
+    write_bytes(folder / "in/v.nhdr", nrrd + "../slice%03d.raw 1 2 1\n");
+    EXPECT_SAYS(test::volume_refusal(folder / "in/v.nhdr"), outside);
+}
+
+// NrrdIO and MetaIO take the beginning of what is no whole number, and letters for numbers.
+TEST(ReadVolume, fields_that_are_not_of_whole_numbers_are_refused) {
+    const Scratch folder;
+    const std::string voxels(100, 'v');
+    for (const std::string sizes : {"4.5 4 4", "1e3 2 2", "2 2 -2", "0x2 2 2"}) {
+        write_bytes(folder / "v.nrrd",
+                    "NRRD0004\ntype: uchar\ndimension: 3\nsizes: " + sizes + "\nencoding: raw\n\n" + voxels);
+        EXPECT_SAYS(test::volume_refusal(folder / "v.nrrd"),
+                    "has sizes '" + sizes + "' (expected whole numbers)");
+        write_bytes(folder / "v.mha", "ObjectType = Image\nNDims = 3\nDimSize = " + sizes +
+                                          "\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n" + voxels);
+        EXPECT_SAYS(test::volume_refusal(folder / "v.mha"),
+                    "has DimSize '" + sizes + "' (expected whole numbers)");
+    }
+    for (const std::string type : {"MET_STRING", "MET_NONE", "MET_FLOAT_ARRAY"}) {
+        write_bytes(folder / "v.mha", "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementType = " +
+                                          type + "\nElementDataFile = LOCAL\n" + voxels);
+        EXPECT_SAYS(test::volume_refusal(folder / "v.mha"), "has ElementType '" + type + "'");
+    }
+    for (const std::string field :
+         {"Segment0_LabelValue:=1.5", "Segment0_LabelValue:=1\nSegment0_Layer:=0.5"}) {
+        write_bytes(
+            folder / "v.seg.nrrd",
+            "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\nSegment0_Name:=liver\n" +
+                field + "\n\n" + std::string(8, '\1'));
+        EXPECT_SAYS(test::refusal_of([&] { imaging::read_label_map(folder / "v.seg.nrrd"); }),
+                    field.substr(field.rfind("Segment"), 14))
+            << field;
     }
 }
 

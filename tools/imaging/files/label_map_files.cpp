@@ -29,6 +29,12 @@ std::optional<std::string> field(const std::map<std::string, std::string>& heade
     return found == header.end() ? std::nullopt : std::optional(found->second);
 }
 
+// A whole number and nothing behind it.
+template <typename Number>
+bool read_whole(std::istringstream& text, Number& value) {
+    return (text >> value) && (text >> std::ws).eof();
+}
+
 std::vector<Segment> segments_of(const StoredImage& image, const std::filesystem::path& path) {
     std::vector<Segment> segments;
     for (int n = 0;; ++n) {
@@ -41,10 +47,11 @@ std::vector<Segment> segments_of(const StoredImage& image, const std::filesystem
         Segment segment;
         std::istringstream number(value.value_or("1")),
             layer(field(image.header, prefix + "Layer").value_or(own_layer));
-        if (!(number >> segment.label.value) || segment.label.value < 0 || segment.label.value > 65535)
+        if (!read_whole(number, segment.label.value) || segment.label.value < 0 ||
+            segment.label.value > 65535)
             throw InvalidInput({path.string(), prefix + "LabelValue is '" + number.str() + "'",
                                 "an integer of 0 ... 65535", "correct the header"});
-        if (!(layer >> segment.layer) || segment.layer >= image.layers)
+        if (!read_whole(layer, segment.layer) || segment.layer >= image.layers)
             throw InvalidInput({path.string(), prefix + "Layer is '" + layer.str() + "'",
                                 fmt::format("one of its {} layers", image.layers), "correct the header"});
         segment.label.name = as_utf8(*name);

@@ -45,9 +45,18 @@ void read_lines(const std::filesystem::path& path, const std::function<bool(cons
     }
 }
 
+// A header made elsewhere may not choose what is read of this machine.
+void require_in_folder(const std::filesystem::path& path, const std::string& name) {
+    const auto folder = std::filesystem::absolute(path).parent_path().lexically_normal();
+    const auto way = (folder / name).lexically_normal().lexically_relative(folder);
+    if (way.empty() || *way.begin() == "..")
+        refuse(path, "keeps its voxels outside its own folder", "a file beside the header or below it");
+}
+
 // Reading from a pipe or a device may have no end; "-" is the standard input.
 void check_file_of_nrrd(const std::filesystem::path& path, const std::string& name) {
     std::error_code none;
+    require_in_folder(path, name);
     const auto file = path.parent_path() / name;
     if (name == "-" || (std::filesystem::exists(file, none) && !std::filesystem::is_regular_file(file, none)))
         refuse(path, "keeps its voxels in what is no file", "a file");
@@ -86,6 +95,23 @@ std::string name_of_field(std::string_view line) {
     return std::string(line);
 }
 
+// "256 256 90" in the field of that name; NrrdIO and MetaIO take 4 of "4.5" and 1 of "1e3".
+void require_whole_numbers(const std::filesystem::path& path, const std::string& field,
+                           const std::string& value) {
+    if (value.find_first_not_of("0123456789 \t") != std::string::npos)
+        refuse(path, "has " + field + " '" + as_utf8(value).substr(0, 40) + "'", "whole numbers");
+}
+
+// Of the types that MetaIO names, those of one number each.
+void require_number_type(const std::filesystem::path& path, const std::string& type) {
+    constexpr std::array<std::string_view, 12> numbers{
+        "MET_CHAR", "MET_UCHAR", "MET_SHORT",     "MET_USHORT",     "MET_INT",   "MET_UINT",
+        "MET_LONG", "MET_ULONG", "MET_LONG_LONG", "MET_ULONG_LONG", "MET_FLOAT", "MET_DOUBLE"};
+    if (std::ranges::find(numbers, type) == numbers.end())
+        refuse(path, "has ElementType '" + as_utf8(type).substr(0, 40) + "'",
+               "a type of numbers, such as MET_SHORT or MET_FLOAT");
+}
+
 void check_dimensions(const std::filesystem::path& path, std::string line) {
     std::erase_if(line, is_space);
     const std::string value = line.substr(std::min(line.size(), std::size_t{6}));
@@ -100,6 +126,8 @@ void require_short_nrrd_header(const std::filesystem::path& path) {
     read_lines(path, [&](const std::string& line) {
         const std::string field = in_lower_case(line);
         if (lists_files && !trimmed(line).empty()) check_file_of_nrrd(path, trimmed(line));
+        if (field.starts_with("sizes:"))
+            require_whole_numbers(path, "sizes", trimmed(line.substr(line.find(':') + 1)));
         if (field.starts_with("data file:") || field.starts_with("datafile:")) {
             const std::string value = trimmed(line.substr(line.find(':') + 1));
             check_file_of_nrrd(path, value);
@@ -123,7 +151,12 @@ void require_short_metaimage_header(const std::filesystem::path& path) {
         const bool is_text = separator != std::string::npos && std::ranges::find(texts, name) != texts.end();
         if (name.size() > longest || (is_text && trimmed(line.substr(separator + 1)).size() > longest))
             refuse(path, "has a field, or a text in it, of more than 254 characters", "");
-        return separator != std::string::npos && name == "ElementDataFile";
+        if (separator == std::string::npos) return false;
+        const std::string value = trimmed(line.substr(separator + 1));
+        if (name == "DimSize") require_whole_numbers(path, name, value);
+        if (name == "ElementType") require_number_type(path, value);
+        if (name == "ElementDataFile") require_in_folder(path, value);
+        return name == "ElementDataFile";
     });
 }
 
