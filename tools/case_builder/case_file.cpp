@@ -8,6 +8,7 @@
 #include <set>
 
 #include "formats/model/colour.hpp"
+#include "formats/model/compliance.hpp"
 #include "formats/model/errors.hpp"
 #include "formats/records/haptic_settings.hpp"
 #include "formats/records/quality_contract.hpp"
@@ -26,6 +27,26 @@ using toml_file::TableReader;
 template <typename T>
 void read(TableReader& table, const std::string& key, T& value) {
     if (const auto found = table.optional<T>(key)) value = *found;
+}
+
+// Of numbers nothing means anything but a finite one, and of texts, all of them names and paths, nothing is
+// as it looks with a control character.
+void refuse_odd_values(const TableReader& root, const toml::node& node, const std::string& key) {
+    if (const toml::table* table = node.as_table())
+        for (const auto& [inner, value] : *table) refuse_odd_values(root, value, std::string(inner.str()));
+    if (const toml::array* array = node.as_array())
+        for (const toml::node& item : *array) refuse_odd_values(root, item, key);
+    if (const auto number = node.value_exact<double>(); number && !std::isfinite(*number))
+        root.fail(node, key, fmt::format("is {}", *number), "a finite number");
+    const auto is_control = [](unsigned char c) { return c < ' ' || c == 127; };
+    if (const auto text = node.value_exact<std::string>(); text && std::ranges::any_of(*text, is_control))
+        root.fail(node, key, "holds a control character", "text without any");
+}
+
+// A length, 0 or more.
+void read_length(TableReader& table, const std::string& key, double& value) {
+    read(table, key, value);
+    if (!(value >= 0)) table.fail(table.node(key), key, fmt::format("is {}", value), "0 or more");
 }
 
 // The rules under `key`, { touching = "skull" } or { sphere_mm = [x, y, z, r] } ...
@@ -56,6 +77,11 @@ void read_compliance(TableReader& body, stages::CondenseRequest& request) {
     request.element = body.choice("element", {"linear", "quadratic"}).value_or(request.element);
     TableReader compliance = body.table("compliance");
     request.accuracy = compliance.positive("accuracy").value_or(request.accuracy);
+    constexpr double finest = stages::CondenseRequest::finest_accuracy,
+                     coarsest = HierarchicalCompliance::coarsest_accuracy;
+    if (request.accuracy < finest || request.accuracy > coarsest)
+        compliance.fail(compliance.node("accuracy"), "accuracy", fmt::format("is {}", request.accuracy),
+                        fmt::format("{} to {}", finest, coarsest));
     request.size_mib = compliance.positive("size_mib").value_or(request.size_mib);
     request.memory_gib = compliance.positive("memory_gib").value_or(request.memory_gib);
     request.representation = compliance.choice("representation", {"auto", "dense", "hierarchical"})
@@ -91,10 +117,13 @@ StructureSpec structure(TableReader reader) {
 // Bodies name files and stages.
 std::string body_name(TableReader& reader) {
     const std::string name = reader.required<std::string>("name");
-    const bool fit = !name.empty() && std::ranges::all_of(name, [](unsigned char c) {
-        return std::isalnum(c) != 0 || c == '_' || c == '-';
-    });
-    if (!fit) reader.fail(reader.raw(), "name", "is '" + name + "'", "letters, digits, '_' and '-'");
+    constexpr std::size_t longest = 200;  // of the 255 bytes of a file name
+    const bool fit = !name.empty() && name.size() <= longest &&
+                     std::ranges::all_of(
+                         name, [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; });
+    if (!fit)
+        reader.fail(reader.node("name"), "name", "is '" + name.substr(0, longest) + "'",
+                    fmt::format("letters, digits, '_' and '-', {} at most", longest));
     return name;
 }
 
@@ -137,7 +166,7 @@ RigidSpec rigid(TableReader reader) {
     if (surface.surface_file.empty()) surface.label_names = {label};
     surface.isovalue = reader.optional<double>("isovalue_hu");
     read(reader, "max_triangles", surface.max_triangles);
-    read(reader, "max_distance_mm", surface.max_distance);
+    read_length(reader, "max_distance_mm", surface.max_distance);
     read_drawn_colour(reader, spec.name, "", spec.colours);
     reader.refuse_unknown();
     return spec;
@@ -241,8 +270,8 @@ DeformableSpec deformable(TableReader reader) {
     read_imported_file(reader, "mesh", {"mesh"}, mesh.mesh_file, mesh.unit, mesh.frame);
     TableReader sizes = reader.table("mesh");
     mesh.sizing.cell_size = sizes.positive("cell_size_mm").value_or(mesh.sizing.cell_size);
-    read(sizes, "facet_size_mm", mesh.sizing.facet_size);
-    read(sizes, "facet_distance_mm", mesh.sizing.facet_distance);
+    read_length(sizes, "facet_size_mm", mesh.sizing.facet_size);
+    read_length(sizes, "facet_distance_mm", mesh.sizing.facet_distance);
     read(sizes, "smoothing_mm", mesh.sizing.smoothing);
     sizes.refuse_unknown();
     for (TableReader rule : reader.tables("refine"))
@@ -264,8 +293,10 @@ void read_posture(TableReader& root, std::vector<DeformableSpec>& bodies) {
     TableReader table = root.table("posture");
     const auto posture = [&](const char* key) -> std::string {
         if (table.raw().get_as<toml::array>(key) == nullptr)
-            return table.optional<std::string>(key).value_or("");
+            return table.choice(key, {"supine", "prone", "left_side", "right_side", "upright"}).value_or("");
         const std::vector<double> direction = table.numbers(key, 3);
+        if (direction == std::vector<double>(3, 0.0))
+            table.fail(table.node(key), key, "has no length", "which way gravity points, such as [0, 1, 0]");
         return fmt::format("{},{},{}", direction[0], direction[1], direction[2]);
     };
     const std::string scanned = posture("scanned"), felt = posture("felt");
@@ -305,8 +336,12 @@ CaseFile read_case_file(const std::filesystem::path& path, std::span<const Overr
     if (const auto schema = root.required<std::int64_t>("schema"); schema != 1)
         root.fail(*document.get("schema"), "schema", "is " + std::to_string(schema), "1",
                   schema > 1 ? "use a newer palpate" : "");
+    refuse_odd_values(root, document, "");
     CaseFile result;
     result.name = root.required<std::string>("name");
+    if (constexpr std::size_t longest = 255; result.name.empty() || result.name.size() > longest)
+        root.fail(root.node("name"), "name", fmt::format("has {} bytes", result.name.size()),
+                  fmt::format("1 to {}", longest));
     TableReader input = root.table("input");
     result.volume = input.path("volume");
     result.labels = input.path("labels");
@@ -322,6 +357,10 @@ CaseFile read_case_file(const std::filesystem::path& path, std::span<const Overr
     haptics.refuse_unknown();
     read_record(quality, quality_fields, result.quality);
     read(quality, "attempts", result.attempts);
+    if (constexpr int most = stages::MeshRequest::most_attempts;
+        result.attempts < 1 || result.attempts > most)
+        quality.fail(quality.node("attempts"), "attempts", fmt::format("is {}", result.attempts),
+                     fmt::format("1 to {}", most));
     quality.refuse_unknown();
     root.refuse_unknown();
     std::set<std::string> names;

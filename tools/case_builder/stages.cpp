@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <span>
 
+#include "formats/model/errors.hpp"
 #include "tools/case_builder/provenance.hpp"
 #include "tools/cli/items.hpp"
 #include "tools/stages/requests/pack_request.hpp"
@@ -196,6 +197,19 @@ std::vector<Stage> stages_of(const CaseFile& case_file, const BuildPaths& paths,
     stages.push_back(touch_stage(paths, clock));
     stages.push_back(report_stage(case_file, paths));
     return stages;
+}
+
+void require_made(const Stage& stage, const std::vector<Stage>& stages, const StageRunner& runner) {
+    for (const std::filesystem::path& input : stage.inputs) {
+        const auto maker = std::ranges::find_if(stages, [&](const Stage& other) {
+            return std::ranges::find(other.outputs, input) != other.outputs.end() ||
+                   runner.result_path(other.name) == input;
+        });
+        if (maker != stages.end() && !std::filesystem::exists(input))
+            throw InvalidInput({"stage '" + stage.name + "'",
+                                "needs " + input.string() + ", which is not there", "",
+                                "run stage '" + maker->name + "' first"});
+    }
 }
 
 void prepare(const Stage& stage, const CaseFile& case_file, const BuildPaths& paths,

@@ -24,6 +24,9 @@ enum class TouchClock { real, virtual_time };
 std::vector<Stage> stages_of(const CaseFile& case_file, const BuildPaths& paths,
                              TouchClock clock = TouchClock::real);
 
+/// Throws InvalidInput where a file is not there that another stage is to make for this one, naming that stage.
+void require_made(const Stage& stage, const std::vector<Stage>& stages, const StageRunner& runner);
+
 /// Writes what a stage reads that no stage makes: of "pack" how the asset was made, provenance.json; of
 /// "report" what the stages took, stages.json. To be called when the stages before are done.
 void prepare(const Stage& stage, const CaseFile& case_file, const BuildPaths& paths,

@@ -122,6 +122,7 @@ case_builder::StageRecord run_one(const Build& build, const std::string& name) {
     std::filesystem::create_directories(build.paths.parts);
     const case_builder::FolderLock lock(build.paths.parts, "build", case_builder::FolderLock::Hold::shared);
     const case_builder::Stage& stage = stage_named(build, name);
+    case_builder::require_made(stage, build.stages, build.runner);
     case_builder::prepare(stage, build.case_file, build.paths, build.stages, build.runner);
     if (const auto failure = build.runner.failed(stage); failure && case_builder::is_lasting(*failure)) {
         spdlog::error("as before: {}", failure->said);

@@ -107,6 +107,14 @@ TEST(CaseCheck, a_mistake_is_told_by_line_before_anything_is_built) {
              {"volume = \"ct.nrrd\"", "volume = \"\"", ":4:", "'volume' of input is empty"},
              {"{ touching = \"skull\" }", "{ nodes_file = \"\" }",
               ":25:", "'nodes_file' of deformable.fixed is empty"},
+             {"[0, 0, 0, 1, 2, 3]", "[0, 0, 0, 1, 2, inf]", ":25:", "is inf (expected a finite number)"},
+             {"cell_size_mm = 8 }", "cell_size_mm = 8, smoothing_mm = nan }",
+              ":23:", "'smoothing_mm' is nan"},
+             {"cell_size_mm = 8 }", "cell_size_mm = 8, facet_distance_mm = -1 }", ":23:", "0 or more"},
+             {"refine =", "compliance = { accuracy = 1 }\nrefine =", ":24:", "is 1 (expected 0.0001 to 0.1)"},
+             {"name = \"liver\"", "name = \"\"", ":2:", "has 0 bytes (expected 1 to 255)"},
+             {"name = \"liver\"", "name = \"a\\u0000b\"", ":2:", "'name' holds a control character"},
+             {"\"ct.nrrd\"", "\"ct.nrrd\\u0000\"", ":4:", "'volume' holds a control character"},
              // Nobody is to wait for their end.
              {"volume = \"ct.nrrd\"", "volume = \"/dev/zero\"", "/dev/zero",
               "is a device (expected a file or a folder"},
@@ -137,6 +145,32 @@ TEST(CaseCheck, what_recipes_and_bodies_look_at_must_be_named) {
 TEST(CaseCheck, numbers_of_tool_and_contract_stay_in_range) {
     EXPECT_NE(mistakes_of(sound_case + "[haptics]\ntool_radius_mm = 0\n").find(":35:"), std::string::npos);
     EXPECT_NE(mistakes_of(sound_case + "[quality]\nmin_dice = 1.5\n").find("0 to 1"), std::string::npos);
+    for (const char* attempts : {"0", "101"}) {
+        const std::string found = mistakes_of(sound_case + "[quality]\nattempts = " + attempts + "\n");
+        EXPECT_NE(found.find(":35:"), std::string::npos) << found;
+        EXPECT_NE(found.find("(expected 1 to 100)"), std::string::npos) << found;
+    }
+}
+
+TEST(CaseCheck, a_posture_is_one_of_five_or_a_direction) {
+    for (const auto& [felt, phrase] : {std::pair("\"nix\"", "(expected supine, prone, left_side"),
+                                       {"[0, 0, 0]", "has no length"},
+                                       {"[nan, 0, 0]", "is nan"}}) {
+        const std::string found =
+            mistakes_of(sound_case + "[posture]\nscanned = \"supine\"\nfelt = " + felt + "\n");
+        EXPECT_NE(found.find(":36:"), std::string::npos) << found;
+        EXPECT_NE(found.find(phrase), std::string::npos) << found;
+    }
+}
+
+TEST(CaseCheck, names_fit_into_files_and_assets) {
+    const std::string found =
+        mistakes_of(with("name = \"liver\"", "name = \"" + std::string(4000, 'n') + "\""));
+    EXPECT_NE(found.find(":2: key 'name' has 4000 bytes (expected 1 to 255)"), std::string::npos) << found;
+    const std::string body = mistakes_of(
+        with("[[rigid]]\nname = \"skull\"", "[[rigid]]\nname = \"" + std::string(300, 's') + "\""));
+    EXPECT_NE(body.find(":19: "), std::string::npos) << body;
+    EXPECT_NE(body.find("200 at most"), std::string::npos) << body;
 }
 
 }  // namespace

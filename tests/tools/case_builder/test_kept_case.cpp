@@ -95,7 +95,7 @@ TEST_F(KeptCase, knows_a_table_of_label_names_from_a_scheme) {
 TEST_F(KeptCase, keeps_numbers_as_numbers_and_texts_as_texts) {
     std::string numbers = as_written;
     numbers.insert(numbers.find("tool_radius_mm"), "max_force_n = 1e-5\n");
-    numbers.replace(numbers.find("name = \"liver\""), 14, R"(name = "it's \"x\" \u0007")");
+    numbers.replace(numbers.find("name = \"liver\""), 14, R"(name = "it's \"x\" \\ \u00e9")");
     for (const char* number : {"1e-5", "1e20", "-0.0", "100.0", "0.1"}) {
         std::string text = numbers;
         text.replace(text.find("0.1\n"), 3, number);

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <unistd.h>
 
+#include "tests/tools/refusal_of.hpp"
 #include "tools/case_builder/stages.hpp"
 
 namespace palpate::case_builder {
@@ -29,6 +30,23 @@ std::string provenance_of(const CaseFile& file, const std::vector<Stage>& stages
     prepare(*pack, file, paths_in(folder), stages, StageRunner(folder, folder / "parts", 1, true));
     std::ifstream stream(folder / "parts" / "provenance.json");
     return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+TEST(Stages, one_that_comes_too_early_is_told_what_to_run_first) {
+    const fs::path folder = fs::path(testing::TempDir()) / ("palpate_order_" + std::to_string(getpid()));
+    fs::create_directories(folder / "parts");
+    CaseFile file;
+    file.name = "x";
+    file.labels = folder / "l.nrrd";
+    file.structures.push_back({.name = "liver", .recipe = "import", .files = {}});
+    const std::vector<Stage> stages = stages_of(file, paths_in(folder));
+    const StageRunner runner(folder, folder / "parts", 1, true);
+    const auto stage = std::ranges::find(stages, "segment", &Stage::name);
+    const std::string refusal = test::refusal_of([&] { require_made(*stage, stages, runner); });
+    EXPECT_NE(refusal.find("run stage 'import labels' first"), std::string::npos) << refusal;
+    std::ofstream(folder / "parts" / "prior.seg.nrrd") << "labels";
+    require_made(*stage, stages, runner);
+    fs::remove_all(folder);
 }
 
 TEST(Stages, the_frame_of_nifti_files_is_asked_for_only_where_the_input_is_one) {

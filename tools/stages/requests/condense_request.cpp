@@ -161,7 +161,7 @@ void declare(cli::Command& command, CondenseRequest& request) {
     command
         .option("--accuracy", request.accuracy,
                 "relative error that a hierarchical C may have: displacements under random contact loads")
-        .range(1e-4, HierarchicalCompliance::coarsest_accuracy);
+        .range(CondenseRequest::finest_accuracy, HierarchicalCompliance::coarsest_accuracy);
     command
         .option("--memory", request.memory_gib,
                 "memory that may be in use at once; 0: what the machine has left", "GiB", "memory_gib")

@@ -63,11 +63,12 @@ struct CondenseRequest {
     std::vector<NodePick> fixed, contact;       ///< no contact: all surface nodes that are not fixed
     std::string element = "linear";             ///< or "quadratic"
     std::string representation = "auto";        ///< or "dense", "hierarchical"
-    double accuracy = 1e-3;                     ///< relative error of a hierarchical compliance
-    double memory_gib = 0;                      ///< that may be in use at once; 0: what the machine has left
-    double size_mib = 1024;                     ///< that the compliance may have in the file
-    bool discretisation_error = false;          ///< estimate it
-    std::filesystem::path output;               ///< .body.h5
+    static constexpr double finest_accuracy = 1e-4;
+    double accuracy = 1e-3;             ///< relative error of a hierarchical compliance
+    double memory_gib = 0;              ///< that may be in use at once; 0: what the machine has left
+    double size_mib = 1024;             ///< that the compliance may have in the file
+    bool discretisation_error = false;  ///< estimate it
+    std::filesystem::path output;       ///< .body.h5
 };
 
 /// The files that list nodes, in the order of the rules.

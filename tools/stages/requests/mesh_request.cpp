@@ -148,7 +148,7 @@ void declare(cli::Command& command, MeshRequest& request) {
     command
         .option("--attempts", request.attempts,
                 "meshes to make before the contract counts as missed, 1 or more")
-        .range(1, 100);
+        .range(1, MeshRequest::most_attempts);
     command.output("--preview", request.preview,
                    "picture of the mesh to write as well (.png), also where the contract is missed");
     command.output("-o,--output", request.output, "tetrahedra (.vtu), LPS mm").required();

@@ -54,6 +54,7 @@ struct MeshRequest {
     std::vector<NearPlace> near;
     bool allow_components = false;  ///< of several separate pieces
     QualityContract contract;
+    static constexpr int most_attempts = 100;
     int attempts = 4;               ///< meshes to make before the contract counts as missed
     std::filesystem::path preview;  ///< picture of the result to write as well (.png)
     std::filesystem::path output;   ///< .vtu
