@@ -6,6 +6,7 @@
 #include "formats/model/errors.hpp"
 #include "sample_data/phantoms.hpp"
 #include "tests/formats/scratch.hpp"
+#include "tests/tools/refusal_of.hpp"
 #include "tools/imaging/voxels/grow_from_seeds.hpp"
 #include "tools/imaging/voxels/seeds.hpp"
 
@@ -111,6 +112,27 @@ TEST(Seeds, that_cannot_be_read_are_refused) {
         EXPECT_THROW(read_seeds(written(scratch, name, text)), InvalidInput) << name << ": " << text;
     EXPECT_THROW(read_seeds(scratch / "absent.fcsv"), InvalidInput);
     EXPECT_THROW(write_seeds(scratch / "absent" / "a.mrk.json", {}), SystemFailure);
+}
+
+TEST(Seeds, that_are_no_points_are_refused_by_what_they_are) {
+    const sample::Scratch scratch;
+    const std::string first = R"({"position": [1, 2, 3]}, )";
+    for (const auto& [point, phrase] : std::vector<std::pair<std::string, std::string>>{
+             {R"({"position": null})", "point 2 has the position null (expected three numbers, mm)"},
+             {R"({"position": "here"})", "point 2 has the position \"here\""},
+             {R"({"position": [1, 2]})", "point 2 has the position [1,2]"},
+             {R"({"position": [1, 2, null]})", "point 2 has the position [1,2,null]"},
+             {R"({})", "point 2 has the position null"},
+             {R"({"position": [1, 2, 3], "label": 4})", "has the label 4 (expected a text)"}}) {
+        const auto file =
+            written(scratch, "a.mrk.json", R"({"markups": [{"controlPoints": [)" + first + point + "]}]}");
+        const std::string said = test::refusal_of([&] { read_seeds(file); });
+        EXPECT_NE(said.find(phrase), std::string::npos) << said;
+        EXPECT_EQ(said.find("json.exception"), std::string::npos) << said;
+    }
+    const auto file = written(scratch, "a.mrk.json", R"({"markups": [{"coordinateSystem": 1}]})");
+    const std::string said = test::refusal_of([&] { read_seeds(file); });
+    EXPECT_NE(said.find("has the coordinateSystem 1 (expected a text)"), std::string::npos) << said;
 }
 
 TEST(Seeds, of_a_structure_are_those_with_its_name_or_all_of_a_single_label) {

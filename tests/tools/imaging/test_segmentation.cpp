@@ -257,6 +257,9 @@ TEST(Segment, bad_seeds_and_leaks_are_named) {
         EXPECT_NE(text.find(phrase), std::string::npos) << text;
     };
     expect(refusal("liver: recipe=liver"), "structure 'liver': has no seed");
+    for (const std::string recipe : {"liver", "organ"})
+        expect(refusal("liver: recipe=" + recipe + " seeds=0,0,0;1,0,0;2,0,0;3,0,0;4,0,0;5,0,0"),
+               "structure 'liver': has 6 seeds (expected 1 to 5 points inside it)");
     expect(refusal("liver: recipe=liver seeds=900,0,0"),
            "structure 'liver': seed (900, 0, 0) mm lies outside the volume");
     expect(refusal("liver: recipe=liver seeds=0,-58,0"), "seed (0, -58, 0) mm lies in air");

@@ -31,6 +31,20 @@ std::vector<Seed> seeds_of_strokes(const LabelMap& strokes, std::size_t limit) {
     return seeds;
 }
 
+void add_seeds(NamedSeeds& seeds, const std::string& structure, const std::vector<Seed>& from) {
+    for (const Seed& seed : seeds_of(from, structure, "structure '" + structure + "'"))
+        seeds.own.push_back({structure, seed.p_P});
+    seeds.all.insert(seeds.all.end(), from.begin(), from.end());
+}
+
+// Those of seeds_mm and seeds_file.
+NamedSeeds written_points(const Parameters& p, const std::string& structure) {
+    NamedSeeds seeds;
+    for (const Eigen::Vector3d& point : p.points("seeds_mm")) seeds.own.push_back({structure, point});
+    if (p.has("seeds_file")) add_seeds(seeds, structure, read_seeds(p.text("seeds_file")));
+    return seeds;
+}
+
 }  // namespace
 
 Mask Job::structure_named_by(const std::string& parameter) const {
@@ -80,15 +94,9 @@ RecipeParameters seed_parameters(std::size_t most_strokes) {
 }
 
 NamedSeeds named_seeds(const Parameters& p, const std::string& structure, std::size_t most_strokes) {
-    NamedSeeds seeds;
-    for (const Eigen::Vector3d& point : p.points("seeds_mm")) seeds.own.push_back({structure, point});
-    const auto add = [&](const std::vector<Seed>& from) {
-        for (const Seed& seed : seeds_of(from, structure, "structure '" + structure + "'"))
-            seeds.own.push_back({structure, seed.p_P});
-        seeds.all.insert(seeds.all.end(), from.begin(), from.end());
-    };
-    if (p.has("seeds_file")) add(read_seeds(p.text("seeds_file")));
-    if (p.has("scribbles")) add(seeds_of_strokes(read_label_map(p.text("scribbles")), most_strokes));
+    NamedSeeds seeds = written_points(p, structure);
+    if (p.has("scribbles"))
+        add_seeds(seeds, structure, seeds_of_strokes(read_label_map(p.text("scribbles")), most_strokes));
     return seeds;
 }
 
@@ -96,6 +104,15 @@ std::vector<Eigen::Vector3d> seed_points(const Job& job) {
     std::vector<Eigen::Vector3d> points;
     for (const Seed& seed : named_seeds(job.parameters, job.structure.name).own) points.push_back(seed.p_P);
     return points;
+}
+
+std::vector<Eigen::Vector3d> few_seed_points(const Job& job) {
+    constexpr std::size_t most = 5;
+    if (const auto points = written_points(job.parameters, job.structure.name).own; points.size() > most)
+        throw InvalidInput({job.culprit(), fmt::format("has {} seeds", points.size()),
+                            fmt::format("1 to {} points inside it", most),
+                            "keep those that lie apart and deep inside it, or draw strokes: scribbles=..."});
+    return seed_points(job);
 }
 
 }  // namespace palpate::imaging

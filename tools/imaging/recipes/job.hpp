@@ -61,6 +61,9 @@ NamedSeeds named_seeds(const Parameters& parameters, const std::string& structur
                        std::size_t most_strokes = few_strokes);
 /// Their places alone (p_P, mm).
 std::vector<Eigen::Vector3d> seed_points(const Job& job);
+/// The same for a recipe that looks around each seed: throws InvalidInput for more than 5 of seeds_mm and
+/// seeds_file; strokes are thinned to few_strokes.
+std::vector<Eigen::Vector3d> few_seed_points(const Job& job);
 
 /// Cuts the mask to the job's region and applies the cleaning steps that its recipe has: those not written
 /// first, then as written.

@@ -41,7 +41,7 @@ Mask make_liver(const Job& job) {
                                      .drift_hu = p.number("drift_hu"),
                                      .neck_mm = p.number("neck_mm"),
                                      .gap_mm = p.number("gap_mm")};
-    const Mask found = organ(*job.volume, seed_points(job), parameters, job.culprit(), job.note);
+    const Mask found = organ(*job.volume, few_seed_points(job), parameters, job.culprit(), job.note);
     const Mask mask = clip(with_lesions(found, job, p.points("lesion_seeds_mm"), parameters), region_of(p));
     const double ml = static_cast<double>(mask.count()) * mask.grid.voxel_volume() / cubic_mm_per_ml;
     if (ml > p.number("largest_ml"))

@@ -42,7 +42,7 @@ double grey_at(const Volume& volume, std::span<const Eigen::Vector3d> seeds, con
 
 Mask make_organ(const Job& job) {
     const Parameters& p = job.parameters;
-    const std::vector<Eigen::Vector3d> seeds = seed_points(job);
+    const std::vector<Eigen::Vector3d> seeds = few_seed_points(job);
     OrganParameters parameters{.tolerance_hu = p.number("tolerance"),
                                .drift_hu = p.number("drift"),
                                .neck_mm = p.number("neck_mm"),

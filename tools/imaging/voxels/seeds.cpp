@@ -56,6 +56,25 @@ Eigen::Vector3d to_lps(const std::filesystem::path& path, const std::string& sys
            "save the points from 3D Slicer");
 }
 
+// A text under `key`, `otherwise` where there is none.
+std::string text_of(const std::filesystem::path& path, const json& object, const char* key,
+                    const std::string& otherwise) {
+    if (!object.contains(key)) return otherwise;
+    if (!object[key].is_string())
+        refuse(path, fmt::format("has the {} {}", key, object[key].dump().substr(0, 40)), "a text");
+    return object[key];
+}
+
+Eigen::Vector3d position_of(const std::filesystem::path& path, const json& point, std::size_t number) {
+    const json position = point.value("position", json());
+    const bool sound = position.is_array() && position.size() == 3 &&
+                       std::ranges::all_of(position, [](const json& value) { return value.is_number(); });
+    if (!sound)
+        refuse(path, fmt::format("point {} has the position {}", number, position.dump().substr(0, 40)),
+               "three numbers, mm", "place the point again, or take it out");
+    return {position[0].get<double>(), position[1].get<double>(), position[2].get<double>()};
+}
+
 std::vector<Seed> read_json(const std::filesystem::path& path, std::istream& stream) {
     const json document = shallow_json(stream);
     if (!document.is_object() || !document.contains("markups"))
@@ -63,19 +82,22 @@ std::vector<Seed> read_json(const std::filesystem::path& path, std::istream& str
     std::vector<Seed> seeds;
     try {
         for (const json& list : document.at("markups")) {
-            const std::string system = list.value("coordinateSystem", "LPS");
+            const std::string system = text_of(path, list, "coordinateSystem", "LPS");
             if (list.contains("coordinateUnits") && list["coordinateUnits"] != "mm")
                 refuse(path, "has coordinates in " + list["coordinateUnits"].dump(), "mm");
-            const std::string name = list.value("name", stem_of(path));
+            const std::string name = text_of(path, list, "name", stem_of(path));
+            std::size_t number = 0;
             for (const json& point : list.value("controlPoints", json::array())) {
+                ++number;
                 if (point.value("positionStatus", "defined") != "defined") continue;
-                const auto p = point.at("position").get<std::array<double, 3>>();
-                seeds.push_back(named_seed(point.value("label", ""), name,
-                                           to_lps(path, system, Eigen::Vector3d(p[0], p[1], p[2]))));
+                seeds.push_back(named_seed(text_of(path, point, "label", ""), name,
+                                           to_lps(path, system, position_of(path, point, number))));
             }
         }
     } catch (const json::exception& error) {
-        refuse(path, "cannot be read: " + std::string(error.what()), "a point list of 3D Slicer (.mrk.json)");
+        std::string reason = error.what();  // "[json.exception.type_error.302] type must be ..."
+        if (const auto end = reason.find("] "); end != std::string::npos) reason.erase(0, end + 2);
+        refuse(path, "cannot be read: " + reason, "a point list of 3D Slicer (.mrk.json)");
     }
     return seeds;
 }
