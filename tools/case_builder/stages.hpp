@@ -24,7 +24,8 @@ enum class TouchClock { real, virtual_time };
 std::vector<Stage> stages_of(const CaseFile& case_file, const BuildPaths& paths,
                              TouchClock clock = TouchClock::real);
 
-/// Throws InvalidInput where a file is not there that another stage is to make for this one, naming that stage.
+/// Throws InvalidInput where a file is not there that another stage is to make for this one, naming that
+/// stage.
 void require_made(const Stage& stage, const std::vector<Stage>& stages, const StageRunner& runner);
 
 /// Writes what a stage reads that no stage makes: of "pack" how the asset was made, provenance.json; of
