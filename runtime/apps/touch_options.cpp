@@ -16,8 +16,8 @@ TouchHandles declare(cli::Command& command, TouchOptions& options) {
     command.option("--column", options.column,
                    "which column of the file, from 1, is one axis' motion: its smallest value clear of the "
                    "surface, its largest --depth deep");
-    const cli::Option seconds =
-        command.option("--seconds", options.seconds, "how long, 0.001 to 86400; of a file, all unless this is given", "s");
+    const cli::Option seconds = command.option(
+        "--seconds", options.seconds, "how long, 0.001 to 86400; of a file, all unless this is given", "s");
     command.option("--depth", options.depth, "how deep the tool's surface goes below the rest surface", "mm");
     command.option("--speed", options.speed, "of press and slide", "mm/s");
     command.option("--body", options.body, "which body; the first deformable one if not given");
