@@ -132,14 +132,15 @@ std::vector<FineBall> balls_of(const NearSize& near, const LocalSizes& body, con
     return balls;
 }
 
-// mm³ of the regions inside balls: of balls that fall between voxels, their own.
-double volume_inside(const std::vector<FineBall>& balls, const RegionLabels& labels) {
+// mm³ of the regions inside balls: of balls that fall between voxels their own, and of few mm³ too, for which
+// voxels are not worth counting.
+double volume_inside(const std::vector<FineBall>& balls, const RegionLabels& labels, double few) {
     double balls_volume = 0, largest = 0;
     for (const FineBall& ball : balls) {
         balls_volume += 4 * std::numbers::pi / 3 * std::pow(ball.radius, 3);
         largest = std::max(largest, ball.radius);
     }
-    if (largest < labels.grid.spacing.norm()) return balls_volume;
+    if (balls_volume < few || largest < labels.grid.spacing.norm()) return balls_volume;
     SizeField field({}, largest);
     for (const FineBall& ball : balls) field.add(ball);
     std::int64_t inside = 0;
@@ -199,13 +200,15 @@ SizeField size_field(const MeshSizing& sizing, const RegionLabels& labels, const
                      per_cubed_size * shapes[k].volume / std::pow(regions[k].cell, 3),
                      "choose a larger --cell-size");
     add_surfaces(forecast, regions, shapes);
+    constexpr double negligible = 1e5;  // tetrahedra
     double edge = body.cell;
     for (const NearSize& near : sizing.near) edge = std::max(edge, near.within);
     SizeField field(regions, edge);
     for (const NearSize& near : sizing.near) {
         const std::vector<FineBall> balls = balls_of(near, body, map);
+        const double per_volume = per_cubed_size / std::pow(near.cell_size, 3);
         forecast.add("cell size near a place", near.cell_size,
-                     per_cubed_size * volume_inside(balls, labels) / std::pow(near.cell_size, 3),
+                     per_volume * volume_inside(balls, labels, negligible / per_volume),
                      "choose a larger size or a shorter distance");
         for (const FineBall& ball : balls) field.add(ball);
     }
