@@ -46,16 +46,21 @@ double TableReader::required_positive(const std::string& key) {
     return *positive(key);
 }
 
+void TableReader::require_finite(const toml::node& node, const std::string& key, double value) const {
+    if (!std::isfinite(value)) fail(node, key, fmt::format("is {}", value), "a finite number");
+}
+
 std::vector<double> TableReader::numbers(const std::string& key, std::size_t count) {
     known_.insert(key);
     const toml::array* array = table_.get_as<toml::array>(key);
     std::vector<double> values;
-    const auto finite = [&](const toml::node& item) {
-        if (!item.is_number()) return false;
-        values.push_back(*item.value<double>());
-        return std::isfinite(values.back());
-    };
-    if (array == nullptr || array->size() != count || !std::ranges::all_of(*array, finite))
+    if (array != nullptr)
+        for (const toml::node& item : *array) {
+            if (!item.is_number()) continue;
+            values.push_back(*item.value<double>());
+            require_finite(item, key, values.back());
+        }
+    if (array == nullptr || array->size() != count || values.size() != count)
         fail(node(key), key, "cannot be read", std::to_string(count) + " numbers in mm");
     return values;
 }

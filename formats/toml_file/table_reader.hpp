@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -29,9 +28,7 @@ class TableReader {
         // toml++ would take true for 1 and 1 for true.
         if (node->is_boolean() == std::is_same_v<T, bool>)
             if (const auto value = node->value<T>()) {
-                if constexpr (std::is_floating_point_v<T>)
-                    if (!std::isfinite(*value))
-                        fail(*node, key, std::isnan(*value) ? "is nan" : "is infinite", "a finite number");
+                if constexpr (std::is_floating_point_v<T>) require_finite(*node, key, *value);
                 return value;
             }
         fail(*node, key, "has the wrong type",
@@ -91,6 +88,7 @@ class TableReader {
     const toml::node& node(const std::string& key) const;
 
   private:
+    void require_finite(const toml::node& node, const std::string& key, double value) const;
     std::string place_of(const std::string& key) const;
 
     const toml::table& table_;

@@ -61,7 +61,9 @@ TEST(TableReader, names_line_and_key_of_a_value_of_another_type_and_what_was_exp
               "case.toml:1: key 'a' has the wrong type (expected true or false)");
     EXPECT_EQ(refusal_of("a = nan\n", [](TableReader& r) { r.required<double>("a"); }),
               "case.toml:1: key 'a' is nan (expected a finite number)");
-    for (const char* const list : {"a = [1, inf, 3]", "a = [1, 'x', 2, 3]", "a = [true, 2, 3]", "a = [1, 2]"})
+    EXPECT_EQ(refusal_of("a = [1, -inf, 3]", [](TableReader& r) { r.numbers("a", 3); }),
+              "case.toml:1: key 'a' is -inf (expected a finite number)");
+    for (const char* const list : {"a = [1, 'x', 2, 3]", "a = [true, 2, 3]", "a = [1, 2]"})
         EXPECT_EQ(refusal_of(list, [](TableReader& r) { r.numbers("a", 3); }),
                   "case.toml:1: key 'a' cannot be read (expected 3 numbers in mm)");
     EXPECT_EQ(refusal_of("a = true\n", [](TableReader& r) { r.required<double>("a"); }),
@@ -86,7 +88,7 @@ TEST(TableReader, names_a_number_that_may_not_be) {
                              [](TableReader& r) { r.positive("size_mm"); }),
                   "case.toml:2: key 'size_mm' is " + std::string(read) + " (expected a number above 0)");
     EXPECT_EQ(refusal_of("size_mm = inf", [](TableReader& r) { r.positive("size_mm"); }),
-              "case.toml:1: key 'size_mm' is infinite (expected a finite number)");
+              "case.toml:1: key 'size_mm' is inf (expected a finite number)");
     EXPECT_EQ(refusal_of("[a]\nx = 1\n", [](TableReader& r) { r.table("a").required_positive("size_mm"); }),
               "case.toml:1: key 'size_mm' of a is missing");
 }

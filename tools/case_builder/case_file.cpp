@@ -29,15 +29,13 @@ void read(TableReader& table, const std::string& key, T& value) {
     if (const auto found = table.optional<T>(key)) value = *found;
 }
 
-// Of numbers nothing means anything but a finite one, and of texts, all of them names and paths, nothing is
-// as it looks with a control character.
-void refuse_odd_values(const TableReader& root, const toml::node& node, const std::string& key) {
+// Of texts, all of them names and paths, nothing is as it looks with a control character.
+void refuse_control_characters(const TableReader& root, const toml::node& node, const std::string& key) {
     if (const toml::table* table = node.as_table())
-        for (const auto& [inner, value] : *table) refuse_odd_values(root, value, std::string(inner.str()));
+        for (const auto& [inner, value] : *table)
+            refuse_control_characters(root, value, std::string(inner.str()));
     if (const toml::array* array = node.as_array())
-        for (const toml::node& item : *array) refuse_odd_values(root, item, key);
-    if (const auto number = node.value_exact<double>(); number && !std::isfinite(*number))
-        root.fail(node, key, fmt::format("is {}", *number), "a finite number");
+        for (const toml::node& item : *array) refuse_control_characters(root, item, key);
     const auto is_control = [](unsigned char c) { return c < ' ' || c == 127; };
     if (const auto text = node.value_exact<std::string>(); text && std::ranges::any_of(*text, is_control))
         root.fail(node, key, "holds a control character", "text without any");
@@ -336,7 +334,7 @@ CaseFile read_case_file(const std::filesystem::path& path, std::span<const Overr
     if (const auto schema = root.required<std::int64_t>("schema"); schema != 1)
         root.fail(*document.get("schema"), "schema", "is " + std::to_string(schema), "1",
                   schema > 1 ? "use a newer palpate" : "");
-    refuse_odd_values(root, document, "");
+    refuse_control_characters(root, document, "");
     CaseFile result;
     result.name = root.required<std::string>("name");
     if (constexpr std::size_t longest = 255; result.name.empty() || result.name.size() > longest)

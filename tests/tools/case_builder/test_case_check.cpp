@@ -109,7 +109,7 @@ TEST(CaseCheck, a_mistake_is_told_by_line_before_anything_is_built) {
               ":25:", "'nodes_file' of deformable.fixed is empty"},
              {"[0, 0, 0, 1, 2, 3]", "[0, 0, 0, 1, 2, inf]", ":25:", "is inf (expected a finite number)"},
              {"cell_size_mm = 8 }", "cell_size_mm = 8, smoothing_mm = nan }",
-              ":23:", "'smoothing_mm' is nan"},
+              ":23:", "'smoothing_mm' of deformable.mesh is nan"},
              {"cell_size_mm = 8 }", "cell_size_mm = 8, facet_distance_mm = -1 }", ":23:", "0 or more"},
              {"refine =", "compliance = { accuracy = 1 }\nrefine =", ":24:", "is 1 (expected 0.0001 to 0.1)"},
              {"name = \"liver\"", "name = \"\"", ":2:", "has 0 bytes (expected 1 to 255)"},
