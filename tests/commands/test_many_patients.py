@@ -29,7 +29,7 @@ class ManyPatients(SmallCohort):
                                        text=True, check=True).stdout
             self.assertEqual(json.loads(inspected)["regions"][0]["youngs_modulus_kpa"], modulus)
         failures = {"cut": r"bad\.seg\.nrrd.*check that the file is whole", "gone": r"patients\.tsv:5: .*none\.seg\.nrrd: is not there",
-                    "negative": r"patients\.tsv:6: .*youngs_modulus_kpa.* positive"}
+                    "negative": r"patients\.tsv:6: .*youngs_modulus_kpa.* is -4 \(expected 0\.001 to 2e\+09\)"}
         results = [line.split("\t") for line in (self.out / "results.tsv").read_text().splitlines()[1:]]
         self.assertEqual([row[:2] for row in results], [["first", "built"], ["second", "built"], ["cut", "failed"], ["gone", "failed"],
                                                         ["negative", "failed"], ["p 1;touch X", "failed"]])
