@@ -96,7 +96,8 @@ endfunction()
 #                 [INSTALL HEADERS ...])
 # Makes target palpate_<name> with alias Palpate::<name>. Headers are included as "<folder>/<name>/x.hpp"; those of an
 # installed library are listed. OBJECT_PER_FILE: the tick's rooms, whose objects tests/house/tick_imports.py reads,
-# also where a preset compiles several files at once; instrumented builds, which it cannot read, do that there too.
+# also where a preset compiles several files at once; not so in presets without PALPATE_TICK_OBJECTS, whose objects it
+# does not read: instrumented, or never built.
 function(palpate_library path)
     cmake_parse_arguments(arg "INSTALL;OBJECT_PER_FILE" "PRECOMPILED" "SOURCES;HEADERS;LINKS;PRIVATE_LINKS" ${ARGN})
     get_filename_component(name ${path} NAME)
@@ -112,7 +113,7 @@ function(palpate_library path)
         set(arg_PRECOMPILED values)
     endif()
     palpate_reuse_precompiled(${target} ${arg_PRECOMPILED})
-    if(arg_OBJECT_PER_FILE AND NOT PALPATE_SANITIZERS)
+    if(arg_OBJECT_PER_FILE AND PALPATE_TICK_OBJECTS)
         set_target_properties(${target} PROPERTIES UNITY_BUILD OFF)
     endif()
     if(arg_INSTALL)
