@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "formats/model/closure.hpp"
 #include "formats/model/errors.hpp"
 
 namespace palpate::stl_file {
@@ -95,19 +96,7 @@ void require_closed(const TriangleMesh& mesh, const std::string& file) {
     }
 }
 
-// Six times the enclosed volume, mm³, positive if triangles face outwards. About the first vertex, so that a
-// surface far from the origin loses no digits.
-double sixfold_volume(const TriangleMesh& mesh) {
-    const auto from_first = [&](std::int32_t v) -> Vector3d {
-        return mesh.vertices[static_cast<std::size_t>(v)] - mesh.vertices.front();
-    };
-    double sum = 0;
-    for (const Triangle& t : mesh.triangles)
-        sum += from_first(t[0]).dot(from_first(t[1]).cross(from_first(t[2])));
-    return sum;
-}
-
-// The same of a layer on the whole surface, as thick as float32 rounds positions on it.
+// mm³ of a layer on the whole surface, as thick as float32 rounds positions on it.
 double rounded_volume(const TriangleMesh& mesh) {
     constexpr double float32_rounding = 6e-8;
     const auto at = [&](std::int32_t v) -> const Vector3d& {
@@ -117,7 +106,7 @@ double rounded_volume(const TriangleMesh& mesh) {
     for (const Triangle& t : mesh.triangles)
         twice_area += (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0])).norm();
     for (const Vector3d& vertex : mesh.vertices) extent = std::max(extent, vertex.cwiseAbs().maxCoeff());
-    return 3 * twice_area * extent * float32_rounding;
+    return twice_area / 2 * extent * float32_rounding;
 }
 
 }  // namespace
@@ -128,7 +117,7 @@ TriangleMesh closed_surface(const std::vector<Corner>& corners, const std::strin
         throw InvalidInput({file, "holds no triangles with three corners", "the surface of a tool",
                             "check how it was made"});
     require_closed(mesh, file);
-    const double volume = sixfold_volume(mesh);
+    const double volume = enclosed_volume(mesh);
     if (!(std::abs(volume) > rounded_volume(mesh)))
         throw InvalidInput({file, "encloses no volume", "the surface of a solid", "give it a thickness"});
     if (volume < 0)
