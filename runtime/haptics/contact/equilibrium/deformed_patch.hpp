@@ -13,6 +13,8 @@
 
 namespace palpate::haptics {
 
+inline constexpr double same_place = 1e-6;  ///< mm: closest points nearer than this are one
+
 /// The part of a deformable body's surface that tools are near, as it is displaced: its vertices, the nodal
 /// forces on them, and their blocks of the compliance, which are read once and stay while they are needed:
 /// those by which a vertex displaces others when it is first pressed. Vertices are known by their slots,

@@ -15,8 +15,7 @@ using namespace collision;
 using Eigen::Index;
 using Eigen::Vector3d;
 
-constexpr double same_place = 1e-6;  // mm: closest points nearer than this are one
-constexpr double look_margin = 1;    // mm: how much farther around is looked
+constexpr double look_margin = 1;  // mm: how much farther around is looked
 
 }  // namespace
 

@@ -30,7 +30,6 @@ using Eigen::Index;
 using Eigen::Vector3d;
 
 constexpr double settled = 1e-4;         // mm: changes smaller than this end the search for the equilibrium
-constexpr double one_point = 1e-6;       // mm: closest points nearer than this are one
 constexpr double alike = 0.05;           // mm: triangles that are farther than the nearest by less count too
 constexpr double beside_foot = 0.5;      // mm: edges nearer to the foot are walked across
 constexpr double first_gap = 0.02;       // mm: what is nearer is looked after in every tick
@@ -201,7 +200,7 @@ void NeighbourContact::meet(std::size_t p, std::span<DeformedPatch> patches) noe
         walked.begin(), walked.end(), [](const Seen& a, const Seen& b) { return a.distance < b.distance; });
     Vector3d normal = Vector3d::Zero();
     for (const Seen& seen : walked)
-        if (seen.distance < nearest.distance + one_point)
+        if (seen.distance < nearest.distance + same_place)
             normal += angle_about(seen.closest.point, seen.corners) * unit_normal(seen.corners);
     const bool outside = normal.dot(centre - nearest.closest.point) >= 0;
     probe.place.triangle = nearest.triangle;
@@ -214,11 +213,11 @@ void NeighbourContact::meet(std::size_t p, std::span<DeformedPatch> patches) noe
         row.weights = seen.closest.barycentric;
         row.point = seen.closest.point;
         row.distance = (outside ? seen.distance : -seen.distance) - probe.radius;
-        row.normal = seen.distance > one_point
+        row.normal = seen.distance > same_place
                          ? Vector3d((outside ? 1 : -1) * (centre - seen.closest.point) / seen.distance)
                          : unit_normal(seen.corners);
         const auto same = [&](const Row& other) {
-            return (other.point - row.point).squaredNorm() < one_point * one_point;
+            return (other.point - row.point).squaredNorm() < same_place * same_place;
         };
         if (std::any_of(rows_.begin() + first, rows_.end(), same) ||
             std::any_of(watched_.begin() + first_watched, watched_.end(), same))
