@@ -29,8 +29,9 @@ std::optional<char32_t> take_character(std::string_view& text) {
 
 bool is_shown(char32_t c) {
     const bool control = c < 0x20 || (c >= 0x7F && c <= 0x9F);
-    // Those of Unicode's categories Cf, Zl and Zp that have no picture or turn the direction of writing.
-    const bool unseen = c == 0xAD || c == 0x61C || c == 0x180E || (c >= 0x200B && c <= 0x200F) ||
+    // Those of Unicode's categories Cf, Zl and Zp that have no picture or turn the direction of writing. Not
+    // the joiners U+200C and U+200D, by which words of Persian and Indic scripts are written.
+    const bool unseen = c == 0xAD || c == 0x61C || c == 0x180E || c == 0x200B || c == 0x200E || c == 0x200F ||
                         (c >= 0x2028 && c <= 0x202E) || (c >= 0x2060 && c <= 0x206F) || c == 0xFEFF ||
                         (c >= 0xFFF9 && c <= 0xFFFB) || (c >= 0xE0000 && c <= 0xE007F);
     return !control && !unseen;

@@ -21,7 +21,7 @@ TEST(Utf8, is_what_unicode_calls_well_formed) {
 }
 
 TEST(Utf8, is_printable_without_controls_and_what_is_not_seen_or_turns_the_writing) {
-    for (const char* const good : {"", "Leber 2", "Läsion", "肝臓", "\xe2\x80\x93"})
+    for (const char* const good : {"", "Leber 2", "Läsion", "肝臓", "می\u200cشود", "\xe2\x80\x93"})
         EXPECT_TRUE(is_printable(good)) << good;
     for (const char* const bad :
          {"a\n", "\x1b[2J", "\x7f", "\xc2\x85", "\xe2\x80\xae", "\xe2\x81\xa6", "\xff", "a\u00ad", "\u061cb",
