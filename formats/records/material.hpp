@@ -16,7 +16,8 @@ struct Material {
     double poissons_ratio = 0;
 };
 
-/// N/mm²: from far below mucus to above diamond. Outside, sums of compliances leave what a double holds.
+/// N/mm²: from 1 Pa, some thousandth of the softest tissue, to beyond diamond. Far outside, sums of
+/// compliances over a body leave what a double holds, or are those of a single soft element.
 inline constexpr Range possible_modulus{.least = 1e-6, .most = 2e6};
 
 inline constexpr std::tuple material_fields{

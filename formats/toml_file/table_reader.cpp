@@ -36,8 +36,7 @@ std::optional<std::filesystem::path> TableReader::path(const std::string& key) {
 
 std::optional<double> TableReader::positive(const std::string& key) {
     const auto value = optional<double>(key);
-    if (value && !(*value > 0 && std::isfinite(*value)))
-        fail(*table_.get(key), key, fmt::format("is {}", *value), "a number above 0");
+    if (value && !(*value > 0)) fail(*table_.get(key), key, fmt::format("is {}", *value), "a number above 0");
     return value;
 }
 

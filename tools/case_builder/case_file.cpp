@@ -10,7 +10,9 @@
 #include "formats/model/colour.hpp"
 #include "formats/model/compliance.hpp"
 #include "formats/model/errors.hpp"
+#include "formats/model/reading/utf8.hpp"
 #include "formats/records/haptic_settings.hpp"
+#include "formats/records/posture.hpp"
 #include "formats/records/quality_contract.hpp"
 #include "formats/toml_file/table_reader.hpp"
 #include "tools/case_builder/kept_case.hpp"
@@ -29,16 +31,14 @@ void read(TableReader& table, const std::string& key, T& value) {
     if (const auto found = table.optional<T>(key)) value = *found;
 }
 
-// Of texts, all of them names and paths, nothing is as it looks with a control character.
-void refuse_control_characters(const TableReader& root, const toml::node& node, const std::string& key) {
+// Texts are names and paths all, and what is not seen makes one look like another.
+void refuse_unprintable(const TableReader& root, const toml::node& node, const std::string& key) {
     if (const toml::table* table = node.as_table())
-        for (const auto& [inner, value] : *table)
-            refuse_control_characters(root, value, std::string(inner.str()));
+        for (const auto& [inner, value] : *table) refuse_unprintable(root, value, std::string(inner.str()));
     if (const toml::array* array = node.as_array())
-        for (const toml::node& item : *array) refuse_control_characters(root, item, key);
-    const auto is_control = [](unsigned char c) { return c < ' ' || c == 127; };
-    if (const auto text = node.value_exact<std::string>(); text && std::ranges::any_of(*text, is_control))
-        root.fail(node, key, "holds a control character", "text without any");
+        for (const toml::node& item : *array) refuse_unprintable(root, item, key);
+    if (const auto text = node.value_exact<std::string>(); text && !is_printable(*text))
+        root.fail(node, key, "holds a control character or one that is not seen", "text without any");
 }
 
 // A length, 0 or more.
@@ -177,9 +177,9 @@ void read_record(TableReader& reader, const Table& table, Record& record) {
         const auto value = reader.optional<double>(key_of(field));
         if (!value) return;
         record.*field.member = *value / field.written_factor;
-        if (!std::isfinite(*value) || !field.range.contains(record.*field.member))
+        if (!field.range.contains(record.*field.member))
             reader.fail(reader.node(key_of(field)), key_of(field), fmt::format("is {}", *value),
-                        to_string(field.range));
+                        to_string(field.range.in_units(field.written_factor)));
     });
 }
 
@@ -289,9 +289,10 @@ DeformableSpec deformable(TableReader reader) {
 // scanned = "supine", felt = "upright" or [x, y, z], for all bodies that give way.
 void read_posture(TableReader& root, std::vector<DeformableSpec>& bodies) {
     TableReader table = root.table("posture");
+    std::vector<std::string> words;
+    for (const NamedPosture& named : named_postures) words.emplace_back(named.name);
     const auto posture = [&](const char* key) -> std::string {
-        if (table.raw().get_as<toml::array>(key) == nullptr)
-            return table.choice(key, {"supine", "prone", "left_side", "right_side", "upright"}).value_or("");
+        if (table.raw().get_as<toml::array>(key) == nullptr) return table.choice(key, words).value_or("");
         const std::vector<double> direction = table.numbers(key, 3);
         if (direction == std::vector<double>(3, 0.0))
             table.fail(table.node(key), key, "has no length", "which way gravity points, such as [0, 1, 0]");
@@ -334,7 +335,7 @@ CaseFile read_case_file(const std::filesystem::path& path, std::span<const Overr
     if (const auto schema = root.required<std::int64_t>("schema"); schema != 1)
         root.fail(*document.get("schema"), "schema", "is " + std::to_string(schema), "1",
                   schema > 1 ? "use a newer palpate" : "");
-    refuse_control_characters(root, document, "");
+    refuse_unprintable(root, document, "");
     CaseFile result;
     result.name = root.required<std::string>("name");
     if (constexpr std::size_t longest = 255; result.name.empty() || result.name.size() > longest)

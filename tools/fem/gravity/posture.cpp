@@ -12,6 +12,7 @@
 #include "formats/elasticity/sound_tetrahedra.hpp"
 #include "formats/model/errors.hpp"
 #include "formats/model/label_map.hpp"
+#include "formats/records/posture.hpp"
 #include "tools/fem/solvers/free_system.hpp"
 
 namespace palpate::fem {
@@ -62,13 +63,8 @@ std::vector<double> density_of_tetrahedra(const TetMesh& mesh, std::span<const R
 }  // namespace
 
 Vector3d gravity_in(const std::string& posture, const std::string& culprit) {
-    static const std::array<std::pair<const char*, Vector3d>, 5> named{{{"supine", {0, 1, 0}},
-                                                                        {"prone", {0, -1, 0}},
-                                                                        {"left_side", {1, 0, 0}},
-                                                                        {"right_side", {-1, 0, 0}},
-                                                                        {"upright", {0, 0, -1}}}};
-    for (const auto& [name, direction] : named)
-        if (posture == name) return standard_gravity * direction;
+    for (const auto& [name, down] : named_postures)
+        if (posture == name) return standard_gravity * Vector3d(down[0], down[1], down[2]);
     const Vector3d direction = direction_from(posture);
     if (!direction.allFinite() || direction.isZero(0))
         throw UsageError({culprit + " " + posture, "is no posture", posture_grammar, ""});
