@@ -2,7 +2,9 @@
 #include "formats/model/closure.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <random>
 #include <utility>
 
@@ -78,6 +80,20 @@ double enclosed_volume(const TriangleMesh& surface) {
         six_volumes += from_first(0).dot(from_first(1).cross(from_first(2)));
     }
     return six_volumes / 6;
+}
+
+double winding_number(const TriangleMesh& surface, const Eigen::Vector3d& p) {
+    double solid_angle = 0;
+    for (const Triangle& triangle : surface.triangles) {
+        const auto from_p = [&](std::size_t corner) -> Eigen::Vector3d {
+            return surface.vertices[static_cast<std::size_t>(triangle[corner])] - p;
+        };
+        const Eigen::Vector3d a = from_p(0), b = from_p(1), c = from_p(2);
+        const double la = a.norm(), lb = b.norm(), lc = c.norm();
+        solid_angle +=
+            2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+    }
+    return solid_angle / (4 * std::numbers::pi);
 }
 
 }  // namespace palpate

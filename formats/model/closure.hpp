@@ -17,4 +17,8 @@ bool faces_cancel(const TetMesh& mesh, const BoundarySurface& boundary);
 /// mm³ within a closed surface; negative if it faces inwards.
 double enclosed_volume(const TriangleMesh& surface);
 
+/// How often a closed surface winds about p: 1 inside and 0 outside of one that does not cut through itself.
+/// The sum of the solid angles of all triangles (van Oosterom, Strackee 1983) over 4 pi.
+double winding_number(const TriangleMesh& surface, const Eigen::Vector3d& p);
+
 }  // namespace palpate

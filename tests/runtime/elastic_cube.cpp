@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <span>
 #include <utility>
 #include <vector>
@@ -112,6 +113,24 @@ DeformableBody with_true_compliance(DeformableBody body) {
 
 DeformableBody true_elastic_cube(int cells) {
     return with_true_compliance(elastic_cube(cells));
+}
+
+DeformableBody true_elastic_cubes(int cells, const Eigen::Vector3d& offset) {
+    const DeformableBody one = elastic_cube(cells);
+    const auto nodes = static_cast<std::int32_t>(one.mesh.rest_positions.size());
+    DeformableBody both = one;
+    for (const Eigen::Vector3d& p : one.mesh.rest_positions) both.mesh.rest_positions.push_back(p + offset);
+    for (const auto& [a, b, c, d] : one.mesh.tetrahedra)
+        both.mesh.tetrahedra.push_back({a + nodes, b + nodes, c + nodes, d + nodes});
+    for (auto* of_each : {&both.mesh.regions, &both.mesh.outside_labels})
+        std::ranges::copy(std::vector(*of_each), std::back_inserter(*of_each));
+    for (const std::int32_t node : one.fixed_nodes) both.fixed_nodes.push_back(node + nodes);
+    for (const std::int32_t node : one.contact_nodes) both.contact_nodes.push_back(node + nodes);
+    both.boundary = boundary_surface(both.mesh);
+    both.compliance = DenseCompliance{static_cast<std::int32_t>(both.contact_nodes.size()), {}};
+    both.certificate.free_dofs = 2 * one.certificate.free_dofs;
+    both.obb_tree = median_tree(both.boundary.surface, 4);
+    return with_true_compliance(std::move(both));
 }
 
 DeformableBody true_elastic_arch(int cells, double radius) {

@@ -14,7 +14,10 @@ Eigen::MatrixXd dense_stiffness(const TetMesh& mesh, const Material& material);
 /// without the fixed nodes, restricted to the contact nodes. 5 kPa, Poisson's ratio 0.45.
 DeformableBody true_elastic_cube(int cells);
 
-/// The same, its top bent to a cylinder of `radius` (mm) about an axis along y under the middle of the top.
+/// Two of them as one body, the other `offset` mm aside: they may lie over each other.
+DeformableBody true_elastic_cubes(int cells, const Eigen::Vector3d& offset);
+
+/// The first, its top bent to a cylinder of `radius` (mm) about an axis along y under the middle of the top.
 DeformableBody true_elastic_arch(int cells, double radius);
 
 /// The same body with these contact nodes alone (some of the body's own, ascending), and their rows and

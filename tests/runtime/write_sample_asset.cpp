@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes the sample patient, with a true compliance, as an asset for tests of commands; if asked to, without
-// its skull, or with notes on how it was made.
+// its skull, with notes on how it was made, or with tissue that is there twice.
 #include <iostream>
 #include <string_view>
 
@@ -10,13 +10,14 @@
 
 int main(int argc, char** argv) {
     const std::string_view variant = argc == 3 ? argv[2] : "";
-    const bool soft = variant == "soft", noted = variant == "noted";
-    if (argc != 2 && !soft && !noted) {
-        std::cerr << "usage: write_sample_asset OUT.vtkhdf [soft | noted]\n";
+    const bool soft = variant == "soft", noted = variant == "noted", twice = variant == "twice";
+    if (argc != 2 && !soft && !noted && !twice) {
+        std::cerr << "usage: write_sample_asset OUT.vtkhdf [soft | noted | twice]\n";
         return 2;
     }
     palpate::Case patient_case = palpate::sample::sample_case();
-    patient_case.deformable_bodies = {palpate::sample::true_elastic_cube(5)};
+    patient_case.deformable_bodies = {twice ? palpate::sample::true_elastic_cubes(5, {6, 3, 0})
+                                            : palpate::sample::true_elastic_cube(5)};
     if (soft) patient_case.rigid_bodies.clear();
     if (noted)
         patient_case.provenance =

@@ -20,6 +20,7 @@
 #include "tools/fem/feel/feel.hpp"
 #include "tools/fem/solvers/dense_kernels.hpp"
 #include "tools/meshing/files/surface_repair.hpp"
+#include "tools/meshing/surfaces/overlaps.hpp"
 
 namespace {
 using namespace palpate;
@@ -134,6 +135,13 @@ void check_outside(Checks& checks, const DeformableBody& body) {
                wrong, "none");
 }
 
+// Tissue that is there twice would be felt twice.
+void check_overlap(Checks& checks, const DeformableBody& body) {
+    const auto place = meshing::place_of_overlap(body.boundary.surface);
+    checks.add(body.name, "no part lies where another does, place in mm", !place,
+               place ? Json({place->x(), place->y(), place->z()}) : Json(), "none");
+}
+
 void check_sides(Checks& checks, const RigidBody& body) {
     std::string wrong;
     try {
@@ -171,6 +179,7 @@ Json verify(const std::filesystem::path& asset, const std::vector<std::filesyste
         checks.add(body.name, "compliance, mesh, material and boundary belong together", true,
                    body.contact_nodes.size(), "contact nodes");
         check_outside(checks, body);
+        check_overlap(checks, body);
         check_mechanics(checks, body, columns, loads, session.threads);
     }
     if (!checks.failed().empty())

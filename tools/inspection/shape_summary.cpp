@@ -11,8 +11,8 @@
 #include "tools/inspection/text.hpp"
 #include "tools/meshing/files/imported_mesh.hpp"
 #include "tools/meshing/files/imported_placement.hpp"
-#include "tools/meshing/files/surface_repair.hpp"
 #include "tools/meshing/measures/quality.hpp"
+#include "tools/meshing/surfaces/joined_vertices.hpp"
 #include "tools/stages/mesh_result.hpp"
 
 namespace palpate::inspection {

@@ -46,7 +46,7 @@ void decimate_to(const SurfaceRequest& request, MadeSurface& made) {
     auto [coarse, distance] = decimate_within(made.surface, request.max_triangles,
                                               request.max_distance > 0 ? request.max_distance : any);
     made.surface = std::move(coarse);
-    made.decimated = {before, distance, self_intersections(made.surface)};
+    made.decimated = {before, distance, static_cast<std::int64_t>(self_intersections(made.surface).size())};
 }
 
 }  // namespace

@@ -13,6 +13,7 @@ import numpy
 sys.path.insert(0, "..")
 import test_asset_commands as assets  # noqa: E402
 from forge import rehash  # noqa: E402
+from sample_asset import SampleAsset  # noqa: E402
 
 BIN, run = assets.BIN, assets.run
 OK, INVALID, QUALITY = assets.OK, assets.INVALID, assets.QUALITY
@@ -334,6 +335,20 @@ class Forgeries(unittest.TestCase):
 
     def test_there_are_a_hundred_of_them(self):
         self.assertGreaterEqual(len(PHYSICS) + len(OF_DENSE) + len(OF_BLOCKS) + len(CLAIMS), 130)
+
+
+class Twice(SampleAsset):
+    """Honest values of a body that cannot be: two cubes in one place."""
+
+    variant = ("twice",)
+
+    def test_tissue_that_is_there_twice_is_refused_by_verify(self):
+        verified = run(BIN / "palpate-verify", self.asset, "--json", self.folder / "verify.json")
+        self.assertEqual(verified.returncode, QUALITY, verified.stdout + verified.stderr)
+        (row,) = [row for row in json.loads((self.folder / "verify.json").read_text())["checks"] if "no part lies" in row["check"]]
+        self.assertEqual((row["of"], row["status"]), ("wall", "failed"))
+        for place, least, most in zip(row["figure"], (0, 0, 0), (26, 23, 20)):
+            self.assertTrue(least <= place <= most, row)
 
 
 if __name__ == "__main__":

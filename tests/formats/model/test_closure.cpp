@@ -42,6 +42,15 @@ TEST(Closure, encloses_the_volume_wherever_it_lies_and_a_negative_one_inside_out
     }
 }
 
+TEST(Winding, is_one_within_a_ball_none_beyond_and_two_where_two_lie) {
+    TriangleMesh surface = sample::sphere_surface({3, -2, 1}, 10, 2);
+    EXPECT_NEAR(winding_number(surface, {4, -3, 2}), 1, 1e-12);
+    EXPECT_NEAR(winding_number(surface, {30, 0, 0}), 0, 1e-12);
+    const TriangleMesh twice{surface.vertices, surface.triangles};
+    surface.triangles.insert(surface.triangles.end(), twice.triangles.begin(), twice.triangles.end());
+    EXPECT_NEAR(winding_number(surface, {4, -3, 2}), 2, 1e-12);
+}
+
 TEST(Faces, of_a_mesh_cancel_but_for_its_boundary) {
     const TetMesh mesh = sample::cube_mesh(3, 30);
     EXPECT_TRUE(faces_cancel(mesh, boundary_surface(mesh)));

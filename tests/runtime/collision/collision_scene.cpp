@@ -3,7 +3,6 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <numbers>
 
 #include "tests/formats/sample_case.hpp"
 
@@ -96,20 +95,6 @@ TriangleMesh spiky_ball(unsigned seed) {
     for (Vector3d& vertex : ball.vertices)  // on a grid, so that float32 rounds none
         vertex = (3 * 1024 * std::exp2(exponent(generator)) * vertex).array().round() / 1024;
     return ball;
-}
-
-double winding_number(const TriangleMesh& mesh, const Vector3d& p) {
-    double solid_angle = 0;
-    for (const Triangle& triangle : mesh.triangles) {
-        const auto from_p = [&](std::size_t c) -> Vector3d {
-            return mesh.vertices[static_cast<std::size_t>(triangle[c])] - p;
-        };
-        const Vector3d a = from_p(0), b = from_p(1), c = from_p(2);
-        const double la = a.norm(), lb = b.norm(), lc = c.norm();
-        solid_angle +=
-            2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-    }
-    return solid_angle / (4 * std::numbers::pi);
 }
 
 }  // namespace palpate

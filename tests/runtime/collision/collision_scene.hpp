@@ -36,8 +36,4 @@ collision::TriangleCorners awkward_triangle(const Eigen::Vector3d& about, std::m
 /// bottoms between them: acute corners and edges, outward and inward.
 TriangleMesh spiky_ball(unsigned seed);
 
-/// How often the surface winds about p: 1 inside, 0 outside a closed surface. The sum of the solid angles of
-/// all triangles (van Oosterom, Strackee 1983) over 4 pi.
-double winding_number(const TriangleMesh& mesh, const Eigen::Vector3d& p);
-
 }  // namespace palpate

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <random>
 
+#include "formats/model/closure.hpp"
 #include "formats/model/errors.hpp"
 #include "formats/model/tet_mesh.hpp"
 #include "runtime/collision/field/distance_field.hpp"

@@ -9,6 +9,7 @@
 #include <iostream>
 #include <random>
 
+#include "formats/model/closure.hpp"
 #include "runtime/collision/field/distance_field.hpp"
 #include "tests/runtime/collision/collision_scene.hpp"
 #include "tools/meshing/files/imported_mesh.hpp"

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <random>
 
+#include "formats/model/closure.hpp"
 #include "runtime/collision/collision_surface.hpp"
 #include "tests/formats/sample_case.hpp"
 #include "tests/runtime/collision/collision_scene.hpp"

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "formats/model/errors.hpp"
+#include "tests/formats/sample_case.hpp"
 #include "tests/tools/meshing/phantom.hpp"
 #include "tools/meshing/contract/contract.hpp"
 #include "tools/meshing/contract/contract_json.hpp"
@@ -102,6 +104,18 @@ TEST(ContractMisses, broken_boundary_and_inverted_tetrahedra_are_always_misses) 
     made.measures.quality.boundary.non_manifold_edges = 2;
     made.measures.quality.boundary.open_edges = 3;
     EXPECT_EQ(misses(check_shape({}, made.mesh, made.measures.quality)).size(), 3U);
+}
+
+TEST(ContractMisses, boundary_that_cuts_through_itself_is_one) {
+    HandMade made = sound();
+    made.mesh = sample::cube_mesh(2, 10);
+    EXPECT_TRUE(misses(check_shape({}, made.mesh, made.measures.quality)).empty());
+    const auto top = std::ranges::find(made.mesh.rest_positions, Eigen::Vector3d(5, 5, 10));
+    ASSERT_NE(top, made.mesh.rest_positions.end());
+    top->z() = -1;
+    const auto missed = misses(check_shape({}, made.mesh, made.measures.quality));
+    ASSERT_EQ(missed.size(), 1U);
+    EXPECT_EQ(missed[0].name, "boundary_cuts");
 }
 
 TEST(ContractMisses, every_limit_of_fidelity_is_checked) {

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstdlib>
 #include <cstring>
+#include <fmt/format.h>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -430,6 +431,19 @@ TEST_F(ImportedMesh, parts_that_lie_on_each_other_without_sharing_nodes_are_refu
         {"1 pairs of faces lie on each other", "Coherence"}, "1.msh",
         "$NOD\n8\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 0 0\n6 0 1 0\n7 0 0 1\n8 1 1 1\n$ENDNOD\n"
         "$ELM\n2\n1 4 5 1 4 1 2 3 4\n2 4 5 1 4 5 6 8 7\n$ENDELM\n");
+}
+
+TEST_F(ImportedMesh, parts_that_lie_in_the_same_place_are_refused) {
+    const std::string nodes =
+        "$NOD\n8\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 {0} 0.1 0.1\n6 {1} 0.1 0.1\n7 {0} {2} 0.1\n8 {0} 0.1 "
+        "{2}\n"
+        "$ENDNOD\n$ELM\n2\n1 4 5 1 4 1 2 3 4\n2 4 5 1 4 5 6 7 8\n$ENDELM\n";
+    const auto with = [&](double first, double second, double other) {
+        return fmt::format(fmt::runtime(nodes), first, second, other);
+    };
+    for (const std::string& text : {with(0.5, 1.5, 1.1), with(0.1, 0.2, 0.2)})  // through each other, within
+        expect_refusal({"parts of it lie in the same place, at (", "join the parts"}, "1.msh", text);
+    EXPECT_EQ(tetrahedra("1.msh", with(1.1, 2, 1.1)).tetrahedra.size(), 2U);
 }
 
 TEST_F(ImportedMesh, damaged_files_name_the_line) {

@@ -2,9 +2,12 @@
 #include <gtest/gtest.h>
 
 #include "formats/model/errors.hpp"
+#include "tests/formats/sample_case.hpp"
 #include "tests/tools/meshing/phantom.hpp"
 #include "tools/meshing/measures/quality.hpp"
 #include "tools/meshing/measures/tet_faces.hpp"
+#include "tools/meshing/surfaces/surfaces.hpp"
+#include "tools/meshing/tetrahedra/move_nodes.hpp"
 #include "tools/meshing/tetrahedra/surface_fit.hpp"
 #include "tools/meshing/tetrahedra/tetrahedralise.hpp"
 
@@ -40,6 +43,37 @@ double mean_distance_from_lesion(const TetMesh& mesh) {
         area += weight;
     }
     return sum / area;
+}
+
+// Two cubes, 1 mm apart along x at x = 10 mm.
+TetMesh neighbours() {
+    TetMesh mesh = sample::cube_mesh(2, 10);
+    const TetMesh other = mesh;
+    const auto shift = static_cast<std::int32_t>(other.rest_positions.size());
+    for (const Eigen::Vector3d& p : other.rest_positions)
+        mesh.rest_positions.push_back(p + Eigen::Vector3d(11, 0, 0));
+    for (const auto& [a, b, c, d] : other.tetrahedra)
+        mesh.tetrahedra.push_back({a + shift, b + shift, c + shift, d + shift});
+    return mesh;
+}
+
+TEST(MoveNodes, neighbours_are_not_pushed_through_each_other) {
+    TetMesh mesh = neighbours();
+    const std::vector<Eigen::Vector3d> before = mesh.rest_positions;
+    Eigen::VectorXd step = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(before.size()));
+    for (std::size_t node = 0; node < before.size(); ++node)
+        if (const double x = before[node].x(); x == 10 || x == 11)
+            step[3 * static_cast<Eigen::Index>(node)] = x == 10 ? 1.5 : -0.75;
+    TetMesh pushed = mesh;
+    for (std::size_t node = 0; node < before.size(); ++node)
+        pushed.rest_positions[node] += step.segment<3>(3 * static_cast<Eigen::Index>(node));
+    ASSERT_FALSE(self_intersections(boundary_surface(pushed).surface).empty());
+    move_nodes(mesh, step, 5);
+    EXPECT_TRUE(self_intersections(boundary_surface(mesh).surface).empty());
+    for (std::size_t node = 0; node < before.size(); ++node) {
+        const double x = before[node].x(), quarter_step = x == 10 ? 0.375 : x == 11 ? -0.1875 : 0;
+        EXPECT_NEAR(mesh.rest_positions[node].x() - x, quarter_step, 1e-12);
+    }
 }
 
 TEST(FitSurface, triangles_that_were_pushed_off_come_back) {

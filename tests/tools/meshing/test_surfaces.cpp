@@ -4,8 +4,10 @@
 #include <numbers>
 
 #include "formats/model/errors.hpp"
+#include "tests/formats/sample_case.hpp"
 #include "tests/tools/meshing/phantom.hpp"
 #include "tools/meshing/measures/quality.hpp"
+#include "tools/meshing/surfaces/overlaps.hpp"
 #include "tools/meshing/surfaces/surfaces.hpp"
 
 namespace palpate {
@@ -160,15 +162,55 @@ TEST(Decimate, triangles_that_cannot_be_reached_are_named) {
     }
 }
 
+TriangleMesh inside_out(TriangleMesh surface) {
+    for (Triangle& t : surface.triangles) std::swap(t[1], t[2]);
+    return surface;
+}
+
+TriangleMesh together(TriangleMesh surface, const TriangleMesh& other) {
+    const auto shift = static_cast<std::int32_t>(surface.vertices.size());
+    surface.vertices.insert(surface.vertices.end(), other.vertices.begin(), other.vertices.end());
+    for (const Triangle& t : other.triangles)
+        surface.triangles.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
+    return surface;
+}
+
 TEST(SelfIntersections, balls_that_overlap_have_them_and_one_ball_has_none) {
-    TriangleMesh two = isosurface(cone(Eigen::Matrix3d::Identity(), 10), 100);
-    EXPECT_EQ(self_intersections(two), 0);
-    const TriangleMesh one = two;
-    const auto shift = static_cast<std::int32_t>(two.vertices.size());
-    for (const Eigen::Vector3d& p : one.vertices) two.vertices.push_back(p + Eigen::Vector3d(10, 0.3, 0.2));
-    for (const Triangle& t : one.triangles)
-        two.triangles.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
-    EXPECT_GT(self_intersections(two), 100);
+    const TriangleMesh one = isosurface(cone(Eigen::Matrix3d::Identity(), 10), 100);
+    EXPECT_TRUE(self_intersections(one).empty());
+    TriangleMesh other = one;
+    for (Eigen::Vector3d& p : other.vertices) p += Eigen::Vector3d(10, 0.3, 0.2);
+    EXPECT_GT(self_intersections(together(one, other)).size(), 100U);
+}
+
+TEST(Overlap, is_found_where_balls_cut_each_other_or_lie_within_each_other) {
+    const auto ball = [](double x, double radius) { return sample::sphere_surface({x, 2, 1}, radius, 2); };
+    EXPECT_FALSE(place_of_overlap(ball(0, 10)));
+    EXPECT_FALSE(place_of_overlap(together(ball(0, 10), ball(21, 10))));
+    EXPECT_TRUE(place_of_overlap(together(ball(0, 10), ball(15, 10))));
+    EXPECT_TRUE(place_of_overlap(together(ball(0, 10), ball(0, 10))));
+    EXPECT_TRUE(place_of_overlap(together(ball(0, 10), ball(1, 5))));
+    EXPECT_TRUE(place_of_overlap(inside_out(ball(0, 10))));
+}
+
+TEST(Overlap, is_not_a_cavity_nor_a_ball_within_one) {
+    const auto ball = [](double radius) { return sample::sphere_surface({0, 2, 1}, radius, 2); };
+    const TriangleMesh shell = together(ball(10), inside_out(ball(8)));
+    EXPECT_FALSE(place_of_overlap(shell));
+    EXPECT_FALSE(place_of_overlap(together(shell, ball(4))));
+    EXPECT_TRUE(place_of_overlap(together(shell, inside_out(ball(4)))));
+}
+
+TEST(Overlap, is_not_where_cubes_touch_in_a_corner_or_an_edge) {
+    const auto cube = [](double x, double y, double z) {
+        TriangleMesh surface = boundary_surface(sample::cube_mesh(2, 10)).surface;
+        for (Eigen::Vector3d& p : surface.vertices) p += Eigen::Vector3d(x, y, z);
+        return surface;
+    };
+    EXPECT_FALSE(place_of_overlap(together(cube(0, 0, 0), cube(10, 10, 10))));
+    EXPECT_FALSE(place_of_overlap(together(cube(0, 0, 0), cube(10, 10, 0))));
+    EXPECT_TRUE(place_of_overlap(together(cube(0, 0, 0), cube(9, 9, 9))));
+    EXPECT_TRUE(place_of_overlap(together(cube(0, 0, 0), cube(10, 0, 0))));  // in a face: a crack
 }
 
 TEST(Decimate, surface_that_is_no_manifold_is_refused) {

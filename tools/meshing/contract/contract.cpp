@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "tools/meshing/files/text.hpp"
+#include "tools/meshing/surfaces/surfaces.hpp"
 
 namespace palpate::meshing {
 namespace {
@@ -107,6 +108,8 @@ std::vector<ContractCheck> check_shape(const QualityContract& contract, const Te
     none("non_manifold_edges", "the number of non-manifold edges of the boundary",
          quality.boundary.non_manifold_edges);
     none("open_edges", "the number of open edges of the boundary", quality.boundary.open_edges);
+    none("boundary_cuts", "the number of pairs of triangles by which the boundary cuts through itself",
+         static_cast<std::int64_t>(self_intersections(boundary_surface(mesh).surface).size()));
     return checks;
 }
 

@@ -16,6 +16,7 @@
 #include "tools/meshing/files/surface_repair.hpp"
 #include "tools/meshing/files/vtk/vtk_reading.hpp"
 #include "tools/meshing/files/vtk/xml_readers.hpp"
+#include "tools/meshing/surfaces/joined_vertices.hpp"
 
 namespace palpate::meshing {
 namespace {

@@ -10,6 +10,7 @@
 #include "tools/meshing/files/imported_placement.hpp"
 #include "tools/meshing/labels/outside_labels.hpp"
 #include "tools/meshing/measures/tet_faces.hpp"
+#include "tools/meshing/surfaces/overlaps.hpp"
 #include "tools/meshing/tetrahedra/body_repair.hpp"
 
 namespace palpate::meshing {
@@ -162,6 +163,15 @@ void require_no_cracks(const TetMesh& mesh, const std::string& culprit) {
              "join duplicate nodes where it was made ('Coherence Mesh;' in Gmsh)"});
 }
 
+void require_no_overlap(const TetMesh& mesh, const std::string& culprit) {
+    if (const auto place = place_of_overlap(boundary_surface(mesh).surface))
+        throw InvalidInput({culprit,
+                            fmt::format("parts of it lie in the same place, at ({:.2f}, {:.2f}, {:.2f})",
+                                        place->x(), place->y(), place->z()),
+                            "one tetrahedron at each place",
+                            "remove what is there twice, or join the parts where it was made"});
+}
+
 constexpr std::int32_t last_label = 65535;
 
 // Takes the lowest label that is free.
@@ -235,6 +245,7 @@ TetMesh read_imported_tetrahedra(const std::filesystem::path& path, const Import
                          mesh.tetrahedra.size()));
     require_proper_faces(mesh, culprit);
     require_no_cracks(mesh, culprit);
+    require_no_overlap(mesh, culprit);
     say(split_hinges(mesh), "nodes doubled where parts touch in a point or edge only");
     name_regions(mesh, found, options, culprit, note);
     mark_surface(mesh);

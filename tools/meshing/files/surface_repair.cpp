@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <map>
-#include <numeric>
 #include <vector>
 
 #include "formats/model/disjoint_sets.hpp"
@@ -231,24 +230,6 @@ void require_sound_surface(const TriangleMesh& surface, const std::string& culpr
     if (!repairs.empty())
         throw InvalidInput({culprit, "needs repair: " + repairs, "closed, all triangles facing outwards",
                             "mend it by 'palpate surface --surface-file'"});
-}
-
-TriangleMesh joined_vertices(const TriangleMesh& surface) {
-    const auto coordinates = [&](std::int32_t v) {
-        const Eigen::Vector3d& p = point(surface, v);
-        return std::array{p.x(), p.y(), p.z()};
-    };
-    std::vector<std::int32_t> order(surface.vertices.size()), first(surface.vertices.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::ranges::stable_sort(order, {}, coordinates);
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        const bool same = i > 0 && coordinates(order[i]) == coordinates(order[i - 1]);
-        first[order[i]] = same ? first[order[i - 1]] : order[i];
-    }
-    TriangleMesh result = surface;
-    for (Triangle& t : result.triangles)
-        for (std::int32_t& v : t) v = first[v];
-    return result;
 }
 
 }  // namespace palpate::meshing

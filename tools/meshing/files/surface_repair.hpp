@@ -22,7 +22,4 @@ TriangleMesh repaired_surface(TriangleMesh surface, const std::string& culprit,
 /// Throws InvalidInput, naming `culprit`, unless repaired_surface() would return the surface as it is.
 void require_sound_surface(const TriangleMesh& surface, const std::string& culprit);
 
-/// Turns vertices at exactly the same place into one, at the place of the first.
-TriangleMesh joined_vertices(const TriangleMesh& surface);
-
 }  // namespace palpate::meshing

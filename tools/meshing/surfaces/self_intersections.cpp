@@ -1,32 +1,72 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Polygon_mesh_processing/self_intersections.h>
-#include <CGAL/Surface_mesh.h>
-#include <iterator>
-#include <string>
-#include <utility>
-#include <vector>
+#include <CGAL/box_intersection_d.h>
+#include <CGAL/intersections.h>
+#include <algorithm>
 
-#include "formats/model/errors.hpp"
+#include "tools/meshing/surfaces/joined_vertices.hpp"
 #include "tools/meshing/surfaces/surfaces.hpp"
 
 namespace palpate::meshing {
+namespace {
 
-std::int64_t self_intersections(const TriangleMesh& surface) {
-    using Mesh = CGAL::Surface_mesh<CGAL::Exact_predicates_inexact_constructions_kernel::Point_3>;
-    Mesh mesh;
-    for (const Eigen::Vector3d& p : surface.vertices) mesh.add_vertex({p.x(), p.y(), p.z()});
-    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-        const auto vertex = [&](std::size_t c) {
-            return Mesh::Vertex_index(static_cast<unsigned>(surface.triangles[t][c]));
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, std::size_t>;
+
+class Triangles {
+  public:
+    explicit Triangles(const TriangleMesh& surface) : surface_(surface) {}
+
+    bool cross(std::size_t s, std::size_t t) const {
+        // What both have comes first.
+        Triangle a = surface_.triangles[s], b = surface_.triangles[t];
+        const auto in = [](const Triangle& other) {
+            return [&other](std::int32_t v) { return std::ranges::find(other, v) != other.end(); };
         };
-        if (mesh.add_face(vertex(0), vertex(1), vertex(2)) == Mesh::null_face())
-            throw InvalidInput({"surface", "is not a manifold at triangle " + std::to_string(t),
-                                "at most two triangles at an edge, oriented alike", "repair it first"});
+        const auto shared = std::ranges::partition(a, in(b)).begin() - a.begin();
+        std::ranges::partition(b, in(a));
+        switch (shared) {
+            case 0:
+                return CGAL::do_intersect(whole(a), whole(b));
+            case 1:
+                return CGAL::do_intersect(opposite(a), whole(b)) || CGAL::do_intersect(opposite(b), whole(a));
+            case 2:
+                return CGAL::coplanar(point(a[0]), point(a[1]), point(a[2]), point(b[2])) &&
+                       CGAL::coplanar_orientation(point(a[0]), point(a[1]), point(a[2]), point(b[2])) ==
+                           CGAL::POSITIVE;
+            default:
+                return true;
+        }
     }
-    std::vector<std::pair<Mesh::Face_index, Mesh::Face_index>> pairs;
-    CGAL::Polygon_mesh_processing::self_intersections(mesh, std::back_inserter(pairs));
-    return static_cast<std::int64_t>(pairs.size());
+
+    Box box(std::size_t t) const { return {whole(surface_.triangles[t]).bbox(), t}; }
+
+  private:
+    Kernel::Point_3 point(std::int32_t v) const {
+        const Eigen::Vector3d& p = surface_.vertices[static_cast<std::size_t>(v)];
+        return {p.x(), p.y(), p.z()};
+    }
+    Kernel::Triangle_3 whole(const Triangle& t) const { return {point(t[0]), point(t[1]), point(t[2])}; }
+    // The edge opposite to the first corner.
+    Kernel::Segment_3 opposite(const Triangle& t) const { return {point(t[1]), point(t[2])}; }
+
+    const TriangleMesh& surface_;
+};
+
+}  // namespace
+
+std::vector<std::array<std::size_t, 2>> self_intersections(const TriangleMesh& surface) {
+    const TriangleMesh joined = joined_vertices(surface);
+    const Triangles triangles(joined);
+    std::vector<Box> boxes;
+    for (std::size_t t = 0; t < joined.triangles.size(); ++t) boxes.push_back(triangles.box(t));
+    std::vector<std::array<std::size_t, 2>> pairs;
+    CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) {
+        if (triangles.cross(a.info(), b.info())) pairs.push_back({a.info(), b.info()});
+    });
+    for (auto& pair : pairs) std::ranges::sort(pair);
+    std::ranges::sort(pairs);
+    return pairs;
 }
 
 }  // namespace palpate::meshing

@@ -8,6 +8,8 @@
 
 #include "tools/meshing/measures/quality.hpp"
 #include "tools/meshing/measures/tet_faces.hpp"
+#include "tools/meshing/surfaces/surfaces.hpp"
+#include "tools/meshing/tetrahedra/move_nodes.hpp"
 
 namespace palpate::meshing {
 namespace {
@@ -111,8 +113,16 @@ class Lifter {
 void lift_flat_tetrahedra(TetMesh& mesh, double bound_deg, double max_surface_move) {
     constexpr int max_passes = 10;
     Lifter lifter(mesh, max_surface_move);
+    const std::vector<Eigen::Vector3d> start = mesh.rest_positions;
     for (int pass = 0; pass < max_passes && lifter.pass(bound_deg); ++pass) {
     }
+    if (self_intersections(boundary_surface(mesh).surface).empty()) return;
+    // Two sheets of the boundary got through each other, of which no tetrahedron knows.
+    Eigen::VectorXd lift(3 * static_cast<Eigen::Index>(start.size()));
+    for (std::size_t node = 0; node < start.size(); ++node)
+        lift.segment<3>(3 * static_cast<Eigen::Index>(node)) = mesh.rest_positions[node] - start[node];
+    mesh.rest_positions = start;
+    move_nodes(mesh, lift, bound_deg);
 }
 
 }  // namespace palpate::meshing

@@ -6,9 +6,9 @@
 #include <string>
 
 #include "formats/model/errors.hpp"
-#include "tools/meshing/measures/quality.hpp"
 #include "tools/meshing/measures/tet_faces.hpp"
 #include "tools/meshing/surfaces/surface_gap.hpp"
+#include "tools/meshing/tetrahedra/move_nodes.hpp"
 
 namespace palpate::meshing {
 namespace {
@@ -27,30 +27,6 @@ void limit_lengths(Eigen::VectorXd& step, double max_length) {
         const double length = step.segment<3>(3 * node).norm();
         if (length > max_length) step.segment<3>(3 * node) *= max_length / length;
     }
-}
-
-// Adds `step`, halved as often as it takes at the nodes of every tetrahedron that it would flatten.
-void move_nodes(TetMesh& mesh, const Eigen::VectorXd& step, double floor_deg) {
-    const std::vector<Eigen::Vector3d> before = mesh.rest_positions;
-    std::vector<double> lowest(mesh.tetrahedra.size()), fraction(before.size(), 1.0);
-    for (std::size_t t = 0; t < lowest.size(); ++t) lowest[t] = std::min(floor_deg, flatness_deg(mesh, t));
-    constexpr int halvings = 8, max_rounds = 100;  // then nodes stay, and those around them may have to
-    for (int round = 0; round < max_rounds; ++round) {
-        for (std::size_t node = 0; node < before.size(); ++node)
-            mesh.rest_positions[node] =
-                before[node] + fraction[node] * step.segment<3>(3 * static_cast<Eigen::Index>(node));
-        std::vector<bool> halve(before.size(), false);
-        bool sound = true;
-        for (std::size_t t = 0; t < lowest.size(); ++t) {
-            if (six_volume(mesh, t) > 0 && flatness_deg(mesh, t) >= lowest[t]) continue;
-            sound = false;
-            for (const std::int32_t node : mesh.tetrahedra[t]) halve[node] = true;
-        }
-        if (sound) return;
-        for (std::size_t node = 0; node < before.size(); ++node)
-            if (halve[node]) fraction[node] = round < halvings ? 0.5 * fraction[node] : 0;
-    }
-    mesh.rest_positions = before;
 }
 
 // The lumped least-squares displacement of every node, three rows each.

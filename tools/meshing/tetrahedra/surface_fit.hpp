@@ -8,8 +8,8 @@
 namespace palpate::meshing {
 
 // Both functions take meshes whose regions are numbered 1, 2, ... No node moves further than
-// `max_distance` mm at a step, no tetrahedron turns over, and none gets a dihedral angle nearer than
-// `floor_deg` to 0° or 180° unless it was nearer before.
+// `max_distance` mm at a step, and each step is one of move_nodes(): no tetrahedron gets flatter than
+// `floor_deg` unless it was before, and the boundary stays without cuts.
 
 /// Moves the nodes on region interfaces and on the boundary so that the triangles lie about the labels'
 /// surface as closely as flat triangles can: nodes that lie on a curved surface leave their triangles all on
