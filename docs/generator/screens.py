@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Takes the pictures of the trainer's screens that docs/screens.md shows: the demo's cases in real windows of three sizes.
+"""Takes the pictures that pages show: the trainer's screens, of the demo's cases in real windows of three sizes, and a report.
 
-    docs/generator/screens.py [SCREEN ...]        (pipelines/demo.sh before it; all screens without a name)
+    docs/generator/screens.py [SCREEN | report ...]        (pipelines/demo.sh before it; all of them without a name)
 
 PALPATE_BIN has the programs, build/release/bin without it. Each screen is reached as a user would, by mouse and keys, in an X server
-of its own; software rendering leaves out detail in large windows, and the pictures show that.
+of its own; software rendering leaves out detail in large windows, and the pictures show that. The report is as Chromium shows it.
 """
 import os
 import subprocess
@@ -15,13 +15,13 @@ import time
 from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(SOURCE / "tests/commands"))
+sys.path[:0] = [str(SOURCE / "tests/commands"), str(SOURCE / "tests/commands/pages")]
+from browser import CHROMIUM, QUIET  # noqa: E402
 from x_server import XServer  # noqa: E402
 
 BIN = Path(os.environ.get("PALPATE_BIN", SOURCE / "build/release/bin"))
 SIZES = ((1280, 720), (1920, 1080), (3840, 2160))  # pixels
 ON_THE_ORGAN = 0.52, 0.50  # of the window
-BESIDE_IT = 0.9, 0.2
 
 
 class Trainer:
@@ -34,7 +34,6 @@ class Trainer:
         self.process = subprocess.Popen(command, env=server.environment, cwd=folder, stdout=subprocess.DEVNULL)
         self.window = self.x("xdotool", "search", "--sync", "--onlyvisible", "--name", f"Palpate: {case}").split()[0].decode()
         self.x("xdotool", "windowfocus", "--sync", self.window)
-        self.point(*BESIDE_IT)
         self.wait(4)
 
     def x(self, *command):
@@ -133,16 +132,37 @@ SCREENS = {
 }
 
 
+PICTURES = SOURCE / "docs/pictures"
+
+
+def take_screen(name, size, picture):
+    """Pictures a screen in a window of that size."""
+    with tempfile.TemporaryDirectory() as folder, XServer("{}x{}".format(*size)) as server:
+        trainer = SCREENS[name](server, Path(folder))
+        trainer.take(picture)
+        trainer.close()
+
+
+def take_report(picture):
+    """Pictures the upper part of the head's report as a browser shows it."""
+    with tempfile.TemporaryDirectory() as folder:
+        shot = Path(folder) / "report.png"
+        subprocess.run([CHROMIUM, *QUIET, f"--user-data-dir={folder}/profile", "--hide-scrollbars", "--window-size=1280,900",
+                        f"--screenshot={shot}", (SOURCE / "build/demo/nasopharynx.html").as_uri()],
+                       check=True, capture_output=True, timeout=120)
+        subprocess.run(["convert", shot, "-quality", "75", picture], check=True)
+
+
 def main():
-    pictures = SOURCE / "docs/pictures/screens"
-    for name in sys.argv[1:] or SCREENS:
-        for size in SIZES:
-            with tempfile.TemporaryDirectory() as folder, XServer("{}x{}".format(*size)) as server:
-                trainer = SCREENS[name](server, Path(folder))
-                picture = pictures / str(size[1]) / f"{name}.webp"
+    chosen = sys.argv[1:] or [*SCREENS, "report"]
+    for name in chosen:
+        if name == "report":
+            take_report(PICTURES / "report.webp")
+        else:
+            for size in SIZES:
+                picture = PICTURES / "screens" / str(size[1]) / f"{name}.webp"
                 picture.parent.mkdir(parents=True, exist_ok=True)
-                trainer.take(picture)
-                trainer.close()
+                take_screen(name, size, picture)
         print(name, flush=True)
 
 

@@ -23,8 +23,8 @@ h3{margin:22px 0 8px;font-size:16px}
 .verdict strong{color:var(--good);font-size:17px;white-space:nowrap}
 .cautions{border:1px solid var(--line);border-radius:8px;padding:10px 16px;margin:0 0 18px;font-size:14px}.cautions ul{margin:4px 0 0;padding-left:20px}
 .verdict.failed{background:var(--bad-wash)}.verdict.failed strong{color:var(--bad)}
-.cards{display:grid;grid-template-columns:repeat(auto-fit,minmax(135px,1fr));gap:10px;margin:0}
-.cards div{border:1px solid var(--line);border-radius:8px;padding:9px 12px}
+.cards{display:flex;flex-wrap:wrap;gap:10px;margin:0}
+.cards div{flex:1 1 135px;border:1px solid var(--line);border-radius:8px;padding:9px 12px}
 .cards dt{color:var(--soft);font-size:12.5px}
 .cards dd{margin:0;font-size:20px;font-weight:600;font-variant-numeric:tabular-nums;white-space:nowrap}
 .cards dd small{font-size:13px;font-weight:400;color:var(--soft)}
