@@ -3,7 +3,7 @@
 
 namespace palpate::visual {
 
-std::vector<Detail> detail_levels(int window_height) {
+std::vector<Detail> detail_levels(int window_height, bool hardware) {
     constexpr int least_lines = 300;
     std::vector<Detail> levels;
     for (const int pixel : {7, 5, 4, 3})
@@ -16,6 +16,7 @@ std::vector<Detail> detail_levels(int window_height) {
     }
     levels.push_back({.fine_bodies = true});
     levels.push_back({.fine_bodies = true, .grain = true});
+    if (hardware) levels.push_back({.fine_bodies = true, .grain = true, .occlusion = true});
     return levels;
 }
 

@@ -9,8 +9,9 @@ namespace palpate::visual {
 struct Detail {
     int pixel = 1;  ///< window pixels that one drawn takes along each side
     bool fine_bodies =
-        false;           ///< rigid bodies as close to the whole as the budget allows, else a coarser copy
-    bool grain = false;  ///< the finest spots of tissue and their relief
+        false;               ///< rigid bodies as close to the whole as the budget allows, else a coarser copy
+    bool grain = false;      ///< the finest spots of tissue and their relief
+    bool occlusion = false;  ///< creases, and what lies close to something else, get less light
 };
 
 /// How much of the picture is drawn.
@@ -21,7 +22,8 @@ struct ShownDetail {
 };
 
 /// The levels from the least to everything, what is missed least left out first, for a window of so many
-/// pixels' height, of which 300 lines are drawn at least.
-std::vector<Detail> detail_levels(int window_height);
+/// pixels' height, of which 300 lines are drawn at least. `hardware`: a graphics card draws; without one
+/// occlusion, ten times a frame, is not among them.
+std::vector<Detail> detail_levels(int window_height, bool hardware);
 
 }  // namespace palpate::visual

@@ -5,7 +5,7 @@ namespace palpate::visual {
 
 void DrawnDetail::frame_took(double seconds) {
     if (!control_) {
-        levels_ = detail_levels(window_->GetSize()[1]);
+        levels_ = detail_levels(window_->GetSize()[1], drawn_by_hardware(window_));
         control_.emplace(static_cast<int>(levels_.size()));
         draw(levels_.back());
         return;
@@ -19,6 +19,10 @@ void DrawnDetail::draw(const Detail& detail) {
     if (detail.pixel > 1) {
         coarse_pixels_->set_size(detail.pixel);
         pass = coarse_pixels_;
+    }
+    if (detail.occlusion) {
+        if (!occlusion_) occlusion_ = occlusion_pass(renderer_);
+        pass = occlusion_;
     }
     if (vtkRenderPass* before = renderer_->GetPass(); before != nullptr && before != pass)
         before->ReleaseGraphicsResources(window_);

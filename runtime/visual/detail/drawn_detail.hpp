@@ -9,6 +9,7 @@
 #include "runtime/visual/detail/coarse_pixels.hpp"
 #include "runtime/visual/detail/detail.hpp"
 #include "runtime/visual/detail/detail_control.hpp"
+#include "runtime/visual/detail/occlusion.hpp"
 #include "runtime/visual/scene.hpp"
 
 namespace palpate::visual {
@@ -35,6 +36,7 @@ class DrawnDetail {
     std::vector<Detail> levels_;
     std::optional<DetailControl> control_;  // once the window has its size
     vtkNew<CoarsePixels> coarse_pixels_;
+    vtkSmartPointer<vtkRenderPass> occlusion_;  // once it is drawn
 };
 
 }  // namespace palpate::visual

@@ -89,13 +89,20 @@ TEST(DetailControl, tries_that_fail_are_made_less_and_less_often) {
 
 TEST(DetailLevels, end_with_everything_and_leave_lines_enough_to_see) {
     for (const int height : {240, 720, 1080, 2160}) {
-        const auto levels = visual::detail_levels(height);
+        const auto levels = visual::detail_levels(height, true);
         for (const visual::Detail& level : levels)
             EXPECT_TRUE(level.pixel == 1 || height / level.pixel >= 300);
         EXPECT_EQ(levels.back().pixel, 1);
-        EXPECT_TRUE(levels.back().grain && levels.back().fine_bodies);
+        EXPECT_TRUE(levels.back().grain && levels.back().fine_bodies && levels.back().occlusion);
     }
-    EXPECT_GT(visual::detail_levels(2160).front().pixel, visual::detail_levels(720).front().pixel);
+    EXPECT_GT(visual::detail_levels(2160, true).front().pixel,
+              visual::detail_levels(720, true).front().pixel);
+}
+
+TEST(DetailLevels, of_a_machine_without_a_graphics_card_have_no_occlusion) {
+    const auto levels = visual::detail_levels(720, false);
+    EXPECT_EQ(levels.size() + 1, visual::detail_levels(720, true).size());
+    EXPECT_FALSE(std::ranges::any_of(levels, &visual::Detail::occlusion));
 }
 
 }  // namespace
