@@ -50,8 +50,8 @@ std::vector<TriangleMesh> parted(const TriangleMesh& surface) {
 }  // namespace
 
 std::optional<Eigen::Vector3d> place_of_overlap(const TriangleMesh& boundary) {
-    if (const auto cuts = self_intersections(boundary); !cuts.empty())
-        return centre_of(boundary, boundary.triangles[cuts.front()[0]]);
+    if (const auto cut = first_self_intersection(boundary))
+        return centre_of(boundary, boundary.triangles[(*cut)[0]]);
     const std::vector<TriangleMesh> pieces = parted(boundary);
     for (const TriangleMesh& piece : pieces) {
         const Eigen::Vector3d place = centre_of(piece, piece.triangles.front());

@@ -53,20 +53,38 @@ class Triangles {
     const TriangleMesh& surface_;
 };
 
-}  // namespace
+using Pair = std::array<std::size_t, 2>;
 
-std::vector<std::array<std::size_t, 2>> self_intersections(const TriangleMesh& surface) {
+template <typename Visit>
+void visit_crossing_pairs(const TriangleMesh& surface, Visit visit) {
     const TriangleMesh joined = joined_vertices(surface);
     const Triangles triangles(joined);
     std::vector<Box> boxes;
     for (std::size_t t = 0; t < joined.triangles.size(); ++t) boxes.push_back(triangles.box(t));
-    std::vector<std::array<std::size_t, 2>> pairs;
     CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) {
-        if (triangles.cross(a.info(), b.info())) pairs.push_back({a.info(), b.info()});
+        if (triangles.cross(a.info(), b.info())) visit(Pair{a.info(), b.info()});
     });
-    for (auto& pair : pairs) std::ranges::sort(pair);
+}
+
+}  // namespace
+
+std::vector<Pair> self_intersections(const TriangleMesh& surface) {
+    std::vector<Pair> pairs;
+    visit_crossing_pairs(surface, [&](Pair pair) {
+        std::ranges::sort(pair);
+        pairs.push_back(pair);
+    });
     std::ranges::sort(pairs);
     return pairs;
+}
+
+std::optional<Pair> first_self_intersection(const TriangleMesh& surface) {
+    try {
+        visit_crossing_pairs(surface, [](const Pair& pair) { throw pair; });  // CGAL's only way to stop
+    } catch (const Pair& found) {
+        return found;
+    }
+    return {};
 }
 
 }  // namespace palpate::meshing

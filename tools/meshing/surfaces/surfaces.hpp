@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -62,5 +63,8 @@ Decimation decimate_within(const TriangleMesh& surface, std::int64_t max_triangl
 /// The pairs of triangles that meet elsewhere than in what they share, in ascending order; exact. Vertices at
 /// one place count as one. Cost: 1 s for 100 000 triangles.
 std::vector<std::array<std::size_t, 2>> self_intersections(const TriangleMesh& surface);
+
+/// Any one of them. Where all triangles lie on each other, all pairs would not fit into memory.
+std::optional<std::array<std::size_t, 2>> first_self_intersection(const TriangleMesh& surface);
 
 }  // namespace palpate::meshing

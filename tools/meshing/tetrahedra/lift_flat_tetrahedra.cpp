@@ -116,7 +116,7 @@ void lift_flat_tetrahedra(TetMesh& mesh, double bound_deg, double max_surface_mo
     const std::vector<Eigen::Vector3d> start = mesh.rest_positions;
     for (int pass = 0; pass < max_passes && lifter.pass(bound_deg); ++pass) {
     }
-    if (self_intersections(boundary_surface(mesh).surface).empty()) return;
+    if (!first_self_intersection(boundary_surface(mesh).surface)) return;
     // Two sheets of the boundary got through each other, of which no tetrahedron knows.
     Eigen::VectorXd lift(3 * static_cast<Eigen::Index>(start.size()));
     for (std::size_t node = 0; node < start.size(); ++node)
