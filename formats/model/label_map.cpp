@@ -5,6 +5,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include "formats/model/errors.hpp"
@@ -37,17 +38,26 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-std::optional<Label> find_label(std::span<const Label> labels, std::string_view key) {
-    for (const Label& label : labels)
-        if (label.name == key) return label;
-    for (const Label& label : labels)
-        if (folded(label.name) == folded(key)) return label;
+std::vector<Label> labels_called(std::span<const Label> labels, std::string_view key) {
+    const auto those = [&](const auto& is_meant) {
+        std::vector<Label> found;
+        std::ranges::copy_if(labels, std::back_inserter(found), is_meant);
+        return found;
+    };
+    if (auto exact = those([&](const Label& label) { return label.name == key; }); !exact.empty())
+        return exact;
+    if (auto alike = those([&](const Label& label) { return folded(label.name) == folded(key); });
+        !alike.empty())
+        return alike;
     std::int32_t value = 0;
     const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), value);
-    if (error == std::errc{} && end == key.data() + key.size())
-        for (const Label& label : labels)
-            if (label.value == value) return label;
-    return std::nullopt;
+    if (error != std::errc{} || end != key.data() + key.size()) return {};
+    return those([&](const Label& label) { return label.value == value; });
+}
+
+std::optional<Label> find_label(std::span<const Label> labels, std::string_view key) {
+    const std::vector<Label> found = labels_called(labels, key);
+    return found.empty() ? std::nullopt : std::optional(found.front());
 }
 
 std::vector<std::string> nearest_names(std::string_view key, const std::vector<std::string>& candidates) {
@@ -66,7 +76,14 @@ std::vector<std::string> nearest_names(std::string_view key, const std::vector<s
 }
 
 Label require_label(std::span<const Label> labels, std::string_view key, const std::string& culprit) {
-    if (const auto label = find_label(labels, key)) return *label;
+    const std::vector<Label> found = labels_called(labels, key);
+    if (found.size() > 1)
+        throw InvalidInput({.culprit = culprit,
+                            .found = "labels " + std::to_string(found[0].value) + " and " +
+                                     std::to_string(found[1].value) + " are both '" + found[0].name + "'",
+                            .expected = "one label of that name",
+                            .next_step = "name it by its value, or rename one where they were made"});
+    if (!found.empty()) return found.front();
     std::vector<std::string> names;
     for (const Label& label : labels) names.push_back(label.name);
     std::string near;

@@ -25,8 +25,11 @@ struct LabelMap {
     std::vector<Label> names;           ///< ascending by value
 };
 
-/// Finds a label by name (exact, then ignoring case and with spaces like underscores) or, if `key` is a
-/// number, by value.
+/// All labels that `key` means: by name exactly, where there is none ignoring case and with spaces like
+/// underscores, and where there is none, if `key` is a number, by value.
+std::vector<Label> labels_called(std::span<const Label> labels, std::string_view key);
+
+/// The first of labels_called().
 std::optional<Label> find_label(std::span<const Label> labels, std::string_view key);
 inline std::optional<Label> find_label(const LabelMap& map, std::string_view key) {
     return find_label(map.names, key);
@@ -35,7 +38,8 @@ inline std::optional<Label> find_label(const LabelMap& map, std::string_view key
 /// Returns up to three names of `candidates` nearest to `key` by edit distance, best first.
 std::vector<std::string> nearest_names(std::string_view key, const std::vector<std::string>& candidates);
 
-/// Finds a label as find_label() does; throws InvalidInput naming `culprit` and the nearest names.
+/// The one of labels_called(). Throws InvalidInput naming `culprit`, and the nearest names where there is
+/// none, or the values where two have one name.
 Label require_label(std::span<const Label> labels, std::string_view key, const std::string& culprit);
 inline Label require_label(const LabelMap& map, std::string_view key, const std::string& culprit) {
     return require_label(map.names, key, culprit);

@@ -53,6 +53,16 @@ TEST(LabelMap, a_label_that_is_not_there_is_named_with_its_file_and_the_nearest)
               "a.nrrd: no label 'liver'; there are no labels; segment first");
 }
 
+TEST(LabelMap, two_labels_of_one_name_are_told_apart_by_value_alone) {
+    const std::vector<Label> twice{
+        {.value = 1, .name = "liver"}, {.value = 3, .name = "liver"}, {.value = 4, .name = "Liver"}};
+    EXPECT_EQ(sample::refusal([&] { require_label(twice, "liver", "a.nrrd"); }),
+              "a.nrrd: labels 1 and 3 are both 'liver' (expected one label of that name); name it by its "
+              "value, or rename one where they were made");
+    EXPECT_EQ(require_label(twice, "Liver", "a.nrrd").value, 4);
+    EXPECT_EQ(require_label(twice, "3", "a.nrrd").value, 3);
+}
+
 TEST(LabelMap, default_colours_of_neighbouring_values_differ) {
     constexpr float seen = 0.1F;  // of a channel's whole
     constexpr std::int32_t count = 12;
