@@ -152,6 +152,24 @@ TEST(Dicom, every_lossless_compression_reads_as_the_same_values) {
     }
 }
 
+TEST(Dicom, compressed_values_in_the_upper_bits_are_read_as_plain_ones_are) {
+    const Scratch folder;
+    const ImageGrid grid = oblique_stack();
+    for (int k = 0; k < 8; ++k) {
+        std::vector<std::int16_t> stored(120, static_cast<std::int16_t>(16 * k));
+        stored[7] = -5 * 16;
+        std::string file = test::transcoded(test::ct_slice(grid, place_of(grid, k), stored).file(),
+                                            gdcm::TransferSyntax::JPEGLosslessProcess14_1);
+        const std::string used("\x28\x00\x01\x01US\x02\x00\x10", 9);
+        ASSERT_NE(file.find(used), std::string::npos);
+        file[file.find(used) + 8] = 12;  // bits, up to the highest of 16
+        test::write_bytes(folder / fmt::format("{}.dcm", k), file);
+    }
+    const Volume volume = read_volume(folder.path());
+    EXPECT_EQ(volume.values[grid.offset(0, 0, 6)], 6);
+    EXPECT_EQ(volume.values[7], -5);
+}
+
 TEST(Dicom, empty_and_missing_identifiers_do_not_split_a_series) {
     const Scratch folder;
     write_stack(folder, oblique_stack(), even, [](DicomData& slice, std::size_t n) {
