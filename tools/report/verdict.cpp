@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "tools/fem/certificate/certificate.hpp"
+#include "tools/fem/certificate/contact_loads.hpp"
 #include "tools/report/html.hpp"
 
 namespace palpate::report {
@@ -13,17 +15,19 @@ std::vector<Check> checks_of(const DeformableBody& body, const MeshSummary& mesh
     const double limit = allowed_error(body.compliance);
     const std::string within = "≤ " + significant(limit, 1);
     const Certificate& c = body.certificate;
+    const fem::LoadError allowed = fem::allowed_load_error(body, {c.load_error, c.contact_error},
+                                                           fem::certificate_loads, fem::certificate_seed);
     return {
         {"Residual", significant(c.residual, 2), within,
          "Columns of the stored compliance against a fresh solution of the full sparse system: the largest "
          "difference, relative to the column's largest entry.",
          c.residual <= limit},
-        {"Displacements under contacts", significant(c.load_error, 2), within,
+        {"Displacements under contacts", significant(c.load_error, 2), "≤ " + significant(allowed.surface, 1),
          "Random contacts of 1 to 32 nodes, " + html::grouped(c.sampled_loads) +
              " of them: the displaced surface against a fresh solution, the worst relative difference.",
-         c.load_error <= limit},
-        {"At the loaded nodes", significant(c.contact_error, 2), within,
-         "The same where the tool is, which is what a hand feels.", c.contact_error <= limit},
+         c.load_error <= allowed.surface},
+        {"At the loaded nodes", significant(c.contact_error, 2), "≤ " + significant(allowed.contact, 1),
+         "The same where the tool is, which is what a hand feels.", c.contact_error <= allowed.contact},
         {"Residual before rounding",
          c.residual_double < 0 ? "compressed at once" : significant(c.residual_double, 2), "",
          "The first in double precision, before the values were rounded or compressed for the runtime."},

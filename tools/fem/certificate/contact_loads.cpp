@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <random>
 
@@ -77,11 +78,8 @@ Eigen::VectorXd displacements_of(const SurfaceCompliance& compliance, const Cont
     return u;
 }
 
-}  // namespace
-
-LoadError error_of(const SurfaceCompliance& compliance, const ContactLoad& load,
-                   const Eigen::VectorXd& exact) {
-    const Eigen::VectorXd difference = displacements_of(compliance, load) - exact;
+LoadError relative_error(const ContactLoad& load, const Eigen::VectorXd& difference,
+                         const Eigen::VectorXd& exact) {
     double worst = 0, largest = 0;
     for (const NodeForce& force : load) {
         const Eigen::Index dof = 3 * Eigen::Index{force.node};
@@ -89,6 +87,43 @@ LoadError error_of(const SurfaceCompliance& compliance, const ContactLoad& load,
         largest = std::max(largest, exact.segment<3>(dof).norm());
     }
     return {difference.norm() / exact.norm(), worst / largest};
+}
+
+// Of each displacement what the entries' rounding may change at most.
+Eigen::VectorXd rounding_of(const DenseCompliance& dense, const ContactLoad& load) {
+    constexpr double half_a_digit = 0x1p-24;  // of float32, relative
+    const auto size = static_cast<Eigen::Index>(dense.dof_count());
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(size);
+    for (const NodeForce& force : load)
+        for (Eigen::Index axis = 0; axis < 3; ++axis)
+            sum += half_a_digit * std::abs(double{force.force[axis]}) *
+                   Eigen::Map<const Eigen::VectorXf>(
+                       dense.row(static_cast<std::size_t>(3 * Eigen::Index{force.node} + axis)), size)
+                       .cast<double>()
+                       .cwiseAbs();
+    return sum;
+}
+
+}  // namespace
+
+LoadError error_of(const SurfaceCompliance& compliance, const ContactLoad& load,
+                   const Eigen::VectorXd& exact) {
+    return relative_error(load, displacements_of(compliance, load) - exact, exact);
+}
+
+LoadError allowed_load_error(const DeformableBody& body, const LoadError& found, std::int32_t count,
+                             std::uint64_t seed) {
+    const double limit = allowed_error(body.compliance);
+    LoadError allowed{limit, limit};
+    const auto* dense = std::get_if<DenseCompliance>(&body.compliance);
+    if (dense == nullptr || (found.surface <= limit && found.contact <= limit)) return allowed;
+    for (const ContactLoad& load : random_contact_loads(body, count, seed)) {
+        const LoadError rounding =
+            relative_error(load, rounding_of(*dense, load), displacements_of(body.compliance, load));
+        allowed.surface = std::max(allowed.surface, rounding.surface);
+        allowed.contact = std::max(allowed.contact, rounding.contact);
+    }
+    return allowed;
 }
 
 Eigen::MatrixXd compliance_on(const SurfaceCompliance& compliance, const ContactLoad& load) {

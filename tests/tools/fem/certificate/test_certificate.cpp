@@ -8,6 +8,7 @@
 #include "tests/tools/fem/blocks.hpp"
 #include "tests/tools/fem/compliances.hpp"
 #include "tools/fem/certificate/certificate.hpp"
+#include "tools/fem/certificate/contact_loads.hpp"
 
 namespace palpate {
 namespace {
@@ -180,6 +181,34 @@ TEST(Certificate, catches_nodes_that_would_move_against_their_forces) {
             entries[(3 * node + axis) * n + 3 * node + axis] *= -0.1F;
     });
     EXPECT_LT(rechecked(bad).smallest_patch_eigenvalue, 0);
+}
+
+// Forces on both faces of a sheet nearly cancel, so that rounding is much of what is left.
+TEST(Certificate, of_a_thin_sheet_is_allowed_what_rounding_makes_and_no_more) {
+    const DeformableBody sheet = condensed_body(
+        test::held_block({14, 1, 14}, {48, 2, 48}, {.youngs_modulus = 6e-3, .poissons_ratio = 0.45}),
+        test::no_progress);
+    const auto allowed = [](const DeformableBody& body, const Certificate& c) {
+        return allowed_load_error(body, {c.load_error, c.contact_error}, c.sampled_loads, another_seed);
+    };
+    const Certificate sound = recertify(sheet, some_columns, certificate_loads, another_seed);
+    ASSERT_GT(sound.contact_error, 1e-6);
+    EXPECT_LT(sound.contact_error, allowed(sheet, sound).contact);
+    EXPECT_LE(sound.load_error, allowed(sheet, sound).surface);
+    EXPECT_LT(allowed(sheet, sound).contact, 1e-4);
+    const DeformableBody stiffer = corrupted(sheet, [](float* entries, std::size_t n) {
+        for (std::size_t i = 0; i < n * n; ++i) entries[i] *= 0.999F;
+    });
+    const Certificate found = recertify(stiffer, some_columns, certificate_loads, another_seed);
+    EXPECT_GT(found.contact_error, 5 * allowed(stiffer, found).contact);
+    EXPECT_GT(found.load_error, 5 * allowed(stiffer, found).surface);
+}
+
+TEST(Certificate, of_any_other_body_is_allowed_what_it_was) {
+    const DeformableBody body = dense_body();
+    const LoadError allowed = allowed_load_error(body, {1e-7, 9e-7}, some_loads, another_seed);
+    EXPECT_EQ(allowed.surface, 1e-6);
+    EXPECT_EQ(allowed.contact, 1e-6);
 }
 
 TEST(HierarchicalCertificate, of_a_sound_body_is_clean) {
