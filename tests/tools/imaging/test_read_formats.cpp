@@ -126,6 +126,20 @@ TEST(Nrrd, every_patient_space_becomes_lps_and_others_are_noted) {
     }
 }
 
+TEST(Nrrd, without_a_voxel_size_is_taken_as_1_mm_and_says_so) {
+    const Scratch folder;
+    const std::vector<std::int16_t> voxels{1, 2, 3, 4, 5, 6, 7, 8};
+    for (const auto& [field, said] : {std::pair("", true), std::pair("spacings: 2 2 2\n", false)}) {
+        write_bytes(folder / "v.nrrd", std::string("NRRD0004\ntype: short\ndimension: 3\nsizes: 2 2 2\n") +
+                                           field + "endian: little\nencoding: raw\n\n" +
+                                           test::raw_bytes<std::int16_t>(voxels));
+        std::string notes;
+        const Volume volume = read_volume(folder / "v.nrrd", [&](std::string_view note) { notes += note; });
+        EXPECT_EQ(volume.grid.spacing[0], said ? 1 : 2);
+        EXPECT_EQ(notes.find("names no voxel size; taken as 1 mm") != std::string::npos, said) << notes;
+    }
+}
+
 TEST(Nrrd, units_other_than_millimetres_are_refused_by_name) {
     const Scratch folder;
     const Volume volume = oblique_ramp();

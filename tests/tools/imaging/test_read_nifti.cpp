@@ -195,5 +195,21 @@ TEST(Nifti, colours_time_series_pairs_and_false_claims_are_refused) {
     EXPECT_SAYS(test::volume_refusal<Error>(folder / "v.nii"), "has sizes 4 5 6 2");
 }
 
+TEST(Nifti, labels_whose_slope_is_rounded_to_float32_are_whole) {
+    const Scratch folder;
+    ImageGrid grid;
+    grid.size = {2, 2, 2};
+    const std::vector<float> voxels{0, 255, 0, 255, 510, 0, 0, 255};
+    std::string file = test::nifti_file(grid, test::raw_bytes<float>(voxels));
+    const auto with_slope = [&](float slope) {
+        std::memcpy(file.data() + 112, &slope, sizeof(slope));
+        write_bytes(folder / "l.nii", file);
+    };
+    with_slope(1.0F / 255);
+    EXPECT_EQ(read_label_map(folder / "l.nii").labels, (std::vector<std::uint16_t>{0, 1, 0, 1, 2, 0, 0, 1}));
+    with_slope(1.0F / 254);
+    EXPECT_THROW(read_label_map(folder / "l.nii"), InvalidInput);
+}
+
 }  // namespace
 }  // namespace palpate

@@ -22,7 +22,7 @@ bool looks_like_labels(const StoredImage& image) {
         [&](const auto& voxels) {
             std::size_t inside = 0, alike = 0;
             for (std::size_t v = 0; v + 1 < voxels.size(); ++v) {
-                const double value = image.slope * static_cast<double>(voxels[v]) + image.intercept;
+                const double value = label_value(image, static_cast<double>(voxels[v]));
                 if (!(value >= 0 && value <= 65535) || value != std::floor(value)) return false;
                 if (value == 0) continue;
                 ++inside;

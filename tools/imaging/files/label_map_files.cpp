@@ -67,7 +67,7 @@ std::vector<Segment> segments_of(const StoredImage& image, const std::filesystem
 
 // All layers as labels, side by side as stored.
 std::vector<std::uint16_t> integers_of(StoredImage& image, const std::filesystem::path& path) {
-    const bool plain = image.slope == 1 && image.intercept == 0;
+    const bool plain = is_plain(image);
     if (auto* stored = std::get_if<std::vector<std::uint16_t>>(&image.voxels); stored != nullptr && plain)
         return std::move(*stored);
     return std::visit(
@@ -75,8 +75,7 @@ std::vector<std::uint16_t> integers_of(StoredImage& image, const std::filesystem
             std::vector<std::uint16_t> labels;
             labels.reserve(stored.size());
             for (const auto voxel : stored) {
-                const double value = plain ? static_cast<double>(voxel)
-                                           : image.slope * static_cast<double>(voxel) + image.intercept;
+                const double value = label_value(image, static_cast<double>(voxel));
                 if (!(value >= 0 && value <= 65535) || value != std::floor(value))
                     throw InvalidInput({path.string(), fmt::format("holds the value {}", value),
                                         "integers of 0 ... 65535", "choose a label map, not a grey volume"});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // For this folder only: the steps that reading volumes, label maps and DICOM share.
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -30,6 +31,18 @@ struct StoredImage {
     std::map<std::string, std::string> header;  ///< the text fields of an NRRD header
     std::map<std::int32_t, Label> labels;       ///< of a label table in the header, by value
 };
+
+inline bool is_plain(const StoredImage& image) {
+    return image.slope == 1 && image.intercept == 0;
+}
+
+/// The value of a voxel as a label: a whole number where it is one but for the slope's rounding to float32,
+/// as NIfTI's of 1/255.
+inline double label_value(const StoredImage& image, double voxel) {
+    if (is_plain(image)) return voxel;
+    const double value = image.slope * voxel + image.intercept, whole = std::round(value);
+    return std::abs(value - whole) <= 0x1p-23 * std::abs(whole) ? whole : value;
+}
 
 /// Read one file's geometry (checked) and voxels; throw as read_volume() does, except for what the values
 /// are.

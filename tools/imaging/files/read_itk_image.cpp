@@ -139,6 +139,8 @@ void correct_frame(ImageGrid& grid, const std::filesystem::path& path, const Not
     } else if (note && !is("left-posterior-superior", "lps") && !is("right-anterior-superior", "ras")) {
         note("the header names no patient space; taken as LPS");
     }
+    if (note && !fields.contains("space directions") && !fields.contains("spacings"))
+        note("the header names no voxel size; taken as 1 mm along each axis");
 }
 
 std::map<std::string, std::string> header_of(const itk::MetaDataDictionary& dictionary) {
