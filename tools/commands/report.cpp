@@ -10,6 +10,8 @@
 #include "formats/asset/asset.hpp"
 #include "formats/model/errors.hpp"
 #include "tools/cli/command.hpp"
+#include "tools/fem/certificate/certificate.hpp"
+#include "tools/fem/certificate/contact_loads.hpp"
 #include "tools/imaging/files/image_files.hpp"
 #include "tools/imaging/files/shallow_json.hpp"
 #include "tools/meshing/measures/surface_distance.hpp"
@@ -126,6 +128,12 @@ std::string page_of(const stages::ReportRequest& request, const Case& patient_ca
     if (!request.curve.empty()) inputs.force_curve_svg = svg_of(request.curve);
     if (!request.stages.empty())
         inputs.stages = stages_from_json(json_of(request.stages), request.stages.string());
+    for (const DeformableBody& body : patient_case.deformable_bodies) {
+        const fem::LoadError allowed =
+            fem::allowed_load_error(body, {body.certificate.load_error, body.certificate.contact_error},
+                                    fem::certificate_loads, fem::certificate_seed);
+        inputs.allowed_load_errors.push_back({allowed.surface, allowed.contact});
+    }
     session.progress.step("drawing", 0.3);
     return failed ? html_failure(inputs, text_of(request.failed_with)) : html_report(inputs);
 }

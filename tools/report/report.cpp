@@ -113,7 +113,9 @@ std::string html_report(const ReportInputs& inputs) {
     ReportPage page{inputs, {}};
     for (const DeformableBody& body : inputs.patient_case.deformable_bodies) {
         MeshSummary mesh = summarise(body.mesh);
-        std::vector<Check> checks = checks_of(body, mesh);
+        std::optional<AllowedLoadError> allowed;
+        if (!inputs.allowed_load_errors.empty()) allowed = inputs.allowed_load_errors[page.bodies.size()];
+        std::vector<Check> checks = checks_of(body, mesh, allowed);
         page.bodies.push_back({body, std::move(mesh), std::move(checks)});
     }
     return page_html(

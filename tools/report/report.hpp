@@ -8,6 +8,7 @@
 #include "formats/model/body.hpp"
 #include "formats/model/label_map.hpp"
 #include "tools/report/charts.hpp"
+#include "tools/report/verdict.hpp"
 
 namespace palpate::report {
 
@@ -29,6 +30,7 @@ struct ReportInputs {
     std::string force_curve_svg{};          ///< picture made by `palpate touch --curve`; empty if none
     std::vector<StageRecord> stages{};
     std::vector<SurfaceComparison> comparisons{};
+    std::vector<AllowedLoadError> allowed_load_errors{};  ///< of each deformable body, or none of any
 };
 
 /// Reads stage records from [{"stage", "seconds", "peak_memory_bytes", "status"}, ...], where a missing

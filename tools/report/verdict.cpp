@@ -3,20 +3,18 @@
 
 #include <algorithm>
 
-#include "tools/fem/certificate/certificate.hpp"
-#include "tools/fem/certificate/contact_loads.hpp"
 #include "tools/report/html.hpp"
 
 namespace palpate::report {
 
 using html::significant;
 
-std::vector<Check> checks_of(const DeformableBody& body, const MeshSummary& mesh) {
+std::vector<Check> checks_of(const DeformableBody& body, const MeshSummary& mesh,
+                             std::optional<AllowedLoadError> allowed_load_error) {
     const double limit = allowed_error(body.compliance);
     const std::string within = "≤ " + significant(limit, 1);
     const Certificate& c = body.certificate;
-    const fem::LoadError allowed = fem::allowed_load_error(body, {c.load_error, c.contact_error},
-                                                           fem::certificate_loads, fem::certificate_seed);
+    const AllowedLoadError allowed = allowed_load_error.value_or(AllowedLoadError{limit, limit});
     return {
         {"Residual", significant(c.residual, 2), within,
          "Columns of the stored compliance against a fresh solution of the full sparse system: the largest "

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,14 @@ struct Check {
     bool holds = true;
 };
 
-/// Judges what was measured when the body was condensed, and the shape of its mesh.
-std::vector<Check> checks_of(const DeformableBody& body, const MeshSummary& mesh);
+/// Errors under contacts that a certificate may have, as fem::allowed_load_error() gives them.
+struct AllowedLoadError {
+    double surface = 0, contact = 0;
+};
+
+/// Judges what was measured when the body was condensed, and the shape of its mesh; its errors under contacts
+/// against `allowed`, or like all others where that is missing.
+std::vector<Check> checks_of(const DeformableBody& body, const MeshSummary& mesh,
+                             std::optional<AllowedLoadError> allowed_load_error = {});
 
 }  // namespace palpate::report

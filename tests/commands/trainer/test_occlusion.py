@@ -4,9 +4,11 @@ import os
 import pathlib
 import shutil
 import subprocess
+import sys
 import unittest
 
-from x_server import XServer
+sys.path.insert(0, "..")
+from x_server import XServer  # noqa: E402
 
 DRAW = pathlib.Path(os.environ["PALPATE_BUILD"]) / "tests/draw_crease"
 

@@ -71,6 +71,7 @@ class ViewKeys(OpenedTrainer):
         self.assertAlmostEqual(organ_alone / organ, 1, delta=STEPPED)
         self.assertAlmostEqual(column_still, column, delta=2)
         self.x("xdotool", "key", "b")
+        self.come_to_rest()
         self.assertAlmostEqual(self.seen()[0] / bones, 1, delta=STEPPED)
         self.x("xdotool", "mousemove", "--window", window, 1151, 360)
         self.come_to_rest()

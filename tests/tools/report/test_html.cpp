@@ -53,6 +53,10 @@ TEST(Verdict, a_sound_body_passes_and_each_fault_is_found) {
         return !all_hold(checks_of(broken, shape));
     };
     EXPECT_TRUE(fails_with([](Certificate& c, MeshSummary&) { c.residual = 2e-6; }));
+    DeformableBody sheet = body;
+    sheet.certificate.contact_error = 3e-6;
+    EXPECT_FALSE(all_hold(checks_of(sheet, mesh)));
+    EXPECT_TRUE(all_hold(checks_of(sheet, mesh, AllowedLoadError{1e-6, 2e-5})));
     EXPECT_TRUE(fails_with([](Certificate& c, MeshSummary&) { c.asymmetry = 1e-9; }));
     EXPECT_TRUE(fails_with([](Certificate& c, MeshSummary&) { c.reciprocity = 1e-3; }));
     EXPECT_TRUE(fails_with([](Certificate& c, MeshSummary&) { c.smallest_eigenvalue = -1e-9; }));
