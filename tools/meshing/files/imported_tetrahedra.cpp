@@ -135,9 +135,8 @@ void require_proper_faces(const TetMesh& mesh, const std::string& culprit) {
 }
 
 // Faces that lie on each other without sharing nodes: the body would come apart there.
-void require_no_cracks(const TetMesh& mesh, const std::string& culprit) {
+void require_no_cracks(const TriangleMesh& surface, const std::string& culprit) {
     using Place = std::array<double, 3>;
-    const TriangleMesh surface = boundary_surface(mesh).surface;
     std::vector<std::array<Place, 3>> faces;
     for (const Triangle& t : surface.triangles) {
         std::array<Place, 3> corners;
@@ -163,8 +162,8 @@ void require_no_cracks(const TetMesh& mesh, const std::string& culprit) {
              "join duplicate nodes where it was made ('Coherence Mesh;' in Gmsh)"});
 }
 
-void require_no_overlap(const TetMesh& mesh, const std::string& culprit) {
-    if (const auto place = place_of_overlap(boundary_surface(mesh).surface))
+void require_no_overlap(const TriangleMesh& surface, const std::string& culprit) {
+    if (const auto place = place_of_overlap(surface))
         throw InvalidInput({culprit,
                             fmt::format("parts of it lie in the same place, at ({:.2f}, {:.2f}, {:.2f})",
                                         place->x(), place->y(), place->z()),
@@ -244,8 +243,9 @@ TetMesh read_imported_tetrahedra(const std::filesystem::path& path, const Import
         note(fmt::format("{}: {} of {} tetrahedra were inverted and are turned", culprit, turned,
                          mesh.tetrahedra.size()));
     require_proper_faces(mesh, culprit);
-    require_no_cracks(mesh, culprit);
-    require_no_overlap(mesh, culprit);
+    const TriangleMesh surface = boundary_surface(mesh).surface;
+    require_no_cracks(surface, culprit);
+    require_no_overlap(surface, culprit);
     say(split_hinges(mesh), "nodes doubled where parts touch in a point or edge only");
     name_regions(mesh, found, options, culprit, note);
     mark_surface(mesh);

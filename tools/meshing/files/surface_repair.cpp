@@ -10,6 +10,7 @@
 #include "formats/model/disjoint_sets.hpp"
 #include "formats/model/errors.hpp"
 #include "tools/meshing/files/text.hpp"
+#include "tools/meshing/surfaces/pieces.hpp"
 
 namespace palpate::meshing {
 namespace {
@@ -144,10 +145,7 @@ std::int64_t part_fans(TriangleMesh& surface, const Seams& seams) {
 // Turns pieces that face inwards though no other piece's box holds them, which no cavity does; returns how
 // many triangles that took.
 std::int64_t turn_inverted_pieces(TriangleMesh& surface) {
-    DisjointSets sets(surface.vertices.size());
-    for (const Triangle& t : surface.triangles)
-        for (const std::int32_t v : {t[1], t[2]})
-            sets.join(static_cast<std::size_t>(t[0]), static_cast<std::size_t>(v));
+    DisjointSets sets = pieces_of(surface);
     struct Piece {
         double volume = 0;
         Eigen::AlignedBox3d box;

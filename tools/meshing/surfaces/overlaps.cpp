@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "formats/model/closure.hpp"
-#include "formats/model/disjoint_sets.hpp"
+#include "tools/meshing/surfaces/pieces.hpp"
 #include "tools/meshing/surfaces/surfaces.hpp"
 
 namespace palpate::meshing {
@@ -17,34 +17,14 @@ Eigen::Vector3d centre_of(const TriangleMesh& surface, const Triangle& triangle)
     return sum / 3;
 }
 
-// What hangs together through vertices.
-std::vector<TriangleMesh> parted(const TriangleMesh& surface) {
-    DisjointSets sets(surface.vertices.size());
-    for (const Triangle& t : surface.triangles)
-        for (const std::int32_t v : {t[1], t[2]})
-            sets.join(static_cast<std::size_t>(t[0]), static_cast<std::size_t>(v));
-    const std::vector<std::size_t> number = sets.numbered();
-    std::vector<TriangleMesh> pieces;
-    std::vector<std::size_t> piece_of(number.size(), number.size());  // none yet, by number
-    std::vector<std::int32_t> vertex_in_piece(number.size(), -1);
-    for (const Triangle& t : surface.triangles) {
-        std::size_t& piece = piece_of[number[static_cast<std::size_t>(t[0])]];
-        if (piece == number.size()) {
-            piece = pieces.size();
-            pieces.emplace_back();
-        }
-        Triangle own{};
-        for (std::size_t c = 0; c < 3; ++c) {
-            const auto v = static_cast<std::size_t>(t[c]);
-            if (vertex_in_piece[v] < 0) {
-                vertex_in_piece[v] = static_cast<std::int32_t>(pieces[piece].vertices.size());
-                pieces[piece].vertices.push_back(surface.vertices[v]);
-            }
-            own[c] = vertex_in_piece[v];
-        }
-        pieces[piece].triangles.push_back(own);
-    }
-    return pieces;
+// Just off the triangle's middle on its outer side.
+Eigen::Vector3d outside_of(const TriangleMesh& surface, const Triangle& triangle) {
+    constexpr double part_of_size = 1e-4;
+    const auto corner = [&](std::size_t c) {
+        return surface.vertices[static_cast<std::size_t>(triangle[c])];
+    };
+    const Eigen::Vector3d twice_area = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+    return centre_of(surface, triangle) + part_of_size * twice_area / std::sqrt(twice_area.norm());
 }
 
 }  // namespace
@@ -52,13 +32,15 @@ std::vector<TriangleMesh> parted(const TriangleMesh& surface) {
 std::optional<Eigen::Vector3d> place_of_overlap(const TriangleMesh& boundary) {
     if (const auto cut = first_self_intersection(boundary))
         return centre_of(boundary, boundary.triangles[(*cut)[0]]);
-    const std::vector<TriangleMesh> pieces = parted(boundary);
-    for (const TriangleMesh& piece : pieces) {
-        const Eigen::Vector3d place = centre_of(piece, piece.triangles.front());
-        double around = 0;  // how often the others wind about the piece
-        for (const TriangleMesh& other : pieces)
-            if (&other != &piece) around += winding_number(other, place);
-        if (std::lround(around) != (enclosed_volume(piece) > 0 ? 0 : 1)) return place;
+    // No piece cuts another, so that one place of each tells what lies outside all of it: nothing.
+    DisjointSets pieces = pieces_of(boundary);
+    std::vector<bool> seen(boundary.vertices.size(), false);
+    for (const Triangle& triangle : boundary.triangles) {
+        const std::size_t piece = pieces.root(static_cast<std::size_t>(triangle[0]));
+        if (seen[piece]) continue;
+        seen[piece] = true;
+        if (std::lround(winding_number(boundary, outside_of(boundary, triangle))) != 0)
+            return centre_of(boundary, triangle);
     }
     return {};
 }

@@ -14,6 +14,8 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, std::size_t>;
 
+// CGAL's own search in 5.5 takes a Surface_mesh, in which vertices at one place are as many, so that parts
+// that touch there would cut each other.
 class Triangles {
   public:
     explicit Triangles(const TriangleMesh& surface) : surface_(surface) {}

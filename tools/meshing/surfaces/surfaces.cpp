@@ -13,11 +13,11 @@
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 
-#include "formats/model/disjoint_sets.hpp"
 #include "formats/model/errors.hpp"
 #include "tools/meshing/labels/region_labels.hpp"
 #include "tools/meshing/labels/smoothed_labels.hpp"
 #include "tools/meshing/measures/quality.hpp"
+#include "tools/meshing/surfaces/pieces.hpp"
 
 namespace palpate::meshing {
 namespace {
@@ -55,15 +55,6 @@ TriangleMesh filter_triangles(const TriangleMesh& surface, Predicate&& keep) {
     if (result.triangles.empty())
         throw InvalidInput({"surface", "no piece is large enough", "", "keep smaller pieces"});
     return result;
-}
-
-DisjointSets pieces_of(const TriangleMesh& surface) {
-    DisjointSets pieces(surface.vertices.size());
-    for (const Triangle& t : surface.triangles) {
-        pieces.join(static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]));
-        pieces.join(static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[2]));
-    }
-    return pieces;
 }
 
 }  // namespace
