@@ -23,12 +23,12 @@ namespace {
 }
 
 // In the child: its end is its own, without a word, a core or a handler of the parent's.
-void stand_apart() {
+void stand_apart(rlim_t seconds) {
     for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL}) std::signal(signal, SIG_DFL);
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    constexpr rlimit no_core{0, 0}, a_minute{60, 60};
+    const rlimit no_core{0, 0}, time{seconds, seconds};
     setrlimit(RLIMIT_CORE, &no_core);
-    setrlimit(RLIMIT_CPU, &a_minute);
+    setrlimit(RLIMIT_CPU, &time);
     if (const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC); nowhere >= 0)
         dup2(nowhere, STDERR_FILENO);
 }
@@ -52,7 +52,7 @@ std::optional<std::vector<char>> filled_apart(std::size_t size,
     const pid_t child = fork();
     if (child < 0) refuse("no process can be had");
     if (child == 0) {
-        stand_apart();
+        stand_apart(60 + size / (1U << 20));
         bool filled = false;
         try {
             filled = fill(bytes);
