@@ -74,6 +74,8 @@ Machine this_machine() {
         machine.user = account->pw_name;
         machine.home = account->pw_dir;
     }
+    // NOLINTNEXTLINE(concurrency-mt-unsafe): likewise
+    if (const passwd* root = getpwuid(0)) machine.root_home = root->pw_dir;
     if (const std::string home = variable(machine, "HOME"); sudo_user.empty() && !home.empty())
         machine.home = home;
     char host[256] = "";

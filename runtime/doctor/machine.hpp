@@ -19,6 +19,7 @@ struct Machine {
     std::filesystem::path root = "/";  ///< below which /proc, /sys, /etc and the libraries lie
     std::string user;                  ///< who runs this, or who asked sudo to
     std::filesystem::path home;        ///< of that user
+    std::filesystem::path root_home;   ///< of root
     std::string host;
     bool superuser = false;
     std::map<std::string, std::string> environment;

@@ -25,7 +25,8 @@ std::ptrdiff_t named_devices(const Machine& machine, const std::filesystem::path
 Finding driver_folder(const Machine& machine) {
     Finding finding{"device_config", environment_group, Level::problem, "", ""};
     const std::string asked = variable(machine, "GTDD_HOME");
-    const std::filesystem::path of_user = machine.home / ".3dsystems", of_root = "/root/.3dsystems";
+    const std::filesystem::path of_user = machine.home / ".3dsystems",
+                                of_root = machine.root_home / ".3dsystems";
     std::filesystem::path holder;
     for (const auto& folder : {std::filesystem::path("/usr/share/3DSystems"), of_user})
         if (holder.empty() && holds_device(machine, folder)) holder = folder;
@@ -56,7 +57,7 @@ Finding driver_folder(const Machine& machine) {
         finding.fix =
             "# with the device plugged in, in the folder of the unpacked Touch device driver, without sudo:\n"
             "export GTDD_HOME=$HOME/.3dsystems && bin/Touch_Setup\n"
-            "# if it was set up with sudo, it is here: sudo ls /root/.3dsystems/config";
+            "# if it was set up with sudo, it is here: sudo ls ~root/.3dsystems/config";
     }
     return finding;
 }

@@ -17,6 +17,7 @@ struct MadeUpMachine : doctor::Machine {
         root = folder / "";
         user = "ada";
         home = "/home/ada";
+        root_home = "/superuser";
         host = "engine";
         cores = 8;
         fifo = {true, ""};

@@ -46,10 +46,11 @@ TEST_F(EnvironmentChecks, a_device_set_up_for_everybody_is_found) {
 }
 
 TEST_F(EnvironmentChecks, a_device_set_up_with_sudo_is_copied_to_its_user) {
-    machine.write("/root/.3dsystems/config/Default Device.config", "");
+    machine.write("/superuser/.3dsystems/config/Default Device.config", "");
     EXPECT_EQ(check("device_config").level, Level::problem);
-    EXPECT_EQ(check("device_config").fix,
-              "sudo cp -r /root/.3dsystems /home/ada/.3dsystems && sudo chown -R ada: /home/ada/.3dsystems");
+    EXPECT_EQ(
+        check("device_config").fix,
+        "sudo cp -r /superuser/.3dsystems /home/ada/.3dsystems && sudo chown -R ada: /home/ada/.3dsystems");
 }
 
 TEST_F(EnvironmentChecks, a_variable_that_leads_astray_is_set_right) {
