@@ -9,7 +9,6 @@ namespace palpate::visual {
 
 /// Draws what a renderer holds and takes light from creases and from what lies close to something else:
 /// ambient occlusion in screen space, as VTK has it, within a sixteenth of the size of what is seen now.
-/// Half the light where half of all directions are blocked.
 vtkSmartPointer<vtkRenderPass> occlusion_pass(vtkRenderer* renderer);
 
 /// Whether a graphics card draws the window, not Mesa's software. Precondition: it has been drawn.
