@@ -4,13 +4,16 @@ import contextlib
 import pathlib
 import re
 import shutil
+import sys
 import tempfile
 from graphlib import TopologicalSorter
 
-import slurm_here
 from example_files import FILES, HOW, NAMED_IN, WINDOWS
 from page_blocks import Block, blocks_of
 from page_runner import SOURCE, Pages, Wrong
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import slurm_here  # noqa: E402
 
 HERE = pathlib.Path(__file__).resolve().parent
 SLURM, SAMPLES = "--profile slurm", "build/sample_data"  # in lines that need them
