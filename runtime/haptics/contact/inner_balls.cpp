@@ -26,9 +26,10 @@ using Eigen::Vector3d;
 // Radii at most: in the radius of the tool, which does not slip off the edges of a bent surface that it is
 // pressed into as deep as that; in mean edges about a vertex; and as a share of the body's thickness there.
 constexpr double tool_radii = 3, most_edges = 2, thickness_share = 1.0 / 3;
-// How far balls may be off for it, in mean edges, and in mm: half of what contact takes for touching
-// (ContactEquilibrium::first_reach), so that the surface at rest still tells where contact starts and ends.
-constexpr double most_off = 0.05, most_off_mm = 0.05;
+// How far balls may be off for it, in mean edges and in mm: where edges are blunt, bent by 57 degrees and
+// less, which of an organ are the mesh's own. The sharper they are, the less, for those are a body's.
+constexpr double most_off = 0.1, most_off_blunt = 0.25, most_off_sharp = 0.05;
+constexpr double off_blunt = 0.14;  // of a ball of unit radius
 // Triangles of balls' centres have this share of the area of their own at least, and radii differ along an
 // edge by this share of its length at most, or a tenth more.
 constexpr double area_kept = 0.16, steepest = 0.25;
@@ -88,10 +89,16 @@ std::vector<Place> places_of(const TriangleMesh& mesh) {
     return places;
 }
 
+// In mm.
+double most_off_at(double off) {
+    return off > off_blunt ? std::max(most_off_blunt * off_blunt / off, most_off_sharp) : most_off_blunt;
+}
+
 double widest_at(const Place& place, const Vector3d& vertex, const CollisionSurface& surface,
                  double tool_radius) {
     if (place.direction.isZero()) return 0;
-    const double edge = place.edges / place.edge_count, may_be_off = std::min(most_off * edge, most_off_mm);
+    const double edge = place.edges / place.edge_count;
+    const double may_be_off = std::min(most_off * edge, most_off_at(place.off));
     double radius = std::min(tool_radii * tool_radius, most_edges * edge);
     if (place.off * radius > may_be_off) radius = may_be_off / place.off;
     const Vector3d way = -radius / thickness_share * place.direction.normalized();

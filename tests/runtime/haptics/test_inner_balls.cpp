@@ -62,21 +62,25 @@ TEST(InnerBalls, are_three_times_as_wide_as_a_small_tool_where_a_surface_is_flat
     }
 }
 
-TEST(InnerBalls, cut_off_a_twentieth_of_a_millimetre_at_most) {
-    for (const DeformableBody& body : {sample::elastic_cube(5), sample::true_elastic_arch(5, 12)}) {
+TEST(InnerBalls, cut_off_little_of_a_sharp_edge_and_a_quarter_of_a_millimetre_at_most) {
+    const auto most_cut_off = [](const DeformableBody& body) {
         const TriangleMesh& mesh = body.boundary.surface;
         const std::vector<InnerBall> balls = balls_of(body, 1);
         for (std::size_t v = 0; v < balls.size(); ++v) {
             const bool beside_held = mesh.vertices[v].z() < 4 + 1e-9;  // of the lowest layer of cells
             EXPECT_TRUE(beside_held ? balls[v].radius == 0 : balls[v].radius > 0.05) << v;
         }
+        double most = 0;
         for (const Triangle& t : mesh.triangles) {
             const auto corner = [&](std::size_t i) { return mesh.vertices[static_cast<std::size_t>(t[i])]; };
             for (std::size_t i = 0; i < 3; ++i)
                 for (const Vector3d& p : {corner(i), Vector3d(0.5 * (corner(i) + corner((i + 1) % 3)))})
-                    EXPECT_NEAR(distance_from_rounded(p, mesh, balls), 0, 0.05 + 1e-9);
+                    most = std::max(most, std::abs(distance_from_rounded(p, mesh, balls)));
         }
-    }
+        return most;
+    };
+    EXPECT_LT(most_cut_off(sample::elastic_cube(5)), 0.09);
+    EXPECT_LT(most_cut_off(sample::true_elastic_arch(5, 12)), 0.25 + 1e-9);
 }
 
 TEST(InnerBalls, stay_inside_thin_bodies) {
@@ -121,10 +125,9 @@ TEST(InnerBalls, are_found_where_vertices_lie_on_each_other) {
     }
 }
 
-// What they are for. The tool is 1 mm, edges of the arch are 4 mm long and bent by 19 degrees each; steps are
-// of 0.02 mm, and a step that slips over an edge would turn the force by most of that angle.
-TEST(SmallTool, slides_over_edges_of_a_bent_surface_without_slipping_off_them) {
-    constexpr double bend = 12;
+// What they are for. The tool is 1 mm, steps are of 0.02 mm, and a step that slips over an edge turns the
+// force by most of the angle by which that is bent. Returns the largest step, of the force.
+double largest_step(double bend, double deep) {
     Case c;
     c.name = "arch";
     c.deformable_bodies.push_back(sample::true_elastic_arch(5, bend));
@@ -136,18 +139,25 @@ TEST(SmallTool, slides_over_edges_of_a_bent_surface_without_slipping_off_them) {
         return Vector3d(10 + from_axis * std::sin(angle), 9.7, 20 - bend + from_axis * std::cos(angle));
     };
     const double begin = -0.4, end = 0.4;
-    for (double depth = -1; depth < 1; depth += 0.02) model.tick(held_at(at(begin, depth)), result);
-    for (int tick = 0; tick < 50; ++tick) model.tick(held_at(at(begin, 1)), result);
+    for (double depth = -1; depth < deep; depth += 0.02) model.tick(held_at(at(begin, depth)), result);
+    for (int tick = 0; tick < 50; ++tick) model.tick(held_at(at(begin, deep)), result);
     Vector3d last = force_of(result);
     double largest = 0;
     for (double angle = begin; angle < end; angle += 0.02 / bend) {
-        model.tick(held_at(at(angle, 1)), result);
+        model.tick(held_at(at(angle, deep)), result);
         EXPECT_EQ(result.status, tick_ok);
         largest = std::max(largest, (force_of(result) - last).norm() / force_of(result).norm());
         last = force_of(result);
     }
-    RecordProperty("largest_step", std::to_string(largest));
-    EXPECT_LT(largest, 0.03);
+    return largest;
+}
+
+TEST(SmallTool, slides_over_edges_of_a_bent_surface_without_slipping_off_them) {
+    EXPECT_LT(largest_step(12, 1), 0.03);  // edges of 4 mm, bent by 19 degrees
+}
+
+TEST(SmallTool, pressed_half_again_as_deep_as_it_is_wide_slips_off_none_either) {
+    EXPECT_LT(largest_step(16, 1.5), 0.03);  // 0.050 where balls are off by 0.05 mm at most
 }
 
 }  // namespace

@@ -279,6 +279,17 @@ double DeformedPatch::departure(const std::array<double, iterates>& weights,
     return most;
 }
 
+double DeformedPatch::way_to(const std::array<double, iterates>& weights) const noexcept {
+    double most = 0;
+    for (std::int32_t slot = 0; slot < size_; ++slot) {
+        Vector3d way = -moved_[slot];
+        for (std::size_t k = 0; k < iterates; ++k)
+            if (weights[k] != 0) way += weights[k] * answers_[k].moved[slot];
+        most = std::max(most, way.lpNorm<Eigen::Infinity>());
+    }
+    return most;
+}
+
 double DeformedPatch::along(const std::array<double, iterates>& weights, std::size_t iterate) const noexcept {
     double sum = 0;
     for (std::int32_t slot = 0; slot < size_; ++slot) {

@@ -139,6 +139,8 @@ class DeformedPatch {
     double product_of_differences(std::size_t a, std::size_t b) const noexcept;
     /// How far a combination of answers is from one of them, mm.
     double departure(const std::array<double, iterates>& weights, std::size_t from) const noexcept;
+    /// How far any vertex is from where a combination of answers has it, mm.
+    double way_to(const std::array<double, iterates>& weights) const noexcept;
     /// Inner product of the way to a combination of answers with an answer's difference from the state, mm².
     double along(const std::array<double, iterates>& weights, std::size_t iterate) const noexcept;
     /// Moves the state a part `step` of the way to a combination of answers, weights summing to 1.

@@ -186,7 +186,8 @@ bool ContactEquilibrium::climbs(const Weights& weights, std::size_t newest) cons
     return along < 0;
 }
 
-// Goes to a combination of answers, at most `longest` mm.
+// Goes to a combination of answers, at most `longest` mm: what is farther off has not been looked at. Where
+// tissue snaps, answers are to surfaces that are not there.
 void ContactEquilibrium::relax_to(const Weights& weights, double longest) noexcept {
     double way = 0;
     for (const Tool& tool : tools_) {
@@ -194,6 +195,8 @@ void ContactEquilibrium::relax_to(const Weights& weights, double longest) noexce
         if (turns())
             way = std::max(way, tool.longest_arm * (combined(weights, tool.next_turn) - tool.turn).norm());
     }
+    if (walked_ahead * change_ > longest)
+        for (const DeformedPatch& patch : patches_) way = std::max(way, patch.way_to(weights));
     const double step = way > longest ? longest / way : 1;
     for (Tool& tool : tools_) {
         tool.off += step * (combined(weights, tool.next_off) - tool.off);
