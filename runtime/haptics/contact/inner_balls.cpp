@@ -32,7 +32,7 @@ constexpr double most_off = 0.1, most_off_blunt = 0.25, most_off_sharp = 0.05;
 constexpr double off_blunt = 0.14;  // of a ball of unit radius
 // Triangles of balls' centres have this share of the area of their own at least, and radii differ along an
 // edge by this share of its length at most, or a tenth more.
-constexpr double area_kept = 0.16, steepest = 0.25;
+constexpr double area_kept = 0.16, steepest = 0.45;
 constexpr double shrinks = 0.9;
 constexpr int most_passes = 200;     // by which what shrinks all the time is nothing
 constexpr double tangential = 1e-3;  // weight of staying near the mean normal
