@@ -329,6 +329,7 @@ void write_condensed_body(Hdf5Writer& writer, const std::string& path, const Def
     write_region_colours(writer, path, body.region_colours);
 
     writer.attribute(path, "element_order", static_cast<std::int32_t>(body.element_order));
+    if (body.large_deformation) writer.attribute(path, "large_deformation", std::int32_t{1});
     writer.group(path + "/compliance");
     std::visit([&](const auto& compliance) { write_compliance(writer, path + "/compliance", compliance); },
                body.compliance);
@@ -362,6 +363,12 @@ DeformableBody read_condensed_body(const Hdf5File& file, const std::string& path
         file.refuse(path, "has element_order " + std::to_string(element_order),
                     "1 (linear) or 2 (quadratic)");
     body.element_order = static_cast<ElementOrder>(element_order);
+    if (file.has_attribute(path, "large_deformation")) {
+        const auto large = file.attribute<std::int32_t>(path, "large_deformation");
+        if (large != 0 && large != 1)
+            file.refuse(path, "has large_deformation " + std::to_string(large), "0 or 1");
+        body.large_deformation = large == 1;
+    }
     body.compliance = map_compliance(file, path + "/compliance", body.contact_nodes.size());
     read_fields(file, path + "/certificate", certificate_fields, body.certificate);
     if (file.text_attribute(path + "/compliance", "mechanics_sha256") != mechanics_digest(body))

@@ -66,6 +66,7 @@ struct DeformableBody {
     std::optional<Feel> feel;        ///< with a case's tool; none of a body that is of no case yet
     std::optional<Colour> colour{};  ///< to be drawn in; without it, what names suggest
     std::vector<RegionColour> region_colours{};  ///< of regions that have their own, ascending
+    bool large_deformation = false;              ///< felt as neo-Hookean tissue, unless a run says otherwise
 };
 
 /// The relaxation of one region; empty if it does not relax.

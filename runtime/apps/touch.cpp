@@ -102,7 +102,7 @@ Json touch(const TouchOptions& options, cli::Session& session) {
     Json result{{"case", patient_case.name},
                 {"script", script},
                 {"scheme", options.scheme},
-                {"large_deformation", patient_case.hyperelastic},
+                {"large_deformation", run.deforming_far()},
                 {"device", run.device_name()},
                 {"coupling_stiffness_n_per_mm", model.coupling()},
                 {"clock", options.virtual_clock ? "virtual" : "real"},

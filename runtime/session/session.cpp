@@ -15,18 +15,26 @@
 namespace palpate::session {
 namespace {
 
+std::vector<std::string> hyperelastic_bodies(const SessionRequest& request,
+                                             const std::vector<DeformableBody>& bodies) {
+    const auto asks = [&](const char* word) {
+        return std::ranges::find(request.hyperelastic, word) != request.hyperelastic.end();
+    };
+    if (asks("none")) return {};
+    if (!request.hyperelastic.empty() && !asks("all")) return request.hyperelastic;
+    if (asks("all") && bodies.empty())
+        throw InvalidInput(
+            {request.asset.string(), "has no deformable body", "", "leave out --large-deformation"});
+    std::vector<std::string> names;
+    for (const DeformableBody& body : bodies)
+        if (asks("all") || body.large_deformation) names.push_back(body.name);
+    return names;
+}
+
 Case case_of(const SessionRequest& request) {
     Case patient_case = asset::load_asset(request.asset, request.trusted_keys);
     patient_case.tool = request.tool;
-    patient_case.hyperelastic = request.hyperelastic;
-    if (std::ranges::find(request.hyperelastic, "all") != request.hyperelastic.end()) {
-        if (patient_case.deformable_bodies.empty())
-            throw InvalidInput(
-                {request.asset.string(), "has no deformable body", "", "leave out --large-deformation"});
-        patient_case.hyperelastic.clear();
-        for (const DeformableBody& body : patient_case.deformable_bodies)
-            patient_case.hyperelastic.push_back(body.name);
-    }
+    patient_case.hyperelastic = hyperelastic_bodies(request, patient_case.deformable_bodies);
     return patient_case;
 }
 

@@ -31,7 +31,8 @@ struct SessionRequest {
     std::vector<std::string> trusted_keys{};  ///< of read_public_keys(), one of which must have signed the
                                               ///< asset; none: no signature is asked for
     std::optional<ToolBody> tool{};           ///< what is held, for a method with which tools turn
-    std::vector<std::string> hyperelastic{};  ///< deformable bodies whose tissue is neo-Hookean, or "all"
+    std::vector<std::string> hyperelastic{};  ///< deformable bodies whose tissue is neo-Hookean, "all" or
+                                              ///< "none"; empty: as the asset says
     std::string stream{};                     ///< "PORT" or "ADDRESS:PORT" of a live stream; empty: none
 };
 

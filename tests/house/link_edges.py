@@ -39,7 +39,7 @@ ROOMS = {
     "stage_images": {"requests", "imaging"},
     "stage_shapes": {"requests", "imaging", "meshing"},
     "stage_bodies": {"requests", "fem", "meshing"},
-    "stage_cases": {"requests", "asset", "fem", "imaging", "meshing", "obb"},
+    "stage_cases": {"requests", "asset", "fem", "hyperelasticity", "imaging", "meshing", "obb"},
     "inspection": {"stage_images", "stage_shapes", "stage_bodies", "asset", "draft"},
     "tissue": {"model"},
     "draft": {"model", "imaging", "tissue", "toml_file"},

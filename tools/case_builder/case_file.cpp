@@ -279,6 +279,7 @@ DeformableSpec deformable(TableReader reader) {
     spec.condense.contact = node_picks(reader, "contact");
     read_compliance(reader, spec.condense);
     read_drawn_colour(reader, spec.name, "", spec.colours);
+    read(reader, "large_deformation", spec.large_deformation);
     for (TableReader region : reader.tables("region")) read_region(region, spec);
     if (spec.condense.materials.empty())
         reader.fail(reader.raw(), "region", "is missing", "[[deformable.region]] with a label");

@@ -56,6 +56,7 @@ struct DeformableSpec {
     stages::CondenseRequest condense;          ///< but for the mesh and output of the build
     std::vector<RegionTissue> tissues;         ///< of the regions that name one
     std::vector<stages::DrawnColour> colours;  ///< of body and regions that name one
+    bool large_deformation = false;            ///< felt as neo-Hookean tissue
 };
 
 /// A case file, schema 1: what to build for one patient. Paths are absolute or relative to the case file.

@@ -115,6 +115,7 @@ Stage pack_stage(const CaseFile& case_file, const BuildPaths& paths) {
         stage.inputs.push_back(request.deformable.back().body);
         stage.inputs.push_back(request.mesh_results.back().file);
         request.colours.insert(request.colours.end(), deformable.colours.begin(), deformable.colours.end());
+        if (deformable.large_deformation) request.large_deformation.push_back(deformable.name);
     }
     if (case_file.volume && case_file.keep_scan)
         stage.inputs.push_back(request.scan = paths.parts / "volume.nrrd");

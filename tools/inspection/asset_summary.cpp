@@ -32,7 +32,8 @@ Json row_of(const RigidBody& body) {
             {"fixed_nodes", 0},
             {"contact_nodes", 0},
             {"compliance_mb", 0.0},
-            {"obb_nodes", body.obb_tree.nodes.size()}};
+            {"obb_nodes", body.obb_tree.nodes.size()},
+            {"large_deformation", false}};
 }
 
 Json row_of(const DeformableBody& body) {
@@ -45,7 +46,8 @@ Json row_of(const DeformableBody& body) {
             {"fixed_nodes", body.fixed_nodes.size()},
             {"contact_nodes", body.contact_nodes.size()},
             {"compliance_mb", static_cast<double>(value_bytes(body.compliance)) * 1e-6},
-            {"obb_nodes", body.obb_tree.nodes.size()}};
+            {"obb_nodes", body.obb_tree.nodes.size()},
+            {"large_deformation", body.large_deformation}};
 }
 
 void add_regions(Json& rows, const DeformableBody& body) {

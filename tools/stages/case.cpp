@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "formats/asset/parts.hpp"
+#include "formats/hyperelasticity/equilibrium.hpp"
 #include "formats/model/errors.hpp"
 #include "tools/cli/software.hpp"
 #include "tools/fem/condensation/sway.hpp"
@@ -137,6 +138,16 @@ void draw_in(const DrawnColour& drawn, Case& made) {
     }
 }
 
+// Bodies that are to be felt as neo-Hookean tissue; one that cannot be is found here and not in the trainer.
+void feel_as_hyperelastic(const std::string& name, Case& made) {
+    const auto body = std::ranges::find(made.deformable_bodies, name, &DeformableBody::name);
+    if (body == made.deformable_bodies.end())
+        throw InvalidInput({"large deformation of '" + name + "'", "names no elastic body of the case", "",
+                            "give the name of one"});
+    const hyperelasticity::Equilibrium solvable(*body);
+    body->large_deformation = true;
+}
+
 }  // namespace
 
 MadeCase make_case(const PackRequest& request, int threads, const ProgressCallback& progress) {
@@ -151,6 +162,7 @@ MadeCase make_case(const PackRequest& request, int threads, const ProgressCallba
     for (const BodyFiles& files : request.deformable)
         made.deformable_bodies.push_back(read_deformable(files));
     for (const DrawnColour& drawn : request.colours) draw_in(drawn, made);
+    for (const std::string& name : request.large_deformation) feel_as_hyperelastic(name, made);
     if (!request.scan.empty()) {
         progress("cut the scan to the bodies", 0.2);
         made.scan = imaging::scan_of(imaging::read_volume(request.scan), points_of(made));

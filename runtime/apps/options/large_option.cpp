@@ -9,12 +9,14 @@ namespace palpate::apps {
 void declare_large_deformation(cli::Command& command, std::vector<std::string>& bodies) {
     command.option(
         "--large-deformation", bodies,
-        "deformable bodies by name, or 'all', whose tissue is neo-Hookean instead of linear: solved "
-        "beside the tick, right where tissue is deformed by more than a few per cent of its size");
+        "deformable bodies by name, 'all' or 'none', whose tissue is neo-Hookean instead of linear: solved "
+        "beside the tick, right where tissue is deformed by more than a few per cent of its size; as the "
+        "asset says if not given");
 }
 
 void check_large_deformation(const std::vector<std::string>& bodies, const std::string& scheme) {
-    if (!bodies.empty() && !haptics::find_contact_method(scheme, "--scheme").can.deforms_far)
+    const bool any = !bodies.empty() && bodies != std::vector<std::string>{"none"};
+    if (any && !haptics::find_contact_method(scheme, "--scheme").can.deforms_far)
         throw UsageError(
             {"--large-deformation", "with --scheme " + scheme, "--scheme continuous", "no other knows it"});
 }

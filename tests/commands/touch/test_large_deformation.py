@@ -11,10 +11,10 @@ import unittest
 import h5py
 
 sys.path.insert(0, "..")
-from sample_asset import SampleAsset  # noqa: E402
+from sample_asset import TESTS, SampleAsset  # noqa: E402
 
 TOUCH = pathlib.Path(os.environ["PALPATE_BIN"]) / "palpate-touch"
-PRESS = ("--script", "press", "--depth", "7", "--seconds", "2", "--virtual-clock")
+PRESS = ("--script", "press", "--depth", "10", "--seconds", "2", "--virtual-clock")
 
 
 class LargeDeformation(SampleAsset):
@@ -41,6 +41,14 @@ class LargeDeformation(SampleAsset):
             self.assertGreater((run["ticks/detected_tick"][...] > 0).sum(), 100)
         replay = self.touch(self.asset, "--replay", recording, "--json", "-")
         self.assertEqual(replay.returncode, 0, replay.stderr)
+
+    def test_an_asset_says_which_bodies_are_so_and_a_run_may_say_otherwise(self):
+        said = self.folder / "said.vtkhdf"
+        subprocess.run([TESTS / "write_sample_asset", said, "deformed_far"], check=True)
+        for options, bodies in (((), ["wall"]), (("--large-deformation", "none"), []), (("--scheme", "single"), [])):
+            run = self.touch(said, *PRESS, *options, "--json", "-")
+            self.assertEqual(run.returncode, 0, run.stderr)
+            self.assertEqual(json.loads(run.stdout)["large_deformation"], bodies, options)
 
     def test_what_cannot_be_is_refused_with_what_can(self):
         for options, code, words in (

@@ -128,6 +128,15 @@ TEST(CaseFile, a_region_may_relax_by_a_series_that_makes_sense) {
     }
 }
 
+TEST(CaseFile, says_which_bodies_are_deformed_far) {
+    std::string whole = minimal;
+    EXPECT_FALSE(read_case_file(written(whole)).deformable.at(0).large_deformation);
+    whole.insert(whole.find("mesh ="), "large_deformation = true\n");
+    EXPECT_TRUE(read_case_file(written(whole)).deformable.at(0).large_deformation);
+    whole.replace(whole.find("= true"), 6, "= 1");
+    EXPECT_NE(message(whole).find("'large_deformation'"), std::string::npos) << message(whole);
+}
+
 TEST(CaseFile, colours_are_of_bodies_and_regions_and_written_as_in_the_web) {
     const CaseFile file = read_case_file(written(minimal + R"(colour = "#c8b8A0"
 [[rigid]]

@@ -100,6 +100,10 @@ void declare(cli::Command& command, PackRequest& request) {
         "around it, reduced to 12 MB");
     command.items("--colour", cli::item_list(request.colours, parse_drawn_colour),
                   "BODY=#RRGGBB or BODY:REGION=#RRGGBB: what the trainer draws it in; repeat for more");
+    command.option(
+        "--large-deformation", request.large_deformation,
+        "elastic body that touch and train feel as neo-Hookean tissue unless told otherwise; repeat "
+        "for more");
     command.items("--mesh-result", cli::item_list(request.mesh_results, parse_mesh_result),
                   "NAME=RESULT.json: what palpate mesh --json said of a body; repeat for more");
     command.input("--notes", request.notes,

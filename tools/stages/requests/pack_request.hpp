@@ -48,6 +48,7 @@ struct PackRequest {
     std::filesystem::path sign;  ///< private key (PEM); empty: the asset is not signed
     std::filesystem::path scan;  ///< the volume that the bodies were made from, for the eye; may be empty
     std::vector<DrawnColour> colours;
+    std::vector<std::string> large_deformation;  ///< elastic bodies felt as neo-Hookean tissue
     std::vector<NamedFile> mesh_results;
     std::vector<std::filesystem::path> notes;  ///< results (.json) whose notes the asset keeps
     std::filesystem::path provenance;          ///< what made the parts (.json); may be empty
