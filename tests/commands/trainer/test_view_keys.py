@@ -61,6 +61,7 @@ class ViewKeys(OpenedTrainer):
     def test_b_hides_what_is_rigid_from_the_eye_and_from_the_pointer(self):
         process, window = self.open_window()
         self.x("xdotool", "click", "--repeat", 8, 5)  # the skull comes into sight at the right
+        self.come_to_rest()
         bones, organ, _, column = self.seen()
         self.assertGreater(bones, 100 * SEEN)
         # To where it was.
