@@ -94,6 +94,12 @@ class HapticModel {
     /// The rest surface of a body. Safe beside a running tick.
     const collision::CollisionSurface& surface(std::size_t body) const { return *bodies_.surfaces[body]; }
 
+    /// How far what a tool feels of a body at rest lies below a point of that surface, whose edges it feels
+    /// round, mm; 0 of rigid bodies. Safe beside a running tick.
+    double cut_off(std::size_t body, const collision::ClosestPoint& foot) const noexcept {
+        return body < rigid_count() ? 0 : bodies_.deformable[body - rigid_count()].cut_off(foot);
+    }
+
     /// Writes the displacement (mm) of every surface vertex of deformable body `body` (>= rigid_count())
     /// under the contacts of a tick: u = -sum_k C (f_k n_k + friction_k), + where it presses a neighbour
     /// (Contact::other_body), zero at fixed nodes. What earlier contacts left behind where tissue creeps is

@@ -79,6 +79,14 @@ class DeformableContact {
     const InnerBall& inner_ball(std::int32_t vertex) const noexcept {
         return inner_balls_[static_cast<std::size_t>(vertex)];
     }
+    /// How far round edges lie below a point of the surface, mm; 0 of a body that does not spread loads.
+    double cut_off(const collision::ClosestPoint& foot) const noexcept {
+        double depth = 0;
+        for (std::size_t i = 0; i < 3 && !inner_balls_.empty(); ++i)
+            depth += foot.barycentric[static_cast<Eigen::Index>(i)] *
+                     inner_ball(triangle(foot.triangle)[i]).cut_off();
+        return depth;
+    }
     /// Whether a vertex gives way at all: it is neither fixed nor left out.
     bool gives_way(std::int32_t vertex) const noexcept { return blocks_[vertex] >= 0; }
     /// How vertex a gives way per force on vertex b, mm/N; zero if either is fixed or left out.

@@ -7,14 +7,11 @@
 #include <functional>
 #include <optional>
 #include <random>
-#include <vector>
 
 #include "formats/asset/asset.hpp"
 #include "formats/drawing/chart.hpp"
 #include "formats/model/arrays.hpp"
-#include "formats/model/contact/compliance_blocks.hpp"
 #include "runtime/devices/dynamic_device.hpp"
-#include "runtime/haptics/contact/inner_balls.hpp"
 #include "runtime/haptics/servo_loop.hpp"
 #include "runtime/session/run_record.hpp"
 #include "runtime/session/touch_target.hpp"
@@ -214,41 +211,23 @@ TouchTarget random_place(const Case& patient_case, const HapticModel& model, std
     }
 }
 
-// How far the round edges of each body, by vertex, lie below its surface, mm; rigid ones have none.
-std::vector<std::vector<double>> cut_off(const Case& patient_case, const HapticModel& model) {
-    std::vector<std::vector<double>> bodies(model.rigid_count());
-    for (const DeformableBody& body : patient_case.deformable_bodies) {
-        std::vector<double>& by_vertex = bodies.emplace_back();
-        for (const InnerBall& ball : inner_balls(body.boundary.surface, model.surface(bodies.size() - 1),
-                                                 compliance_blocks(body), patient_case.haptics.tool_radius))
-            by_vertex.push_back(ball.cut_off());
-    }
-    return bodies;
-}
-
-// Force that a hand should feel and does not: its tool is more than lost_depth below what it feels at rest.
-bool is_force_lost(const Case& patient_case, const HapticModel& model,
-                   const std::vector<std::vector<double>>& cut_off, const TickResult& result) {
-    if (result.contact_count > 0 || result.faults != no_fault || (result.status & starts_inside) != 0)
-        return false;
+// Whether a ball at p (mm), of `radius`, is more than lost_depth below what it feels of a body at rest.
+bool is_below_a_surface(const HapticModel& model, const Eigen::Vector3d& p, double radius) {
     constexpr double deepest = 20;  // mm
-    const Eigen::Vector3d p = vector_of(result.device_position);
     for (std::size_t body = 0; body < model.body_count(); ++body) {
         const auto nearest = model.surface(body).closest_point(p, deepest);
         if (!nearest) continue;
-        double most = model.settings().tool_radius - lost_depth;
-        if (body >= model.rigid_count()) {
-            const TriangleMesh& mesh =
-                patient_case.deformable_bodies[body - model.rigid_count()].boundary.surface;
-            const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(nearest->triangle)];
-            for (std::size_t i = 0; i < 3; ++i)
-                most -= nearest->barycentric[static_cast<Eigen::Index>(i)] *
-                        cut_off[body][static_cast<std::size_t>(triangle[i])];
-        }
         const bool outside = model.surface(body).is_outside(p, *nearest);
-        if ((outside ? nearest->distance : -nearest->distance) < most) return true;
+        const double height = outside ? nearest->distance : -nearest->distance;
+        if (height < radius - lost_depth - model.cut_off(body, *nearest)) return true;
     }
     return false;
+}
+
+// Force that a hand should feel and does not.
+bool is_force_lost(const HapticModel& model, const TickResult& result) {
+    return result.contact_count == 0 && result.faults == no_fault && (result.status & starts_inside) == 0 &&
+           is_below_a_surface(model, vector_of(result.device_position), model.settings().tool_radius);
 }
 
 struct LongRun {
@@ -265,7 +244,6 @@ LongRun push_at_random(Case patient_case, double friction, const RestNormals& no
     ForceQuality quality(normals, model, passivity_of(model));
     LongRun run{.friction = friction, .figures = {}};
     std::mt19937_64 random(seed);
-    const std::vector<std::vector<double>> round_edges = cut_off(patient_case, model);
     const double radius = model.settings().tool_radius;
     const ScriptSettings settings{.tool_radius = radius,
                                   .depth = radius + press_depth,
@@ -280,7 +258,7 @@ LongRun push_at_random(Case patient_case, double friction, const RestNormals& no
         touch(model, random_path(target.place, settings, random()), visit_s, quality,
               [&](const TickResult& result) {
                   const double force = Eigen::Map<const Eigen::Vector3d>(result.force.data()).norm();
-                  run.lost += is_force_lost(patient_case, model, round_edges, result);
+                  run.lost += is_force_lost(model, result);
                   run.not_finite += !std::isfinite(force);
                   run.above_limit += force > model.settings().max_force * (1 + 1e-12);
                   run.strongest = std::max(run.strongest, force);

@@ -273,15 +273,11 @@ bool ContactEquilibrium::found(std::size_t t) const noexcept {
             const std::size_t soft = touch.surface - bodies_.rigid_count();
             const Vector3d dent = local_dent(part.touches[soft], patches_[soft]);
             const TriangleCorners corners = patches_[soft].look_at(touch.foot.triangle, dent);
-            const Triangle& triangle = patches_[soft].body().triangle(touch.foot.triangle);
             Vector3d foot = -dent;
-            double cut_off = 0;
-            for (std::size_t i = 0; i < 3; ++i) {
-                const double weight = touch.foot.barycentric[static_cast<Index>(i)];
-                foot += weight * corners[i];
-                cut_off += weight * patches_[soft].body().inner_ball(triangle[i]).cut_off();
-            }
-            if (touch.normal.dot(foot - part.sphere.device) + radius_ > first_reach + cut_off) return false;
+            for (std::size_t i = 0; i < 3; ++i)
+                foot += touch.foot.barycentric[static_cast<Index>(i)] * corners[i];
+            const double reach = first_reach + patches_[soft].body().cut_off(touch.foot);
+            if (touch.normal.dot(foot - part.sphere.device) + radius_ > reach) return false;
         }
     }
     return true;

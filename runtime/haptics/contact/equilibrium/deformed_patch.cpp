@@ -279,25 +279,25 @@ double DeformedPatch::departure(const std::array<double, iterates>& weights,
     return most;
 }
 
+Vector3d DeformedPatch::way_of(std::int32_t slot,
+                               const std::array<double, iterates>& weights) const noexcept {
+    Vector3d way = -moved_[slot];
+    for (std::size_t k = 0; k < iterates; ++k)
+        if (weights[k] != 0) way += weights[k] * answers_[k].moved[slot];
+    return way;
+}
+
 double DeformedPatch::way_to(const std::array<double, iterates>& weights) const noexcept {
     double most = 0;
-    for (std::int32_t slot = 0; slot < size_; ++slot) {
-        Vector3d way = -moved_[slot];
-        for (std::size_t k = 0; k < iterates; ++k)
-            if (weights[k] != 0) way += weights[k] * answers_[k].moved[slot];
-        most = std::max(most, way.lpNorm<Eigen::Infinity>());
-    }
+    for (std::int32_t slot = 0; slot < size_; ++slot)
+        most = std::max(most, way_of(slot, weights).lpNorm<Eigen::Infinity>());
     return most;
 }
 
 double DeformedPatch::along(const std::array<double, iterates>& weights, std::size_t iterate) const noexcept {
     double sum = 0;
-    for (std::int32_t slot = 0; slot < size_; ++slot) {
-        Vector3d way = -moved_[slot];
-        for (std::size_t k = 0; k < iterates; ++k)
-            if (weights[k] != 0) way += weights[k] * answers_[k].moved[slot];
-        sum += way.dot(answers_[iterate].difference[slot]);
-    }
+    for (std::int32_t slot = 0; slot < size_; ++slot)
+        sum += way_of(slot, weights).dot(answers_[iterate].difference[slot]);
     return sum;
 }
 

@@ -207,6 +207,7 @@ class DeformedPatch {
     float growth(const TickCreep* a, const TickCreep* b) const noexcept {
         return a != nullptr && a == b ? static_cast<float>(a->now) : 1.0F;
     }
+    Eigen::Vector3d way_of(std::int32_t slot, const std::array<double, iterates>& weights) const noexcept;
     Eigen::Vector3d displacement_under(const Forces& forces, std::int32_t slot) const noexcept;
     void combine(Forces& state, Forces Answer::*part, const std::array<double, iterates>& weights,
                  double step) noexcept;
