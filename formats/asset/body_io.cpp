@@ -303,6 +303,14 @@ RigidBody read_rigid_body(const Hdf5File& file, const std::string& path) {
     return body;
 }
 
+bool read_large_deformation(const Hdf5File& file, const std::string& path) {
+    if (!file.has_attribute(path, "large_deformation")) return false;
+    const auto large = file.attribute<std::int32_t>(path, "large_deformation");
+    if (large != 0 && large != 1)
+        file.refuse(path, "has large_deformation " + std::to_string(large), "0 or 1");
+    return large == 1;
+}
+
 void write_condensed_body(Hdf5Writer& writer, const std::string& path, const DeformableBody& body,
                           const std::string& mechanics) {
     writer.group(path);
@@ -363,12 +371,7 @@ DeformableBody read_condensed_body(const Hdf5File& file, const std::string& path
         file.refuse(path, "has element_order " + std::to_string(element_order),
                     "1 (linear) or 2 (quadratic)");
     body.element_order = static_cast<ElementOrder>(element_order);
-    if (file.has_attribute(path, "large_deformation")) {
-        const auto large = file.attribute<std::int32_t>(path, "large_deformation");
-        if (large != 0 && large != 1)
-            file.refuse(path, "has large_deformation " + std::to_string(large), "0 or 1");
-        body.large_deformation = large == 1;
-    }
+    body.large_deformation = read_large_deformation(file, path);
     body.compliance = map_compliance(file, path + "/compliance", body.contact_nodes.size());
     read_fields(file, path + "/certificate", certificate_fields, body.certificate);
     if (file.text_attribute(path + "/compliance", "mechanics_sha256") != mechanics_digest(body))

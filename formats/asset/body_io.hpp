@@ -35,6 +35,9 @@ std::optional<Feel> read_feel(const Hdf5File& file, const std::string& path, con
 void write_rigid_body(Hdf5Writer& writer, const std::string& path, const RigidBody& body);
 RigidBody read_rigid_body(const Hdf5File& file, const std::string& path);
 
+/// Whether a body is to be felt as neo-Hookean tissue; not so in a file that does not say.
+bool read_large_deformation(const Hdf5File& file, const std::string& path);
+
 /// Everything but the OBB tree. `mechanics` is the digest of what the compliance was condensed from.
 void write_condensed_body(Hdf5Writer& writer, const std::string& path, const DeformableBody& body,
                           const std::string& mechanics);

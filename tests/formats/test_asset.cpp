@@ -346,6 +346,32 @@ TEST(Parts, reading_a_body_with_a_compliance_by_blocks_returns_what_was_written)
     expect_same(read_body_part(scratch / "wall.body.h5"), written);
 }
 
+TEST(LargeDeformation, is_read_as_it_was_written_and_takes_no_room_where_it_is_not_wanted) {
+    const Scratch scratch;
+    Case written = sample::sample_case(2);
+    for (const bool large : {true, false}) {
+        written.deformable_bodies[0].large_deformation = large;
+        write_asset(scratch / "case.vtkhdf", written);
+        EXPECT_EQ(read_asset(scratch / "case.vtkhdf").deformable_bodies[0].large_deformation, large);
+        EXPECT_EQ(Hdf5File(scratch / "case.vtkhdf")
+                      .has_attribute("/palpate/bodies/deformable/0", "large_deformation"),
+                  large);
+    }
+}
+
+TEST(LargeDeformation, that_is_neither_so_nor_not_is_refused_by_the_reader) {
+    const Scratch scratch;
+    {
+        Hdf5Writer writer(scratch / "forged.h5");
+        writer.group("/body");
+        writer.attribute("/body", "large_deformation", std::int32_t{2});
+        writer.close();
+    }
+    const Hdf5File file(scratch / "forged.h5");
+    EXPECT_THAT(refusal([&] { read_large_deformation(file, "/body"); }),
+                HasSubstr("/body: has large_deformation 2 (expected 0 or 1)"));
+}
+
 TEST(Parts, reading_an_obb_tree_returns_what_was_written) {
     const Scratch scratch;
     const TriangleMesh sphere = sample::sphere_surface({0, 0, 0}, 10, 2);

@@ -170,19 +170,6 @@ TEST(Colours, of_bodies_and_regions_are_read_as_they_were_written) {
     EXPECT_EQ(read.deformable_bodies[0].region_colours[0].colour, wall.region_colours[0].colour);
 }
 
-TEST(LargeDeformation, is_read_as_it_was_written_and_takes_no_room_where_it_is_not_wanted) {
-    const Scratch scratch;
-    Case written = sample::sample_case(2);
-    for (const bool large : {true, false}) {
-        written.deformable_bodies[0].large_deformation = large;
-        write_asset(scratch / "case.vtkhdf", written);
-        EXPECT_EQ(read_asset(scratch / "case.vtkhdf").deformable_bodies[0].large_deformation, large);
-        EXPECT_EQ(Hdf5File(scratch / "case.vtkhdf")
-                      .has_attribute("/palpate/bodies/deformable/0", "large_deformation"),
-                  large);
-    }
-}
-
 TEST(Colours, that_nobody_gave_take_no_room_in_the_file) {
     const Scratch scratch;
     Case written = sample::sample_case(2);
