@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/apps/options/large_option.hpp"
 
+#include <algorithm>
+
 #include "formats/model/errors.hpp"
 #include "runtime/haptics/methods/contact_methods.hpp"
 
@@ -15,8 +17,10 @@ void declare_large_deformation(cli::Command& command, std::vector<std::string>& 
 }
 
 void check_large_deformation(const std::vector<std::string>& bodies, const std::string& scheme) {
-    const bool any = !bodies.empty() && bodies != std::vector<std::string>{"none"};
-    if (any && !haptics::find_contact_method(scheme, "--scheme").can.deforms_far)
+    const bool none = std::ranges::find(bodies, "none") != bodies.end();
+    if (none && bodies.size() > 1)
+        throw UsageError({"--large-deformation", "'none' beside others", "'none' alone, or bodies", ""});
+    if (!bodies.empty() && !none && !haptics::find_contact_method(scheme, "--scheme").can.deforms_far)
         throw UsageError(
             {"--large-deformation", "with --scheme " + scheme, "--scheme continuous", "no other knows it"});
 }

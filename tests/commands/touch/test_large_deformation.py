@@ -14,6 +14,7 @@ sys.path.insert(0, "..")
 from sample_asset import TESTS, SampleAsset  # noqa: E402
 
 TOUCH = pathlib.Path(os.environ["PALPATE_BIN"]) / "palpate-touch"
+# Where neo-Hookean tissue is 2 % stiffer; to 8 mm it is softer by some 1 %.
 PRESS = ("--script", "press", "--depth", "10", "--seconds", "2", "--virtual-clock")
 
 
@@ -53,6 +54,7 @@ class LargeDeformation(SampleAsset):
     def test_what_cannot_be_is_refused_with_what_can(self):
         for options, code, words in (
             (("--large-deformation", "spleen"), 3, ("no deformable body 'spleen'", "'wall'")),
+            (("--large-deformation", "none", "--large-deformation", "wall"), 2, ("'none' beside others",)),
             (("--large-deformation", "all", "--scheme", "single"), 2, ("--large-deformation", "--scheme continuous")),
         ):
             run = self.touch(self.asset, *PRESS, *options)
