@@ -34,7 +34,7 @@ struct RecordingHead {
     std::string scheme;                   ///< how contact was found: "continuous" or another of the runtime's
     std::string clock;                    ///< "real" or "virtual"
     double coupling_stiffness = 0;        ///< N/mm, of the virtual coupling
-    HapticSettings haptics;               ///< the asset's
+    HapticSettings haptics;               ///< the asset's, or what a forceps put in their place
     std::vector<RecordedDevice> devices;  ///< one for each tool
     std::optional<ToolBody> tool{};       ///< what was held, if it had a body of its own
     std::vector<std::string> hyperelastic{};  ///< deformable bodies whose tissue was neo-Hookean

@@ -17,6 +17,7 @@ std::string RunKeys::press(std::string_view key, bool exercising) {
     try {
         if (key == "o") return turn_recording();
         if (key == "a") sound_.turn();
+        if (key == "j") run_.close_jaws(!run_.jaws_closed());
         if (key == "f") return exercising ? translated("not while an exercise goes on") : take_next_method();
     } catch (const std::exception& error) {
         return error.what();

@@ -12,7 +12,7 @@
 namespace palpate::apps {
 
 /// What keys of the trainer's window do to the run: O begins or ends a recording, A lets the force be heard,
-/// F takes the next contact method.
+/// F takes the next contact method, J closes a forceps' jaws or opens them.
 class RunKeys {
   public:
     /// `seconds`: how much of its end a recording holds. Run and session must outlive this.

@@ -64,6 +64,7 @@ Json touch(const TouchOptions& options, cli::Session& session) {
                  .virtual_clock = options.virtual_clock,
                  .trusted_keys = trusted,
                  .tool = tool_body(options.tool),
+                 .jaws = jaws_of(options.tool),
                  .hyperelastic = options.hyperelastic,
                  .stream = options.stream},
                 [](const std::string& sentence) { spdlog::warn("{}", sentence); });
@@ -72,6 +73,7 @@ Json touch(const TouchOptions& options, cli::Session& session) {
     tell_unfelt(patient_case, options.scheme);
     const TouchPlan plan = plan_of(options, device.kind, patient_case, model);
     if (!options.virtual_clock) cli::end_softly_on_interrupt();
+    if (plan.grasp) run.hold_jaws(plan.grasp->grasp.orientation);
     run.hold(device.open(request_of(options, device.kind, plan, model)));
     if (!options.record.empty()) start_recording(run, options.record, options.record_seconds, session);
     std::vector<RunRecord> records = outputs.records_of(model);
@@ -88,9 +90,10 @@ Json touch(const TouchOptions& options, cli::Session& session) {
     }
 
     // A script's file name may name a patient.
-    const std::string script = !device.kind.simulated               ? "none"
-                               : is_made_to_measure(options.script) ? options.script
-                                                                    : "file";
+    const std::string script = !device.kind.simulated ? "none"
+                               : is_made_to_measure(options.script) || options.script == devices::grasp_script
+                                   ? options.script
+                                   : "file";
     outputs.commit(records.front(),
                    patient_case.name + ": " + (device.kind.simulated ? script : options.device));
 
@@ -116,6 +119,7 @@ Json touch(const TouchOptions& options, cli::Session& session) {
     if (const auto rows = run.recorded_rows())
         result["recording"] = {{"rows", *rows}, {"lost_rows", statistics.lost_records}};
     if (plan.target) result["target"] = target_json(*plan.target, model);
+    if (plan.grasp) result["grasp"] = grasp_json(*plan.grasp, model);
     result.update(tool_json(records[0], patient_case, model));
     if (records.size() > 1) result["second"] = tool_json(records[1], patient_case, model);
     return result;
@@ -141,7 +145,11 @@ int main(int argc, char** argv) {
              "millisecond, or 't x y z' (s, mm), either followed by a quaternion 'qx qy qz qw' that turns "
              "the "
              "tool; with --column N it is a recording of one axis at 1 kHz, "
-             "which moves along the surface's normal. Without --device the hand is infinitely stiff: it is "
+             "which moves along the surface's normal. 'grasp', of --instrument forceps, goes in over a rim, "
+             "closes the "
+             "jaws, draws it out and lets it go; a file of a forceps has rows 't x y z qx qy qz qw a', a the "
+             "angle "
+             "between the jaws in degrees. Without --device the hand is infinitely stiff: it is "
              "where the script says, whatever the force.\n"
              "Devices: " +
              device_sentences() +
@@ -161,6 +169,7 @@ int main(int argc, char** argv) {
     return command.run(argc, argv, [&](cli::Session& session) {
         options.seconds_given = given.seconds.given();
         if (options.tool.has_surface() && !given.scheme.given()) options.scheme = "shell";
+        if (options.tool.has_jaws() && !given.script.given()) options.script = devices::grasp_script;
         if (given.replay.given())
             cli::refuse_beside(command, "--replay",
                                std::array{given.asset, given.log, given.curve, given.replay},

@@ -27,6 +27,15 @@ Json target_json(const TouchTarget& target, const HapticModel& model) {
             {"clearance_mm", target.place.clearance}};
 }
 
+Json grasp_json(const GraspPlace& place, const HapticModel& model) {
+    const Eigen::Vector4d& q = place.grasp.orientation.coeffs();
+    return {{"body", model.body_name(place.body)},
+            {"meet_mm", numbers(std::span<const double, 3>(place.grasp.meet.data(), 3))},
+            {"orientation", Json::array({q[0], q[1], q[2], q[3]})},
+            {"thickness_mm", place.grasp.thickness},
+            {"depth_mm", place.grasp.depth}};
+}
+
 namespace {
 
 // The tick of the largest force, with all that is needed to compute it again from the stiffness matrix.

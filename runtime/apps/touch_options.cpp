@@ -11,8 +11,10 @@ TouchHandles declare(cli::Command& command, TouchOptions& options) {
     command.input(
         "--trusted", options.trusted,
         "public keys (Ed25519, PEM): load the asset only if one of them has signed it; repeat for more");
-    command.option("--script", options.script,
-                   "what the hand does: press, slide, tremble, let-go, random or a file");
+    const cli::Option script =
+        command.option("--script", options.script,
+                       "what the hand does: press, slide, tremble, let-go, random or a file; of a forceps "
+                       "'grasp', which pulls a rim out by --depth, or a file");
     command.option("--column", options.column,
                    "which column of the file, from 1, is one axis' motion: its smallest value clear of the "
                    "surface, its largest --depth deep");
@@ -52,7 +54,7 @@ TouchHandles declare(cli::Command& command, TouchOptions& options) {
         "recording to give the forces of again, as fast as possible; no option of a run goes with it (.h5)");
     command.flag("--virtual-clock", options.virtual_clock,
                  "tick as fast as possible; forces do not depend on the machine");
-    return {asset, seconds, log, curve, replay, scheme};
+    return {asset, script, seconds, log, curve, replay, scheme};
 }
 
 }  // namespace palpate::apps

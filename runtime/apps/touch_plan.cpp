@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 #include <sstream>
 
+#include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
 #include "runtime/apps/options/point_option.hpp"
 #include "runtime/devices/mounted_device.hpp"
@@ -46,38 +47,68 @@ void question_depth(double depth) {
                      depth, most);
 }
 
+// A file of a forceps says how it is turned and opened.
+void require_jaws(const HandPath& path, const std::string& script) {
+    if (path.keys().front().jaw_angle < 0)
+        throw InvalidInput(
+            {script, "no jaw angles", "rows of t x y z qx qy qz qw and an angle", "or leave --script out"});
+}
+
+TouchPlan grasp_plan(const TouchOptions& options, const DeviceKind& device, const Case& patient_case,
+                     const HapticModel& model) {
+    TouchPlan plan{.path = {}, .target = {}, .grasp = {}, .seconds = options.seconds};
+    plan.grasp = choose_grasp_place(patient_case, model, options.tool.jaws, options.body,
+                                    point_of("--target", options.target));
+    if (device.simulated)
+        plan.path = grasp_path(plan.grasp->grasp, options.tool.jaws,
+                               {.pull = options.depth, .speed = options.speed, .seconds = options.seconds});
+    return plan;
+}
+
 }  // namespace
 
 TouchPlan plan_of(const TouchOptions& options, const DeviceKind& device, const Case& patient_case,
                   const HapticModel& model) {
-    if (device.simulated && !options.column && !is_made_to_measure(options.script)) {
+    const bool made_here = is_made_to_measure(options.script) || options.script == grasp_script;
+    if (device.simulated && !options.column && !made_here) {
         HandPath path = recorded_path(options.script);
         const double seconds = options.seconds_given ? options.seconds : path.duration();
         require_playable(seconds);
-        return {std::move(path), std::nullopt, seconds};
+        if (options.tool.has_jaws()) require_jaws(path, options.script);
+        return {.path = std::move(path), .target = {}, .grasp = {}, .seconds = seconds};
     }
     if (!options.column) require_playable(options.seconds);
+    if (options.tool.has_jaws()) return grasp_plan(options, device, patient_case, model);
     const TouchTarget target =
         choose_touch_target(patient_case, model, options.body, point_of("--target", options.target));
-    if (!device.simulated) return {std::nullopt, target, options.seconds};
+    if (!device.simulated) return {.path = {}, .target = target, .grasp = {}, .seconds = options.seconds};
     question_depth(options.depth);
     const ScriptSettings settings{.tool_radius = model.contact_radius(),
                                   .depth = options.depth,
                                   .speed = options.speed,
                                   .seconds = options.seconds};
     if (!options.column)
-        return {made_to_measure_path(options.script, target.place, settings, options.seed), target,
-                options.seconds};
+        return {.path = made_to_measure_path(options.script, target.place, settings, options.seed),
+                .target = target,
+                .grasp = {},
+                .seconds = options.seconds};
     HandPath path = recorded_axis_path(options.script, *options.column, target.place, settings);
     const double seconds = options.seconds_given ? options.seconds : path.duration();
     require_playable(seconds);
-    return {std::move(path), target, seconds};
+    return {.path = std::move(path), .target = target, .grasp = {}, .seconds = seconds};
 }
 
 DeviceRequest request_of(const TouchOptions& options, const DeviceKind& device, const TouchPlan& plan,
                          const HapticModel& model) {
     DeviceRequest request{.tools = {}, .limits = limits_asked_by(model.settings())};
     const Eigen::Vector3d up = plan.target ? plan.target->place.normal : anterior;
+    if (plan.grasp) {
+        const Eigen::Vector3d out = plan.grasp->grasp.orientation * Eigen::Vector3d::UnitZ();
+        const DevicePlace place{plan.grasp->grasp.meet + 2 * plan.grasp->grasp.depth * out, upright(out)};
+        request.tools.push_back(plan.path ? scripted_tool(*plan.path, out, array_of(out))
+                                          : HeldTool{.place = place});
+        return request;
+    }
     if (!device.simulated) {  // several at one place, so that all reach what one does
         const DevicePlace place{
             start_outside(plan.target->place, std::max(model.settings().tool_radius, model.contact_radius())),
@@ -93,15 +124,18 @@ DeviceRequest request_of(const TouchOptions& options, const DeviceKind& device, 
 }
 
 std::size_t tools_of(const TouchOptions& options, const DeviceChoice& device) {
-    return options.second.empty() ? device.tool_count : 2;
+    return options.second.empty() && !options.tool.has_jaws() ? device.tool_count : 2;
 }
 
 void refuse_idle_options(const cli::Command& command, const TouchOptions& options) {
     constexpr std::array of_scripts{"--script", "--column", "--depth", "--speed", "--shaft", "--seed"};
     const bool physical = !choose_device(options.device, "--device").kind.simulated;
+    constexpr std::array of_one_tip{"--column", "--shaft", "--second", "--seed"};
     for (const cli::Parameter& parameter : command.parameters()) {
         if (!cli::asked_for(parameter)) continue;
         const std::string name = parameter.option.name();
+        if (options.tool.has_jaws() && std::ranges::find(of_one_tip, name) != of_one_tip.end())
+            throw UsageError({name, "with --instrument forceps", "a script of poses and jaw angles", ""});
         if (physical && std::ranges::find(of_scripts, name) != of_scripts.end())
             throw UsageError({name, "with --device " + options.device, "a simulated device", ""});
         if (name == "--record-seconds" && options.record.empty())
@@ -113,6 +147,14 @@ void refuse_contradictions(const TouchOptions& options, const DeviceChoice& devi
     const ContactMethodEntry& method = find_contact_method(options.scheme, "--scheme");
     const std::size_t tools = tools_of(options, device);
     const std::string with = "with --device " + options.device;
+    if (options.tool.has_jaws() && device.tool_count != 1)
+        throw UsageError(
+            {"--device", options.device + " with --instrument forceps", "one device", "it holds both jaws"});
+    if (options.tool.has_jaws() && is_made_to_measure(options.script))
+        throw UsageError({"--script", options.script + " with --instrument forceps",
+                          std::string(grasp_script) + " or a file", ""});
+    if (!options.tool.has_jaws() && options.script == grasp_script)
+        throw UsageError({"--script", options.script, "--instrument forceps beside it", ""});
     if (options.virtual_clock && !options.stream.empty())
         throw UsageError({"--stream", "with --virtual-clock", "the real clock", ""});
     if (!device.kind.simulated && options.virtual_clock)

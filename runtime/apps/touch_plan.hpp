@@ -8,6 +8,7 @@
 #include "runtime/devices/hand_path.hpp"
 #include "runtime/haptics/haptic_model.hpp"
 #include "runtime/session/device_list.hpp"
+#include "runtime/session/jaws/grasp_place.hpp"
 #include "runtime/session/touch_target.hpp"
 #include "tools/cli/command.hpp"
 
@@ -17,7 +18,8 @@ namespace palpate::apps {
 struct TouchPlan {
     std::optional<devices::HandPath> path;  ///< none where a person's hand moves
     std::optional<session::TouchTarget> target;
-    double seconds;
+    std::optional<session::GraspPlace> grasp;  ///< of a forceps
+    double seconds = 0;
 };
 
 /// Throws UsageError for an option that means nothing beside the others: what a script is told to a person's

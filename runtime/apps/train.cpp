@@ -27,6 +27,7 @@
 #include "runtime/devices/simulation.hpp"
 #include "runtime/session/device_list.hpp"
 #include "runtime/session/hand_script.hpp"
+#include "runtime/session/jaws/grasp_place.hpp"
 #include "runtime/session/session.hpp"
 #include "runtime/session/statistics_json.hpp"
 #include "runtime/session/touch_target.hpp"
@@ -76,12 +77,51 @@ HandPath scripted_path(const Options& options, const TouchPoint& place, double t
                                               : recorded_path(options.script);
 }
 
+HandPath grasp_or_recorded(const Options& options, const GraspPlace& place) {
+    constexpr double pull = 5;  // mm
+    if (options.script != grasp_script) return recorded_path(options.script);
+    return grasp_path(place.grasp, options.tool.jaws,
+                      {.pull = pull, .seconds = options.seconds > 0 ? options.seconds : 3600});
+}
+
+// A rim as a place that is touched from where the forceps comes.
+TouchTarget target_of(const GraspPlace& place) {
+    const Grasp& grasp = place.grasp;
+    TouchTarget target{.body = place.body, .place = {}};
+    target.place.normal = grasp.orientation * Eigen::Vector3d::UnitZ();
+    target.place.tangent = grasp.orientation * Eigen::Vector3d::UnitX();
+    target.place.point = grasp.meet + grasp.depth * target.place.normal;
+    return target;
+}
+
+// From the side, so that both jaws are seen and which way they go; from whichever less stands before, and
+// wide enough for the way there.
+Sight sight_of(const Case& patient_case, const HapticModel& model, const GraspPlace& place,
+               const JawSettings& jaws) {
+    constexpr double jaws_seen = 5;  // lengths of a jaw
+    const Eigen::Vector3d out = place.grasp.orientation * Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d beside = place.grasp.orientation * Eigen::Vector3d::UnitY();
+    const Eigen::Vector3d rim = place.grasp.meet + place.grasp.depth * out;
+    Sight sight = first_sight(patient_case, model, rim, (out + 1.5 * beside).normalized());
+    if (sight.blocked) sight = first_sight(patient_case, model, rim, (out - 1.5 * beside).normalized());
+    if (!sight.inside) sight.field = std::max(sight.field, jaws_seen * jaws.jaw_length);
+    return sight;
+}
+
 // `start`: where a hand that no script moves begins, p_P, mm; `R_PD`: how a device that a person's hand holds
 // is turned.
 DeviceRequest request_of(const Options& options, const DeviceKind& device, const HapticModel& model,
-                         const TouchPoint& place, const Eigen::Vector3d& start, const Eigen::Matrix3d& R_PD) {
+                         const TouchPoint& place, const std::optional<GraspPlace>& grasp,
+                         const Eigen::Vector3d& start, const Eigen::Matrix3d& R_PD) {
     DeviceRequest request{.tools = {}, .limits = limits_asked_by(model.settings())};
     const std::array<double, 3> shaft = array_of(place.normal);
+    if (options.tool.has_jaws()) {
+        request.tools.push_back(
+            {.place = DevicePlace{start, device.simulated ? upright(place.normal) : R_PD}, .shaft = shaft});
+        if (device.simulated && !options.script.empty())
+            request.tools.back() = scripted_tool(grasp_or_recorded(options, *grasp), place.normal, shaft);
+        return request;
+    }
     if (!device.simulated)  // several at one place, so that all reach what one does
         request.tools.assign(model.tool_count(), HeldTool{.place = DevicePlace{start, R_PD}});
     else if (options.script.empty())
@@ -93,6 +133,23 @@ DeviceRequest request_of(const Options& options, const DeviceKind& device, const
     if (!options.second.empty())
         request.tools.push_back(scripted_tool(recorded_path(options.second), anterior, shaft));
     return request;
+}
+
+// A forceps is one device's, and its scripts are its own.
+void refuse_beside_jaws(const Options& options, const DeviceChoice& device) {
+    if (!options.tool.has_jaws()) {
+        if (options.script == grasp_script)
+            throw UsageError({"--script", options.script, "--instrument forceps beside it", ""});
+        return;
+    }
+    if (!options.second.empty())
+        throw UsageError({"--second", "with --instrument forceps", "", "leave it out"});
+    if (device.tool_count != 1)
+        throw UsageError(
+            {"--device", options.device + " with --instrument forceps", "one device", "it holds both jaws"});
+    if (is_made_to_measure(options.script))
+        throw UsageError({"--script", options.script + " with --instrument forceps",
+                          std::string(grasp_script) + " or a file", ""});
 }
 
 // Where the tool starts: where it is told to, in an exercise where something is to be felt, otherwise as
@@ -121,7 +178,8 @@ Json train(const Options& options, cli::Session& session) {
     if (!device.kind.simulated && !options.second.empty())
         throw UsageError({"--second", "with --device " + options.device, "a simulated device", ""});
     find_contact_method(options.scheme, "--scheme");
-    const std::size_t tools = options.second.empty() ? device.tool_count : 2;
+    refuse_beside_jaws(options, device);
+    const std::size_t tools = options.second.empty() && !options.tool.has_jaws() ? device.tool_count : 2;
     const auto trusted = asset::read_public_keys(options.trusted);
     const auto tool = tool_body(options.tool);
     // Reading and opening a window take about as long, and two processors do both at once.
@@ -131,6 +189,7 @@ Json train(const Options& options, cli::Session& session) {
                                                         .tool_count = tools,
                                                         .trusted_keys = trusted,
                                                         .tool = tool,
+                                                        .jaws = jaws_of(options.tool),
                                                         .hyperelastic = options.hyperelastic,
                                                         .stream = options.stream},
                                          [](const std::string& sentence) { spdlog::warn("{}", sentence); });
@@ -143,16 +202,25 @@ Json train(const Options& options, cli::Session& session) {
     if (!options.playback.ghost.empty()) ghost.emplace(options.playback.ghost, options.asset);
     const Case& patient_case = run.patient_case();
     tell_unfelt(patient_case, options.scheme);
-    const TouchTarget target = start_of(options, run);
+    std::optional<GraspPlace> grasp;
+    if (run.jaws())
+        grasp = choose_grasp_place(patient_case, run.model(), *run.jaws(), options.body,
+                                   point_of("--target", options.target));
+    const TouchTarget target = grasp ? target_of(*grasp) : start_of(options, run);
     const TouchPoint& place = target.place;
-    const Eigen::Vector3d start = start_outside(place, tip_reach(patient_case));
-    WindowSettings window_settings{.start = start,
-                                   .sight = first_sight(patient_case, run.model(), place.point, place.normal),
-                                   .cautions = provenance::cautions_in(patient_case.provenance),
-                                   .surfaces = surfaces_of(run.model())};
+    const Eigen::Vector3d start = grasp ? Eigen::Vector3d(place.point + grasp->grasp.depth * place.normal)
+                                        : start_outside(place, tip_reach(patient_case));
+    WindowSettings window_settings{
+        .start = start,
+        .sight = grasp ? sight_of(patient_case, run.model(), *grasp, *run.jaws())
+                       : first_sight(patient_case, run.model(), place.point, place.normal),
+        .cautions = provenance::cautions_in(patient_case.provenance),
+        .surfaces = surfaces_of(run.model())};
+    if (grasp) window_settings.forceps = {place.normal, run.jaws()->jaw_length};
     cli::end_softly_on_interrupt();
+    if (grasp) run.hold_jaws(grasp->grasp.orientation);
     run.hold(device.open(
-        request_of(options, device.kind, run.model(), place, start, window_settings.sight.axes())));
+        request_of(options, device.kind, run.model(), place, grasp, start, window_settings.sight.axes())));
 
     std::vector<LaidOut> exercises = lay_out_exercises(options.lesson, run, target);
     // What an exercise leads along is looked at closely too.
@@ -184,7 +252,7 @@ Json train(const Options& options, cli::Session& session) {
                                                           .lesson = lesson,
                                                           .keys = run_keys,
                                                           .ghost = ghost ? &*ghost : nullptr,
-                                                          .shows_shaft = !device.kind.simulated,
+                                                          .shows_shaft = !device.kind.simulated || grasp,
                                                           .seconds = options.seconds},
                                                          frame);
     if (cli::interrupt_asked()) {
@@ -256,7 +324,9 @@ int main(int argc, char** argv) {
              "picture in this folder, O records every tick there from then on or stops, A lets the force be "
              "heard, F takes the next contact scheme, U takes a change of "
              "the view back, R goes back to the start, H shows what the mouse does, Q or Escape closes; the "
-             "buttons below do the same. The "
+             "buttons below do the same. A forceps is carried by a drag of the left button, W and S take it "
+             "along its "
+             "shaft, J closes its jaws and opens them. The "
              "window needs an X display; on a machine "
              "without one use 'xvfb-run'.\n"
              "With --device " +

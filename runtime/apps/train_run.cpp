@@ -13,6 +13,7 @@
 #include "runtime/apps/playback/recorded_scene.hpp"
 #include "runtime/apps/servo_pulse.hpp"
 #include "runtime/session/drawn_shape.hpp"
+#include "runtime/session/jaws/joined_jaws.hpp"
 #include "tools/cli/command.hpp"
 
 namespace palpate::apps {
@@ -48,6 +49,7 @@ void fill_frame(const TrainRun& run, std::span<const TickResult* const> ticks, V
     frame.device_position = vector_of(tick.device_position);
     frame.tool_position = vector_of(tick.tool_position);
     frame.force = vector_of(tick.force);
+    if (run.session.jaws()) frame.force += vector_of(ticks[1]->force);
     frame.depth = tick.depth;
     frame.overruns = tick.overruns;
     if (run.shows_shaft) frame.shaft = vector_of(tick.shaft);
@@ -60,6 +62,10 @@ void fill_frame(const TrainRun& run, std::span<const TickResult* const> ticks, V
     frame.lesson = run.lesson.view(frame.force.norm());
     frame.other_tools.clear();
     for (const TickResult* other : ticks.subspan(1)) frame.other_tools.push_back(other_tool_of(*other));
+    if (run.session.jaws()) {
+        frame.other_tools.front().force.setZero();  // it is in what the hand feels
+        frame.jaws_closed = run.session.jaws_closed();
+    }
     if (run.ghost)
         std::ranges::move(run.ghost->beside(run.lesson.lesson(), tick.time),
                           std::back_inserter(frame.other_tools));
@@ -72,6 +78,11 @@ void take_keys(const TrainRun& run, const TickResult& tick, bool page_takes_them
         const std::string told = run.keys.press(key, run.lesson.lesson().exercising());
         if (!told.empty()) run.window.tell(told);
     }
+}
+
+void take_one(const TrainRun& run, const TickResult& tick, Felt& felt) {
+    felt.add(tick);
+    run.lesson.take(tick);
 }
 
 }  // namespace
@@ -89,9 +100,14 @@ TrainOutcome run_in_window(const TrainRun& run, VisualFrame& frame) {
     constexpr auto shortest_frame = std::chrono::nanoseconds(1'000'000'000 / 60);
     session::Session& session = run.session;
     TrainOutcome outcome;
+    TickResult first_jaw;
     const session::Session::Sink take = [&](const TickResult& tick) {
-        outcome.felt.add(tick);
-        run.lesson.take(tick);
+        if (!session.jaws()) return take_one(run, tick, outcome.felt);
+        // Of a forceps the exercise sees what the hand that holds both jaws does.
+        if (tick.tool == 0)
+            copy_active(tick, first_jaw);
+        else
+            take_one(run, session::joined_jaws(first_jaw, tick), outcome.felt);
     };
     TickRate rate;
     ServoPulse pulse;

@@ -57,6 +57,7 @@ DynamicDevice::DynamicDevice(DeviceModel model, HandImpedance impedance, std::sh
     const HandWish wish = hand_->at(0);
     held_ = wish.holds;
     orientation_ = wish.orientation;
+    jaw_angle_ = wish.jaw_angle;
     hand_position_ = position_ = wish.position;
     const double mass = 1e-3 * model_.mass_kg;  // N s²/mm
     held_transition_ = transition_of(mass, model_.damping + impedance_.damping, impedance_.stiffness);
@@ -74,6 +75,7 @@ realtime::DeviceState DynamicDevice::read(double time) noexcept {
     while (steps_ < last) {
         const HandWish wish = hand_->at(static_cast<double>(++steps_) * step_s);
         orientation_ = wish.orientation;
+        jaw_angle_ = wish.jaw_angle;
         step(wish);
         warm_up();
     }
@@ -81,6 +83,7 @@ realtime::DeviceState DynamicDevice::read(double time) noexcept {
     realtime::DeviceState state;
     state.shaft = shaft_;
     set_orientation(state, orientation_);
+    state.jaw_angle = jaw_angle_;
     state.time = time;
     state.faults = warm_ ? motors_warm : no_fault;
     Eigen::Map<Vector3d> reading(state.position.data());

@@ -81,6 +81,7 @@ class DynamicDevice final : public realtime::Device {
     Eigen::Vector3d hand_position_, position_;
     Eigen::Vector3d slack_ = Eigen::Vector3d::Zero();  // from the wish to where the hand took hold
     Eigen::Quaterniond orientation_{0, 0, 0, 0};
+    double jaw_angle_ = -1;
     Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero(), force_ = Eigen::Vector3d::Zero();
     double heating_ = 0;      // F² / F_c²
     double temperature_ = 0;  // T

@@ -14,6 +14,7 @@ struct HandWish {
     Eigen::Vector3d position;                    ///< mm, in the frame of the device it holds
     bool holds = true;                           ///< false: it has let go
     Eigen::Quaterniond orientation{0, 0, 0, 0};  ///< of the tool in that frame; zero: not known
+    double jaw_angle = -1;                       ///< between a forceps' jaws, rad; negative: not known
 };
 
 /// Where a hand that holds a simulated device wants to be.
@@ -31,7 +32,7 @@ class ScriptedHand final : public Hand {
     explicit ScriptedHand(HandPath path) : path_(std::move(path)) {}
     std::string name() const override { return "scripted hand"; }
     HandWish at(double time) noexcept override {
-        return {path_.at(time), path_.holds_at(time), path_.orientation_at(time)};
+        return {path_.at(time), path_.holds_at(time), path_.orientation_at(time), path_.jaw_angle_at(time)};
     }
 
   private:

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <functional>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -54,6 +55,13 @@ Quaterniond written_orientation(const std::string& where, const double* q) {
     return orientation.normalized();
 }
 
+// In degrees there.
+double written_angle(const std::string& where, double degrees) {
+    if (!(degrees >= 0 && degrees <= 180))
+        throw InvalidInput({where, "a jaw angle of " + std::to_string(degrees), "0 to 180 degrees", ""});
+    return degrees * std::numbers::pi / 180;
+}
+
 // Calls `take` with what stands where and the numbers, for each row that has some.
 void for_each_row(const std::filesystem::path& file, const char* expected,
                   const std::function<void(const std::string& where, const std::vector<double>& row)>& take) {
@@ -89,6 +97,9 @@ HandPath::HandPath(std::vector<Key> keys) : keys_(std::move(keys)) {
             (known && !(std::abs(keys_[i].orientation.norm() - 1) <= unit_tolerance)))
             refuse(" has an orientation that is no unit quaternion, or alone has one",
                    "unit quaternions at all keys or at none");
+        const bool opened = keys_[i].jaw_angle >= 0;
+        if (!std::isfinite(keys_[i].jaw_angle) || opened != (keys_.front().jaw_angle >= 0))
+            refuse(" has a jaw angle that is not finite, or alone has one", "angles at all keys or at none");
     }
 }
 
@@ -110,6 +121,11 @@ Quaterniond HandPath::orientation_at(double time) const noexcept {
     return is_known(a.orientation) ? a.orientation.slerp(part, b.orientation) : a.orientation;
 }
 
+double HandPath::jaw_angle_at(double time) const noexcept {
+    const auto [a, b, part] = between(time);
+    return a.jaw_angle + part * (b.jaw_angle - a.jaw_angle);
+}
+
 bool HandPath::holds_at(double time) const noexcept {
     const auto after = std::ranges::upper_bound(keys_, time, {}, &Key::time);
     return after == keys_.begin() ? after->holds : (after - 1)->holds;
@@ -128,21 +144,23 @@ HandPath mapped_path(const HandPath& path, const Eigen::Isometry3d& X_BA) {
 HandPath read_hand_path(const std::filesystem::path& file) {
     std::vector<HandPath::Key> keys;
     std::size_t columns = 0;
-    constexpr std::array<std::size_t, 4> widths{3, 4, 7, 8};
+    constexpr std::array<std::size_t, 5> widths{3, 4, 7, 8, 9};
     for_each_row(file, "x y z (mm) or t x y z (s, mm)", [&](const std::string& where, const auto& row) {
         if (columns == 0 && std::ranges::find(widths, row.size()) != widths.end()) columns = row.size();
         if (row.size() != columns)
             throw InvalidInput({where, std::to_string(row.size()) + " numbers",
                                 columns == 0
-                                    ? "3 (x y z, mm) or 4 (t x y z, s and mm), or 4 more (qx qy qz qw)"
+                                    ? "3 (x y z, mm) or 4 (t x y z, s and mm), or 4 more (qx qy qz qw); of a "
+                                      "forceps 9 (t x y z qx qy qz qw and the jaws' angle, degrees)"
                                     : std::to_string(columns) + ", as in the rows before",
                                 columns == 0 ? "of a recording of one axis name its --column" : ""});
         HandPath::Key key;
-        const bool timed = columns % 4 == 0;
+        const bool timed = columns % 4 == 0 || columns == 9;
         const double* p = row.data() + (timed ? 1 : 0);
         key.time = timed ? row.front() : 1e-3 * static_cast<double>(keys.size() + 1);
         key.position = {p[0], p[1], p[2]};
         if (columns > 4) key.orientation = written_orientation(where, p + 3);
+        if (columns == 9) key.jaw_angle = written_angle(where, row.back());
         if (!keys.empty() && key.time <= keys.back().time)
             throw InvalidInput({where, "time " + std::to_string(key.time) + " s does not rise",
                                 "more than " + std::to_string(keys.back().time) + " s", ""});

@@ -17,16 +17,20 @@ class HandPath {
         Eigen::Vector3d position;  ///< mm, in the path's frame: P, or that of the device it moves
         bool holds = true;         ///< from this key to the next, whether the hand holds the device
         Eigen::Quaterniond orientation{0, 0, 0, 0};  ///< R of the tool's frame in the path's; zero: not known
+        double jaw_angle = -1;                       ///< between a forceps' jaws, rad; negative: not known
     };
 
     /// Throws InvalidInput if there is no key, a number is not finite, times do not rise strictly, or some
-    /// orientations are known, as unit quaternions, and some are not.
+    /// orientations are known, as unit quaternions, and some are not, or some jaw angles.
     explicit HandPath(std::vector<Key> keys);
 
     /// Position at `time` (s). Realtime-safe; logarithmic in the keys.
     Eigen::Vector3d at(double time) const noexcept;
     /// Orientation at `time` (s), zero where the path has none. Realtime-safe; logarithmic in the keys.
     Eigen::Quaterniond orientation_at(double time) const noexcept;
+    /// Angle between a forceps' jaws at `time` (s), rad; negative where the path has none. Realtime-safe;
+    /// logarithmic in the keys.
+    double jaw_angle_at(double time) const noexcept;
     /// Whether the hand holds the device at `time` (s); before the first key as from it on. Realtime-safe.
     bool holds_at(double time) const noexcept;
     double duration() const noexcept { return keys_.back().time; }  ///< s

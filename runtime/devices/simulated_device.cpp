@@ -23,6 +23,7 @@ realtime::DeviceState SimulatedDevice::read(double time) noexcept {
     state.position = {p[0], p[1], p[2]};
     state.shaft = shaft_;
     set_orientation(state, path_.orientation_at(time));
+    state.jaw_angle = path_.jaw_angle_at(time);
     return state;
 }
 

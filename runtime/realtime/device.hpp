@@ -17,6 +17,7 @@ struct DeviceState {
     /// Unit quaternion (x, y, z, w) of the rotation R_DT from the tool's frame T, whose z axis is the shaft;
     /// zero: not known.
     std::array<double, 4> orientation{0, 0, 0, 0};
+    double jaw_angle = -1;            ///< between a forceps' jaws, rad; negative: not known
     std::uint32_t buttons = 0;        ///< one bit each, the lowest for the first
     std::uint32_t faults = no_fault;  ///< Fault flags
 };

@@ -183,6 +183,7 @@ Case recorded_case(const Recording& recording, const std::filesystem::path& file
                    const std::filesystem::path& asset, std::span<const std::string> trusted_keys) {
     check_asset(recording, file, asset);
     Case patient_case = asset::read_asset(asset, trusted_keys);
+    patient_case.haptics = recording.head.haptics;
     patient_case.tool = recording.head.tool;
     patient_case.hyperelastic = recording.head.hyperelastic;
     return patient_case;

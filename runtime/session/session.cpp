@@ -11,6 +11,7 @@
 #include "formats/asset/asset.hpp"
 #include "formats/elasticity/plausible_compliance.hpp"
 #include "formats/model/errors.hpp"
+#include "runtime/devices/jaws/jaws.hpp"
 
 namespace palpate::session {
 namespace {
@@ -34,6 +35,7 @@ std::vector<std::string> hyperelastic_bodies(const SessionRequest& request,
 Case case_of(const SessionRequest& request) {
     Case patient_case = asset::load_asset(request.asset, request.trusted_keys);
     patient_case.tool = request.tool;
+    if (request.jaws) patient_case.haptics = held_between(*request.jaws, patient_case.haptics);
     patient_case.hyperelastic = hyperelastic_bodies(request, patient_case.deformable_bodies);
     return patient_case;
 }
@@ -65,6 +67,10 @@ Session::~Session() {
 void Session::hold(devices::OpenDevices devices) {
     devices_.driver = std::move(devices.driver);
     devices_.devices = std::move(devices.devices);
+    if (request_.jaws)
+        std::ranges::move(devices::jaws_of(std::exchange(devices_.devices, {}).at(0), *request_.jaws,
+                                           {.orientation = jaw_orientation_, .closed = jaws_closed_}),
+                          std::back_inserter(devices_.devices));
     devices_.servo = devices.servo;
     devices_.guide = std::move(devices.guide);
     loop_.emplace(*model_, held(), devices_.servo);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -13,6 +14,7 @@
 
 #include "formats/model/body.hpp"
 #include "formats/recording/recording.hpp"
+#include "formats/records/jaw_settings.hpp"
 #include "runtime/devices/device_kind.hpp"
 #include "runtime/haptics/haptic_model.hpp"
 #include "runtime/haptics/servo_loop.hpp"
@@ -31,6 +33,7 @@ struct SessionRequest {
     std::vector<std::string> trusted_keys{};  ///< of read_public_keys(), one of which must have signed the
                                               ///< asset; none: no signature is asked for
     std::optional<ToolBody> tool{};           ///< what is held, for a method with which tools turn
+    std::optional<JawSettings> jaws{};        ///< of a forceps, whose jaws are the two tools
     std::vector<std::string> hyperelastic{};  ///< deformable bodies whose tissue is neo-Hookean, "all" or
                                               ///< "none"; empty: as the asset says
     std::string stream{};                     ///< "PORT" or "ADDRESS:PORT" of a live stream; empty: none
@@ -60,9 +63,17 @@ class Session {
     /// To try forces out before the session starts; whoever does resets it.
     haptics::HapticModel& model() noexcept { return *model_; }
 
-    /// Takes devices, one for each tool, couples the model to what they bear and begins to listen for viewers
-    /// of the stream. Once, before what follows. Throws as ServoLoop and LiveStream.
+    /// Takes devices, one for each tool, or one for both jaws of a forceps, couples the model to what they
+    /// bear and begins to listen for viewers of the stream. Once, before what follows. Throws as ServoLoop
+    /// and LiveStream.
     void hold(devices::OpenDevices devices);
+    /// Of a forceps that its device neither turns nor opens: how it is held, and whether it is to close. One
+    /// thread.
+    void hold_jaws(const Eigen::Quaterniond& orientation) noexcept { jaw_orientation_ = orientation; }
+    void close_jaws(bool closed) noexcept { jaws_closed_->store(closed); }
+    bool jaws_closed() const noexcept { return jaws_closed_->load(); }
+    /// Of a forceps; nothing where something else is held.
+    const std::optional<JawSettings>& jaws() const noexcept { return request_.jaws; }
     /// Of the first device.
     std::string device_name() const { return devices_.devices.front()->name(); }
     /// Says where mouse and keyboard want a guided hand (p_P, mm); nothing where no hand is guided.
@@ -115,6 +126,8 @@ class Session {
     std::vector<std::unique_ptr<haptics::HapticModel>> models_;  // one for each method so far
     haptics::HapticModel* model_;                                // that ticks
     devices::OpenDevices devices_;
+    Eigen::Quaterniond jaw_orientation_{1, 0, 0, 0};
+    std::shared_ptr<std::atomic<bool>> jaws_closed_ = std::make_shared<std::atomic<bool>>(false);
     std::optional<haptics::ServoLoop> loop_;
     std::optional<RunWatch> watch_;
     std::optional<LiveStream> stream_;

@@ -20,24 +20,6 @@ using Eigen::Vector3d;
 
 constexpr double full_clearance = 5;  // mm
 
-std::size_t find_body(const HapticModel& model, const std::string& name) {
-    const bool feels_tissue = model.method().can.feels_tissue;
-    if (name.empty())
-        return feels_tissue && model.rigid_count() < model.body_count() ? model.rigid_count() : 0;
-    std::vector<std::string> names;
-    for (std::size_t body = 0; body < model.body_count(); ++body) {
-        names.push_back(model.body_name(body));
-        if (names.back() != name) continue;
-        if (body < model.rigid_count() || feels_tissue) return body;
-        throw UsageError({"--body", "'" + name + "' is not rigid", "a rigid body",
-                          "contact method '" + std::string(model.method().name) + "' feels no other"});
-    }
-    std::string near;
-    for (const std::string& candidate : nearest_names(name, names))
-        near += (near.empty() ? "'" : ", '") + candidate + "'";
-    throw UsageError({"--body", "no body '" + name + "'", "", "nearest names: " + near});
-}
-
 // How far the tool can back out of `place` along its normal, at most full_clearance; nothing if it does not
 // even fit there.
 std::optional<double> clearance_at(const HapticModel& model, const Vector3d& point, const Vector3d& normal) {
@@ -82,6 +64,24 @@ TouchTarget target_on(std::size_t body, std::int32_t triangle, const TriangleCor
 }
 
 }  // namespace
+
+std::size_t find_body(const HapticModel& model, const std::string& name) {
+    const bool feels_tissue = model.method().can.feels_tissue;
+    if (name.empty())
+        return feels_tissue && model.rigid_count() < model.body_count() ? model.rigid_count() : 0;
+    std::vector<std::string> names;
+    for (std::size_t body = 0; body < model.body_count(); ++body) {
+        names.push_back(model.body_name(body));
+        if (names.back() != name) continue;
+        if (body < model.rigid_count() || feels_tissue) return body;
+        throw UsageError({"--body", "'" + name + "' is not rigid", "a rigid body",
+                          "contact method '" + std::string(model.method().name) + "' feels no other"});
+    }
+    std::string near;
+    for (const std::string& candidate : nearest_names(name, names))
+        near += (near.empty() ? "'" : ", '") + candidate + "'";
+    throw UsageError({"--body", "no body '" + name + "'", "", "nearest names: " + near});
+}
 
 const TriangleMesh& surface_of(const Case& patient_case, std::size_t body) {
     const std::size_t rigid = patient_case.rigid_bodies.size();

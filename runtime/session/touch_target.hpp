@@ -24,6 +24,10 @@ struct TouchTarget {
 std::optional<TouchTarget> touch_target_near(const Case& patient_case, const haptics::HapticModel& model,
                                              std::size_t body, const Eigen::Vector3d& place);
 
+/// Which body `name` is, as in HapticModel; empty: the first deformable one, else the first rigid one. Throws
+/// UsageError for an unknown name, or one that the model's method does not feel.
+std::size_t find_body(const haptics::HapticModel& model, const std::string& name);
+
 /// The surface of a body, as in HapticModel.
 const TriangleMesh& surface_of(const Case& patient_case, std::size_t body);
 

@@ -18,6 +18,7 @@ constexpr double usual_period = 0.001;  // s, of a tick that follows none
 // From where the hand was through the places that were reached, mm.
 double shortest_way(const Exercise& exercise, const Goals& goals, const Vector3d& start) {
     if (exercise.task == Task::trace) return goals.line_reached;
+    if (exercise.task == Task::retract) return length_of({start, exercise.places[1], exercise.places[2]});
     std::vector<Vector3d> way{start};
     for (std::size_t i = 0; i < goals.reached; ++i) way.push_back(exercise.places[i]);
     return length_of(way);

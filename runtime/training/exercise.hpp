@@ -11,16 +11,18 @@ namespace palpate::training {
 
 /// What a trainee is to do.
 enum class Task {
-    touch,  ///< press every place in turn, and hold
-    find,   ///< mark where the surface lies above a hidden region
-    guide,  ///< lead the tool through every gate in turn
-    trace,  ///< follow a line on the surface while pressing
-    free,   ///< whatever he likes
+    touch,    ///< press every place in turn, and hold
+    find,     ///< mark where the surface lies above a hidden region
+    guide,    ///< lead the tool through every gate in turn
+    trace,    ///< follow a line on the surface while pressing
+    free,     ///< whatever he likes
+    retract,  ///< take hold of tissue with a forceps, draw it to a place, keep it there and let it go
 };
 
-/// "touch", "find", "guide", "trace", "free", in their order.
-inline constexpr std::string_view task_names[] = {
-    shown_text("touch"), shown_text("find"), shown_text("guide"), shown_text("trace"), shown_text("free")};
+/// "touch", "find", "guide", "trace", "free", "retract", in their order.
+inline constexpr std::string_view task_names[] = {shown_text("touch"), shown_text("find"),
+                                                  shown_text("guide"), shown_text("trace"),
+                                                  shown_text("free"),  shown_text("retract")};
 
 inline constexpr std::string_view name_of(Task task) {
     return task_names[static_cast<std::size_t>(task)];
@@ -36,9 +38,10 @@ struct Exercise {
     double least_force = 0;  ///< N; less does not count as touching
     double most_force = 0;   ///< N; more hurts
     double tolerance = 0;    ///< mm, to either side of a place, a gate or a line
-    double hold = 0;         ///< touch: s that a place is to be pressed
+    double hold = 0;         ///< touch: s that a place is to be pressed; retract: that tissue is kept drawn
     /// touch: the places, in their order; find: the one above the region; guide: the gates; trace: points of
-    /// the line, densely. On the rest surface but for gates. p_P, mm.
+    /// the line, densely; retract: the rim to take hold of, where closed tips meet there, and where to draw
+    /// those. On the rest surface but for gates and tips. p_P, mm.
     std::vector<Eigen::Vector3d> places;
     std::string region;  ///< find: what is hidden
     /// find: its outline on the rest surface, see region_outline(). p_P, mm.

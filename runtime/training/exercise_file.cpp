@@ -81,8 +81,8 @@ ExerciseRecipe recipe_of(TableReader table) {
         table.fail(table.node("least_force_n"), "least_force_n", fmt::format("is {}", *recipe.least_force),
                    fmt::format("less than most_force_n, {}", *recipe.most_force));
     if (recipe.task != Task::free) recipe.tolerance = table.positive("tolerance_mm");
+    if (recipe.task == Task::touch || recipe.task == Task::retract) recipe.hold = table.positive("hold_s");
     if (recipe.task == Task::touch) {
-        recipe.hold = table.positive("hold_s");
         recipe.count = whole_number(table, "count", recipe.count, 1);
         recipe.seed = static_cast<std::uint64_t>(whole_number(table, "seed", 1, 0));
     }
@@ -95,6 +95,9 @@ ExerciseRecipe recipe_of(TableReader table) {
                    "2 or more", "a passage cannot be guessed");
     if (recipe.task == Task::trace && recipe.places.size() == 1)
         table.fail(table.node("places_mm"), "places_mm", "has one point", "none, or 2 or more", see);
+    if (recipe.task == Task::retract && !recipe.places.empty() && recipe.places.size() != 3)
+        table.fail(table.node("places_mm"), "places_mm", fmt::format("has {} places", recipe.places.size()),
+                   "none, or 3", "the rim, where closed tips meet there, and where to draw those");
     table.refuse_unknown();
     return recipe;
 }
@@ -135,13 +138,16 @@ std::string usual_instruction(Task task) {
                 "Lead the tip through the rings, not against the wall. V: the view from the tip");
         case Task::trace:
             return shown_text("Follow the line from the ball on, with the force in the blue band");
+        case Task::retract:
+            return shown_text(
+                "Jaws over the rim at the ball, J closes them. Draw it into the ring, keep it, J lets go");
         case Task::free:
             break;
     }
     return shown_text("Take your time. E ends and shows what you did.");
 }
 
-std::vector<ExerciseRecipe> standard_exercises() {
+std::vector<ExerciseRecipe> standard_exercises(bool with_forceps) {
     std::vector<ExerciseRecipe> recipes;
     const auto add = [&](Task task, std::string title, std::optional<double> time_limit) {
         ExerciseRecipe recipe;
@@ -152,6 +158,11 @@ std::vector<ExerciseRecipe> standard_exercises() {
         recipe.time_limit = time_limit;
         recipes.push_back(std::move(recipe));
     };
+    if (with_forceps) {
+        add(Task::retract, shown_text("Hold tissue back"), 120);
+        add(Task::free, shown_text("Free exploration"), std::nullopt);
+        return recipes;
+    }
     add(Task::touch, shown_text("Touch the marks"), 180);
     add(Task::find, shown_text("Find what is hidden"), 300);
     add(Task::trace, shown_text("Follow the line"), 180);

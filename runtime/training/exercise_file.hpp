@@ -33,7 +33,8 @@ std::vector<ExerciseRecipe> read_exercises(const std::filesystem::path& file);
 /// What a trainee reads who is given a task and no other words.
 std::string usual_instruction(Task task);
 
-/// The exercises that every patient offers, in the order of the start page.
-std::vector<ExerciseRecipe> standard_exercises();
+/// The exercises that every patient offers, to a hand with the case's tool or with a forceps, in the order of
+/// the start page.
+std::vector<ExerciseRecipe> standard_exercises(bool with_forceps);
 
 }  // namespace palpate::training

@@ -107,6 +107,30 @@ void follow_line(const Exercise& exercise, const Moment& moment, bool touching, 
     if (goals.reached_all) goals.share = 1;
 }
 
+// What is held is the tissue that is touched, at rest: it lies between the rim and the jaws' tips, until it
+// slips.
+void follow_retraction(const Exercise& exercise, const Moment& moment, bool touching, Goals& goals) {
+    constexpr double between = 0.7;  // of the way from rim to tips
+    const Vector3d &rim = exercise.places[0], &tips = exercise.places[1], &there = exercise.places[2];
+    const bool holds = touching && moment.touched &&
+                       (*moment.touched - (rim + tips) / 2).norm() <= between * (rim - tips).norm();
+    const bool drawn = (moment.tool - tips).norm() > exercise.tolerance;
+    if (goals.reached == 0) {
+        if (goals.was_drawn && drawn && !holds) ++goals.misses;
+        goals.was_drawn = holds && drawn;
+        const double error = (moment.tool - there).norm();
+        goals.held = holds && error <= exercise.tolerance ? goals.held + moment.duration : 0;
+        if (goals.held < exercise.hold) return;
+        add_error(error, goals);
+        goals.reached = 1;
+        goals.share = 0.5;
+    } else if (moment.force == 0) {
+        goals.reached = 2;
+        goals.share = 1;
+        goals.reached_all = true;
+    }
+}
+
 }  // namespace
 
 void follow(const Exercise& exercise, const Moment& moment, Goals& goals) {
@@ -122,6 +146,9 @@ void follow(const Exercise& exercise, const Moment& moment, Goals& goals) {
             break;
         case Task::trace:
             follow_line(exercise, moment, touching, goals);
+            break;
+        case Task::retract:
+            follow_retraction(exercise, moment, touching, goals);
             break;
         case Task::find:
         case Task::free:

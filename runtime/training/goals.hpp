@@ -23,7 +23,7 @@ struct Goals {
     bool reached_all = false;   ///< nothing is left to do
     std::size_t reached = 0;    ///< places, gates or marks so far
     double line_reached = 0;    ///< trace: mm from its beginning
-    double held = 0;            ///< touch: s on the place that is due
+    double held = 0;            ///< touch: s on the place that is due; retract: at the place drawn to
     double nearest = 0;         ///< guide: mm, how near the tool came to the last gate's middle
     std::size_t misses = 0;     ///< see Metrics
     double squared_errors = 0;  ///< mm^2, summed over error_count
@@ -31,6 +31,7 @@ struct Goals {
     std::size_t error_count = 0;
 
     bool was_touching = false;  ///< at the last moment
+    bool was_drawn = false;     ///< retract: tissue was held away from its place
     bool was_astray = false;    ///< beside the mark or the line, or above the force limit
     std::optional<Eigen::Vector3d> last_touched{};
     std::vector<Eigen::Vector3d> border{};  ///< find: where the trainee says that it ends, p_P, mm

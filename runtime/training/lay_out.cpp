@@ -25,7 +25,8 @@ constexpr double least_depth = 1, most_depth = 4;  // mm
 constexpr double seen = 0.4;                       // least cosine between normals of places on one side
 // Least cosine between a triangle's normal and that of the surface around a place: 26 degrees, no edge.
 constexpr double smooth = 0.9;
-constexpr double room = 3;  // mm that the tool needs to come to a mark
+constexpr double room = 3;                           // mm that the tool needs to come to a mark
+constexpr double least_hold = 0.005, most_pull = 1;  // N: of a forceps
 
 std::vector<std::int32_t> free_vertices(const Case& patient_case, std::size_t body) {
     const TriangleMesh& surface = session::surface_of(patient_case, body);
@@ -236,8 +237,16 @@ std::vector<Vector3d> along_surface(const std::vector<Vector3d>& points, const H
     return line;
 }
 
+// From between the jaws' tips, half their length below the rim, out of it.
+std::vector<Vector3d> draw_retraction(const HapticModel& model, const TouchTarget& start) {
+    constexpr double pull = 5;  // mm
+    const Vector3d tips = start.place.point - 0.5 * model.settings().shaft_length * start.place.normal;
+    return {start.place.point, tips, tips + pull * start.place.normal};
+}
+
 double tolerance_of(const ExerciseRecipe& recipe, const HapticModel& model) {
     if (recipe.tolerance) return *recipe.tolerance;
+    if (recipe.task == Task::retract) return 2;
     return recipe.task == Task::find ? 10 : std::max(2.0, 1.5 * model.settings().tool_radius);
 }
 
@@ -315,6 +324,11 @@ std::optional<Exercise> lay_out(const ExerciseRecipe& recipe, const Case& patien
         return two_digits(
             std::min(force_at_depth(model, start.place, depth), 0.8 * model.settings().max_force));
     };
+    if (whole.places.empty() && recipe.task == Task::retract) whole.places = draw_retraction(model, start);
+    if (recipe.task == Task::retract) {
+        if (!whole.least_force) whole.least_force = least_hold;
+        if (!whole.most_force) whole.most_force = most_pull;
+    }
     if (!whole.least_force) whole.least_force = usual_force(least_depth);
     if (!whole.most_force) whole.most_force = usual_force(most_depth);
     if (whole.places.empty() && recipe.task == Task::touch)

@@ -41,9 +41,10 @@ session::TouchTarget choose_start(const Case& patient_case, const haptics::Hapti
 /// tool reaches; a line goes along the surface, through the start or, where it would be shorter than
 /// `spread`, near it; the least force is what the tool makes 1 mm deep there, the most 4 mm deep (no more
 /// than four fifths of what the case allows); tolerances are one and a half tool radii, 2 mm at least, 10 mm
-/// where something is to be found. Nothing for a search in a case that hides nothing. Throws InvalidInput
-/// naming the recipe for a region that the case has not, or a surface on which the marks or the line find no
-/// room. Presses with the model, which it resets: not beside a running tick.
+/// where something is to be found; tissue is drawn back by 5 mm out of the rim at the start, within 2 mm and
+/// with no more than 1 N. Nothing for a search in a case that hides nothing. Throws InvalidInput naming the
+/// recipe for a region that the case has not, or a surface on which the marks or the line find no room.
+/// Presses with the model, which it resets: not beside a running tick.
 std::optional<Exercise> lay_out(const ExerciseRecipe& recipe, const Case& patient_case,
                                 haptics::HapticModel& model, const session::TouchTarget& start);
 

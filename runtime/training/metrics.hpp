@@ -65,14 +65,15 @@ inline constexpr std::tuple metric_fields{
     Field("position_error", &Metrics::position_error, "mm",
           "touch: mean distance of the touched tissue from its mark; find: of the best mark from the place "
           "above what is hidden; trace: root mean square distance from the line; guide: how near the tool "
-          "came to the gates' middles, mean of all but the last, which ends the exercise"),
+          "came to the gates' middles, mean of all but the last, which ends the exercise; retract: of the "
+          "forceps from where it was to draw"),
     Field("border_error", &Metrics::border_error, "mm",
           "find: mean distance of the border's marks from the outline of what is hidden, as it is seen from "
           "straight above"),
     Field("misses", &Metrics::misses, "",
           "touch: presses beside the mark; find: marks beside it; trace: departures from the line; guide: "
           "times "
-          "the limit was passed")};
+          "the limit was passed; retract: times that tissue slipped out")};
 
 /// Length of the way through the samples, mm.
 double path_length(std::span<const Sample> samples);

@@ -30,6 +30,9 @@ constexpr double bar_width = 240, bar_height = 10;
 constexpr auto help_text = shown_text(
     "left button  press      held, wheel or W S  deeper, back      W S, arrows  move the tool\n"
     "right drag  turn      middle drag  move the view      wheel, + -  zoom");
+constexpr auto forceps_help_text = shown_text(
+    "left drag  carry the forceps      W S  in, out      arrows  move it      J  close the jaws, open them\n"
+    "right drag  turn      middle drag  move the view      wheel, + -  zoom");
 constexpr auto playback_help_text = shown_text(
     "Space  pause, go on      , .  slower, faster      arrows  step      Home, End      timeline  go there\n"
     "right drag  turn      middle drag  move the view      wheel, + -  zoom");
@@ -150,7 +153,10 @@ void Overlay::update(const VisualFrame& frame, double frames_per_second, const S
     fade_help(now);
     last_ = now;
     told_->SetVisibility(now < told_until_);
-    help_->SetInput(looked_up(frame.timeline ? playback_help_text : help_text).data());
+    const auto hints = frame.timeline      ? playback_help_text
+                       : frame.jaws_closed ? forceps_help_text
+                                           : help_text;
+    help_->SetInput(looked_up(hints).data());
     for (vtkTextActor* text : {help_.Get(), told_.Get()})
         text->SetPosition(text->GetPosition()[0], frame.timeline ? above_timeline : above_buttons);
     force_->SetInput(fmt::format("{:.2f} N", newtons).c_str());

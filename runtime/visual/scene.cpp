@@ -60,14 +60,18 @@ vtkSmartPointer<vtkActor> coil(const Rgb& colour) {
     return result;
 }
 
+constexpr double handle_share = 0.35;  // of the field of view: how long a shaft is drawn
+
 }  // namespace
 
-Scene::Scene(const Case& patient_case, const Sight& sight, std::int64_t rigid_budget, vtkRenderer* renderer,
-             vtkRenderer* front)
+Scene::Scene(const Case& patient_case, const Sight& sight, std::int64_t rigid_budget,
+             std::optional<double> jaw_length, vtkRenderer* renderer, vtkRenderer* front)
     : tool_radius_(patient_case.haptics.tool_radius),
       max_force_(patient_case.haptics.max_force),
       arrow_length_(0.5 * sight.field),
-      shaft_length_(sight.inside ? 1.1 * (sight.eye() - sight.target).norm() : 0.35 * sight.field),
+      shaft_length_(jaw_length     ? *jaw_length
+                    : sight.inside ? 1.1 * (sight.eye() - sight.target).norm()
+                                   : handle_share * sight.field),
       shaft_way_(shaft_way(sight)),
       others_({.radius = tool_radius_,
                .max_force = max_force_,
@@ -77,6 +81,10 @@ Scene::Scene(const Case& patient_case, const Sight& sight, std::int64_t rigid_bu
               renderer, front) {
     // What is near and small comes first: software rendering then shades little that is covered later.
     add_tool(patient_case, sight, renderer, front);
+    if (jaw_length) {
+        handle_ = tool_shaft(tool_radius_, handle_share * sight.field, steel);
+        renderer->AddActor(handle_);
+    }
     for (const DeformableBody& body : patient_case.deformable_bodies)
         soft_.emplace_back(body, sight.toward_eye, grain_of(sight), renderer);
     add_rigid(patient_case, sight, rigid_budget, renderer);
@@ -163,6 +171,10 @@ void Scene::place_tool(const VisualFrame& frame) {
     else if (is_instrument_)
         held = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), shaft);
     place_turned(tool_, frame.tool_position, held);
+    if (!handle_ || frame.other_tools.empty()) return;
+    const OtherTool& other = frame.other_tools.front();
+    const Vector3d hinge = (frame.tool_position + other.position + shaft_length_ * (shaft + other.shaft)) / 2;
+    place_along(handle_, hinge, (shaft + other.shaft).normalized(), 1);
 }
 
 std::vector<vtkActor*> Scene::bodies() const {
@@ -180,6 +192,7 @@ void Scene::show_rigid(bool on) {
 void Scene::show_tool(bool on) {
     tool_shown_ = on;
     for (const auto& part : {tool_, shaft_, device_}) part->SetVisibility(on);
+    if (handle_) handle_->SetVisibility(on);
 }
 
 void Scene::show_inside(bool on) {

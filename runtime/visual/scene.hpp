@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 #include <vtkActor.h>
@@ -23,10 +24,11 @@ namespace palpate::visual {
 class Scene {
   public:
     /// `patient_case` must outlive it. `rigid_budget`: triangles that all rigid bodies together may have on
-    /// the screen. `front` is drawn over `renderer`: the force and the device show through whatever covers
+    /// the screen. `jaw_length`: mm, of a forceps, whose other jaw is the first of the other tools; nothing:
+    /// no forceps. `front` is drawn over `renderer`: the force and the device show through whatever covers
     /// them.
-    Scene(const Case& patient_case, const Sight& sight, std::int64_t rigid_budget, vtkRenderer* renderer,
-          vtkRenderer* front);
+    Scene(const Case& patient_case, const Sight& sight, std::int64_t rigid_budget,
+          std::optional<double> jaw_length, vtkRenderer* renderer, vtkRenderer* front);
 
     void update(const VisualFrame& frame);
     void show_rigid(bool on);
@@ -63,6 +65,7 @@ class Scene {
     std::string region_names_;
     bool tool_shown_ = true, is_instrument_ = false;
     vtkSmartPointer<vtkActor> tool_, shaft_, device_, arrow_, spring_;
+    vtkSmartPointer<vtkActor> handle_;  // of a forceps, from its hinge on
 };
 
 }  // namespace palpate::visual

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <string>
@@ -57,7 +58,7 @@ constexpr double clear_share = 0.04;  // of the field: what a cut leaves before 
 constexpr double clear_radii = 3;     // tool radii that a cut leaves before the tool
 
 // What moving the pointer does while a button is held.
-enum class Drag { none, turn, shift, roll, zoom };
+enum class Drag { none, turn, shift, roll, zoom, carry };
 
 }  // namespace
 
@@ -69,13 +70,15 @@ struct TrainWindow::Parts {
           hand(window_settings.start, tip_reach(patient_case)),
           rigid_count(patient_case.rigid_bodies.size()),
           case_name(patient_case.name),
-          scene(patient_case, window_settings.sight, window_settings.rigid_budget, renderer, front),
+          scene(patient_case, window_settings.sight, window_settings.rigid_budget,
+                window_settings.forceps ? std::optional(window_settings.forceps->jaw_length) : std::nullopt,
+                renderer, front),
           shadow(renderer),
           overlay(patient_case.name, patient_case.haptics.max_force, window_settings.cautions, front),
           lesson_scene(renderer),
           thumbnails(window, window_settings.sight),
           panel(front),
-          buttons(front),
+          buttons(front, window_settings.forceps.has_value()),
           timeline(front, interactor),
           tool_radius(patient_case.haptics.tool_radius),
           cut(window_settings.sight.blocked) {
@@ -187,7 +190,7 @@ struct TrainWindow::Parts {
         else if (interactor->GetControlKey())
             begin(Drag::roll);
         else if (const int* now = interactor->GetEventPosition(); !endoscope.covers(now[0], now[1]))
-            press(true);
+            settings.forceps ? begin(Drag::carry) : press(true);
     }
 
     void press(bool on) {
@@ -198,7 +201,7 @@ struct TrainWindow::Parts {
 
     void begin(Drag what) {
         drag = what;
-        if (what != Drag::none) keep_view();
+        if (what != Drag::none && what != Drag::carry) keep_view();
         hand.press(false);
     }
 
@@ -209,15 +212,27 @@ struct TrainWindow::Parts {
         const int* before = interactor->GetLastEventPosition();
         const double dx = now[0] - before[0], dy = now[1] - before[1];
         if (drag == Drag::none) {
-            if (!endoscope.covers(now[0], now[1]) && !covered(now[0], now[1])) hand.point({now[0], now[1]});
+            const bool leads = !settings.forceps && !endoscope.covers(now[0], now[1]);
+            if (leads && !covered(now[0], now[1])) hand.point({now[0], now[1]});
             return;
         }
+        if (drag == Drag::carry) return carry(dx, dy);
         vtkCamera* camera = renderer->GetActiveCamera();
         if (drag == Drag::turn) turn_view(camera, dx, dy);
         if (drag == Drag::shift) pan_view(camera, dx, dy, window->GetSize()[1]);
         if (drag == Drag::roll) roll_view(camera, dx);
         if (drag == Drag::zoom) camera->Dolly(std::pow(zoom_step, dy / zoom_pixels));
         hand.view_changed();
+    }
+
+    // By so many pixels, as if it hung on the pointer.
+    void carry(double dx, double dy) {
+        vtkCamera* camera = renderer->GetActiveCamera();
+        const auto [right, up, eye] = view_axes(camera);
+        const double away = eye.dot(Vector3d(camera->GetPosition()) - hand.place());
+        const double half_angle = camera->GetViewAngle() * std::numbers::pi / 360;
+        const double mm_per_pixel = 2 * away * std::tan(half_angle) / window->GetSize()[1];
+        hand.move(mm_per_pixel * (dx * right + dy * up));
     }
 
     // Whether something to click on lies over the scene there.
@@ -241,7 +256,9 @@ struct TrainWindow::Parts {
     }
 
     void wheel_turned(double notches) {
-        if (hand.pressing())
+        if (drag == Drag::carry)
+            hand.move(-wheel_depth * notches * settings.forceps->shaft);
+        else if (hand.pressing())
             hand.deepen(wheel_depth * notches);
         else
             zoom(notches);
@@ -274,8 +291,9 @@ struct TrainWindow::Parts {
             return;
         }
         const auto [right, up, eye] = view_axes(renderer->GetActiveCamera());
+        const Vector3d back = settings.forceps ? settings.forceps->shaft : eye;
         const std::map<std::string, Vector3d> moves{{"Left", -right}, {"Right", right}, {"Up", up},
-                                                    {"Down", -up},    {"w", -eye},      {"s", eye}};
+                                                    {"Down", -up},    {"w", -back},     {"s", back}};
         if (const auto move = moves.find(key); move != moves.end()) hand.move(step * move->second);
     }
 
@@ -325,6 +343,7 @@ struct TrainWindow::Parts {
         buttons.light("t", regions_shown);
         buttons.light("x", scan && scan->shows_slice());
         buttons.light("v", endoscope.on());
+        buttons.light("j", frame.jaws_closed.value_or(false));
         buttons.light("o", frame.recording);
         buttons.light("a", frame.audible);
         buttons.light("h", overlay.help_shown());

@@ -16,11 +16,19 @@
 
 namespace palpate::visual {
 
+/// A forceps that mouse and keyboard hold.
+struct HeldForceps {
+    Eigen::Vector3d shaft;  ///< which way W, S and the wheel take it: unit, out of the tissue
+    double jaw_length = 0;  ///< mm
+};
+
 struct WindowSettings {
     std::int64_t rigid_budget = 60'000;               ///< triangles of all rigid bodies on the screen
     Eigen::Vector3d start = Eigen::Vector3d::Zero();  ///< where the hand is first, p_P, mm
     Sight sight{};                                    ///< where the eye is first
     std::vector<std::string> cautions{};              ///< what a certificate does not say of the case
+    /// Of a forceps, which a drag of the mouse carries where it would press a ball in; nothing: a ball.
+    std::optional<HeldForceps> forceps{};
     /// The bodies' rest surfaces, as in HapticModel: what the pointer touches. They outlive the window.
     std::vector<const collision::CollisionSurface*> surfaces{};
 };

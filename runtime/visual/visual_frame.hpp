@@ -26,6 +26,7 @@ struct VisualFrame {
     std::uint32_t statuses = 0;              ///< TickStatus flags: what was unusual just now
     bool recording = false;                  ///< every tick is being kept
     bool audible = false;                    ///< the force is heard
+    std::optional<bool> jaws_closed;         ///< told to be, of a forceps; nothing: none is held
     std::vector<std::string> deforming_far;  ///< names of bodies whose tissue is solved for large deformation
     /// Of every surface vertex of every deformable body, mm.
     std::vector<std::vector<Eigen::Vector3f>> displacements;

@@ -34,6 +34,13 @@ void show_places(const Exercise& exercise, const Goals& goals, bool afterwards, 
             if (gates && state == State::due && !afterwards) view.look_at = places[i];
         }
     }
+    if (exercise.task == Task::retract) {
+        const State take = goals.was_drawn || goals.reached > 0 ? State::done : State::due;
+        view.marks.push_back({places[0], 2 * radius, take, Eigen::Vector3d::Zero()});
+        const Eigen::Vector3d pull = places[2] - places[1];
+        view.marks.push_back({places[0] + pull, 2 * exercise.tolerance,
+                              goals.reached > 0 ? State::done : State::due, pull.normalized()});
+    }
     if (exercise.task == Task::find) {
         for (const Eigen::Vector3d& point : goals.border)
             view.marks.push_back({point, border_share * radius, State::due, Eigen::Vector3d::Zero()});

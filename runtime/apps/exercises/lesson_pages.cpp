@@ -68,6 +68,9 @@ std::string progress_of(const Exercise& exercise, const Goals& goals) {
             return fmt::format("{:.0f} %   ", 100 * goals.share);
         case Task::find:
             return goals.border.empty() ? "" : translated("{} border points   ", goals.border.size());
+        case Task::retract:
+            return goals.reached > 0 ? translated("let it go   ")
+                                     : translated("kept {:.1f} of {:.1f} s   ", goals.held, exercise.hold);
         case Task::free:
             break;
     }

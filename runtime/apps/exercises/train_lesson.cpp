@@ -71,7 +71,11 @@ std::vector<LaidOut> lay_out_exercises(const LessonOptions& options, session::Se
                           "a pseudonym, not a name"});
     const bool standard = options.exercises.empty();
     std::vector<LaidOut> exercises;
-    for (const ExerciseRecipe& recipe : standard ? standard_exercises() : read_exercises(options.exercises)) {
+    for (const ExerciseRecipe& recipe :
+         standard ? standard_exercises(run.jaws().has_value()) : read_exercises(options.exercises)) {
+        if (recipe.task == Task::retract && !run.jaws())
+            throw InvalidInput({recipe.written_at, "task 'retract' without a forceps", "",
+                                "start with --instrument forceps, or leave it out"});
         try {
             if (auto exercise = lay_out(recipe, run.patient_case(), run.model(), start))
                 exercises.push_back({recipe, std::move(*exercise)});

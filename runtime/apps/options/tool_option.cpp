@@ -12,38 +12,62 @@
 #include "tools/cli/refuse_beside.hpp"
 
 namespace palpate::apps {
+namespace {
+
+// Settings of what is not held.
+template <typename Fields>
+void refuse_settings(const cli::Command& command, const Fields& fields, const std::string& found,
+                     const std::string& expected) {
+    std::vector<std::string> settings;
+    for_each_field(fields, [&](const auto& field) { settings.push_back(option_name(field.name)); });
+    for (const cli::Parameter& parameter : command.parameters())
+        if (cli::asked_for(parameter) &&
+            std::ranges::find(settings, parameter.option.name()) != settings.end())
+            throw UsageError({parameter.option.name(), found, expected, ""});
+}
+
+}  // namespace
 
 void declare(cli::Command& command, ToolOption& option) {
     command.option(
         "--instrument", option.tool,
         "an instrument that turns by itself and gives torque: 'rod', the case's tip and shaft, or "
         "the closed surface that it has (.stl, mm: its tip's centre at the origin, its shaft along "
-        "z)");
+        "z); or 'forceps', two jaws that take hold of tissue");
     cli::record_options(command, tool_fields, option.settings, "of --instrument: ");
+    cli::record_options(command, jaw_fields, option.jaws, "of --instrument forceps: ");
 }
 
 void check(const cli::Command& command, const ToolOption& option, const std::string& scheme) {
     const haptics::ContactCapabilities& can = haptics::find_contact_method(scheme, "--scheme").can;
-    if (!option.tool.empty() && !can.turns)
+    if (option.has_jaws() && !(can.turns && can.feels_tissue))
+        throw UsageError({"--instrument", "forceps with --scheme " + scheme, "--scheme continuous",
+                          "no other feels jaws"});
+    if (!option.tool.empty() && !option.has_jaws() && !can.turns)
         throw UsageError({"--instrument", "with --scheme " + scheme, "--scheme continuous or shell",
                           "with no other do tools turn"});
     if (option.has_surface() && !can.has_surface)
         throw UsageError({"--instrument", option.tool + " with --scheme " + scheme,
                           "--scheme shell, or --instrument rod",
                           "no other scheme feels a surface of the tool's own"});
-    if (!option.tool.empty()) return;
-    std::vector<std::string> settings;
-    for_each_field(tool_fields, [&](const auto& field) { settings.push_back(option_name(field.name)); });
-    for (const cli::Parameter& parameter : command.parameters())
-        if (cli::asked_for(parameter) &&
-            std::ranges::find(settings, parameter.option.name()) != settings.end())
-            throw UsageError({parameter.option.name(), "without --instrument",
-                              "--instrument rod or a file beside it", ""});
+    if (option.tool.empty() || option.has_jaws())
+        refuse_settings(command, tool_fields,
+                        option.has_jaws() ? "with --instrument forceps" : "without --instrument",
+                        "--instrument rod or a file beside it");
+    if (!option.has_jaws())
+        refuse_settings(command, jaw_fields, "without --instrument forceps",
+                        "--instrument forceps beside it");
+    if (const auto error = first_error(jaw_fields, option.jaws))
+        throw UsageError({option_name(error->name), error->found, error->expected, ""});
 }
 
 std::optional<ToolBody> tool_body(const ToolOption& option) {
-    if (option.tool.empty()) return std::nullopt;
+    if (option.tool.empty() || option.has_jaws()) return std::nullopt;
     return ToolBody{option.has_surface() ? stl_file::read_stl(option.tool) : TriangleMesh{}, option.settings};
+}
+
+std::optional<JawSettings> jaws_of(const ToolOption& option) {
+    return option.has_jaws() ? std::optional(option.jaws) : std::nullopt;
 }
 
 void tell_misfit(const StatusCounts& statuses, std::int64_t ticks) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "formats/model/body.hpp"
+#include "formats/records/jaw_settings.hpp"
 #include "formats/records/status_counts.hpp"
 #include "tools/cli/command.hpp"
 
@@ -12,21 +13,26 @@ namespace palpate::apps {
 
 /// What a user holds instead of the ball or rod that a device turns: --instrument and how that is felt.
 struct ToolOption {
-    std::string tool;  ///< empty, "rod" or a file
+    std::string tool;  ///< empty, "rod", "forceps" or a file
     ToolSettings settings{};
+    JawSettings jaws{};
 
     /// Whether it has a surface of its own.
-    bool has_surface() const { return !tool.empty() && tool != "rod"; }
+    bool has_surface() const { return !tool.empty() && tool != "rod" && !has_jaws(); }
+    bool has_jaws() const { return tool == "forceps"; }
 };
 
 /// Adds --instrument and its settings to a command.
 void declare(cli::Command& command, ToolOption& option);
 
-/// Throws UsageError if a setting is given without --instrument, or `scheme` does not feel such a tool.
+/// Throws UsageError if a setting is given without its --instrument, or `scheme` does not feel such a tool.
 void check(const cli::Command& command, const ToolOption& option, const std::string& scheme);
 
-/// What is held; nothing without --instrument. Throws as read_stl().
+/// What is held and turns by itself; nothing without --instrument, or of a forceps. Throws as read_stl().
 std::optional<ToolBody> tool_body(const ToolOption& option);
+
+/// The jaws of a forceps; nothing of anything else.
+std::optional<JawSettings> jaws_of(const ToolOption& option);
 
 /// Warns of what of a case is not felt with a scheme.
 void tell_unfelt(const Case& patient_case, const std::string& scheme);

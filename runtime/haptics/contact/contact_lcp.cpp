@@ -58,7 +58,7 @@ bool ContactLcp::exchange(std::size_t row) noexcept {
     std::size_t leaving = count_;
     for (std::size_t i = 0; i < count_; ++i) {
         const double part = candidate_[static_cast<Index>(i)];
-        if (!(part > dependent)) continue;
+        if (!(part > dependent) || pulls(order_[i])) continue;
         const double bears = f_[static_cast<Index>(order_[i])] / part;
         if (leaving < count_ && bears >= most) continue;
         most = bears;
@@ -100,7 +100,7 @@ void ContactLcp::make_feasible() noexcept {
         for (std::size_t i = 0; i < count_; ++i) {
             const double now = f_[static_cast<Index>(order_[i])];
             const double wanted = candidate_[static_cast<Index>(i)];
-            if (wanted > 0) continue;
+            if (wanted > 0 || pulls(order_[i])) continue;
             const double reach = now > 0 ? now / (now - wanted) : 0;
             if (blocking < count_ && reach >= step) continue;
             step = reach;
@@ -119,6 +119,7 @@ void ContactLcp::make_feasible() noexcept {
 double ContactLcp::solve_filling(std::size_t rows, std::span<const std::size_t> active) noexcept {
     const auto n = static_cast<Index>(rows);
     count_ = 0;
+    first_tangent_ = rows;
     known_.reset();
     f_.head(n).setZero();
     for (const std::size_t row : active) {
@@ -128,11 +129,27 @@ double ContactLcp::solve_filling(std::size_t rows, std::span<const std::size_t> 
     // From f = 0 the first step may drop warm rows one by one; what remains is feasible and optimal on
     // itself.
     make_feasible();
+    return settle(rows);
+}
 
-    std::bitset<max_contacts> set_aside;
+double ContactLcp::solve_tangents(std::size_t rows, std::size_t tangents) noexcept {
+    first_tangent_ = rows;
+    for (std::size_t row = rows; row < rows + tangents; ++row) {
+        known_[row] = true;
+        f_[static_cast<Index>(row)] = 0;
+        append(row);
+    }
+    make_feasible();
+    return settle(rows + tangents);
+}
+
+// Lets rows in that are violated, until none is. Returns the residual.
+double ContactLcp::settle(std::size_t rows) noexcept {
+    const auto n = static_cast<Index>(rows);
+    std::bitset<most_rows> set_aside;
     double worst = 0;
     for (std::size_t round = 0; round < 4 * rows + 8; ++round) {
-        std::bitset<max_contacts> is_active;
+        std::bitset<most_rows> is_active;
         for (std::size_t i = 0; i < count_; ++i) is_active[order_[i]] = true;
         double lowest = -tolerance;
         std::size_t entering = rows;
@@ -144,6 +161,7 @@ double ContactLcp::solve_filling(std::size_t rows, std::span<const std::size_t> 
                 w += A_(k, row) * f_[row];
             }
             const auto row = static_cast<std::size_t>(k);
+            if (pulls(row) && !is_active[row]) continue;  // it depends on the others, which hold it
             worst = std::max(worst, is_active[row] ? std::abs(w) : -w);
             if (is_active[row] || set_aside[row] || w >= lowest) continue;
             lowest = w;
@@ -153,7 +171,7 @@ double ContactLcp::solve_filling(std::size_t rows, std::span<const std::size_t> 
         // Where a pivot is noise, so is what the active rows leave to this one for the same reason.
         const auto row = static_cast<Index>(entering);
         know(entering);
-        const double noise = dependent * A_(row, row) * f_.head(n).sum();
+        const double noise = dependent * A_(row, row) * f_.head(n).cwiseAbs().sum();
         if (!append(entering) && !(-lowest > noise && exchange(entering))) {
             set_aside[entering] = true;
             continue;

@@ -20,6 +20,11 @@ class FixedList {
         assert(!full());
         values_[size_++] = value;
     }
+    /// The same, of an element that holds what was there before, to be filled in place.
+    T& push_back() noexcept {
+        assert(!full());
+        return values_[size_++];
+    }
     /// Leaves the first `size` elements, of at least as many (asserted).
     void cut(std::size_t size) noexcept {
         assert(size <= size_);

@@ -27,8 +27,9 @@ void dress(vtkTextActor* actor, vtkRenderer* renderer) {
 
 }  // namespace
 
-ButtonBar::ButtonBar(vtkRenderer* renderer) : renderer_(renderer) {
+ButtonBar::ButtonBar(vtkRenderer* renderer, bool has_jaws) : renderer_(renderer) {
     for (const WindowKey& entry : window_keys()) {
+        if (entry.of_jaws && !has_jaws) continue;
         Button button{entry.key, texts::looked_up(entry.tip), vtkSmartPointer<vtkTextActor>::New()};
         const char letter = static_cast<char>(std::toupper(static_cast<unsigned char>(entry.key.front())));
         // Blanks are the button's margin: a text's background ends with its letters.

@@ -15,7 +15,8 @@ namespace palpate::visual {
 /// event loop or an OpenGL loader of its own. Sizes follow the window: display_scale().
 class ButtonBar {
   public:
-    explicit ButtonBar(vtkRenderer* renderer);
+    /// `has_jaws`: a forceps is held, whose keys have buttons too.
+    ButtonBar(vtkRenderer* renderer, bool has_jaws);
 
     /// Shows the row, or nothing while a page lies over the scene. `width` and `height`: pixels.
     void update(bool shown, int width, int height);

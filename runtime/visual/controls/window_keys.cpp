@@ -15,6 +15,7 @@ std::span<const WindowKey> window_keys() {
         {"x", shown_text("Slices"),
          shown_text("the scan's slice through the tool: axial, coronal, sagittal, none")},
         {"v", shown_text("Tip"), shown_text("look from the tool's tip, then in a corner too, then not")},
+        {"j", shown_text("Jaws"), shown_text("close the jaws, or open them"), true},
         {"u", shown_text("Undo"), shown_text("the view before the last turn, shift or zoom")},
         {"r", shown_text("Start"), shown_text("tool and view back to where they began")},
         {"p", shown_text("Picture"), shown_text("save a picture of the window in this folder")},

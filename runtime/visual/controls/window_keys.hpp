@@ -10,6 +10,7 @@ struct WindowKey {
     std::string_view key;  ///< X11 name, lower case
     const char* label;     ///< in English, on its button
     const char* tip;       ///< in English, what it does, beside the button that the pointer rests on
+    bool of_jaws = false;  ///< only where a forceps is held
 };
 
 /// All of them, in the order of their buttons. Help, tips and buttons follow this table; a new key is a line

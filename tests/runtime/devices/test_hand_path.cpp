@@ -171,6 +171,19 @@ TEST(ReadHandPath, takes_a_quaternion_behind_a_position_or_behind_a_time_and_a_p
     EXPECT_TRUE(read_hand_path(text_file("0 1 2 3\n1 1 2 3\n")).orientation_at(0.5).coeffs().isZero(0));
 }
 
+TEST(ReadHandPath, takes_the_angle_of_a_forceps_in_degrees_behind_a_quaternion) {
+    const HandPath path = read_hand_path(text_file("0 1 2 3 0 0 0 1 60\n2 1 2 5 0 0 0 1 0\n"));
+    EXPECT_EQ(path.at(1), Vector3d(1, 2, 4));
+    EXPECT_NEAR(path.jaw_angle_at(0), std::numbers::pi / 3, 1e-12);
+    EXPECT_NEAR(path.jaw_angle_at(1), std::numbers::pi / 6, 1e-12);
+    EXPECT_EQ(path.jaw_angle_at(3), 0);
+    EXPECT_LT(read_hand_path(text_file("0 1 2 3 0 0 0 1\n")).jaw_angle_at(0), 0);
+    for (const char* angle : {"-1", "181"})
+        EXPECT_NE(path_refusal("0 1 2 3 0 0 0 1 60\n1 1 2 3 0 0 0 1 " + std::string(angle) + "\n")
+                      .find("line 2: a jaw angle of"),
+                  std::string::npos);
+}
+
 TEST(ReadHandPath, takes_quaternions_as_long_as_one_to_a_thousandth_and_names_the_line_of_others) {
     EXPECT_NEAR(read_hand_path(text_file("1 2 3 0 0 0.9991 0\n")).orientation_at(0).norm(), 1, turning_error);
     EXPECT_NEAR(read_hand_path(text_file("1 2 3 0 0 0 1.0009\n")).orientation_at(0).norm(), 1, turning_error);
@@ -190,7 +203,7 @@ TEST(ReadHandPath, refuses_rows_of_another_width_than_those_before) {
               std::string::npos);
     EXPECT_NE(path_refusal("1 2 3 0 0 0 1\n1 1 2 3 0 0 0 1\n").find("line 2: 8 numbers (expected 7"),
               std::string::npos);
-    for (const char* row : {"1 2 3 4 5\n", "1 2 3 4 5 6\n", "1 2 3 0 0 0 1 0 0\n"})
+    for (const char* row : {"1 2 3 4 5\n", "1 2 3 4 5 6\n", "1 2 3 0 0 0 1 0 0 0\n"})
         EXPECT_NE(path_refusal(row).find("qx qy qz qw"), std::string::npos) << row;
 }
 

@@ -145,5 +145,27 @@ TEST(ContactLcp, nothing_in_contact_gives_no_force) {
     EXPECT_EQ(lcp.forces().head(3).norm(), 0);
 }
 
+// Rows that pull as well as press are eliminated; what is left is a problem of the others alone.
+TEST(ContactLcp, rows_that_pull_too_are_solved_with_the_others) {
+    std::mt19937 generator(11);
+    const auto lcp = std::make_unique<ContactLcp>();
+    for (int i = 0; i < 500; ++i) {
+        const Index n = 1 + i % 6, m = 1 + i % 5;
+        const RandomProblem problem(n + m, generator);
+        const MatrixXd &A = problem.A, B = A.topRightCorner(n, m), C = A.bottomRightCorner(m, m);
+        const VectorXd of_tangents = C.llt().solve(VectorXd(problem.delta.tail(m)));
+        const VectorXd expected = enumerated(A.topLeftCorner(n, n) - B * C.llt().solve(B.transpose()),
+                                             problem.delta.head(n) - B * of_tangents);
+        const VectorXd tangents = C.llt().solve(problem.delta.tail(m) - B.transpose() * expected);
+        fill(*lcp, A, problem.delta);
+        lcp->solve(static_cast<std::size_t>(n), {});
+        const double residual =
+            lcp->solve_with(static_cast<std::size_t>(n), static_cast<std::size_t>(m), [](std::size_t) {});
+        EXPECT_LT(residual, 1e-8);
+        EXPECT_LT((lcp->forces().head(n) - expected).norm(), 1e-8 * (1 + expected.norm()));
+        EXPECT_LT((lcp->forces().segment(n, m) - tangents).norm(), 1e-8 * (1 + tangents.norm()));
+    }
+}
+
 }  // namespace
 }  // namespace palpate

@@ -35,6 +35,52 @@ void stay(const Exercise& exercise, Goals& goals, double seconds, double force, 
                goals);
 }
 
+// With what a forceps holds of the tissue at rest.
+void hold(const Exercise& exercise, Goals& goals, double seconds, const Vector3d& tool,
+          std::optional<Vector3d> held, double force = 0.5) {
+    for (double t = 0; t < seconds - 1e-9; t += 0.001)
+        follow(exercise, {.duration = 0.001, .force = held ? force : 0, .tool = tool, .touched = held},
+               goals);
+}
+
+TEST(Goals, tissue_is_retracted_once_it_has_been_kept_there_and_let_go) {
+    const Exercise exercise = exercise_of(Task::retract, {{0, 0, 4}, {0, 0, 0}, {0, 0, 5}});
+    Goals goals;
+    hold(exercise, goals, 0.6, {0, 0, 5}, std::nullopt);
+    EXPECT_EQ(goals.reached, 0U);  // there, with nothing
+    hold(exercise, goals, 0.6, {0, 0, 5}, Vector3d(9, 0, 0));
+    EXPECT_EQ(goals.reached, 0U);  // with other tissue
+    hold(exercise, goals, 0.3, {0, 0, 4}, Vector3d(0, 0, 1));
+    hold(exercise, goals, 0.1, {0, 0, 1}, Vector3d(0, 0, 1));
+    hold(exercise, goals, 0.3, {0, 0, 4}, Vector3d(0, 0, 1));
+    EXPECT_EQ(goals.reached, 0U);  // not for long enough at once
+    hold(exercise, goals, 0.3, {0, 0, 4}, Vector3d(0, 0, 1));
+    EXPECT_EQ(goals.reached, 1U);
+    EXPECT_DOUBLE_EQ(goals.share, 0.5);
+    EXPECT_DOUBLE_EQ(goals.errors, 1);
+    EXPECT_EQ(goals.misses, 0U);
+    hold(exercise, goals, 1, {0, 0, 1}, Vector3d(0, 0, 1));
+    EXPECT_FALSE(goals.reached_all);
+    hold(exercise, goals, 0.01, {0, 0, 5}, std::nullopt);
+    EXPECT_TRUE(goals.reached_all);
+}
+
+TEST(Goals, tissue_that_slips_out_while_it_is_drawn_is_a_miss) {
+    const Exercise exercise = exercise_of(Task::retract, {{0, 0, 4}, {0, 0, 0}, {0, 0, 5}});
+    Goals goals;
+    for (int slip = 1; slip <= 2; ++slip) {
+        hold(exercise, goals, 0.1, {0, 0, 1}, Vector3d(0, 0, 0));
+        hold(exercise, goals, 0.1, {0, 0, 4}, Vector3d(0, 0, 0));
+        hold(exercise, goals, 0.2, {0, 0, 5}, slip == 1 ? std::nullopt : std::optional(Vector3d(0, 0, 6)));
+        EXPECT_EQ(goals.misses, static_cast<std::size_t>(slip));
+    }
+    // Given back where it was is none.
+    hold(exercise, goals, 0.1, {0, 0, 4}, Vector3d(0, 0, 0));
+    hold(exercise, goals, 0.1, {0, 0, 1}, Vector3d(0, 0, 0));
+    hold(exercise, goals, 0.1, {0, 0, 1}, std::nullopt);
+    EXPECT_EQ(goals.misses, 2U);
+}
+
 TEST(Goals, marks_are_reached_in_their_order_after_being_held) {
     const Exercise exercise = exercise_of(Task::touch, {{0, 0, 0}, {20, 0, 0}});
     Goals goals;

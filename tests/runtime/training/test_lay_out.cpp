@@ -24,7 +24,7 @@ class LayOut : public ::testing::Test {
     const ExerciseRecipe& standard(const std::string& name) const {
         return *std::ranges::find(recipes_, name, &ExerciseRecipe::name);
     }
-    const std::vector<ExerciseRecipe> recipes_ = standard_exercises();
+    const std::vector<ExerciseRecipe> recipes_ = standard_exercises(false);
     const Case case_ = make_case();
     haptics::HapticModel model_{case_};
     const session::TouchTarget start_ = session::choose_touch_target(case_, model_, "", std::nullopt);

@@ -145,6 +145,19 @@ class ContactEquilibrium {
         double share = 0;  // of the press
     };
     using Bearings = FixedList<Bearing, 3 * max_contacts>;
+    // Friction of one group of rows: what bears it, the drag (N), and whether that was solved with all
+    // others.
+    struct Rubbing {
+        const Group* group = nullptr;
+        Bearings bearings;
+        Eigen::Vector3d drag = Eigen::Vector3d::Zero();
+        bool held = false;
+    };
+    // A direction along which it is held.
+    struct Tangent {
+        Rubbing* rubbing = nullptr;
+        Eigen::Vector3d along = Eigen::Vector3d::Zero();
+    };
     struct Surrounding {
         std::int32_t tree_slot = 0, triangle = 0;
         double due = 0;  // mm of the way
@@ -167,7 +180,8 @@ class ContactEquilibrium {
         // made good in the next.
         Eigen::Vector3d drag = Eigen::Vector3d::Zero();  // on the tool, N; and as answers have it
         Offsets next_drag = no_offsets(), drag_difference = no_offsets();
-        Eigen::Vector3d slip = Eigen::Vector3d::Zero();      // mm, to be made good
+        Eigen::Vector3d slip = Eigen::Vector3d::Zero();  // mm, that the drag stands for, after the last tick,
+        double sheared = 0;                              // at so many mm/N
         bool slides = false, slid = false, pressed = false;  // now; before, or in the last tick
         double press = 0;                                    // N, all rows together
         Eigen::Vector3d axis = Eigen::Vector3d::Zero();      // of the press
@@ -264,6 +278,7 @@ class ContactEquilibrium {
     void cut_rows() noexcept;
     void group_rows() noexcept;
     void solve_rows() noexcept;
+    void fill_any_column(std::size_t row) noexcept;
     void fill_column(std::size_t row) noexcept;
     void fill_neighbours_column(std::size_t row) noexcept;
     // Of a row or a group of rows.
@@ -286,6 +301,21 @@ class ContactEquilibrium {
     void rub(std::size_t iterate) noexcept;
     void keep_hold() noexcept;
     Bearings bearings_of(const Group& group, double press) const noexcept;
+    Eigen::Vector3d free_slip_of(const Rubbing& rubbing) const noexcept;
+    void find_rubbing() noexcept;
+    bool measure_press(const Group& group) noexcept;
+    void hold_alone(Rubbing& rubbing) noexcept;
+    // How far a drag moves the sphere past the tissue that holds it, mm/N: about as far as a press lets it
+    // sink in (Mindlin 1949: by (1 - nu/2) / (1 - nu) as far, on a half-space).
+    static double shearing(const Touch& touch) noexcept { return touch.axis.dot(touch.sinking * touch.axis); }
+    // What is left of it from before: a harder press adds nothing to the drag, or it would give energy.
+    static Eigen::Vector3d slip_before(const Touch& touch) noexcept {
+        const double now = shearing(touch);
+        return now < touch.sheared ? Eigen::Vector3d(now / touch.sheared * touch.slip) : touch.slip;
+    }
+    void hold_together() noexcept;
+    void fill_tangent(std::size_t tangent) noexcept;
+    void take_forces() noexcept;
     Eigen::Vector3d slip_of(const Group& group, const Bearings& bearings) const noexcept;
     // The answer that the iteration of a tick gives; and those that are carried over from a tick before.
     std::size_t answer_of(std::size_t iteration) const noexcept {
@@ -328,7 +358,9 @@ class ContactEquilibrium {
     std::array<Eigen::Vector3d, max_contacts> levers_;  // r x n about the tip of each, mm, where tools turn
     FixedList<Row, most_rows> watched_;                 // near, but hardly pressing: looked after, not solved
     FixedList<Group, max_contacts> groups_;             // of those on tissue
-    std::vector<std::vector<std::uint32_t>> visited_;   // by patch and triangle: the search that saw it last
+    FixedList<Rubbing, max_contacts> rubbing_;          // of the groups that press
+    FixedList<Tangent, ContactLcp::most_tangents> tangents_;
+    std::vector<std::vector<std::uint32_t>> visited_;  // by patch and triangle: the search that saw it last
     std::uint32_t search_ = 0;
     FixedList<std::int32_t, most_rows> queue_;
     std::array<std::int64_t, max_contacts> active_{};  // keys of rows that pressed in the last solution

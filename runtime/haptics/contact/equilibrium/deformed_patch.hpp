@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <bitset>
 #include <cstdint>
@@ -108,6 +109,16 @@ class DeformedPatch {
     /// Writes what a force (N), shared out to three vertices, displaces each vertex by.
     void yield(const std::array<std::int32_t, 3>& loaded, const Eigen::Vector3d& shares,
                const Eigen::Vector3d& force, Field& moved) const noexcept;
+    /// The same of a force shared out to any number of vertices, `bearings` of a slot and its share each.
+    void yield(const auto& bearings, const Eigen::Vector3d& force, Field& moved) const noexcept {
+        std::fill_n(moved.begin(), size_, Eigen::Vector4f::Zero());
+        for (const auto& [loaded, share] : bearings) {
+            const Block* const rows = blocks_of(loaded);
+            const Eigen::Vector3f part = (share * force).template cast<float>();
+            for (std::int32_t slot = 0; slot < size_; ++slot)
+                moved[static_cast<std::size_t>(slot)] += rows[slot] * part;
+        }
+    }
     /// The mean of a field over three vertices.
     static Eigen::Vector3d mean(const Field& moved, const std::array<std::int32_t, 3>& slots,
                                 const Eigen::Vector3d& shares) noexcept {

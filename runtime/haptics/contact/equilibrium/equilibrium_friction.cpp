@@ -36,7 +36,7 @@ ContactEquilibrium::Bearings ContactEquilibrium::bearings_of(const Group& group,
 // How far a sphere has gone past the tissue that bears it and was not held, mm.
 Vector3d ContactEquilibrium::slip_of(const Group& group, const Bearings& bearings) const noexcept {
     const Touch& touch = touch_of(group);
-    Vector3d slip = touch.slip;
+    Vector3d slip = slip_before(touch);
     if (touch.pressed) {
         const Tool& tool = tools_[static_cast<std::size_t>(group.tool)];
         const Part& part = part_of(group);
@@ -48,6 +48,132 @@ Vector3d ContactEquilibrium::slip_of(const Group& group, const Bearings& bearing
     return slip - touch.axis.dot(slip) * touch.axis;
 }
 
+// The same if nothing pressed, with friction as it is.
+Vector3d ContactEquilibrium::free_slip_of(const Rubbing& rubbing) const noexcept {
+    const Touch& touch = touch_of(*rubbing.group);
+    const Part& part = part_of(*rubbing.group);
+    const Tool& tool = tools_[static_cast<std::size_t>(rubbing.group->tool)];
+    Vector3d slip =
+        slip_before(touch) + part.sphere.device + dragged_off_of(tool, part) - touch.rubbed_centre;
+    const DeformedPatch& patch = patch_of(*rubbing.group);
+    for (const auto& [slot, share] : rubbing.bearings)
+        slip -= share * (patch.held_displacement(slot) - patch.displacement_before(slot));
+    return slip;
+}
+
+// What rubs, by what the rows press now.
+void ContactEquilibrium::find_rubbing() noexcept {
+    for (Tool& tool : tools_)
+        for (Part& part : tool.parts)
+            for (Touch& touch : part.touches) touch.press = 0;
+    rubbing_.clear();
+    for (const Group& group : groups_) {
+        if (!measure_press(group)) continue;
+        Rubbing& rubbing = rubbing_.push_back();
+        rubbing.group = &group;
+        rubbing.bearings = bearings_of(group, touch_of(group).press);
+        rubbing.held = false;
+    }
+}
+
+// What presses a sphere, and which way; false where nothing does.
+bool ContactEquilibrium::measure_press(const Group& group) noexcept {
+    Touch& touch = touch_of(group);
+    touch.press = 0;
+    Vector3d push = Vector3d::Zero();
+    for (const Row& row : rows_of(group)) {
+        touch.press += row.force;
+        push += row.force * row.normal;
+    }
+    if (!(touch.press > 0) || !(push.norm() > 0)) return false;
+    touch.axis = push.normalized();
+    return true;
+}
+
+// Where several spheres hold the same tissue or hang on the same tool, what presses them and what holds them
+// is one problem: solves it again, each sphere that does not slide with two rows that hold it along the
+// surface.
+void ContactEquilibrium::hold_together() noexcept {
+    tangents_.clear();
+    for (Rubbing& rubbing : rubbing_) {
+        const Touch& touch = touch_of(*rubbing.group);
+        if (!touch.pressed || touch.slides || tangents_.size() + 2 > ContactLcp::most_tangents) continue;
+        rubbing.held = true;
+        rubbing.drag = touch.drag;
+        const Vector3d along = touch.axis.unitOrthogonal();
+        tangents_.push_back({&rubbing, along});
+        tangents_.push_back({&rubbing, touch.axis.cross(along)});
+    }
+    if (tangents_.empty()) return;
+    const std::size_t first = rows_.size() + neighbours_.row_count();
+    for (std::size_t t = 0; t < tangents_.size(); ++t) {
+        fill_tangent(t);
+        const Rubbing& rubbing = *tangents_[t].rubbing;
+        const auto row = static_cast<Index>(first + t);
+        const double shear = shearing(touch_of(*rubbing.group));
+        lcp_.matrix()(row, row) += shear;
+        lcp_.gaps()[row] = -tangents_[t].along.dot(free_slip_of(rubbing) + shear * rubbing.drag);
+    }
+    residual_ = lcp_.solve_with(first, tangents_.size(), [&](std::size_t row) { fill_any_column(row); });
+    for (std::size_t t = 0; t < tangents_.size(); ++t)
+        tangents_[t].rubbing->drag += lcp_.forces()[static_cast<Index>(first + t)] * tangents_[t].along;
+}
+
+// How far a drag along one tangent, and its opposite on the tissue, opens the rows and moves spheres past
+// their tissue.
+void ContactEquilibrium::fill_tangent(std::size_t t) noexcept {
+    const Tangent& dragged = tangents_[t];
+    const Group& group = *dragged.rubbing->group;
+    patch_of(group).yield(dragged.rubbing->bearings, dragged.along, field_);
+    const Vector3d lever = part_of(group).swung.cross(dragged.along);
+    const auto way_of = [&](const auto& other, const Vector3d& along) {
+        if (other.tool != group.tool) return 0.0;
+        const double turning = turns() ? torsion_ * lever.dot(part_of(other).swung.cross(along)) : 0;
+        return along.dot(dragged.along) / coupling_ + turning;
+    };
+    const auto column = static_cast<Index>(rows_.size() + neighbours_.row_count() + t);
+    Index at = 0;
+    const auto write = [&](double value) {
+        lcp_.matrix()(at, column) = lcp_.matrix()(column, at) = value;
+        ++at;
+    };
+    for (const Row& row : rows_) {
+        double opens = way_of(row, row.normal);
+        if (row.patch == group.patch)
+            opens += row.normal.dot(DeformedPatch::mean(field_, row.slots, row.weights));
+        write(opens);
+    }
+    for (std::size_t k = 0; k < neighbours_.row_count(); ++k)
+        write(neighbours_.closing(k, group.patch, field_));
+    for (const Tangent& tangent : tangents_) {
+        const Group& other = *tangent.rubbing->group;
+        double slips = way_of(other, tangent.along);
+        if (other.patch == group.patch)
+            for (const auto& [slot, share] : tangent.rubbing->bearings) {
+                const Vector3d moved = field_[static_cast<std::size_t>(slot)].head<3>().cast<double>();
+                slips += share * tangent.along.dot(moved);
+            }
+        write(slips);
+    }
+}
+
+// What undoes the slip of one sphere as if it were alone.
+void ContactEquilibrium::hold_alone(Rubbing& rubbing) noexcept {
+    const Touch& touch = touch_of(*rubbing.group);
+    rubbing.drag = touch.drag - touch.axis.dot(touch.drag) * touch.axis;
+    const Vector3d slip = slip_of(*rubbing.group, rubbing.bearings) + shearing(touch) * rubbing.drag;
+    const double way = slip.norm();
+    if (!(way > 0)) return;
+    const Vector3d along = slip / way;
+    const DeformedPatch& patch = patch_of(*rubbing.group);
+    double compliance = 1 / coupling_ + shearing(touch);
+    if (turns()) compliance += torsion_ * part_of(*rubbing.group).swung.cross(along).squaredNorm();
+    for (const auto& [slot, share] : rubbing.bearings)
+        for (const auto& [loaded, other] : rubbing.bearings)
+            compliance += share * other * along.dot(patch.response(slot, loaded, along));
+    rubbing.drag -= slip / compliance;
+}
+
 // Friction, for what the present forces press with.
 void ContactEquilibrium::rub(std::size_t iterate) noexcept {
     for (DeformedPatch& patch : patches_) patch.begin_hold(iterate);
@@ -57,34 +183,21 @@ void ContactEquilibrium::rub(std::size_t iterate) noexcept {
                 touch.press = 0;
                 touch.next_drag[iterate].setZero();
             }
-    for (const Group& group : groups_) {
-        Touch& touch = touch_of(group);
-        DeformedPatch& patch = patch_of(group);
-        Vector3d push = Vector3d::Zero();
-        for (const Row& row : rows_of(group)) {
-            touch.press += row.force;
-            push += row.force * row.normal;
-        }
-        if (!(touch.press > 0) || !(push.norm() > 0)) continue;
-        touch.axis = push.normalized();
-        Vector3d& drag = touch.next_drag[iterate];
-        drag = touch.drag - touch.axis.dot(touch.drag) * touch.axis;
-        const Bearings bearings = bearings_of(group, touch.press);
-        const Vector3d slip = slip_of(group, bearings);
-        if (const double way = slip.norm(); way > 0) {
-            const Vector3d along = slip / way;
-            double compliance = 1 / coupling_;
-            if (turns()) compliance += torsion_ * part_of(group).swung.cross(along).squaredNorm();
-            for (const auto& [slot, share] : bearings)
-                for (const auto& [loaded, other] : bearings)
-                    compliance += share * other * along.dot(patch.response(slot, loaded, along));
-            drag -= slip / compliance;
-        }
-        const double wanted = drag.norm();
+    for (Rubbing& rubbing : rubbing_) {
+        Touch& touch = touch_of(*rubbing.group);
+        if (!measure_press(*rubbing.group)) continue;
+        if (rubbing.held)
+            rubbing.drag -= touch.axis.dot(rubbing.drag) * touch.axis;
+        else
+            hold_alone(rubbing);
+        const double wanted = rubbing.drag.norm();
         touch.slides = wanted > (touch.slid ? friction_.sliding : friction_.at_rest) * touch.press;
         touch.slid = touch.slid || touch.slides;
-        if (touch.slides) drag *= friction_.sliding * touch.press / wanted;
-        for (const auto& [slot, share] : bearings) patch.hold(iterate, slot, -share * drag);
+        if (touch.slides) rubbing.drag *= friction_.sliding * touch.press / wanted;
+        touch.next_drag[iterate] = rubbing.drag;
+        DeformedPatch& patch = patch_of(*rubbing.group);
+        for (const auto& [slot, share] : bearings_of(*rubbing.group, touch.press))
+            patch.hold(iterate, slot, -share * rubbing.drag);
     }
     for (DeformedPatch& patch : patches_) patch.end_hold(iterate);
 }
@@ -102,7 +215,9 @@ void ContactEquilibrium::keep_hold() noexcept {
         const Tool& tool = tools_[static_cast<std::size_t>(group.tool)];
         Touch& touch = touch_of(group);
         if (!(touch.press > 0) || !tool.touching) continue;
-        touch.slip = touch.slides ? Vector3d::Zero() : slip_of(group, bearings_of(group, touch.press));
+        touch.slip = touch.slides ? Vector3d(-shearing(touch) * touch.drag)
+                                  : slip_of(group, bearings_of(group, touch.press));
+        touch.sheared = shearing(touch);
         touch.slid = touch.slides;
         touch.pressed = true;
         const Part& part = part_of(group);

@@ -300,15 +300,29 @@ void ContactEquilibrium::solve_rows() noexcept {
         lcp_.gaps()[static_cast<Index>(n + k)] = neighbours_.gap(k);
         if (neighbours_.is_active(k)) warm[warm_count++] = n + k;
     }
-    residual_ =
-        lcp_.solve(n + neighbours_.row_count(), std::span(warm).first(warm_count),
-                   [&](std::size_t row) { row < n ? fill_column(row) : fill_neighbours_column(row - n); });
+    residual_ = lcp_.solve(n + neighbours_.row_count(), std::span(warm).first(warm_count),
+                           [&](std::size_t row) { fill_any_column(row); });
+    take_forces();
+    if (friction_.at_rest > 0) {
+        find_rubbing();
+        if (rubbing_.size() > 1) {
+            hold_together();
+            take_forces();
+        }
+    }
+    neighbours_.take({lcp_.forces().data() + n, neighbours_.row_count()});
+}
+
+void ContactEquilibrium::fill_any_column(std::size_t row) noexcept {
+    row < rows_.size() ? fill_column(row) : fill_neighbours_column(row - rows_.size());
+}
+
+void ContactEquilibrium::take_forces() noexcept {
     active_count_ = 0;
-    for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
         rows_[k].force = lcp_.forces()[static_cast<Index>(k)];
         if (rows_[k].force > 0) active_[active_count_++] = key_of(rows_[k]);
     }
-    neighbours_.take({lcp_.forces().data() + n, neighbours_.row_count()});
 }
 
 // How far a force of one row opens the others.

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/devices/jaws/grasp_script.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "formats/model/errors.hpp"
+#include "runtime/devices/jaws/jaws.hpp"
+
+namespace palpate::devices {
+namespace {
+
+using Eigen::Vector3d;
+
+void check(const GraspSettings& settings) {
+    const auto require = [](bool holds, const char* option, double found, const char* expected) {
+        if (!holds) throw UsageError({option, std::to_string(found), expected, ""});
+    };
+    require(settings.speed > 0 && std::isfinite(settings.speed), "--speed", settings.speed,
+            "more than 0 mm/s");
+    require(settings.pull >= 0 && std::isfinite(settings.pull), "--depth", settings.pull, "0 mm or more");
+    require(settings.seconds > 0 && std::isfinite(settings.seconds), "--seconds", settings.seconds,
+            "more than 0 s");
+}
+
+}  // namespace
+
+HandPath grasp_path(const Grasp& grasp, const JawSettings& jaws, const GraspSettings& settings) {
+    check(settings);
+    const Vector3d out = grasp.orientation * Vector3d::UnitZ();
+    const double opened = jaws.jaw_opening * std::numbers::pi / 180;
+    const double left = std::min(1.0, (1 - settings.pinch) * grasp.thickness / (2 * jaws.jaw_length));
+    const double closed = std::min(opened, 2 * std::asin(left));
+    const Vector3d outside = grasp.meet + 2 * grasp.depth * out, away = grasp.meet + settings.pull * out;
+    std::vector<HandPath::Key> keys{{0, outside, true, grasp.orientation, opened}};
+    const auto go = [&](double seconds, const Vector3d& meet, double angle) {
+        if (seconds > 0) keys.push_back({keys.back().time + seconds, meet, true, grasp.orientation, angle});
+    };
+    const auto move = [&](const Vector3d& meet) {
+        go((meet - keys.back().position).norm() / settings.speed, meet, keys.back().jaw_angle);
+    };
+    const auto turn = [&](double angle) {
+        go(std::abs(angle - keys.back().jaw_angle) / closing_speed, keys.back().position, angle);
+    };
+    const auto hold = [&] { go(settings.hold_s, keys.back().position, keys.back().jaw_angle); };
+    do {
+        move(grasp.meet);
+        turn(closed);
+        hold();
+        move(away);
+        hold();
+        move(grasp.meet);
+        turn(opened);
+        move(outside);
+        hold();
+    } while (keys.back().time < settings.seconds);
+    return HandPath(std::move(keys));
+}
+
+}  // namespace palpate::devices

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: Apache-2.0
+"""palpate train --instrument forceps: carried by keys and the mouse, closed by J, and the exercise that it serves."""
+import os
+import sys
+import time
+import unittest
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from trainer_case import TrainerCase  # noqa: E402
+
+# About the sample's soft cube of 20 mm.
+FORCEPS = "--instrument", "forceps", "--jaw-length", 16, "--jaw-radius", 1, "--jaw-opening", 120
+WAY_IN = 32  # steps of half a millimetre from the start, twice half a jaw's length outside
+
+
+class ForcepsInTheWindow(TrainerCase):
+    def open_forceps(self, *options):
+        return self.open_window(*FORCEPS, "--attempts", self.folder / self.id(), *options)
+
+    def press(self, key, times=1):
+        self.x("xdotool", "key", *([key] * times))
+
+    def test_keys_take_hold_of_a_rim_hold_it_back_and_let_it_go(self):
+        process, window = self.open_forceps("--exercise", "retract")
+        self.press("Return")  # begin now
+        self.press("w", WAY_IN)
+        self.come_to_rest()
+        self.press("j")
+        time.sleep(2.5)  # from 120 degrees, a radian a second
+        self.press("s", 10)
+        time.sleep(2)
+        self.come_to_rest()
+        self.press("j")
+        time.sleep(2.5)
+        self.press("s", WAY_IN)
+        self.come_to_rest()
+        self.press("q")
+        result = self.finish(process)
+        (attempt,) = result["attempts"]
+        self.assertEqual(attempt["exercise"]["task"], "retract")
+        self.assertEqual(len(attempt["exercise"]["places_mm"]), 3)
+        self.assertEqual(attempt["ending"], "all reached")
+        self.assertEqual(attempt["metrics"]["goals"], 1)
+        self.assertLess(attempt["metrics"]["position_error_mm"], 2)
+        self.assertGreater(result["force_peak_n"], 0.02)
+
+    def test_a_hand_that_closes_nothing_holds_nothing_back(self):
+        process, window = self.open_forceps("--exercise", "retract")
+        self.press("Return")
+        self.press("w", WAY_IN)
+        self.press("s", 10)
+        self.come_to_rest()
+        self.press("q")
+        (attempt,) = self.finish(process)["attempts"]
+        self.assertEqual(attempt["ending"], "cut short")
+        self.assertEqual(attempt["metrics"]["score"], 0)
+
+    def test_a_drag_carries_it_and_the_pointer_alone_does_not(self):
+        process, window = self.open_forceps()
+        self.leave_start_page(window)
+        self.x("xdotool", "mousemove", "--window", window, 640, 360)
+        self.x("xdotool", "mousemove", "--window", window, 700, 300)
+        self.come_to_rest()
+        self.x("xdotool", "mousedown", 1)
+        for _ in range(10):
+            self.x("xdotool", "mousemove_relative", "--", 0, -12)
+            time.sleep(0.05)
+        self.x("xdotool", "mouseup", 1)
+        self.come_to_rest()
+        self.press("q")
+        travel = self.finish(process)["device_travel_mm"]
+        self.assertGreater(travel, 3)
+        self.assertLess(travel, 100)
+
+    def test_it_offers_the_exercises_that_it_serves_and_refuses_what_it_cannot_be(self):
+        process, window = self.open_forceps("--script", "grasp", "--exercise", "retract", "--seconds", 6)
+        (attempt,) = self.finish(process)["attempts"]
+        self.assertEqual(attempt["ending"], "all reached")
+        path = self.folder / "retract.toml"
+        path.write_text('schema = 1\n[[exercise]]\nname = "back"\ntask = "retract"\n')
+        for options, code, message in (
+            (("--exercises", path), 3, "--instrument forceps"),
+            (("--script", "grasp"), 2, "--instrument forceps beside it"),
+            ((*FORCEPS, "--script", "press"), 2, "grasp or a file"),
+            ((*FORCEPS, "--second", path), 2, "--second: with --instrument forceps"),
+        ):
+            process = self.launch(*options, "--seconds", 1)
+            _, err = process.communicate(timeout=60)
+            self.assertEqual(process.returncode, code, err)
+            self.assertIn(message, err)
+
+
+if __name__ == "__main__":
+    unittest.main()
