@@ -57,7 +57,9 @@ class ForcepsInTheWindow(TrainerCase):
 
     def test_a_drag_carries_it_and_the_pointer_alone_does_not(self):
         process, window = self.open_forceps()
-        self.leave_start_page(window)
+        self.wait_for(lambda: self.shows_page(window))
+        self.press("BackSpace")
+        time.sleep(1)
         self.x("xdotool", "mousemove", "--window", window, 640, 360)
         self.x("xdotool", "mousemove", "--window", window, 700, 300)
         self.come_to_rest()
