@@ -25,11 +25,15 @@ inline constexpr std::tuple jaw_fields{
           "Coulomb's law: force along a jaw that it bears, as part of the one across it",
           Range{.least = 0, .most = largest_friction})};
 
-/// What tissue feels of a forceps in place of a case's tool.
+/// What tissue feels of a forceps in place of a case's tool, and of what a hand may get the half that each
+/// jaw may give it. What the device bears is halved where it is held: devices::jaws_of().
 inline HapticSettings held_between(const JawSettings& jaws, HapticSettings settings) {
     settings.tool_radius = jaws.jaw_radius;
     settings.shaft_length = jaws.jaw_length;
     settings.friction_at_rest = settings.friction_sliding = jaws.jaw_friction;
+    settings.coupling_stiffness /= 2;
+    settings.max_force /= 2;
+    settings.max_force_rate /= 2;
     return settings;
 }
 

@@ -10,6 +10,7 @@
 #include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
 #include "runtime/apps/options/point_option.hpp"
+#include "runtime/devices/jaws/jaws.hpp"
 #include "runtime/devices/mounted_device.hpp"
 #include "runtime/devices/simulation.hpp"
 #include "runtime/session/hand_script.hpp"
@@ -47,13 +48,6 @@ void question_depth(double depth) {
                      depth, most);
 }
 
-// A file of a forceps says how it is turned and opened.
-void require_jaws(const HandPath& path, const std::string& script) {
-    if (path.keys().front().jaw_angle < 0)
-        throw InvalidInput(
-            {script, "no jaw angles", "rows of t x y z qx qy qz qw and an angle", "or leave --script out"});
-}
-
 TouchPlan grasp_plan(const TouchOptions& options, const DeviceKind& device, const Case& patient_case,
                      const HapticModel& model) {
     TouchPlan plan{.path = {}, .target = {}, .grasp = {}, .seconds = options.seconds};
@@ -71,10 +65,9 @@ TouchPlan plan_of(const TouchOptions& options, const DeviceKind& device, const C
                   const HapticModel& model) {
     const bool made_here = is_made_to_measure(options.script) || options.script == grasp_script;
     if (device.simulated && !options.column && !made_here) {
-        HandPath path = recorded_path(options.script);
+        HandPath path = recorded_path(options.script, options.tool.has_jaws());
         const double seconds = options.seconds_given ? options.seconds : path.duration();
         require_playable(seconds);
-        if (options.tool.has_jaws()) require_jaws(path, options.script);
         return {.path = std::move(path), .target = {}, .grasp = {}, .seconds = seconds};
     }
     if (!options.column) require_playable(options.seconds);
@@ -101,6 +94,7 @@ TouchPlan plan_of(const TouchOptions& options, const DeviceKind& device, const C
 DeviceRequest request_of(const TouchOptions& options, const DeviceKind& device, const TouchPlan& plan,
                          const HapticModel& model) {
     DeviceRequest request{.tools = {}, .limits = limits_asked_by(model.settings())};
+    if (options.tool.has_jaws()) request.limits = limits_of_both(request.limits);
     const Eigen::Vector3d up = plan.target ? plan.target->place.normal : anterior;
     if (plan.grasp) {
         const Eigen::Vector3d out = plan.grasp->grasp.orientation * Eigen::Vector3d::UnitZ();
@@ -135,7 +129,7 @@ void refuse_idle_options(const cli::Command& command, const TouchOptions& option
         if (!cli::asked_for(parameter)) continue;
         const std::string name = parameter.option.name();
         if (options.tool.has_jaws() && std::ranges::find(of_one_tip, name) != of_one_tip.end())
-            throw UsageError({name, "with --instrument forceps", "a script of poses and jaw angles", ""});
+            throw UsageError({name, "with --instrument forceps", "", "leave it out"});
         if (physical && std::ranges::find(of_scripts, name) != of_scripts.end())
             throw UsageError({name, "with --device " + options.device, "a simulated device", ""});
         if (name == "--record-seconds" && options.record.empty())

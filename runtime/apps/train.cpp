@@ -23,6 +23,7 @@
 #include "runtime/apps/start_recording.hpp"
 #include "runtime/apps/tell_statuses.hpp"
 #include "runtime/apps/train_run.hpp"
+#include "runtime/devices/jaws/jaws.hpp"
 #include "runtime/devices/mounted_device.hpp"
 #include "runtime/devices/simulation.hpp"
 #include "runtime/session/device_list.hpp"
@@ -78,10 +79,9 @@ HandPath scripted_path(const Options& options, const TouchPoint& place, double t
 }
 
 HandPath grasp_or_recorded(const Options& options, const GraspPlace& place) {
-    constexpr double pull = 5;  // mm
-    if (options.script != grasp_script) return recorded_path(options.script);
+    if (options.script != grasp_script) return recorded_path(options.script, true);
     return grasp_path(place.grasp, options.tool.jaws,
-                      {.pull = pull, .seconds = options.seconds > 0 ? options.seconds : 3600});
+                      {.seconds = options.seconds > 0 ? options.seconds : 3600});
 }
 
 // A rim as a place that is touched from where the forceps comes.
@@ -114,6 +114,7 @@ DeviceRequest request_of(const Options& options, const DeviceKind& device, const
                          const TouchPoint& place, const std::optional<GraspPlace>& grasp,
                          const Eigen::Vector3d& start, const Eigen::Matrix3d& R_PD) {
     DeviceRequest request{.tools = {}, .limits = limits_asked_by(model.settings())};
+    if (options.tool.has_jaws()) request.limits = limits_of_both(request.limits);
     const std::array<double, 3> shaft = array_of(place.normal);
     if (options.tool.has_jaws()) {
         request.tools.push_back(
@@ -344,10 +345,10 @@ int main(int argc, char** argv) {
     command.input(
         "--trusted", options.trusted,
         "public keys (Ed25519, PEM): load the asset only if one of them has signed it; repeat for more");
-    command.option(
-        "--script", options.script,
-        "what the hand does instead of mouse and keyboard: press, slide, tremble, let-go, random or a "
-        "file as for 'touch'");
+    command.option("--script", options.script,
+                   "what the hand does instead of mouse and keyboard: press, slide, tremble, let-go, random, "
+                   "of a forceps "
+                   "grasp, or a file as for 'touch'");
     command.option("--second", options.second,
                    "what a second tool on the same bodies does: a file as for --script");
     command.option("--device", options.device, device_usages([](const DeviceKind&) { return true; }, true));

@@ -14,12 +14,14 @@
 #include "runtime/apps/servo_pulse.hpp"
 #include "runtime/session/drawn_shape.hpp"
 #include "runtime/session/jaws/joined_jaws.hpp"
+#include "runtime/texts/translated.hpp"
 #include "tools/cli/command.hpp"
 
 namespace palpate::apps {
 namespace {
 
 using namespace visual;
+using texts::translated;
 
 using Clock = std::chrono::steady_clock;
 
@@ -73,6 +75,10 @@ void fill_frame(const TrainRun& run, std::span<const TickResult* const> ticks, V
 
 void take_keys(const TrainRun& run, const TickResult& tick, bool page_takes_them) {
     for (const std::string& key : run.window.take_keys()) {
+        if (key == "f2" && run.session.jaws()) {
+            run.window.tell(translated("exercises with a forceps are written in a file"));
+            continue;
+        }
         run.lesson.press(key, tick);
         if (page_takes_them) continue;
         const std::string told = run.keys.press(key, run.lesson.lesson().exercising());
@@ -107,7 +113,7 @@ TrainOutcome run_in_window(const TrainRun& run, VisualFrame& frame) {
         if (tick.tool == 0)
             copy_active(tick, first_jaw);
         else
-            take_one(run, session::joined_jaws(first_jaw, tick), outcome.felt);
+            take_one(run, session::joined_jaws(first_jaw, tick, session.jaws()->jaw_length), outcome.felt);
     };
     TickRate rate;
     ServoPulse pulse;

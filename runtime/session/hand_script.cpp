@@ -38,9 +38,17 @@ HandPath made_to_measure_path(const std::string& script, const TouchPoint& place
     return random_path(place, settings, seed);
 }
 
-HandPath recorded_path(const std::string& script) {
+HandPath recorded_path(const std::string& script, bool of_forceps) {
     require_file(script);
-    return read_hand_path(script);
+    HandPath path = read_hand_path(script);
+    const bool has_angles = path.keys().front().jaw_angle >= 0;
+    if (of_forceps && !has_angles)
+        throw InvalidInput(
+            {script, "no jaw angles", "rows of t x y z qx qy qz qw and an angle", "or leave --script out"});
+    if (has_angles && !of_forceps)
+        throw InvalidInput(
+            {script, "jaw angles where no forceps is held", "--instrument forceps beside it", ""});
+    return path;
 }
 
 HandPath recorded_axis_path(const std::string& script, std::size_t column, const TouchPoint& place,

@@ -12,6 +12,7 @@
 #include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
 #include "formats/model/regions.hpp"
+#include "runtime/session/jaws/grasp_place.hpp"
 #include "runtime/training/region_outline.hpp"
 
 namespace palpate::training {
@@ -239,9 +240,9 @@ std::vector<Vector3d> along_surface(const std::vector<Vector3d>& points, const H
 
 // From between the jaws' tips, half their length below the rim, out of it.
 std::vector<Vector3d> draw_retraction(const HapticModel& model, const TouchTarget& start) {
-    constexpr double pull = 5;  // mm
-    const Vector3d tips = start.place.point - 0.5 * model.settings().shaft_length * start.place.normal;
-    return {start.place.point, tips, tips + pull * start.place.normal};
+    const Vector3d& out = start.place.normal;
+    const Vector3d tips = start.place.point - session::grasp_depth(model.settings().shaft_length) * out;
+    return {start.place.point, tips, tips + devices::GraspSettings{}.pull * out};
 }
 
 double tolerance_of(const ExerciseRecipe& recipe, const HapticModel& model) {

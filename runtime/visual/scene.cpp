@@ -67,7 +67,7 @@ constexpr double handle_share = 0.35;  // of the field of view: how long a shaft
 Scene::Scene(const Case& patient_case, const Sight& sight, std::int64_t rigid_budget,
              std::optional<double> jaw_length, vtkRenderer* renderer, vtkRenderer* front)
     : tool_radius_(patient_case.haptics.tool_radius),
-      max_force_(patient_case.haptics.max_force),
+      max_force_((jaw_length ? 2 : 1) * patient_case.haptics.max_force),
       arrow_length_(0.5 * sight.field),
       shaft_length_(jaw_length     ? *jaw_length
                     : sight.inside ? 1.1 * (sight.eye() - sight.target).norm()

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "formats/model/errors.hpp"
@@ -30,7 +29,7 @@ void check(const GraspSettings& settings) {
 HandPath grasp_path(const Grasp& grasp, const JawSettings& jaws, const GraspSettings& settings) {
     check(settings);
     const Vector3d out = grasp.orientation * Vector3d::UnitZ();
-    const double opened = jaws.jaw_opening * std::numbers::pi / 180;
+    const double opened = open_angle(jaws);
     const double left = std::min(1.0, (1 - settings.pinch) * grasp.thickness / (2 * jaws.jaw_length));
     const double closed = std::min(opened, 2 * std::asin(left));
     const Vector3d outside = grasp.meet + 2 * grasp.depth * out, away = grasp.meet + settings.pull * out;

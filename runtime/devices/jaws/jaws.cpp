@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "formats/model/arrays.hpp"
@@ -19,7 +18,7 @@ using Eigen::Vector3d;
 class Handle {
   public:
     Handle(std::shared_ptr<Device> device, const JawSettings& jaws, JawHold hold)
-        : device_(std::move(device)), jaws_(jaws), hold_(std::move(hold)), angle_(opened()) {}
+        : device_(std::move(device)), jaws_(jaws), hold_(std::move(hold)), angle_(open_angle(jaws)) {}
 
     Device& device() const noexcept { return *device_; }
 
@@ -29,9 +28,10 @@ class Handle {
         const double passed = std::clamp(time - std::exchange(time_, time), 0.0, 0.1);
         const bool closes = (state_.buttons & 1U) != 0 || (hold_.closed && hold_.closed->load());
         const double way = closing_speed * passed;
-        angle_ = state_.jaw_angle >= 0 ? std::min(state_.jaw_angle, opened())
+        if (state_.faults & distrusted_position) return;  // nobody sees where they go
+        angle_ = state_.jaw_angle >= 0 ? std::min(state_.jaw_angle, open_angle(jaws_))
                  : closes              ? std::max(0.0, angle_ - way)
-                                       : std::min(opened(), angle_ + way);
+                                       : std::min(open_angle(jaws_), angle_ + way);
         places_ = jaw_places(vector_of(state_.position), orientation(), jaws_, angle_);
     }
     DeviceState state(std::size_t jaw) const noexcept {
@@ -47,7 +47,6 @@ class Handle {
     }
 
   private:
-    double opened() const noexcept { return jaws_.jaw_opening * std::numbers::pi / 180; }
     Quaterniond orientation() const noexcept {
         const Quaterniond told = quaternion_of(state_.orientation);
         if (!told.coeffs().isZero(0)) return told;

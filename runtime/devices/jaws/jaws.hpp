@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <memory>
+#include <numbers>
 
 #include "formats/records/jaw_settings.hpp"
 #include "runtime/realtime/device.hpp"
@@ -19,7 +20,7 @@ struct JawHold {
 
 /// A jaw's tip (p_P, mm) and the unit vector from there to the hinge.
 struct JawPlace {
-    Eigen::Vector3d tip, shaft;
+    Eigen::Vector3d tip = Eigen::Vector3d::Zero(), shaft = Eigen::Vector3d::Zero();
 };
 
 /// Where a forceps' two jaws are whose tips meet at `meet` (p_P, mm) when they are closed; then their
@@ -35,5 +36,17 @@ std::array<std::shared_ptr<realtime::Device>, 2> jaws_of(std::shared_ptr<realtim
                                                          const JawSettings& jaws, JawHold hold);
 
 inline constexpr double closing_speed = 1;  ///< rad/s
+
+/// The angle between open jaws, rad.
+inline double open_angle(const JawSettings& jaws) {
+    return jaws.jaw_opening * std::numbers::pi / 180;
+}
+
+/// What a hand may get of whose jaws each may give it so much.
+inline DeviceLimits limits_of_both(DeviceLimits of_one) {
+    of_one.max_force *= 2;
+    of_one.max_stiffness *= 2;
+    return of_one;
+}
 
 }  // namespace palpate::devices

@@ -67,7 +67,8 @@ bool ContactLcp::exchange(std::size_t row) noexcept {
     if (leaving == count_) return false;
     for (std::size_t i = 0; i < count_; ++i) {
         double& force = f_[static_cast<Index>(order_[i])];
-        force = std::max(0.0, force - most * candidate_[static_cast<Index>(i)]);
+        force -= most * candidate_[static_cast<Index>(i)];
+        if (!pulls(order_[i])) force = std::max(0.0, force);
     }
     f_[static_cast<Index>(order_[leaving])] = 0;
     remove(leaving);

@@ -103,13 +103,18 @@ void ContinuousContact::add_rigid_contacts(std::size_t t, TickResult& result) no
 
 // What is in equilibrium is no farther from the device than a tool would be if nothing gave way, for there
 // its energy is higher; and what friction holds is no farther than it was. In a narrow wedge, where the
-// planes of contact push far beyond the surfaces that they stand for, a solution may be.
+// planes of contact push far beyond the surfaces that they stand for, a solution may be. Other tools may push
+// tissue against this one: their energy counts too.
 bool ContinuousContact::within_reach(std::size_t t, const Vector3d& force) const noexcept {
-    const Tool& tool = tools_[t];
-    double reach = 0;
-    for (const Part& part : std::span(tool.parts).first(tool.parts_felt))
-        reach += (part.on_all.position() - part.device).norm();
-    if (friction_.at_rest > 0) reach = std::max(reach, equilibrium_.held_reach(t));
+    double reach = 0, held = 0;
+    for (std::size_t other = 0; other < tools_.size(); ++other) {
+        if (other != t && !equilibrium_.touches_tissue(other)) continue;
+        const Tool& tool = tools_[other];
+        for (const Part& part : std::span(tool.parts).first(tool.parts_felt))
+            reach += (part.on_all.position() - part.device).norm();
+        held = std::max(held, equilibrium_.held_reach(other));
+    }
+    if (friction_.at_rest > 0) reach = std::max(reach, held);
     return force.norm() <= coupling_ * (reach + room_for_rounding);
 }
 

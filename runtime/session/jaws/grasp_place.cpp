@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <vector>
 
 #include "formats/model/errors.hpp"
@@ -18,19 +16,14 @@ using namespace collision;
 using namespace haptics;
 using Eigen::Vector3d;
 
-constexpr double depth_in_lengths = 0.5;  // of a jaw's length, of the tips below the rim
-constexpr double most_compact = 0.75;     // of the open jaws' gap, that tissue may fill
-
-double open_angle(const JawSettings& jaws) {
-    return jaws.jaw_opening * std::numbers::pi / 180;
-}
+constexpr double most_compact = 0.75;  // of the open jaws' gap, that tissue may fill
 
 // The rim below a triangle, if it is one: tissue between two flanks a little below the surface that both give
 // way.
 std::optional<devices::Grasp> rim_below(const CollisionSurface& surface, const JawSettings& jaws,
                                         const std::vector<bool>& free, const TriangleCorners& t) {
-    const double depth = depth_in_lengths * jaws.jaw_length;
-    const double gap = 2 * jaws.jaw_length * std::sin(open_angle(jaws) / 2);
+    const double depth = grasp_depth(jaws.jaw_length);
+    const double gap = 2 * jaws.jaw_length * std::sin(devices::open_angle(jaws) / 2);
     const Vector3d top = (t[0] + t[1] + t[2]) / 3;
     const Vector3d out = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
     const Vector3d within = top - depth * out;
@@ -52,12 +45,13 @@ std::optional<devices::Grasp> rim_below(const CollisionSurface& surface, const J
 
 // Whether the open jaws are clear of everything on their way in.
 bool is_reached(const HapticModel& model, const JawSettings& jaws, const devices::Grasp& grasp) {
-    constexpr int steps = 4, spheres = 6;
+    const int spheres = static_cast<int>(std::ceil(jaws.jaw_length / jaws.jaw_radius));
+    const int steps = static_cast<int>(std::ceil(2 * grasp.depth / jaws.jaw_radius));
     const Vector3d out = grasp.orientation * Vector3d::UnitZ();
     for (int step = 0; step <= steps; ++step) {
         const Vector3d meet = grasp.meet + grasp.depth * 2 * step / steps * out;
         for (const devices::JawPlace& jaw :
-             devices::jaw_places(meet, grasp.orientation, jaws, open_angle(jaws)))
+             devices::jaw_places(meet, grasp.orientation, jaws, devices::open_angle(jaws)))
             for (int sphere = 0; sphere <= spheres; ++sphere) {
                 const Vector3d centre = jaw.tip + jaws.jaw_length * sphere / spheres * jaw.shaft;
                 for (std::size_t body = 0; body < model.body_count(); ++body)
@@ -74,6 +68,9 @@ bool is_reached(const HapticModel& model, const JawSettings& jaws, const devices
 GraspPlace choose_grasp_place(const Case& patient_case, const HapticModel& model, const JawSettings& jaws,
                               const std::string& body_name, const std::optional<Vector3d>& near) {
     const std::size_t body = find_body(model, body_name);
+    if (body_name.empty() && body < model.rigid_count())
+        throw InvalidInput({patient_case.name, "has no body that gives way", "",
+                            "a forceps takes hold of tissue: leave it out"});
     if (body < model.rigid_count())
         throw UsageError({"--body", "'" + model.body_name(body) + "' is rigid", "a body that gives way",
                           "a forceps takes hold of tissue"});

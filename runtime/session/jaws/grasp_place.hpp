@@ -17,10 +17,15 @@ struct GraspPlace {
     devices::Grasp grasp;
 };
 
+/// How far below a rim the tips of jaws of that length go, mm.
+inline double grasp_depth(double jaw_length) {
+    return 0.5 * jaw_length;
+}
+
 /// Finds the thinnest rim of a deformable body that the open jaws reach from outside, clear of all bodies and
-/// no nearer than a jaw's length to what is held; with `near` (p_P, mm) the rim nearest to it. `body_name`
-/// empty: the first deformable body. Throws UsageError for an unknown name or a rigid body, InvalidInput if
-/// no rim fits between the jaws.
+/// with the tips no nearer to what is held than to the rim; with `near` (p_P, mm) the rim nearest to it.
+/// `body_name` empty: the first deformable body. Throws UsageError for an unknown name or a rigid body,
+/// InvalidInput if no rim fits between the jaws.
 GraspPlace choose_grasp_place(const Case& patient_case, const haptics::HapticModel& model,
                               const JawSettings& jaws, const std::string& body_name,
                               const std::optional<Eigen::Vector3d>& near);

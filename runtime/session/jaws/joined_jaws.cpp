@@ -10,17 +10,21 @@ namespace {
 
 using Vector = std::array<double, 3>;
 
-Vector halfway(const Vector& a, const Vector& b) {
-    return array_of(Eigen::Vector3d((vector_of(a) + vector_of(b)) / 2));
+// Where tips would meet that are at `a` and `b`, of jaws that go this way to their hinge.
+Vector meeting(const Vector& a, const Vector& b, const Eigen::Vector3d& shafts, double jaw_length) {
+    const Eigen::Vector3d hinge = (vector_of(a) + vector_of(b) + jaw_length * shafts) / 2;
+    return array_of(Eigen::Vector3d(hinge - jaw_length * shafts.normalized()));
 }
 
 }  // namespace
 
-TickResult joined_jaws(const TickResult& first, const TickResult& second) {
+TickResult joined_jaws(const TickResult& first, const TickResult& second, double jaw_length) {
     TickResult joined;
     copy_active(first, joined);
-    joined.device_position = halfway(first.device_position, second.device_position);
-    joined.tool_position = halfway(first.tool_position, second.tool_position);
+    const Eigen::Vector3d shafts = vector_of(first.shaft) + vector_of(second.shaft);
+    joined.device_position = meeting(first.device_position, second.device_position, shafts, jaw_length);
+    joined.tool_position = meeting(first.tool_position, second.tool_position, shafts, jaw_length);
+    joined.buttons = 0;
     joined.force = array_of(Eigen::Vector3d(vector_of(first.force) + vector_of(second.force)));
     if (second.depth > first.depth) {
         joined.depth = second.depth;

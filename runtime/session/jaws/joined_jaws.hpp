@@ -4,14 +4,9 @@
 
 namespace palpate::session {
 
-/// What the hand that holds a forceps did and felt in one tick, from what its two jaws did: places halfway
-/// between the jaws' tips, the sum of their forces, the larger depth, both jaws' contacts as far as there is
-/// room.
-TickResult joined_jaws(const TickResult& first, const TickResult& second);
-
-/// Whether both jaws press tissue in such a tick's parts.
-inline bool takes_hold(const TickResult& first, const TickResult& second) {
-    return first.contact_count > 0 && second.contact_count > 0;
-}
+/// What the hand that holds a forceps did and felt in one tick, from what its two jaws of that length (mm)
+/// did: places where their tips would meet if they closed, the sum of their forces, the larger depth, both
+/// jaws' contacts as far as there is room. No buttons: they close the jaws.
+TickResult joined_jaws(const TickResult& first, const TickResult& second, double jaw_length);
 
 }  // namespace palpate::session

@@ -215,7 +215,7 @@ void ExerciseEditor::change(int ways) {
 }
 
 void ExerciseEditor::change_task(int ways) {
-    constexpr int count = static_cast<int>(Task::retract);  // whose places no touch sets: it is the last
+    constexpr int count = static_cast<int>(Task::retract);  // the last one, which no ball does
     const bool usual = draft_.instruction == usual_instruction(draft_.task);
     const bool untitled = draft_.title == draft_.name;
     draft_.task = static_cast<Task>((static_cast<int>(draft_.task) + ways + count) % count);

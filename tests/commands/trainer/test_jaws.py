@@ -42,6 +42,7 @@ class ForcepsInTheWindow(TrainerCase):
         self.assertEqual(attempt["ending"], "all reached")
         self.assertEqual(attempt["metrics"]["goals"], 1)
         self.assertLess(attempt["metrics"]["position_error_mm"], 2)
+        self.assertEqual(attempt["metrics"]["misses"], 0)
         self.assertGreater(result["force_peak_n"], 0.02)
 
     def test_a_hand_that_closes_nothing_holds_nothing_back(self):

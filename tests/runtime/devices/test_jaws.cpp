@@ -115,6 +115,17 @@ TEST_F(JawsTest, the_first_button_or_a_key_closes_them_at_a_steady_rate_and_they
     EXPECT_NEAR(angle(), opened, 1e-7);
 }
 
+TEST_F(JawsTest, they_stay_while_nobody_knows_where_the_device_is) {
+    probe_->state.buttons = 1;
+    at(0.001);
+    probe_->state.faults = device_lost;
+    for (double t = 0.05; t < 0.5; t += 0.05) at(t);
+    EXPECT_EQ(first_.faults, device_lost);
+    probe_->state.faults = no_fault;
+    at(0.501);
+    EXPECT_GT(angle(), opened - 0.1);
+}
+
 TEST_F(JawsTest, they_turn_as_the_device_says_and_where_it_does_not_as_they_are_held) {
     probe_->state.jaw_angle = 0;
     at(0.001);

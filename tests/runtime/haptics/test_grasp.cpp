@@ -75,7 +75,7 @@ TEST_P(Grasp, holds_tissue_by_coulombs_law_and_draws_it_along) {
     int unsettled = 0;
     go(2, 0.5, 200, [&](const Moment& now) {
         pull = std::max(pull, -now.force().z());
-        if (now.jaws[0].status & contact_unsettled) ++unsettled;
+        if ((now.jaws[0].status | now.jaws[1].status) & contact_unsettled) ++unsettled;
         for (const TickResult& jaw : now.jaws) {
             EXPECT_EQ(jaw.status & ~std::uint32_t{contact_unsettled}, 0U);
             EXPECT_LE(drag_of(jaw).norm(), friction * press_of(jaw) + rounding);
@@ -131,6 +131,22 @@ TEST_P(Grasp, takes_energy_from_the_hand_on_every_round) {
         before = moment_.work;
     }
     EXPECT_GT(stored, 0.01);
+}
+
+// One jaw waits beside the cube, where it touches nothing; the other pushes the tissue against it.
+TEST_P(Grasp, a_jaw_feels_tissue_that_the_other_pushes_against_it) {
+    for (const double friction_here : {0.0, friction}) {
+        Case c = case_;
+        c.haptics.friction_at_rest = c.haptics.friction_sliding = friction_here;
+        HapticModel model(c, usual_contact_method, 2);
+        std::array<TickResult, 2> jaws{};
+        for (int tick = 0; tick <= 600; ++tick) {
+            const double pushed = std::min(0.01 * tick, 5.0);
+            model.tick(std::array{held_at({-2 + pushed, 10.3, 17}, up), held_at({21.3, 10.3, 17}, up)}, jaws);
+        }
+        EXPECT_GT(force_of(jaws[1]).x(), 0.001) << friction_here;
+        for (const TickResult& jaw : jaws) EXPECT_EQ(jaw.status & contact_unsolved, 0U) << friction_here;
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Jaws, Grasp, ::testing::Values(0.0, 5.0),

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <Eigen/Geometry>
+#include <cmath>
 #include <gtest/gtest.h>
+#include <numbers>
 
+#include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
 #include "runtime/devices/jaws/jaws.hpp"
 #include "runtime/session/jaws/grasp_place.hpp"
@@ -47,6 +50,8 @@ TEST_F(GraspPlaceTest, open_jaws_come_there_clear_of_every_body) {
                 for (double along = 0; along <= jaws_.jaw_length; along += 2)
                     for (std::size_t body = 0; body < model_.body_count(); ++body) {
                         EXPECT_TRUE(model_.surface(body).is_outside(tip + along * shaft));
+                        EXPECT_FALSE(
+                            model_.surface(body).closest_point(tip + along * shaft, 0.9 * jaws_.jaw_radius));
                     }
     }
 }
@@ -74,9 +79,15 @@ TEST(JoinedJaws, is_what_the_hand_does_and_feels) {
     second.contact_count = 40;
     for (Contact& contact : first.contacts) contact.triangle = 5;
     for (Contact& contact : second.contacts) contact.triangle = 7;
-    const TickResult joined = joined_jaws(first, second);
-    EXPECT_EQ(joined.device_position, (std::array<double, 3>{2, 2, 4}));
-    EXPECT_EQ(joined.tool_position, (std::array<double, 3>{1, 0, 0}));
+    first.buttons = 1;
+    // Open by twice 30 degrees about a hinge 10 mm behind: closed, the tips are so much farther from it.
+    first.shaft = {0.5, 0, std::sqrt(0.75)};
+    second.shaft = {-0.5, 0, std::sqrt(0.75)};
+    const TickResult joined = joined_jaws(first, second, 10);
+    const double farther = 10 * (1 - std::sqrt(0.75));
+    EXPECT_NEAR((vector_of(joined.device_position) - Vector3d(2, 2, 4 - farther)).norm(), 0, 1e-12);
+    EXPECT_NEAR((vector_of(joined.tool_position) - Vector3d(1, 0, -farther)).norm(), 0, 1e-12);
+    EXPECT_EQ(joined.buttons, 0U);
     EXPECT_EQ(joined.force, (std::array<double, 3>{0, 0.5, 0}));
     EXPECT_EQ(joined.depth, 2);
     EXPECT_EQ(joined.body, 4);

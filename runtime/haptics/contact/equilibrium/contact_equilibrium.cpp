@@ -197,7 +197,7 @@ void ContactEquilibrium::iterate(int most) noexcept {
     double went =
         std::numeric_limits<double>::infinity();  // mm, at the most, since spheres looked around them
     const auto may_go_on = [&](int iteration) {
-        const bool few = rows_.size() + neighbours_.row_count() <= few_rows;
+        const bool few = rows_.size() + neighbours_.row_count() + tangents_.size() <= few_rows;
         return iteration < most || (few && spare_iterations_-- > 0);
     };
     for (int iteration = 0; may_go_on(iteration); ++iteration) {

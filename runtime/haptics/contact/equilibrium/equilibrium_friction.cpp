@@ -55,6 +55,8 @@ Vector3d ContactEquilibrium::free_slip_of(const Rubbing& rubbing) const noexcept
     const Tool& tool = tools_[static_cast<std::size_t>(rubbing.group->tool)];
     Vector3d slip =
         slip_before(touch) + part.sphere.device + dragged_off_of(tool, part) - touch.rubbed_centre;
+    // What turning moves the sphere beyond what is in proportion to what turns it.
+    if (turns()) slip += off_of(tool, part) - tool.off - tool.turn.cross(part.swung);
     const DeformedPatch& patch = patch_of(*rubbing.group);
     for (const auto& [slot, share] : rubbing.bearings)
         slip -= share * (patch.held_displacement(slot) - patch.displacement_before(slot));
@@ -67,6 +69,7 @@ void ContactEquilibrium::find_rubbing() noexcept {
         for (Part& part : tool.parts)
             for (Touch& touch : part.touches) touch.press = 0;
     rubbing_.clear();
+    tangents_.clear();
     for (const Group& group : groups_) {
         if (!measure_press(group)) continue;
         Rubbing& rubbing = rubbing_.push_back();
@@ -94,7 +97,6 @@ bool ContactEquilibrium::measure_press(const Group& group) noexcept {
 // is one problem: solves it again, each sphere that does not slide with two rows that hold it along the
 // surface.
 void ContactEquilibrium::hold_together() noexcept {
-    tangents_.clear();
     for (Rubbing& rubbing : rubbing_) {
         const Touch& touch = touch_of(*rubbing.group);
         if (!touch.pressed || touch.slides || tangents_.size() + 2 > ContactLcp::most_tangents) continue;
