@@ -8,7 +8,6 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <span>
 #include <string>
@@ -28,8 +27,8 @@
 #include "runtime/visual/controls/opened_window.hpp"
 #include "runtime/visual/controls/view_history.hpp"
 #include "runtime/visual/detail/drawn_detail.hpp"
+#include "runtime/visual/hand/pointed_scene.hpp"
 #include "runtime/visual/hand/pointer_hand.hpp"
-#include "runtime/visual/hand/surface_under.hpp"
 #include "runtime/visual/hand/view_control.hpp"
 #include "runtime/visual/inside/endoscope.hpp"
 #include "runtime/visual/lesson/lesson_panel.hpp"
@@ -217,23 +216,15 @@ struct TrainWindow::Parts {
             if (leads && !covered(now[0], now[1])) hand.point({now[0], now[1]});
             return;
         }
-        if (drag == Drag::carry) return carry(dx, dy);
         vtkCamera* camera = renderer->GetActiveCamera();
+        const int height = window->GetSize()[1];
+        if (drag == Drag::carry)
+            return hand.move(way_of_drag(camera, dx, dy, depth_of(camera, hand.place()), height));
         if (drag == Drag::turn) turn_view(camera, dx, dy);
-        if (drag == Drag::shift) pan_view(camera, dx, dy, window->GetSize()[1]);
+        if (drag == Drag::shift) pan_view(camera, dx, dy, height);
         if (drag == Drag::roll) roll_view(camera, dx);
         if (drag == Drag::zoom) camera->Dolly(std::pow(zoom_step, dy / zoom_pixels));
         hand.view_changed();
-    }
-
-    // By so many pixels, as if it hung on the pointer.
-    void carry(double dx, double dy) {
-        vtkCamera* camera = renderer->GetActiveCamera();
-        const auto [right, up, eye] = view_axes(camera);
-        const double away = eye.dot(Vector3d(camera->GetPosition()) - hand.place());
-        const double half_angle = camera->GetViewAngle() * std::numbers::pi / 360;
-        const double mm_per_pixel = 2 * away * std::tan(half_angle) / window->GetSize()[1];
-        hand.move(mm_per_pixel * (dx * right + dy * up));
     }
 
     // Whether something to click on lies over the scene there.
@@ -274,15 +265,7 @@ struct TrainWindow::Parts {
     void lead_hand() {
         const auto now = std::chrono::steady_clock::now();
         const double seconds = std::chrono::duration<double>(now - std::exchange(hand_led, now)).count();
-        const auto surfaces = touchable();
-        const PointerScene pointed{
-            .under = [&](const Eigen::Vector2d& pixel) -> std::optional<SeenPoint> {
-                const auto [near, far] = segment_under(renderer, pixel.x(), pixel.y());
-                return surface_under(surfaces, near, far, tool_radius, cut);
-            },
-            .blocked = [&](const Vector3d& from,
-                           const Vector3d& to) { return is_blocked(surfaces, from, to, tool_radius); }};
-        hand.advance(seconds, pointed);
+        hand.advance(seconds, pointed_scene(renderer, touchable(), tool_radius, cut));
     }
 
     void move_by_key(const std::string& key) {

@@ -45,13 +45,17 @@ void roll_view(vtkCamera* camera, double dx) {
 
 void pan_view(vtkCamera* camera, double dx, double dy, int window_height) {
     const Vector3d focus(camera->GetFocalPoint());
-    const auto [right, up, eye] = view_axes(camera);
-    const double pixel_mm =
-        2 * camera->GetDistance() * std::tan(camera->GetViewAngle() * std::numbers::pi / 360) / window_height;
-    const Vector3d way = -(right * dx + up * dy) * pixel_mm;
+    const Vector3d way = -way_of_drag(camera, dx, dy, camera->GetDistance(), window_height);
     const Vector3d new_focus = focus + way, new_place = Vector3d(camera->GetPosition()) + way;
     camera->SetFocalPoint(new_focus.data());
     camera->SetPosition(new_place.data());
+}
+
+Vector3d way_of_drag(vtkCamera* camera, double dx, double dy, double depth, int window_height) {
+    const auto [right, up, eye] = view_axes(camera);
+    const double pixel_mm =
+        2 * depth * std::tan(camera->GetViewAngle() * std::numbers::pi / 360) / window_height;
+    return (right * dx + up * dy) * pixel_mm;
 }
 
 double depth_of(vtkCamera* camera, const Vector3d& place) {

@@ -20,6 +20,10 @@ void turn_view(vtkCamera* camera, double dx, double dy);
 void roll_view(vtkCamera* camera, double dx);
 void pan_view(vtkCamera* camera, double dx, double dy, int window_height);
 
+/// How far something that lies so deep before the eye (mm) goes in the view's plane to stay under a pointer
+/// that is dragged by dx, dy pixels, frame P, mm.
+Eigen::Vector3d way_of_drag(vtkCamera* camera, double dx, double dy, double depth, int window_height);
+
 /// How far before the eye a place (p_P, mm) lies, along the way it looks, mm.
 double depth_of(vtkCamera* camera, const Eigen::Vector3d& place);
 
