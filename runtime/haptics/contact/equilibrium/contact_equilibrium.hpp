@@ -300,7 +300,7 @@ class ContactEquilibrium {
     double answer(std::size_t iterate) noexcept;
     void rub(std::size_t iterate) noexcept;
     void keep_hold() noexcept;
-    Bearings bearings_of(const Group& group, double press) const noexcept;
+    void find_bearings(const Group& group, Bearings& bearings) const noexcept;
     Eigen::Vector3d free_slip_of(const Rubbing& rubbing) const noexcept;
     void find_rubbing() noexcept;
     bool measure_press(const Group& group) noexcept;

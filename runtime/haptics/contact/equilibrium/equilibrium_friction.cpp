@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Friction between tools and tissue; part of the tick.
 //
-// Where a sphere presses, friction holds it and the tissue together: the drag on the tool is what undoes the
-// way that they have gone past each other, along with the coupling and the tissue's own compliance, until
-// that is more than Coulomb's law lets it be.
+// Where a sphere presses, friction holds it and the tissue together: the drag d on the tool is what undoes
+// the way s that they have gone past each other, along with the coupling and the tissue's own compliance,
+// until that is more than Coulomb's law lets it be. Until then s + c d = 0, c what a drag shears: shearing().
+//
+// Of one sphere d follows from s. Of several, d and what presses are unknown together:
+//     w = A f - gaps >= 0, f >= 0, f . w = 0    for what presses, as without friction,
+//     s + c d = 0                               for two directions d of each sphere that does not slide,
+// with s and gaps linear in f and d by one symmetric matrix: a ContactLcp some of whose rows may pull.
 #include <Eigen/Geometry>
 #include <algorithm>
 
@@ -15,22 +20,18 @@ using Eigen::Index;
 using Eigen::Vector3d;
 
 // The vertices that bear a sphere, with their shares of the press.
-ContactEquilibrium::Bearings ContactEquilibrium::bearings_of(const Group& group,
-                                                             double press) const noexcept {
-    Bearings bearings;
+void ContactEquilibrium::find_bearings(const Group& group, Bearings& bearings) const noexcept {
+    bearings.clear();
     for (const Row& row : rows_of(group))
         for (std::size_t i = 0; i < 3 && row.force > 0; ++i) {
-            const double share = row.weights[static_cast<Index>(i)] * row.force / press;
+            const double share = row.weights[static_cast<Index>(i)] * row.force / touch_of(group).press;
             if (!(share > 0)) continue;
-            const auto known = std::find_if(bearings.begin(), bearings.end(), [&](const Bearing& bearing) {
-                return bearing.slot == row.slots[i];
-            });
+            const auto known = std::ranges::find(bearings, row.slots[i], &Bearing::slot);
             if (known != bearings.end())
                 known->share += share;
             else
                 bearings.push_back({row.slots[i], share});
         }
-    return bearings;
 }
 
 // How far a sphere has gone past the tissue that bears it and was not held, mm.
@@ -74,7 +75,7 @@ void ContactEquilibrium::find_rubbing() noexcept {
         if (!measure_press(group)) continue;
         Rubbing& rubbing = rubbing_.push_back();
         rubbing.group = &group;
-        rubbing.bearings = bearings_of(group, touch_of(group).press);
+        find_bearings(group, rubbing.bearings);
         rubbing.held = false;
     }
 }
@@ -119,6 +120,9 @@ void ContactEquilibrium::hold_together() noexcept {
     residual_ = lcp_.solve_with(first, tangents_.size(), [&](std::size_t row) { fill_any_column(row); });
     for (std::size_t t = 0; t < tangents_.size(); ++t)
         tangents_[t].rubbing->drag += lcp_.forces()[static_cast<Index>(first + t)] * tangents_[t].along;
+    take_forces();
+    for (Rubbing& rubbing : rubbing_)
+        if (measure_press(*rubbing.group)) find_bearings(*rubbing.group, rubbing.bearings);
 }
 
 // How far a drag along one tangent, and its opposite on the tissue, opens the rows and moves spheres past
@@ -181,13 +185,10 @@ void ContactEquilibrium::rub(std::size_t iterate) noexcept {
     for (DeformedPatch& patch : patches_) patch.begin_hold(iterate);
     for (Tool& tool : tools_)
         for (Part& part : tool.parts)
-            for (Touch& touch : part.touches) {
-                touch.press = 0;
-                touch.next_drag[iterate].setZero();
-            }
+            for (Touch& touch : part.touches) touch.next_drag[iterate].setZero();
     for (Rubbing& rubbing : rubbing_) {
         Touch& touch = touch_of(*rubbing.group);
-        if (!measure_press(*rubbing.group)) continue;
+        if (!(touch.press > 0)) continue;
         if (rubbing.held)
             rubbing.drag -= touch.axis.dot(rubbing.drag) * touch.axis;
         else
@@ -198,8 +199,7 @@ void ContactEquilibrium::rub(std::size_t iterate) noexcept {
         if (touch.slides) rubbing.drag *= friction_.sliding * touch.press / wanted;
         touch.next_drag[iterate] = rubbing.drag;
         DeformedPatch& patch = patch_of(*rubbing.group);
-        for (const auto& [slot, share] : bearings_of(*rubbing.group, touch.press))
-            patch.hold(iterate, slot, -share * rubbing.drag);
+        for (const auto& [slot, share] : rubbing.bearings) patch.hold(iterate, slot, -share * rubbing.drag);
     }
     for (DeformedPatch& patch : patches_) patch.end_hold(iterate);
 }
@@ -213,12 +213,13 @@ void ContactEquilibrium::keep_hold() noexcept {
                 touch.pressed = touch.slid = false;
                 touch.slip.setZero();
             }
-    for (const Group& group : groups_) {
+    for (const Rubbing& rubbing : rubbing_) {
+        const Group& group = *rubbing.group;
         const Tool& tool = tools_[static_cast<std::size_t>(group.tool)];
         Touch& touch = touch_of(group);
         if (!(touch.press > 0) || !tool.touching) continue;
-        touch.slip = touch.slides ? Vector3d(-shearing(touch) * touch.drag)
-                                  : slip_of(group, bearings_of(group, touch.press));
+        touch.slip =
+            touch.slides ? Vector3d(-shearing(touch) * touch.drag) : slip_of(group, rubbing.bearings);
         touch.sheared = shearing(touch);
         touch.slid = touch.slides;
         touch.pressed = true;

@@ -305,10 +305,7 @@ void ContactEquilibrium::solve_rows() noexcept {
     take_forces();
     if (friction_.at_rest > 0) {
         find_rubbing();
-        if (rubbing_.size() > 1) {
-            hold_together();
-            take_forces();
-        }
+        if (rubbing_.size() > 1) hold_together();
     }
     neighbours_.take({lcp_.forces().data() + n, neighbours_.row_count()});
 }
