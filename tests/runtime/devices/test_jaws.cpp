@@ -8,6 +8,7 @@
 #include "formats/model/errors.hpp"
 #include "runtime/devices/jaws/grasp_script.hpp"
 #include "runtime/devices/jaws/jaws.hpp"
+#include "tests/runtime/devices/probe_device.hpp"
 
 namespace palpate {
 namespace {
@@ -21,22 +22,6 @@ constexpr double near = 1e-12;  // mm
 constexpr JawSettings jaws{.jaw_length = 20, .jaw_radius = 2, .jaw_opening = 60, .jaw_friction = 0.8};
 constexpr double opened = std::numbers::pi / 3;
 const Quaterniond turned(Eigen::AngleAxisd(1.1, Vector3d(1, 2, -1).normalized()));
-
-// Is where it was told to be and keeps what it was told to render.
-class HeldProbe final : public Device {
-  public:
-    std::string name() const override { return "probe"; }
-    DeviceLimits limits() const override { return {.max_force = 3, .max_stiffness = 0.5, .damping = 1e-3}; }
-    DeviceState read(double time) noexcept override {
-        DeviceState told = state;
-        told.time = time;
-        return told;
-    }
-    void write(const std::array<double, 3>& wanted) noexcept override { force = wanted; }
-
-    DeviceState state;
-    std::array<double, 3> force{};
-};
 
 TEST(JawPlaces, closed_tips_touch_each_other_and_open_ones_turn_about_one_hinge) {
     const Vector3d meet(3, -4, 5);
@@ -71,7 +56,7 @@ class JawsTest : public ::testing::Test {
     }
     void at(double time) { first_ = read(time); }
 
-    std::shared_ptr<HeldProbe> probe_ = std::make_shared<HeldProbe>();
+    std::shared_ptr<ProbeDevice> probe_ = std::make_shared<ProbeDevice>();
     std::shared_ptr<std::atomic<bool>> keys_ = std::make_shared<std::atomic<bool>>(false);
     std::array<std::shared_ptr<Device>, 2> pair_ =
         jaws_of(probe_, jaws, {.orientation = turned, .closed = keys_});

@@ -6,6 +6,7 @@
 
 #include "formats/model/arrays.hpp"
 #include "runtime/devices/mounted_device.hpp"
+#include "tests/runtime/devices/probe_device.hpp"
 
 namespace palpate {
 namespace {
@@ -15,30 +16,6 @@ using namespace realtime;
 using Eigen::Vector3d;
 
 constexpr double mounting_error = 1e-12;  // of a few products of numbers around 100
-
-// Is where it was told to be and keeps what it was told to render, frame D.
-class Probe final : public Device {
-  public:
-    std::string name() const override { return "probe"; }
-    DeviceLimits limits() const override {
-        return {.max_force = 3,
-                .max_stiffness = 0.5,
-                .damping = 1e-3,
-                .max_continuous_force = 1,
-                .rate_hz = 1000,
-                .workspace_low = {-80, -60, -35},
-                .workspace_high = {80, 60, 45}};
-    }
-    DeviceState read(double time) noexcept override {
-        DeviceState told = state;
-        told.time = time;
-        return told;
-    }
-    void write(const std::array<double, 3>& wanted) noexcept override { force = wanted; }
-
-    DeviceState state;
-    std::array<double, 3> force{};
-};
 
 Eigen::Isometry3d some_mount() {
     return mount_upright({1, 2, 3}, {40, -100, 250}, Vector3d(0.3, -0.9, 0.2).normalized());
@@ -70,7 +47,7 @@ TEST(MountUpright, holds_where_up_is_along_the_patients_x) {
 }
 
 TEST(MountedDevice, positions_and_shaft_come_from_d_to_p_and_everything_else_stays) {
-    Probe probe;
+    ProbeDevice probe;
     probe.state.position = {10, -20, 30};
     probe.state.shaft = {0, 0.6, 0.8};
     probe.state.buttons = 2;
@@ -87,7 +64,7 @@ TEST(MountedDevice, positions_and_shaft_come_from_d_to_p_and_everything_else_sta
 }
 
 TEST(MountedDevice, an_orientation_is_turned_with_the_device_and_its_z_stays_the_shaft) {
-    Probe probe;
+    ProbeDevice probe;
     const Eigen::Quaterniond R_DT(Eigen::AngleAxisd(2, Vector3d(1, -3, 2).normalized()));
     probe.state.orientation = array_of(R_DT);
     probe.state.shaft = array_of(Vector3d(R_DT * Vector3d::UnitZ()));
@@ -101,7 +78,7 @@ TEST(MountedDevice, an_orientation_is_turned_with_the_device_and_its_z_stays_the
 }
 
 TEST(MountedDevice, an_orientation_that_is_not_known_stays_unknown) {
-    Probe probe;
+    ProbeDevice probe;
     probe.state.shaft = {0, 0.6, 0.8};
     MountedDevice mounted(probe, some_mount());
     // Zero is compared, not bits: -0 is as unknown as 0.
@@ -109,7 +86,7 @@ TEST(MountedDevice, an_orientation_that_is_not_known_stays_unknown) {
 }
 
 TEST(MountedDevice, a_force_goes_back_from_p_to_d_and_its_power_is_the_same_in_both) {
-    Probe probe;
+    ProbeDevice probe;
     MountedDevice mounted(probe, some_mount());
     const Vector3d velocity_D(30, -7, 12), force_P(0.5, 1.5, -2);  // mm/s, N
     probe.state.position = {1, 2, 3};
@@ -122,7 +99,7 @@ TEST(MountedDevice, a_force_goes_back_from_p_to_d_and_its_power_is_the_same_in_b
 }
 
 TEST(MountedDevice, states_the_devices_limits_with_a_workspace_that_holds_all_its_corners) {
-    Probe probe;
+    ProbeDevice probe;
     const Eigen::Isometry3d X_PD = some_mount();
     const DeviceLimits own = probe.limits(), limits = MountedDevice(probe, X_PD).limits();
     EXPECT_EQ(limits.max_force, own.max_force);
@@ -145,7 +122,7 @@ TEST(MountedDevice, states_the_devices_limits_with_a_workspace_that_holds_all_it
 }
 
 TEST(MountedDevice, may_own_the_device) {
-    MountedDevice mounted(std::make_unique<Probe>(), Eigen::Isometry3d::Identity());
+    MountedDevice mounted(std::make_unique<ProbeDevice>(), Eigen::Isometry3d::Identity());
     EXPECT_EQ(mounted.name(), "probe");
 }
 
