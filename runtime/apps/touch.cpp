@@ -73,8 +73,8 @@ Json touch(const TouchOptions& options, cli::Session& session) {
     tell_unfelt(patient_case, options.scheme);
     const TouchPlan plan = plan_of(options, device.kind, patient_case, model);
     if (!options.virtual_clock) cli::end_softly_on_interrupt();
-    if (plan.grasp) run.hold_jaws(plan.grasp->grasp.orientation);
-    run.hold(device.open(request_of(options, device.kind, plan, model)));
+    run.hold(device.open(request_of(options, device.kind, plan, model)),
+             plan.grasp ? plan.grasp->grasp.orientation : Eigen::Quaterniond::Identity());
     if (!options.record.empty()) start_recording(run, options.record, options.record_seconds, session);
     std::vector<RunRecord> records = outputs.records_of(model);
     const auto take = [&](const TickResult& result) { records[result.tool].add(result); };
@@ -90,10 +90,9 @@ Json touch(const TouchOptions& options, cli::Session& session) {
     }
 
     // A script's file name may name a patient.
-    const std::string script = !device.kind.simulated ? "none"
-                               : is_made_to_measure(options.script) || options.script == devices::grasp_script
-                                   ? options.script
-                                   : "file";
+    const std::string script = !device.kind.simulated               ? "none"
+                               : is_made_to_measure(options.script) ? options.script
+                                                                    : "file";
     outputs.commit(records.front(),
                    patient_case.name + ": " + (device.kind.simulated ? script : options.device));
 

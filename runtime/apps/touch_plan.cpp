@@ -63,8 +63,7 @@ TouchPlan grasp_plan(const TouchOptions& options, const DeviceKind& device, cons
 
 TouchPlan plan_of(const TouchOptions& options, const DeviceKind& device, const Case& patient_case,
                   const HapticModel& model) {
-    const bool made_here = is_made_to_measure(options.script) || options.script == grasp_script;
-    if (device.simulated && !options.column && !made_here) {
+    if (device.simulated && !options.column && !is_made_to_measure(options.script)) {
         HandPath path = recorded_path(options.script, options.tool.has_jaws());
         const double seconds = options.seconds_given ? options.seconds : path.duration();
         require_playable(seconds);
@@ -97,9 +96,9 @@ DeviceRequest request_of(const TouchOptions& options, const DeviceKind& device, 
     if (options.tool.has_jaws()) request.limits = limits_of_both(request.limits);
     const Eigen::Vector3d up = plan.target ? plan.target->place.normal : anterior;
     if (plan.grasp) {
-        const Eigen::Vector3d out = plan.grasp->grasp.orientation * Eigen::Vector3d::UnitZ();
-        const DevicePlace place{plan.grasp->grasp.meet + 2 * plan.grasp->grasp.depth * out, upright(out)};
-        request.tools.push_back(plan.path ? scripted_tool(*plan.path, out, array_of(out))
+        const Grasp& grasp = plan.grasp->grasp;
+        const DevicePlace place{grasp.outside(), upright(grasp.out())};
+        request.tools.push_back(plan.path ? scripted_tool(*plan.path, grasp.out(), array_of(grasp.out()))
                                           : HeldTool{.place = place});
         return request;
     }
@@ -124,7 +123,7 @@ std::size_t tools_of(const TouchOptions& options, const DeviceChoice& device) {
 void refuse_idle_options(const cli::Command& command, const TouchOptions& options) {
     constexpr std::array of_scripts{"--script", "--column", "--depth", "--speed", "--shaft", "--seed"};
     const bool physical = !choose_device(options.device, "--device").kind.simulated;
-    constexpr std::array of_one_tip{"--column", "--shaft", "--second", "--seed"};
+    constexpr std::array of_one_tip{"--column", "--shaft", "--seed"};
     for (const cli::Parameter& parameter : command.parameters()) {
         if (!cli::asked_for(parameter)) continue;
         const std::string name = parameter.option.name();
@@ -141,14 +140,7 @@ void refuse_contradictions(const TouchOptions& options, const DeviceChoice& devi
     const ContactMethodEntry& method = find_contact_method(options.scheme, "--scheme");
     const std::size_t tools = tools_of(options, device);
     const std::string with = "with --device " + options.device;
-    if (options.tool.has_jaws() && device.tool_count != 1)
-        throw UsageError(
-            {"--device", options.device + " with --instrument forceps", "one device", "it holds both jaws"});
-    if (options.tool.has_jaws() && is_made_to_measure(options.script))
-        throw UsageError({"--script", options.script + " with --instrument forceps",
-                          std::string(grasp_script) + " or a file", ""});
-    if (!options.tool.has_jaws() && options.script == grasp_script)
-        throw UsageError({"--script", options.script, "--instrument forceps beside it", ""});
+    check_hand(options.tool, options.script, device, options.second);
     if (options.virtual_clock && !options.stream.empty())
         throw UsageError({"--stream", "with --virtual-clock", "the real clock", ""});
     if (!device.kind.simulated && options.virtual_clock)

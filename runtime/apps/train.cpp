@@ -86,24 +86,24 @@ HandPath grasp_or_recorded(const Options& options, const GraspPlace& place) {
 
 // A rim as a place that is touched from where the forceps comes.
 TouchTarget target_of(const GraspPlace& place) {
-    const Grasp& grasp = place.grasp;
     TouchTarget target{.body = place.body, .place = {}};
-    target.place.normal = grasp.orientation * Eigen::Vector3d::UnitZ();
-    target.place.tangent = grasp.orientation * Eigen::Vector3d::UnitX();
-    target.place.point = grasp.meet + grasp.depth * target.place.normal;
+    target.place.normal = place.grasp.out();
+    target.place.tangent = place.grasp.orientation * Eigen::Vector3d::UnitX();
+    target.place.point = place.grasp.rim();
     return target;
 }
 
 // From the side, so that both jaws are seen and which way they go; from whichever less stands before, and
 // wide enough for the way there.
-Sight sight_of(const Case& patient_case, const HapticModel& model, const GraspPlace& place,
+Sight sight_of(const Case& patient_case, const HapticModel& model, const Grasp& grasp,
                const JawSettings& jaws) {
-    constexpr double jaws_seen = 5;  // lengths of a jaw
-    const Eigen::Vector3d out = place.grasp.orientation * Eigen::Vector3d::UnitZ();
-    const Eigen::Vector3d beside = place.grasp.orientation * Eigen::Vector3d::UnitY();
-    const Eigen::Vector3d rim = place.grasp.meet + place.grasp.depth * out;
-    Sight sight = first_sight(patient_case, model, rim, (out + 1.5 * beside).normalized());
-    if (sight.blocked) sight = first_sight(patient_case, model, rim, (out - 1.5 * beside).normalized());
+    constexpr double jaws_seen = 5, aside = 1.5;  // lengths of a jaw; to the side for each one out
+    const Eigen::Vector3d beside = aside * (grasp.orientation * Eigen::Vector3d::UnitY());
+    const auto look = [&](const Eigen::Vector3d& from) {
+        return first_sight(patient_case, model, grasp.rim(), from.normalized());
+    };
+    Sight sight = look(grasp.out() + beside);
+    if (sight.blocked) sight = look(grasp.out() - beside);
     if (!sight.inside) sight.field = std::max(sight.field, jaws_seen * jaws.jaw_length);
     return sight;
 }
@@ -136,23 +136,6 @@ DeviceRequest request_of(const Options& options, const DeviceKind& device, const
     return request;
 }
 
-// A forceps is one device's, and its scripts are its own.
-void refuse_beside_jaws(const Options& options, const DeviceChoice& device) {
-    if (!options.tool.has_jaws()) {
-        if (options.script == grasp_script)
-            throw UsageError({"--script", options.script, "--instrument forceps beside it", ""});
-        return;
-    }
-    if (!options.second.empty())
-        throw UsageError({"--second", "with --instrument forceps", "", "leave it out"});
-    if (device.tool_count != 1)
-        throw UsageError(
-            {"--device", options.device + " with --instrument forceps", "one device", "it holds both jaws"});
-    if (is_made_to_measure(options.script))
-        throw UsageError({"--script", options.script + " with --instrument forceps",
-                          std::string(grasp_script) + " or a file", ""});
-}
-
 // Where the tool starts: where it is told to, in an exercise where something is to be felt, otherwise as
 // 'touch'.
 TouchTarget start_of(const Options& options, const Session& run) {
@@ -179,7 +162,7 @@ Json train(const Options& options, cli::Session& session) {
     if (!device.kind.simulated && !options.second.empty())
         throw UsageError({"--second", "with --device " + options.device, "a simulated device", ""});
     find_contact_method(options.scheme, "--scheme");
-    refuse_beside_jaws(options, device);
+    check_hand(options.tool, options.script, device, options.second);
     const std::size_t tools = options.second.empty() && !options.tool.has_jaws() ? device.tool_count : 2;
     const auto trusted = asset::read_public_keys(options.trusted);
     const auto tool = tool_body(options.tool);
@@ -209,19 +192,19 @@ Json train(const Options& options, cli::Session& session) {
                                    point_of("--target", options.target));
     const TouchTarget target = grasp ? target_of(*grasp) : start_of(options, run);
     const TouchPoint& place = target.place;
-    const Eigen::Vector3d start = grasp ? Eigen::Vector3d(place.point + grasp->grasp.depth * place.normal)
-                                        : start_outside(place, tip_reach(patient_case));
+    const Eigen::Vector3d start =
+        grasp ? grasp->grasp.outside() : start_outside(place, tip_reach(patient_case));
     WindowSettings window_settings{
         .start = start,
-        .sight = grasp ? sight_of(patient_case, run.model(), *grasp, *run.jaws())
+        .sight = grasp ? sight_of(patient_case, run.model(), grasp->grasp, *run.jaws())
                        : first_sight(patient_case, run.model(), place.point, place.normal),
         .cautions = provenance::cautions_in(patient_case.provenance),
         .surfaces = surfaces_of(run.model())};
     if (grasp) window_settings.forceps = {place.normal, run.jaws()->jaw_length};
     cli::end_softly_on_interrupt();
-    if (grasp) run.hold_jaws(grasp->grasp.orientation);
-    run.hold(device.open(
-        request_of(options, device.kind, run.model(), place, grasp, start, window_settings.sight.axes())));
+    run.hold(device.open(request_of(options, device.kind, run.model(), place, grasp, start,
+                                    window_settings.sight.axes())),
+             grasp ? grasp->grasp.orientation : Eigen::Quaterniond::Identity());
 
     std::vector<LaidOut> exercises = lay_out_exercises(options.lesson, run, target);
     // What an exercise leads along is looked at closely too.

@@ -58,6 +58,9 @@ struct TouchPoint {
     double clearance = 5;     ///< free way of the tool outside the point, mm
 };
 
+/// Throws UsageError of `option` where a number that a script asks for is not finite or `holds` is not true.
+void require_script(const char* option, double found, bool holds, const char* expected);
+
 /// How deep and how fast a script moves.
 struct ScriptSettings {
     double tool_radius = 1;   ///< mm

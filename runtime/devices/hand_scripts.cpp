@@ -44,14 +44,9 @@ Vector3d centre_at(const TouchPoint& target, const ScriptSettings& settings, dou
 }
 
 void check(const ScriptSettings& settings) {
-    const auto require = [](bool holds, const char* option, double found, const char* expected) {
-        if (!holds) throw UsageError({option, std::to_string(found), expected, ""});
-    };
-    require(settings.speed > 0 && std::isfinite(settings.speed), "--speed", settings.speed,
-            "more than 0 mm/s");
-    require(settings.depth >= 0 && std::isfinite(settings.depth), "--depth", settings.depth, "0 mm or more");
-    require(settings.seconds > 0 && std::isfinite(settings.seconds), "--seconds", settings.seconds,
-            "more than 0 s");
+    require_script("--speed", settings.speed, settings.speed > 0, "more than 0 mm/s");
+    require_script("--depth", settings.depth, settings.depth >= 0, "0 mm or more");
+    require_script("--seconds", settings.seconds, settings.seconds > 0, "more than 0 s");
 }
 
 // A number that depends on the seed alone, not on the library.
@@ -60,6 +55,10 @@ double uniform(std::mt19937_64& random, double low, double high) {
 }
 
 }  // namespace
+
+void require_script(const char* option, double found, bool holds, const char* expected) {
+    if (!holds || !std::isfinite(found)) throw UsageError({option, std::to_string(found), expected, ""});
+}
 
 HandPath press_path(const TouchPoint& target, const ScriptSettings& settings) {
     check(settings);

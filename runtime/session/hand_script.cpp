@@ -7,19 +7,22 @@
 #include <string_view>
 
 #include "formats/model/errors.hpp"
+#include "runtime/devices/jaws/grasp_script.hpp"
 
 namespace palpate::session {
 namespace {
 
 using namespace devices;
 
-constexpr std::array<std::string_view, 5> scripts{"press", "slide", "tremble", "let-go", "random"};
+constexpr std::array<std::string_view, 6> scripts{"press",  "slide",  "tremble",
+                                                  "let-go", "random", grasp_script};
 
 // A script may have been mistyped.
-void require_file(const std::string& script) {
+void require_file(const std::string& script, bool of_forceps) {
     if (!std::filesystem::exists(script))
         throw InvalidInput({script, "no such script or file",
-                            "press, slide, tremble, let-go, random or a file of positions",
+                            of_forceps ? "grasp or a file of poses and jaw angles"
+                                       : "press, slide, tremble, let-go, random or a file of positions",
                             "check the path"});
 }
 
@@ -39,7 +42,7 @@ HandPath made_to_measure_path(const std::string& script, const TouchPoint& place
 }
 
 HandPath recorded_path(const std::string& script, bool of_forceps) {
-    require_file(script);
+    require_file(script, of_forceps);
     HandPath path = read_hand_path(script);
     const bool has_angles = path.keys().front().jaw_angle >= 0;
     if (of_forceps && !has_angles)
@@ -55,7 +58,7 @@ HandPath recorded_axis_path(const std::string& script, std::size_t column, const
                             const ScriptSettings& settings) {
     if (is_made_to_measure(script))
         throw UsageError({"--column", "with --script " + script, "a file of a recorded axis", ""});
-    require_file(script);
+    require_file(script, false);
     return recorded_axis_path(place, settings, read_column(script, column));
 }
 

@@ -8,10 +8,10 @@
 namespace palpate::session {
 
 /// Whether a script is one that is made to measure for a place on the surface ("press", "slide", "tremble",
-/// "let-go", "random") rather than a file.
+/// "let-go", "random"; of a forceps grasp_script) rather than a file.
 bool is_made_to_measure(const std::string& script);
 
-/// The path of such a script at a place; `seed` is of "random" and "tremble".
+/// The path of such a script, but for a forceps', at a place; `seed` is of "random" and "tremble".
 devices::HandPath made_to_measure_path(const std::string& script, const devices::TouchPoint& place,
                                        const devices::ScriptSettings& settings, std::uint64_t seed);
 

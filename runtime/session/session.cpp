@@ -64,14 +64,14 @@ Session::~Session() {
     stop();
 }
 
-void Session::hold(devices::OpenDevices devices) {
+void Session::hold(devices::OpenDevices devices, const Eigen::Quaterniond& jaws) {
     devices_.driver = std::move(devices.driver);
     devices_.devices = std::move(devices.devices);
     if (request_.jaws && devices_.devices.size() != 1)
         throw InvalidInput({"a forceps", std::to_string(devices_.devices.size()) + " devices", "one", ""});
     if (request_.jaws)
         std::ranges::move(devices::jaws_of(std::exchange(devices_.devices, {}).at(0), *request_.jaws,
-                                           {.orientation = jaw_orientation_, .closed = jaws_closed_}),
+                                           {.orientation = jaws, .closed = jaws_closed_}),
                           std::back_inserter(devices_.devices));
     devices_.servo = devices.servo;
     devices_.guide = std::move(devices.guide);

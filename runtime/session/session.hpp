@@ -66,10 +66,9 @@ class Session {
     /// Takes devices, one for each tool, or one for both jaws of a forceps, couples the model to what they
     /// bear and begins to listen for viewers of the stream. Once, before what follows. Throws as ServoLoop
     /// and LiveStream.
-    void hold(devices::OpenDevices devices);
-    /// Of a forceps that its device neither turns nor opens: how it is held, and whether it is to close. One
-    /// thread.
-    void hold_jaws(const Eigen::Quaterniond& orientation) noexcept { jaw_orientation_ = orientation; }
+    /// `jaws`: how a forceps is turned, R_PT, where its device does not say.
+    void hold(devices::OpenDevices devices, const Eigen::Quaterniond& jaws = Eigen::Quaterniond::Identity());
+    /// Whether a forceps that its device does not open is to close. One thread.
     void close_jaws(bool closed) noexcept { jaws_closed_->store(closed); }
     bool jaws_closed() const noexcept { return jaws_closed_->load(); }
     /// Of a forceps; nothing where something else is held.
@@ -126,7 +125,6 @@ class Session {
     std::vector<std::unique_ptr<haptics::HapticModel>> models_;  // one for each method so far
     haptics::HapticModel* model_;                                // that ticks
     devices::OpenDevices devices_;
-    Eigen::Quaterniond jaw_orientation_{1, 0, 0, 0};
     std::shared_ptr<std::atomic<bool>> jaws_closed_ = std::make_shared<std::atomic<bool>>(false);
     std::optional<haptics::ServoLoop> loop_;
     std::optional<RunWatch> watch_;

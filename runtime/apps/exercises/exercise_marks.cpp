@@ -34,7 +34,7 @@ void show_places(const Exercise& exercise, const Goals& goals, bool afterwards, 
             if (gates && state == State::due && !afterwards) view.look_at = places[i];
         }
     }
-    if (exercise.task == Task::retract && !places.empty()) {
+    if (exercise.task == Task::retract) {
         const State take = goals.was_drawn || goals.reached > 0 ? State::done : State::due;
         view.marks.push_back({places[0], 2 * radius, take, Eigen::Vector3d::Zero()});
         const Eigen::Vector3d pull = places[2] - places[1];

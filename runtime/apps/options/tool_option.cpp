@@ -7,7 +7,9 @@
 
 #include "formats/model/errors.hpp"
 #include "formats/stl_file/read_stl.hpp"
+#include "runtime/devices/jaws/grasp_script.hpp"
 #include "runtime/haptics/methods/contact_methods.hpp"
+#include "runtime/session/hand_script.hpp"
 #include "tools/cli/record_options.hpp"
 #include "tools/cli/refuse_beside.hpp"
 
@@ -59,6 +61,19 @@ void check(const cli::Command& command, const ToolOption& option, const std::str
                         "--instrument forceps beside it");
     if (const auto error = first_error(jaw_fields, option.jaws))
         throw UsageError({option_name(error->name), error->found, error->expected, ""});
+}
+
+void check_hand(const ToolOption& option, const std::string& script, const session::DeviceChoice& device,
+                const std::string& second) {
+    const std::string grasp(devices::grasp_script), with = " with --instrument forceps";
+    if (!option.has_jaws() && script == grasp)
+        throw UsageError({"--script", script, "--instrument forceps beside it", ""});
+    if (!option.has_jaws()) return;
+    if (device.tool_count != 1)
+        throw UsageError({"--device", device.text + with, "one device", "it holds both jaws"});
+    if (!second.empty()) throw UsageError({"--second", "with --instrument forceps", "", "leave it out"});
+    if (session::is_made_to_measure(script) && script != grasp)
+        throw UsageError({"--script", script + with, grasp + " or a file", ""});
 }
 
 std::optional<ToolBody> tool_body(const ToolOption& option) {

@@ -7,6 +7,7 @@
 #include "formats/model/body.hpp"
 #include "formats/records/jaw_settings.hpp"
 #include "formats/records/status_counts.hpp"
+#include "runtime/session/device_list.hpp"
 #include "tools/cli/command.hpp"
 
 namespace palpate::apps {
@@ -27,6 +28,11 @@ void declare(cli::Command& command, ToolOption& option);
 
 /// Throws UsageError if a setting is given without its --instrument, or `scheme` does not feel such a tool.
 void check(const cli::Command& command, const ToolOption& option, const std::string& scheme);
+
+/// Throws UsageError for what does not go with a forceps, one device's, or only with one: made to measure
+/// `script`s, several devices, a second tool.
+void check_hand(const ToolOption& option, const std::string& script, const session::DeviceChoice& device,
+                const std::string& second);
 
 /// What is held and turns by itself; nothing without --instrument, or of a forceps. Throws as read_stl().
 std::optional<ToolBody> tool_body(const ToolOption& option);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "formats/model/errors.hpp"
+#include "runtime/devices/hand_path.hpp"
 #include "runtime/devices/jaws/jaws.hpp"
 
 namespace palpate::devices {
@@ -14,25 +14,19 @@ namespace {
 using Eigen::Vector3d;
 
 void check(const GraspSettings& settings) {
-    const auto require = [](bool holds, const char* option, double found, const char* expected) {
-        if (!holds) throw UsageError({option, std::to_string(found), expected, ""});
-    };
-    require(settings.speed > 0 && std::isfinite(settings.speed), "--speed", settings.speed,
-            "more than 0 mm/s");
-    require(settings.pull >= 0 && std::isfinite(settings.pull), "--depth", settings.pull, "0 mm or more");
-    require(settings.seconds > 0 && std::isfinite(settings.seconds), "--seconds", settings.seconds,
-            "more than 0 s");
+    require_script("--speed", settings.speed, settings.speed > 0, "more than 0 mm/s");
+    require_script("--depth", settings.pull, settings.pull >= 0, "0 mm or more");
+    require_script("--seconds", settings.seconds, settings.seconds > 0, "more than 0 s");
 }
 
 }  // namespace
 
 HandPath grasp_path(const Grasp& grasp, const JawSettings& jaws, const GraspSettings& settings) {
     check(settings);
-    const Vector3d out = grasp.orientation * Vector3d::UnitZ();
     const double opened = open_angle(jaws);
     const double left = std::min(1.0, (1 - settings.pinch) * grasp.thickness / (2 * jaws.jaw_length));
     const double closed = std::min(opened, 2 * std::asin(left));
-    const Vector3d outside = grasp.meet + 2 * grasp.depth * out, away = grasp.meet + settings.pull * out;
+    const Vector3d outside = grasp.outside(), away = grasp.meet + settings.pull * grasp.out();
     std::vector<HandPath::Key> keys{{0, outside, true, grasp.orientation, opened}};
     const auto go = [&](double seconds, const Vector3d& meet, double angle) {
         if (seconds > 0) keys.push_back({keys.back().time + seconds, meet, true, grasp.orientation, angle});

@@ -16,6 +16,11 @@ struct Grasp {
     Eigen::Quaterniond orientation;  ///< R_PT
     double thickness = 0;            ///< of the tissue there, mm
     double depth = 0;                ///< of the tips below the rim, mm
+
+    Eigen::Vector3d out() const { return orientation * Eigen::Vector3d::UnitZ(); }  ///< along the shaft
+    Eigen::Vector3d rim() const { return meet + depth * out(); }                    ///< p_P, mm
+    /// From where the tips go in, as far outside the rim as they go below it.
+    Eigen::Vector3d outside() const { return rim() + depth * out(); }
 };
 
 /// How hard and how far.

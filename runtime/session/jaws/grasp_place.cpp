@@ -47,9 +47,8 @@ std::optional<devices::Grasp> rim_below(const CollisionSurface& surface, const J
 bool is_reached(const HapticModel& model, const JawSettings& jaws, const devices::Grasp& grasp) {
     const int spheres = static_cast<int>(std::ceil(jaws.jaw_length / jaws.jaw_radius));
     const int steps = static_cast<int>(std::ceil(2 * grasp.depth / jaws.jaw_radius));
-    const Vector3d out = grasp.orientation * Vector3d::UnitZ();
     for (int step = 0; step <= steps; ++step) {
-        const Vector3d meet = grasp.meet + grasp.depth * 2 * step / steps * out;
+        const Vector3d meet = grasp.meet + (grasp.outside() - grasp.meet) * step / steps;
         for (const devices::JawPlace& jaw :
              devices::jaw_places(meet, grasp.orientation, jaws, devices::open_angle(jaws)))
             for (int sphere = 0; sphere <= spheres; ++sphere) {

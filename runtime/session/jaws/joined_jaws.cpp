@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/session/jaws/joined_jaws.hpp"
 
-#include <algorithm>
-
 #include "formats/model/arrays.hpp"
 
 namespace palpate::session {
