@@ -67,6 +67,9 @@ if(PALPATE_SANITIZERS)
         # A driver's functions are called by declarations of our own, whose structures have other names than its.
         add_compile_options(-fno-sanitize=function)
     endif()
+    if(PALPATE_UNSANITIZED)
+        add_compile_options(-fno-sanitize=${PALPATE_UNSANITIZED})
+    endif()
     # Tests that count allocations ask the sanitizer instead of malloc.
     add_compile_definitions(PALPATE_SANITIZED)
 endif()
@@ -144,8 +147,10 @@ endfunction()
 
 # palpate_test(<room> SOURCES ... LINKS ... [LABEL unit|realtime|slow|...] [PRECOMPILED set] [THREADS]): GoogleTest cases,
 # each a ctest named <room>.<Suite>.<case>. PALPATE_DATA and PALPATE_BIN reach the test through its environment. THREADS:
-# more than one runs in it, so ThreadSanitizer has something to find; its preset has these alone, target `thread_tests`.
+# more than one runs in it, so ThreadSanitizer has something to find; its preset has these alone, target `thread_tests`; target
+# `unit_tests` is all of them. PALPATE_TESTED_SANITIZED: in this folder and those below, preset asan has them too.
 add_custom_target(thread_tests)
+add_custom_target(unit_tests)
 function(palpate_test room)
     cmake_parse_arguments(arg "THREADS" "LABEL;TIMEOUT;PRECOMPILED" "SOURCES;LINKS" ${ARGN})
     if(NOT arg_PRECOMPILED)
@@ -164,14 +169,24 @@ function(palpate_test room)
     if(NOT arg_LABEL STREQUAL "unit")
         set(target ${target}_${arg_LABEL})
     endif()
-    add_executable(${target} ${arg_SOURCES})
+    if(PALPATE_TESTS STREQUAL "ONCE" AND
+       (arg_LABEL STREQUAL "slow" OR (PALPATE_TESTED_SANITIZED AND NOT PALPATE_SANITIZERS)))
+        set(left_out EXCLUDE_FROM_ALL)
+    endif()
+    add_executable(${target} ${left_out} ${arg_SOURCES})
     target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
     target_link_libraries(${target} PRIVATE ${arg_LINKS} GTest::gtest_main palpate_house)
     palpate_reuse_precompiled(${target} ${arg_PRECOMPILED})
+    if(NOT left_out)
+        add_dependencies(unit_tests ${target})
+    endif()
     if(arg_THREADS)
         add_dependencies(thread_tests ${target})
     endif()
     set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
+    if(left_out)
+        return()
+    endif()
     # What watches the clock runs alone; everything else may run side by side.
     if(arg_LABEL STREQUAL "realtime")
         set(alone RUN_SERIAL TRUE)

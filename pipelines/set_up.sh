@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Sourced by pipelines/demo.sh and tests/run.sh: installs what packages.txt lists and builds presets. Who sets
-# PALPATE_TESTS=OFF before needs no package of the tests and builds none.
+# PALPATE_TESTS=OFF before needs no package of the tests and builds none; ONCE: each test in one preset.
 # Every step does nothing when there is nothing to do.
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -9,7 +9,7 @@ export CCACHE_BASEDIR="$root"
 install_packages() {
     local wanted missing=() package as_root=()
     wanted=$(cat "$root/packages.txt")
-    [ "${PALPATE_TESTS:-ON}" = ON ] || wanted=${wanted%%# tests*}
+    [ "${PALPATE_TESTS:-ON}" != OFF ] || wanted=${wanted%%# tests*}
     wanted=$(sed 's/#.*//' <<<"$wanted")
     for package in $wanted; do
         [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing+=("$package")

@@ -1,14 +1,16 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# What is too long for every run of tests/run.sh: the whole tree by Clang with its tests, the lines that tests run with the
-# window's among them, clang-tidy over the tools, the slow tests.
+# What is too long for every run of tests/run.sh: all tests of the whole tree by Clang and by GCC, ten thousand inputs for each
+# reader of the tools too, the lines that tests run, clang-tidy, the slow tests.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../pipelines/set_up.sh"
-set_up clang coverage release
+set_up clang coverage release fuzz:unit_tests
 cd "$root"
-tests/house/tidy.sh tools
+tests/house/tidy.sh formats runtime tools
 ctest --preset clang -j "$(nproc)"
+ctest --preset release -j "$(nproc)"
+ctest --preset fuzz -j "$(nproc)"
 rm -rf build/coverage/coverage  # what other tests left
 ctest --preset coverage -j "$(nproc)"
-tests/coverage.sh coverage
+tests/coverage.sh
 ctest --preset slow

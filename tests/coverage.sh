@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# tests/coverage.sh [PRESET]: which part of the lines of each room of formats and runtime the tests of a preset ran, as they
-# left it in build/PRESET/coverage. Ends with 1 if formats or runtime have less than 90 %; rooms that the preset does not
-# build, as asan, which is meant without a name, does not those of the window, are named and do not count.
+# tests/coverage.sh: which part of the lines of each room of formats and runtime the tests of preset coverage ran, as they
+# left it in build/coverage/coverage. Ends with 1 if formats or runtime have less than 90 %; rooms that the preset does not
+# build are named and do not count.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-build=build/${1:-asan}
+build=build/coverage
 llvm-profdata-16 merge -sparse "$build"/coverage/*.profraw -o "$build/coverage/tests.profdata"
 objects=()
 for object in "$build"/bin/* "$build"/tests/*; do

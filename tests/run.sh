@@ -1,43 +1,30 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs what is missing, builds the release and both sanitizer presets (of tsan the tests that run threads), runs all
-# tests but the slow ones, and clang-tidy over formats and runtime, whose lines it counts.
+# Installs what is missing, builds the release and both sanitizer presets, and runs all tests but the slow ones. Unit tests of
+# formats and runtime run under AddressSanitizer, those of them that run threads under ThreadSanitizer too, all others in the
+# release. What runs them all in each, and clang-tidy, is tests/before_release.sh.
 # Closes with ctest's own summary; skipped tests are printed with their reason.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../pipelines/set_up.sh"
-set_up release asan tsan:thread_tests
+PALPATE_TESTS=ONCE
+set_up release asan:unit_tests tsan:thread_tests
 cd "$root"
 # Without these two volumes the tests of the demo's cases are skipped.
 sample_data/unpack.py build/sample_data || echo "run.sh: the sample volumes could not be unpacked" >&2
 
 status=0
-run_preset() { # preset
+run_preset() { # preset [how many at once]
     echo; echo "== Tests of preset $1"
-    ctest --preset "$1" -j "$(nproc)" --output-junit "$root/build/$1/tests.xml" 2>&1 | tee "$root/build/$1/tests.log" || status=1
+    ctest --preset "$1" -j "${2:-$(nproc)}" --output-junit "$root/build/$1/tests.xml" 2>&1 | tee "$root/build/$1/tests.log" || status=1
     python3 tests/skip_reasons.py "build/$1/tests.xml"
 }
-rm -rf build/asan/coverage  # what other tests left
 run_preset asan
-echo; echo "== Lines that preset asan ran"
-covered=$(tests/coverage.sh) || status=1
-echo "$covered"
 run_preset tsan
-# Much of what follows waits for clocks and windows; meanwhile clang-tidy takes what is idle.
-setsid nice -n 19 tests/house/tidy.sh formats runtime >build/tidy.log &
-tidy=$!
-trap 'kill -- -$tidy' EXIT
-run_preset release
-echo; echo "== clang-tidy"
-wait $tidy || status=1
-trap - EXIT
-tidied=$(cat build/tidy.log)
-echo "$tidied"
+run_preset release $(($(nproc) + 1))  # much of it waits for clocks and windows
 # The skip reasons stand between ctest's summary and the end; say the summary of all three last.
 echo
 for preset in asan tsan release; do
     echo "$preset:"
     grep -E '^[0-9]+% tests passed|^No tests were found' "build/$preset/tests.log"
 done
-grep -E '^(formats|runtime) ' <<<"$covered" || true
-tail -n 1 <<<"$tidied"
 exit $status
