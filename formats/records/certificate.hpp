@@ -21,6 +21,10 @@ struct Certificate {
     std::int32_t sampled_loads = 0;
     double smallest_patch_eigenvalue = 0;  // mm/N
     double discretisation_error = -1;
+    double checked_strain = -1;
+    double checked_depth = -1;  // mm
+    double linear_force_error = -1;
+    double linear_surface_error = -1;
     std::int64_t free_dofs = 0;
 };
 
@@ -57,6 +61,25 @@ inline constexpr std::tuple certificate_fields{
     Field("discretisation_error", &Certificate::discretisation_error, "",
           "part of a contact load's work that the elements miss, against richer ones, median over loads; -1 "
           "where it was not estimated",
+          not_negative)
+        .none_is(-1),
+    Field("checked_strain", &Certificate::checked_strain, "",
+          "largest principal strain of a tetrahedron up to which presses and lifts were held against "
+          "neo-Hookean tissue of the same moduli; -1 where none were",
+          not_negative)
+        .none_is(-1),
+    Field("checked_depth", &Certificate::checked_depth, "mm", "how deep those go, the median; -1 as above",
+          not_negative)
+        .none_is(-1),
+    Field(
+        "linear_force_error", &Certificate::linear_force_error, "",
+        "by how much the linear answer's force is off there at the same depth, relative, the worst of them; "
+        "-1 as above",
+        not_negative)
+        .none_is(-1),
+    Field("linear_surface_error", &Certificate::linear_surface_error, "",
+          "largest difference of a contact node's displacement there at the same depth, of the largest "
+          "displacement, the worst of them; -1 as above",
           not_negative)
         .none_is(-1),
     Field("sampled_columns", &Certificate::sampled_columns, "", "columns that were solved again"),

@@ -282,6 +282,10 @@ DeformableBody elastic_cube(int cells) {
                         .sampled_loads = 32,
                         .smallest_patch_eigenvalue = 0.2,
                         .discretisation_error = 0.05,
+                        .checked_strain = 0.25,
+                        .checked_depth = 3.5,
+                        .linear_force_error = 0.06,
+                        .linear_surface_error = 0.1,
                         .free_dofs = static_cast<std::int64_t>(
                             3 * (body.mesh.rest_positions.size() - body.fixed_nodes.size()))};
     body.obb_tree = median_tree(body.boundary.surface, 4);

@@ -31,7 +31,7 @@ ROOMS = {
     "archive": {"model", "asset", "imaging", "dcmtk", "hdf5", "zlib"},
     "meshing": {"model", "vtk_blocks", "cgal", "vtk", "json"},
     "obb": {"model"},
-    "fem": {"model", "elasticity", "linear_algebra"},
+    "fem": {"model", "elasticity", "hyperelasticity", "linear_algebra"},
     "linear_algebra": {"cholmod", "metis", "lapack"},
     "report": {"model", "asset", "drawing", "provenance", "meshing", "vtk", "json"},
     "cli": {"model", "drawing", "cli11", "spdlog", "json", "toml"},

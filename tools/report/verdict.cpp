@@ -9,6 +9,14 @@ namespace palpate::report {
 
 using html::significant;
 
+namespace {
+
+std::string percent(double part) {
+    return significant(100 * part, 2) + " %";
+}
+
+}  // namespace
+
 std::vector<Check> checks_of(const DeformableBody& body, const MeshSummary& mesh,
                              std::optional<AllowedLoadError> allowed_load_error) {
     const double limit = allowed_error(body.compliance);
@@ -49,10 +57,18 @@ std::vector<Check> checks_of(const DeformableBody& body, const MeshSummary& mesh
         {"Condition number", significant(c.condition_number), "",
          "The ratio of these two; float32 holds seven digits."},
         {"Missed by the elements",
-         c.discretisation_error < 0 ? "not estimated" : significant(100 * c.discretisation_error, 2) + " %",
-         "",
+         c.discretisation_error < 0 ? "not estimated" : percent(c.discretisation_error), "",
          "Part of the work of a contact that richer elements would add (median); "
          "<code>palpate condense --discretisation-error</code> estimates it."},
+        {"Strain up to which it was checked",
+         c.checked_strain < 0 ? "not checked" : percent(c.checked_strain), "",
+         "Presses and lifts, in the median " + significant(c.checked_depth, 2) +
+             " mm deep, against neo-Hookean tissue of the same moduli: the largest strain of a tetrahedron."},
+        {"Force missed there", c.checked_strain < 0 ? "not checked" : percent(c.linear_force_error), "",
+         "By how much the linear answer is off at the same depth, the worst of them; "
+         "<code>large_deformation = true</code> of a body solves what it misses."},
+        {"Shape missed there", c.checked_strain < 0 ? "not checked" : percent(c.linear_surface_error), "",
+         "Largest difference of the displaced surface, of the largest displacement."},
         {"Smallest dihedral angle", significant(mesh.min_dihedral_deg) + "°", "> 0°",
          "The sharpest edge of any tetrahedron. Very flat tetrahedra make a body too stiff.",
          mesh.min_dihedral_deg > 0},

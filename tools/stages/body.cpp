@@ -6,6 +6,7 @@
 #include "formats/model/errors.hpp"
 #include "tools/fem/assembly/node_rules.hpp"
 #include "tools/fem/certificate/discretisation_error.hpp"
+#include "tools/fem/certificate/linear_limits.hpp"
 #include "tools/fem/condensation/condense.hpp"
 #include "tools/meshing/files/mesh_files.hpp"
 #include "tools/stages/body_result.hpp"
@@ -136,6 +137,8 @@ MadeBody make_body(const CondenseRequest& request, int threads, const ProgressCa
         progress("solving on richer elements", 0.95);
         body.certificate.discretisation_error = estimate_discretisation_error(body);
     }
+    progress("pressing and lifting it far", 0.97);
+    set_linear_limits(body.certificate, find_linear_limits(body));
     return {std::move(body), std::move(plan), sag};
 }
 

@@ -7,6 +7,7 @@
 
 #include "tools/fem/certificate/certificate.hpp"
 #include "tools/fem/certificate/discretisation_error.hpp"
+#include "tools/fem/certificate/linear_limits.hpp"
 
 namespace palpate::fem {
 namespace {
@@ -35,6 +36,15 @@ Claim equal(const char* figure, double claimed, double found) {
     return {figure, claimed, found, fmt::format("{:g}", claimed), found == claimed};
 }
 
+void add_linear_limits(const DeformableBody& body, std::vector<Claim>& claims) {
+    const Certificate& claimed = body.certificate;
+    const LinearLimits found = find_linear_limits(body);
+    claims.push_back(about("checked_strain", claimed.checked_strain, found.strain));
+    claims.push_back(about("checked_depth", claimed.checked_depth, found.depth));
+    claims.push_back(about("linear_force_error", claimed.linear_force_error, found.force_error));
+    claims.push_back(about("linear_surface_error", claimed.linear_surface_error, found.surface_error));
+}
+
 }  // namespace
 
 std::vector<Claim> recheck_claims(const DeformableBody& body) {
@@ -58,6 +68,7 @@ std::vector<Claim> recheck_claims(const DeformableBody& body) {
     if (claimed.discretisation_error >= 0)
         claims.push_back(
             about("discretisation_error", claimed.discretisation_error, estimate_discretisation_error(body)));
+    if (claimed.checked_strain >= 0) add_linear_limits(body, claims);
     return claims;
 }
 

@@ -8,8 +8,6 @@
 #include <random>
 
 namespace palpate::fem {
-namespace {
-
 std::vector<Eigen::Vector3d> contact_normals(const DeformableBody& body) {
     const std::vector<Eigen::Vector3d> of_vertex = surface_normals(body.boundary.surface);
     std::vector<Eigen::Vector3d> normals;
@@ -18,8 +16,6 @@ std::vector<Eigen::Vector3d> contact_normals(const DeformableBody& body) {
             std::ranges::lower_bound(body.boundary.nodes, node) - body.boundary.nodes.begin())]);
     return normals;
 }
-
-}  // namespace
 
 std::vector<ContactLoad> random_contact_loads(const DeformableBody& body, std::int32_t count,
                                               std::uint64_t seed) {
@@ -55,10 +51,6 @@ std::vector<ContactLoad> random_contact_loads(const DeformableBody& body, std::i
     return loads;
 }
 
-namespace {
-
-// Displacements of x, y, z of every contact node. In double for a dense matrix, since float32 sums alone
-// would be off by as much as its limit; a hierarchical one multiplies as it does at run time.
 Eigen::VectorXd displacements_of(const SurfaceCompliance& compliance, const ContactLoad& load) {
     const auto size = 3 * Eigen::Index{node_count(compliance)};
     Eigen::VectorXd u = Eigen::VectorXd::Zero(size);
@@ -77,6 +69,8 @@ Eigen::VectorXd displacements_of(const SurfaceCompliance& compliance, const Cont
         u.segment<3>(3 * static_cast<Eigen::Index>(node)) = nodal[node].cast<double>();
     return u;
 }
+
+namespace {
 
 LoadError relative_error(const ContactLoad& load, const Eigen::VectorXd& difference,
                          const Eigen::VectorXd& exact) {

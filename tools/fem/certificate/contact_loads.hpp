@@ -19,6 +19,14 @@ inline constexpr std::int32_t most_loaded_nodes = 32;
 std::vector<ContactLoad> random_contact_loads(const DeformableBody& body, std::int32_t count,
                                               std::uint64_t seed);
 
+/// Outward, of length 1, at each contact node. Reads boundary and contact_nodes.
+std::vector<Eigen::Vector3d> contact_normals(const DeformableBody& body);
+
+/// What a compliance answers to a load: the displacement of x, y, z of every contact node, mm. In double for
+/// a dense matrix, since float32 sums alone would be off by as much as its limit; a hierarchical one
+/// multiplies as it does at run time.
+Eigen::VectorXd displacements_of(const SurfaceCompliance& compliance, const ContactLoad& load);
+
 /// How far a compliance's answer to a load is from the exact one.
 struct LoadError {
     double surface = 0;  ///< |u - u_exact| / |u_exact| over all contact nodes, Euclidean norms

@@ -7,6 +7,7 @@
 #include "tests/tools/fem/compliances.hpp"
 #include "tools/fem/certificate/claims.hpp"
 #include "tools/fem/certificate/discretisation_error.hpp"
+#include "tools/fem/certificate/linear_limits.hpp"
 
 namespace palpate {
 namespace {
@@ -25,6 +26,7 @@ std::vector<std::string> broken(const DeformableBody& body) {
 TEST(Claims, of_a_sound_certificate_hold) {
     DeformableBody dense = condensed_body(test::lumpy_block(), test::no_progress);
     dense.certificate.discretisation_error = estimate_discretisation_error(dense);
+    set_linear_limits(dense.certificate, find_linear_limits(dense));
     EXPECT_THAT(broken(dense), IsEmpty());
 
     DeformableBody blocks = prepared_body(
@@ -48,6 +50,7 @@ class LyingCertificate : public ::testing::TestWithParam<Lie> {};
 TEST_P(LyingCertificate, is_found_by_its_figure) {
     DeformableBody body = condensed_body(test::lumpy_block(), test::no_progress);
     body.certificate.discretisation_error = estimate_discretisation_error(body);
+    set_linear_limits(body.certificate, find_linear_limits(body));
     GetParam().tell(body.certificate);
     EXPECT_THAT(broken(body), ElementsAre(GetParam().figure));
 }
@@ -67,7 +70,11 @@ INSTANTIATE_TEST_SUITE_P(
                       Lie{"condition_number", [](Certificate& c) { c.condition_number = 1; }},
                       Lie{"smallest_patch_eigenvalue",
                           [](Certificate& c) { c.smallest_patch_eigenvalue *= 1.1; }},
-                      Lie{"discretisation_error", [](Certificate& c) { c.discretisation_error /= 2; }}),
+                      Lie{"discretisation_error", [](Certificate& c) { c.discretisation_error /= 2; }},
+                      Lie{"checked_strain", [](Certificate& c) { c.checked_strain *= 1.1; }},
+                      Lie{"checked_depth", [](Certificate& c) { c.checked_depth *= 1.1; }},
+                      Lie{"linear_force_error", [](Certificate& c) { c.linear_force_error = 0; }},
+                      Lie{"linear_surface_error", [](Certificate& c) { c.linear_surface_error /= 2; }}),
     [](const auto& info) { return std::to_string(info.index) + "_" + info.param.figure; });
 
 }  // namespace
