@@ -203,7 +203,7 @@ function(palpate_command_test file)
         set(arg_LABEL command)
     endif()
     if(NOT arg_TIMEOUT)
-        set(arg_TIMEOUT 300)
+        set(arg_TIMEOUT 600)  # twice what the longest takes on a slow machine
     endif()
     get_filename_component(name ${file} NAME_WE)
     string(REGEX REPLACE "^test_" "" name ${name})

@@ -13,14 +13,14 @@ cd "$root"
 sample_data/unpack.py build/sample_data || echo "run.sh: the sample volumes could not be unpacked" >&2
 
 status=0
-run_preset() { # preset [how many at once]
+run_preset() { # preset
     echo; echo "== Tests of preset $1"
-    ctest --preset "$1" -j "${2:-$(nproc)}" --output-junit "$root/build/$1/tests.xml" 2>&1 | tee "$root/build/$1/tests.log" || status=1
+    ctest --preset "$1" -j "$(nproc)" --output-junit "$root/build/$1/tests.xml" 2>&1 | tee "$root/build/$1/tests.log" || status=1
     python3 tests/skip_reasons.py "build/$1/tests.xml"
 }
 run_preset asan
 run_preset tsan
-run_preset release $(($(nproc) + 1))  # much of it waits for clocks and windows
+run_preset release
 # The skip reasons stand between ctest's summary and the end; say the summary of all three last.
 echo
 for preset in asan tsan release; do
