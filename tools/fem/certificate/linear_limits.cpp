@@ -25,10 +25,10 @@ using Eigen::VectorXd;
 using hyperelasticity::Equilibrium;
 
 constexpr double most_poissons_ratio = 0.4999;  // beyond it Equilibrium's steps get too short
-constexpr double settled = 1e-5;                // of the radius that is pressed
+constexpr double settled = 3e-4;                // of the way that the linear answer goes
 constexpr int most_steps = 400;
 constexpr int most_attempts = 12;      // at the force that strains as far as is asked
-constexpr double strain_close = 0.02;  // relative
+constexpr double strain_close = 0.03;  // relative
 
 double radius_of(const DeformableBody& body) {
     double six_volumes = 0, area = 0;
@@ -150,7 +150,7 @@ std::optional<LinearLimits> limits_under(const DeformableBody& body, Tissue& tis
     std::optional<LinearLimits> found;
     tissue.rest();
     for (int attempt = 0; attempt < most_attempts; ++attempt) {
-        if (!tissue.press(load, force, radius)) {
+        if (!tissue.press(load, force, force * way_of(load, linear))) {
             tissue.rest();
             too_much = force;
             force /= 2;

@@ -7,7 +7,7 @@
 namespace palpate::fem {
 
 /// Places of the contact surface that are pressed and lifted, and the seed that picks them.
-inline constexpr std::int32_t linear_limit_places = 8;
+inline constexpr std::int32_t linear_limit_places = 4;
 inline constexpr std::uint64_t linear_limit_seed = 4711;
 
 /// The strain to which they are pressed and lifted: about a quarter, where a linear answer is a few per cent
@@ -29,7 +29,7 @@ struct LinearLimits {
 /// errors. Neo-Hookean tissue of the same moduli on the body's own elements (hyperelasticity::Equilibrium) is
 /// the judge of the stored compliance. All -1 where that has no answer: for Poisson's ratios above 0.4999 and
 /// bodies that are held by fewer than 3 nodes. Cost: a factorisation in single precision and some hundred
-/// solves; 4 s for 3500 nodes.
+/// solves; 6 s for 3500 nodes.
 LinearLimits find_linear_limits(const DeformableBody& body, double strain = linear_limit_strain);
 
 /// Writes them into the certificate's fields.
