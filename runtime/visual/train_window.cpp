@@ -27,6 +27,7 @@
 #include "runtime/visual/controls/opened_window.hpp"
 #include "runtime/visual/controls/view_history.hpp"
 #include "runtime/visual/detail/drawn_detail.hpp"
+#include "runtime/visual/detail/frame_pace.hpp"
 #include "runtime/visual/hand/pointed_scene.hpp"
 #include "runtime/visual/hand/pointer_hand.hpp"
 #include "runtime/visual/hand/view_control.hpp"
@@ -389,9 +390,8 @@ struct TrainWindow::Parts {
     PictureWriter pictures;
     Drag drag = Drag::none;
     bool closed = false;
-    std::int64_t frames = 0;
-    double frame_seconds = 0;  // of a frame, averaged over some thirty
-    std::chrono::steady_clock::time_point last_frame{}, hand_led = std::chrono::steady_clock::now();
+    FramePace pace;
+    std::chrono::steady_clock::time_point hand_led = std::chrono::steady_clock::now();
 };
 
 TrainWindow::TrainWindow(std::shared_ptr<OpenedWindow> opened, const Case& patient_case,
@@ -434,16 +434,11 @@ void TrainWindow::draw(const VisualFrame& frame) {
     if (const auto told = p.pictures.outcome()) p.overlay.tell(*told);
     if (std::exchange(p.picture_asked, false))
         p.overlay.tell(p.pictures.write(p.window, free_path(".", p.case_name, ".png")));
-    if (frame.lesson.page && p.frames > 0)  // the first frame is not to wait for them
+    if (frame.lesson.page && p.pace.frames() > 0)  // the first frame is not to wait for them
         p.thumbnails.take_next(*frame.lesson.page, display_scale(size[0], size[1]));
-    ++p.frames;
-    const auto now = std::chrono::steady_clock::now();
-    const double seconds = std::chrono::duration<double>(now - p.last_frame).count();
-    p.last_frame = now;
+    const double seconds = p.pace.frame_drawn();
     // A film has time for everything.
-    if (p.frames > 1) p.detail.frame_took(frame.film_rate_hz ? 0 : seconds);
-    if (p.frames == 2) p.frame_seconds = seconds;
-    if (p.frames > 2) p.frame_seconds += (seconds - p.frame_seconds) / 30;
+    if (p.pace.frames() > 1) p.detail.frame_took(frame.film_rate_hz ? 0 : seconds);
 }
 
 bool TrainWindow::closed() const {
@@ -479,11 +474,11 @@ std::optional<double> TrainWindow::take_sought() {
 }
 
 std::int64_t TrainWindow::frames() const {
-    return parts_->frames;
+    return parts_->pace.frames();
 }
 
 double TrainWindow::frames_per_second() const {
-    return parts_->frame_seconds > 0 ? 1 / parts_->frame_seconds : 0;
+    return parts_->pace.per_second();
 }
 
 ShownDetail TrainWindow::detail() const {
