@@ -22,6 +22,9 @@ std::vector<Check> checks_of(const DeformableBody& body, const MeshSummary& mesh
     const double limit = allowed_error(body.compliance);
     const std::string within = "≤ " + significant(limit, 1);
     const Certificate& c = body.certificate;
+    const auto if_checked = [&](const std::string& figure) {
+        return c.checked_strain < 0 ? "not checked" : figure;
+    };
     const AllowedLoadError allowed = allowed_load_error.value_or(AllowedLoadError{limit, limit});
     return {
         {"Residual", significant(c.residual, 2), within,
@@ -61,13 +64,14 @@ std::vector<Check> checks_of(const DeformableBody& body, const MeshSummary& mesh
          "Part of the work of a contact that richer elements would add (median); "
          "<code>palpate condense --discretisation-error</code> estimates it."},
         {"Strain up to which it was checked",
-         c.checked_strain < 0 ? "not checked" : percent(c.checked_strain), "",
-         "Presses and lifts, in the median " + significant(c.checked_depth, 2) +
-             " mm deep, against neo-Hookean tissue of the same moduli: the largest strain of a tetrahedron."},
-        {"Force missed there", c.checked_strain < 0 ? "not checked" : percent(c.linear_force_error), "",
+         if_checked(percent(c.checked_strain) + ", " + significant(c.checked_depth, 2) + " mm deep"), "",
+         "Presses and lifts against neo-Hookean tissue of the same moduli: the largest strain of a "
+         "tetrahedron, "
+         "and how far they go, the median."},
+        {"Force missed there", if_checked(percent(c.linear_force_error)), "",
          "By how much the linear answer is off at the same depth, the worst of them; "
          "<code>large_deformation = true</code> of a body solves what it misses."},
-        {"Shape missed there", c.checked_strain < 0 ? "not checked" : percent(c.linear_surface_error), "",
+        {"Shape missed there", if_checked(percent(c.linear_surface_error)), "",
          "Largest difference of the displaced surface, of the largest displacement."},
         {"Smallest dihedral angle", significant(mesh.min_dihedral_deg) + "°", "> 0°",
          "The sharpest edge of any tetrahedron. Very flat tetrahedra make a body too stiff.",

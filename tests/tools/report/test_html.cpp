@@ -65,5 +65,19 @@ TEST(Verdict, a_sound_body_passes_and_each_fault_is_found) {
     EXPECT_TRUE(fails_with([](Certificate&, MeshSummary& m) { m.min_dihedral_deg = 0; }));
 }
 
+TEST(Verdict, says_what_the_linear_answer_misses_or_that_nobody_looked) {
+    DeformableBody body = sample::elastic_cube(2);
+    const auto said = [&](const std::string& name) {
+        const std::vector<Check> checks = checks_of(body, summarise(body.mesh));
+        return std::ranges::find(checks, name, &Check::name)->value;
+    };
+    EXPECT_EQ(said("Strain up to which it was checked"), "25 %, 3.5 mm deep");
+    EXPECT_EQ(said("Force missed there"), "6 %");
+    EXPECT_EQ(said("Shape missed there"), "10 %");
+    body.certificate = {};
+    for (const char* name : {"Strain up to which it was checked", "Force missed there", "Shape missed there"})
+        EXPECT_EQ(said(name), "not checked") << name;
+}
+
 }  // namespace
 }  // namespace palpate
