@@ -10,10 +10,13 @@
 #include <numeric>
 #include <optional>
 #include <random>
+#include <utility>
 #include <vector>
 
+#include "formats/elasticity/discretisation.hpp"
 #include "formats/elasticity/shape_gradients.hpp"
 #include "formats/hyperelasticity/equilibrium.hpp"
+#include "formats/model/errors.hpp"
 #include "tools/fem/certificate/contact_loads.hpp"
 
 namespace palpate::fem {
@@ -26,9 +29,9 @@ using hyperelasticity::Equilibrium;
 
 constexpr double most_poissons_ratio = 0.4999;  // beyond it Equilibrium's steps get too short
 constexpr double settled = 3e-4;                // of the way that the linear answer goes
-constexpr int most_steps = 400;
-constexpr int most_attempts = 12;      // at the force that strains as far as is asked
-constexpr double strain_close = 0.03;  // relative
+constexpr int most_steps = 100;                 // of Equilibrium, which needs 60 at a ratio of 0.499
+constexpr int most_attempts = 12;               // at the force that strains as far as is asked
+constexpr double strain_close = 0.03;           // relative
 
 double radius_of(const DeformableBody& body) {
     double six_volumes = 0, area = 0;
@@ -79,12 +82,12 @@ class Tissue {
 
     void rest() { equilibrium_.reset(); }
 
-    // False if no rest was found under `scale` of the load.
-    bool press(const ContactLoad& load, double scale, double length) {
+    // False if no rest was found under `scale` of the load; `way`: how far that goes, mm, about.
+    bool press(const ContactLoad& load, double scale, double way) {
         VectorXd forces = VectorXd::Zero(equilibrium_.mesh().dofs());
         for (const NodeForce& force : load)
             forces.segment<3>(3 * position(force.node)) = scale * force.force.cast<double>();
-        return equilibrium_.approach(forces, settled * length, most_steps) <= settled * length;
+        return equilibrium_.approach(forces, settled * way, most_steps) <= settled * way;
     }
 
     // Of x, y, z of every contact node, mm.
@@ -141,45 +144,55 @@ double largest_node(const VectorXd& displacements) {
     return largest;
 }
 
-// The linear answer beside the tissue's where a load strains it by `strain`, or by as much as it was found
-// to bear.
+// The linear answer beside the tissue's where a load strains it by `strain`; by less, where no rest was found
+// on the way there.
 std::optional<LinearLimits> limits_under(const DeformableBody& body, Tissue& tissue, const ContactLoad& load,
                                          double radius, double strain) {
     const VectorXd linear = displacements_of(body.compliance, load);
-    double force = strain * radius / way_of(load, linear), too_much = 0;
+    const double linear_way = way_of(load, linear);  // under 1 N
+    double force = strain * radius / linear_way;
+    bool was_too_much = false;
     std::optional<LinearLimits> found;
     tissue.rest();
     for (int attempt = 0; attempt < most_attempts; ++attempt) {
-        if (!tissue.press(load, force, force * way_of(load, linear))) {
+        if (!tissue.press(load, force, force * linear_way)) {
             tissue.rest();
-            too_much = force;
+            was_too_much = true;
             force /= 2;
             continue;
         }
         const double reached = tissue.largest_strain();
         const VectorXd u = tissue.surface();
-        const double way = way_of(load, u), linear_way = way_of(load, linear);
+        const double way = way_of(load, u);
         found = {reached, way, std::abs(way / linear_way / force - 1),
                  largest_node(way / linear_way * linear - u) / largest_node(u)};
-        if (std::abs(reached / strain - 1) < strain_close) break;
-        double next = force * std::clamp(strain / reached, 0.5, 2.0);
-        if (too_much > 0) next = std::min(next, (force + too_much) / 2);
-        force = next;
+        const bool bears_no_more = was_too_much && reached < strain;
+        if (bears_no_more || std::abs(reached / strain - 1) < strain_close) break;
+        force *= std::clamp(strain / reached, 0.5, 2.0);
     }
     return found;
 }
 
-bool is_solvable(const DeformableBody& body) {
-    return body.fixed_nodes.size() >= 3 && std::ranges::all_of(body.materials, [](const auto& region) {
-               return region.material.poissons_ratio <= most_poissons_ratio;
-           });
+// None where its search does not end, takes long, or cannot begin.
+std::optional<Tissue> tissue_of(const DeformableBody& body) {
+    const std::size_t nodes = elasticity::discretise(body).node_count;
+    if (3 * (nodes - body.fixed_nodes.size()) > linear_limit_dofs) return std::nullopt;
+    if (std::ranges::any_of(body.materials, [](const RegionMaterial& region) {
+            return region.material.poissons_ratio > most_poissons_ratio;
+        }))
+        return std::nullopt;
+    try {
+        return std::optional<Tissue>(std::in_place, body);
+    } catch (const InvalidInput&) {
+        return std::nullopt;
+    }
 }
 
 }  // namespace
 
 LinearLimits find_linear_limits(const DeformableBody& body, double strain) {
-    if (!is_solvable(body)) return {};
-    Tissue tissue(body);
+    std::optional<Tissue> tissue = tissue_of(body);
+    if (!tissue) return {};
     const double radius = radius_of(body);
     const std::vector<Vector3d> normals = contact_normals(body);
     const std::vector<std::int32_t> centers = centers_of(body, radius);
@@ -190,7 +203,7 @@ LinearLimits find_linear_limits(const DeformableBody& body, double strain) {
         const std::int32_t center = centers[random() % centers.size()];
         for (const double side : {-1.0, 1.0}) {
             const ContactLoad load = load_at(body, center, side * normals[center], radius);
-            const auto one = limits_under(body, tissue, load, radius, strain);
+            const auto one = limits_under(body, *tissue, load, radius, strain);
             if (!one) return {};
             all.strain = std::min(all.strain, one->strain);
             all.force_error = std::max(all.force_error, one->force_error);

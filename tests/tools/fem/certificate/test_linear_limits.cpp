@@ -57,6 +57,9 @@ TEST(LinearLimits, are_not_told_of_what_has_no_large_answer) {
     DeformableBody barely = block(0.45);
     barely.fixed_nodes.resize(2);
     EXPECT_EQ(find_linear_limits(barely).strain, -1);
+    const DeformableBody large = prepared_body(
+        test::held_block({20, 20, 18}, {40, 40, 36}, {.youngs_modulus = 6.3e-3, .poissons_ratio = 0.45}));
+    EXPECT_EQ(find_linear_limits(large).strain, -1);
 }
 
 }  // namespace
