@@ -110,12 +110,22 @@ def found(server, folder):
 
 
 def playback(server, folder):
-    recording = folder / "run.h5"
-    subprocess.run([BIN / "palpate", "touch", SOURCE / "build/demo/liver.vtkhdf", "--script", "slide", "--seconds", "6", "--virtual-clock",
-                    "--record", recording, "--quiet", "--force"], check=True, stdout=subprocess.DEVNULL)
-    trainer = Trainer(server, "liver", folder, "--play", recording)
+    trainer = played(server, folder, "--script", "slide", "--seconds", "6")
     trainer.keys("space")
     return trainer
+
+
+def played(server, folder, *hand):
+    """A recording of what `palpate touch` does to the liver with these options."""
+    recording = folder / "run.h5"
+    subprocess.run([BIN / "palpate", "touch", SOURCE / "build/demo/liver.vtkhdf", *hand, "--virtual-clock", "--record", recording, "--quiet",
+                    "--force"], check=True, stdout=subprocess.DEVNULL)
+    return Trainer(server, "liver", folder, "--play", recording)
+
+
+def forceps(server, folder):
+    """To its end, where the rim is drawn out."""
+    return played(server, folder, "--instrument", "forceps", "--depth", "20", "--seconds", "3.8")
 
 
 SCREENS = {
@@ -129,6 +139,7 @@ SCREENS = {
     "hidden": after("liver", "BackSpace", "t"),
     "endoscope": after("nasopharynx", "BackSpace", "v", "v"),
     "playback": playback,
+    "forceps": forceps,
 }
 
 

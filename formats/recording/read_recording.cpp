@@ -49,6 +49,15 @@ std::vector<std::string> read_hyperelastic(const Hdf5File& file) {
     return names;
 }
 
+JawSettings read_jaws(const Hdf5File& file, std::int32_t tools) {
+    JawSettings jaws;
+    read_fields(file, "/jaws", jaw_fields, jaws);
+    if (const auto error = first_error(jaw_fields, jaws))
+        file.refuse("/jaws", error->name + " " + error->found, error->expected);
+    if (tools != 2) file.refuse("/jaws", "with " + std::to_string(tools) + " tools", "2");
+    return jaws;
+}
+
 RecordingHead read_head(const Hdf5File& file) {
     const auto schema = file.attribute<std::int32_t>("/", "schema");
     if (schema != recording_schema)
@@ -67,6 +76,7 @@ RecordingHead read_head(const Hdf5File& file) {
     if (file.contains("/hyperelastic")) head.hyperelastic = read_hyperelastic(file);
     const auto tools = file.attribute<std::int32_t>("/", "tools");
     if (tools < 1 || tools > most_recorded_tools) file.refuse("/", std::to_string(tools) + " tools");
+    if (file.contains("/jaws")) head.jaws = read_jaws(file, tools);
     head.devices.resize(tools);
     const std::vector<std::string> names = file.texts("/devices/name", {tools});
     for (std::size_t i = 0; i < names.size(); ++i) head.devices[i].name = names[i];

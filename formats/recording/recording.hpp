@@ -11,6 +11,7 @@
 #include "formats/model/body.hpp"
 #include "formats/records/device_limits.hpp"
 #include "formats/records/haptic_settings.hpp"
+#include "formats/records/jaw_settings.hpp"
 #include "formats/records/tick_result.hpp"
 
 namespace palpate::recording {
@@ -37,6 +38,7 @@ struct RecordingHead {
     HapticSettings haptics;               ///< the asset's, or what a forceps put in their place
     std::vector<RecordedDevice> devices;  ///< one for each tool
     std::optional<ToolBody> tool{};       ///< what was held, if it had a body of its own
+    std::optional<JawSettings> jaws{};    ///< of a forceps, whose jaws are tools 0 and 1
     std::vector<std::string> hyperelastic{};  ///< deformable bodies whose tissue was neo-Hookean
 };
 

@@ -58,6 +58,10 @@ void write_head(Hdf5Writer& writer, const RecordingHead& head) {
     writer.group("/haptics");
     write_fields(writer, "/haptics", haptic_fields, head.haptics);
     if (head.tool) write_tool(writer, *head.tool);
+    if (head.jaws) {
+        writer.group("/jaws");
+        write_fields(writer, "/jaws", jaw_fields, *head.jaws);
+    }
     if (!head.hyperelastic.empty()) {
         writer.attribute("/", "hyperelastic_bodies", static_cast<std::int32_t>(head.hyperelastic.size()));
         writer.texts("/hyperelastic", head.hyperelastic, {head.hyperelastic.size()});

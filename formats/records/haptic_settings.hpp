@@ -12,6 +12,7 @@ struct HapticSettings {
     double max_force_rate = 0.5;
     double friction_at_rest = 0, friction_sliding = 0;  // moist tissue under a polished tool has next to none
     double shaft_length = 0;
+    double grip = 0;
 };
 
 /// Ten times and more what the devices bear that there is a back end for: a Premium 1.5 has 8.5 N and, by its
@@ -21,6 +22,8 @@ inline constexpr double largest_max_force = 100, largest_max_force_rate = 100,
                         largest_coupling_stiffness = 100;
 /// Larger than anything that goes into a patient, or slides on one.
 inline constexpr double largest_tool_radius = 50, longest_shaft = 1000, largest_friction = 5;
+/// N/mm²: some fifty times what a forceps' teeth bear.
+inline constexpr double largest_grip = 1;
 
 /// What each is. Sliding friction is besides at most that at rest: haptics_error().
 inline constexpr std::tuple haptic_fields{
@@ -44,6 +47,11 @@ inline constexpr std::tuple haptic_fields{
     Field("shaft_length", &HapticSettings::shaft_length, "mm",
           "of the tool's shaft behind its tip, as thick as the tip; 0: only the tip is felt",
           Range{.least = 0, .most = longest_shaft})
+        .since(2, 0.0),
+    Field("grip", &HapticSettings::grip, "N/mm²",
+          "what tissue bears along the surface besides, per area that is pressed: a profile grips it",
+          Range{.least = 0, .most = largest_grip})
+        .written_in("kPa", 1e3)
         .since(2, 0.0)};
 
 /// Returns what makes no sense of the settings; none if they are sound.

@@ -66,6 +66,7 @@ void fill_frame(const TrainRun& run, std::span<const TickResult* const> ticks, V
     for (const TickResult* other : ticks.subspan(1)) frame.other_tools.push_back(other_tool_of(*other));
     if (run.session.jaws()) {
         frame.other_tools.front().force.setZero();  // it is in what the hand feels
+        frame.other_tools.front().jaw = true;
         frame.jaws_closed = run.session.jaws_closed();
     }
     if (run.ghost)

@@ -89,8 +89,10 @@ void Session::guide(const Eigen::Vector3d& place) {
 }
 
 recording::RecordingHead Session::recording_head(const std::string& version) const {
-    return palpate::session::recording_head(request_.asset, case_, *model_, held(),
-                                            request_.virtual_clock ? "virtual" : "real", version);
+    recording::RecordingHead head = palpate::session::recording_head(
+        request_.asset, case_, *model_, held(), request_.virtual_clock ? "virtual" : "real", version);
+    head.jaws = request_.jaws;
+    return head;
 }
 
 void Session::record_to(const std::filesystem::path& recording) {

@@ -21,7 +21,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-const Rgb blue(90, 170, 235), white(245, 245, 245), steel(150, 160, 170);
+const Rgb white(245, 245, 245);
 
 // Green for little, yellow for half, red for the largest force.
 Rgb force_colour(double share) {
@@ -120,7 +120,7 @@ void Scene::add_tool(const Case& patient_case, const Sight& sight, vtkRenderer* 
                      vtkRenderer* front) {
     is_instrument_ = has_instrument(patient_case);
     tool_ = is_instrument_ ? actor(poly_data(patient_case.tool->surface, sight.toward_eye), steel)
-                           : ball(tool_radius_, blue, 24);
+                           : ball(tool_radius_, held_blue, 24);
     device_ = ball(0.6 * tool_radius_, white, 10);
     device_->GetProperty()->SetRepresentationToWireframe();
 

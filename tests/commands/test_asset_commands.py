@@ -170,13 +170,13 @@ class Pack(AssetCommand):
         given = self.folder / "given.json"
         given.write_text('{"inputs": {"volume_sha256": "abc"}, "steps": ["mesh --labels head.seg.nrrd"]}')
         made = self.pack("--tool-radius", 2, "--coupling-stiffness", 0.3, "--max-force", 2.5, "--max-force-rate", 0.1,
-                         "--friction-at-rest", 0.4, "--friction-sliding", 0.2, "--shaft-length", 30,
+                         "--friction-at-rest", 0.4, "--friction-sliding", 0.2, "--shaft-length", 30, "--grip", 0.01,
                          "--provenance", given)
         self.assertEqual(made.returncode, OK, made.stderr)
         seen = json.loads(run(BIN / "palpate-inspect", self.asset, "--json", "-").stdout)
         self.assertEqual(seen["haptics"], {"tool_radius_mm": 2.0, "coupling_stiffness_n_per_mm": 0.3, "max_force_n": 2.5,
                                            "max_force_rate_n_per_ms": 0.1, "friction_at_rest": 0.4,
-                                           "friction_sliding": 0.2, "shaft_length_mm": 30.0})
+                                           "friction_sliding": 0.2, "shaft_length_mm": 30.0, "grip_kpa": 10.0})
         self.assertEqual(seen["provenance"]["build"]["inputs"]["volume_sha256"], "abc")
         self.assertIn("HDF5", seen["provenance"]["software"]["libraries"])
 

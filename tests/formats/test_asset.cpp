@@ -121,7 +121,8 @@ void expect_same(const DeformableBody& a, const DeformableBody& b) {
 
 TEST(Asset, reading_returns_what_was_written) {
     const Scratch scratch;
-    const Case written = sample::sample_case(cells);
+    Case written = sample::sample_case(cells);
+    written.haptics.grip = 0.02;
     write_asset(scratch / "case.vtkhdf", written);
     const Case read = read_asset(scratch / "case.vtkhdf");
     EXPECT_EQ(read.name, written.name);
@@ -130,6 +131,7 @@ TEST(Asset, reading_returns_what_was_written) {
     EXPECT_EQ(read.haptics.coupling_stiffness, written.haptics.coupling_stiffness);
     EXPECT_EQ(read.haptics.friction_sliding, written.haptics.friction_sliding);
     EXPECT_EQ(read.haptics.shaft_length, written.haptics.shaft_length);
+    EXPECT_EQ(read.haptics.grip, written.haptics.grip);
     EXPECT_EQ(read.haptics.max_force, written.haptics.max_force);
     EXPECT_EQ(read.haptics.max_force_rate, written.haptics.max_force_rate);
     ASSERT_EQ(read.rigid_bodies.size(), 1U);

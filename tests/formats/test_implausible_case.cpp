@@ -42,8 +42,8 @@ TEST(ImplausibleCase, with_settings_that_no_device_has_is_refused) {
     const Scratch scratch;
     for (double HapticSettings::*setting :
          {&HapticSettings::tool_radius, &HapticSettings::coupling_stiffness, &HapticSettings::max_force,
-          &HapticSettings::max_force_rate, &HapticSettings::friction_at_rest,
-          &HapticSettings::shaft_length}) {
+          &HapticSettings::max_force_rate, &HapticSettings::friction_at_rest, &HapticSettings::shaft_length,
+          &HapticSettings::grip}) {
         Case strong = sample::sample_case(1);
         strong.haptics.*setting = 1e9;
         EXPECT_THAT(refusal([&] { write_asset(scratch / "a.vtkhdf", strong); }), HasSubstr("is 1000000000"));

@@ -65,6 +65,12 @@ const Tick& RecordedScene::fill(visual::VisualFrame& frame, double time) {
     frame.other_tools.clear();
     for (const RecordedTrack& other : others_)
         frame.other_tools.push_back(other_tool_of(tick_at(other, time)));
+    if (recording_.head.jaws && !frame.other_tools.empty()) {
+        // One hand feels both jaws.
+        frame.force += frame.other_tools.front().force;
+        frame.other_tools.front().force.setZero();
+        frame.other_tools.front().jaw = true;
+    }
     return tick;
 }
 

@@ -163,7 +163,7 @@ void tell_what_is_missing(const recording::Recording& recording, const RecordedT
     });
     if (lost > 0)
         spdlog::warn("{}: the contacts of {} ticks were overwritten; surfaces are at rest there", file, lost);
-    if (const std::size_t tools = recording.head.devices.size(); tools > 1)
+    if (const std::size_t tools = recording.head.devices.size(); tools > 1 && !recording.head.jaws)
         spdlog::info("{}: tool {} of {} is followed, the others are shown beside it", file, options.tool,
                      tools);
 }
@@ -226,6 +226,8 @@ Json play_recording(const PlaybackOptions& options, const PlaybackWindow& shown,
                             .sight = scene.sight(),
                             .cautions = provenance::cautions_in(patient_case.provenance),
                             .surfaces = surfaces_of(*model)};
+    if (const auto& jaws = recording.head.jaws)
+        settings.forceps = {vector_of(scene.track().front()->shaft), jaws->jaw_length};
     TrainWindow window(std::move(opened), patient_case, settings);
     session.progress.finish();
     tell_what_is_missing(recording, scene.track(), options);

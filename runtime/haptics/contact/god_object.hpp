@@ -13,10 +13,14 @@
 namespace palpate::haptics {
 
 /// Coulomb's law: a tool at rest stays until the tangential force is `at_rest` times the normal one, and then
-/// drags with `sliding` times it. 0 <= sliding <= at_rest.
+/// drags with `sliding` times it. 0 <= sliding <= at_rest. On tissue, `grip` (N/mm²) comes to both over the
+/// area that is pressed.
 struct Friction {
     double at_rest = 0;
     double sliding = 0;
+    double grip = 0;
+
+    bool any() const noexcept { return at_rest > 0 || grip > 0; }
 };
 
 /// A sphere that follows the device but never enters a surface (Zilles, Salisbury 1995, with the finite

@@ -114,7 +114,7 @@ bool ContinuousContact::within_reach(std::size_t t, const Vector3d& force) const
             reach += (part.on_all.position() - part.device).norm();
         held = std::max(held, equilibrium_.held_reach(other));
     }
-    if (friction_.at_rest > 0) reach = std::max(reach, held);
+    if (friction_.any()) reach = std::max(reach, held);
     return force.norm() <= coupling_ * (reach + room_for_rounding);
 }
 

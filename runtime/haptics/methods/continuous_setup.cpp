@@ -24,7 +24,7 @@ std::vector<double> spheres_of(const HapticSettings& settings, std::size_t most_
 ContinuousContact::ContinuousContact(const Case& patient_case, const ContactBodies& bodies,
                                      const HapticSettings& settings, std::size_t tool_count, double torsion)
     : bodies_(bodies),
-      friction_{settings.friction_at_rest, settings.friction_sliding},
+      friction_{settings.friction_at_rest, settings.friction_sliding, settings.grip},
       torsion_(torsion),
       equilibrium_(bodies, settings.tool_radius, friction_, tool_count,
                    spheres_of(settings, most_spheres).size()),

@@ -12,7 +12,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double unsolved = 1e-3;      // mm of residual that is reported
-constexpr double unsettled = 1e-2;     // mm of change, likewise: 5 mN behind the usual coupling
 constexpr int most_hold_offs = 4;      // of contacts that only the solution of the others meets
 constexpr double farthest_return = 5;  // mm: a sphere of the shaft found again farther off starts anew
 
@@ -69,7 +68,9 @@ Vector3d ContinuousContact::force_of(std::size_t t, TickResult& result) noexcept
     equilibrium_.write_contacts(t, result);
     const bool found = equilibrium_.solved(t);
     const TickStatus unrest =
-        equilibrium_.touches_tissue(t) && equilibrium_.change() > unsettled ? contact_unsettled : tick_ok;
+        equilibrium_.touches_tissue(t) && equilibrium_.change() > ContactEquilibrium::unsettled
+            ? contact_unsettled
+            : tick_ok;
     if (result.contact_count == 0 && (found || !equilibrium_.touches_tissue(t))) {
         result.status |= unrest;
         return rigid_force(tool.parts[0].on_rigid, tool.parts[0].device, result);

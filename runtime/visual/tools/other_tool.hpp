@@ -10,6 +10,7 @@ struct OtherTool {
     Eigen::Vector3d shaft = Eigen::Vector3d::Zero();     ///< unit, from the tip along it; zero: not known
     Eigen::Vector3d force = Eigen::Vector3d::Zero();     ///< on its device, frame P, N
     bool ghost = false;                                  ///< drawn see-through, its force fainter
+    bool jaw = false;                                    ///< the held forceps' other: drawn as the held tool
 };
 
 }  // namespace palpate::visual

@@ -20,9 +20,9 @@ struct OtherToolLook {
     Eigen::Vector3d shaft_way = Eigen::Vector3d::UnitX();  ///< unit, where a tool's own is not known
 };
 
-/// Tools that nobody holds here: a ball with a shaft each and the arrow of its force. Ghosts are see-through
-/// as a sieve is, every other pixel, which costs a software renderer nothing, where blending takes a pass of
-/// its own over the window.
+/// Tools that nobody holds here, and the held forceps' other jaw: a ball with a shaft each and the arrow of
+/// its force. Ghosts are see-through as a sieve is, every other pixel, which costs a software renderer
+/// nothing, where blending takes a pass of its own over the window.
 class OtherTools {
   public:
     /// `front` is drawn over `renderer`: forces show through whatever covers them.
@@ -32,11 +32,11 @@ class OtherTools {
 
   private:
     struct Actors {
-        bool ghost;
+        bool ghost, jaw;
         vtkSmartPointer<vtkActor> ball, shaft, arrow;
     };
 
-    Actors make(bool ghost) const;
+    Actors make(bool ghost, bool jaw) const;
     void remove(const Actors& actors);
     void place(const Actors& actors, const OtherTool& tool) const;
 

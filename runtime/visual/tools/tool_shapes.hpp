@@ -7,6 +7,8 @@
 
 namespace palpate::visual {
 
+inline const Rgb held_blue(90, 170, 235), steel(150, 160, 170);  ///< a held tool's tip and shaft
+
 /// A ball about the origin; `radius` in mm, `resolution` in corners along its equator.
 vtkSmartPointer<vtkActor> ball(double radius, const Rgb& colour, int resolution);
 

@@ -18,7 +18,8 @@ from sample_asset import SampleAsset  # noqa: E402
 TOUCH = pathlib.Path(os.environ["PALPATE_BIN"]) / "palpate-touch"
 # About the sample's soft cube of 20 mm, whose bottom is held; the skull stands beside it.
 ASTRIDE = ["--jaw-length", 16, "--jaw-radius", 1, "--jaw-opening", 120]
-FRICTION = 0.83
+FRICTION, GRIP, RADIUS = 0.11, 0.022, 1  # N/mm², mm: the defaults, and the jaws of ASTRIDE
+SMOOTH = ["--jaw-friction", 0, "--jaw-grip", 0]
 LOGGED = 1e-5  # N, of a log
 
 
@@ -60,7 +61,7 @@ class Forceps(SampleAsset):
         sums = [[a + b for a, b in zip(self.force(one), self.force(other))] for one, other in zip(*jaws)]
         along = [sum(f * s for f, s in zip(force, shaft)) for force in sums]
         self.assertLess(min(along), -0.05 * pinch)
-        _, smooth = self.logged(*ASTRIDE, "--seconds", 8, "--depth", 5, "--jaw-friction", 0)
+        _, smooth = self.logged(*ASTRIDE, "--seconds", 8, "--depth", 5, *SMOOTH)
         for one, other in zip(*smooth):  # which nothing holds
             slips = sum((a + b) * s for a, b, s in zip(self.force(one), self.force(other), shaft))
             self.assertGreater(slips, -0.02 * pinch)
@@ -69,8 +70,9 @@ class Forceps(SampleAsset):
         self.assertEqual(norm(sums[-1]), 0)
         self.assertEqual(norm(sums[0]), 0)
 
-    def test_what_holds_is_coulombs_friction_of_the_jaws(self):
-        result = self.result("--virtual-clock", *ASTRIDE, "--seconds", 3, "--depth", 2)
+    def press_and_drag_of_parts(self, *options):
+        """Of each sphere of both jaws at the peak."""
+        result = self.result("--virtual-clock", *ASTRIDE, "--seconds", 3, "--depth", 2, *options)
         for jaw in (result, result["second"]):
             press, drag = {}, {}
             for contact in jaw["peak"]["contacts"]:
@@ -78,10 +80,20 @@ class Forceps(SampleAsset):
                 press[part] = press.get(part, 0) + contact["force_n"]
                 drag[part] = [a + b for a, b in zip(drag.get(part, (0, 0, 0)), contact["friction_n"])]
             self.assertGreater(len(press), 1)  # several spheres of the jaw
-            for part, force in press.items():
-                self.assertLessEqual(norm(drag[part]), FRICTION * force + LOGGED)
-            self.assertGreater(max(map(norm, drag.values())), 0.1 * FRICTION * max(press.values()))
-        smooth, jaws = self.logged(*ASTRIDE, "--seconds", 3, "--jaw-friction", 0)
+            yield [(force, norm(drag[part])) for part, force in press.items()]
+
+    def test_what_holds_is_coulombs_friction_of_the_jaws_and_their_grip(self):
+        for parts in self.press_and_drag_of_parts("--jaw-friction", 0.83, "--jaw-grip", 0):
+            for press, drag in parts:
+                self.assertLessEqual(drag, 0.83 * press + LOGGED)
+            self.assertGreater(max(drag for _, drag in parts), 0.05 * max(press for press, _ in parts))
+        beyond = 0
+        for parts in self.press_and_drag_of_parts():
+            for press, drag in parts:
+                self.assertLessEqual(drag, FRICTION * press + GRIP * math.pi * RADIUS**2 + LOGGED)
+                beyond = max(beyond, drag - FRICTION * press)
+        self.assertGreater(beyond, 0.001)  # N, that Coulomb's friction alone would not hold
+        smooth, jaws = self.logged(*ASTRIDE, "--seconds", 3, *SMOOTH)
         for contact in smooth["peak"]["contacts"] + smooth["second"]["peak"]["contacts"]:
             self.assertEqual(contact["friction_n"], [0, 0, 0])
 
@@ -113,7 +125,7 @@ class Forceps(SampleAsset):
             self.assertEqual(file.attrs["tools"], 2)
             haptics = dict(file["haptics"].attrs)
         self.assertEqual((haptics["tool_radius"], haptics["shaft_length"]), (1, 16))
-        self.assertEqual((haptics["friction_at_rest"], haptics["friction_sliding"]), (FRICTION, FRICTION))
+        self.assertEqual((haptics["friction_at_rest"], haptics["friction_sliding"], haptics["grip"]), (FRICTION, FRICTION, GRIP))
         run = self.touch("--replay", path, "--json", "-")
         self.assertEqual(run.returncode, 0, run.stderr)
         replay = json.loads(run.stdout)["replay"]
@@ -129,6 +141,7 @@ class Forceps(SampleAsset):
             (["--jaw-length", 25], 2, ["--jaw-length: without --instrument forceps"]),
             ([*forceps, "--rod-length", 20], 2, ["--rod-length: with --instrument forceps"]),
             ([*forceps, "--jaw-friction", 6], 2, ["--jaw-friction: is 6", "0 to 5"]),
+            ([*forceps, "--jaw-grip", 22], 2, ["--jaw-grip: is 22", "0 to 1"]),
             ([*forceps, "--scheme", "twice"], 2, ["--instrument: forceps with --scheme twice", "--scheme continuous"]),
             ([*forceps, "--script", "press"], 2, ["--script: press with --instrument forceps", "grasp or a file"]),
             ([*forceps, "--second", bare], 2, ["--second: with --instrument forceps"]),

@@ -1,13 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """palpate train --instrument forceps: carried by keys and the mouse, closed by J, and the exercise that it serves."""
+import math
 import os
+import subprocess
 import sys
 import time
 import unittest
+from pathlib import Path
+
+import h5py
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from trainer_case import TrainerCase  # noqa: E402
 
+TOUCH = Path(os.environ["PALPATE_BIN"]) / "palpate-touch"
 # About the sample's soft cube of 20 mm.
 FORCEPS = "--instrument", "forceps", "--jaw-length", 16, "--jaw-radius", 1, "--jaw-opening", 120
 WAY_IN = 32  # steps of half a millimetre from the start, twice half a jaw's length outside
@@ -91,6 +97,21 @@ class ForcepsInTheWindow(TrainerCase):
             _, err = process.communicate(timeout=60)
             self.assertEqual(process.returncode, code, err)
             self.assertIn(message, err)
+
+
+    def test_a_recording_of_it_shows_one_forceps_whose_hand_feels_both_jaws(self):
+        run = self.folder / "grasp.h5"
+        touched = subprocess.run(
+            [TOUCH, self.asset, *map(str, FORCEPS), "--virtual-clock", "--seconds", "3", "--depth", "2", "--record", run, "--json", "-"],
+            capture_output=True, text=True, timeout=120)
+        self.assertEqual(touched.returncode, 0, touched.stderr)
+        with h5py.File(run) as file:
+            force, tool = file["ticks/force"][:], file["ticks/tool"][:]
+        both = force[tool == 0] + force[tool == 1]
+        played = self.finish(self.launch("--play", run, "--speed", 4, "--seconds", 1))
+        self.assertGreater(played["force_peak_n"], 0)
+        self.assertLessEqual(played["force_peak_n"], max(math.hypot(*hand) for hand in both) + 1e-9)
+        self.assertLess(played["force_peak_n"], 0.9 * max(math.hypot(*jaw) for jaw in force))  # they press against each other
 
 
 if __name__ == "__main__":

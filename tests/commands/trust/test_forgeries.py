@@ -157,7 +157,7 @@ for setting in SETTINGS:
         f"{setting} 0": attribute("palpate/haptics", setting, to(0.0)),
         f"{setting} negative": attribute("palpate/haptics", setting, to(-1.0)),
     }
-for setting in ("friction_at_rest", "friction_sliding", "shaft_length"):
+for setting in ("friction_at_rest", "friction_sliding", "shaft_length", "grip"):
     PHYSICS |= {
         f"{setting} 1e9": attribute("palpate/haptics", setting, to(1e9)),
         f"{setting} negative": attribute("palpate/haptics", setting, to(-0.1)),

@@ -89,6 +89,29 @@ TEST(Recording, of_a_tool_of_which_half_is_missing_is_refused_and_the_dataset_na
     }
 }
 
+TEST(Recording, holds_the_jaws_of_a_forceps_and_refuses_those_that_none_can_have) {
+    const Scratch scratch;
+    const auto path = scratch / "run.h5";
+    const JawSettings jaws{
+        .jaw_length = 15, .jaw_radius = 1.5, .jaw_opening = 45, .jaw_friction = 0.2, .jaw_grip = 0.03};
+    const auto record_of = [&](const JawSettings& held) {
+        RecordingHead head = two_tools();
+        head.jaws = held;
+        make_recording(path, head, 50);
+        RecordingWriter writer(path);
+        add_rows(writer, 20, 5);
+    };
+    record_of(jaws);
+    const Recording recording = read_recording(path);
+    ASSERT_TRUE(recording.head.jaws.has_value());
+    expect_same(*recording.head.jaws, jaws, jaw_fields);
+    expect_rows(recording, 20, 5);
+    JawSettings bent = jaws;
+    bent.jaw_opening = 400;
+    record_of(bent);
+    EXPECT_THAT(refusal([&] { read_recording(path); }), HasSubstr("run.h5: /jaws: jaw_opening is 400"));
+}
+
 TEST(Recording, names_the_hyperelastic_bodies_and_refuses_names_that_no_body_has) {
     const Scratch scratch;
     const auto path = scratch / "run.h5";

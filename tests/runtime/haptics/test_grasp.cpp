@@ -5,6 +5,7 @@
 #include <array>
 #include <functional>
 #include <gtest/gtest.h>
+#include <memory>
 
 #include "tests/runtime/haptics/held_tool.hpp"
 
@@ -47,7 +48,7 @@ class Grasp : public ::testing::TestWithParam<double> {
             const std::array places{Vector3d(-1 + pinch_, 10.3, height), Vector3d(21 - pinch_, 10.3, height)};
             const std::array devices{held_at(places[0], up), held_at(places[1], up)};
             const Moment before = moment_;
-            model_.tick(devices, moment_.jaws);
+            model_->tick(devices, moment_.jaws);
             for (std::size_t jaw = 0; begun_ && jaw < 2; ++jaw)
                 moment_.work += 0.5 * (force_of(moment_.jaws[jaw]) + force_of(before.jaws[jaw]))
                                           .dot(places[jaw] - places_[jaw]);
@@ -62,14 +63,14 @@ class Grasp : public ::testing::TestWithParam<double> {
         std::vector<Vector3f> of_one(case_.deformable_bodies[0].boundary.nodes.size(), Vector3f::Zero()),
             sum = of_one;
         for (const TickResult& jaw : moment_.jaws) {
-            model_.surface_displacement(0, jaw, of_one);
+            model_->surface_displacement(0, jaw, of_one);
             for (std::size_t v = 0; v < sum.size(); ++v) sum[v] += of_one[v];
         }
         return sum;
     }
 
     const Case case_ = cube();
-    HapticModel model_{case_, usual_contact_method, 2};
+    std::unique_ptr<HapticModel> model_ = std::make_unique<HapticModel>(case_, usual_contact_method, 2);
     Moment moment_{};
     std::array<Vector3d, 2> places_;
     double pinch_ = -2, lift_ = 0;
@@ -100,6 +101,31 @@ TEST_P(Grasp, holds_tissue_by_coulombs_law_and_draws_it_along) {
     float most = 0;
     for (std::size_t v = 0; v < drawn.size(); ++v) most = std::max(most, drawn[v].z() - still[v].z());
     EXPECT_GT(most, 0.02F);
+}
+
+// Coulomb's friction of smooth jaws would bear less than a tenth of what the pull comes to.
+TEST_P(Grasp, by_grip_draws_tissue_far_and_keeps_it_without_a_step) {
+    Case c = case_;
+    c.haptics.friction_at_rest = c.haptics.friction_sliding = 0.05;
+    c.haptics.grip = 0.05;
+    model_ = std::make_unique<HapticModel>(c, usual_contact_method, 2);
+    go(-2, 0, 5);
+    go(4, 0, 800);
+    Vector3d last = moment_.force();
+    double pull = 0, step = 0;
+    const auto look = [&](const Moment& now) {
+        step = std::max(step, (now.force() - last).norm());
+        last = now.force();
+        pull = std::max(pull, -last.z());
+        for (const TickResult& jaw : now.jaws) {
+            EXPECT_GT(press_of(jaw), 0);
+            EXPECT_EQ(jaw.status & contact_unsolved, 0U);
+        }
+    };
+    go(4, 8, 1000, look);
+    go(4, 8, 300, look);
+    EXPECT_LT(step, 0.03 * pull);
+    EXPECT_GT(-last.z(), 0.99 * pull);
 }
 
 TEST_P(Grasp, slips_when_more_than_friction_bears_is_asked_of_it) {

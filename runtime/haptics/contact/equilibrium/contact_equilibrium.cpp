@@ -46,10 +46,14 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 constexpr int warm_iterations = 8, cold_iterations = 24;
-// Where warm iterations do not settle, as where tissue is about to snap, a tick has some to spare, with few
-// rows.
+// Where warm iterations do not settle, as where tissue is about to snap, a tick has some to spare: with few
+// rows, or while it is far from settled.
 constexpr int spare_iterations = 32;
 constexpr std::size_t few_rows = 16;
+// Squares of the numbers of rows, summed over iterations, that a tick can afford: about a millisecond. Each
+// search makes a few iterations nevertheless, or it would say nothing.
+constexpr std::size_t affordable = 20'000;
+constexpr int least_iterations = 2;
 constexpr double far_off = 10;          // times the change before it
 constexpr double helped = 0.5;          // times the change before it
 constexpr std::size_t most_walls = 48;  // leaves room for tissue
@@ -88,7 +92,7 @@ void ContactEquilibrium::forget(std::size_t t) noexcept {
             touch.righting = 0;
             touch.drag.setZero();
             touch.slip.setZero();
-            touch.slid = touch.pressed = false;
+            touch.slid = touch.pressed = touch.outside = false;
         }
 }
 
@@ -96,6 +100,7 @@ void ContactEquilibrium::begin_tick(double stiffness, double torsion) noexcept {
     coupling_ = stiffness;
     torsion_ = torsion;
     spare_iterations_ = spare_iterations;
+    spent_ = 0;
     rows_.clear();
     groups_.clear();
     residual_ = change_ = 0;
@@ -197,8 +202,10 @@ void ContactEquilibrium::iterate(int most) noexcept {
     double went =
         std::numeric_limits<double>::infinity();  // mm, at the most, since spheres looked around them
     const auto may_go_on = [&](int iteration) {
-        const bool few = rows_.size() + neighbours_.row_count() + tangents_.size() <= few_rows;
-        return iteration < most || (few && spare_iterations_-- > 0);
+        const std::size_t rows = rows_.size() + neighbours_.row_count() + tangents_.size();
+        if (iteration > 0) spent_ += rows * rows;
+        if (iteration >= least_iterations && spent_ > affordable) return false;
+        return iteration < most || ((rows <= few_rows || change_ > unsettled) && spare_iterations_-- > 0);
     };
     for (int iteration = 0; may_go_on(iteration); ++iteration) {
         rows_.cut(wall_count());
@@ -230,7 +237,7 @@ void ContactEquilibrium::iterate(int most) noexcept {
         solve_rows();
         const auto round = static_cast<std::size_t>(iteration);
         const std::size_t newest = answer_of(round);
-        if (friction_.at_rest > 0)
+        if (friction_.any())
             rub(newest);
         else
             for (DeformedPatch& patch : patches_) patch.keep_hold(newest);
@@ -328,12 +335,17 @@ void ContactEquilibrium::end_tick() noexcept {
         if (pressed && tool.felt > 0 && !tool.at_rest && found(t)) {
             any = tool.touching = true;
             tool.last_tip = tool.parts[0].sphere.device + tool.off;
+            for (std::size_t p = 0; p < tool.parts.size(); ++p)
+                for (Touch& touch : tool.parts[p].touches) {
+                    touch.outside = p < tool.felt;
+                    touch.outside_centre = centre_of(tool, tool.parts[p], touch);
+                }
         } else if (tool.touching) {
             forget(t);
         }
     }
     if (any) {
-        if (friction_.at_rest > 0) keep_hold();
+        if (friction_.any()) keep_hold();
     } else {
         forget_tissue();
     }

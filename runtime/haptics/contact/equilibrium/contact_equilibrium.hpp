@@ -89,8 +89,10 @@ class ContactEquilibrium {
     }
     /// Worst violation of the contact conditions, mm.
     double residual() const noexcept { return residual_; }
-    /// By how much the last answer differs from the state of tools and tissue that it answers, mm.
+    /// By how much the last answer differs from the state of tools and tissue that it answers, mm; and what
+    /// is too much: 5 mN behind the usual coupling.
     double change() const noexcept { return change_; }
+    static constexpr double unsettled = 1e-2;
     /// Appends the contacts with deformable bodies that press the tool.
     void write_contacts(std::size_t tool, TickResult& result) const noexcept;
     /// Appends those of deformable bodies with what lies beside them.
@@ -192,6 +194,9 @@ class ContactEquilibrium {
         Eigen::Vector3d rubbed_centre = Eigen::Vector3d::Zero();
         double way = -1;  // mm, that sphere and tissue went since; negative: nothing was looked at
         Eigen::Vector3d last_centre = Eigen::Vector3d::Zero();
+        // Whether it was outside at the end of the last tick, and where.
+        bool outside = false;
+        Eigen::Vector3d outside_centre = Eigen::Vector3d::Zero();
 
         void forget_pushes() noexcept {
             if (creep == nullptr) return;
@@ -232,6 +237,11 @@ class ContactEquilibrium {
 
     static void find_part_giving_way(Row& row, const DeformedPatch& patch,
                                      const collision::TriangleCorners& met) noexcept;
+    // Of a sphere and a triangle; patch -1: of a rigid body.
+    static std::int64_t key_of(std::int64_t tool, std::int64_t part, std::int64_t patch,
+                               std::int64_t triangle) noexcept {
+        return (((tool << 16) + (part << 8) + patch + 1) << 32) + triangle;
+    }
     static std::int64_t key_of(const Row& row) noexcept;
     std::size_t wall_count() const noexcept;
     double gap_of_wall(const Row& row) const noexcept;
@@ -269,11 +279,13 @@ class ContactEquilibrium {
     }
     void look_around(std::size_t tool, std::size_t part, std::size_t soft) noexcept;
     bool gather(std::size_t tool, std::size_t part, std::size_t soft, bool walks) noexcept;
+    bool stays_outside(const Touch& touch, const DeformedPatch& patch, const Eigen::Vector3d& centre,
+                       double nearest) const noexcept;
     bool found(std::size_t tool) const noexcept;
     bool start_anew() noexcept;
     void forget_tissue() noexcept;
     void iterate(int most) noexcept;
-    bool is_active(const Row& row) const noexcept;
+    bool is_active(std::int64_t key) const noexcept;
     bool watched_are_clear() const noexcept;
     void cut_rows() noexcept;
     void group_rows() noexcept;
@@ -304,6 +316,7 @@ class ContactEquilibrium {
     Eigen::Vector3d free_slip_of(const Rubbing& rubbing) const noexcept;
     void find_rubbing() noexcept;
     bool measure_press(const Group& group) noexcept;
+    double most_drag(const Touch& touch, const DeformedPatch& patch, double coefficient) const noexcept;
     void hold_alone(Rubbing& rubbing) noexcept;
     // How far a drag moves the sphere past the tissue that holds it, mm/N: about as far as a press lets it
     // sink in (Mindlin 1949: by (1 - nu/2) / (1 - nu) as far, on a half-space).
@@ -374,6 +387,7 @@ class ContactEquilibrium {
     double residual_ = 0, change_ = 0;
     double last_motion_ = 0;    // mm, of tissue, in the tick before
     int spare_iterations_ = 0;  // left in this tick
+    std::size_t spent_ = 0;     // in this tick, of what is affordable
 };
 
 }  // namespace palpate::haptics

@@ -3,7 +3,8 @@
 //
 // Where a sphere presses, friction holds it and the tissue together: the drag d on the tool is what undoes
 // the way s that they have gone past each other, along with the coupling and the tissue's own compliance,
-// until that is more than Coulomb's law lets it be. Until then s + c d = 0, c what a drag shears: shearing().
+// until that is more than there can be: most_drag(). Until then s + c d = 0, c what a drag shears:
+// shearing().
 //
 // Of one sphere d follows from s. Of several, d and what presses are unknown together:
 //     w = A f - gaps >= 0, f >= 0, f . w = 0    for what presses, as without friction,
@@ -11,6 +12,8 @@
 // with s and gaps linear in f and d by one symmetric matrix: a ContactLcp some of whose rows may pull.
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "runtime/haptics/contact/equilibrium/contact_equilibrium.hpp"
 
@@ -163,6 +166,19 @@ void ContactEquilibrium::fill_tangent(std::size_t t) noexcept {
     }
 }
 
+// The most that friction can be, N: Coulomb's, and by a profile that grips what the tissue bears over the
+// area that is pressed (Bowden, Tabor 1950, The friction and lubrication of solids), that of Hertz's contact.
+double ContactEquilibrium::most_drag(const Touch& touch, const DeformedPatch& patch,
+                                     double coefficient) const noexcept {
+    const double coulomb = coefficient * touch.press;
+    const LoadSpread* spread = patch.body().spread();
+    if (spread == nullptr || !(friction_.grip > 0)) return coulomb;
+    const double slight = std::min(1.0, touch.press / slight_press(*spread));  // then in proportion
+    const double press = std::max(touch.press, slight_press(*spread));
+    const double radius = std::min(radius_, std::cbrt(3 * press * radius_ / (4 * spread->contact_modulus())));
+    return coulomb + slight * friction_.grip * std::numbers::pi * radius * radius;
+}
+
 // What undoes the slip of one sphere as if it were alone.
 void ContactEquilibrium::hold_alone(Rubbing& rubbing) noexcept {
     const Touch& touch = touch_of(*rubbing.group);
@@ -193,12 +209,12 @@ void ContactEquilibrium::rub(std::size_t iterate) noexcept {
             rubbing.drag -= touch.axis.dot(rubbing.drag) * touch.axis;
         else
             hold_alone(rubbing);
-        const double wanted = rubbing.drag.norm();
-        touch.slides = wanted > (touch.slid ? friction_.sliding : friction_.at_rest) * touch.press;
-        touch.slid = touch.slid || touch.slides;
-        if (touch.slides) rubbing.drag *= friction_.sliding * touch.press / wanted;
-        touch.next_drag[iterate] = rubbing.drag;
         DeformedPatch& patch = patch_of(*rubbing.group);
+        const double wanted = rubbing.drag.norm();
+        touch.slides = wanted > most_drag(touch, patch, touch.slid ? friction_.sliding : friction_.at_rest);
+        touch.slid = touch.slid || touch.slides;
+        if (touch.slides) rubbing.drag *= most_drag(touch, patch, friction_.sliding) / wanted;
+        touch.next_drag[iterate] = rubbing.drag;
         for (const auto& [slot, share] : rubbing.bearings) patch.hold(iterate, slot, -share * rubbing.drag);
     }
     for (DeformedPatch& patch : patches_) patch.end_hold(iterate);

@@ -146,7 +146,12 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
         const RoundedTriangle round = patch.rounded(triangle, patch.met_corners(slots, touch.sunk));
         const NearestBall ball = nearest_ball(centre, round);
         const double distance = ball.distance - ball.radius;
-        const bool near = distance < limit;
+        // What pressed stays even where an answer has led away from it: another may lead back.
+        const auto pressed = [&] {
+            return is_active(key_of(static_cast<std::int64_t>(t), static_cast<std::int64_t>(p),
+                                    static_cast<std::int64_t>(soft), triangle));
+        };
+        const bool near = distance < limit || pressed();
         if (walks && (near || next < seeds))
             for (const std::int32_t neighbour : body.neighbours(triangle)) visit(neighbour);
         if (!near) continue;
@@ -195,7 +200,7 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
             row.gap -=
                 row.weights[i] * row.normal.dot(patch.displacement(slot) - patch.held_displacement(slot));
         }
-        auto& list = row.distance < tool.near || is_active(row) ? rows_ : watched_;
+        auto& list = row.distance < tool.near || pressed() ? rows_ : watched_;
         if (!list.full()) list.push_back(row);
     }
     if (nearest_ones.empty()) return !behind_held;
@@ -204,13 +209,22 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
         normal += angle_about(one.centre, one.centres) * unit_normal(one.centres);
         away = centre - one.centre;
     }
-    return normal.dot(away) >= 0;
+    return normal.dot(away) >= 0 || stays_outside(touch, patch, centre, nearest);
+}
+
+// Whether a sphere that was outside at the end of the last tick, and keeps clear of the surface now, went too
+// short a way since to have passed through: what is nearest to it may be turned over, where tissue is folded.
+bool ContactEquilibrium::stays_outside(const Touch& touch, const DeformedPatch& patch, const Vector3d& centre,
+                                       double nearest) const noexcept {
+    const double passage = radius_ / 2;
+    return touch.outside && nearest > passage &&
+           (centre - touch.outside_centre).norm() + patch.motion() < passage;
 }
 
 // Whether it pressed in the last solution.
-bool ContactEquilibrium::is_active(const Row& row) const noexcept {
+bool ContactEquilibrium::is_active(std::int64_t key) const noexcept {
     const auto end = active_.begin() + static_cast<std::ptrdiff_t>(active_count_);
-    return std::find(active_.begin(), end, key_of(row)) != end;
+    return std::find(active_.begin(), end, key) != end;
 }
 
 // Whether the state keeps clear of the triangles that were not solved, to first order.
@@ -272,8 +286,7 @@ void ContactEquilibrium::group_rows() noexcept {
 }
 
 std::int64_t ContactEquilibrium::key_of(const Row& row) noexcept {
-    const std::int64_t side = (std::int64_t{row.tool} << 16) + (std::int64_t{row.part} << 8) + row.patch + 1;
-    return (side << 32) + row.triangle;
+    return key_of(row.tool, row.part, row.patch, row.triangle);
 }
 
 // What is left of a wall's gap once tissue drags the tool.
@@ -294,7 +307,7 @@ void ContactEquilibrium::solve_rows() noexcept {
     std::size_t warm_count = 0;
     for (std::size_t k = 0; k < n; ++k) {
         lcp_.gaps()[static_cast<Index>(k)] = rows_[k].wall ? gap_of_wall(rows_[k]) : rows_[k].gap;
-        if (is_active(rows_[k])) warm[warm_count++] = k;
+        if (is_active(key_of(rows_[k]))) warm[warm_count++] = k;
     }
     for (std::size_t k = 0; k < neighbours_.row_count(); ++k) {
         lcp_.gaps()[static_cast<Index>(n + k)] = neighbours_.gap(k);
@@ -303,7 +316,7 @@ void ContactEquilibrium::solve_rows() noexcept {
     residual_ = lcp_.solve(n + neighbours_.row_count(), std::span(warm).first(warm_count),
                            [&](std::size_t row) { fill_any_column(row); });
     take_forces();
-    if (friction_.at_rest > 0) {
+    if (friction_.any()) {
         find_rubbing();
         if (rubbing_.size() > 1) hold_together();
     }
