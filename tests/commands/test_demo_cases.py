@@ -2,7 +2,6 @@
 """The demo's two cases, built from real volumes, verified, pressed, and judged by a direct sparse solve."""
 import csv
 import json
-import math
 import os
 import pathlib
 import shutil
@@ -11,6 +10,7 @@ import tempfile
 import tomllib
 import unittest
 
+from drawn_out import draw_out
 from x_server import NEEDED, XServer
 
 BIN = pathlib.Path(os.environ["PALPATE_BIN"])
@@ -131,21 +131,11 @@ class DemoCases(unittest.TestCase):
         """By 20 mm: a forceps holds it to the end, without a step of force, whatever the tissue is like."""
         for tissue in ("none", "liver"):
             with self.subTest(large_deformation=tissue):
-                log = folder / "grasp.csv"
-                grasp = run(BIN / "palpate", "touch", asset, "--instrument", "forceps", "--depth", 20, "--seconds", 3.9, "--virtual-clock",
-                            "--large-deformation", tissue, "--log", log, "--force", "--json", "-")
-                self.assertEqual(grasp.returncode, 0, grasp.stderr)
-                with open(log, newline="") as file:
-                    rows = list(csv.DictReader(file))
-                forces = [[[float(row[f"force_{axis}_n"]) for axis in "xyz"] for row in rows if row["tool"] == jaw] for jaw in "01"]
-                for jaw in forces:
-                    self.assertGreater(math.hypot(*jaw[-1]), 0.1)
-                hand = [[a + b for a, b in zip(*jaws)] for jaws in zip(*forces)]
-                pull = math.hypot(*hand[-1])
-                self.assertGreater(pull, 0.5)
-                self.assertLess(max(math.hypot(*force) for force in hand), 1.01 * pull)
-                step = max(math.dist(*ticks) for ticks in zip(hand, hand[1:]))
-                self.assertLess(step, 0.03 * pull)
+                drawn = draw_out(BIN, asset, folder / "grasp.csv", 20, "--large-deformation", tissue)
+                self.assertGreater(min(drawn.jaws), 0.1)
+                self.assertGreater(drawn.pull, 0.5)
+                self.assertGreater(drawn.pull, 0.99 * drawn.most)
+                self.assertLess(drawn.step, 0.03 * drawn.pull)
 
     def test_liver(self):
         self.check("liver", self.draw_the_rim_out)

@@ -10,6 +10,7 @@ import time
 import tomllib
 import unittest
 
+from drawn_out import draw_out
 from x_server import NEEDED, XServer
 
 BIN = pathlib.Path(os.environ["PALPATE_BIN"])
@@ -69,11 +70,15 @@ class Init(unittest.TestCase):
 
     # Real scans: one call of init, one of build, nothing written by hand.
     @unittest.skipUnless((DATA / "abdomen_ct_totalseg3mm").is_dir(), "PALPATE_DATA: abdomen_ct_totalseg3mm is absent")
-    def test_an_organ_of_a_totalsegmentator_map_builds(self):
-        self.case("kidney.toml", DATA / "abdomen_ct_totalseg3mm" / "seg_totalseg.nii.gz", "--organ", "kidney_right")
+    def test_an_organ_of_a_totalsegmentator_map_builds_and_can_be_drawn_out(self):
+        self.case("kidney.toml", DATA / "abdomen_ct_totalseg3mm" / "seg_totalseg.nii.gz", "--organ", "kidney_left")
         seen, report = self.assertBuilds("kidney.toml")
-        self.assertEqual(seen["name"], "kidney_right")
+        self.assertEqual(seen["name"], "kidney_left")
         self.assertIn("✓ Verified", report)
+        drawn = draw_out(BIN, self.folder / "kidney.vtkhdf", self.folder / "grasp.csv", 20)  # where it folds between the jaws
+        self.assertGreater(min(drawn.jaws), 0.1)
+        self.assertGreater(drawn.pull, 0.99 * drawn.most)
+        self.assertLess(drawn.step, 0.03 * drawn.pull)
 
     @unittest.skipUnless((DATA / "head_mr_ch2").is_dir(), "PALPATE_DATA: head_mr_ch2 is absent")
     def test_a_brain_in_mri_builds_from_one_seed(self):

@@ -27,12 +27,13 @@ bool are_sentences(const nlohmann::ordered_json& value) {
            });
 }
 
-// Rows of scalars under their keys, columns as wide as their widest cell; nested values are left to --json.
+// Rows of scalars under their keys, columns as wide as their widest cell, and an empty line; nested values
+// are left to --json.
 void print_table(const nlohmann::ordered_json& rows, const std::string& name, std::ostream& stream) {
     std::vector<std::string> keys;
     for (const auto& [key, cell] : rows.front().items())
         if (cell.is_primitive()) keys.push_back(key);
-    stream << '\n' << name << '\n';
+    stream << name << '\n';
     std::vector<std::size_t> widths;
     for (const std::string& key : keys) {
         std::size_t width = key.size();
@@ -50,14 +51,23 @@ void print_table(const nlohmann::ordered_json& rows, const std::string& name, st
     stream << "\n\n";
 }
 
-void print_lines(const nlohmann::ordered_json& value, const std::string& prefix, std::ostream& stream) {
+// `spaced`: whether an empty line, or nothing, stands before.
+void print_lines(const nlohmann::ordered_json& value, const std::string& prefix, std::ostream& stream,
+                 bool& spaced) {
     for (const auto& [key, item] : value.items()) {
         const std::string name = prefix.empty() ? key : prefix + "." + key;
-        if (item.is_object())
-            print_lines(item, name, stream);
-        else if (is_table(item))
+        if (item.is_object()) {
+            print_lines(item, name, stream, spaced);
+            continue;
+        }
+        if (is_table(item)) {
+            if (!spaced) stream << '\n';
             print_table(item, name, stream);
-        else if (are_sentences(item))
+            spaced = true;
+            continue;
+        }
+        spaced = false;
+        if (are_sentences(item))
             for (const auto& sentence : item) stream << name << ' ' << cell_text(sentence) << '\n';
         else
             stream << name << ' ' << cell_text(item) << '\n';
@@ -67,7 +77,8 @@ void print_lines(const nlohmann::ordered_json& value, const std::string& prefix,
 }  // namespace
 
 void print_result(const nlohmann::ordered_json& result, std::ostream& stream) {
-    print_lines(result, "", stream);
+    bool spaced = true;
+    print_lines(result, "", stream, spaced);
 }
 
 }  // namespace palpate::cli
