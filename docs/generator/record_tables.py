@@ -40,8 +40,8 @@ def keys(rows):
     yield "| key | unit | default | | what |"
     yield "|---|---|--:|---|---|"
     for row in rows:
-        default = number(row["default"] * (1000 if row["written_unit"] == "kPa" else 1))
-        yield f"| `{row['key']}` | {row['written_unit']} | {default} | {row['range']} | {cell(row['meaning'])} |"
+        default = row["default"] if row["written_factor"] == 1 else row["default"] * row["written_factor"]
+        yield f"| `{row['key']}` | {row['written_unit']} | {number(default)} | {row['written_range']} | {cell(row['meaning'])} |"
 
 
 def attributes(rows):

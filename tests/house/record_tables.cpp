@@ -44,6 +44,8 @@ Json rows_of(const Table& table) {
                      {"written_unit", field.written_unit != nullptr ? field.written_unit : field.unit},
                      {"default", value},
                      {"range", to_string(field.range)},
+                     {"written_range", to_string(field.range.in_units(field.written_factor))},
+                     {"written_factor", field.written_factor},
                      {"schema", field.schema},
                      {"meaning", field.meaning}};
             if (field.absent) row["absent"] = *field.absent;

@@ -48,13 +48,20 @@ visual::Sight RecordedScene::sight() const {
     return first_sight(case_, model_, place.point, place.normal);
 }
 
+Eigen::Vector3d RecordedScene::felt(const Tick& tick) const {
+    Eigen::Vector3d force = vector_of(tick.force);
+    if (recording_.head.jaws && !others_.empty())
+        force += vector_of(tick_at(others_.front(), tick.time).force);
+    return force;
+}
+
 const Tick& RecordedScene::fill(visual::VisualFrame& frame, double time) {
     const Tick& tick = tick_at(track_, time);
     frame.device_position = vector_of(tick.device_position);
     frame.tool_position = vector_of(tick.tool_position);
     frame.shaft = vector_of(tick.shaft);
     frame.tool_orientation = quaternion_of(tick.tool_orientation);
-    frame.force = vector_of(tick.force);
+    frame.force = felt(tick);
     frame.depth = tick.depth;
     frame.overruns = tick.overruns;
     frame.tick_rate_hz = tick_rate_at(track_, time);
@@ -66,8 +73,6 @@ const Tick& RecordedScene::fill(visual::VisualFrame& frame, double time) {
     for (const RecordedTrack& other : others_)
         frame.other_tools.push_back(other_tool_of(tick_at(other, time)));
     if (recording_.head.jaws && !frame.other_tools.empty()) {
-        // One hand feels both jaws.
-        frame.force += frame.other_tools.front().force;
         frame.other_tools.front().force.setZero();
         frame.other_tools.front().jaw = true;
     }

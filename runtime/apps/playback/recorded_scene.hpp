@@ -26,6 +26,9 @@ class RecordedScene {
                   const haptics::HapticModel& model, const Case& patient_case);
 
     const session::RecordedTrack& track() const { return track_; }
+    /// What the hand feels in a tick of the track, N: of a forceps, whose other jaw is beside it, both jaws'
+    /// force.
+    Eigen::Vector3d felt(const Tick& tick) const;
     /// From where its first contact is seen; where nothing is touched, what a fresh trainer would show.
     visual::Sight sight() const;
     /// Fills everything but what is of a window, an exercise, a ghost or a timeline. Returns the tick that is

@@ -59,7 +59,9 @@ class RecordingPlayer {
           frame_(frame),
           demonstration_(demonstration_of(scene.track())),
           clock_(scene.track().front()->time, scene.track().back()->time, options.speed) {
-        frame_.timeline = TimelineView{.forces = force_columns(scene.track(), timeline_columns)};
+        frame_.timeline =
+            TimelineView{.forces = force_columns(scene.track(), timeline_columns,
+                                                 [&](const Tick& tick) { return scene.felt(tick); })};
     }
 
     // Until the user or the time ends it.
@@ -110,7 +112,8 @@ class RecordingPlayer {
     }
 
     void press(const std::string& key) {
-        if (key == "o" || key == "f") window_.tell(texts::translated("not while a recording is shown"));
+        if (key == "o" || key == "f" || key == "j")
+            window_.tell(texts::translated("not while a recording is shown"));
         if (key == "a") turn_sound();
         clock_.press(key);
     }
@@ -268,7 +271,7 @@ Json play_recording(const PlaybackOptions& options, const PlaybackWindow& shown,
                 {"last",
                  {{"tick", last.tick},
                   {"time_s", last.time},
-                  {"force_n", last.force},
+                  {"force_n", array_of(scene.felt(last))},
                   {"contacts", recording.contacts_of(last).size()}}}};
     if (ghost)
         result["ghost"] = {{"begins_s", ghost->demonstration().begins},

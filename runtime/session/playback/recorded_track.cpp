@@ -64,17 +64,22 @@ RecentFlags flags_until(const Recording& recording, double time) {
     return flags;
 }
 
-std::vector<Eigen::Vector2d> force_columns(const RecordedTrack& track, std::size_t columns) {
+Eigen::Vector3d rendered_force(const Tick& tick) {
+    return vector_of(tick.force);
+}
+
+std::vector<Eigen::Vector2d> force_columns(const RecordedTrack& track, std::size_t columns,
+                                           const FeltForce& felt) {
     const double begins = track.front()->time, whole = track.back()->time - begins;
     std::vector<Eigen::Vector2d> ranges(columns);
     auto tick = track.begin();
-    double held = vector_of(track.front()->force).norm();
+    double held = felt(*track.front()).norm();
     for (std::size_t column = 0; column < columns; ++column) {
         const double until = begins + whole * static_cast<double>(column + 1) / static_cast<double>(columns);
         const bool last = column + 1 == columns;
         Eigen::Vector2d range(held, held);
         for (bool first = true; tick != track.end() && (last || (*tick)->time < until); ++tick) {
-            held = vector_of((*tick)->force).norm();
+            held = felt(**tick).norm();
             range = first ? Eigen::Vector2d(held, held)
                           : Eigen::Vector2d(std::min(range[0], held), std::max(range[1], held));
             first = false;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <vector>
 
 #include "formats/recording/recording.hpp"
@@ -42,9 +43,13 @@ struct RecentFlags {
 /// The flags of all tools' ticks in the reading_time that ends at `time` (s). Linear in those ticks.
 RecentFlags flags_until(const recording::Recording& recording, double time);
 
+/// What is felt in a tick, N.
+using FeltForce = std::function<Eigen::Vector3d(const Tick& tick)>;
+Eigen::Vector3d rendered_force(const Tick& tick);  ///< by the tick's own tool
 /// Least and largest force (N) in each of `columns` (1 or more) equal parts of the track's time. A part
 /// without a tick holds the force before it.
-std::vector<Eigen::Vector2d> force_columns(const RecordedTrack& track, std::size_t columns);
+std::vector<Eigen::Vector2d> force_columns(const RecordedTrack& track, std::size_t columns,
+                                           const FeltForce& felt = rendered_force);
 
 /// The part of a track that shows something.
 struct Demonstration {

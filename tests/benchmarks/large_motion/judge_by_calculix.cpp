@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // judge_by_calculix ASSET RECORDING TICK ...: what a recorded run of tools on neo-Hookean tissue made of it
 // in those ticks, beside what CalculiX does under the same forces on the same mesh. A row for each tick and
-// deformable body that is pressed: tick, body, sum of the forces (N), largest displacement (mm), how far the
+// deformable body that is pressed: tick, sum of the forces (N), largest displacement (mm), how far the
 // surface is turned (degrees); by how much the run and then linear tissue are off, in per cent: along the
-// forces, and the surface.
+// forces, and the surface; and the body's name.
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -113,11 +113,11 @@ void judge(const Case& patient_case, const haptics::ContactBodies& contacts,
             for (std::size_t v = 0; v < linear.size(); ++v) linear[v] += of_one[v];
         }
         const double work = work_of(loads, judged), way = largest_of(judged);
-        fmt::print("{} {} {:.4g} {:.2f} {:.0f} {:.2f} {:.2f} {:.2f} {:.2f}\n", tools[0].tick, body.name,
+        fmt::print("{} {:.4g} {:.2f} {:.0f} {:.2f} {:.2f} {:.2f} {:.2f} {}\n", tools[0].tick,
                    static_cast<double>(sum.norm()), way, turn_of(body.boundary.surface, judged),
                    100 * std::abs(work_of(loads, drawn[soft]) / work - 1),
                    100 * apart(drawn[soft], judged) / way, 100 * std::abs(work_of(loads, linear) / work - 1),
-                   100 * apart(linear, judged) / way);
+                   100 * apart(linear, judged) / way, body.name);
     }
 }
 

@@ -62,7 +62,9 @@ def forces_off(asset, folder, rows, forceps, moving, rest):
                     "--quiet", "--force", *(["--instrument", "forceps"] if forceps else [])], check=True, stdout=subprocess.DEVNULL)
     ticks = [int(round(1000 * time)) - 1 for time in (*moving, rest)]
     told = subprocess.run([JUDGE, asset, folder / "run.h5", *map(str, ticks)], check=True, capture_output=True, text=True).stdout
-    found = {int(line.split()[0]): [float(x) for x in line.split()[2:]] for line in told.splitlines()}
+    found = {int(tick): [float(x) for x in figures] for tick, *figures, _ in (line.split(maxsplit=8) for line in told.splitlines())}
+    if missing := [tick for tick in ticks if tick not in found]:
+        raise SystemExit(f"nothing is pressed in the ticks {missing} of {folder / 'run.h5'}")
     return [found[tick] for tick in ticks[:-1]], found[ticks[-1]]
 
 

@@ -98,7 +98,6 @@ class ForcepsInTheWindow(TrainerCase):
             self.assertEqual(process.returncode, code, err)
             self.assertIn(message, err)
 
-
     def test_a_recording_of_it_shows_one_forceps_whose_hand_feels_both_jaws(self):
         run = self.folder / "grasp.h5"
         touched = subprocess.run(

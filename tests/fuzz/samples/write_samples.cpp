@@ -37,6 +37,7 @@ void write_recordings(const fs::path& folder) {
                                         .haptics = {.tool_radius = 1.5},
                                         .devices = {{"left", {.max_force = 3.3}}, {"right", {}}},
                                         .tool = ToolBody{sample::sphere_surface({0, 0, 0}, 2, 0), {}},
+                                        .jaws = JawSettings{},
                                         .hyperelastic = {"wall"}};
     for (const int ticks : {5, 40}) {  // a ring of 16 rows: begun, and gone round
         const fs::path path = folder / ("ticks_" + std::to_string(ticks) + ".h5");

@@ -112,6 +112,7 @@ TEST_P(Grasp, by_grip_draws_tissue_far_and_keeps_it) {
     go(-2, 0, 5);
     go(4, 0, 800);
     Vector3d last = moment_.force();
+    const std::vector<Vector3f> still = displacements();
     double pull = 0, step = 0;
     const auto look = [&](const Moment& now) {
         step = std::max(step, (now.force() - last).norm());
@@ -126,6 +127,11 @@ TEST_P(Grasp, by_grip_draws_tissue_far_and_keeps_it) {
     go(4, 4, 300, look);
     EXPECT_LT(step, 0.1 * pull);  // the cube is of four cells along each side
     EXPECT_GT(-last.z(), 0.99 * pull);
+    EXPECT_GT(pull, 10 * 0.05 * (press_of(moment_.jaws[0]) + press_of(moment_.jaws[1])));
+    const std::vector<Vector3f> drawn = displacements();
+    float most = 0;
+    for (std::size_t v = 0; v < drawn.size(); ++v) most = std::max(most, drawn[v].z() - still[v].z());
+    EXPECT_GT(most, 3);  // of 4 mm
 }
 
 TEST_P(Grasp, slips_when_more_than_friction_bears_is_asked_of_it) {

@@ -50,9 +50,10 @@ constexpr int warm_iterations = 8, cold_iterations = 24;
 // rows, or while it is far from settled.
 constexpr int spare_iterations = 32;
 constexpr std::size_t few_rows = 16;
-// Squares of the numbers of rows, summed over iterations, that a tick can afford: about a millisecond. Each
-// search makes a few iterations nevertheless, or it would say nothing.
-constexpr std::size_t affordable = 20'000;
+// Squares of the numbers of rows, summed over the iterations of a search, that a tick can afford: about a
+// millisecond for what is to spare, three for a search that starts anew with very many rows. It makes a few
+// iterations nevertheless, or it would say nothing.
+constexpr std::size_t spare_spent = 20'000, most_spent = 60'000;
 constexpr int least_iterations = 2;
 constexpr double far_off = 10;          // times the change before it
 constexpr double helped = 0.5;          // times the change before it
@@ -100,7 +101,6 @@ void ContactEquilibrium::begin_tick(double stiffness, double torsion) noexcept {
     coupling_ = stiffness;
     torsion_ = torsion;
     spare_iterations_ = spare_iterations;
-    spent_ = 0;
     rows_.clear();
     groups_.clear();
     residual_ = change_ = 0;
@@ -201,11 +201,13 @@ void ContactEquilibrium::iterate(int most) noexcept {
     double before = std::numeric_limits<double>::infinity();
     double went =
         std::numeric_limits<double>::infinity();  // mm, at the most, since spheres looked around them
+    std::size_t spent = 0;
     const auto may_go_on = [&](int iteration) {
         const std::size_t rows = rows_.size() + neighbours_.row_count() + tangents_.size();
-        if (iteration > 0) spent_ += rows * rows;
-        if (iteration >= least_iterations && spent_ > affordable) return false;
-        return iteration < most || ((rows <= few_rows || change_ > unsettled) && spare_iterations_-- > 0);
+        if (iteration > 0) spent += rows * rows;
+        if (iteration >= least_iterations && spent > most_spent) return false;
+        return iteration < most ||
+               ((rows <= few_rows || change_ > unsettled) && spent <= spare_spent && spare_iterations_-- > 0);
     };
     for (int iteration = 0; may_go_on(iteration); ++iteration) {
         rows_.cut(wall_count());
@@ -339,6 +341,7 @@ void ContactEquilibrium::end_tick() noexcept {
                 for (Touch& touch : tool.parts[p].touches) {
                     touch.outside = p < tool.felt;
                     touch.outside_centre = centre_of(tool, tool.parts[p], touch);
+                    touch.outside_sunk = touch.sunk;
                 }
         } else if (tool.touching) {
             forget(t);

@@ -196,7 +196,7 @@ class ContactEquilibrium {
         Eigen::Vector3d last_centre = Eigen::Vector3d::Zero();
         // Whether it was outside at the end of the last tick, and where.
         bool outside = false;
-        Eigen::Vector3d outside_centre = Eigen::Vector3d::Zero();
+        Eigen::Vector3d outside_centre = Eigen::Vector3d::Zero(), outside_sunk = Eigen::Vector3d::Zero();
 
         void forget_pushes() noexcept {
             if (creep == nullptr) return;
@@ -316,7 +316,7 @@ class ContactEquilibrium {
     Eigen::Vector3d free_slip_of(const Rubbing& rubbing) const noexcept;
     void find_rubbing() noexcept;
     bool measure_press(const Group& group) noexcept;
-    double most_drag(const Touch& touch, const DeformedPatch& patch, double coefficient) const noexcept;
+    double most_drag(const Group& group, double coefficient) const noexcept;
     void hold_alone(Rubbing& rubbing) noexcept;
     // How far a drag moves the sphere past the tissue that holds it, mm/N: about as far as a press lets it
     // sink in (Mindlin 1949: by (1 - nu/2) / (1 - nu) as far, on a half-space).
@@ -387,7 +387,6 @@ class ContactEquilibrium {
     double residual_ = 0, change_ = 0;
     double last_motion_ = 0;    // mm, of tissue, in the tick before
     int spare_iterations_ = 0;  // left in this tick
-    std::size_t spent_ = 0;     // in this tick, of what is affordable
 };
 
 }  // namespace palpate::haptics

@@ -167,16 +167,20 @@ void ContactEquilibrium::fill_tangent(std::size_t t) noexcept {
 }
 
 // The most that friction can be, N: Coulomb's, and by a profile that grips what the tissue bears over the
-// area that is pressed (Bowden, Tabor 1950, The friction and lubrication of solids), that of Hertz's contact.
-double ContactEquilibrium::most_drag(const Touch& touch, const DeformedPatch& patch,
-                                     double coefficient) const noexcept {
-    const double coulomb = coefficient * touch.press;
-    const LoadSpread* spread = patch.body().spread();
-    if (spread == nullptr || !(friction_.grip > 0)) return coulomb;
-    const double slight = std::min(1.0, touch.press / slight_press(*spread));  // then in proportion
-    const double press = std::max(touch.press, slight_press(*spread));
-    const double radius = std::min(radius_, std::cbrt(3 * press * radius_ / (4 * spread->contact_modulus())));
-    return coulomb + slight * friction_.grip * std::numbers::pi * radius * radius;
+// area that is pressed (Bowden, Tabor 1950, The friction and lubrication of solids): a disc of Hertz's
+// radius; of a sphere in a row, the part of it that is nearer to it than to the next ones.
+double ContactEquilibrium::most_drag(const Group& group, double coefficient) const noexcept {
+    const double press = touch_of(group).press;
+    const LoadSpread* spread = patch_of(group).body().spread();
+    if (spread == nullptr || !(friction_.grip > 0)) return coefficient * press;
+    const double slight = slight_press(*spread);  // below it, in proportion
+    const double radius =
+        std::min(radius_, std::cbrt(3 * std::max(press, slight) * radius_ / (4 * spread->contact_modulus())));
+    double area = std::numbers::pi * radius * radius;
+    if (const Tool& tool = tools_[static_cast<std::size_t>(group.tool)]; tool.felt > 1)
+        area =
+            std::min(area, 2 * radius * (tool.parts[1].sphere.device - tool.parts[0].sphere.device).norm());
+    return coefficient * press + friction_.grip * area * std::min(1.0, press / slight);
 }
 
 // What undoes the slip of one sphere as if it were alone.
@@ -211,9 +215,9 @@ void ContactEquilibrium::rub(std::size_t iterate) noexcept {
             hold_alone(rubbing);
         DeformedPatch& patch = patch_of(*rubbing.group);
         const double wanted = rubbing.drag.norm();
-        touch.slides = wanted > most_drag(touch, patch, touch.slid ? friction_.sliding : friction_.at_rest);
+        touch.slides = wanted > most_drag(*rubbing.group, touch.slid ? friction_.sliding : friction_.at_rest);
         touch.slid = touch.slid || touch.slides;
-        if (touch.slides) rubbing.drag *= most_drag(touch, patch, friction_.sliding) / wanted;
+        if (touch.slides) rubbing.drag *= most_drag(*rubbing.group, friction_.sliding) / wanted;
         touch.next_drag[iterate] = rubbing.drag;
         for (const auto& [slot, share] : rubbing.bearings) patch.hold(iterate, slot, -share * rubbing.drag);
     }

@@ -216,9 +216,12 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
 // short a way since to have passed through: what is nearest to it may be turned over, where tissue is folded.
 bool ContactEquilibrium::stays_outside(const Touch& touch, const DeformedPatch& patch, const Vector3d& centre,
                                        double nearest) const noexcept {
+    if (!touch.outside) return false;
     const double passage = radius_ / 2;
-    return touch.outside && nearest > passage &&
-           (centre - touch.outside_centre).norm() + patch.motion() < passage;
+    // Vertices that nobody had looked at before move as those did in the last tick.
+    const double way = (centre - touch.outside_centre).norm() + (touch.sunk - touch.outside_sunk).norm() +
+                       std::max(patch.motion(), last_motion_);
+    return nearest > passage && way < passage;
 }
 
 // Whether it pressed in the last solution.
