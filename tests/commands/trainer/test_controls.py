@@ -42,6 +42,7 @@ class Controls(OpenedTrainer):
     def test_a_recording_begun_and_ended_by_a_key_replays(self):
         process, _ = self.open_window()
         self.x("xdotool", "key", "o")
+        self.wait_for((self.folder / "palpate-sample-1.h5").exists)  # a replay starts from before the contact
         for _ in range(20):  # half a millimetre each, from 5 mm above the surface
             self.x("xdotool", "key", "w")
         self.come_to_rest()
