@@ -63,12 +63,9 @@ void fill_frame(const TrainRun& run, std::span<const TickResult* const> ticks, V
     frame.deforming_far = run.session.deforming_far();
     frame.lesson = run.lesson.view(frame.force.norm());
     frame.other_tools.clear();
-    for (const TickResult* other : ticks.subspan(1)) frame.other_tools.push_back(other_tool_of(*other));
-    if (run.session.jaws()) {
-        frame.other_tools.front().force.setZero();  // it is in what the hand feels
-        frame.other_tools.front().jaw = true;
-        frame.jaws_closed = run.session.jaws_closed();
-    }
+    for (const TickResult* other : ticks.subspan(1))
+        frame.other_tools.push_back(run.session.jaws() ? other_jaw_of(*other) : other_tool_of(*other));
+    if (run.session.jaws()) frame.jaws_closed = run.session.jaws_closed();
     if (run.ghost)
         std::ranges::move(run.ghost->beside(run.lesson.lesson(), tick.time),
                           std::back_inserter(frame.other_tools));

@@ -8,6 +8,7 @@
 #include "formats/records/device_limits.hpp"
 #include "formats/records/felt_region.hpp"
 #include "formats/records/haptic_settings.hpp"
+#include "formats/records/jaw_settings.hpp"
 #include "formats/records/material.hpp"
 #include "formats/records/quality_contract.hpp"
 #include "formats/records/tick_result.hpp"
@@ -74,6 +75,7 @@ int main() {
                       {"certificate", rows_of<Certificate>(certificate_fields)},
                       {"feel", rows_of<FeltRegion>(felt_region_fields)},
                       {"tool", rows_of<ToolSettings>(tool_fields)},
+                      {"jaws", rows_of<JawSettings>(jaw_fields)},
                       {"device_limits", rows_of<DeviceLimits>(device_limit_fields)},
                       {"tick", rows_of<Tick>(tick_fields)},
                       {"contact", rows_of<Contact>(contact_fields)},

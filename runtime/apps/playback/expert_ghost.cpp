@@ -19,7 +19,7 @@ ExpertGhost::ExpertGhost(const std::filesystem::path& file, const std::filesyste
 
 visual::OtherTool ExpertGhost::ghost_at(double moment) const {
     visual::OtherTool ghost = other_tool_of(session::tick_at(track_, moment));
-    ghost.ghost = true;
+    ghost.kind = visual::OtherTool::Kind::ghost;
     return ghost;
 }
 

@@ -18,6 +18,13 @@ visual::OtherTool other_tool_of(const Tick& tick) {
             .force = vector_of(tick.force)};
 }
 
+visual::OtherTool other_jaw_of(const Tick& tick) {
+    visual::OtherTool jaw = other_tool_of(tick);
+    jaw.force.setZero();
+    jaw.kind = visual::OtherTool::Kind::jaw;
+    return jaw;
+}
+
 RecordedScene::RecordedScene(const recording::Recording& recording, const std::filesystem::path& file,
                              std::int32_t tool, const haptics::HapticModel& model, const Case& patient_case)
     : recording_(recording),
@@ -70,11 +77,9 @@ const Tick& RecordedScene::fill(visual::VisualFrame& frame, double time) {
     frame.statuses = flags.statuses;
     surfaces_.at(time, frame.displacements);
     frame.other_tools.clear();
-    for (const RecordedTrack& other : others_)
-        frame.other_tools.push_back(other_tool_of(tick_at(other, time)));
-    if (recording_.head.jaws && !frame.other_tools.empty()) {
-        frame.other_tools.front().force.setZero();
-        frame.other_tools.front().jaw = true;
+    for (const RecordedTrack& other : others_) {
+        const Tick& beside = tick_at(other, time);
+        frame.other_tools.push_back(recording_.head.jaws ? other_jaw_of(beside) : other_tool_of(beside));
     }
     return tick;
 }

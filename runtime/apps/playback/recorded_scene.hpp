@@ -14,6 +14,8 @@ namespace palpate::apps {
 
 /// A recorded tool as one beside another.
 visual::OtherTool other_tool_of(const Tick& tick);
+/// The other jaw of a forceps that is held, without its force: that is in what the hand feels.
+visual::OtherTool other_jaw_of(const Tick& tick);
 
 /// What the window shows of a recording at any moment: the run's own positions, forces, contacts and flags;
 /// nothing is computed again but the surfaces that those contacts deform. Recording, model and case must

@@ -31,17 +31,18 @@ void make_sieve(vtkActor* actor) {
 OtherTools::OtherTools(const OtherToolLook& look, vtkRenderer* renderer, vtkRenderer* front)
     : look_(look), renderer_(renderer), front_(front) {}
 
-OtherTools::Actors OtherTools::make(bool ghost, bool jaw) const {
-    const Rgb& colour = ghost ? ghost_colour : tool_colour;
-    Actors actors{.ghost = ghost,
-                  .jaw = jaw,
-                  .ball = ball(look_.radius, jaw ? held_blue : colour, 20),
-                  .shaft = tool_shaft(look_.radius, look_.shaft_length, jaw ? steel : colour),
-                  .arrow = force_arrow(ghost ? ghost_arrow_width : 1, colour)};
+OtherTools::Actors OtherTools::make(OtherTool::Kind kind) const {
+    const bool ghost = kind == OtherTool::Kind::ghost, jaw = kind == OtherTool::Kind::jaw;
+    const Rgb &tip = ghost ? ghost_colour : jaw ? held_blue : tool_colour, &shaft = jaw ? steel : tip;
+    Actors actors{.kind = kind,
+                  .ball = ball(look_.radius, tip, 20),
+                  .shaft = tool_shaft(look_.radius, look_.shaft_length, shaft),
+                  .arrow = force_arrow(ghost ? ghost_arrow_width : 1, tip)};
     for (const auto& part : {actors.ball, actors.shaft, actors.arrow}) {
-        if (jaw) break;  // lit as the held tool is
-        part->GetProperty()->SetAmbient(0.4);
-        part->GetProperty()->SetDiffuse(0.6);
+        if (!jaw) {  // a jaw is lit as the held tool is
+            part->GetProperty()->SetAmbient(0.4);
+            part->GetProperty()->SetDiffuse(0.6);
+        }
         if (ghost) make_sieve(part);
     }
     for (const auto& part : {actors.ball, actors.shaft}) renderer_->AddActor(part);
@@ -57,10 +58,10 @@ void OtherTools::remove(const Actors& actors) {
 void OtherTools::update(std::span<const OtherTool> tools) {
     for (std::size_t i = 0; i < tools.size(); ++i) {
         if (i == actors_.size()) {
-            actors_.push_back(make(tools[i].ghost, tools[i].jaw));
-        } else if (actors_[i].ghost != tools[i].ghost || actors_[i].jaw != tools[i].jaw) {
+            actors_.push_back(make(tools[i].kind));
+        } else if (actors_[i].kind != tools[i].kind) {
             remove(actors_[i]);
-            actors_[i] = make(tools[i].ghost, tools[i].jaw);
+            actors_[i] = make(tools[i].kind);
         }
         place(actors_[i], tools[i]);
     }

@@ -32,11 +32,11 @@ class OtherTools {
 
   private:
     struct Actors {
-        bool ghost, jaw;
+        OtherTool::Kind kind;
         vtkSmartPointer<vtkActor> ball, shaft, arrow;
     };
 
-    Actors make(bool ghost, bool jaw) const;
+    Actors make(OtherTool::Kind kind) const;
     void remove(const Actors& actors);
     void place(const Actors& actors, const OtherTool& tool) const;
 

@@ -20,8 +20,10 @@ import tempfile
 import h5py
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+BENCHMARKS = pathlib.Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(BENCHMARKS), str(BENCHMARKS.parent / "commands")]
 from closed_loops import PALPATE, places  # noqa: E402
+from nifti import TYPES, write_nifti  # noqa: E402
 
 JUDGE = pathlib.Path(os.environ.get("PALPATE_BUILD", "build/release")) / "tests" / "judge_by_calculix"
 SPEED, REST, PINCH, JAW, JAW_RADIUS, OPEN = 50.0, 0.3, 0.75, 20.0, 2.5, 60.0  # mm/s; s; of the thickness; mm; mm; degrees
@@ -130,17 +132,9 @@ def bend(folder):
     size, step = (8, 12, 40), 2.5
     grid = np.zeros(np.array(size) + 2, np.uint8)
     grid[1:-1, 1:-1, 1:-1] = 1
-    header = bytearray(352)
-    header[0:4] = np.int32(348).tobytes()
-    header[40:56] = np.array([3, *grid.shape, 1, 1, 1, 1], np.int16).tobytes()
-    header[70:74] = np.array([2, 8], np.int16).tobytes()
-    header[76:108] = np.array([1, step, step, step, 1, 1, 1, 1], np.float32).tobytes()
-    header[108:112] = np.float32(352).tobytes()
-    header[252:256] = np.array([0, 1], np.int16).tobytes()
-    # Voxel centres, so that the beam begins at 0; x and y of RAS are the other way than those of LPS.
-    header[280:328] = np.array([[-step, 0, 0, step / 2], [0, -step, 0, step / 2], [0, 0, step, -step / 2]], np.float32).tobytes()
-    header[344:348] = b"n+1\0"
-    (folder / "beam.nii").write_bytes(bytes(header) + grid.tobytes(order="F"))
+    # The first voxel of the beam begins at 0.
+    write_nifti(folder / "beam.nii", grid.shape, [[step if a == r else 0 for a in range(3)] + [-step / 2] for r in range(3)],
+                grid.tobytes(order="F"), TYPES["uint8"])
     (folder / "beam.toml").write_text(BEAM)
     asset = folder / "beam.vtkhdf"
     subprocess.run([PALPATE, "build", folder / "beam.toml", "-o", asset, "--quiet"], check=True, stdout=subprocess.DEVNULL)
