@@ -33,6 +33,11 @@ inline Eigen::Quaterniond turned(const Eigen::Quaterniond& orientation,
     return (Eigen::Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) * orientation).normalized();
 }
 
+/// How far a motion moves a point at most that is `arm` from the tool's origin, mm. Realtime-safe.
+inline double reach_of(const Twist& motion, double arm) noexcept {
+    return motion.head<3>().norm() + arm * motion.tail<3>().norm();
+}
+
 /// The pose after a motion. Realtime-safe.
 inline ToolPose moved(const ToolPose& pose, const Twist& motion) noexcept {
     return {pose.position + motion.head<3>(), turned(pose.orientation, motion.tail<3>())};

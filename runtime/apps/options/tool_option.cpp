@@ -16,6 +16,12 @@
 namespace palpate::apps {
 namespace {
 
+bool is_asked_for(const cli::Command& command, const std::string& name) {
+    return std::ranges::any_of(command.parameters(), [&](const cli::Parameter& parameter) {
+        return cli::asked_for(parameter) && parameter.option.name() == name;
+    });
+}
+
 // Settings of what is not held.
 template <typename Fields>
 void refuse_settings(const cli::Command& command, const Fields& fields, const std::string& found,
@@ -46,12 +52,17 @@ void check(const cli::Command& command, const ToolOption& option, const std::str
         throw UsageError({"--instrument", "forceps with --scheme " + scheme, "--scheme continuous",
                           "no other feels jaws"});
     if (!option.tool.empty() && !option.has_jaws() && !can.turns)
-        throw UsageError({"--instrument", "with --scheme " + scheme, "--scheme continuous or shell",
+        throw UsageError({"--instrument", "with --scheme " + scheme, "--scheme continuous, shell or solid",
                           "with no other do tools turn"});
     if (option.has_surface() && !can.has_surface)
         throw UsageError({"--instrument", option.tool + " with --scheme " + scheme,
-                          "--scheme shell, or --instrument rod",
+                          "--scheme shell or solid, or --instrument rod",
                           "no other scheme feels a surface of the tool's own"});
+    if (scheme == "solid")
+        for (const std::string name : {"--shell-points", "--voxel", "--contact-stiffness"})
+            if (is_asked_for(command, name))
+                throw UsageError({name, "with --scheme solid", "--scheme shell beside it",
+                                  "solid samples nothing and gives no way"});
     if (option.tool.empty() || option.has_jaws())
         refuse_settings(command, tool_fields,
                         option.has_jaws() ? "with --instrument forceps" : "without --instrument",

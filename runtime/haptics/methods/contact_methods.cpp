@@ -10,6 +10,7 @@
 #include "runtime/haptics/methods/continuous_contact.hpp"
 #include "runtime/haptics/methods/published_contact.hpp"
 #include "runtime/haptics/methods/shell_contact.hpp"
+#include "runtime/haptics/methods/solid_contact.hpp"
 
 namespace palpate::haptics {
 namespace {
@@ -47,6 +48,11 @@ constexpr std::array table{
         shown_text("is published: a whole tool that turns, as points against voxels of rigid bodies"),
         {.has_radius = true, .feels_tissue = false, .turns = true, .has_surface = true},
         make_shell},
+    ContactMethodEntry{
+        "solid",
+        shown_text("is ours: a whole tool that turns, its triangles never through those of rigid bodies"),
+        {.has_radius = true, .feels_tissue = false, .turns = true, .has_surface = true},
+        make_solid},
 };
 
 }  // namespace

@@ -14,13 +14,6 @@ namespace {
 
 constexpr double fewest_points = 100;  // of a rod
 
-ToolSettings settings_of(const Case& patient_case) {
-    if (patient_case.rigid_bodies.empty())
-        throw InvalidInput({patient_case.name, "no rigid body, and contact method 'shell' feels no other",
-                            "a case with rigid anatomy", "use contact method 'continuous'"});
-    return patient_case.tool ? patient_case.tool->settings : ToolSettings{};
-}
-
 std::vector<collision::ShellPoint> points_of(const Case& patient_case, const ToolSettings& settings) {
     if (has_instrument(patient_case))
         return collision::point_shell(patient_case.tool->surface,
@@ -47,7 +40,8 @@ collision::DistanceField field_of(const ContactBodies& bodies, std::size_t body,
 }  // namespace
 
 ShellContact::ShellContact(const Case& patient_case, const ContactBodies& bodies, std::size_t tool_count)
-    : bodies_(bodies), settings_(settings_of(patient_case)), points_(points_of(patient_case, settings_)) {
+    : WholeToolContact(bodies, whole_tool_settings(patient_case, "shell"), tool_count),
+      points_(points_of(patient_case, settings_)) {
     fields_.reserve(bodies.rigid_count());
     // So deep that a single point still holds a tool whose device is that far inside.
     constexpr double deepest_device = 50;  // mm
@@ -56,11 +50,8 @@ ShellContact::ShellContact(const Case& patient_case, const ContactBodies& bodies
                  deepest_device * patient_case.haptics.coupling_stiffness / settings_.contact_stiffness);
     for (std::size_t body = 0; body < bodies.rigid_count(); ++body)
         fields_.push_back(field_of(bodies, body, settings_.voxel, band));
-    tools_.reserve(tool_count);
     for (std::size_t t = 0; t < tool_count; ++t)
-        tools_.push_back({.watch = ShellWatch(points_, fields_, longest_step(settings_)),
-                          .pose = {},
-                          .hints = std::vector<std::int32_t>(fields_.size(), -1)});
+        watches_.emplace_back(points_, fields_, longest_step(settings_));
 }
 
 ShellContact::~ShellContact() = default;

@@ -1,22 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include "runtime/haptics/shell/resting_model.hpp"
 #include "runtime/haptics/shell/shell_watch.hpp"
 
 namespace palpate::haptics {
-
-/// The spring between a device and the tool that it leads.
-struct TurningCoupling {
-    ToolPose device;
-    double stiffness = 0;            ///< k, N/mm
-    double torsional_stiffness = 0;  ///< kappa, N mm/rad
-};
-
-/// How the search for rest ended.
-enum class ShellRest {
-    settled,
-    on_its_way,  ///< the device is farther than the tool goes in one tick
-    unsettled,   ///< it moved to and fro
-};
 
 /// Moves a tool without mass from `pose` downhill to where it rests between its device and the bodies that
 /// the points of its shell are inside of, a minimum of
@@ -31,7 +18,7 @@ enum class ShellRest {
 /// McNeely 2003, "Quasi-static approximation for 6 degrees-of-freedom haptic rendering" (a tool without
 /// mass); McNeely, Puterbaugh, Troy 1999 (points against voxels); Barbic, James 2008 (forces along the
 /// distance's gradient).
-ShellRest bring_to_rest(ShellWatch& watch, const TurningCoupling& coupling, double contact_stiffness,
-                        double longest_step, ToolPose& pose) noexcept;
+ToolRest bring_to_rest(ShellWatch& watch, const TurningCoupling& coupling, double contact_stiffness,
+                       double longest_step, ToolPose& pose) noexcept;
 
 }  // namespace palpate::haptics

@@ -15,10 +15,6 @@ constexpr double slack = 1;  // mm: no motion of less takes a point that is not 
 
 }  // namespace
 
-double ShellWatch::reach_of(const Twist& motion) const noexcept {
-    return motion.head<3>().norm() + longest_arm_ * motion.tail<3>().norm();
-}
-
 void ShellWatch::reset() noexcept {
     moved_ = turned_ = 0;
     gathered_ = false;
@@ -43,7 +39,12 @@ void ShellWatch::look(const ToolPose& pose) noexcept {
 }
 
 bool ShellWatch::touches() const noexcept {
-    return std::ranges::any_of(close(), [](const ShellTouch& found) { return found.distance < 0; });
+    return std::ranges::any_of(close(), [](const ToolTouch& found) { return found.distance < 0; });
+}
+
+void ShellWatch::press(double stiffness) noexcept {
+    for (ToolTouch& touch : std::span(found_).first(found_count_))
+        touch.press = touch.distance < 0 ? -stiffness * touch.distance * touch.gradient().norm() : 0;
 }
 
 void ShellWatch::gather() noexcept {
@@ -73,7 +74,7 @@ void ShellWatch::look_at(std::int32_t point, const ToolPose& pose, const Eigen::
         const collision::DistanceField& field = fields_[body];
         const collision::FieldSample sample = field.at(p);
         if (sample.distance < close_) {
-            ShellTouch& touch = found_[found_count_++];
+            ToolTouch& touch = found_[found_count_++];
             touch.point = point;
             touch.body = static_cast<std::int32_t>(body);
             touch.distance = sample.distance;

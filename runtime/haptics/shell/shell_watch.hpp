@@ -8,21 +8,10 @@
 
 #include "runtime/collision/field/distance_field.hpp"
 #include "runtime/collision/points/point_shell.hpp"
+#include "runtime/haptics/shell/tool_touch.hpp"
 #include "runtime/haptics/tool_pose.hpp"
 
 namespace palpate::haptics {
-
-/// A point of a tool's shell at a body.
-struct ShellTouch {
-    std::int32_t point = 0;  ///< of the shell
-    std::int32_t body = 0;   ///< whose field
-    double distance = 0;     ///< mm, below zero inside
-    Twist slope =
-        Twist::Zero();  ///< of the distance by the tool's motion: its gradient g, then r x g, per mm and rad
-    Eigen::Vector3d arm = Eigen::Vector3d::Zero();  ///< r, from the tool's origin to the point, mm, frame P
-
-    Eigen::Vector3d gradient() const noexcept { return slope.head<3>(); }
-};
 
 /// Finds those points of one tool's shell that are inside a body or close to it, looking only at points that
 /// may have got there: a point that is clear by some way is not looked at again before the tool has moved so
@@ -39,12 +28,15 @@ class ShellWatch {
 
     /// Finds what is close at `pose`, in ascending order of the points.
     void look(const ToolPose& pose) noexcept;
-    std::span<const ShellTouch> close() const noexcept { return {found_.data(), found_count_}; }
+    std::span<const ToolTouch> close() const noexcept { return {found_.data(), found_count_}; }
+    /// Has what is inside press with `stiffness` (N/mm) times its depth.
+    void press(double stiffness) noexcept;
     /// Whether any of it is inside.
     bool touches() const noexcept;
 
     /// How far a motion moves any point of the shell at most, mm.
-    double reach_of(const Twist& motion) const noexcept;
+    double reach_of(const Twist& motion) const noexcept { return haptics::reach_of(motion, longest_arm_); }
+    double longest_arm() const noexcept { return longest_arm_; }
 
   private:
     struct Watched {
@@ -68,7 +60,7 @@ class ShellWatch {
     std::vector<Watched> watched_;  // of each point
     // The first near_count_ are points that may be close a little way from where they were gathered.
     std::vector<std::int32_t> near_;
-    std::vector<ShellTouch> found_;  // the first found_count_
+    std::vector<ToolTouch> found_;  // the first found_count_
     std::size_t near_count_ = 0, found_count_ = 0;
 };
 

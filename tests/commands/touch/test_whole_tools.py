@@ -96,6 +96,15 @@ class WholeTools(SampleAsset):
         self.assert_same_turn(self.quaternion(row, "tool"), peak["tool_orientation"])
         self.assertEqual(norm([float(rows[0][f"torque_{axis}_n_mm"]) for axis in "xyz"]), 0)
 
+    def test_a_solid_peg_is_turned_by_its_lever_and_stays_outside(self):
+        script = self.hand(BESIDE_THE_TOP.format("0 0 0 1"))
+        result, _ = self.logged("--instrument", self.peg, "--script", script, "--scheme", "solid")
+        self.assertEqual(result["statuses"], {})
+        self.assertEqual(result["penetration"]["tool_mm"], 0)
+        force, torque = result["peak"]["force_n"], result["peak"]["torque_n_mm"]
+        self.assertAlmostEqual(force[2], COUPLING * 2, delta=COUPLING * SINKS)
+        self.assertAlmostEqual(torque[1], -4 * force[2], delta=4 * FACETS * force[2])
+
     def test_a_script_of_eight_columns_turns_the_tool_and_one_of_seven_turns_it_every_millisecond(self):
         half = math.sqrt(0.5)
         quarter_turn = self.hand(f"0 40 10 60 0 0 0 1\n1, 40, 10, 60, {half:.9f}, 0, 0, {half:.9f}\n")
@@ -162,7 +171,8 @@ class WholeTools(SampleAsset):
         shell = ("--instrument", self.peg, "--script", self.hand(BESIDE_THE_TOP.format("0.1 0.2 0.3 0.927362")), "--voxel", 0.5,
                  "--torsional-stiffness", 300)
         rod = ("--instrument", "rod", "--rod-length", 20, "--scheme", "continuous", "--seconds", 1, "--max-torque", 50)
-        for name, options in (("shell.h5", shell), ("rod.h5", rod)):
+        solid = ("--instrument", self.peg, "--script", self.hand(BESIDE_THE_TOP.format("0.1 0.2 0.3 0.927362")), "--scheme", "solid")
+        for name, options in (("shell.h5", shell), ("rod.h5", rod), ("solid.h5", solid)):
             with self.subTest(tool=name):
                 path, run = self.recorded(name, *options)
                 again = self.result("--replay", path)
@@ -209,9 +219,9 @@ class WholeTools(SampleAsset):
             (["--instrument", self.folder / "none.stl"], 3, ["none.stl: cannot be read", "check the path"]),
             (["--instrument", open_surface], 3, ["open.stl", "edge"]),
             (["--instrument", self.asset], 3, ["sample.vtkhdf"]),
-            ([*peg, "--scheme", "twice"], 2, ["--instrument: with --scheme twice", "continuous or shell"]),
-            (["--instrument", "rod", "--rod-length", 20, "--scheme", "single"], 2, ["--instrument: with --scheme single", "continuous or shell"]),
-            ([*peg, "--scheme", "continuous"], 2, ["--instrument", "peg.stl with --scheme continuous", "--scheme shell, or --instrument rod"]),
+            ([*peg, "--scheme", "twice"], 2, ["--instrument: with --scheme twice", "continuous, shell or solid"]),
+            (["--instrument", "rod", "--rod-length", 20, "--scheme", "single"], 2, ["--instrument: with --scheme single", "continuous, shell or solid"]),
+            ([*peg, "--scheme", "continuous"], 2, ["--instrument", "peg.stl with --scheme continuous", "--scheme shell or solid, or --instrument rod"]),
             (["--instrument", "rod"], 3, ["its tool has no shaft", "--rod-length"]),
             (["--voxel", 2], 2, ["--voxel: without --instrument", "--instrument rod or a file beside it"]),
             (["--max-torque", 10], 2, ["--max-torque: without --instrument", "--instrument rod or a file beside it"]),
@@ -222,6 +232,8 @@ class WholeTools(SampleAsset):
             (["--scheme", "shell", "--body", "wall"], 2, ["--body: 'wall' is not rigid"]),
             ([*peg, "--body", "skul"], 2, ["no body 'skul'", "'skull'"]),
             ([*peg, "--replay", path], 2, ["--replay", "--instrument"]),
+            ([*peg, "--scheme", "solid", "--voxel", 0.5], 2, ["--voxel: with --scheme solid", "--scheme shell beside it"]),
+            ([*peg, "--scheme", "solid", "--body", "wall"], 2, ["--body: 'wall' is not rigid", "'solid' feels no other"]),
         ]
         for options, code, messages in cases:
             with self.subTest(options=options):
@@ -234,7 +246,7 @@ class WholeTools(SampleAsset):
     def test_a_case_without_rigid_bodies_is_not_for_shell(self):
         soft = self.folder / "soft.vtkhdf"
         subprocess.run([TESTS / "write_sample_asset", soft, "soft"], check=True)
-        for options in (["--instrument", self.peg], ["--scheme", "shell"]):
+        for options in (["--instrument", self.peg], ["--scheme", "shell"], ["--scheme", "solid"]):
             run = self.touch("--virtual-clock", *options, asset=soft)
             self.assertEqual(run.returncode, 3, run.stderr)
             self.assertIn("no rigid body", run.stderr)

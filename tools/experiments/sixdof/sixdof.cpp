@@ -23,33 +23,40 @@ using Eigen::Vector3d;
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view method =
-    R"(# Whole tools on a bone, with `shell`
+    R"(# Whole tools on a bone, with `shell` and `solid`
 
 Each tool visits random places of the bone's outside: it comes along the normal at 20 to 200 mm/s, tilted by up to 40
 degrees, its device goes 3 mm deep, slides 10 mm while it turns by up to 30 degrees, and leaves. Ticks: one core, wall
 clock, us, of each tick but a visit's first the shortest of {} passes; `touching` are those with force. Every 20th tick the tool's pose is
 judged: `deepest` is the greatest depth of 20 000 other points of the tool below the bone by exact distances, `told` what
-the tick said of its own points; `unfelt` counts poses that overlap the bone by FCL's triangles and have no force, with
-the greatest depth of any of them; `apart` is the largest difference between the tool's distance from the bone by FCL
-and by the shell's points where it is clear and nearer than 2 mm. `lost` counts fast approaches (50 to 1 000 mm/s, up to 20
-rad/s) to 10 mm below the surface whose tool ends more than 5 mm below it. Coupling 0.5 N/mm and 450 N mm/rad.
+the tick said of its own touches; `unfelt` counts poses that overlap the bone by FCL's triangles and have no force, with
+the greatest depth of any of them, and `met` all that overlap; `apart` is the largest difference between the tool's distance
+from the bone by FCL and by the shell's points where it is clear and nearer than 2 mm. `unsettled` counts ticks whose search for rest
+ended on its way. `lost` counts fast approaches (50 to 1 000 mm/s, up to 20
+rad/s) to 10 mm below the surface whose tool ends more than 5 mm below it, beside the bone, through a gap or through bone;
+`through` those of them that meet the bone by FCL anywhere on the straight ways between the poses of ticks. Coupling 0.5 N/mm and 450 N mm/rad.
 
-| tool | triangles | points | gap, mm | voxel, mm | set-up, s | ticks | touching | p50 | p99 | p99.9 | max | told, mm | deepest, mm | unfelt, of judged | unfelt deepest, mm | apart, mm | force, N | torque, N mm | lost |
-|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|
+| tool | scheme | triangles | points | gap, mm | voxel, mm | set-up, s | ticks | touching | p50 | p99 | p99.9 | max | told, mm | deepest, mm | met, of judged | unfelt | unfelt deepest, mm | apart, mm | force, N | torque, N mm | unsettled | lost | through |
+|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|
 )";
 
-constexpr std::array<std::int32_t, 2> shell_sizes{5000, 50'000};
+// Ways to hold a tool: points are the shell's.
+struct Way {
+    std::string_view scheme;
+    std::int32_t points;
+};
+constexpr std::array<Way, 3> ways{{{"shell", 5000}, {"shell", 50'000}, {"solid", 5000}}};
 constexpr std::size_t judging_points = 20'000;
 constexpr std::int64_t judged_every = 20;
 constexpr double stroke = 10, lost_depth = 5;  // mm
 constexpr double clear_within = 2;             // mm, up to which distances are compared
 
 struct Row {
-    std::string tool;
-    std::size_t triangles = 0, points = 0, judged = 0, unfelt = 0;
+    std::string tool, scheme;
+    std::size_t triangles = 0, points = 0, judged = 0, met = 0, unfelt = 0;
     double gap = 0, voxel = 0, set_up_s = 0, told = 0, deepest = 0, unfelt_deepest = 0, apart = 0, force = 0,
            torque = 0;
-    std::int64_t ticks = 0, touching = 0, approaches = 0, lost = 0;
+    std::int64_t ticks = 0, touching = 0, unsettled = 0, approaches = 0, lost = 0, through = 0;
     realtime::Histogram times{};
 };
 
@@ -77,13 +84,16 @@ class Judge {
         row.deepest = std::max(row.deepest, deep);
         const bool felt = result.contact_count > 0;
         const double apart = fcl_.distance(X_PT);
+        row.met += apart == 0;
         if (apart == 0 && !felt) {
             ++row.unfelt;
             row.unfelt_deepest = std::max(row.unfelt_deepest, deep);
         }
-        if (apart > 0 && apart < clear_within)
+        if (!shell_.empty() && apart > 0 && apart < clear_within)
             row.apart = std::max(row.apart, std::abs(least_distance(shell_, X_PT) - apart));
     }
+
+    const FclJudge& fcl() const { return fcl_; }
 
   private:
     // Signed, of the points; clear_within for all that are farther.
@@ -124,6 +134,7 @@ void press(HapticModel& model, const std::vector<ToolVisit>& visits, const Judge
                 if (pass > 0) continue;
                 ++row.ticks;
                 row.touching += result.contact_count > 0;
+                row.unsettled += (result.status & contact_unsettled) != 0;
                 row.told = std::max(row.told, result.residual);
                 row.force = std::max(row.force, vector_of(result.force).norm());
                 row.torque = std::max(row.torque, vector_of(result.torque).norm());
@@ -134,15 +145,36 @@ void press(HapticModel& model, const std::vector<ToolVisit>& visits, const Judge
     row.times = times.histogram();
 }
 
-bool is_lost(HapticModel& model, const ToolVisit& visit, double reach) {
+// The tool's poses on a visit, one a tick.
+std::vector<TickResult> fly(HapticModel& model, const ToolVisit& visit) {
     model.reset();
-    TickResult result{};
+    std::vector<TickResult> results;
     devices::SimulatedDevice hand(visit.path, {});
     const auto ticks = static_cast<std::int64_t>(1000 * visit.path.duration());
     for (std::int64_t tick = 0; tick <= ticks; ++tick)
-        model.tick(hand.read(1e-3 * static_cast<double>(tick)), result);
-    return visit.place.direction.dot(vector_of(result.tool_position) - visit.place.entry) + reach >
-           lost_depth;
+        model.tick(hand.read(1e-3 * static_cast<double>(tick)), results.emplace_back());
+    return results;
+}
+
+bool is_lost(const TickResult& last, const ToolVisit& visit, double reach) {
+    return visit.place.direction.dot(vector_of(last.tool_position) - visit.place.entry) + reach > lost_depth;
+}
+
+// Whether the bone is met anywhere on the straight ways between the poses of ticks.
+bool goes_through(const std::vector<TickResult>& results, const FclJudge& judge) {
+    constexpr int parts = 16;
+    for (std::size_t tick = 1; tick < results.size(); ++tick) {
+        const Eigen::Isometry3d from = pose_in(results[tick - 1]), to = pose_in(results[tick]);
+        const Eigen::Quaterniond first(from.linear()), last(to.linear());
+        for (int part = 1; part <= parts; ++part) {
+            const double s = part / double(parts);
+            Eigen::Isometry3d at = Eigen::Isometry3d::Identity();
+            at.translation() = (1 - s) * from.translation() + s * to.translation();
+            at.linear() = first.slerp(s, last).toRotationMatrix();
+            if (judge.meets(at)) return true;
+        }
+    }
+    return false;
 }
 
 double us(const Row& row, double share) {
@@ -151,6 +183,7 @@ double us(const Row& row, double share) {
 
 Json json_of(const Row& row) {
     return {{"tool", row.tool},
+            {"scheme", row.scheme},
             {"triangles", row.triangles},
             {"points", row.points},
             {"gap_mm", row.gap},
@@ -165,23 +198,27 @@ Json json_of(const Row& row) {
             {"told_mm", row.told},
             {"deepest_mm", row.deepest},
             {"judged", row.judged},
+            {"met", row.met},
             {"unfelt", row.unfelt},
             {"unfelt_deepest_mm", row.unfelt_deepest},
             {"apart_mm", row.apart},
             {"force_max_n", row.force},
             {"torque_max_n_mm", row.torque},
+            {"unsettled", row.unsettled},
             {"approaches", row.approaches},
-            {"lost", row.lost}};
+            {"lost", row.lost},
+            {"through", row.through}};
 }
 
 std::string row_of(const Row& row) {
     return fmt::format(
-        "| {} | {} | {} | {:.2f} | {:g} | {:.1f} | {} | {} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.3f} | "
-        "{:.3f} | {} of "
-        "{} | {:.3f} | {:.3f} | {:.2f} | {:.0f} | {} of {} |\n",
-        row.tool, row.triangles, row.points, row.gap, row.voxel, row.set_up_s, row.ticks, row.touching,
-        us(row, 0.5), us(row, 0.99), us(row, 0.999), us(row, 1), row.told, row.deepest, row.unfelt,
-        row.judged, row.unfelt_deepest, row.apart, row.force, row.torque, row.lost, row.approaches);
+        "| {} | {} | {} | {} | {:.2f} | {:g} | {:.1f} | {} | {} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.3f} "
+        "| "
+        "{:.3f} | {} of {} | {} | {:.3f} | {:.3f} | {:.2f} | {:.0f} | {} | {} of {} | {} |\n",
+        row.tool, row.scheme, row.triangles, row.points, row.gap, row.voxel, row.set_up_s, row.ticks,
+        row.touching, us(row, 0.5), us(row, 0.99), us(row, 0.999), us(row, 1), row.told, row.deepest, row.met,
+        row.judged, row.unfelt, row.unfelt_deepest, row.apart, row.force, row.torque, row.unsettled, row.lost,
+        row.approaches, row.through);
 }
 
 }  // namespace
@@ -200,20 +237,23 @@ Findings sixdof(const Options& options, cli::Session& session) {
     Findings findings;
     findings.table = fmt::format(method, Shortest::passes);
     for (const std::filesystem::path& file : options.tools)
-        for (const std::int32_t points : shell_sizes) {
+        for (const auto& [scheme, points] : ways) {
             session.progress.step(file.stem().string(), 0);
             bone.tool = ToolBody{stl_file::read_stl(file), {.shell_points = points}};
             const std::int64_t begin = realtime::monotonic_ns();
-            HapticModel model(bone, "shell");
+            HapticModel model(bone, scheme);
             Row row;
             row.set_up_s = 1e-9 * static_cast<double>(realtime::monotonic_ns() - begin);
             row.tool = file.stem().string();
+            row.scheme = scheme;
             row.triangles = bone.tool->surface.triangles.size();
-            row.points = static_cast<std::size_t>(points);
-            row.voxel = bone.tool->settings.voxel;
-            const collision::PointShell shell =
-                collision::point_shell(bone.tool->surface, static_cast<std::size_t>(points));
-            row.gap = shell.covering_radius;
+            collision::PointShell shell;
+            if (scheme == "shell") {
+                row.points = static_cast<std::size_t>(points);
+                row.voxel = bone.tool->settings.voxel;
+                shell = collision::point_shell(bone.tool->surface, row.points);
+                row.gap = shell.covering_radius;
+            }
             const Judge judge(bone.rigid_bodies[0].surface, model.surface(0), bone.tool->surface,
                               shell.points);
             std::mt19937_64 random(options.seed);
@@ -226,7 +266,11 @@ Findings sixdof(const Options& options, cli::Session& session) {
             session.progress.step(file.stem().string() + ", fast", 0.5);
             for (; row.approaches < approaches; ++row.approaches) {
                 const Place& place = places[static_cast<std::size_t>(row.approaches) % places.size()];
-                row.lost += is_lost(model, fast_visit(place, reach, stroke, random), reach);
+                const ToolVisit visit = fast_visit(place, reach, stroke, random);
+                const std::vector<TickResult> flown = fly(model, visit);
+                if (!is_lost(flown.back(), visit, reach)) continue;
+                ++row.lost;
+                row.through += goes_through(flown, judge.fcl());
             }
             findings.result["rows"].push_back(json_of(row));
             findings.table += row_of(row);

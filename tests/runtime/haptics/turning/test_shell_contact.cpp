@@ -10,6 +10,7 @@
 #include "runtime/haptics/shell/rod.hpp"
 #include "runtime/haptics/shell/shell_equilibrium.hpp"
 #include "tests/runtime/haptics/held_tool.hpp"
+#include "tests/runtime/haptics/turning/turned_tool.hpp"
 
 namespace palpate {
 namespace {
@@ -17,49 +18,6 @@ namespace {
 using namespace haptics;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-
-constexpr double coupling = 0.5;  // N/mm, of wide_limits()
-
-// A bar of 2 by 2 by 40 mm along its shaft, its tip's face at z = 0 of the tool.
-ToolBody bar() {
-    return {.surface = box({-1, -1, 0}, {1, 1, 40}),
-            .settings = {.shell_points = 2000,
-                         .voxel = 0.5,
-                         .contact_stiffness = 100,
-                         .max_torque = 9999,
-                         .max_torque_rate = 9999}};
-}
-
-Case plate_and_bar() {
-    Case c = plate();
-    c.tool = bar();
-    return c;
-}
-
-realtime::DeviceState turned_at(const Vector3d& p, const Quaterniond& orientation) {
-    realtime::DeviceState state = held_at(p, orientation * Vector3d::UnitZ());
-    state.orientation = array_of(orientation);
-    return state;
-}
-
-Quaterniond about(const Vector3d& axis, double degrees) {
-    return Quaterniond(Eigen::AngleAxisd(degrees * std::numbers::pi / 180, axis));
-}
-
-// Ticks until the tool rests at `state`, coming from `lift` mm above.
-TickResult rest_at(HapticModel& model, realtime::DeviceState state, double lift = 3) {
-    const double low = state.position[2];
-    TickResult result{};
-    for (int tick = 0; tick <= 300; ++tick) {
-        state.position[2] = low + lift * std::max(0.0, 1 - tick / 250.0);
-        model.tick(state, result);
-    }
-    return result;
-}
-
-Vector3d torque_of(const TickResult& result) {
-    return vector_of(result.torque);
-}
 
 TEST(Shell, a_face_on_a_plate_is_pushed_back_along_its_normal_without_torque) {
     HapticModel model(plate_and_bar(), "shell");
@@ -103,13 +61,13 @@ TEST(Shell, forces_are_those_of_its_touches) {
     ShellWatch watch(shell.points, fields, 0.25);
     const ToolPose device{{5, 3, -1}, about(Vector3d(1, 2, 0.5).normalized(), 25)};
     ToolPose pose{{5, 3, 8}, device.orientation};
-    ShellRest rest = ShellRest::on_its_way;
-    for (int tick = 0; tick < 20 && rest == ShellRest::on_its_way; ++tick)
+    ToolRest rest = ToolRest::on_its_way;
+    for (int tick = 0; tick < 20 && rest == ToolRest::on_its_way; ++tick)
         rest = bring_to_rest(watch, {device, coupling, 450}, 10, 0.25, pose);
-    ASSERT_EQ(rest, ShellRest::settled);
+    ASSERT_EQ(rest, ToolRest::settled);
     ASSERT_TRUE(watch.touches());
     Vector3d force = Vector3d::Zero(), moment = Vector3d::Zero();
-    for (const ShellTouch& touch : watch.close()) {
+    for (const ToolTouch& touch : watch.close()) {
         const Vector3d f = -10 * std::min(touch.distance, 0.0) * touch.gradient();
         force += f;
         moment += touch.arm.cross(f);
@@ -144,7 +102,7 @@ TEST(Shell, skipping_points_that_are_clear_misses_no_touch) {
         for (std::size_t i = 0; i < shell.points.size(); ++i)
             if (fields[0].at(pose.position + R * shell.points[i].position.cast<double>()).distance < close)
                 inside.push_back(static_cast<std::int32_t>(i));
-        for (const ShellTouch& touch : watch.close()) seen.push_back(touch.point);
+        for (const ToolTouch& touch : watch.close()) seen.push_back(touch.point);
         ASSERT_EQ(seen, inside) << "pose " << k;
         touched += inside.size();
     }
@@ -153,28 +111,9 @@ TEST(Shell, skipping_points_that_are_clear_misses_no_touch) {
 
 TEST(Shell, a_closed_loop_of_position_and_orientation_gives_no_energy) {
     HapticModel model(plate_and_bar(), "shell");
-    const auto device = [](double s) {  // a loop through contact, from above and back
-        const double angle = 2 * std::numbers::pi * s;
-        return ToolPose{{4 * std::sin(angle), 2 * std::sin(2 * angle), 1.5 * std::cos(angle) - 0.5},
-                        about(Vector3d::UnitX(), 20 * std::sin(angle)) *
-                            about(Vector3d::UnitY(), 30 * (1 - std::cos(angle)))};
-    };
-    constexpr int ticks = 4000;
-    double work = 0, stored = 0;
-    TickResult result{}, before{};
-    for (int tick = 0; tick <= ticks; ++tick) {
-        const ToolPose at = device(tick / double(ticks)), from = device((tick - 1) / double(ticks));
-        model.tick(turned_at(at.position, at.orientation), result);
-        if (tick > 0)
-            work += 0.5 * (force_of(result) + force_of(before)).dot(at.position - from.position) +
-                    0.5 * (torque_of(result) + torque_of(before))
-                              .dot(rotation_between(from.orientation, at.orientation));
-        const double turn = torque_of(result).squaredNorm() / 450;
-        stored = std::max(stored, 0.5 * (force_of(result).squaredNorm() / coupling + turn));
-        before = result;
-    }
-    EXPECT_GT(stored, 0.3);
-    EXPECT_LT(std::abs(work), 0.01 * stored);
+    const Loop loop = work_of_loop(model, 450);
+    EXPECT_GT(loop.stored, 0.3);
+    EXPECT_LT(std::abs(loop.work), 0.01 * loop.stored);
 }
 
 TEST(Shell, a_tool_that_begins_inside_feels_nothing_until_it_has_been_clear) {

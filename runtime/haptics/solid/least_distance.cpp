@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/haptics/solid/least_distance.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+namespace palpate::haptics {
+namespace {
+
+using Column = Eigen::Matrix<double, 7, 1>;
+
+constexpr std::size_t most_active = 7;
+constexpr int most_turns = 100;
+constexpr double tolerance = 1e-9;    // mm, by which a touch may be missed
+constexpr double impossible = 1e-12;  // of the residual's square: touches contradict each other
+
+// The touches as the columns (a_i, h_i) of least squares whose residual r tells the solution: with y =
+// sqrt(W) (x - x_wanted), the least |y| subject to a_i . y >= h_i is -r_1..6 / r_7 for the u >= 0 of least
+// |E u - e_7|.
+class LeastDistance {
+  public:
+    LeastDistance(const Twist& root_spring, const Twist& wanted, std::span<ToolTouch> touches,
+                  bool contradict) noexcept
+        : root_spring_(root_spring), wanted_(wanted), touches_(touches), contradict_(contradict) {}
+
+    // The scaled motion y, and the presses; nothing if no motion keeps all touches.
+    std::optional<Twist> solve() noexcept {
+        for (int turn = 0; turn < most_turns; ++turn) {
+            update_residual();
+            if (residual_.squaredNorm() < impossible) return std::nullopt;
+            const std::size_t entering = most_violated();
+            if (entering == touches_.size()) break;
+            let_in(entering);
+        }
+        for (std::size_t k = 0; k < count_; ++k) touches_[active_[k]].press = u_[k] / -residual_[6];
+        return Twist(-residual_.head<6>() / residual_[6]);
+    }
+
+  private:
+    Column column(std::size_t touch) const noexcept {
+        const ToolTouch& it = touches_[touch];
+        const double distance = contradict_ ? std::max(it.distance, 0.0) : it.distance;
+        Column column;
+        column.head<6>() = it.slope.cwiseQuotient(root_spring_);
+        column[6] = -(distance + it.slope.dot(wanted_));
+        return column;
+    }
+
+    void update_residual() noexcept {
+        residual_ = -Column::Unit(6);
+        for (std::size_t k = 0; k < count_; ++k) residual_ += u_[k] * columns_[k];
+    }
+
+    std::size_t most_violated() const noexcept {
+        double most = tolerance * -residual_[6];
+        std::size_t worst = touches_.size();
+        for (std::size_t i = 0; i < touches_.size(); ++i) {
+            const double violated = -column(i).dot(residual_);
+            if (!(violated > most) || i == refused_ || is_active(i)) continue;
+            most = violated;
+            worst = i;
+        }
+        return worst;
+    }
+    bool is_active(std::size_t touch) const noexcept {
+        return std::find(active_.begin(), active_.begin() + static_cast<std::ptrdiff_t>(count_), touch) !=
+               active_.begin() + static_cast<std::ptrdiff_t>(count_);
+    }
+
+    // Least squares of the active touches and one more, of which those leave that would pull.
+    void let_in(std::size_t touch) noexcept {
+        refused_ = touches_.size();
+        if (count_ == most_active) leave(0);
+        active_[count_] = touch;
+        columns_[count_] = column(touch);
+        u_[count_++] = 0;
+        while (count_ > 0) {
+            std::array<double, most_active> wanted{};
+            if (!least_squares(wanted)) {
+                if (active_[count_ - 1] == touch) refused_ = touch;
+                leave(count_ - 1);
+                continue;
+            }
+            double part = 1;
+            std::size_t leaving = count_;
+            for (std::size_t k = 0; k < count_; ++k) {
+                if (wanted[k] > 0) continue;
+                const double reach = u_[k] > 0 ? u_[k] / (u_[k] - wanted[k]) : 0;
+                if (leaving < count_ && reach >= part) continue;
+                part = reach;
+                leaving = k;
+            }
+            for (std::size_t k = 0; k < count_; ++k) u_[k] += part * (wanted[k] - u_[k]);
+            if (leaving == count_) return;
+            if (active_[leaving] == touch) refused_ = touch;
+            leave(leaving);
+        }
+    }
+
+    void leave(std::size_t k) noexcept {
+        for (; k + 1 < count_; ++k) {
+            active_[k] = active_[k + 1];
+            columns_[k] = columns_[k + 1];
+            u_[k] = u_[k + 1];
+        }
+        --count_;
+    }
+
+    // False if the active columns depend on each other.
+    bool least_squares(std::array<double, most_active>& u) const noexcept {
+        using Columns = Eigen::Matrix<double, 7, Eigen::Dynamic, Eigen::ColMajor, 7, most_active>;
+        Columns E(7, static_cast<Eigen::Index>(count_));
+        for (std::size_t k = 0; k < count_; ++k) E.col(static_cast<Eigen::Index>(k)) = columns_[k];
+        const Eigen::ColPivHouseholderQR<Columns> qr(E);
+        if (qr.rank() < E.cols()) return false;
+        const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_active, 1> solution =
+            qr.solve(Column(Column::Unit(6)));
+        for (std::size_t k = 0; k < count_; ++k) u[k] = solution[static_cast<Eigen::Index>(k)];
+        return true;
+    }
+
+    const Twist root_spring_, wanted_;
+    std::span<ToolTouch> touches_;
+    const bool contradict_;
+    std::array<std::size_t, most_active> active_{};
+    std::array<Column, most_active> columns_;
+    std::array<double, most_active> u_{};
+    std::size_t count_ = 0, refused_ = static_cast<std::size_t>(-1);
+    Column residual_;
+};
+
+}  // namespace
+
+Twist nearest_motion(const TurningCoupling& coupling, const ToolPose& pose,
+                     std::span<ToolTouch> touches) noexcept {
+    Twist root_spring, wanted;
+    root_spring.head<3>().setConstant(std::sqrt(coupling.stiffness));
+    root_spring.tail<3>().setConstant(std::sqrt(coupling.torsional_stiffness));
+    wanted.head<3>() = coupling.device.position - pose.position;
+    wanted.tail<3>() = rotation_between(pose.orientation, coupling.device.orientation);
+    for (ToolTouch& touch : touches) touch.press = 0;
+    auto scaled = LeastDistance(root_spring, wanted, touches, false).solve();
+    if (!scaled) scaled = LeastDistance(root_spring, wanted, touches, true).solve();
+    return scaled ? Twist(wanted + scaled->cwiseQuotient(root_spring)) : Twist(Twist::Zero());
+}
+
+}  // namespace palpate::haptics

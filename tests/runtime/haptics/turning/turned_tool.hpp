@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "formats/model/arrays.hpp"
+#include "runtime/haptics/tool_pose.hpp"
+#include "tests/runtime/haptics/held_tool.hpp"
+
+namespace palpate {
+
+/// A bar of 2 by 2 by 40 mm along its shaft, its tip's face at z = 0 of the tool.
+inline ToolBody bar() {
+    return {.surface = box({-1, -1, 0}, {1, 1, 40}),
+            .settings = {.shell_points = 2000,
+                         .voxel = 0.5,
+                         .contact_stiffness = 100,
+                         .max_torque = 9999,
+                         .max_torque_rate = 9999}};
+}
+
+inline constexpr double coupling = 0.5;  ///< N/mm, of wide_limits()
+
+inline Case plate_and_bar() {
+    Case c = plate();
+    c.tool = bar();
+    return c;
+}
+
+inline realtime::DeviceState turned_at(const Eigen::Vector3d& p, const Eigen::Quaterniond& orientation) {
+    realtime::DeviceState state = held_at(p, orientation * Eigen::Vector3d::UnitZ());
+    state.orientation = array_of(orientation);
+    return state;
+}
+
+inline Eigen::Quaterniond about(const Eigen::Vector3d& axis, double degrees) {
+    return Eigen::Quaterniond(Eigen::AngleAxisd(degrees * std::numbers::pi / 180, axis));
+}
+
+/// Ticks until the tool rests at `state`, coming from `lift` mm above.
+inline TickResult rest_at(haptics::HapticModel& model, realtime::DeviceState state, double lift = 3) {
+    const double low = state.position[2];
+    TickResult result{};
+    for (int tick = 0; tick <= 300; ++tick) {
+        state.position[2] = low + lift * std::max(0.0, 1 - tick / 250.0);
+        model.tick(state, result);
+    }
+    return result;
+}
+
+inline Eigen::Vector3d torque_of(const TickResult& result) {
+    return vector_of(result.torque);
+}
+
+/// Of a closed way of position and orientation through contact with what is about the origin, from above and
+/// back.
+struct Loop {
+    double work = 0, stored = 0;  ///< N mm: given to the hand, and held by the springs at most
+};
+inline Loop work_of_loop(haptics::HapticModel& model, double torsional_stiffness) {
+    using Eigen::Vector3d;
+    const auto device = [](double s) {
+        const double angle = 2 * std::numbers::pi * s;
+        return haptics::ToolPose{{4 * std::sin(angle), 2 * std::sin(2 * angle), 1.5 * std::cos(angle) - 0.5},
+                                 about(Vector3d::UnitX(), 20 * std::sin(angle)) *
+                                     about(Vector3d::UnitY(), 30 * (1 - std::cos(angle)))};
+    };
+    constexpr int ticks = 4000;
+    Loop loop;
+    TickResult result{}, before{};
+    for (int tick = 0; tick <= ticks; ++tick) {
+        const haptics::ToolPose at = device(tick / double(ticks)), from = device((tick - 1) / double(ticks));
+        model.tick(turned_at(at.position, at.orientation), result);
+        if (tick > 0)
+            loop.work += 0.5 * (force_of(result) + force_of(before)).dot(at.position - from.position) +
+                         0.5 * (torque_of(result) + torque_of(before))
+                                   .dot(haptics::rotation_between(from.orientation, at.orientation));
+        const double turn = torque_of(result).squaredNorm() / torsional_stiffness;
+        loop.stored = std::max(loop.stored, 0.5 * (force_of(result).squaredNorm() / coupling + turn));
+        before = result;
+    }
+    return loop;
+}
+
+}  // namespace palpate
