@@ -17,6 +17,7 @@ from pathlib import Path
 # Target folder: object -> why it is the tick's.
 TICK = {
     "runtime/collision/CMakeFiles/palpate_collision.dir": {
+        "features/surface_features": "which vertex, edge or face is nearest",
         "field/distance_field_queries": "distance by voxels",
         "neighbourhood": "sweeps against the triangles next to the tool",
         "rounded_triangle": "a point against one triangle that is round at its edges",
@@ -46,8 +47,12 @@ TICK = {
         "force_limiter": "force and slew limits",
         "haptic_tick": "one tick, from positions to forces",
         "passivity_observer": "no more energy out than in",
+        "shell/resting_model": "springs and points that press",
         "shell/shell_equilibrium": "a whole tool, brought to rest",
         "shell/shell_watch": "which points of it are inside a body",
+        "solid/least_distance": "the motion that keeps a tool's touches",
+        "solid/solid_equilibrium": "a tool's triangles, brought to rest",
+        "solid/solid_watch": "which of them are close to a body's",
     },
     "runtime/realtime/CMakeFiles/palpate_realtime.dir": {
         "histogram": "what a tick spent",

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/haptics/solid/least_distance.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,6 +14,7 @@ using Column = Eigen::Matrix<double, 7, 1>;
 constexpr std::size_t most_active = 7;
 constexpr int most_turns = 100;
 constexpr double tolerance = 1e-9;    // mm, by which a touch may be missed
+constexpr double dependent = 1e-9;    // of a column: what is left of it without the others
 constexpr double impossible = 1e-12;  // of the residual's square: touches contradict each other
 
 // The touches as the columns (a_i, h_i) of least squares whose residual r tells the solution: with y =
@@ -109,16 +109,27 @@ class LeastDistance {
         --count_;
     }
 
-    // False if the active columns depend on each other.
+    // By orthogonal columns (Gram, Schmidt, twice); false if the active ones depend on each other.
     bool least_squares(std::array<double, most_active>& u) const noexcept {
-        using Columns = Eigen::Matrix<double, 7, Eigen::Dynamic, Eigen::ColMajor, 7, most_active>;
-        Columns E(7, static_cast<Eigen::Index>(count_));
-        for (std::size_t k = 0; k < count_; ++k) E.col(static_cast<Eigen::Index>(k)) = columns_[k];
-        const Eigen::ColPivHouseholderQR<Columns> qr(E);
-        if (qr.rank() < E.cols()) return false;
-        const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_active, 1> solution =
-            qr.solve(Column(Column::Unit(6)));
-        for (std::size_t k = 0; k < count_; ++k) u[k] = solution[static_cast<Eigen::Index>(k)];
+        std::array<Column, most_active> Q;
+        std::array<std::array<double, most_active>, most_active> R{};
+        for (std::size_t k = 0; k < count_; ++k) {
+            Q[k] = columns_[k];
+            for (int pass = 0; pass < 2; ++pass)
+                for (std::size_t j = 0; j < k; ++j) {
+                    const double part = Q[j].dot(Q[k]);
+                    R[j][k] += part;
+                    Q[k] -= part * Q[j];
+                }
+            R[k][k] = Q[k].norm();
+            if (!(R[k][k] > dependent * columns_[k].norm())) return false;
+            Q[k] /= R[k][k];
+        }
+        for (std::size_t k = count_; k-- > 0;) {
+            u[k] = Q[k][6];
+            for (std::size_t j = k + 1; j < count_; ++j) u[k] -= R[k][j] * u[j];
+            u[k] /= R[k][k];
+        }
         return true;
     }
 

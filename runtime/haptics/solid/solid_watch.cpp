@@ -188,8 +188,9 @@ void SolidWatch::look_at(std::size_t index) noexcept {
         patch.wake = now;
         return;
     }
-    // Rounded down, so that what is close now is looked at again however little the tool moves.
-    const float since = std::max(0.0F, std::nextafter(static_cast<float>(now - patch.kept_at), -1.0F));
+    // A little less than so much, so that rounding lets nothing sleep that is close, however little the tool
+    // moves.
+    const auto since = static_cast<float>((1 - 1e-6) * (now - patch.kept_at));
     float wake = std::numeric_limits<float>::infinity();
     const std::size_t first = index * most_kept;
     for (std::size_t k = first; k < first + static_cast<std::size_t>(patch.kept); ++k) {
@@ -364,12 +365,21 @@ bool SolidWatch::meets() noexcept {
     if (overflowed_) return true;
     for (const PartingPlane& plane : std::span(planes_).first(plane_count_))
         if (plane.distance < least_gap) return true;
-    for (const std::int32_t near : std::span(near_).first(near_count_)) {
-        const auto index = static_cast<std::size_t>(near);
-        const Patch& patch = patches_[index];
-        if (patch.kept < 0) return true;
-        const auto kept = std::span(kept_).subspan(index * most_kept, static_cast<std::size_t>(patch.kept));
-        if (std::ranges::any_of(kept, [&](const Kept& it) { return cuts(patch, it); })) return true;
+    return std::ranges::any_of(std::span(near_).first(near_count_), [&](std::int32_t near) {
+        const Patch& patch = patches_[static_cast<std::size_t>(near)];
+        if (patch.kept < 0) return cuts_any(patch);
+        const auto kept = std::span(kept_).subspan(static_cast<std::size_t>(near) * most_kept,
+                                                   static_cast<std::size_t>(patch.kept));
+        return std::ranges::any_of(kept, [&](const Kept& it) { return cuts(patch, it); });
+    });
+}
+
+// Where more is near a patch than is kept.
+bool SolidWatch::cuts_any(const Patch& patch) noexcept {
+    for (std::size_t body = 0; body < bodies_.size(); ++body) {
+        const std::size_t count = std::min(slots_about(patch.ball, body, 0), slots_.size());
+        for (const std::int32_t slot : std::span(slots_).first(count))
+            if (cuts(patch, {{}, slot, static_cast<std::int32_t>(body)})) return true;
     }
     return false;
 }

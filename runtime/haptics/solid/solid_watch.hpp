@@ -137,6 +137,7 @@ class SolidWatch {
     double apart(const Ball& ball, std::int32_t body, std::int32_t slot) const noexcept;
     void found(const Pair& pair, const PartingPlane& plane, const Eigen::Vector3d& on_tool,
                bool is_nearest) noexcept;
+    bool cuts_any(const Patch& patch) noexcept;
     bool cuts(const Patch& patch, const Kept& kept) noexcept;
     Eigen::Vector3d placed(const Eigen::Vector3d& p) const noexcept;
 

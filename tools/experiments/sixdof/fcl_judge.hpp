@@ -17,8 +17,6 @@ class FclJudge {
 
     /// The distance of the two with the tool at X_PT, mm; 0 where a triangle of one meets one of the other.
     double distance(const Eigen::Isometry3d& X_PT) const;
-    /// Whether a triangle of one meets one of the other.
-    bool meets(const Eigen::Isometry3d& X_PT) const;
 
   private:
     struct Models;

@@ -33,11 +33,10 @@ the tick said of its own touches; `unfelt` counts poses that overlap the bone by
 the greatest depth of any of them, and `met` all that overlap; `apart` is the largest difference between the tool's distance
 from the bone by FCL and by the shell's points where it is clear and nearer than 2 mm. `unsettled` counts ticks whose search for rest
 ended on its way. `lost` counts fast approaches (50 to 1 000 mm/s, up to 20
-rad/s) to 10 mm below the surface whose tool ends more than 5 mm below it, beside the bone, through a gap or through bone;
-`through` those of them that meet the bone by FCL anywhere on the straight ways between the poses of ticks. Coupling 0.5 N/mm and 450 N mm/rad.
+rad/s) to 10 mm below the surface whose tool ends more than 5 mm below it: beside the bone, through a gap or through bone. Coupling 0.5 N/mm and 450 N mm/rad.
 
-| tool | scheme | triangles | points | gap, mm | voxel, mm | set-up, s | ticks | touching | p50 | p99 | p99.9 | max | told, mm | deepest, mm | met, of judged | unfelt | unfelt deepest, mm | apart, mm | force, N | torque, N mm | unsettled | lost | through |
-|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|
+| tool | scheme | triangles | points | gap, mm | voxel, mm | set-up, s | ticks | touching | p50 | p99 | p99.9 | max | told, mm | deepest, mm | met, of judged | unfelt | unfelt deepest, mm | apart, mm | force, N | torque, N mm | unsettled | lost |
+|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|
 )";
 
 // Ways to hold a tool: points are the shell's.
@@ -56,7 +55,7 @@ struct Row {
     std::size_t triangles = 0, points = 0, judged = 0, met = 0, unfelt = 0;
     double gap = 0, voxel = 0, set_up_s = 0, told = 0, deepest = 0, unfelt_deepest = 0, apart = 0, force = 0,
            torque = 0;
-    std::int64_t ticks = 0, touching = 0, unsettled = 0, approaches = 0, lost = 0, through = 0;
+    std::int64_t ticks = 0, touching = 0, unsettled = 0, approaches = 0, lost = 0;
     realtime::Histogram times{};
 };
 
@@ -92,8 +91,6 @@ class Judge {
         if (!shell_.empty() && apart > 0 && apart < clear_within)
             row.apart = std::max(row.apart, std::abs(least_distance(shell_, X_PT) - apart));
     }
-
-    const FclJudge& fcl() const { return fcl_; }
 
   private:
     // Signed, of the points; clear_within for all that are farther.
@@ -145,36 +142,15 @@ void press(HapticModel& model, const std::vector<ToolVisit>& visits, const Judge
     row.times = times.histogram();
 }
 
-// The tool's poses on a visit, one a tick.
-std::vector<TickResult> fly(HapticModel& model, const ToolVisit& visit) {
+bool is_lost(HapticModel& model, const ToolVisit& visit, double reach) {
     model.reset();
-    std::vector<TickResult> results;
+    TickResult result{};
     devices::SimulatedDevice hand(visit.path, {});
     const auto ticks = static_cast<std::int64_t>(1000 * visit.path.duration());
     for (std::int64_t tick = 0; tick <= ticks; ++tick)
-        model.tick(hand.read(1e-3 * static_cast<double>(tick)), results.emplace_back());
-    return results;
-}
-
-bool is_lost(const TickResult& last, const ToolVisit& visit, double reach) {
-    return visit.place.direction.dot(vector_of(last.tool_position) - visit.place.entry) + reach > lost_depth;
-}
-
-// Whether the bone is met anywhere on the straight ways between the poses of ticks.
-bool goes_through(const std::vector<TickResult>& results, const FclJudge& judge) {
-    constexpr int parts = 16;
-    for (std::size_t tick = 1; tick < results.size(); ++tick) {
-        const Eigen::Isometry3d from = pose_in(results[tick - 1]), to = pose_in(results[tick]);
-        const Eigen::Quaterniond first(from.linear()), last(to.linear());
-        for (int part = 1; part <= parts; ++part) {
-            const double s = part / double(parts);
-            Eigen::Isometry3d at = Eigen::Isometry3d::Identity();
-            at.translation() = (1 - s) * from.translation() + s * to.translation();
-            at.linear() = first.slerp(s, last).toRotationMatrix();
-            if (judge.meets(at)) return true;
-        }
-    }
-    return false;
+        model.tick(hand.read(1e-3 * static_cast<double>(tick)), result);
+    return visit.place.direction.dot(vector_of(result.tool_position) - visit.place.entry) + reach >
+           lost_depth;
 }
 
 double us(const Row& row, double share) {
@@ -206,19 +182,18 @@ Json json_of(const Row& row) {
             {"torque_max_n_mm", row.torque},
             {"unsettled", row.unsettled},
             {"approaches", row.approaches},
-            {"lost", row.lost},
-            {"through", row.through}};
+            {"lost", row.lost}};
 }
 
 std::string row_of(const Row& row) {
     return fmt::format(
         "| {} | {} | {} | {} | {:.2f} | {:g} | {:.1f} | {} | {} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.3f} "
         "| "
-        "{:.3f} | {} of {} | {} | {:.3f} | {:.3f} | {:.2f} | {:.0f} | {} | {} of {} | {} |\n",
+        "{:.3f} | {} of {} | {} | {:.3f} | {:.3f} | {:.2f} | {:.0f} | {} | {} of {} |\n",
         row.tool, row.scheme, row.triangles, row.points, row.gap, row.voxel, row.set_up_s, row.ticks,
         row.touching, us(row, 0.5), us(row, 0.99), us(row, 0.999), us(row, 1), row.told, row.deepest, row.met,
         row.judged, row.unfelt, row.unfelt_deepest, row.apart, row.force, row.torque, row.unsettled, row.lost,
-        row.approaches, row.through);
+        row.approaches);
 }
 
 }  // namespace
@@ -266,11 +241,7 @@ Findings sixdof(const Options& options, cli::Session& session) {
             session.progress.step(file.stem().string() + ", fast", 0.5);
             for (; row.approaches < approaches; ++row.approaches) {
                 const Place& place = places[static_cast<std::size_t>(row.approaches) % places.size()];
-                const ToolVisit visit = fast_visit(place, reach, stroke, random);
-                const std::vector<TickResult> flown = fly(model, visit);
-                if (!is_lost(flown.back(), visit, reach)) continue;
-                ++row.lost;
-                row.through += goes_through(flown, judge.fcl());
+                row.lost += is_lost(model, fast_visit(place, reach, stroke, random), reach);
             }
             findings.result["rows"].push_back(json_of(row));
             findings.table += row_of(row);
