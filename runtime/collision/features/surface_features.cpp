@@ -8,10 +8,10 @@ using Eigen::Vector3d;
 namespace {
 
 // What counts as across: the sine of an angle that rounding may make of a right one.
-constexpr double rounding = 1e-9;
+constexpr double right_angle_rounding = 1e-9;
 
 bool leads_away(const Vector3d& d, const Vector3d& to) noexcept {
-    return d.dot(to) <= rounding * d.norm() * to.norm();
+    return d.dot(to) <= right_angle_rounding * d.norm() * to.norm();
 }
 
 }  // namespace

@@ -9,13 +9,13 @@
 namespace palpate::haptics {
 namespace {
 
-using Column = Eigen::Matrix<double, 7, 1>;
+using ScaledTouch = Eigen::Matrix<double, 7, 1>;
 
 constexpr std::size_t most_active = 7;
-constexpr int most_turns = 100;
-constexpr double tolerance = 1e-9;    // mm, by which a touch may be missed
-constexpr double dependent = 1e-9;    // of a column: what is left of it without the others
-constexpr double impossible = 1e-12;  // of the residual's square: touches contradict each other
+constexpr int most_entering = 100;
+constexpr double most_missed = 1e-9;        // mm, by which a touch may be missed
+constexpr double left_if_dependent = 1e-9;  // of a column: what is left of it without the others
+constexpr double impossible = 1e-12;        // of the residual's square: touches contradict each other
 
 // The touches as the columns (a_i, h_i) of least squares whose residual r tells the solution: with y =
 // sqrt(W) (x - x_wanted), the least |y| subject to a_i . y >= h_i is -r_1..6 / r_7 for the u >= 0 of least
@@ -28,7 +28,7 @@ class LeastDistance {
 
     // The scaled motion y, and the presses; nothing if no motion keeps all touches.
     std::optional<Twist> solve() noexcept {
-        for (int turn = 0; turn < most_turns; ++turn) {
+        for (int turn = 0; turn < most_entering; ++turn) {
             update_residual();
             if (residual_.squaredNorm() < impossible) return std::nullopt;
             const std::size_t entering = most_violated();
@@ -40,22 +40,22 @@ class LeastDistance {
     }
 
   private:
-    Column column(std::size_t touch) const noexcept {
+    ScaledTouch column(std::size_t touch) const noexcept {
         const ToolTouch& it = touches_[touch];
         const double distance = contradict_ ? std::max(it.distance, 0.0) : it.distance;
-        Column column;
+        ScaledTouch column;
         column.head<6>() = it.slope.cwiseQuotient(root_spring_);
         column[6] = -(distance + it.slope.dot(wanted_));
         return column;
     }
 
     void update_residual() noexcept {
-        residual_ = -Column::Unit(6);
+        residual_ = -ScaledTouch::Unit(6);
         for (std::size_t k = 0; k < count_; ++k) residual_ += u_[k] * columns_[k];
     }
 
     std::size_t most_violated() const noexcept {
-        double most = tolerance * -residual_[6];
+        double most = most_missed * -residual_[6];
         std::size_t worst = touches_.size();
         for (std::size_t i = 0; i < touches_.size(); ++i) {
             const double violated = -column(i).dot(residual_);
@@ -111,7 +111,7 @@ class LeastDistance {
 
     // By orthogonal columns (Gram, Schmidt, twice); false if the active ones depend on each other.
     bool least_squares(std::array<double, most_active>& u) const noexcept {
-        std::array<Column, most_active> Q;
+        std::array<ScaledTouch, most_active> Q;
         std::array<std::array<double, most_active>, most_active> R{};
         for (std::size_t k = 0; k < count_; ++k) {
             Q[k] = columns_[k];
@@ -122,7 +122,7 @@ class LeastDistance {
                     Q[k] -= part * Q[j];
                 }
             R[k][k] = Q[k].norm();
-            if (!(R[k][k] > dependent * columns_[k].norm())) return false;
+            if (!(R[k][k] > left_if_dependent * columns_[k].norm())) return false;
             Q[k] /= R[k][k];
         }
         for (std::size_t k = count_; k-- > 0;) {
@@ -137,10 +137,10 @@ class LeastDistance {
     std::span<ToolTouch> touches_;
     const bool contradict_;
     std::array<std::size_t, most_active> active_{};
-    std::array<Column, most_active> columns_;
+    std::array<ScaledTouch, most_active> columns_;
     std::array<double, most_active> u_{};
     std::size_t count_ = 0, refused_ = static_cast<std::size_t>(-1);
-    Column residual_;
+    ScaledTouch residual_;
 };
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace palpate::haptics {
 namespace {
 
-constexpr int most_rounds = 24;
+constexpr int most_solid_rounds = 24;
 // mm: what a step leaves goes with its square, so after one as short nothing is left.
 constexpr double last_step = 2e-4;
 // Where steps lead to and fro, as over a corner whose other side is another feature's, they are damped to end
@@ -40,7 +40,7 @@ ToolRest bring_to_rest(SolidWatch& watch, const TurningCoupling& coupling, ToolP
     double left = 0, left_before = 0, damping = 1;
     Twist before = Twist::Zero();
     bool shortened = false;
-    for (int round = 0; round < most_rounds; ++round) {
+    for (int round = 0; round < most_solid_rounds; ++round) {
         Twist step = nearest_motion(coupling, pose, watch.touches());
         left = watch.reach_of(step);
         if (left <= settled_step) return ToolRest::settled;

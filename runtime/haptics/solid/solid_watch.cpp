@@ -16,17 +16,18 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double slack = 1;        // mm: no motion of less brings near what was not near when it was gathered
-constexpr double kept_slack = 1;   // mm: the same of what is kept for a patch
-constexpr double farthest = 50;    // mm: beyond, nothing is asked how far it is
-constexpr double rounding = 1e-4;  // mm: of float32 about distances that triangles are left alone by
+constexpr double gathered_slack =
+    1;                            // mm: no motion of less brings near what was not near when it was gathered
+constexpr double kept_slack = 1;  // mm: the same of what is kept for a patch
+constexpr double farthest_asked = 50;    // mm: beyond, nothing is asked how far it is
+constexpr double float_rounding = 1e-4;  // mm: of float32 about distances that triangles are left alone by
 
 // How far the balls about two segments are apart, mm.
 double balls_apart(const Vector3d& a0, const Vector3d& a1, const Vector3d& b0, const Vector3d& b1) noexcept {
     return 0.5 * ((a0 + a1 - b0 - b1).norm() - (a1 - a0).norm() - (b1 - b0).norm());
 }
 
-bool has(std::uint8_t bits, std::size_t i) noexcept {
+bool has_bit(std::uint8_t bits, std::size_t i) noexcept {
     return (bits >> i & 1U) != 0;
 }
 
@@ -38,7 +39,7 @@ class SolidWatch::Heights {
     Heights(const TriangleCorners& of, const TriangleCorners& over, const Vector3d& normal) noexcept {
         for (std::size_t i = 0; i < 3; ++i) heights_[i] = normal.dot(of[i] - over[0]);
     }
-    double of_corner(std::size_t i) const noexcept { return std::abs(heights_[i]) - rounding; }
+    double of_corner(std::size_t i) const noexcept { return std::abs(heights_[i]) - float_rounding; }
     double of_edge(std::size_t i) const noexcept { return beyond(heights_[i], heights_[(i + 1) % 3]); }
     double of_all() const noexcept {
         const auto [low, high] = std::minmax({heights_[0], heights_[1], heights_[2]});
@@ -48,7 +49,7 @@ class SolidWatch::Heights {
   private:
     // Zero where the plane runs between the two.
     static double beyond(double a, double b) noexcept {
-        return a * b > 0 ? std::min(std::abs(a), std::abs(b)) - rounding : 0;
+        return a * b > 0 ? std::min(std::abs(a), std::abs(b)) - float_rounding : 0;
     }
     std::array<double, 3> heights_;
 };
@@ -74,7 +75,7 @@ void SolidWatch::look(const ToolPose& pose) noexcept {
     pose_ = pose;
     R_PT_ = pose.orientation.toRotationMatrix();
     const double since = moved_ - moved_gathered_ + (turned_ - turned_gathered_) * longest_arm_;
-    if (!gathered_ || since > slack) gather();
+    if (!gathered_ || since > gathered_slack) gather();
     touch_count_ = plane_count_ = 0;
     overflowed_ = false;
     for (const std::int32_t near : std::span(near_).first(near_count_)) {
@@ -89,7 +90,7 @@ void SolidWatch::gather() noexcept {
     turned_gathered_ = turned_;
     gathered_ = true;
     for (std::size_t index = 0; index < patches_.size(); ++index)
-        if (patches_[index].wake <= odometer(patches_[index]) + slack)
+        if (patches_[index].wake <= odometer(patches_[index]) + gathered_slack)
             near_[near_count_++] = static_cast<std::int32_t>(index);
 }
 
@@ -128,7 +129,7 @@ SolidWatch::Placed SolidWatch::surface_of(std::int32_t body, std::int32_t slot) 
     return {surface.corners(slot),
             {disc.centre[0], disc.centre[1], disc.centre[2]},
             {disc.normal[0], disc.normal[1], disc.normal[2]},
-            static_cast<double>(disc.radius) + rounding};
+            static_cast<double>(disc.radius) + float_rounding};
 }
 
 // How far a ball about part of the tool and a body's triangle are apart at least, mm: by the ball about the
@@ -138,7 +139,7 @@ double SolidWatch::apart(const Ball& ball, std::int32_t body, std::int32_t slot)
     const Vector3d way = placed(ball.centre) - Vector3d(disc.centre[0], disc.centre[1], disc.centre[2]);
     const double height = std::abs(way.dot(Vector3d(disc.normal[0], disc.normal[1], disc.normal[2])) -
                                    static_cast<double>(disc.lift));
-    return std::max(way.norm() - static_cast<double>(disc.radius), height) - ball.radius - rounding;
+    return std::max(way.norm() - static_cast<double>(disc.radius), height) - ball.radius - float_rounding;
 }
 
 std::size_t SolidWatch::slots_about(const Ball& ball, std::size_t body, double reach) noexcept {
@@ -169,11 +170,11 @@ void SolidWatch::keep(std::size_t index) noexcept {
     }
     if (patch.kept > 0) return;
     // Nothing is near: how far is it?
-    const double far = patch.ball.radius + close + farthest;
-    double clear = farthest;
+    const double far = patch.ball.radius + close + farthest_asked;
+    double clear = farthest_asked;
     for (const SolidBody& body : bodies_) {
         const auto nearest = body.surface->closest_point(placed(patch.ball.centre), far);
-        if (nearest) clear = std::min(clear, nearest->distance - patch.ball.radius - close - rounding);
+        if (nearest) clear = std::min(clear, nearest->distance - patch.ball.radius - close - float_rounding);
     }
     patch.kept_until = patch.kept_at + std::max(clear, kept_slack);
 }
@@ -188,8 +189,8 @@ void SolidWatch::look_at(std::size_t index) noexcept {
         patch.wake = now;
         return;
     }
-    // A little less than so much, so that rounding lets nothing sleep that is close, however little the tool
-    // moves.
+    // A little less than so much, so that rounding lets nothing sleep that is close, however little the
+    // tool moves.
     const auto since = static_cast<float>((1 - 1e-6) * (now - patch.kept_at));
     float wake = std::numeric_limits<float>::infinity();
     const std::size_t first = index * most_kept;
@@ -214,7 +215,7 @@ void SolidWatch::look_at_all(const Patch& patch) noexcept {
 // Takes down what is close of a patch and a body's triangle; returns when any of it may be so again.
 float SolidWatch::look_at_slot(const Patch& patch, float since, Kept& kept) noexcept {
     const auto wake_after = [&](double least) {
-        return since + static_cast<float>(std::max(least - close - rounding, 0.0));
+        return since + static_cast<float>(std::max(least - close - float_rounding, 0.0));
     };
     const double clear = apart(patch.ball, kept.body, kept.slot);
     if (clear > close) return wake_after(clear);
@@ -246,8 +247,8 @@ double SolidWatch::look_at_pair(const Pair& pair) noexcept {
                            bodies_[static_cast<std::size_t>(pair.body)].features->of(pair.slot).own_vertices;
     double least = look_at_edges(pair, over_body, over_tool);
     for (std::size_t i = 0; i < 3; ++i) {
-        if (has(mine, i)) least = std::min(least, look_at_vertex(pair, i, over_body.of_corner(i)));
-        if (has(its, i)) least = std::min(least, look_at_its_vertex(pair, i, over_tool.of_corner(i)));
+        if (has_bit(mine, i)) least = std::min(least, look_at_vertex(pair, i, over_body.of_corner(i)));
+        if (has_bit(its, i)) least = std::min(least, look_at_its_vertex(pair, i, over_tool.of_corner(i)));
     }
     return least;
 }
@@ -274,8 +275,8 @@ double SolidWatch::look_at_vertex(const Pair& pair, std::size_t i, double height
     const collision::SurfaceFeatures& features = *bodies_[static_cast<std::size_t>(pair.body)].features;
     const collision::TriangleFeatures& its = features.of(pair.slot);
     const bool is_its = foot.feature == Feature::face ||
-                        (foot.feature == Feature::vertex && has(its.own_vertices, corner_of(foot))) ||
-                        (foot.feature == Feature::edge && has(its.own_edges, edge_of(foot)));
+                        (foot.feature == Feature::vertex && has_bit(its.own_vertices, corner_of(foot))) ||
+                        (foot.feature == Feature::edge && has_bit(its.own_edges, edge_of(foot)));
     found(pair, plane_between(p, foot.point, distance), p,
           is_its && features.is_nearest(pair.slot, foot, p - foot.point));
     return distance;
@@ -292,7 +293,7 @@ double SolidWatch::look_at_its_vertex(const Pair& pair, std::size_t i, double he
     if (!(distance < close) || !(distance > 0)) return distance;
     const collision::TriangleFeatures& mine = tool_.of(pair.triangle);
     const bool is_mine = foot.feature == Feature::face ||
-                         (foot.feature == Feature::edge && has(mine.own_edges, edge_of(foot)));
+                         (foot.feature == Feature::edge && has_bit(mine.own_edges, edge_of(foot)));
     PartingPlane plane = plane_between(foot.point, p, distance);
     plane.turns = true;
     const Vector3d on_tool = foot.point;
@@ -309,14 +310,14 @@ double SolidWatch::look_at_edges(const Pair& pair, const Heights& over_body,
                        its = features.of(pair.slot).own_sharp_edges;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < 3; ++i) {
-        if (!has(mine, i)) continue;
+        if (!has_bit(mine, i)) continue;
         if (over_body.of_edge(i) > close) {
             least = std::min(least, over_body.of_edge(i));
             continue;
         }
         const Vector3d &from = pair.tool.corners[i], &to = pair.tool.corners[(i + 1) % 3];
         for (std::size_t j = 0; j < 3; ++j) {
-            if (!has(its, j)) continue;
+            if (!has_bit(its, j)) continue;
             if (over_tool.of_edge(j) > close) {
                 least = std::min(least, over_tool.of_edge(j));
                 continue;
