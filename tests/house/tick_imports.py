@@ -47,7 +47,6 @@ TICK = {
         "force_limiter": "force and slew limits",
         "haptic_tick": "one tick, from positions to forces",
         "passivity_observer": "no more energy out than in",
-        "shell/resting_model": "springs and points that press",
         "shell/shell_equilibrium": "a whole tool, brought to rest",
         "shell/shell_watch": "which points of it are inside a body",
         "solid/least_distance": "the motion that keeps a tool's touches",

@@ -58,11 +58,11 @@ void check(const cli::Command& command, const ToolOption& option, const std::str
         throw UsageError({"--instrument", option.tool + " with --scheme " + scheme,
                           "--scheme shell or solid, or --instrument rod",
                           "no other scheme feels a surface of the tool's own"});
-    if (scheme == "solid")
+    if (option.has_surface() && !can.samples_surface)
         for (const std::string name : {"--shell-points", "--voxel", "--contact-stiffness"})
             if (is_asked_for(command, name))
-                throw UsageError({name, "with --scheme solid", "--scheme shell beside it",
-                                  "solid samples nothing and gives no way"});
+                throw UsageError(
+                    {name, "with --scheme " + scheme, "--scheme shell beside it", "no other samples a tool"});
     if (option.tool.empty() || option.has_jaws())
         refuse_settings(command, tool_fields,
                         option.has_jaws() ? "with --instrument forceps" : "without --instrument",

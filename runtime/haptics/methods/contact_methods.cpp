@@ -46,7 +46,11 @@ constexpr std::array table{
     ContactMethodEntry{
         "shell",
         shown_text("is published: a whole tool that turns, as points against voxels of rigid bodies"),
-        {.has_radius = true, .feels_tissue = false, .turns = true, .has_surface = true},
+        {.has_radius = true,
+         .feels_tissue = false,
+         .turns = true,
+         .has_surface = true,
+         .samples_surface = true},
         make_shell},
     ContactMethodEntry{
         "solid",

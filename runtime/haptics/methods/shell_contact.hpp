@@ -41,6 +41,7 @@ class ShellContact final : public WholeToolContact {
                            ToolPose& pose) noexcept override;
     std::span<const ToolTouch> touches(std::size_t tool) noexcept override;
     double depth_of(const ToolTouch& touch) const noexcept override;
+    double surface_within(const ToolTouch& touch) const noexcept override;
 
     std::vector<collision::DistanceField> fields_;  // of the rigid bodies
     std::vector<collision::ShellPoint> points_;

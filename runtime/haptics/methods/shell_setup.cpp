@@ -7,7 +7,7 @@
 
 #include "formats/model/errors.hpp"
 #include "runtime/haptics/methods/shell_contact.hpp"
-#include "runtime/haptics/shell/rod.hpp"
+#include "runtime/haptics/whole_tool/rod.hpp"
 
 namespace palpate::haptics {
 namespace {

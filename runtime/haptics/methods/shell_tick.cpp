@@ -29,4 +29,8 @@ double ShellContact::depth_of(const ToolTouch& touch) const noexcept {
     return -touch.distance;
 }
 
+double ShellContact::surface_within(const ToolTouch& touch) const noexcept {
+    return -touch.distance + 2 * fields_[static_cast<std::size_t>(touch.body)].error();
+}
+
 }  // namespace palpate::haptics

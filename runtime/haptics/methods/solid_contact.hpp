@@ -34,9 +34,10 @@ class SolidContact final : public WholeToolContact {
                            ToolPose& pose) noexcept override;
     std::span<const ToolTouch> touches(std::size_t tool) noexcept override;
     double depth_of(const ToolTouch& touch) const noexcept override;
+    double surface_within(const ToolTouch& touch) const noexcept override;
 
-    std::unique_ptr<collision::SurfaceFeatures> surface_;  // the tool's
-    std::vector<collision::SurfaceFeatures> features_;     // of the rigid bodies' slots
+    collision::SurfaceFeatures surface_;                // the tool's
+    std::vector<collision::SurfaceFeatures> features_;  // of the rigid bodies' slots
     std::vector<SolidBody> solids_;
     std::vector<SolidWatch> watches_;  // of each tool
 };

@@ -17,7 +17,7 @@ bool SolidContact::is_clear(std::size_t tool, const ToolPose& pose) noexcept {
     watch.look(pose);
     if (watch.meets()) return false;
     // No surface cuts another: one point of the tool tells whether it is in a body.
-    const Vector3d p = pose.position + pose.orientation * surface_->vertex(0);
+    const Vector3d p = pose.position + pose.orientation * surface_.vertex(0);
     return std::ranges::all_of(solids_, [&](const SolidBody& body) { return body.surface->is_outside(p); });
 }
 
@@ -32,6 +32,10 @@ std::span<const ToolTouch> SolidContact::touches(std::size_t tool) noexcept {
 
 double SolidContact::depth_of(const ToolTouch& /*touch*/) const noexcept {
     return 0;
+}
+
+double SolidContact::surface_within(const ToolTouch& /*touch*/) const noexcept {
+    return SolidWatch::close;
 }
 
 }  // namespace palpate::haptics

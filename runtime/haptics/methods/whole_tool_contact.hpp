@@ -9,7 +9,8 @@
 #include "formats/records/tool_settings.hpp"
 #include "runtime/haptics/contact/contact_bodies.hpp"
 #include "runtime/haptics/methods/contact_method.hpp"
-#include "runtime/haptics/shell/resting_model.hpp"
+#include "runtime/haptics/whole_tool/tool_rest.hpp"
+#include "runtime/haptics/whole_tool/tool_touch.hpp"
 
 namespace palpate::haptics {
 
@@ -45,6 +46,8 @@ class WholeToolContact : public ContactMethod {
     virtual std::span<const ToolTouch> touches(std::size_t tool) noexcept = 0;
     /// How deep a touch's point is in its body, mm: zero for methods that let none in.
     virtual double depth_of(const ToolTouch& touch) const noexcept = 0;
+    /// Within which distance of a touch's point its body's surface is, mm.
+    virtual double surface_within(const ToolTouch& touch) const noexcept = 0;
 
     const ContactBodies& bodies_;
     const ToolSettings settings_;

@@ -107,8 +107,8 @@ Contact WholeToolContact::contact_of(Tool& tool, const ToolTouch& touch) const n
     contact.force = static_cast<float>(touch.press);
     Eigen::Map<Eigen::Vector3f>(contact.normal.data()) = normal.cast<float>();
     contact.triangle = -1;
-    const auto nearest = bodies_.surfaces[body]->closest_point(
-        tool.pose.position + touch.arm, std::numeric_limits<double>::max(), tool.hints[body]);
+    const auto nearest = bodies_.surfaces[body]->closest_point(tool.pose.position + touch.arm,
+                                                               surface_within(touch), tool.hints[body]);
     if (!nearest) return contact;
     tool.hints[body] = nearest->slot;
     contact.triangle = nearest->triangle;

@@ -8,8 +8,8 @@
 
 #include "runtime/collision/field/distance_field.hpp"
 #include "runtime/collision/points/point_shell.hpp"
-#include "runtime/haptics/shell/tool_touch.hpp"
 #include "runtime/haptics/tool_pose.hpp"
+#include "runtime/haptics/whole_tool/tool_touch.hpp"
 
 namespace palpate::haptics {
 
@@ -36,7 +36,6 @@ class ShellWatch {
 
     /// How far a motion moves any point of the shell at most, mm.
     double reach_of(const Twist& motion) const noexcept { return haptics::reach_of(motion, longest_arm_); }
-    double longest_arm() const noexcept { return longest_arm_; }
 
   private:
     struct Watched {

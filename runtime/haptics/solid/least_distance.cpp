@@ -145,17 +145,22 @@ class LeastDistance {
 
 }  // namespace
 
-Twist nearest_motion(const TurningCoupling& coupling, const ToolPose& pose,
-                     std::span<ToolTouch> touches) noexcept {
+NearestMotion nearest_motion(const TurningCoupling& coupling, const ToolPose& pose,
+                             std::span<ToolTouch> touches) noexcept {
     Twist root_spring, wanted;
     root_spring.head<3>().setConstant(std::sqrt(coupling.stiffness));
     root_spring.tail<3>().setConstant(std::sqrt(coupling.torsional_stiffness));
     wanted.head<3>() = coupling.device.position - pose.position;
     wanted.tail<3>() = rotation_between(pose.orientation, coupling.device.orientation);
     for (ToolTouch& touch : touches) touch.press = 0;
-    auto scaled = LeastDistance(root_spring, wanted, touches, false).solve();
-    if (!scaled) scaled = LeastDistance(root_spring, wanted, touches, true).solve();
-    return scaled ? Twist(wanted + scaled->cwiseQuotient(root_spring)) : Twist(Twist::Zero());
+    const auto moved_by = [&](const Twist& scaled) -> Twist {
+        return wanted + scaled.cwiseQuotient(root_spring);
+    };
+    if (const auto scaled = LeastDistance(root_spring, wanted, touches, false).solve())
+        return {moved_by(*scaled), true};
+    // No motion always keeps them as they are.
+    const auto scaled = LeastDistance(root_spring, wanted, touches, true).solve();
+    return {scaled ? moved_by(*scaled) : Twist(Twist::Zero()), false};
 }
 
 }  // namespace palpate::haptics

@@ -41,9 +41,10 @@ ToolRest bring_to_rest(SolidWatch& watch, const TurningCoupling& coupling, ToolP
     Twist before = Twist::Zero();
     bool shortened = false;
     for (int round = 0; round < most_solid_rounds; ++round) {
-        Twist step = nearest_motion(coupling, pose, watch.touches());
+        const NearestMotion nearest = nearest_motion(coupling, pose, watch.touches());
+        Twist step = nearest.motion;
         left = watch.reach_of(step);
-        if (left <= settled_step) return ToolRest::settled;
+        if (left <= settled_step) return nearest.keeps_all ? ToolRest::settled : ToolRest::unsettled;
         const bool stalls =
             left > 0.5 * left_before && (!shortened || leads_back(before, step, watch.longest_arm()));
         if (round >= undamped_rounds && stalls) damping *= damped_by;
@@ -55,14 +56,12 @@ ToolRest bring_to_rest(SolidWatch& watch, const TurningCoupling& coupling, ToolP
         shortened = part < 1;
         pose = moved(pose, part * step);
         watch.look(pose);
-        if (!shortened && damping * left <= last_step) {
-            nearest_motion(coupling, pose, watch.touches());  // what presses there
-            return ToolRest::settled;
-        }
+        if (!shortened && damping * left <= last_step) break;
     }
-    nearest_motion(coupling, pose, watch.touches());
+    const NearestMotion rest = nearest_motion(coupling, pose, watch.touches());  // what presses there
+    if (!rest.keeps_all || watch.overflowed()) return ToolRest::unsettled;
     if (shortened) return ToolRest::on_its_way;
-    return damping * left <= tolerated_step ? ToolRest::settled : ToolRest::unsettled;
+    return watch.reach_of(rest.motion) <= tolerated_step ? ToolRest::settled : ToolRest::unsettled;
 }
 
 }  // namespace palpate::haptics

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include "runtime/haptics/shell/resting_model.hpp"
 #include "runtime/haptics/solid/solid_watch.hpp"
+#include "runtime/haptics/whole_tool/tool_rest.hpp"
 
 namespace palpate::haptics {
 

@@ -4,14 +4,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
 #include "runtime/collision/collision_surface.hpp"
 #include "runtime/collision/features/surface_features.hpp"
-#include "runtime/haptics/shell/tool_touch.hpp"
 #include "runtime/haptics/tool_pose.hpp"
+#include "runtime/haptics/whole_tool/tool_touch.hpp"
 
 namespace palpate::haptics {
 

@@ -7,8 +7,8 @@
 
 #include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
-#include "runtime/haptics/shell/rod.hpp"
 #include "runtime/haptics/shell/shell_equilibrium.hpp"
+#include "runtime/haptics/whole_tool/rod.hpp"
 #include "tests/runtime/haptics/held_tool.hpp"
 #include "tests/runtime/haptics/turning/turned_tool.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/haptics/shell/rod.hpp"
+#include "runtime/haptics/whole_tool/rod.hpp"
 
 #include <Eigen/Geometry>
 #include <cmath>
