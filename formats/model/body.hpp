@@ -111,6 +111,16 @@ inline double rod_length(const Case& patient_case) {
     return chosen ? patient_case.tool->settings.rod_length : patient_case.haptics.shaft_length;
 }
 
+/// How far a point of what is held is from its tip's centre at most, along the shaft of a tool without a
+/// surface of its own, mm.
+inline double tool_length(const Case& patient_case) {
+    if (!has_instrument(patient_case)) return rod_length(patient_case);
+    double farthest = 0;
+    for (const Eigen::Vector3d& vertex : patient_case.tool->surface.vertices)
+        farthest = std::max(farthest, vertex.norm());
+    return farthest;
+}
+
 /// How far what is held goes beyond its tip's centre, against its shaft, mm.
 inline double tip_reach(const Case& patient_case) {
     if (!has_instrument(patient_case)) return patient_case.haptics.tool_radius;

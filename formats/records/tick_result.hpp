@@ -70,8 +70,9 @@ struct Contact {
 inline constexpr std::tuple contact_fields{
     Field("body", &Contact::body, "", "0 to the number of bodies - 1, rigid bodies first"),
     Field("part", &Contact::part, "",
-          "of the tool: 0 the tip, then along its shaft, or of an instrument which of its points; -1: "
-          "another body presses in the tool's place"),
+          "of the tool: 0 the tip, then along its shaft, or of an instrument which of its spheres, points or "
+          "triangles, as the scheme has it (`solid`: once long edges are halved); -1: another body presses "
+          "in the tool's place"),
     Field("other_body", &Contact::other_body, "", "that body; -1: the tool presses").since(1, -1),
     Field("other_vertex", &Contact::other_vertex, "",
           "of that body's surface, which presses; -1: the tool does")

@@ -40,10 +40,10 @@ std::string RunKeys::turn_recording() {
 std::string RunKeys::take_next_method() {
     const auto methods = haptics::contact_methods();
     auto at = &run_.model().method() - methods.data();
-    const bool needs_surface = has_instrument(run_.patient_case());
+    const bool is_instrument = has_instrument(run_.patient_case());
     const auto serves = [&](const haptics::ContactMethodEntry& method) {
         return method.can.most_tools >= run_.model().tool_count() &&
-               (needs_surface ? method.can.has_surface : method.can.feels_tissue);
+               (is_instrument ? method.can.turns : method.can.feels_tissue);
     };
     do at = (at + 1) % std::ssize(methods);
     while (!serves(methods[at]));

@@ -167,7 +167,6 @@ int main(int argc, char** argv) {
     const TouchHandles given = declare(command, options);
     return command.run(argc, argv, [&](cli::Session& session) {
         options.seconds_given = given.seconds.given();
-        if (options.tool.has_surface() && !given.scheme.given()) options.scheme = "shell";
         if (options.tool.has_jaws() && !given.script.given()) options.script = devices::grasp_script;
         if (given.replay.given())
             cli::refuse_beside(command, "--replay",

@@ -28,9 +28,7 @@ TouchHandles declare(cli::Command& command, TouchOptions& options) {
         "x,y,z: touch the surface point nearest to it; the most compliant place in reach if not given", "mm");
     command.option("--second", options.second,
                    "what a second tool on the same bodies does: a file as for --script");
-    const cli::Option scheme = command.option("--scheme", options.scheme,
-                                              "how contact is found: " + haptics::contact_method_names() +
-                                                  "; with --instrument FILE 'shell' unless this is given");
+    command.option("--scheme", options.scheme, "how contact is found: " + haptics::contact_method_names());
     declare(command, options.tool);
     declare_large_deformation(command, options.hyperelastic);
     command.option("--device", options.device,
@@ -54,7 +52,7 @@ TouchHandles declare(cli::Command& command, TouchOptions& options) {
         "recording to give the forces of again, as fast as possible; no option of a run goes with it (.h5)");
     command.flag("--virtual-clock", options.virtual_clock,
                  "tick as fast as possible; forces do not depend on the machine");
-    return {asset, script, seconds, log, curve, replay, scheme};
+    return {asset, script, seconds, log, curve, replay};
 }
 
 }  // namespace palpate::apps

@@ -28,7 +28,7 @@ struct TouchOptions {
 
 /// Those of which it counts whether they were given.
 struct TouchHandles {
-    cli::Option asset, script, seconds, log, curve, replay, scheme;
+    cli::Option asset, script, seconds, log, curve, replay;
 };
 
 /// Adds the options of touch to its command, set to what `options` holds.

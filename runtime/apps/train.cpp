@@ -337,9 +337,7 @@ int main(int argc, char** argv) {
     command.option("--device", options.device, device_usages([](const DeviceKind&) { return true; }, true));
     command.option("--stream", options.stream,
                    "PORT or ADDRESS:PORT at which 3D Slicer and others see the session over OpenIGTLink");
-    const auto scheme = command.option("--scheme", options.scheme,
-                                       "how contact is found: " + contact_method_names() +
-                                           "; with --instrument FILE 'shell' unless this is given");
+    command.option("--scheme", options.scheme, "how contact is found: " + contact_method_names());
     declare(command, options.tool);
     declare_large_deformation(command, options.hyperelastic);
     command.input("--exercises", options.lesson.exercises,
@@ -361,7 +359,6 @@ int main(int argc, char** argv) {
         declare_playback(command, options.playback, {asset, size, seconds, screenshot});
     return command.run(argc, argv, [&](cli::Session& session) {
         check_playback();
-        if (options.tool.has_surface() && !scheme.given()) options.scheme = "shell";
         check(command, options.tool, options.scheme);
         check_large_deformation(options.hyperelastic, options.scheme);
         if (options.playback.play.empty()) return train(options, session);

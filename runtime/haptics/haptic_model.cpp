@@ -62,13 +62,13 @@ HapticModel::HapticModel(const Case& patient_case, std::string_view method, std:
       method_(checked(find_contact_method(method), tool_count, patient_case.name)),
       coupling_(settings_.coupling_stiffness),
       contact_radius_(method_.can.has_radius ? tip_reach(patient_case) : 0),
-      turns_(method_.can.has_surface || (method_.can.turns && patient_case.tool)),
+      turns_(method_.can.always_turns || (method_.can.turns && patient_case.tool)),
       bodies_(patient_case, method_.can.spreads_loads),
       tools_(tool_count, Tool{ForceLimiter(settings_), ForceLimiter(tool_settings(patient_case))}),
       poses_(tool_count),
       forces_(tool_count),
       contact_(method_.make(patient_case, bodies_, tool_count)),
-      observer_(tool_count, rod_length(patient_case)) {}
+      observer_(tool_count, tool_length(patient_case), has_instrument(patient_case)) {}
 
 void HapticModel::couple_to(std::span<const DeviceLimits> devices) {
     coupling_ = settings_.coupling_stiffness;

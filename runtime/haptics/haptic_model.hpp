@@ -87,6 +87,8 @@ class HapticModel {
     /// How far the tool goes beyond its tip's centre, mm: its radius, or how far its body does against the
     /// shaft; 0 where the method knows a point.
     double contact_radius() const noexcept { return contact_radius_; }
+    /// What stands for a tool, where that is spheres, in its frame T.
+    std::span<const ToolSphere> tool_spheres() const noexcept { return contact_->spheres(); }
     std::size_t tool_count() const noexcept { return tools_.size(); }
     std::size_t body_count() const noexcept { return bodies_.surfaces.size(); }
     std::size_t rigid_count() const noexcept { return bodies_.rigid_count(); }

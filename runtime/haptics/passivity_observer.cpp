@@ -21,11 +21,15 @@ void PassivityObserver::damp(std::span<const ContactPose> poses, double coupling
         if (!poses[t].trusted) continue;
         Tool& tool = tools_[t];
         const Vector3d way = poses[t].tip - tool.tip;
+        const Eigen::Quaterniond orientation = orientation_of(poses[t]);
+        const double turn = are_instruments_ ? orientation.angularDistance(tool.orientation)
+                                             : (poses[t].shaft - tool.shaft).norm();
         excess_ += tool.force.dot(way) - coupling * way.norm() * (way.norm() / 2 + resolution) -
-                   tool.pressed * shaft_length_ * (poses[t].shaft - tool.shaft).norm();
+                   tool.pressed * length_ * turn;
         if (!way.isZero(0)) tool.way = way;
         tool.tip = poses[t].tip;
         tool.shaft = poses[t].shaft;
+        tool.orientation = orientation;
     }
     double left = watching_ ? excess_ : 0;  // N mm to take back
     for (std::size_t t = 0; t < tools_.size() && left > 0; ++t) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -16,15 +16,17 @@ namespace palpate::haptics {
 ///     sum F . dx <= sum K |dx| (|dx| / 2 + resolution) + P L |ds|,
 /// for a force that is held while the device moves by dx is that of a spring of at most the coupling's
 /// stiffness K, half a step late; P L |ds| is what turning a shaft of length L against forces of sum P may
-/// have stored, for its torque is not felt. What is above it is taken back by a damper: the force along the
-/// way becomes less, or turns against it no further than to zero. Contact that keeps energy never needs it.
-/// After Hannaford, Ryu, IEEE Trans. Robotics Autom. 18:1-10 (2002). Realtime-safe but for the constructor.
+/// have stored, for its torque is not felt; of an instrument |ds| is the angle by which it turns. What is
+/// above it is taken back by a damper: the force along the way becomes less, or turns against it no further
+/// than to zero. Contact that keeps energy never needs it. After Hannaford, Ryu, IEEE Trans. Robotics Autom.
+/// 18:1-10 (2002). Realtime-safe but for the constructor.
 class PassivityObserver {
   public:
     static constexpr double resolution = 1e-3;  ///< mm: to which contact is solved, and encoders read
 
-    PassivityObserver(std::size_t tool_count, double shaft_length)
-        : tools_(tool_count), shaft_length_(shaft_length) {}
+    /// Of tools of `length` L, mm.
+    PassivityObserver(std::size_t tool_count, double length, bool are_instruments)
+        : tools_(tool_count), length_(length), are_instruments_(are_instruments) {}
 
     void reset() noexcept;
 
@@ -40,13 +42,15 @@ class PassivityObserver {
   private:
     struct Tool {
         Eigen::Vector3d tip{0, 0, 0}, shaft{0, 0, 0};
+        Eigen::Quaterniond orientation{Eigen::Quaterniond::Identity()};
         Eigen::Vector3d way{0, 0, 0};  // the last that was any, mm: coarse encoders do not move in every tick
         Eigen::Vector3d force{0, 0, 0};  // on the device since the last tick, N
         double pressed = 0;              // N, sum of contact forces
     };
 
     std::vector<Tool> tools_;
-    double shaft_length_;
+    double length_;  // mm
+    bool are_instruments_;
     double excess_ =
         0;  // of this touch: work on the hands above what there may be, N mm; normally below zero
     bool watching_ = true;

@@ -14,6 +14,7 @@ namespace palpate::session {
 namespace {
 
 using Eigen::Vector3d;
+using haptics::HapticModel;
 
 // RFC 4180: a field with a comma, quote or line break stands in quotes.
 std::string csv_field(const std::string& text) {
@@ -48,24 +49,43 @@ void RunRecord::add(const TickResult& result) {
     if (log_) write_row(result);
 }
 
+RunRecord::RunRecord(const HapticModel& model, std::ostream* log) : model_(model), log_(log) {
+    spheres_.assign(model.tool_spheres().begin(), model.tool_spheres().end());
+    if (spheres_.empty()) spheres_.push_back({Vector3d::Zero(), model.contact_radius()});
+    clearances_.resize(spheres_.size() * model.rigid_count());
+}
+
 double RunRecord::peak_force() const {
     return vector_of(peak_.force).norm();
 }
 
-double RunRecord::tool_depth_of(const TickResult& result) const {
+double RunRecord::tool_depth_of(const TickResult& result) {
     if ((result.status & starts_inside) || (result.faults & distrusted_position)) return 0;
-    const double radius = model_.contact_radius();
-    const Vector3d tool = vector_of(result.tool_position);
     double depth = result.residual;
-    if (model_.method().can.has_surface) return depth;  // that of its deepest point
-    for (std::size_t body = 0; body < model_.rigid_count(); ++body) {
-        const collision::CollisionSurface& surface = model_.surface(body);
-        const bool outside = surface.is_outside(tool);
-        const double far = std::numeric_limits<double>::max();
-        if (const auto nearest = surface.closest_point(tool, outside ? radius : far))
-            depth = std::max(depth, radius + (outside ? -nearest->distance : nearest->distance));
+    if (model_.method().can.always_turns) return depth;  // that of its deepest point
+    const Vector3d tool = vector_of(result.tool_position);
+    const Eigen::Quaterniond turned = quaternion_of(result.tool_orientation);
+    // How a tool is turned is told where it turns by itself.
+    const std::size_t looked_at = turned.coeffs().isZero(0) ? 1 : spheres_.size();
+    for (std::size_t s = 0; s < looked_at; ++s) {
+        const auto& [place, radius] = spheres_[s];
+        const Vector3d centre = looked_at > 1 ? Vector3d(tool + turned * place) : tool;
+        for (std::size_t body = 0; body < model_.rigid_count(); ++body)
+            depth =
+                std::max(depth, depth_in(body, centre, radius, clearances_[s * model_.rigid_count() + body]));
     }
     return depth;
+}
+
+// How deep a sphere is in a rigid body; below zero or not looked at where it is clear of it.
+double RunRecord::depth_in(std::size_t body, const Vector3d& centre, double radius, Clearance& last) const {
+    if (last.outside - (centre - last.at).norm() > radius) return 0;
+    const collision::CollisionSurface& surface = model_.surface(body);
+    const auto nearest = surface.closest_point(centre, std::numeric_limits<double>::max(), last.hint);
+    if (!nearest) return 0;
+    last = {centre, surface.is_outside(centre, *nearest) ? nearest->distance : -nearest->distance,
+            nearest->slot};
+    return radius - last.outside;
 }
 
 void RunRecord::write_row(const TickResult& r) {

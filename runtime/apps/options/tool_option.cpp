@@ -54,10 +54,6 @@ void check(const cli::Command& command, const ToolOption& option, const std::str
     if (!option.tool.empty() && !option.has_jaws() && !can.turns)
         throw UsageError({"--instrument", "with --scheme " + scheme, "--scheme continuous, shell or solid",
                           "with no other do tools turn"});
-    if (option.has_surface() && !can.has_surface)
-        throw UsageError({"--instrument", option.tool + " with --scheme " + scheme,
-                          "--scheme shell or solid, or --instrument rod",
-                          "no other scheme feels a surface of the tool's own"});
     if (option.has_surface() && !can.samples_surface)
         for (const std::string name : {"--shell-points", "--voxel", "--contact-stiffness"})
             if (is_asked_for(command, name))

@@ -26,6 +26,7 @@ void GodObject::reset() noexcept {
     }
     all_followed_ = any_followed_ = false;
     at_rest_ = true;
+    clear_within_ = 0;
 }
 
 // What touches next does so at rest, and as if nothing had been touched before.
@@ -38,6 +39,11 @@ bool GodObject::move(Surfaces surfaces, const Vector3d& device, const Friction& 
     plane_count_ = 0;
     touch_count_ = 0;
     held_back_.setZero();
+    if (all_followed_ && is_known_clear() && is_known_clear_at(device)) {
+        position_ = last_device_ = device;
+        let_go();
+        return true;
+    }
     if (any_followed_)
         slide(surfaces, device, friction);
     else

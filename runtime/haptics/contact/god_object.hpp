@@ -59,6 +59,15 @@ class GodObject {
     std::optional<Touch> touch_on_the_way(std::span<const collision::CollisionSurface* const> surfaces,
                                           const Eigen::Vector3d& to) noexcept;
 
+    /// Says that no surface is nearer to its centre than `distance` (mm) where it is now: until it leaves
+    /// that ball nothing needs to be asked. Changes the cost of moves, not what they find.
+    void note_clearance(double distance) noexcept {
+        clear_about_ = position_;
+        clear_within_ = distance - radius_ - skin;
+    }
+    /// Whether it is still within what was noted.
+    bool is_known_clear() const noexcept { return is_known_clear_at(position_); }
+
     const Eigen::Vector3d& position() const noexcept { return position_; }
     double radius() const noexcept { return radius_; }
     /// Where the sphere rests on the surface and is held off the device, the nearest first; none if it
@@ -84,6 +93,9 @@ class GodObject {
     };
     using Surfaces = std::span<const collision::CollisionSurface* const>;
 
+    bool is_known_clear_at(const Eigen::Vector3d& p) const noexcept {
+        return clear_within_ > 0 && (p - clear_about_).squaredNorm() < clear_within_ * clear_within_;
+    }
     void let_go() noexcept;
     void slide(Surfaces surfaces, const Eigen::Vector3d& device, const Friction& friction) noexcept;
     std::optional<Hit> sweep(Surfaces surfaces, const Eigen::Vector3d& to) noexcept;
@@ -101,6 +113,8 @@ class GodObject {
     Eigen::Vector3d position_ = Eigen::Vector3d::Zero();
     Eigen::Vector3d last_device_ = Eigen::Vector3d::Zero();
     Eigen::Vector3d held_back_ = Eigen::Vector3d::Zero();
+    Eigen::Vector3d clear_about_ = Eigen::Vector3d::Zero();
+    double clear_within_ = 0;  // mm: from there its centre may go so far
     std::array<HalfSpace, max_touches> planes_;
     std::size_t plane_count_ = 0;
     std::array<Touch, max_touches> touches_;

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "formats/records/tick_result.hpp"
+#include "runtime/haptics/whole_tool/tool_spheres.hpp"
 
 namespace palpate::haptics {
 
@@ -68,6 +69,9 @@ class ContactMethod {
     /// The same as detect() for a given position (p_P, mm) of a given tick, or for its forces where they are
     /// kept, as a replay or a loop that is late has it. Instead of detect().
     virtual void detect_at(const std::array<double, 3>& /*device*/, std::int64_t /*tick*/) noexcept {}
+
+    /// What stands for a tool, where that is spheres, in its frame T.
+    virtual std::span<const ToolSphere> spheres() const noexcept { return {}; }
 
     /// Picture's side, one thread: adds to the displacements of deformable body `soft` (mm, by surface
     /// vertex) what the contacts of the tools' results displace it by beyond its compliance.

@@ -49,13 +49,13 @@ constexpr std::array table{
         {.has_radius = true,
          .feels_tissue = false,
          .turns = true,
-         .has_surface = true,
+         .always_turns = true,
          .samples_surface = true},
         make_shell},
     ContactMethodEntry{
         "solid",
         shown_text("is ours: a whole tool that turns, its triangles never through those of rigid bodies"),
-        {.has_radius = true, .feels_tissue = false, .turns = true, .has_surface = true},
+        {.has_radius = true, .feels_tissue = false, .turns = true, .always_turns = true},
         make_solid},
 };
 

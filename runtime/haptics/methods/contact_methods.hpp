@@ -22,7 +22,7 @@ struct ContactCapabilities {
     bool creeps = false;            ///< as tissue does that relaxes
     bool feels_tissue = true;       ///< and not rigid bodies alone
     bool turns = false;             ///< a tool may turn by itself, with a torque: Case::tool
-    bool has_surface = false;       ///< and have a surface of its own
+    bool always_turns = false;      ///< and does where a case has none
     bool samples_surface = false;   ///< as points against voxels, with a stiffness
     bool keeps_energy = false;  ///< gives hands no more than they gave it: PassivityObserver holds it to that
     std::size_t most_tools = std::numeric_limits<std::size_t>::max();

@@ -13,23 +13,24 @@
 #include "runtime/haptics/contact/god_object.hpp"
 #include "runtime/haptics/contact/large/large_deformation.hpp"
 #include "runtime/haptics/methods/contact_method.hpp"
+#include "runtime/haptics/whole_tool/tool_spheres.hpp"
 
 namespace palpate::haptics {
 
-/// Contact found in every tick: a tool is a sphere, or a row of spheres where it has a shaft. Each holds a
+/// Contact found in every tick: a tool is a sphere, a row of spheres where it has a shaft, or what spheres an
+/// instrument with a surface of its own is filled with. Each holds a
 /// god-object on the rigid bodies and one on all bodies as if they were rigid; where only the tip touches,
 /// and only rigid bodies, the force is that of the virtual coupling, stiffness * (proxy - device), otherwise
-/// tools and tissue are brought to rest together (ContactEquilibrium). The shaft turns as the device says,
+/// tools and tissue are brought to rest together (ContactEquilibrium). A shaft turns as the device says,
 /// and the torque that would turn it back is not rendered; a tool that turns by itself, Case::tool, hangs on
 /// a spring of torsion besides, which has its rest among the others, and gives torque. A tool that jumped
-/// does not feel a body that it is in until it has been clear of it.
+/// does not feel a body that it is in until it has been clear of it; one that turns by itself feels nothing
+/// until all of it has been clear of every body.
 class ContinuousContact final : public ContactMethod {
   public:
-    /// `bodies` must outlive this. Of the settings it reads radius, shaft and friction. `torsion`: rad / (N
-    /// mm) that a tool turns by under a torque; 0: as its device.
-    /// Of the case it reads which bodies are hyperelastic.
-    ContinuousContact(const Case& patient_case, const ContactBodies& bodies, const HapticSettings& settings,
-                      std::size_t tool_count, double torsion);
+    /// `bodies` must outlive this. Of the case it reads what is held, friction, and which bodies are
+    /// hyperelastic. Throws InvalidInput if what is to turn by itself is a ball.
+    ContinuousContact(const Case& patient_case, const ContactBodies& bodies, std::size_t tool_count);
     ~ContinuousContact() override;
 
     void reset() noexcept override;
@@ -41,13 +42,14 @@ class ContinuousContact final : public ContactMethod {
     void detect_at(const std::array<double, 3>& device, std::int64_t tick) noexcept override;
     void add_beyond(std::size_t soft, std::span<const TickResult* const> results,
                     std::span<Eigen::Vector3f> displacements) override;
+    std::span<const ToolSphere> spheres() const noexcept override { return spheres_; }
+
+    static constexpr std::size_t most_spheres = 96;  ///< of an instrument
+    static constexpr std::size_t most_of_rod = 49;
 
   private:
-    static constexpr std::size_t most_spheres = 49;  // of a tool
-
-    // A sphere of the tool: its tip, or one of those that stand for its shaft.
+    // One of the tool's spheres.
     struct Part {
-        double behind_tip = 0;  // mm, along the shaft
         GodObject on_rigid;
         GodObject
             on_all;  // as if nothing gave way: without friction, no equilibrium is farther from the device
@@ -55,15 +57,21 @@ class ContinuousContact final : public ContactMethod {
         Eigen::Vector3d device = Eigen::Vector3d::Zero();  // where the coupling pulls it, mm
     };
     struct Tool {
-        std::vector<Part> parts;     // the tip first
+        std::vector<Part> parts;     // as spheres_
         std::size_t parts_felt = 0;  // in this tick: none without a trusted position, the tip alone
-                                     // without a shaft's direction
-        bool held_by_shaft = false;  // by more than its tip
+                                     // where a rod's direction is not known
+        Eigen::Vector3d tip = Eigen::Vector3d::Zero();  // on its device, mm
+        bool held_beside_tip = false;                   // by a sphere that is not about its tip
+        std::size_t measured_last = 0;                  // of the parts: how far from all bodies
+        bool waits = false;                             // to be clear of every body
+        std::size_t stuck = 0;                          // the part that was not
     };
 
-    void place(std::size_t tool, const ContactPose& pose) noexcept;
+    void place(std::size_t tool, const ContactPose& pose, TickResult& result) noexcept;
+    bool is_clear(Tool& tool) const noexcept;
     void forget(std::size_t tool) noexcept;
     void follow(std::size_t tool, TickResult& result) noexcept;
+    void note_clearances(Tool& tool) noexcept;
     void write_neighbours(std::span<TickResult> results) const noexcept;
     void depth_in_tissue(const Tool& tool, TickResult& result) const noexcept;
     Eigen::Vector3d force_of(std::size_t tool, TickResult& result) noexcept;
@@ -82,6 +90,8 @@ class ContinuousContact final : public ContactMethod {
     Eigen::Vector3d wall_friction(std::size_t tool, const Eigen::Vector3d& force) noexcept;
 
     const ContactBodies& bodies_;
+    const std::vector<ToolSphere> spheres_;  // of every tool; a rod's tip first
+    const bool is_instrument_;
     Friction friction_;
     double coupling_ = 0;  // of this tick, N/mm
     double torsion_;       // rad / (N mm) that a tool turns by against its device; 0: it does not
@@ -89,7 +99,7 @@ class ContinuousContact final : public ContactMethod {
     std::vector<Tool> tools_;
     ContactEquilibrium equilibrium_;
     LargeDeformation large_;
-    FixedList<ContactEquilibrium::Sphere, most_spheres> spheres_;  // of the tool that is being placed
+    FixedList<ContactEquilibrium::Sphere, most_spheres> placed_;  // of the tool that is being placed
 };
 
 /// A ContinuousContact, as the table of contact methods makes it.

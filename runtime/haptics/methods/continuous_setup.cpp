@@ -9,36 +9,43 @@
 namespace palpate::haptics {
 namespace {
 
-// Where the spheres of a tool are behind its tip, mm: a radius apart, the surface of the row dips by an
-// eighth of it; a long thin shaft gets fewer.
-std::vector<double> spheres_of(const HapticSettings& settings, std::size_t most_spheres) {
-    const auto most = static_cast<double>(most_spheres - 1);
-    const double spheres = std::min(most, std::ceil(settings.shaft_length / settings.tool_radius));
-    std::vector<double> places{0};
-    for (double k = 1; k <= spheres; ++k) places.push_back(settings.shaft_length * k / spheres);
-    return places;
+std::vector<ToolSphere> spheres_of(const Case& patient_case) {
+    if (has_instrument(patient_case))
+        return fill_with_spheres(patient_case.tool->surface, ContinuousContact::most_spheres).spheres;
+    return rod_spheres(patient_case.haptics.tool_radius, rod_length(patient_case),
+                       ContinuousContact::most_of_rod);
+}
+
+// What a tool turns by under a torque, rad / (N mm); 0: as its device.
+double torsion_of(const Case& patient_case) {
+    return patient_case.tool ? 1 / patient_case.tool->settings.torsional_stiffness : 0;
 }
 
 }  // namespace
 
 ContinuousContact::ContinuousContact(const Case& patient_case, const ContactBodies& bodies,
-                                     const HapticSettings& settings, std::size_t tool_count, double torsion)
+                                     std::size_t tool_count)
     : bodies_(bodies),
-      friction_{settings.friction_at_rest, settings.friction_sliding, settings.grip},
-      torsion_(torsion),
-      equilibrium_(bodies, settings.tool_radius, friction_, tool_count,
-                   spheres_of(settings, most_spheres).size()),
+      spheres_(spheres_of(patient_case)),
+      is_instrument_(has_instrument(patient_case)),
+      friction_{patient_case.haptics.friction_at_rest, patient_case.haptics.friction_sliding,
+                patient_case.haptics.grip},
+      torsion_(torsion_of(patient_case)),
+      equilibrium_(bodies, spheres_, friction_, tool_count),
       large_(patient_case, bodies) {
+    if (torsion_ > 0 && !is_instrument_ && spheres_.size() == 1)
+        throw InvalidInput({patient_case.name, "its tool has no shaft, so that it has nothing to turn",
+                            "a shaft", "give --rod-length, or shaft_length_mm in the case file"});
     for (const auto& surface : bodies.surfaces) {
         if (all_surfaces_.size() < bodies.rigid_count()) rigid_surfaces_.push_back(surface.get());
         all_surfaces_.push_back(surface.get());
     }
-    const double radius = settings.tool_radius;
     for (std::size_t t = 0; t < tool_count; ++t) {
-        Tool& tool = tools_.emplace_back(std::vector<Part>{});
-        for (const double behind_tip : spheres_of(settings, most_spheres))
-            tool.parts.emplace_back(behind_tip, GodObject(radius, rigid_surfaces_.size()),
-                                    GodObject(radius, all_surfaces_.size()));
+        Tool& tool = tools_.emplace_back();
+        tool.waits = torsion_ > 0;
+        for (const ToolSphere& sphere : spheres_)
+            tool.parts.emplace_back(GodObject(sphere.radius, rigid_surfaces_.size()),
+                                    GodObject(sphere.radius, all_surfaces_.size()));
     }
 }
 
@@ -69,18 +76,7 @@ void ContinuousContact::add_beyond(std::size_t soft, std::span<const TickResult*
 
 std::unique_ptr<ContactMethod> make_continuous(const Case& patient_case, const ContactBodies& bodies,
                                                std::size_t tool_count) {
-    if (has_instrument(patient_case))
-        throw InvalidInput(
-            {patient_case.name,
-             "a tool with a surface of its own, which contact method 'continuous' does not feel",
-             "the case's ball or rod", "use contact method 'shell'"});
-    const double torsion = patient_case.tool ? 1 / patient_case.tool->settings.torsional_stiffness : 0;
-    HapticSettings settings = patient_case.haptics;
-    settings.shaft_length = rod_length(patient_case);
-    if (patient_case.tool && !(settings.shaft_length > 0))
-        throw InvalidInput({patient_case.name, "its tool has no shaft, so that it has nothing to turn",
-                            "a shaft", "give --rod-length, or shaft_length_mm in the case file"});
-    return std::make_unique<ContinuousContact>(patient_case, bodies, settings, tool_count, torsion);
+    return std::make_unique<ContinuousContact>(patient_case, bodies, tool_count);
 }
 
 }  // namespace palpate::haptics

@@ -11,9 +11,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double unsolved = 1e-3;      // mm of residual that is reported
-constexpr int most_hold_offs = 4;      // of contacts that only the solution of the others meets
-constexpr double farthest_return = 5;  // mm: a sphere of the shaft found again farther off starts anew
+constexpr double unsolved = 1e-3;  // mm of residual that is reported
+constexpr int most_hold_offs = 4;  // of contacts that only the solution of the others meets
+// Of a tool of so many spheres or more, how far they are from all bodies is measured: of so many in a tick,
+// up to so many mm.
+constexpr std::size_t many_parts = 8, measured_at_once = 4;
+constexpr double farthest_measured = 20;
+constexpr double farthest_return = 5;  // mm: a sphere of a shaft found again farther off starts anew
 
 }  // namespace
 
@@ -22,11 +26,11 @@ void ContinuousContact::tick(std::span<const ContactPose> poses, double coupling
     coupling_ = coupling;
     if (large_.any()) large_.take(equilibrium_, results);
     equilibrium_.begin_tick(coupling, torsion_);
-    for (std::size_t t = 0; t < tools_.size(); ++t) place(t, poses[t]);
+    for (std::size_t t = 0; t < tools_.size(); ++t) place(t, poses[t], results[t]);
     for (std::size_t t = 0; t < tools_.size(); ++t) follow(t, results[t]);
     bool solve = false;
     for (std::size_t t = 0; t < tools_.size(); ++t) {
-        if (!tools_[t].held_by_shaft && !equilibrium_.touches_tissue(t)) continue;
+        if (!tools_[t].held_beside_tip && !equilibrium_.touches_tissue(t)) continue;
         add_rigid_contacts(t, results[t]);
         solve = true;
     }
@@ -40,7 +44,7 @@ void ContinuousContact::tick(std::span<const ContactPose> poses, double coupling
     for (std::size_t t = 0; t < tools_.size(); ++t) {
         if (tools_[t].parts_felt == 0) continue;
         forces[t] = force_of(t, results[t]);
-        results[t].tool_position = array_of(tools_[t].parts[0].device + forces[t] / coupling_);
+        results[t].tool_position = array_of(tools_[t].tip + forces[t] / coupling_);
         if (torsion_ > 0) tell_turn(t, poses[t], results[t]);
     }
     write_neighbours(results);
@@ -111,18 +115,25 @@ void ContinuousContact::depth_in_tissue(const Tool& tool, TickResult& result) co
     }
 }
 
-void ContinuousContact::place(std::size_t t, const ContactPose& pose) noexcept {
+void ContinuousContact::place(std::size_t t, const ContactPose& pose, TickResult& result) noexcept {
     Tool& tool = tools_[t];
-    tool.held_by_shaft = false;
+    tool.held_beside_tip = false;
     if (!pose.trusted) {
         tool.parts_felt = 0;
         return;
     }
     if (pose.jumped) forget(t);
-    const std::size_t felt = pose.shaft.squaredNorm() > 0 ? tool.parts.size() : 1;
+    // A rod's spheres lie along its shaft, so that no other axis is asked for.
+    Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();
+    if (is_instrument_)
+        axes = orientation_of(pose).toRotationMatrix();
+    else
+        axes.col(2) = pose.shaft;
+    tool.tip = pose.tip;
+    const std::size_t felt = axes.isZero(0) ? 1 : tool.parts.size();
     for (std::size_t p = 0; p < felt; ++p) {
         Part& part = tool.parts[p];
-        const Vector3d to = pose.tip + part.behind_tip * pose.shaft;
+        const Vector3d to = pose.tip + axes * spheres_[p].centre;
         // While the shaft's direction was not known, nobody saw which way its spheres went.
         if (p > 0 && p >= tool.parts_felt && (to - part.device).norm() > farthest_return) {
             part.on_rigid.reset();
@@ -131,9 +142,33 @@ void ContinuousContact::place(std::size_t t, const ContactPose& pose) noexcept {
         part.device = to;
     }
     tool.parts_felt = felt;
+    if (!tool.waits) return;
+    tool.waits = !is_clear(tool);
+    if (!tool.waits) return;
+    result.status |= starts_inside;
+    result.tool_orientation = array_of(orientation_of(pose));
+    tool.parts_felt = 0;
+}
+
+// Whether all of a tool is clear of every body where its device has it.
+bool ContinuousContact::is_clear(Tool& tool) const noexcept {
+    const auto hits = [&](const Part& part) {
+        const double reach = part.on_all.radius() + GodObject::skin;
+        return std::ranges::any_of(all_surfaces_, [&](const collision::CollisionSurface* surface) {
+            return surface->closest_point(part.device, reach) || !surface->is_outside(part.device);
+        });
+    };
+    for (std::size_t k = 0; k < tool.parts_felt; ++k) {
+        const std::size_t p = (tool.stuck + k) % tool.parts_felt;
+        if (!hits(tool.parts[p])) continue;
+        tool.stuck = p;
+        return false;
+    }
+    return true;
 }
 
 void ContinuousContact::forget(std::size_t t) noexcept {
+    tools_[t].waits = torsion_ > 0;
     for (Part& part : tools_[t].parts) {
         part.on_rigid.reset();
         part.on_all.reset();
@@ -152,10 +187,28 @@ bool ContinuousContact::kept_by_tissue(const Part& part) const noexcept {
                (part.on_rigid.position() - part.device).norm() + unsolved;
 }
 
+// Of a few spheres in turn, how far they are from everything: most of a long tool is far from all bodies.
+void ContinuousContact::note_clearances(Tool& tool) noexcept {
+    if (tool.parts_felt < many_parts) return;
+    for (std::size_t k = 0, measured = 0; k < tool.parts_felt && measured < measured_at_once; ++k) {
+        tool.measured_last = (tool.measured_last + 1) % tool.parts_felt;
+        Part& part = tool.parts[tool.measured_last];
+        // Nothing is known of bodies that it was inside of.
+        if (part.on_all.is_known_clear() || !part.on_all.touches().empty()) continue;
+        ++measured;
+        double nearest = farthest_measured;
+        for (const collision::CollisionSurface* surface : all_surfaces_)
+            if (const auto found = surface->closest_point(part.on_all.position(), nearest))
+                nearest = found->distance;
+        part.on_all.note_clearance(nearest);
+        if (part.on_rigid.position() == part.on_all.position()) part.on_rigid.note_clearance(nearest);
+    }
+}
+
 // Moves the god-objects of the tool's parts.
 void ContinuousContact::follow(std::size_t t, TickResult& result) noexcept {
     Tool& tool = tools_[t];
-    spheres_.clear();
+    placed_.clear();
     for (std::size_t p = 0; p < tool.parts_felt; ++p) {
         Part& part = tool.parts[p];
         part.rigid_contacts = {};
@@ -163,15 +216,16 @@ void ContinuousContact::follow(std::size_t t, TickResult& result) noexcept {
         // A lone sphere on rigid bodies needs no second one.
         if (!bodies_.deformable.empty() || tool.parts.size() > 1)
             if (!part.on_all.move(all_surfaces_, part.device)) result.status |= starts_inside;
-        spheres_.push_back({part.device, &part.on_all, kept_by_tissue(part)});
+        placed_.push_back({part.device, &part.on_all, kept_by_tissue(part)});
         if (part.on_rigid.touches().empty()) continue;
-        tool.held_by_shaft = tool.held_by_shaft || p > 0;
+        tool.held_beside_tip = tool.held_beside_tip || !spheres_[p].centre.isZero(0);
         const double depth = (part.on_rigid.position() - part.device).norm();
         if (depth <= result.depth) continue;
         result.depth = depth;
         result.body = static_cast<std::int32_t>(part.on_rigid.touches().front().surface);
     }
-    if (tool.parts_felt > 0) equilibrium_.pull(t, {spheres_.data(), spheres_.size()});
+    note_clearances(tool);
+    if (tool.parts_felt > 0) equilibrium_.pull(t, tool.tip, {placed_.data(), placed_.size()});
 }
 
 }  // namespace palpate::haptics

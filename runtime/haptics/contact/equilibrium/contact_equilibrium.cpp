@@ -25,17 +25,17 @@
 // state, with s = s_0 + S F about the present F, the conditions for the forces f >= 0 that the triangles
 // press with are
 //     A f - delta >= 0,    f >= 0,    f . (A f - delta) = 0,
-//     A_kl = n_k . n_l / K + sum_ij w_ki w_lj n_k . C_ij n_l + p_k p_l n_k . S n_l,
+//     A_kl = n_k . n_l / K + sum_ij w_ki w_lj n_k . C_ij n_l + p_k p_l n_k . S_kl n_l,
 //     delta_k = n_k . (x - d + p_k (s - s_0)) - sum_i w_ki n_k . u_i - g_k.
 // The first term of A is there where k and l are of one tool, the second where they lie on one body, the
-// third where they press one sphere; a rigid body has the first alone. Where bodies press each other
-// (neighbour_contact.cpp), there are rows of the second kind between them. Where tissue creeps, C and s are
-// what they come to within a tick, and what earlier forces left behind counts as if it were held: so V is
-// another in each tick, and a closed way loses energy (deformed_patch_creep.cpp, remember_pushes()). The
-// forces answer with the next x = d + sum f n / K, u = -C sum w n f and s, and so on until nothing changes.
-// Answers are combined as Anderson (1965) has it, for two sets of contacts would take turns for ever, with
-// steps between answers of the tick before besides: so two answers do in most ticks. Friction is part of
-// state and answer.
+// third where they press one sphere, or several of one tool that sink each other in; a rigid body has the
+// first alone. Where bodies press each other (neighbour_contact.cpp), there are rows of the second kind
+// between them. Where tissue creeps, C and s are what they come to within a tick, and what earlier forces
+// left behind counts as if it were held: so V is another in each tick, and a closed way loses energy
+// (deformed_patch_creep.cpp, remember_pushes()). The forces answer with the next x = d + sum f n / K, u = -C
+// sum w n f and s, and so on until nothing changes. Answers are combined as Anderson (1965) has it, for two
+// sets of contacts would take turns for ever, with steps between answers of the tick before besides: so two
+// answers do in most ticks. Friction is part of state and answer.
 
 namespace palpate::haptics {
 namespace {
@@ -88,8 +88,9 @@ void ContactEquilibrium::forget(std::size_t t) noexcept {
         for (std::size_t soft = 0; soft < patches_.size(); ++soft) {
             Touch& touch = part.touches[soft];
             touch.near.clear();
-            touch.sunk = local_dent(touch, patches_[soft]);
+            touch.sunk = local_dent(part.radius, touch, patches_[soft]);
             touch.push.setZero();
+            touch.shared.setZero();
             touch.righting = 0;
             touch.drag.setZero();
             touch.slip.setZero();
@@ -118,8 +119,9 @@ void ContactEquilibrium::begin_tick(double stiffness, double torsion) noexcept {
     neighbours_.look(patches_);
 }
 
-void ContactEquilibrium::pull(std::size_t t, std::span<const Sphere> spheres) noexcept {
+void ContactEquilibrium::pull(std::size_t t, const Vector3d& tip, std::span<const Sphere> spheres) noexcept {
     Tool& tool = tools_[t];
+    tool.last_device_tip = std::exchange(tool.tip, tip);
     double moved = 0;
     bool meets = false;
     for (std::size_t p = 0; p < spheres.size(); ++p) {
@@ -143,8 +145,8 @@ void ContactEquilibrium::pull(std::size_t t, std::span<const Sphere> spheres) no
     tool.touching = tool.touching || meets;
     tool.reach = tool.cold ? cold_reach : first_reach + 2 * moved;
     tool.near = tool.cold ? first_reach : 2 * moved;
-    tool.held_reach = tool.cold ? 0 : (tool.last_tip - tool.parts[0].last_device).norm() + moved;
-    tool.off = tool.cold ? Vector3d::Zero() : Vector3d(tool.last_tip - spheres[0].device);
+    tool.held_reach = tool.cold ? 0 : (tool.last_tip - tool.last_device_tip).norm() + moved;
+    tool.off = tool.cold ? Vector3d::Zero() : Vector3d(tool.last_tip - tip);
     if (turns()) pull_arms(tool);
 }
 
@@ -280,13 +282,13 @@ bool ContactEquilibrium::found(std::size_t t) const noexcept {
         for (const GodObject::Touch& touch : part.sphere.if_rigid->touches()) {
             if (touch.surface < bodies_.rigid_count()) continue;
             const std::size_t soft = touch.surface - bodies_.rigid_count();
-            const Vector3d dent = local_dent(part.touches[soft], patches_[soft]);
+            const Vector3d dent = local_dent(part.radius, part.touches[soft], patches_[soft]);
             const TriangleCorners corners = patches_[soft].look_at(touch.foot.triangle, dent);
             Vector3d foot = -dent;
             for (std::size_t i = 0; i < 3; ++i)
                 foot += touch.foot.barycentric[static_cast<Index>(i)] * corners[i];
             const double reach = first_reach + patches_[soft].body().cut_off(touch.foot);
-            if (touch.normal.dot(foot - part.sphere.device) + radius_ > reach) return false;
+            if (touch.normal.dot(foot - part.sphere.device) + part.radius > reach) return false;
         }
     }
     return true;
@@ -311,7 +313,7 @@ void ContactEquilibrium::write_contacts(std::size_t t, TickResult& result) const
         Eigen::Map<Vector3f>(contact.normal.data()) = row.normal.cast<float>();
         const Touch& touch = touch_of(row);
         const double sunk =
-            row.part_giving_way * row.normal.dot(touch.sunk_free + touch.sinking * touch.push);
+            row.part_giving_way * row.normal.dot(touch.sunk_free + touch.sinking * touch.push + touch.shared);
         contact.gap = static_cast<float>(row.gap + row.part_giving_way * row.normal.dot(touch.sunk_free));
         contact.force = static_cast<float>(row.force);
         contact.series_compliance = static_cast<float>(sunk / row.force);
@@ -336,7 +338,7 @@ void ContactEquilibrium::end_tick() noexcept {
         });
         if (pressed && tool.felt > 0 && !tool.at_rest && found(t)) {
             any = tool.touching = true;
-            tool.last_tip = tool.parts[0].sphere.device + tool.off;
+            tool.last_tip = tool.tip + tool.off;
             for (std::size_t p = 0; p < tool.parts.size(); ++p)
                 for (Touch& touch : tool.parts[p].touches) {
                     touch.outside = p < tool.felt;

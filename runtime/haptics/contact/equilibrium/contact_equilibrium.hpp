@@ -15,6 +15,7 @@
 #include "runtime/haptics/contact/equilibrium/neighbour_contact.hpp"
 #include "runtime/haptics/contact/fixed_list.hpp"
 #include "runtime/haptics/contact/god_object.hpp"
+#include "runtime/haptics/whole_tool/tool_spheres.hpp"
 
 namespace palpate::haptics {
 
@@ -33,9 +34,9 @@ class ContactEquilibrium {
             false;  ///< there by tissue, whatever it touches: rigid bodies alone let it nearer
     };
 
-    /// `bodies` must outlive this. Tools of `spheres` spheres at most, the first at the tip.
-    ContactEquilibrium(const ContactBodies& bodies, double radius, const Friction& friction,
-                       std::size_t tool_count, std::size_t spheres);
+    /// `bodies` must outlive this. Tools of these spheres.
+    ContactEquilibrium(const ContactBodies& bodies, std::span<const ToolSphere> spheres,
+                       const Friction& friction, std::size_t tool_count);
 
     ~ContactEquilibrium();
 
@@ -54,8 +55,9 @@ class ContactEquilibrium {
     /// Starts a tick behind virtual couplings of `stiffness` (N/mm), without tools or walls. `torsion`: by
     /// how much a tool turns against its device under a torque, rad / (N mm); 0: as the device says.
     void begin_tick(double stiffness, double torsion) noexcept;
-    /// Places a tool: its spheres that are felt, the tip first.
-    void pull(std::size_t tool, std::span<const Sphere> spheres) noexcept;
+    /// Places a tool whose tip is at `tip` on its device, p_P, mm: its spheres that are felt, the first ones
+    /// of all.
+    void pull(std::size_t tool, const Eigen::Vector3d& tip, std::span<const Sphere> spheres) noexcept;
     /// Adds a half-space of a rigid body that holds part contact.part of a tool: contact.gap says how far the
     /// device is beyond it along -normal. The contact must outlive solve(). False where there is no more
     /// room.
@@ -173,7 +175,9 @@ class ContactEquilibrium {
         Offsets next_sunk = no_offsets(), sunk_difference = no_offsets();
         Eigen::Vector3d sunk_free = Eigen::Vector3d::Zero();
         Eigen::Matrix3d sinking = Eigen::Matrix3d::Zero();
-        double righting = 0;  // R of equilibrium_sinking.cpp, N/mm
+        double righting = 0;                               // R of equilibrium_sinking.cpp, N/mm
+        double least_slope = 0;                            // of local_indentation(), mm/N
+        Eigen::Vector3d shared = Eigen::Vector3d::Zero();  // of sunk what its tool's other spheres do
         // Where that creeps: as what, and what is left of earlier presses; and what of that lasts, N.
         const TickCreep* creep = nullptr;
         CreepHistory left_push;
@@ -208,6 +212,7 @@ class ContactEquilibrium {
         }
     };
     struct Part {
+        double radius = 0;  // mm
         Sphere sphere;
         Eigen::Vector3d last_device = Eigen::Vector3d::Zero();
         // Where tools turn: from the tip as the device has it, and turned as the tool is, mm.
@@ -223,7 +228,8 @@ class ContactEquilibrium {
         Offsets next_turn = no_offsets(), turn_difference = no_offsets();
         Eigen::Vector3d drag_turn = Eigen::Vector3d::Zero();  // of it what friction on tissue does
         double longest_arm = 0;                               // mm, of the parts that are felt
-        Eigen::Vector3d last_tip = Eigen::Vector3d::Zero();
+        Eigen::Vector3d tip = Eigen::Vector3d::Zero();        // as the device has it, mm
+        Eigen::Vector3d last_device_tip = Eigen::Vector3d::Zero(), last_tip = Eigen::Vector3d::Zero();
         Eigen::Vector3d press = Eigen::Vector3d::Zero(), drag = Eigen::Vector3d::Zero();  // N
         double held_reach = 0;
         bool touching = false;  // tissue, at the end of the last tick
@@ -247,12 +253,18 @@ class ContactEquilibrium {
     double gap_of_wall(const Row& row) const noexcept;
     void gather_at_rest(std::size_t tool, std::size_t part) noexcept;
     // N: up to which a sphere sinks in as it does under that, in proportion.
-    double slight_press(const LoadSpread& spread) const noexcept {
-        return 1e-3 * spread.contact_modulus() * radius_ * radius_;
+    static double slight_press(double radius, const LoadSpread& spread) noexcept {
+        return 1e-3 * spread.contact_modulus() * radius * radius;
     }
-    void linearise(Touch& touch, const DeformedPatch& patch) const noexcept;
+    static void linearise(double radius, Touch& touch, const DeformedPatch& patch) noexcept;
     // How the sphere is sunk in if nothing presses it, mm: by what earlier presses left behind.
-    Eigen::Vector3d local_dent(const Touch& touch, const DeformedPatch& patch) const noexcept;
+    static Eigen::Vector3d local_dent(double radius, const Touch& touch, const DeformedPatch& patch) noexcept;
+    // What presses under it as far as local indentation is concerned, N.
+    static Eigen::Vector3d pushed_by(const Touch& touch) noexcept {
+        return touch.creep != nullptr ? Eigen::Vector3d(touch.creep->now * touch.push + touch.lasting_push)
+                                      : touch.push;
+    }
+    void share_sinking(std::size_t iterate) noexcept;
     void remember_pushes() noexcept;
     bool turns() const noexcept { return torsion_ > 0; }
     Eigen::Vector3d off_of(const Tool& tool, const Part& part) const noexcept {
@@ -279,8 +291,8 @@ class ContactEquilibrium {
     }
     void look_around(std::size_t tool, std::size_t part, std::size_t soft) noexcept;
     bool gather(std::size_t tool, std::size_t part, std::size_t soft, bool walks) noexcept;
-    bool stays_outside(const Touch& touch, const DeformedPatch& patch, const Eigen::Vector3d& centre,
-                       double nearest) const noexcept;
+    bool stays_outside(const Part& part, const Touch& touch, const DeformedPatch& patch,
+                       const Eigen::Vector3d& centre, double nearest) const noexcept;
     bool found(std::size_t tool) const noexcept;
     bool start_anew() noexcept;
     void forget_tissue() noexcept;
@@ -290,6 +302,13 @@ class ContactEquilibrium {
     void cut_rows() noexcept;
     void group_rows() noexcept;
     void solve_rows() noexcept;
+    // By how much a force of a row sinks in another sphere of its tool, mm/N.
+    double shared_by(const Row& pressing, std::int32_t part) const noexcept {
+        const Eigen::MatrixXd& beside = beside_[static_cast<std::size_t>(pressing.patch)];
+        if (beside.size() == 0) return 0;
+        const Touch& touch = touch_of(pressing);
+        return (touch.creep != nullptr ? touch.creep->now : 1) * beside(part, pressing.part);
+    }
     void fill_any_column(std::size_t row) noexcept;
     void fill_column(std::size_t row) noexcept;
     void fill_neighbours_column(std::size_t row) noexcept;
@@ -361,12 +380,13 @@ class ContactEquilibrium {
     void relax_to(const Weights& weights, double longest) noexcept;
 
     const ContactBodies& bodies_;
-    double radius_;
     Friction friction_;
     double coupling_ = 0, torsion_ = 0;
     std::vector<DeformedPatch> patches_;
     NeighbourContact neighbours_;
     std::vector<Tool> tools_;
+    // By deformable body: how far a force on one sphere of a tool sinks another in, mm/N.
+    std::vector<Eigen::MatrixXd> beside_;
     FixedList<Row, most_rows> rows_;                    // of this iteration, walls first
     std::array<Eigen::Vector3d, max_contacts> levers_;  // r x n about the tip of each, mm, where tools turn
     FixedList<Row, most_rows> watched_;                 // near, but hardly pressing: looked after, not solved

@@ -173,9 +173,10 @@ double ContactEquilibrium::most_drag(const Group& group, double coefficient) con
     const double press = touch_of(group).press;
     const LoadSpread* spread = patch_of(group).body().spread();
     if (spread == nullptr || !(friction_.grip > 0)) return coefficient * press;
-    const double slight = slight_press(*spread);  // below it, in proportion
+    const double sphere = part_of(group).radius,
+                 slight = slight_press(sphere, *spread);  // below it, in proportion
     const double radius =
-        std::min(radius_, std::cbrt(3 * std::max(press, slight) * radius_ / (4 * spread->contact_modulus())));
+        std::min(sphere, std::cbrt(3 * std::max(press, slight) * sphere / (4 * spread->contact_modulus())));
     double area = std::numbers::pi * radius * radius;
     if (const Tool& tool = tools_[static_cast<std::size_t>(group.tool)]; tool.felt > 1)
         area =

@@ -22,7 +22,8 @@ constexpr double look_margin = 1;  // mm: how much farther around is looked
 // The feet on which a sphere rests if nothing gives way, with the surface at rest: where contact starts.
 void ContactEquilibrium::gather_at_rest(std::size_t t, std::size_t p) noexcept {
     Part& part = tools_[t].parts[p];
-    for (std::size_t soft = 0; soft < patches_.size(); ++soft) linearise(part.touches[soft], patches_[soft]);
+    for (std::size_t soft = 0; soft < patches_.size(); ++soft)
+        linearise(part.radius, part.touches[soft], patches_[soft]);
     for (const GodObject::Touch& touch : part.sphere.if_rigid->touches()) {
         if (touch.surface < bodies_.rigid_count()) continue;
         const std::size_t soft = touch.surface - bodies_.rigid_count();
@@ -36,7 +37,7 @@ void ContactEquilibrium::gather_at_rest(std::size_t t, std::size_t p) noexcept {
         row.weights = touch.foot.barycentric;
         row.normal = touch.normal;
         const RoundedTriangle round = patch.rounded(row.triangle, patch.corners(row.slots));
-        row.radius = radius_ + row.weights.dot(round.radii);
+        row.radius = part.radius + row.weights.dot(round.radii);
         find_part_giving_way(row, patch, round.centres);
         row.gap = touch.normal.dot(part.sphere.if_rigid->position() - part.sphere.device -
                                    dragged_off_of(tools_[t], part) -
@@ -56,7 +57,7 @@ void ContactEquilibrium::look_around(std::size_t t, std::size_t p, std::size_t s
     Touch& touch = part.touches[soft];
     const DeformedPatch& patch = patches_[soft];
     const Vector3d centre = centre_of(tool, part, touch), from = part.sphere.if_rigid->position();
-    const double limit = radius_ + tool.reach;
+    const double limit = part.radius + tool.reach;
     const bool anew = touch.way < 0;
     if (anew) {
         touch.around.clear();
@@ -114,9 +115,6 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
     Touch& touch = part.touches[soft];
     DeformedPatch& patch = patches_[soft];
     const DeformableContact& body = patch.body();
-    linearise(touch, patch);
-    const Vector3d centre = centre_of(tool, part, touch);
-    const double limit = radius_ + tool.reach;
     std::vector<std::uint32_t>& visited = visited_[soft];
     ++search_;
     queue_.clear();
@@ -130,6 +128,10 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
     for (const GodObject::Touch& rests : part.sphere.if_rigid->touches())
         if (rests.surface == bodies_.rigid_count() + soft) visit(rests.foot.triangle);
     const std::size_t seeds = queue_.size();
+    if (seeds == 0) return true;
+    linearise(part.radius, touch, patch);
+    const Vector3d centre = centre_of(tool, part, touch);
+    const double limit = part.radius + tool.reach;
     FixedList<Vector3d, most_rows> shared;
     FixedList<double, most_rows> shared_distances;  // of these, which tell most of them apart
     struct Nearest {
@@ -189,8 +191,8 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
         row.slots = slots;
         row.weights = ball.barycentric;
         row.normal = (centre - ball.centre) / ball.distance;
-        row.radius = radius_ + ball.radius;
-        row.distance = distance - radius_;
+        row.radius = part.radius + ball.radius;
+        row.distance = distance - part.radius;
         find_part_giving_way(row, patch, round.centres);
         row.gap = row.normal.dot(pressed_off_of(tool, part) +
                                  row.part_giving_way * (touch.sunk - touch.sunk_free)) -
@@ -209,15 +211,15 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
         normal += angle_about(one.centre, one.centres) * unit_normal(one.centres);
         away = centre - one.centre;
     }
-    return normal.dot(away) >= 0 || stays_outside(touch, patch, centre, nearest);
+    return normal.dot(away) >= 0 || stays_outside(part, touch, patch, centre, nearest);
 }
 
 // Whether a sphere that was outside at the end of the last tick, and keeps clear of the surface now, went too
 // short a way since to have passed through: what is nearest to it may be turned over, where tissue is folded.
-bool ContactEquilibrium::stays_outside(const Touch& touch, const DeformedPatch& patch, const Vector3d& centre,
-                                       double nearest) const noexcept {
+bool ContactEquilibrium::stays_outside(const Part& part, const Touch& touch, const DeformedPatch& patch,
+                                       const Vector3d& centre, double nearest) const noexcept {
     if (!touch.outside) return false;
-    const double passage = radius_ / 2;
+    const double passage = part.radius / 2;
     // Vertices that nobody had looked at before move as those did in the last tick.
     const double way = (centre - touch.outside_centre).norm() + (touch.sunk - touch.outside_sunk).norm() +
                        std::max(patch.motion(), last_motion_);
@@ -349,9 +351,11 @@ void ContactEquilibrium::fill_column(std::size_t l) noexcept {
         if (row.tool == pressing.tool) opens = pressing.normal / coupling_;
         if (row.patch >= 0 && row.patch == pressing.patch) {
             opens += DeformedPatch::mean(field_, row.slots, row.weights);
+            const double give_way = row.part_giving_way * pressing.part_giving_way;
             if (row.tool == pressing.tool && row.part == pressing.part)
-                opens += row.part_giving_way * pressing.part_giving_way *
-                         (touch_of(row).sinking * pressing.normal);
+                opens += give_way * (touch_of(row).sinking * pressing.normal);
+            else if (row.tool == pressing.tool)
+                opens += give_way * shared_by(pressing, row.part) * pressing.normal;
         }
         *column++ = row.normal.dot(opens);
     }

@@ -45,16 +45,16 @@ void ContactEquilibrium::find_part_giving_way(Row& row, const DeformedPatch& pat
 }
 
 // How a sphere sinks in, about the press that was found last; before any, about a slight one.
-void ContactEquilibrium::linearise(Touch& touch, const DeformedPatch& patch) const noexcept {
+void ContactEquilibrium::linearise(double radius, Touch& touch, const DeformedPatch& patch) noexcept {
     touch.sunk_free.setZero();
     touch.sinking.setZero();
     const LoadSpread* spread = patch.body().spread();
     if (!spread) return;
     const double now = touch.creep != nullptr ? touch.creep->now : 1;
-    const Vector3d push = now * touch.push + touch.lasting_push;
-    const double known = push.norm(), press = std::max(known, slight_press(*spread));
+    const Vector3d push = pushed_by(touch);
+    const double known = push.norm(), press = std::max(known, slight_press(radius, *spread));
     const LocalIndentation local =
-        local_indentation(press, radius_, spread->contact_modulus(), spread->radius());
+        local_indentation(press, radius, spread->contact_modulus(), spread->radius(), touch.least_slope);
     if (!(press > 0)) return;
     const double across = local.depth / press, righting = now * touch.righting;
     if (known >= press) {
@@ -73,12 +73,14 @@ void ContactEquilibrium::linearise(Touch& touch, const DeformedPatch& patch) con
     touch.sinking *= now;
 }
 
-Vector3d ContactEquilibrium::local_dent(const Touch& touch, const DeformedPatch& patch) const noexcept {
+Vector3d ContactEquilibrium::local_dent(double radius, const Touch& touch,
+                                        const DeformedPatch& patch) noexcept {
     const double push = touch.lasting_push.norm();
     if (touch.creep == nullptr || !(push > 0)) return Vector3d::Zero();
     const LoadSpread& spread = *patch.body().spread();
-    return local_indentation(push, radius_, spread.contact_modulus(), spread.radius()).depth / push *
-           touch.lasting_push;
+    return local_indentation(push, radius, spread.contact_modulus(), spread.radius(), touch.least_slope)
+               .depth /
+           push * touch.lasting_push;
 }
 
 // How far the present forces sink each sphere into each body; returns by how much that is off what they
@@ -91,10 +93,11 @@ double ContactEquilibrium::sink(std::size_t iterate) noexcept {
                 Touch& touch = part.touches[soft];
                 touch.push.setZero();
                 touch.righting = 0;
-                touch.next_sunk[iterate] = local_dent(touch, patches_[soft]);
+                touch.next_sunk[iterate] = local_dent(part.radius, touch, patches_[soft]);
             }
     for (const Group& group : groups_) {
         Touch& touch = touch_of(group);
+        const double radius = part_of(group).radius;
         const LoadSpread* spread = patch_of(group).body().spread();
         if (!spread) continue;
         for (const Row& row : rows_of(group)) {
@@ -103,16 +106,34 @@ double ContactEquilibrium::sink(std::size_t iterate) noexcept {
         }
         if (touch.push.isZero(0)) continue;
         touch.next_sunk[iterate] = touch.sunk_free + touch.sinking * touch.push;
-        const double now = touch.creep != nullptr ? touch.creep->now : 1;
-        const Vector3d push = now * touch.push + touch.lasting_push;
+        const Vector3d push = pushed_by(touch);
         if (push.isZero(0)) continue;
-        const double along = std::max(push.norm(), slight_press(*spread));
+        const double along = std::max(push.norm(), slight_press(radius, *spread));
         const LocalIndentation local =
-            local_indentation(along, radius_, spread->contact_modulus(), spread->radius());
+            local_indentation(along, radius, spread->contact_modulus(), spread->radius(), touch.least_slope);
         const Vector3d wanted = local.depth / along * push;
         change = std::max(change, (wanted - touch.next_sunk[iterate]).lpNorm<Eigen::Infinity>());
     }
+    share_sinking(iterate);
     return change;
+}
+
+// Adds how far what presses some of a tool's spheres sinks in the others.
+void ContactEquilibrium::share_sinking(std::size_t iterate) noexcept {
+    for (Tool& tool : tools_)
+        for (Part& part : tool.parts)
+            for (Touch& touch : part.touches) touch.shared.setZero();
+    for (const Group& group : groups_) {
+        const auto soft = static_cast<std::size_t>(group.patch);
+        const Vector3d push = pushed_by(touch_of(group));
+        if (beside_[soft].rows() < 2 || push.isZero(0)) continue;
+        Tool& tool = tools_[static_cast<std::size_t>(group.tool)];
+        for (std::size_t p = 0; p < tool.felt; ++p)
+            tool.parts[p].touches[soft].shared += beside_[soft](static_cast<Index>(p), group.part) * push;
+    }
+    for (Tool& tool : tools_)
+        for (Part& part : std::span(tool.parts).first(tool.felt))
+            for (Touch& touch : part.touches) touch.next_sunk[iterate] += touch.shared;
 }
 
 }  // namespace palpate::haptics

@@ -22,7 +22,7 @@ void ContactEquilibrium::swing(Tool& tool) noexcept {
 void ContactEquilibrium::pull_arms(Tool& tool) noexcept {
     tool.longest_arm = 0;
     for (Part& part : std::span(tool.parts).first(tool.felt)) {
-        part.arm = part.sphere.device - tool.parts[0].sphere.device;
+        part.arm = part.sphere.device - tool.tip;
         tool.longest_arm = std::max(tool.longest_arm, part.arm.norm());
     }
     if (tool.cold) tool.turn.setZero();
