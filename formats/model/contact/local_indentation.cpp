@@ -18,21 +18,17 @@
 // int K(t)² J0 J0 dt, s then stays between 0.107 and 0.142 R² / r up to 11 E* R³ / r. It is at its largest at
 // F = 0.370 E* R³ / r, and beyond that it is left there: 2 % of the depth at most.
 //
-// Spheres of one tool sink each other in. A force gives way by 1 / (pi E* d) at a distance d (Boussinesq
-// 1885), of which spread loads give
+// Spheres that stand for one surface sink each other in. A force gives way by 1 / (pi E* d) at a distance d
+// (Boussinesq 1885), of which spread loads give
 //     m(d) = 1 / (pi E* R) int K(t)² J0(t d / R) dt,
 // so that a force f_l adds (1 / (pi E* d) - m(d)) f_l to what another sphere sinks in: many small spheres are
-// the surface that they stand for, not as many times as stiff. Where presses overlap that is too much: the
-// sum of them all would no longer be convex, and forces on neighbours would alternate. A sphere's own slope
-// therefore never falls below that of a press on a disc of 0.64 d, d the distance of its nearest neighbour:
-// with less even a row of alternating forces would give energy (0.5 / (E* a) > ln 2 * 2 / (pi E* d)).
+// then as stiff as the surface, and not as many times as stiff as one of them.
 
 namespace palpate {
 namespace {
 
 constexpr double spread_compliance = 0.76654;  // c_R E* R
 constexpr double largest_alone = 0.3701;       // E* R³ / r
-constexpr double widest_disc = 0.64;           // of the distance to the nearest neighbour
 
 // m(d) E* R at d = 0, R / 4, R / 2 ...: a test computes them again.
 constexpr std::array beside{0.76654, 0.72693, 0.62443, 0.49605, 0.37745, 0.28810, 0.22908, 0.19116, 0.16495,
@@ -41,31 +37,23 @@ constexpr double steps_of_radius = 4;
 
 }  // namespace
 
-LocalIndentation local_indentation(double force, double radius, double contact_modulus, double spread_radius,
-                                   double least_slope) noexcept {
+LocalIndentation local_indentation(double force, double radius, double contact_modulus,
+                                   double spread_radius) noexcept {
     if (!(contact_modulus > 0) || !(radius > 0) || !(spread_radius > 0)) return {};
-    const double spread = spread_compliance / (contact_modulus * spread_radius);
-    const double steeper = spread / (spread + least_slope);
-    const double largest = largest_alone * contact_modulus * spread_radius * spread_radius * spread_radius /
-                           radius * (steeper * steeper * steeper);
+    const double largest =
+        largest_alone * contact_modulus * spread_radius * spread_radius * spread_radius / radius;
     const double f = std::min(std::max(force, 0.0), largest);
     if (!(f > 0)) return {};
     const double hertz = std::cbrt(9 * f * f / (16 * contact_modulus * contact_modulus * radius));
-    if (force < largest) return {hertz - spread * f, 2 * hertz / (3 * f) - spread};
-    return {hertz - spread * f + least_slope * (force - f), least_slope};
-}
-
-double least_slope_beside(double apart, double contact_modulus, double spread_radius) noexcept {
-    if (!(contact_modulus > 0) || !(apart > 0) || !(spread_radius > 0)) return 0;
-    const double disc = 0.5 / (contact_modulus * widest_disc * apart);
-    return std::max(0.0, disc - spread_compliance / (contact_modulus * spread_radius));
+    const double spread = spread_compliance / (contact_modulus * spread_radius);
+    return {hertz - spread * f, force < largest ? 2 * hertz / (3 * f) - spread : 0};
 }
 
 double indentation_beside(double apart, double contact_modulus, double spread_radius) noexcept {
     if (!(contact_modulus > 0) || !(apart > 0) || !(spread_radius > 0)) return 0;
     const double at = steps_of_radius * apart / spread_radius;
     const auto step = static_cast<std::size_t>(std::min(at, static_cast<double>(beside.size())));
-    if (step + 1 >= beside.size()) return 0;  // a fiftieth of a point's at most
+    if (step + 1 >= beside.size()) return 0;  // a sixtieth of a point's at most
     const double between = at - static_cast<double>(step);
     const double given = (1 - between) * beside[step] + between * beside[step + 1];
     return (std::numbers::inv_pi * spread_radius / apart - given) / (contact_modulus * spread_radius);

@@ -9,15 +9,12 @@ struct LocalIndentation {
     double depth = 0;  ///< mm
     double slope = 0;  ///< of the depth by the force, mm/N
 };
-/// For a sphere of `radius` (mm) pressed with `force` (N). The slope is at least `least_slope` (mm/N), 0 for
-/// a sphere by itself.
-LocalIndentation local_indentation(double force, double radius, double contact_modulus, double spread_radius,
-                                   double least_slope = 0) noexcept;
+/// For a sphere of `radius` (mm) pressed with `force` (N).
+LocalIndentation local_indentation(double force, double radius, double contact_modulus,
+                                   double spread_radius) noexcept;
 
-/// The least slope of a sphere with another of the same tool `apart` (mm) from it, mm/N.
-double least_slope_beside(double apart, double contact_modulus, double spread_radius) noexcept;
 /// By how much more a force sinks in what presses `apart` (mm) from it than the spread load lets the surface
-/// give way there, mm/N; below zero where that is too much. Costs a walk through a table.
+/// give way there, mm/N; below zero where that is too much.
 double indentation_beside(double apart, double contact_modulus, double spread_radius) noexcept;
 
 }  // namespace palpate

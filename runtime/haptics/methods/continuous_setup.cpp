@@ -31,7 +31,7 @@ ContinuousContact::ContinuousContact(const Case& patient_case, const ContactBodi
       friction_{patient_case.haptics.friction_at_rest, patient_case.haptics.friction_sliding,
                 patient_case.haptics.grip},
       torsion_(torsion_of(patient_case)),
-      equilibrium_(bodies, spheres_, friction_, tool_count),
+      equilibrium_(bodies, spheres_, is_instrument_, friction_, tool_count),
       large_(patient_case, bodies) {
     if (torsion_ > 0 && !is_instrument_ && spheres_.size() == 1)
         throw InvalidInput({patient_case.name, "its tool has no shaft, so that it has nothing to turn",

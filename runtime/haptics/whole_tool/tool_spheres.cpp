@@ -161,11 +161,11 @@ class Gaps {
     std::vector<double> weights_, gaps_;
 };
 
-// Whether two spheres touch a common plane at places nearer to each other than the smaller's radius: each
-// would sink into tissue there as if it were alone.
+// Whether two spheres touch a common plane at places hardly apart: together they say no more than one.
 bool are_crowded(const ToolSphere& a, const ToolSphere& b) {
-    const double smaller = std::min(a.radius, b.radius), difference = a.radius - b.radius;
-    return (a.centre - b.centre).squaredNorm() < smaller * smaller + difference * difference;
+    constexpr double closest = 0.5;  // of the smaller's radius
+    const double least = closest * std::min(a.radius, b.radius), difference = a.radius - b.radius;
+    return (a.centre - b.centre).squaredNorm() < least * least + difference * difference;
 }
 
 double diagonal_of(const TriangleMesh& surface) {

@@ -23,12 +23,12 @@ struct SphereFilling {
 /// Fills a tool with `most` spheres at most. Candidates are the largest spheres inside that touch the surface
 /// at points all over it (Ma, Bae, Choi 2012, "3D medial axis point approximation using nearest neighbors and
 /// the normal field"); of these the one comes next that takes most off the squares of the points' distances
-/// from the spheres chosen so far; a hundredth of a sphere's radius is no distance, or a ball of facets would
-/// be many spheres. Points near the origin, the tip's centre, count more: at 25 mm from it half as much. No
-/// sphere goes through a triangle; none is smaller than a tenth of a millimetre. The same surface gives the
-/// same spheres. Throws InvalidInput if the surface has no area, or no such sphere inside. Vertices are
-/// finite and triangles theirs (unchecked); where the surface is not closed, spheres end where triangles
-/// behind the surface do. Cost: half a second; not for the tick.
+/// from the spheres chosen so far, but none that touches a plane next to another, and a twentieth of a
+/// sphere's radius is no distance: a ball of facets is one sphere. Points near the origin, the tip's centre,
+/// count more: one at 25 mm from it half as much. No sphere goes through a triangle; none is smaller
+/// than a tenth of a millimetre. The same surface gives the same spheres. Throws InvalidInput if the surface
+/// has no area, or no such sphere inside. Triangles look outward (unchecked). Cost: half a second; not for the
+/// tick.
 SphereFilling fill_with_spheres(const TriangleMesh& surface, std::size_t most);
 
 /// A ball of `radius` at the origin and, where it has a shaft, as many along +z up to `length` as make its

@@ -40,6 +40,27 @@ TriangleMesh bumpy() {
     return mesh;
 }
 
+TEST(GodObject, goes_the_same_way_where_its_clearance_is_known) {
+    const CollisionSurface surface = collision_surface(bumpy());
+    GodObject asked(0.5, 1), told(0.5, 1);
+    int known = 0, held = 0;
+    for (int tick = 0; tick < 20000; ++tick) {
+        const double s = 0.003 * tick;
+        const Vector3d device(33 * std::sin(s), 30 * std::sin(1.31 * s + 1), 30 * std::cos(0.77 * s));
+        move(asked, surface, device);
+        move(told, surface, device);
+        ASSERT_EQ(asked.position(), told.position()) << tick;
+        ASSERT_EQ(asked.touches().size(), told.touches().size());
+        known += told.is_known_clear();
+        held += !told.touches().empty();
+        if (!told.touches().empty() || told.is_known_clear()) continue;
+        if (const auto nearest = surface.closest_point(told.position(), 20))
+            told.note_clearance(nearest->distance);
+    }
+    EXPECT_GT(known, 4000);
+    EXPECT_GT(held, 800);
+}
+
 TEST(GodObject, never_enters_a_surface_at_1000_mm_per_s) {
     const CollisionSurface surface = collision_surface(bumpy());
     for (const double radius : {0.01, 0.5, 2.0}) {

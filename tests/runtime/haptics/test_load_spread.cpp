@@ -101,6 +101,21 @@ TEST(LocalIndentation, with_what_the_spread_load_gives_makes_hertz_of_a_light_pr
     EXPECT_EQ(local_indentation(0, radius, modulus, disc).depth, 0);
 }
 
+TEST(LocalIndentation, of_a_force_beside_is_what_the_spread_load_lacks) {
+    const double modulus = 6.3e-3 / (1 - 0.45 * 0.45), disc = 6;
+    for (const double apart : {0.3, 1.5, 4.0, 6.0, 9.0, 20.0}) {
+        double integral = 0;
+        constexpr double step = 1e-3;
+        for (double t = step / 2; t < 60; t += step)
+            integral += step * std::pow(48 * ::jn(3, t) / (t * t * t), 2) * ::j0(t * apart / disc);
+        const double point = 1 / (std::numbers::pi * modulus * apart);
+        EXPECT_NEAR(indentation_beside(apart, modulus, disc),
+                    point - integral / (std::numbers::pi * modulus * disc), 0.012 / (modulus * disc))
+            << apart;
+    }
+    EXPECT_EQ(indentation_beside(100, modulus, disc), 0);
+}
+
 // What a force gives way by on a cube's top, spread over discs of this reach (mm), on the mean of all places
 // in the triangles around its middle, mm/N.
 double mean_compliance(const DeformableBody& body, double reach) {

@@ -22,13 +22,15 @@ class WatchedContact {
         std::uint32_t status;
     };
 
-    explicit WatchedContact(double shaft_length = 0) : observer_(1, shaft_length) {}
+    explicit WatchedContact(double length = 0, bool is_instrument = false)
+        : observer_(1, length, is_instrument) {}
 
     Tick tick(const Vector3d& tip, const Vector3d& wanted, std::uint32_t faults = no_fault,
-              const Vector3d& shaft = Vector3d::Zero()) {
+              const Vector3d& shaft = Vector3d::Zero(),
+              const Eigen::Quaterniond& orientation = {0, 0, 0, 0}) {
         work_ += force_of(result_).dot(tip - tip_);
         tip_ = tip;
-        const ContactPose pose{.tip = tip, .shaft = shaft, .trusted = true};
+        const ContactPose pose{.tip = tip, .shaft = shaft, .orientation = orientation, .trusted = true};
         result_.status = tick_ok;
         result_.faults = faults;
         Vector3d force = wanted;
@@ -132,6 +134,21 @@ TEST(PassivityObserver, a_shaft_that_turns_may_have_stored_what_its_tip_gives_ba
             tick_ok)
             << z;
     }
+}
+
+TEST(PassivityObserver, of_an_instrument_a_turn_about_its_shaft_counts_too) {
+    const auto status_after = [](bool is_instrument) {
+        WatchedContact contact(50, is_instrument);
+        const Eigen::Quaterniond turned(Eigen::AngleAxisd(0.1, Vector3d::UnitZ()));
+        contact.tick({0, 0, 0}, {0, 0, 1}, no_fault, Vector3d::UnitZ(), Eigen::Quaterniond::Identity());
+        contact.tick({0, 0, 0}, {0, 0, 1}, no_fault, Vector3d::UnitZ(), turned);
+        std::uint32_t status = tick_ok;
+        for (int k = 1; k <= 49; ++k)
+            status |= contact.tick({0, 0, 0.1 * k}, {0, 0, 1}, no_fault, Vector3d::UnitZ(), turned).status;
+        return status;
+    };
+    EXPECT_EQ(status_after(true), tick_ok);
+    EXPECT_EQ(status_after(false), energy_injected);
 }
 
 TEST(PassivityObserver, never_moves_on_tissue_and_walls) {

@@ -289,6 +289,7 @@ constexpr std::array runs{Trial{"shaft", ball_and_cube, "continuous", 1, 6000},
                           Trial{"twice_renewed", ball_and_cube, "twice-renewed", 1, 12000},
                           Trial{"turning_rod", with_rod, "continuous", 1, 6000, true},
                           Trial{"two_turning_rods", with_rod, "continuous", 2, 3000, true},
+                          Trial{"instrument", with_bar, "continuous", 1, 3000, true},
                           Trial{"shell", with_bar, "shell", 1, 6000, true}};
 
 INSTANTIATE_TEST_SUITE_P(Runs, Replay, testing::ValuesIn(runs),

@@ -34,8 +34,9 @@ class ContactEquilibrium {
             false;  ///< there by tissue, whatever it touches: rigid bodies alone let it nearer
     };
 
-    /// `bodies` must outlive this. Tools of these spheres.
-    ContactEquilibrium(const ContactBodies& bodies, std::span<const ToolSphere> spheres,
+    /// `bodies` must outlive this. Tools of these spheres. `are_one_surface`: what presses one sphere of a
+    /// tool sinks in the others as it does on one surface; otherwise each sinks in as if it were alone.
+    ContactEquilibrium(const ContactBodies& bodies, std::span<const ToolSphere> spheres, bool are_one_surface,
                        const Friction& friction, std::size_t tool_count);
 
     ~ContactEquilibrium();
@@ -176,7 +177,6 @@ class ContactEquilibrium {
         Eigen::Vector3d sunk_free = Eigen::Vector3d::Zero();
         Eigen::Matrix3d sinking = Eigen::Matrix3d::Zero();
         double righting = 0;                               // R of equilibrium_sinking.cpp, N/mm
-        double least_slope = 0;                            // of local_indentation(), mm/N
         Eigen::Vector3d shared = Eigen::Vector3d::Zero();  // of sunk what its tool's other spheres do
         // Where that creeps: as what, and what is left of earlier presses; and what of that lasts, N.
         const TickCreep* creep = nullptr;
@@ -202,6 +202,8 @@ class ContactEquilibrium {
         bool outside = false;
         Eigen::Vector3d outside_centre = Eigen::Vector3d::Zero(), outside_sunk = Eigen::Vector3d::Zero();
 
+        // From all triangles: only what presses other spheres sinks it in.
+        bool is_far() const noexcept { return near.empty() && push.isZero(0) && !shared.isZero(0); }
         void forget_pushes() noexcept {
             if (creep == nullptr) return;
             creep = nullptr;

@@ -164,7 +164,8 @@ double ContactEquilibrium::departure(const Weights& weights, std::size_t from) c
         if (turns()) most = std::max(most, tool.longest_arm * depart(tool.next_turn));
         for (const Part& part : std::span(tool.parts).first(tool.felt))
             for (const Touch& touch : part.touches)
-                most = std::max({most, depart(touch.next_sunk), depart(touch.next_drag) / coupling_});
+                if (!touch.is_far())
+                    most = std::max({most, depart(touch.next_sunk), depart(touch.next_drag) / coupling_});
     }
     for (const DeformedPatch& patch : patches_) most = std::max(most, patch.departure(weights, from));
     return most;

@@ -2,7 +2,6 @@
 // What the search for an equilibrium allocates before the first tick.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "formats/model/contact/local_indentation.hpp"
 #include "runtime/haptics/contact/equilibrium/contact_equilibrium.hpp"
@@ -49,34 +48,22 @@ Eigen::MatrixXd indentations_beside(std::span<const ToolSphere> spheres, const L
     return beside;
 }
 
-double nearest_beside(std::span<const ToolSphere> spheres, std::size_t to) {
-    double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < spheres.size(); ++k)
-        if (k != to) nearest = std::min(nearest, apart_on_a_plane(spheres[k], spheres[to]));
-    return nearest;
-}
-
 }  // namespace
 
 ContactEquilibrium::ContactEquilibrium(const ContactBodies& bodies, std::span<const ToolSphere> spheres,
-                                       const Friction& friction, std::size_t tool_count)
+                                       bool are_one_surface, const Friction& friction, std::size_t tool_count)
     : bodies_(bodies), friction_(friction), neighbours_(bodies) {
     for (const DeformableContact& body : bodies.deformable) {
         patches_.emplace_back(body);
         visited_.emplace_back(body.triangle_count(), 0U);
     }
     Tool tool;
-    for (std::size_t k = 0; k < spheres.size(); ++k) {
-        Part& part = tool.parts.emplace_back();
-        part.radius = spheres[k].radius;
-        part.touches.resize(patches_.size());
-        for (std::size_t soft = 0; soft < patches_.size(); ++soft)
-            if (const LoadSpread* spread = patches_[soft].body().spread())
-                part.touches[soft].least_slope = least_slope_beside(
-                    nearest_beside(spheres, k), spread->contact_modulus(), spread->radius());
+    for (const ToolSphere& sphere : spheres) {
+        tool.parts.emplace_back().radius = sphere.radius;
+        tool.parts.back().touches.resize(patches_.size());
     }
     for (const DeformedPatch& patch : patches_) {
-        const LoadSpread* spread = patch.body().spread();
+        const LoadSpread* spread = are_one_surface ? patch.body().spread() : nullptr;
         beside_.push_back(spread ? indentations_beside(spheres, *spread) : Eigen::MatrixXd{});
     }
     tools_.assign(tool_count, tool);

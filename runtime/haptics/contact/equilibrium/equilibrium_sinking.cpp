@@ -54,7 +54,7 @@ void ContactEquilibrium::linearise(double radius, Touch& touch, const DeformedPa
     const Vector3d push = pushed_by(touch);
     const double known = push.norm(), press = std::max(known, slight_press(radius, *spread));
     const LocalIndentation local =
-        local_indentation(press, radius, spread->contact_modulus(), spread->radius(), touch.least_slope);
+        local_indentation(press, radius, spread->contact_modulus(), spread->radius());
     if (!(press > 0)) return;
     const double across = local.depth / press, righting = now * touch.righting;
     if (known >= press) {
@@ -78,9 +78,8 @@ Vector3d ContactEquilibrium::local_dent(double radius, const Touch& touch,
     const double push = touch.lasting_push.norm();
     if (touch.creep == nullptr || !(push > 0)) return Vector3d::Zero();
     const LoadSpread& spread = *patch.body().spread();
-    return local_indentation(push, radius, spread.contact_modulus(), spread.radius(), touch.least_slope)
-               .depth /
-           push * touch.lasting_push;
+    return local_indentation(push, radius, spread.contact_modulus(), spread.radius()).depth / push *
+           touch.lasting_push;
 }
 
 // How far the present forces sink each sphere into each body; returns by how much that is off what they
@@ -110,7 +109,7 @@ double ContactEquilibrium::sink(std::size_t iterate) noexcept {
         if (push.isZero(0)) continue;
         const double along = std::max(push.norm(), slight_press(radius, *spread));
         const LocalIndentation local =
-            local_indentation(along, radius, spread->contact_modulus(), spread->radius(), touch.least_slope);
+            local_indentation(along, radius, spread->contact_modulus(), spread->radius());
         const Vector3d wanted = local.depth / along * push;
         change = std::max(change, (wanted - touch.next_sunk[iterate]).lpNorm<Eigen::Infinity>());
     }
@@ -126,14 +125,18 @@ void ContactEquilibrium::share_sinking(std::size_t iterate) noexcept {
     for (const Group& group : groups_) {
         const auto soft = static_cast<std::size_t>(group.patch);
         const Vector3d push = pushed_by(touch_of(group));
-        if (beside_[soft].rows() < 2 || push.isZero(0)) continue;
+        if (beside_[soft].size() == 0 || push.isZero(0)) continue;
         Tool& tool = tools_[static_cast<std::size_t>(group.tool)];
         for (std::size_t p = 0; p < tool.felt; ++p)
             tool.parts[p].touches[soft].shared += beside_[soft](static_cast<Index>(p), group.part) * push;
     }
     for (Tool& tool : tools_)
         for (Part& part : std::span(tool.parts).first(tool.felt))
-            for (Touch& touch : part.touches) touch.next_sunk[iterate] += touch.shared;
+            for (Touch& touch : part.touches) {
+                touch.next_sunk[iterate] += touch.shared;
+                // What is far from all triangles is no part of the search.
+                if (touch.is_far()) touch.sunk = touch.next_sunk[iterate];
+            }
 }
 
 }  // namespace palpate::haptics

@@ -156,11 +156,5 @@ TEST(TurningRod, without_a_shaft_there_is_nothing_to_turn) {
     EXPECT_NO_THROW(HapticModel(c, "continuous"));
 }
 
-TEST(TurningRod, a_surface_of_its_own_is_refused) {
-    Case c = plate();
-    c.tool = ToolBody{.surface = box({-1, -1, 0}, {1, 1, 9}), .settings = {}};
-    EXPECT_THROW(HapticModel(c, "continuous"), InvalidInput);
-}
-
 }  // namespace
 }  // namespace palpate

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+// An instrument with a surface of its own in continuous contact: spheres that fill it feel tissue and bone.
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numbers>
+
+#include "formats/model/contact/compliance_blocks.hpp"
+#include "runtime/haptics/whole_tool/rod.hpp"
+#include "tests/runtime/allocation_trap.hpp"
+#include "tests/runtime/haptics/turning/turned_tool.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace haptics;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+constexpr double told_rounding = 1e-6;  // relative: contacts are told in float32
+constexpr double twist = 100;           // N mm/rad
+
+ToolBody instrument(const TriangleMesh& surface, double torsional_stiffness = twist) {
+    return {.surface = surface,
+            .settings = {
+                .torsional_stiffness = torsional_stiffness, .max_torque = 9999, .max_torque_rate = 9999}};
+}
+
+// The true elastic cube with the middle of its top at the origin.
+Case soft_block(int cells) {
+    Case c = soft_cube(cells);
+    c.deformable_bodies[0] = moved(c.deformable_bodies[0], {-10, -10, -20});
+    return c;
+}
+
+Case soft_block_and(const TriangleMesh& surface, double friction = 0) {
+    Case c = soft_block(4);
+    c.tool = instrument(surface);
+    c.haptics.friction_at_rest = c.haptics.friction_sliding = friction;
+    return c;
+}
+
+// What contacts do to the tool about its tip, N mm.
+Vector3d moment_of_spheres(const HapticModel& model, const TickResult& result) {
+    Vector3d moment = Vector3d::Zero();
+    for (const Contact& contact : result.active_contacts()) {
+        const Vector3d place = model.tool_spheres()[static_cast<std::size_t>(contact.part)].centre;
+        moment += (quaternion_of(result.tool_orientation) * place).cross(force_on_tool(contact));
+    }
+    return moment;
+}
+
+TEST(Instrument, that_is_a_ball_is_felt_as_the_cases_own) {
+    Case c = soft_block(4);
+    HapticModel ball(c);
+    c.tool = instrument(rod_surface(1, 0));
+    HapticModel same(c);
+    const auto at = turned_at({1, 0.5, 1 - 1.5}, about(Vector3d::UnitX(), 70));
+    // Its faces lie up to 1.7 % inside the ball.
+    EXPECT_NEAR(force_of(rest_at(same, at)).norm() / force_of(rest_at(ball, at)).norm(), 1, 0.04);
+}
+
+TEST(Instrument, its_torque_is_the_moment_of_its_contacts_and_what_the_spring_is_turned_by) {
+    for (const double friction : {0.0, 0.3}) {
+        HapticModel model(soft_block_and(box({-1, -1, 0}, {1, 1, 25}), friction));
+        // It lies across an edge of the block, its tip beyond.
+        const Quaterniond held = about(Vector3d::UnitY(), -84);
+        const TickResult result = rest_at(model, turned_at({14, 1, -3}, held), 8);
+        EXPECT_EQ(result.status, tick_ok) << friction;
+        ASSERT_GT(result.contact_count, 0);
+        const Vector3d torque = torque_of(result);
+        EXPECT_GT(torque.norm(), 0.1);
+        EXPECT_LT((torque - moment_of_spheres(model, result)).norm(), told_rounding * torque.norm())
+            << friction;
+        const Vector3d turn = rotation_between(held, quaternion_of(result.tool_orientation));
+        EXPECT_LT((torque - twist * turn).norm(), 1e-6);
+        EXPECT_LT(
+            (force_of(result) - coupling * (vector_of(result.tool_position) - Vector3d(14, 1, -3))).norm(),
+            1e-9);
+    }
+}
+
+TEST(Instrument, a_closed_loop_of_position_and_orientation_gives_no_energy) {
+    HapticModel model(soft_block_and(box({-1, -1, 0}, {1, 1, 25})));
+    const auto device = [](double s) {
+        const double angle = 2 * std::numbers::pi * s;
+        return ToolPose{{3 * std::sin(angle), 2 * std::sin(2 * angle), 1.5 * std::cos(angle) - 0.7},
+                        about(Vector3d::UnitX(), 20 * std::sin(angle)) *
+                            about(Vector3d::UnitY(), 30 * (1 - std::cos(angle)))};
+    };
+    constexpr int ticks = 4000;
+    double work = 0, stored = 0;
+    TickResult result{}, before{};
+    for (int tick = 0; tick <= ticks; ++tick) {
+        const ToolPose at = device(tick / double(ticks)), from = device((tick - 1) / double(ticks));
+        model.tick(turned_at(at.position, at.orientation), result);
+        EXPECT_EQ(result.status & ~std::uint32_t{contact_unsettled}, 0U) << tick;
+        if (tick > 0)
+            work += 0.5 * (force_of(result) + force_of(before)).dot(at.position - from.position) +
+                    0.5 * (torque_of(result) + torque_of(before))
+                              .dot(rotation_between(from.orientation, at.orientation));
+        // What springs and tissue hold: half of force times way.
+        double energy =
+            0.5 * (force_of(result).squaredNorm() / coupling + torque_of(result).squaredNorm() / twist);
+        for (const Contact& contact : result.active_contacts())
+            energy += 0.5 * static_cast<double>(contact.force * contact.gap);
+        stored = std::max(stored, energy);
+        before = result;
+    }
+    EXPECT_GT(stored, 0.02);
+    EXPECT_LT(std::abs(work), 0.01 * stored);
+    RecordProperty("work_of_stored", std::to_string(work / stored));
+}
+
+// A flat end is felt as flat, whatever spheres fill it: Boussinesq's F = 2 a E* d, on a cube that is no
+// half-space and gives way by more, on coarse and on fine elements.
+TEST(Instrument, a_flat_end_sinks_in_as_boussinesq_has_it) {
+    const auto cylinder = [](double radius) {
+        TriangleMesh mesh;
+        constexpr std::int32_t sides = 48;
+        mesh.vertices = {{0, 0, 0}, {0, 0, 30}};
+        for (std::int32_t k = 0; k < sides; ++k) {
+            const double angle = 2 * std::numbers::pi * k / sides;
+            for (const double z : {0.0, 30.0})
+                mesh.vertices.push_back({radius * std::cos(angle), radius * std::sin(angle), z});
+            const std::int32_t low = 2 + 2 * k, next = 2 + 2 * ((k + 1) % sides);
+            mesh.triangles.insert(
+                mesh.triangles.end(),
+                {{0, next, low}, {low, next, next + 1}, {low, next + 1, low + 1}, {1, low + 1, next + 1}});
+        }
+        return mesh;
+    };
+    for (const double radius : {1.0, 2.5}) {
+        std::array<double, 2> over_exact{};
+        for (const int cells : {4, 8}) {
+            Case c = soft_block(cells);
+            const double modulus = surface_contact_modulus(c.deformable_bodies[0]);
+            c.tool = instrument(cylinder(radius), 1e5);
+            HapticModel model(c);
+            const double force =
+                force_of(rest_at(model, turned_at({0, 0, -1.2}, Quaterniond::Identity()))).norm();
+            over_exact[cells / 8] = force / (2 * radius * modulus * (1.2 - force / coupling));
+        }
+        RecordProperty("of_" + std::to_string(radius),
+                       std::to_string(over_exact[0]) + " and " + std::to_string(over_exact[1]));
+        EXPECT_GT(over_exact[0], 0.82) << radius;
+        EXPECT_LT(over_exact[1], 1.0) << radius;
+        EXPECT_NEAR(over_exact[0], over_exact[1], 0.05) << radius;
+    }
+}
+
+TEST(Instrument, is_felt_where_it_is_turned_to) {
+    HapticModel model(soft_block_and(box({3, -1, 0}, {6, 1, 4})));
+    const Vector3d tip(-12, 0, -1);  // beside the block, its body over the top or beyond
+    EXPECT_GT(force_of(rest_at(model, turned_at(tip, Quaterniond::Identity()))).z(), 0.005);
+    model.reset();
+    EXPECT_EQ(rest_at(model, turned_at(tip, about(Vector3d::UnitZ(), 180))).contact_count, 0);
+}
+
+TEST(Instrument, bone_holds_it_as_it_is) {
+    Case c = plate_and_bar();
+    HapticModel model(c);
+    const TickResult flat = rest_at(model, turned_at({0, 0, -2}, Quaterniond::Identity()));
+    EXPECT_NEAR(force_of(flat).z(), coupling * 2, 0.01);
+    EXPECT_LT(torque_of(flat).norm(), 0.1);
+    model.reset();
+    // Upside down, it stands on its other end.
+    const TickResult turned = rest_at(model, turned_at({0, 0, 38}, about(Vector3d::UnitX(), 180)), 6);
+    EXPECT_NEAR(force_of(turned).z(), coupling * 2, 0.01);
+}
+
+TEST(Instrument, inside_a_body_feels_nothing_until_all_of_it_was_clear) {
+    HapticModel model(plate_and_bar());
+    TickResult result{};
+    for (const double z : {-1.0, -0.5, -1.0}) {
+        model.tick(turned_at({0, 0, z}, Quaterniond::Identity()), result);
+        EXPECT_EQ(result.status, starts_inside);
+        EXPECT_EQ(result.contact_count, 0);
+        EXPECT_EQ(force_of(result).norm(), 0);
+        EXPECT_EQ(quaternion_of(result.tool_orientation).w(), 1);
+    }
+    const TickResult held = rest_at(model, turned_at({0, 0, -1}, Quaterniond::Identity()));
+    EXPECT_EQ(held.status, tick_ok);
+    EXPECT_NEAR(force_of(held).z(), coupling * 1, 0.01);
+}
+
+TEST(Instrument, a_tick_never_allocates) {
+    Case c = soft_block_and(box({-1, -1, 0}, {1, 1, 25}), 0.3);
+    c.rigid_bodies.push_back(rigid("wall", box({-20, 12, -20}, {20, 14, 20})));
+    HapticModel model(c);
+    TickResult result{};
+    int touching = 0;
+    std::size_t allocated = 0;
+    {
+        const AllocationTrap trap;
+        for (int tick = 0; tick < 3000; ++tick) {
+            const double s = 0.004 * tick;
+            model.tick(turned_at({6 * std::sin(s), 11 * std::sin(0.7 * s), 3 * std::cos(s)},
+                                 about(Vector3d::UnitX(), 50 * std::sin(1.3 * s))),
+                       result);
+            touching += result.contact_count > 0;
+        }
+        allocated = trap.count();
+    }
+    EXPECT_EQ(allocated, 0U);
+    EXPECT_GT(touching, 600);
+}
+
+}  // namespace
+}  // namespace palpate
