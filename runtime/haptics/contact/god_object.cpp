@@ -29,6 +29,13 @@ void GodObject::reset() noexcept {
     clear_within_ = 0;
 }
 
+void GodObject::start_clear_at(const Vector3d& position) noexcept {
+    reset();
+    for (Obstacle& obstacle : obstacles_) obstacle.followed = true;
+    all_followed_ = any_followed_ = !obstacles_.empty();
+    position_ = last_device_ = position;
+}
+
 // What touches next does so at rest, and as if nothing had been touched before.
 void GodObject::let_go() noexcept {
     at_rest_ = true;

@@ -49,6 +49,9 @@ class GodObject {
     /// it.
     void reset() noexcept;
 
+    /// Is at `position` (mm) from now on, where somebody knows that it is clear of all surfaces.
+    void start_clear_at(const Eigen::Vector3d& position) noexcept;
+
     /// Moves towards `device` (mm). Returns false while there are surfaces that the tool has not been clear
     /// of yet; these are not felt.
     bool move(std::span<const collision::CollisionSurface* const> surfaces, const Eigen::Vector3d& device,

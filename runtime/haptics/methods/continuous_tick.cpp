@@ -138,19 +138,26 @@ void ContinuousContact::place(std::size_t t, const ContactPose& pose, TickResult
         if (p > 0 && p >= tool.parts_felt && (to - part.device).norm() > farthest_return) {
             part.on_rigid.reset();
             part.on_all.reset();
+            tool.waits = tool.waits || is_instrument_;
         }
         part.device = to;
     }
     tool.parts_felt = felt;
     if (!tool.waits) return;
     tool.waits = !is_clear(tool);
-    if (!tool.waits) return;
-    result.status |= starts_inside;
-    result.tool_orientation = array_of(orientation_of(pose));
-    tool.parts_felt = 0;
+    if (tool.waits) {
+        tool.parts_felt = 0;
+        result.status |= starts_inside;
+        result.tool_orientation = array_of(orientation_of(pose));
+        return;
+    }
+    for (Part& part : std::span(tool.parts).first(felt)) {
+        part.on_rigid.start_clear_at(part.device);
+        part.on_all.start_clear_at(part.device);
+    }
 }
 
-// Whether all of a tool is clear of every body where its device has it.
+// Whether all that is felt of a tool is clear of every body where its device has it.
 bool ContinuousContact::is_clear(Tool& tool) const noexcept {
     const auto hits = [&](const Part& part) {
         const double reach = part.on_all.radius() + GodObject::skin;

@@ -61,6 +61,16 @@ TEST(GodObject, goes_the_same_way_where_its_clearance_is_known) {
     EXPECT_GT(held, 800);
 }
 
+TEST(GodObject, that_starts_where_it_is_clear_holds_from_the_first_move_on) {
+    const CollisionSurface surface = collision_surface(bumpy());
+    GodObject tool(0.5, 1);
+    tool.start_clear_at({0, 0, 30});
+    EXPECT_EQ(tool.position(), Vector3d(0, 0, 30));
+    EXPECT_TRUE(move(tool, surface, {0, 0, -30}));
+    EXPECT_GT(tool.position().z(), 15);
+    EXPECT_EQ(tool.touches().size(), 1U);
+}
+
 TEST(GodObject, never_enters_a_surface_at_1000_mm_per_s) {
     const CollisionSurface surface = collision_surface(bumpy());
     for (const double radius : {0.01, 0.5, 2.0}) {
