@@ -89,6 +89,7 @@ std::optional<GodObject::Hit> GodObject::sweep(Surfaces surfaces, const Vector3d
 }
 
 std::optional<GodObject::Touch> GodObject::touch_on_the_way(Surfaces surfaces, const Vector3d& to) noexcept {
+    if (is_known_clear() && is_known_clear_at(to)) return std::nullopt;
     const auto hit = sweep(surfaces, to);
     if (!hit) return std::nullopt;
     const SweepContact& contact = hit->contact;
@@ -97,6 +98,10 @@ std::optional<GodObject::Touch> GodObject::touch_on_the_way(Surfaces surfaces, c
     return Touch{{contact.point, foot.barycentric, radius_, contact.triangle, contact.slot, foot.feature},
                  contact.normal,
                  hit->surface};
+}
+
+void GodObject::settle_at(Surfaces surfaces, const Vector3d& to) noexcept {
+    if (position_ != to && !touch_on_the_way(surfaces, to)) position_ = to;
 }
 
 // One round goes towards the device until nothing is in the way within the half-spaces touched in that round.

@@ -62,6 +62,10 @@ class GodObject {
     std::optional<Touch> touch_on_the_way(std::span<const collision::CollisionSurface* const> surfaces,
                                           const Eigen::Vector3d& to) noexcept;
 
+    /// Goes straight to `to` (mm), or stays where it is if a surface is in the way.
+    void settle_at(std::span<const collision::CollisionSurface* const> surfaces,
+                   const Eigen::Vector3d& to) noexcept;
+
     /// Says that no surface is nearer to its centre than `distance` (mm) where it is now: until it leaves
     /// that ball nothing needs to be asked. Changes the cost of moves, not what they find.
     void note_clearance(double distance) noexcept {

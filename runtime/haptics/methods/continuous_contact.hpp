@@ -63,13 +63,18 @@ class ContinuousContact final : public ContactMethod {
         Eigen::Vector3d tip = Eigen::Vector3d::Zero();  // on its device, mm
         bool held_beside_tip = false;                   // by a sphere that is not about its tip
         std::size_t measured_last = 0;                  // of the parts: how far from all bodies
-        bool waits = false;                             // to be clear of every body
-        std::size_t stuck = 0;                          // the part that was not
+        bool was_off_device = false;  // at the end of the tick before, where it turns by itself
+        bool waits = false;           // to be clear of every body
+        std::size_t stuck = 0;        // the part that was not
     };
 
     void place(std::size_t tool, const ContactPose& pose, TickResult& result) noexcept;
     bool is_clear(Tool& tool) const noexcept;
     void forget(std::size_t tool) noexcept;
+    // By rigid bodies, by more than its tip; or was somewhere from where others may be in its way.
+    static bool is_held(const Tool& tool) noexcept { return tool.held_beside_tip || tool.was_off_device; }
+    Eigen::Vector3d aim_of(const Tool& tool, const Part& part) const noexcept;
+    void settle(std::size_t tool, const Eigen::Vector3d& force) noexcept;
     void follow(std::size_t tool, TickResult& result) noexcept;
     void note_clearances(Tool& tool) noexcept;
     void write_neighbours(std::span<TickResult> results) const noexcept;

@@ -17,6 +17,8 @@ constexpr int most_hold_offs = 4;  // of contacts that only the solution of the 
 // up to so many mm.
 constexpr std::size_t many_parts = 8, measured_at_once = 4;
 constexpr double farthest_measured = 20;
+// mm that a sphere of a tool that turns by itself looks ahead, from where the tool is towards its device.
+constexpr double farthest_aim = 0.2;
 constexpr double farthest_return = 5;  // mm: a sphere of a shaft found again farther off starts anew
 
 }  // namespace
@@ -30,7 +32,7 @@ void ContinuousContact::tick(std::span<const ContactPose> poses, double coupling
     for (std::size_t t = 0; t < tools_.size(); ++t) follow(t, results[t]);
     bool solve = false;
     for (std::size_t t = 0; t < tools_.size(); ++t) {
-        if (!tools_[t].held_beside_tip && !equilibrium_.touches_tissue(t)) continue;
+        if (!is_held(tools_[t]) && !equilibrium_.touches_tissue(t)) continue;
         add_rigid_contacts(t, results[t]);
         solve = true;
     }
@@ -46,10 +48,33 @@ void ContinuousContact::tick(std::span<const ContactPose> poses, double coupling
         forces[t] = force_of(t, results[t]);
         results[t].tool_position = array_of(tools_[t].tip + forces[t] / coupling_);
         if (torsion_ > 0) tell_turn(t, poses[t], results[t]);
+        if (torsion_ > 0) settle(t, forces[t]);
     }
     write_neighbours(results);
     equilibrium_.end_tick();
     if (large_.any()) large_.tell(equilibrium_, results);
+}
+
+// A tool that turns by itself is held by what is around where it is, and not by what is where its device has
+// it: its spheres go on from there.
+void ContinuousContact::settle(std::size_t t, const Vector3d& force) noexcept {
+    Tool& tool = tools_[t];
+    tool.was_off_device = !force.isZero(0) || !equilibrium_.turn(t).isZero(0);
+    if (!tool.was_off_device) return;
+    for (std::size_t p = 0; p < tool.parts_felt; ++p) {
+        Part& part = tool.parts[p];
+        part.on_rigid.settle_at(rigid_surfaces_,
+                                part.device + force / coupling_ + equilibrium_.turned_off(t, p));
+    }
+}
+
+// Where a sphere would go.
+Vector3d ContinuousContact::aim_of(const Tool& tool, const Part& part) const noexcept {
+    if (!tool.was_off_device) return part.device;
+    const Vector3d way = part.device - part.on_rigid.position();
+    const double length = way.norm();
+    return length > farthest_aim ? Vector3d(part.on_rigid.position() + farthest_aim / length * way)
+                                 : part.device;
 }
 
 // How the tool is turned against its device, and the torque that this takes.
@@ -176,6 +201,7 @@ bool ContinuousContact::is_clear(Tool& tool) const noexcept {
 
 void ContinuousContact::forget(std::size_t t) noexcept {
     tools_[t].waits = torsion_ > 0;
+    tools_[t].was_off_device = false;
     for (Part& part : tools_[t].parts) {
         part.on_rigid.reset();
         part.on_all.reset();
@@ -219,7 +245,8 @@ void ContinuousContact::follow(std::size_t t, TickResult& result) noexcept {
     for (std::size_t p = 0; p < tool.parts_felt; ++p) {
         Part& part = tool.parts[p];
         part.rigid_contacts = {};
-        if (!part.on_rigid.move(rigid_surfaces_, part.device, friction_)) result.status |= starts_inside;
+        if (!part.on_rigid.move(rigid_surfaces_, aim_of(tool, part), friction_))
+            result.status |= starts_inside;
         // A lone sphere on rigid bodies needs no second one.
         if (!bodies_.deformable.empty() || tool.parts.size() > 1)
             if (!part.on_all.move(all_surfaces_, part.device)) result.status |= starts_inside;

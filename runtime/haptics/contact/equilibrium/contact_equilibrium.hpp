@@ -79,9 +79,9 @@ class ContactEquilibrium {
     const Eigen::Vector3d& drag(std::size_t tool) const noexcept { return tools_[tool].drag; }
     /// How a tool is turned against its device, a rotation vector, rad.
     const Eigen::Vector3d& turn(std::size_t tool) const noexcept { return tools_[tool].turn; }
-    /// How far a sphere of it is off where its device has it, mm.
-    Eigen::Vector3d off(std::size_t tool, std::size_t part) const noexcept {
-        return off_of(tools_[tool], tools_[tool].parts[part]);
+    /// How far a sphere of it is off where its device has it because it is turned, mm.
+    Eigen::Vector3d turned_off(std::size_t tool, std::size_t part) const noexcept {
+        return off_of(tools_[tool], tools_[tool].parts[part]) - tools_[tool].off;
     }
     /// How far the tool was off its device before this tick, plus how far the device went since, mm: contact
     /// that friction holds goes no farther off.
