@@ -10,6 +10,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double room_for_rounding = 1e-3;  // mm
+constexpr double room_to_follow = 0.1;      // mm that a tool that turns is behind where it would come to rest
 constexpr double slightly_beyond = 2e-3;    // mm
 
 }  // namespace
@@ -118,7 +119,8 @@ bool ContinuousContact::within_reach(std::size_t t, const Vector3d& force) const
         held = std::max(held, equilibrium_.held_reach(other));
     }
     if (friction_.any()) reach = std::max(reach, held);
-    return force.norm() <= coupling_ * (reach + room_for_rounding);
+    const double room = torsion_ > 0 ? room_to_follow : room_for_rounding;
+    return force.norm() <= coupling_ * (reach + room);
 }
 
 // Friction of the walls that hold a part besides tissue, N.
