@@ -41,9 +41,11 @@ std::string RunKeys::take_next_method() {
     const auto methods = haptics::contact_methods();
     auto at = &run_.model().method() - methods.data();
     const bool is_instrument = has_instrument(run_.patient_case());
+    const bool has_bone = !run_.patient_case().rigid_bodies.empty();
     const auto serves = [&](const haptics::ContactMethodEntry& method) {
         return method.can.most_tools >= run_.model().tool_count() &&
-               (is_instrument ? method.can.turns : method.can.feels_tissue);
+               (method.can.feels_tissue || (is_instrument && has_bone)) &&
+               (method.can.turns || !is_instrument);
     };
     do at = (at + 1) % std::ssize(methods);
     while (!serves(methods[at]));

@@ -70,7 +70,7 @@ class WholeTools(SampleAsset):
 
     def test_a_peg_beside_the_top_is_turned_by_its_lever_and_the_result_says_how(self):
         script = self.hand(BESIDE_THE_TOP.format("0 0 0 1"))
-        result, rows = self.logged("--instrument", self.peg, "--script", script)
+        result, rows = self.logged("--instrument", self.peg, "--script", script, "--scheme", "shell")
         self.assertEqual(result["scheme"], "shell")
         self.assertEqual(result["statuses"], {})
         peak = result["peak"]
@@ -95,6 +95,19 @@ class WholeTools(SampleAsset):
         self.assert_same_turn(self.quaternion(row, "device"), UPRIGHT)
         self.assert_same_turn(self.quaternion(row, "tool"), peak["tool_orientation"])
         self.assertEqual(norm([float(rows[0][f"torque_{axis}_n_mm"]) for axis in "xyz"]), 0)
+
+    def test_a_peg_feels_bone_and_tissue_by_itself(self):
+        script = self.hand(BESIDE_THE_TOP.format("0 0 0 1"))
+        result, _ = self.logged("--instrument", self.peg, "--script", script)
+        self.assertEqual(result["scheme"], "continuous")
+        self.assertEqual(result["statuses"], {})
+        self.assertLess(result["penetration"]["tool_mm"], 0.01)
+        force, torque = result["peak"]["force_n"], result["peak"]["torque_n_mm"]
+        self.assertAlmostEqual(force[2], COUPLING * 2, delta=COUPLING * 0.4)  # what its flat face has between spheres
+        self.assertAlmostEqual(torque[1] / force[2], -4, delta=1)
+        on_wall = self.result("--virtual-clock", "--instrument", self.peg, "--script", "press", "--body", "wall", "--seconds", 3)
+        self.assertGreater(on_wall["force_peak_n"], 0.005)
+        self.assertEqual({contact["body"] for contact in on_wall["peak"]["contacts"]}, {"wall"})
 
     def test_a_solid_peg_is_turned_by_its_lever_and_stays_outside(self):
         script = self.hand(BESIDE_THE_TOP.format("0 0 0 1"))
@@ -157,7 +170,7 @@ class WholeTools(SampleAsset):
         script = self.hand(BESIDE_THE_TOP.format("0 0 0 1"))
         second = self.folder / "second.txt"
         second.write_text(script.read_text().replace(" 36 ", " 44 "))
-        run = self.result("--virtual-clock", "--instrument", self.peg, "--script", script, "--second", second)
+        run = self.result("--virtual-clock", "--instrument", self.peg, "--script", script, "--second", second, "--scheme", "shell")
         for tool, sign in ((run, -1), (run["second"], 1)):
             force, torque = tool["peak"]["force_n"], tool["peak"]["torque_n_mm"]
             self.assertAlmostEqual(sign * torque[1], 4 * force[2], delta=4 * FACETS * force[2])
@@ -169,10 +182,11 @@ class WholeTools(SampleAsset):
 
     def test_a_recording_holds_the_tool_and_alone_replays_bit_for_bit(self):
         shell = ("--instrument", self.peg, "--script", self.hand(BESIDE_THE_TOP.format("0.1 0.2 0.3 0.927362")), "--voxel", 0.5,
-                 "--torsional-stiffness", 300)
+                 "--torsional-stiffness", 300, "--scheme", "shell")
         rod = ("--instrument", "rod", "--rod-length", 20, "--scheme", "continuous", "--seconds", 1, "--max-torque", 50)
         solid = ("--instrument", self.peg, "--script", self.hand(BESIDE_THE_TOP.format("0.1 0.2 0.3 0.927362")), "--scheme", "solid")
-        for name, options in (("shell.h5", shell), ("rod.h5", rod), ("solid.h5", solid)):
+        spheres = ("--instrument", self.peg, "--script", self.hand(BESIDE_THE_TOP.format("0.1 0.2 0.3 0.927362")))
+        for name, options in (("shell.h5", shell), ("rod.h5", rod), ("solid.h5", solid), ("spheres.h5", spheres)):
             with self.subTest(tool=name):
                 path, run = self.recorded(name, *options)
                 again = self.result("--replay", path)
@@ -221,14 +235,14 @@ class WholeTools(SampleAsset):
             (["--instrument", self.asset], 3, ["sample.vtkhdf"]),
             ([*peg, "--scheme", "twice"], 2, ["--instrument: with --scheme twice", "continuous, shell or solid"]),
             (["--instrument", "rod", "--rod-length", 20, "--scheme", "single"], 2, ["--instrument: with --scheme single", "continuous, shell or solid"]),
-            ([*peg, "--scheme", "continuous"], 2, ["--instrument", "peg.stl with --scheme continuous", "--scheme shell or solid, or --instrument rod"]),
+            ([*peg, "--voxel", 2], 2, ["--voxel: with --scheme continuous", "--scheme shell beside it"]),
             (["--instrument", "rod"], 3, ["its tool has no shaft", "--rod-length"]),
             (["--voxel", 2], 2, ["--voxel: without --instrument", "--instrument rod or a file beside it"]),
             (["--max-torque", 10], 2, ["--max-torque: without --instrument", "--instrument rod or a file beside it"]),
-            ([*peg, "--voxel", 0], 3, ["--voxel: is 0", "0.1 to 10"]),
-            ([*peg, "--shell-points", 10], 3, ["--shell-points: is 10", "100 to 100000"]),
+            ([*peg, "--scheme", "shell", "--voxel", 0], 3, ["--voxel: is 0", "0.1 to 10"]),
+            ([*peg, "--scheme", "shell", "--shell-points", 10], 3, ["--shell-points: is 10", "100 to 100000"]),
             (["--instrument", "rod", "--rod-length", 20, "--torsional-stiffness", 0], 3, ["--torsional-stiffness: is 0", "1 to 100000"]),
-            ([*peg, "--body", "wall"], 2, ["--body: 'wall' is not rigid", "a rigid body", "'shell' feels no other"]),
+            ([*peg, "--scheme", "shell", "--body", "wall"], 2, ["--body: 'wall' is not rigid", "a rigid body", "'shell' feels no other"]),
             (["--scheme", "shell", "--body", "wall"], 2, ["--body: 'wall' is not rigid"]),
             ([*peg, "--body", "skul"], 2, ["no body 'skul'", "'skull'"]),
             ([*peg, "--replay", path], 2, ["--replay", "--instrument"]),
@@ -246,7 +260,7 @@ class WholeTools(SampleAsset):
     def test_a_case_without_rigid_bodies_is_not_for_shell(self):
         soft = self.folder / "soft.vtkhdf"
         subprocess.run([TESTS / "write_sample_asset", soft, "soft"], check=True)
-        for options in (["--instrument", self.peg], ["--scheme", "shell"], ["--scheme", "solid"]):
+        for options in (["--instrument", self.peg, "--scheme", "shell"], ["--scheme", "shell"], ["--scheme", "solid"]):
             run = self.touch("--virtual-clock", *options, asset=soft)
             self.assertEqual(run.returncode, 3, run.stderr)
             self.assertIn("no rigid body", run.stderr)

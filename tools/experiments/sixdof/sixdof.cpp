@@ -9,6 +9,7 @@
 #include "formats/stl_file/read_stl.hpp"
 #include "runtime/collision/points/point_shell.hpp"
 #include "runtime/devices/simulated_device.hpp"
+#include "runtime/haptics/whole_tool/tool_spheres.hpp"
 #include "tools/experiments/rigid_case.hpp"
 #include "tools/experiments/sixdof/fcl_judge.hpp"
 #include "tools/experiments/sixdof/tool_visits.hpp"
@@ -32,19 +33,20 @@ judged: `deepest` is the greatest depth of 20 000 other points of the tool below
 the tick said of its own touches; `unfelt` counts poses that overlap the bone by FCL's triangles and have no force, with
 the greatest depth of any of them, and `met` all that overlap; `apart` is the largest difference between the tool's distance
 from the bone by FCL and by the shell's points where it is clear and nearer than 2 mm. `unsettled` counts ticks whose search for rest
-ended on its way. `lost` counts fast approaches (50 to 1 000 mm/s, up to 20
+ended on its way. `gap` is the farthest of the surface's points from the shell's, or from the spheres of `continuous`. `lost` counts fast approaches (50 to 1 000 mm/s, up to 20
 rad/s) to 10 mm below the surface whose tool ends more than 5 mm below it: beside the bone, through a gap or through bone. Coupling 0.5 N/mm and 450 N mm/rad.
 
 | tool | scheme | triangles | points | gap, mm | voxel, mm | set-up, s | ticks | touching | p50 | p99 | p99.9 | max | told, mm | deepest, mm | met, of judged | unfelt | unfelt deepest, mm | apart, mm | force, N | torque, N mm | unsettled | lost |
 |---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|
 )";
 
-// Ways to hold a tool: points are the shell's.
+// Ways to hold a tool: points are the shell's, and otherwise say nothing.
 struct Way {
     std::string_view scheme;
     std::int32_t points;
 };
-constexpr std::array<Way, 3> ways{{{"shell", 5000}, {"shell", 50'000}, {"solid", 5000}}};
+constexpr std::array<Way, 4> ways{
+    {{"continuous", 5000}, {"shell", 5000}, {"shell", 50'000}, {"solid", 5000}}};
 constexpr std::size_t judging_points = 20'000;
 constexpr std::int64_t judged_every = 20;
 constexpr double stroke = 10, lost_depth = 5;  // mm
@@ -223,6 +225,10 @@ Findings sixdof(const Options& options, cli::Session& session) {
             row.scheme = scheme;
             row.triangles = bone.tool->surface.triangles.size();
             collision::PointShell shell;
+            if (scheme == "continuous") {
+                row.points = model.tool_spheres().size();
+                row.gap = haptics::fill_with_spheres(bone.tool->surface, row.points).largest_gap;
+            }
             if (scheme == "shell") {
                 row.points = static_cast<std::size_t>(points);
                 row.voxel = bone.tool->settings.voxel;

@@ -168,6 +168,42 @@ TEST(Instrument, bone_holds_it_as_it_is) {
     EXPECT_NEAR(force_of(turned).z(), coupling * 2, 0.01);
 }
 
+// Where the device has it, it is deep in both blocks.
+TEST(Instrument, in_a_slot_turns_as_far_as_the_slot_lets_it) {
+    Case c;
+    c.name = "slot";
+    c.rigid_bodies = {rigid("left", box({-20, -20, -20}, {-1.5, 20, 0})),
+                      rigid("right", box({1.5, -20, -20}, {20, 20, 0}))};
+    c.haptics = wide_limits();
+    c.tool = bar();
+    HapticModel model(c);
+    TickResult result{};
+    double deepest = 0;
+    for (int tick = 0; tick <= 3000; ++tick) {
+        const double down = std::min(tick / 1500.0, 1.0), turned = std::max(0.0, tick / 1500.0 - 1);
+        model.tick(turned_at({0, 0, 5 - 20 * down}, about(Vector3d::UnitY(), 30 * turned)), result);
+        ASSERT_EQ(result.status & ~std::uint32_t{contact_unsettled}, 0U) << tick;
+        for (const auto& [place, radius] : model.tool_spheres()) {
+            const Vector3d at =
+                vector_of(result.tool_position) + quaternion_of(result.tool_orientation) * place;
+            for (std::size_t body = 0; body < 2; ++body) {
+                const auto near = model.surface(body).closest_point(at, 5);
+                if (near && model.surface(body).is_outside(at, *near))
+                    deepest = std::max(deepest, radius - near->distance);
+                else if (near)
+                    deepest = std::max(deepest, radius + near->distance);
+            }
+        }
+    }
+    EXPECT_LT(deepest, 0.01);
+    // Corners of 1 mm around a middle that is 15 mm deep: the slot of 3 mm lets it turn by some 4 degrees.
+    const double turn =
+        rotation_between(Quaterniond::Identity(), quaternion_of(result.tool_orientation)).norm();
+    EXPECT_GT(turn * 180 / std::numbers::pi, 2);
+    EXPECT_LT(turn * 180 / std::numbers::pi, 8);
+    EXPECT_GT(std::abs(torque_of(result).y()), 100);
+}
+
 TEST(Instrument, inside_a_body_feels_nothing_until_all_of_it_was_clear) {
     HapticModel model(plate_and_bar());
     TickResult result{};
