@@ -53,8 +53,9 @@ class ContinuousContact final : public ContactMethod {
         GodObject on_rigid;
         GodObject
             on_all;  // as if nothing gave way: without friction, no equilibrium is farther from the device
-        std::span<Contact> rigid_contacts{};               // of this tick, where they are solved
-        Eigen::Vector3d device = Eigen::Vector3d::Zero();  // where the coupling pulls it, mm
+        std::span<Contact> rigid_contacts{};                   // of this tick, where they are solved
+        Eigen::Vector3d device = Eigen::Vector3d::Zero();      // where the coupling pulls it, mm
+        Eigen::Vector3d wall_press = Eigen::Vector3d::Zero();  // of the tick before, of a tool that turns, N
     };
     struct Tool {
         std::vector<Part> parts;     // as spheres_
@@ -74,7 +75,7 @@ class ContinuousContact final : public ContactMethod {
     // By rigid bodies, by more than its tip; or was somewhere from where others may be in its way.
     static bool is_held(const Tool& tool) noexcept { return tool.held_beside_tip || tool.was_off_device; }
     Eigen::Vector3d aim_of(const Tool& tool, const Part& part) const noexcept;
-    void settle(std::size_t tool, const Eigen::Vector3d& force) noexcept;
+    void settle(std::size_t tool, const Eigen::Vector3d& force, const TickResult& result) noexcept;
     void follow(std::size_t tool, TickResult& result) noexcept;
     void note_clearances(Tool& tool) noexcept;
     void write_neighbours(std::span<TickResult> results) const noexcept;

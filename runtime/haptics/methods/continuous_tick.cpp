@@ -48,7 +48,7 @@ void ContinuousContact::tick(std::span<const ContactPose> poses, double coupling
         forces[t] = force_of(t, results[t]);
         results[t].tool_position = array_of(tools_[t].tip + forces[t] / coupling_);
         if (torsion_ > 0) tell_turn(t, poses[t], results[t]);
-        if (torsion_ > 0) settle(t, forces[t]);
+        if (torsion_ > 0) settle(t, forces[t], results[t]);
     }
     write_neighbours(results);
     equilibrium_.end_tick();
@@ -57,10 +57,15 @@ void ContinuousContact::tick(std::span<const ContactPose> poses, double coupling
 
 // A tool that turns by itself is held by what is around where it is, and not by what is where its device has
 // it: its spheres go on from there.
-void ContinuousContact::settle(std::size_t t, const Vector3d& force) noexcept {
+void ContinuousContact::settle(std::size_t t, const Vector3d& force, const TickResult& result) noexcept {
     Tool& tool = tools_[t];
     tool.was_off_device = !force.isZero(0) || !equilibrium_.turn(t).isZero(0);
+    for (Part& part : tool.parts) part.wall_press.setZero();
     if (!tool.was_off_device) return;
+    for (const Contact& contact : result.active_contacts())
+        if (contact.part >= 0 && contact.body < static_cast<std::int32_t>(bodies_.rigid_count()))
+            tool.parts[static_cast<std::size_t>(contact.part)].wall_press +=
+                static_cast<double>(contact.force) * normal_of(contact);
     for (std::size_t p = 0; p < tool.parts_felt; ++p) {
         Part& part = tool.parts[p];
         part.on_rigid.settle_at(rigid_surfaces_,
@@ -68,13 +73,13 @@ void ContinuousContact::settle(std::size_t t, const Vector3d& force) noexcept {
     }
 }
 
-// Where a sphere would go.
+// Where a sphere is about to go: to its device, but no farther than where the tool may soon be; and against
+// the wall that pressed it, for a tool that turns over an edge leaves it where its device has it.
 Vector3d ContinuousContact::aim_of(const Tool& tool, const Part& part) const noexcept {
     if (!tool.was_off_device) return part.device;
-    const Vector3d way = part.device - part.on_rigid.position();
-    const double length = way.norm();
-    return length > farthest_aim ? Vector3d(part.on_rigid.position() + farthest_aim / length * way)
-                                 : part.device;
+    const Vector3d from = part.on_rigid.position(), way = part.device - from;
+    if (!part.wall_press.isZero(0)) return from - farthest_aim * part.wall_press.normalized();
+    return way.norm() > farthest_aim ? Vector3d(from + farthest_aim * way.normalized()) : part.device;
 }
 
 // How the tool is turned against its device, and the torque that this takes.
