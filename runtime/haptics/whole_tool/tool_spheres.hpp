@@ -27,8 +27,8 @@ struct SphereFilling {
 /// sphere's radius is no distance: a ball of facets is one sphere. Points near the origin, the tip's centre,
 /// count more: one at 25 mm from it half as much. No sphere goes through a triangle; none is smaller
 /// than a tenth of a millimetre. The same surface gives the same spheres. Throws InvalidInput if the surface
-/// has no area, or no such sphere inside. Triangles look outward (unchecked). Cost: half a second; not for the
-/// tick.
+/// has no area, or no such sphere inside. Triangles look outward (unchecked). Cost: half a second; not for
+/// the tick.
 SphereFilling fill_with_spheres(const TriangleMesh& surface, std::size_t most);
 
 /// A ball of `radius` at the origin and, where it has a shaft, as many along +z up to `length` as make its

@@ -183,6 +183,7 @@ TEST(Instrument, in_a_slot_turns_as_far_as_the_slot_lets_it) {
         const double down = std::min(tick / 1500.0, 1.0), turned = std::max(0.0, tick / 1500.0 - 1);
         model.tick(turned_at({0, 0, 5 - 20 * down}, about(Vector3d::UnitY(), 30 * turned)), result);
         ASSERT_EQ(result.status & ~std::uint32_t{contact_unsettled}, 0U) << tick;
+        if (tick % 10 > 0) continue;
         for (const auto& [place, radius] : model.tool_spheres()) {
             const Vector3d at =
                 vector_of(result.tool_position) + quaternion_of(result.tool_orientation) * place;
