@@ -279,6 +279,12 @@ Case with_bar() {
     return c;
 }
 
+Case with_instrument() {
+    Case c = ball_and_cube();
+    c.tool = ToolBody{.surface = box({-2, -2, 0}, {2, 2, 30}), .settings = {}};
+    return c;
+}
+
 constexpr std::array runs{Trial{"shaft", ball_and_cube, "continuous", 1, 6000},
                           Trial{"two_tools", ball_and_cube, "continuous", 2, 3000},
                           Trial{"tip", pointed, "continuous", 1, 12000},
@@ -289,7 +295,7 @@ constexpr std::array runs{Trial{"shaft", ball_and_cube, "continuous", 1, 6000},
                           Trial{"twice_renewed", ball_and_cube, "twice-renewed", 1, 12000},
                           Trial{"turning_rod", with_rod, "continuous", 1, 6000, true},
                           Trial{"two_turning_rods", with_rod, "continuous", 2, 3000, true},
-                          Trial{"instrument", with_bar, "continuous", 1, 3000, true},
+                          Trial{"instrument", with_instrument, "continuous", 1, 6000, true},
                           Trial{"shell", with_bar, "shell", 1, 6000, true}};
 
 INSTANTIATE_TEST_SUITE_P(Runs, Replay, testing::ValuesIn(runs),
