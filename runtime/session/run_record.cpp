@@ -33,6 +33,12 @@ void write_log_head(std::ostream& log) {
            "tool_qx,tool_qy,tool_qz,tool_qw\n";
 }
 
+RunRecord::RunRecord(const HapticModel& model, std::ostream* log) : model_(model), log_(log) {
+    spheres_.assign(model.tool_spheres().begin(), model.tool_spheres().end());
+    if (spheres_.empty()) spheres_.push_back({Vector3d::Zero(), model.contact_radius()});
+    clearances_.resize(spheres_.size() * model.rigid_count());
+}
+
 void RunRecord::add(const TickResult& result) {
     const double force = vector_of(result.force).norm();
     if (last_tick_ == no_tick || force > peak_force()) peak_ = result;
@@ -49,12 +55,6 @@ void RunRecord::add(const TickResult& result) {
     if (log_) write_row(result);
 }
 
-RunRecord::RunRecord(const HapticModel& model, std::ostream* log) : model_(model), log_(log) {
-    spheres_.assign(model.tool_spheres().begin(), model.tool_spheres().end());
-    if (spheres_.empty()) spheres_.push_back({Vector3d::Zero(), model.contact_radius()});
-    clearances_.resize(spheres_.size() * model.rigid_count());
-}
-
 double RunRecord::peak_force() const {
     return vector_of(peak_.force).norm();
 }
@@ -66,10 +66,10 @@ double RunRecord::tool_depth_of(const TickResult& result) {
     const Vector3d tool = vector_of(result.tool_position);
     const Eigen::Quaterniond turned = quaternion_of(result.tool_orientation);
     // How a tool is turned is told where it turns by itself.
-    const std::size_t looked_at = turned.coeffs().isZero(0) ? 1 : spheres_.size();
-    for (std::size_t s = 0; s < looked_at; ++s) {
+    const bool turns = !turned.coeffs().isZero(0);
+    for (std::size_t s = 0; s < (turns ? spheres_.size() : 1); ++s) {
         const auto& [place, radius] = spheres_[s];
-        const Vector3d centre = looked_at > 1 ? Vector3d(tool + turned * place) : tool;
+        const Vector3d centre = turns ? Vector3d(tool + turned * place) : tool;
         for (std::size_t body = 0; body < model_.rigid_count(); ++body)
             depth =
                 std::max(depth, depth_in(body, centre, radius, clearances_[s * model_.rigid_count() + body]));

@@ -18,14 +18,13 @@
 namespace palpate::haptics {
 
 /// Contact found in every tick: a tool is a sphere, a row of spheres where it has a shaft, or what spheres an
-/// instrument with a surface of its own is filled with. Each holds a
-/// god-object on the rigid bodies and one on all bodies as if they were rigid; where only the tip touches,
-/// and only rigid bodies, the force is that of the virtual coupling, stiffness * (proxy - device), otherwise
-/// tools and tissue are brought to rest together (ContactEquilibrium). A shaft turns as the device says,
-/// and the torque that would turn it back is not rendered; a tool that turns by itself, Case::tool, hangs on
-/// a spring of torsion besides, which has its rest among the others, and gives torque. A tool that jumped
-/// does not feel a body that it is in until it has been clear of it; one that turns by itself feels nothing
-/// until all of it has been clear of every body.
+/// instrument with a surface of its own is filled with. Each holds a god-object on the rigid bodies and one
+/// on all bodies as if they were rigid; where only the tip touches, and only rigid bodies, the force is that
+/// of the virtual coupling, stiffness * (proxy - device), otherwise tools and tissue are brought to rest
+/// together (ContactEquilibrium). A shaft turns as the device says, and the torque that would turn it back is
+/// not rendered; a tool that turns by itself, Case::tool, hangs on a spring of torsion besides, which has its
+/// rest among the others, and gives torque. A tool that jumped does not feel a body that it is in until it
+/// has been clear of it; one that turns by itself feels nothing until all of it has been clear of every body.
 class ContinuousContact final : public ContactMethod {
   public:
     /// `bodies` must outlive this. Of the case it reads what is held, friction, and which bodies are

@@ -11,7 +11,7 @@ using Eigen::Vector3d;
 
 constexpr double room_for_rounding = 1e-3;  // mm
 constexpr double room_to_follow = 0.1;      // mm that a tool that turns is behind where it would come to rest
-constexpr double slightly_beyond = 2e-3;    // mm
+constexpr double slightly_beyond = 2e-3;    // mm: of a plane that a tool that turns passes by
 
 }  // namespace
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <queue>
-#include <string>
 
 #include "formats/model/errors.hpp"
 #include "runtime/collision/points/point_shell.hpp"
@@ -211,6 +210,7 @@ SphereFilling fill_with_spheres(const TriangleMesh& surface, std::size_t most) {
             continue;
         }
         if (best.chosen == filling.spheres.size()) {
+            // It may have been cut down by a facet, so begins a little larger.
             candidate.sphere = sphere_inside(candidate.point, candidate.sphere.radius / (1 - of_facets),
                                              [&](const Vector3d& p) { return skin.nearest_to(p); });
             candidate.exact = true;
@@ -220,7 +220,7 @@ SphereFilling fill_with_spheres(const TriangleMesh& surface, std::size_t most) {
         promise(best.candidate, filling.spheres.size());
     }
     if (filling.spheres.empty())
-        throw InvalidInput({"instrument", "no room for a sphere of " + std::to_string(least_radius) + " mm",
+        throw InvalidInput({"instrument", "no room inside for a sphere of a tenth of a millimetre",
                             "a closed surface in mm whose triangles look outward",
                             "check its unit and its normals"});
     filling.largest_gap = gaps.largest(filling.spheres);

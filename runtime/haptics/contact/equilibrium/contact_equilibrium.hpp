@@ -387,6 +387,7 @@ class ContactEquilibrium {
     std::vector<DeformedPatch> patches_;
     NeighbourContact neighbours_;
     std::vector<Tool> tools_;
+    bool are_one_surface_;
     // By deformable body: how far a force on one sphere of a tool sinks another in, mm/N.
     std::vector<Eigen::MatrixXd> beside_;
     FixedList<Row, most_rows> rows_;                    // of this iteration, walls first

@@ -52,7 +52,7 @@ Eigen::MatrixXd indentations_beside(std::span<const ToolSphere> spheres, const L
 
 ContactEquilibrium::ContactEquilibrium(const ContactBodies& bodies, std::span<const ToolSphere> spheres,
                                        bool are_one_surface, const Friction& friction, std::size_t tool_count)
-    : bodies_(bodies), friction_(friction), neighbours_(bodies) {
+    : bodies_(bodies), friction_(friction), neighbours_(bodies), are_one_surface_(are_one_surface) {
     for (const DeformableContact& body : bodies.deformable) {
         patches_.emplace_back(body);
         visited_.emplace_back(body.triangle_count(), 0U);

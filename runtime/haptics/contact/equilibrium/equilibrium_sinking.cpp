@@ -113,7 +113,7 @@ double ContactEquilibrium::sink(std::size_t iterate) noexcept {
         const Vector3d wanted = local.depth / along * push;
         change = std::max(change, (wanted - touch.next_sunk[iterate]).lpNorm<Eigen::Infinity>());
     }
-    share_sinking(iterate);
+    if (are_one_surface_) share_sinking(iterate);
     return change;
 }
 
