@@ -52,7 +52,6 @@ class ContinuousContact final : public ContactMethod {
         GodObject on_rigid;
         GodObject
             on_all;  // as if nothing gave way: without friction, no equilibrium is farther from the device
-        std::span<Contact> rigid_contacts{};                   // of this tick, where they are solved
         Eigen::Vector3d device = Eigen::Vector3d::Zero();      // where the coupling pulls it, mm
         Eigen::Vector3d wall_press = Eigen::Vector3d::Zero();  // of the tick before, of a tool that turns, N
     };
@@ -67,6 +66,15 @@ class ContinuousContact final : public ContactMethod {
         bool waits = false;           // to be clear of every body
         std::size_t stuck = 0;        // the part that was not
     };
+
+    // That a sphere would meet between its rest on rigid bodies and where the solution has it: how far its
+    // device and that are beyond it, mm.
+    struct MetWall {
+        std::size_t tool = 0, part = 0;
+        GodObject::Touch touch;
+        double gap = 0, beyond = 0;
+    };
+    static constexpr std::size_t most_met = 8;  // that are added at once
 
     void place(std::size_t tool, const ContactPose& pose, TickResult& result) noexcept;
     bool is_clear(Tool& tool) const noexcept;
@@ -87,12 +95,18 @@ class ContinuousContact final : public ContactMethod {
     Eigen::Vector3d rigid_force(const GodObject& tip, const Eigen::Vector3d& device,
                                 TickResult& result) const noexcept;
     bool hold_off_rigid(std::span<TickResult> results) noexcept;
+    bool hold_by(std::size_t tool, std::size_t part, const Contact& wall, TickResult& result) noexcept;
+    void drop_idle_walls(std::span<TickResult> results) noexcept;
     void add_rigid_contacts(std::size_t tool, TickResult& result) noexcept;
     bool within_reach(std::size_t tool, const Eigen::Vector3d& force) const noexcept;
-    Eigen::Vector3d friction_of(const Part& part) const noexcept;
+    bool is_wall(const Contact& contact) const noexcept {
+        return contact.part >= 0 && contact.body < static_cast<std::int32_t>(bodies_.rigid_count());
+    }
+    Eigen::Vector3d friction_of(std::size_t tool, std::size_t part, const TickResult& result) const noexcept;
     bool kept_by_tissue(const Part& part) const noexcept;
     void tell_turn(std::size_t tool, const ContactPose& pose, TickResult& result) const noexcept;
-    Eigen::Vector3d wall_friction(std::size_t tool, const Eigen::Vector3d& force) noexcept;
+    Eigen::Vector3d wall_friction(std::size_t tool, const Eigen::Vector3d& force,
+                                  TickResult& result) noexcept;
 
     const ContactBodies& bodies_;
     const std::vector<ToolSphere> spheres_;  // of every tool; a rod's tip first
@@ -105,6 +119,7 @@ class ContinuousContact final : public ContactMethod {
     ContactEquilibrium equilibrium_;
     LargeDeformation large_;
     FixedList<ContactEquilibrium::Sphere, most_spheres> placed_;  // of the tool that is being placed
+    FixedList<MetWall, most_met> met_;                            // the farthest gone through first
 };
 
 /// A ContinuousContact, as the table of contact methods makes it.

@@ -45,11 +45,11 @@ Vector3d ContinuousContact::rigid_force(const GodObject& tip, const Vector3d& de
 }
 
 // Soft bodies push the tool away from where the rigid ones were asked, and so does what turns it: adds the
-// contacts that it would meet on the way. Tells whether there are any.
+// contacts that it would meet on the way, those that it would go through farthest. Tells whether there are
+// any.
 bool ContinuousContact::hold_off_rigid(std::span<TickResult> results) noexcept {
-    bool met = false;
+    met_.clear();
     for (std::size_t t = 0; t < tools_.size(); ++t) {
-        TickResult& result = results[t];
         if (!equilibrium_.touches_tissue(t) && !is_held(tools_[t])) continue;
         const Vector3d pushed = (equilibrium_.press(t) + equilibrium_.drag(t)) / coupling_;
         for (std::size_t p = 0; p < tools_[t].parts_felt; ++p) {
@@ -58,50 +58,56 @@ bool ContinuousContact::hold_off_rigid(std::span<TickResult> results) noexcept {
             const auto touch = part.on_rigid.touch_on_the_way(rigid_surfaces_, part.device + push);
             if (!touch) continue;
             const double gap = touch->normal.dot(touch->foot.point - part.device) + part.on_rigid.radius();
+            const double beyond = gap - touch->normal.dot(push);
             // Turning bends planes; where one is passed by so little, the next tick finds it.
-            if (torsion_ > 0 && gap - touch->normal.dot(push) < slightly_beyond) continue;
-            const auto at = static_cast<std::size_t>(result.contact_count);
-            if (at == max_contacts) {
-                result.status |= contacts_cut;
-                continue;
-            }
-            Contact& contact = result.contacts[at];
-            contact = rigid_contact(*touch, touch->normal, gap);
-            contact.part = static_cast<std::int32_t>(p);
-            if (!equilibrium_.add_wall(t, contact)) {
-                result.status |= contacts_cut;
-                continue;
-            }
-            ++result.contact_count;
-            met = true;
+            if (torsion_ > 0 && beyond < slightly_beyond) continue;
+            if (met_.full() && beyond <= met_[met_.size() - 1].beyond) continue;
+            if (met_.full()) met_.cut(met_.size() - 1);
+            met_.push_back({t, p, *touch, gap, beyond});
+            for (std::size_t k = met_.size() - 1; k > 0 && met_[k - 1].beyond < beyond; --k)
+                std::swap(met_[k - 1], met_[k]);
         }
     }
-    return met;
+    if (met_.empty()) return false;
+    if (equilibrium_.walls_are_full()) drop_idle_walls(results);
+    bool any = false;
+    for (const MetWall& met : met_) {
+        TickResult& result = results[met.tool];
+        if (hold_by(met.tool, met.part, rigid_contact(met.touch, met.touch.normal, met.gap), result))
+            any = true;
+        else if (!any)
+            result.status |= contacts_cut;
+    }
+    return true;
 }
 
-// The rigid bodies' hold on a tool that is held by more.
+// Adds a wall that holds part `p` of a tool, as long as there is room.
+bool ContinuousContact::hold_by(std::size_t t, std::size_t p, const Contact& wall,
+                                TickResult& result) noexcept {
+    if (equilibrium_.walls_are_full()) return false;
+    Contact& contact = result.contacts[static_cast<std::size_t>(result.contact_count++)];
+    contact = wall;
+    contact.part = static_cast<std::int32_t>(p);
+    equilibrium_.add_wall(t, contact);
+    return true;
+}
+
+// Makes room for walls that press: the answer is the same without those that do not.
+void ContinuousContact::drop_idle_walls(std::span<TickResult> results) noexcept {
+    for (std::size_t t = 0; t < tools_.size(); ++t)
+        results[t].contact_count =
+            static_cast<std::int32_t>(equilibrium_.drop_idle_walls(t, results[t].contacts));
+}
+
+// The rigid bodies' hold on a tool that is held by more. What finds no room here and is missed in the
+// solution is found as what that meets.
 void ContinuousContact::add_rigid_contacts(std::size_t t, TickResult& result) noexcept {
     Tool& tool = tools_[t];
     for (std::size_t p = 0; p < tool.parts_felt; ++p) {
-        Part& part = tool.parts[p];
-        const auto first = static_cast<std::size_t>(result.contact_count);
+        const Part& part = tool.parts[p];
         const Vector3d lifted = part.on_rigid.position() + part.on_rigid.held_back() - part.device;
-        std::size_t count = 0;
-        for (const GodObject::Touch& touch : part.on_rigid.touches()) {
-            if (first + count == max_contacts) {
-                result.status |= contacts_cut;
-                break;
-            }
-            Contact& contact = result.contacts[first + count];
-            contact = rigid_contact(touch, touch.normal, touch.normal.dot(lifted));
-            contact.part = static_cast<std::int32_t>(p);
-            if (equilibrium_.add_wall(t, contact))
-                ++count;
-            else
-                result.status |= contacts_cut;
-        }
-        result.contact_count += static_cast<std::int32_t>(count);
-        part.rigid_contacts = std::span(result.contacts).subspan(first, count);
+        for (const GodObject::Touch& touch : part.on_rigid.touches())
+            if (!hold_by(t, p, rigid_contact(touch, touch.normal, touch.normal.dot(lifted)), result)) return;
     }
 }
 
@@ -123,12 +129,15 @@ bool ContinuousContact::within_reach(std::size_t t, const Vector3d& force) const
     return force.norm() <= coupling_ * (reach + room);
 }
 
-// Friction of the walls that hold a part besides tissue, N.
-Vector3d ContinuousContact::friction_of(const Part& part) const noexcept {
+// Friction of the walls that hold part `p` of a tool besides tissue, N.
+Vector3d ContinuousContact::friction_of(std::size_t t, std::size_t p,
+                                        const TickResult& result) const noexcept {
     double press = 0;
-    for (const Contact& contact : part.rigid_contacts) press += static_cast<double>(contact.force);
+    for (const Contact& contact : result.active_contacts())
+        if (is_wall(contact) && contact.part == static_cast<std::int32_t>(p))
+            press += static_cast<double>(contact.force);
     if (!(press > 0)) return Vector3d::Zero();
-    Vector3d drag = -coupling_ * part.on_rigid.held_back();
+    Vector3d drag = -coupling_ * tools_[t].parts[p].on_rigid.held_back();
     const double most = friction_.at_rest * press, wanted = drag.norm();
     if (wanted > most) drag *= most / wanted;
     return drag;
@@ -136,12 +145,12 @@ Vector3d ContinuousContact::friction_of(const Part& part) const noexcept {
 
 // The same of all parts of a tool on which `force` (N) acts besides, but for what would drag it into a wall
 // that it does not touch yet.
-Vector3d ContinuousContact::wall_friction(std::size_t t, const Vector3d& force) noexcept {
+Vector3d ContinuousContact::wall_friction(std::size_t t, const Vector3d& force, TickResult& result) noexcept {
     Tool& tool = tools_[t];
     constexpr int most_walls = 4;
     const auto parts = std::span(tool.parts).first(tool.parts_felt);
     Vector3d drag = Vector3d::Zero();
-    for (const Part& part : parts) drag += friction_of(part);
+    for (std::size_t part = 0; part < parts.size(); ++part) drag += friction_of(t, part, result);
     if (drag == Vector3d::Zero()) return drag;
     for (int wall = 0;; ++wall) {
         std::optional<GodObject::Touch> touch;
@@ -155,11 +164,12 @@ Vector3d ContinuousContact::wall_friction(std::size_t t, const Vector3d& force) 
         if (wall == most_walls || !(inwards < 0)) return Vector3d::Zero();
         drag -= inwards * touch->normal;
     }
+    const auto contacts = std::span(result.contacts).first(static_cast<std::size_t>(result.contact_count));
     double press = 0;
-    for (const Part& part : parts)
-        for (const Contact& contact : part.rigid_contacts) press += static_cast<double>(contact.force);
-    for (const Part& part : parts)
-        for (Contact& contact : part.rigid_contacts)
+    for (const Contact& contact : contacts)
+        if (is_wall(contact)) press += static_cast<double>(contact.force);
+    for (Contact& contact : contacts)
+        if (is_wall(contact))
             Eigen::Map<Eigen::Vector3f>(contact.friction.data()) =
                 (static_cast<double>(contact.force) / press * drag).cast<float>();
     return drag;

@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double unsolved = 1e-3;  // mm of residual that is reported
-constexpr int most_hold_offs = 4;  // of contacts that only the solution of the others meets
+constexpr int most_hold_offs = 8;  // of contacts that only the solution of the others meets
 // Of a tool of so many spheres or more, how far they are from all bodies is measured: of so many in a tick,
 // up to so many mm.
 constexpr std::size_t many_parts = 8, measured_at_once = 4;
@@ -63,7 +63,7 @@ void ContinuousContact::settle(std::size_t t, const Vector3d& force, const TickR
     for (Part& part : tool.parts) part.wall_press.setZero();
     if (!tool.was_off_device) return;
     for (const Contact& contact : result.active_contacts())
-        if (contact.part >= 0 && contact.body < static_cast<std::int32_t>(bodies_.rigid_count()))
+        if (is_wall(contact))
             tool.parts[static_cast<std::size_t>(contact.part)].wall_press +=
                 static_cast<double>(contact.force) * normal_of(contact);
     for (std::size_t p = 0; p < tool.parts_felt; ++p) {
@@ -117,7 +117,7 @@ Vector3d ContinuousContact::force_of(std::size_t t, TickResult& result) noexcept
         result.residual = equilibrium_.residual();
         if (result.contact_count > walls) depth_in_tissue(tool, result);
         Vector3d force = press + equilibrium_.drag(t);
-        if (friction_.at_rest > 0) force += wall_friction(t, force);
+        if (friction_.at_rest > 0) force += wall_friction(t, force, result);
         return force;
     }
     // The contacts contradict each other: nothing gives way, and the part that is held most decides.
@@ -249,7 +249,6 @@ void ContinuousContact::follow(std::size_t t, TickResult& result) noexcept {
     placed_.clear();
     for (std::size_t p = 0; p < tool.parts_felt; ++p) {
         Part& part = tool.parts[p];
-        part.rigid_contacts = {};
         if (!part.on_rigid.move(rigid_surfaces_, aim_of(tool, part), friction_))
             result.status |= starts_inside;
         // A lone sphere on rigid bodies needs no second one.

@@ -2,6 +2,7 @@
 #include "runtime/haptics/contact/equilibrium/contact_equilibrium.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 #include <utility>
 
@@ -80,7 +81,7 @@ void ContactEquilibrium::forget(std::size_t t) noexcept {
     tool.touching = tool.at_rest = false;
     tool.off.setZero();
     tool.turn.setZero();
-    tool.drag_turn.setZero();
+    tool.unpressed_turn = tool.kept_turn;
     if (turns()) swing(tool);
     tool.press.setZero();
     tool.drag.setZero();
@@ -101,6 +102,7 @@ void ContactEquilibrium::forget(std::size_t t) noexcept {
 void ContactEquilibrium::begin_tick(double stiffness, double torsion) noexcept {
     coupling_ = stiffness;
     torsion_ = torsion;
+    resists_turning_ = false;
     spare_iterations_ = spare_iterations;
     rows_.clear();
     groups_.clear();
@@ -109,6 +111,8 @@ void ContactEquilibrium::begin_tick(double stiffness, double torsion) noexcept {
         tool.was_felt = std::exchange(tool.felt, 0);
         tool.outside = true;
         tool.at_rest = false;
+        tool.unpressed_turn -= tool.kept_turn;
+        tool.kept_turn.setZero();
     }
     for (DeformedPatch& patch : patches_) patch.begin_tick();
     // What tissue has forgotten, spheres forget too.
@@ -150,9 +154,13 @@ void ContactEquilibrium::pull(std::size_t t, const Vector3d& tip, std::span<cons
     if (turns()) pull_arms(tool);
 }
 
-bool ContactEquilibrium::add_wall(std::size_t tool, Contact& contact) noexcept {
+bool ContactEquilibrium::walls_are_full() const noexcept {
+    return wall_count() == most_walls;
+}
+
+void ContactEquilibrium::add_wall(std::size_t tool, Contact& contact) noexcept {
     const std::size_t walls = wall_count();
-    if (walls == most_walls) return false;
+    assert(walls < most_walls);
     Row row;
     row.tool = static_cast<std::int32_t>(tool);
     row.part = contact.part;
@@ -162,7 +170,18 @@ bool ContactEquilibrium::add_wall(std::size_t tool, Contact& contact) noexcept {
     row.wall = &contact;
     rows_.cut(walls);
     rows_.push_back(row);
-    return true;
+}
+
+std::size_t ContactEquilibrium::drop_idle_walls(std::size_t t, std::span<Contact> contacts) noexcept {
+    std::size_t kept = 0;
+    rows_.erase_if([&](Row& row) {
+        if (row.wall == nullptr || row.tool != static_cast<std::int32_t>(t)) return false;
+        if (!(row.force > 0)) return true;
+        contacts[kept] = *row.wall;
+        row.wall = &contacts[kept++];
+        return false;
+    });
+    return kept;
 }
 
 std::size_t ContactEquilibrium::wall_count() const noexcept {
@@ -174,6 +193,10 @@ void ContactEquilibrium::solve() noexcept {
     carry_over();
     const auto starts = [](const Tool& tool) { return tool.felt > 0 && tool.touching && tool.cold; };
     iterate(std::ranges::any_of(tools_, starts) ? cold_iterations : warm_iterations);
+    if (turns() && !resists_turning_ && turn_change_ > unsettled) {
+        resist_turning();
+        iterate(warm_iterations);
+    }
     // What was found from the last tick on may have led astray: then contact starts anew. And where that does
     // not lead to an equilibrium either, the surface at rest has to do.
     if (start_anew()) iterate(cold_iterations);
@@ -327,6 +350,7 @@ void ContactEquilibrium::write_contacts(std::size_t t, TickResult& result) const
 
 void ContactEquilibrium::end_tick() noexcept {
     bool any = false;
+    for (Tool& tool : tools_) tool.turn_before = tool.felt > 0 ? tool.turn : Vector3d::Zero();
     last_motion_ = 0;
     for (const DeformedPatch& patch : patches_) last_motion_ = std::max(last_motion_, patch.motion());
     remember_pushes();

@@ -60,9 +60,14 @@ class ContactEquilibrium {
     /// of all.
     void pull(std::size_t tool, const Eigen::Vector3d& tip, std::span<const Sphere> spheres) noexcept;
     /// Adds a half-space of a rigid body that holds part contact.part of a tool: contact.gap says how far the
-    /// device is beyond it along -normal. The contact must outlive solve(). False where there is no more
-    /// room.
-    bool add_wall(std::size_t tool, Contact& contact) noexcept;
+    /// device is beyond it along -normal. The contact must outlive solve(). Only where there is room
+    /// (asserted).
+    void add_wall(std::size_t tool, Contact& contact) noexcept;
+    bool walls_are_full() const noexcept;
+    /// Drops the walls that do not press a tool in the last solution, which stays as it is; those that do are
+    /// moved to the front of `contacts`, where all of them lie in the order in which they were added. Returns
+    /// their number.
+    std::size_t drop_idle_walls(std::size_t tool, std::span<Contact> contacts) noexcept;
     /// Whether a tool touches a deformable body, or is about to.
     bool touches_tissue(std::size_t tool) const noexcept {
         return tools_[tool].felt > 0 && tools_[tool].touching;
@@ -228,9 +233,11 @@ class ContactEquilibrium {
         Offsets next_off = no_offsets(), difference = no_offsets();  // of the answers to `off`
         Eigen::Vector3d turn = Eigen::Vector3d::Zero();              // rad, from the device's orientation on
         Offsets next_turn = no_offsets(), turn_difference = no_offsets();
-        Eigen::Vector3d drag_turn = Eigen::Vector3d::Zero();  // of it what friction on tissue does
-        double longest_arm = 0;                               // mm, of the parts that are felt
-        Eigen::Vector3d tip = Eigen::Vector3d::Zero();        // as the device has it, mm
+        Eigen::Vector3d unpressed_turn = Eigen::Vector3d::Zero();  // of it what presses does not do
+        // How it was turned at the end of the last tick, and what it keeps of that; equilibrium_turning.cpp.
+        Eigen::Vector3d turn_before = Eigen::Vector3d::Zero(), kept_turn = Eigen::Vector3d::Zero();
+        double longest_arm = 0;                         // mm, of the parts that are felt
+        Eigen::Vector3d tip = Eigen::Vector3d::Zero();  // as the device has it, mm
         Eigen::Vector3d last_device_tip = Eigen::Vector3d::Zero(), last_tip = Eigen::Vector3d::Zero();
         Eigen::Vector3d press = Eigen::Vector3d::Zero(), drag = Eigen::Vector3d::Zero();  // N
         double held_reach = 0;
@@ -272,14 +279,15 @@ class ContactEquilibrium {
     Eigen::Vector3d off_of(const Tool& tool, const Part& part) const noexcept {
         return turns() ? Eigen::Vector3d(tool.off + (part.swung - part.arm)) : tool.off;
     }
-    // Of that what friction on tissue does, and the rest, as forces answer: they turn a tool in proportion.
+    // Of that what is there without what presses, and the rest, as forces answer: they turn a tool in
+    // proportion.
     Eigen::Vector3d dragged_off_of(const Tool& tool, const Part& part) const noexcept {
         const Eigen::Vector3d off = tool.drag / coupling_;
-        return turns() ? Eigen::Vector3d(off + tool.drag_turn.cross(part.swung)) : off;
+        return turns() ? Eigen::Vector3d(off + tool.unpressed_turn.cross(part.swung)) : off;
     }
     Eigen::Vector3d pressed_off_of(const Tool& tool, const Part& part) const noexcept {
         const Eigen::Vector3d off = tool.off - tool.drag / coupling_;
-        return turns() ? Eigen::Vector3d(off + (tool.turn - tool.drag_turn).cross(part.swung)) : off;
+        return turns() ? Eigen::Vector3d(off + (tool.turn - tool.unpressed_turn).cross(part.swung)) : off;
     }
     // In equilibrium_turning.cpp, of tools that turn by themselves.
     static void swing(Tool& tool) noexcept;
@@ -287,6 +295,7 @@ class ContactEquilibrium {
     void find_levers() noexcept;
     void add_levers(std::size_t column) noexcept;
     double answer_turns(std::size_t iterate) noexcept;
+    void resist_turning() noexcept;
     void relax_turn(Tool& tool, const Weights& weights, double step) const noexcept;
     Eigen::Vector3d centre_of(const Tool& tool, const Part& part, const Touch& touch) const noexcept {
         return part.sphere.device + off_of(tool, part) + touch.sunk;
@@ -384,6 +393,8 @@ class ContactEquilibrium {
     const ContactBodies& bodies_;
     Friction friction_;
     double coupling_ = 0, torsion_ = 0;
+    bool resists_turning_ = false;
+    double turn_change_ = 0;  // of change_ what turning is
     std::vector<DeformedPatch> patches_;
     NeighbourContact neighbours_;
     std::vector<Tool> tools_;

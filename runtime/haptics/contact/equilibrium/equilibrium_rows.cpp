@@ -301,8 +301,8 @@ double ContactEquilibrium::gap_of_wall(const Row& row) const noexcept {
     if (!turns()) return gap;
     // What turning moves the sphere beyond what is in proportion to what presses it.
     const Part& part = part_of(row);
-    return gap -
-           row.normal.dot(off_of(tool, part) - tool.off - (tool.turn - tool.drag_turn).cross(part.swung));
+    return gap - row.normal.dot(off_of(tool, part) - tool.off -
+                                (tool.turn - tool.unpressed_turn).cross(part.swung));
 }
 
 void ContactEquilibrium::solve_rows() noexcept {

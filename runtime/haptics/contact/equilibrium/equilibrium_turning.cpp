@@ -2,6 +2,7 @@
 // Tools that turn by themselves: their arms and levers, and how forces turn them; part of the tick.
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <utility>
 
 #include "runtime/haptics/contact/equilibrium/contact_equilibrium.hpp"
 
@@ -45,7 +46,7 @@ void ContactEquilibrium::add_levers(std::size_t column) noexcept {
 // How the present forces turn the tools; returns by how much that differs from how they are, mm of their
 // farthest spheres.
 double ContactEquilibrium::answer_turns(std::size_t iterate) noexcept {
-    for (Tool& tool : tools_) tool.next_turn[iterate].setZero();
+    for (Tool& tool : tools_) tool.next_turn[iterate] = tool.kept_turn;
     for (std::size_t k = 0; k < rows_.size(); ++k)
         tools_[static_cast<std::size_t>(rows_[k].tool)].next_turn[iterate] +=
             torsion_ * rows_[k].force * levers_[k];
@@ -58,16 +59,37 @@ double ContactEquilibrium::answer_turns(std::size_t iterate) noexcept {
         tool.turn_difference[iterate] = tool.next_turn[iterate] - tool.turn;
         change = std::max(change, tool.longest_arm * tool.turn_difference[iterate].lpNorm<Eigen::Infinity>());
     }
-    return change;
+    return turn_change_ = change;
+}
+
+// A tool pushed along its shaft onto its end falls over where its spring does not hold it: by F l / kappa >
+// 1, as a column buckles, answers lead away from each other, and the next equilibrium is far. It turns there
+// over several ticks, against 1/2 c |theta - theta_before|² besides, c = 2 F l, as if something viscous held
+// it: so each has an answer near, on this side of all walls, and the way there takes energy and gives none.
+void ContactEquilibrium::resist_turning() noexcept {
+    resists_turning_ = true;
+    bank_ = in_row_ = carried_ = 0;
+    double push_by_length = 0;
+    for (const Tool& tool : tools_)
+        push_by_length = std::max(push_by_length, tool.press.norm() * tool.longest_arm);
+    const double resistance = 2 * push_by_length,
+                 freely = std::exchange(torsion_, 1 / (1 / torsion_ + resistance));
+    for (Tool& tool : tools_) {
+        tool.kept_turn = (1 - torsion_ / freely) * tool.turn_before;
+        tool.turn = tool.turn_before;
+        tool.unpressed_turn = tool.kept_turn;
+        swing(tool);
+    }
 }
 
 // Goes to a combination of answers, after the drags have.
 void ContactEquilibrium::relax_turn(Tool& tool, const Weights& weights, double step) const noexcept {
     tool.turn += step * (combined(weights, tool.next_turn) - tool.turn);
     swing(tool);
-    tool.drag_turn.setZero();
+    tool.unpressed_turn = tool.kept_turn;
     for (const Part& part : tool.parts)
-        for (const Touch& touch : part.touches) tool.drag_turn += torsion_ * part.swung.cross(touch.drag);
+        for (const Touch& touch : part.touches)
+            tool.unpressed_turn += torsion_ * part.swung.cross(touch.drag);
 }
 
 }  // namespace palpate::haptics

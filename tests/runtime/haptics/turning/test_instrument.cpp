@@ -168,6 +168,18 @@ TEST(Instrument, bone_holds_it_as_it_is) {
     EXPECT_NEAR(force_of(turned).z(), coupling * 2, 0.01);
 }
 
+// It lies there on more walls than a tick solves.
+TEST(Instrument, thrown_on_a_thin_sheet_has_no_sphere_in_it_in_any_tick) {
+    double deepest = 0;
+    throw_on_sheet("continuous", [&](const HapticModel& model, const TickResult& result) {
+        const Quaterniond tool = quaternion_of(result.tool_orientation);
+        for (const auto& [place, radius] : model.tool_spheres())
+            deepest = std::max(deepest, radius - (tool_of(result) + tool * place).z());
+        ASSERT_EQ(result.status & ~std::uint32_t{contact_unsettled}, 0U);
+    });
+    EXPECT_LT(deepest, 0.005);
+}
+
 // Where the device has it, it is deep in both blocks.
 TEST(Instrument, in_a_slot_turns_as_far_as_the_slot_lets_it) {
     Case c;
