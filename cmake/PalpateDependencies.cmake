@@ -100,6 +100,15 @@ if(PALPATE_TESTS)
         set(palpate_data_default "${PROJECT_SOURCE_DIR}/../shared/data")
     endif()
     set(PALPATE_DATA "${palpate_data_default}" CACHE PATH "Real volumes for tests; tests that need them are skipped where they are absent")
+    # What every test sees. ctest reads it: gtest_discover_tests() hands on the first variable of several alone.
     # One thread of linear algebra each but where a test says otherwise: there are as many tests at once as cores.
-    set(PALPATE_TEST_ENVIRONMENT "PALPATE_THREADS=1;OPENBLAS_NUM_THREADS=1;PALPATE_DATA=${PALPATE_DATA};PALPATE_BIN=${CMAKE_BINARY_DIR}/bin;PALPATE_SOURCE=${PROJECT_SOURCE_DIR};PALPATE_BUILD=${CMAKE_BINARY_DIR}")
+    file(CONFIGURE OUTPUT test_environment.cmake CONTENT [[
+set(ENV{PALPATE_THREADS} 1)
+set(ENV{OPENBLAS_NUM_THREADS} 1)
+set(ENV{PALPATE_DATA} "@PALPATE_DATA@")
+set(ENV{PALPATE_BIN} "@CMAKE_BINARY_DIR@/bin")
+set(ENV{PALPATE_SOURCE} "@PROJECT_SOURCE_DIR@")
+set(ENV{PALPATE_BUILD} "@CMAKE_BINARY_DIR@")
+]] @ONLY)
+    set_property(DIRECTORY "${PROJECT_SOURCE_DIR}" APPEND PROPERTY TEST_INCLUDE_FILES "${CMAKE_BINARY_DIR}/test_environment.cmake")
 endif()

@@ -146,7 +146,7 @@ function(palpate_executable name)
 endfunction()
 
 # palpate_test(<room> SOURCES ... LINKS ... [LABEL unit|realtime|slow|...] [PRECOMPILED set] [THREADS]): GoogleTest cases,
-# each a ctest named <room>.<Suite>.<case>. PALPATE_DATA and PALPATE_BIN reach the test through its environment. THREADS:
+# each a ctest named <room>.<Suite>.<case>, in the environment that PalpateDependencies.cmake sets. THREADS:
 # more than one runs in it, so ThreadSanitizer has something to find; its preset has these alone, target `thread_tests`; target
 # `unit_tests` is all of them. PALPATE_TESTED_SANITIZED: in this folder and those below, preset asan has them too.
 add_custom_target(thread_tests)
@@ -190,8 +190,7 @@ function(palpate_test room)
         set(alone RUN_SERIAL TRUE)
     endif()
     gtest_discover_tests(${target} TEST_PREFIX "${room}." DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
-        PROPERTIES LABELS ${arg_LABEL} TIMEOUT ${arg_TIMEOUT} ${alone}
-        ENVIRONMENT "${PALPATE_TEST_ENVIRONMENT}")
+        PROPERTIES LABELS ${arg_LABEL} TIMEOUT ${arg_TIMEOUT} ${alone})
 endfunction()
 
 # palpate_command_test(<file.py> [LABEL ...]): a Python unittest that drives the executables in PALPATE_BIN.
@@ -210,5 +209,5 @@ function(palpate_command_test file)
     # unittest's closing line: nothing failed and something was skipped. COST: what may take longest begins first, so
     # that no core idles at the end.
     set_tests_properties(commands.${name} PROPERTIES LABELS ${arg_LABEL} TIMEOUT ${arg_TIMEOUT} COST ${arg_TIMEOUT}
-        ENVIRONMENT "${PALPATE_TEST_ENVIRONMENT}" SKIP_REGULAR_EXPRESSION "OK \\(skipped=")
+        SKIP_REGULAR_EXPRESSION "OK \\(skipped=")
 endfunction()
