@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <gtest/gtest.h>
 #include <iostream>
 #include <random>
@@ -12,6 +10,7 @@
 #include "formats/model/closure.hpp"
 #include "runtime/collision/field/distance_field.hpp"
 #include "tests/runtime/collision/collision_scene.hpp"
+#include "tests/tools/real_data.hpp"
 #include "tools/meshing/files/imported_mesh.hpp"
 #include "tools/meshing/files/mesh_files.hpp"
 #include "tools/obb/build_obb_tree.hpp"
@@ -27,12 +26,6 @@ constexpr double rounding = 1e-9;
 
 class RealField : public testing::Test {
   protected:
-    // False where the data is absent.
-    bool find(const char* file) {
-        const char* data = std::getenv("PALPATE_DATA");
-        path_ = std::filesystem::path(data ? data : "") / file;
-        return std::filesystem::exists(path_);
-    }
     DistanceField build(double voxel, double band) {
         surface_.emplace(mesh_, obb::build_obb_tree(mesh_), "surface");
         const auto start = std::chrono::steady_clock::now();
@@ -48,7 +41,6 @@ class RealField : public testing::Test {
     }
     double unsigned_distance(const Vector3d& p) { return surface_->closest_point(p, 1e6)->distance; }
 
-    std::filesystem::path path_;
     TriangleMesh mesh_;
     std::optional<CollisionSurface> surface_;
     std::mt19937 generator_{23};
@@ -56,8 +48,8 @@ class RealField : public testing::Test {
 
 // The bench's skull has holes, about which a side has no meaning; the distance has.
 TEST_F(RealField, of_a_skull_has_its_distance_at_every_sample_and_is_clear_everywhere) {
-    if (!find("bench_skull/skull.vtp")) GTEST_SKIP() << "PALPATE_DATA: bench_skull is absent";
-    mesh_ = meshing::read_surface(path_);
+    REQUIRE_REAL_DATA(path, "bench_skull/skull.vtp");
+    mesh_ = meshing::read_surface(path);
     const DistanceField field = build(1, 3);
     for (int i = 0; i < 200000; ++i) {
         const Vector3d p = near_the_surface(5);
@@ -71,8 +63,8 @@ TEST_F(RealField, of_a_skull_has_its_distance_at_every_sample_and_is_clear_every
 }
 
 TEST_F(RealField, of_a_liver_is_within_its_error_and_has_its_side) {
-    if (!find("mesh_sofa/liver.obj")) GTEST_SKIP() << "PALPATE_DATA: mesh_sofa is absent";
-    mesh_ = meshing::read_imported_surface(path_, {}, {});
+    REQUIRE_REAL_DATA(path, "mesh_sofa/liver.obj");
+    mesh_ = meshing::read_imported_surface(path, {}, {});
     const DistanceField field = build(0.05, 0.3);  // the file's unit is a centimetre or so
     for (int i = 0; i < 10000; ++i) {
         const Vector3d p = near_the_surface(0.5);

@@ -7,7 +7,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <gtest/gtest.h>
 #include <iterator>
@@ -15,6 +14,7 @@
 #include <vector>
 
 #include "runtime/collision/collision_surface.hpp"
+#include "tests/tools/real_data.hpp"
 #include "tools/imaging/files/image_files.hpp"
 #include "tools/meshing/files/imported_mesh.hpp"
 #include "tools/meshing/files/mesh_files.hpp"
@@ -75,10 +75,7 @@ const NamedSurface surfaces[]{
 class RealSurface : public testing::TestWithParam<NamedSurface> {
   protected:
     void SetUp() override {
-        const char* data = std::getenv("PALPATE_DATA");
-        const auto path = std::filesystem::path(data ? data : "") / GetParam().file;
-        if (!std::filesystem::exists(path))
-            GTEST_SKIP() << "PALPATE_DATA: " << GetParam().file << " is absent";
+        REQUIRE_REAL_DATA(path, GetParam().file);
         const TriangleMesh mesh = GetParam().read(path);
         surface_.emplace(mesh, obb::build_obb_tree(mesh), GetParam().name);
         for (std::int32_t slot = 0; slot < surface_->triangle_count(); ++slot) {

@@ -5,7 +5,7 @@
 #include "formats/model/errors.hpp"
 #include "tests/formats/scratch.hpp"
 #include "tests/tools/imaging/hand_written_images.hpp"
-#include "tests/tools/imaging/real_data.hpp"
+#include "tests/tools/real_data.hpp"
 #include "tools/imaging/files/image_files.hpp"
 #include "tools/imaging/files/label_names.hpp"
 #include "tools/imaging/recipes/segmentation.hpp"

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
-#include "tests/tools/imaging/real_data.hpp"
 #include "tests/tools/imaging/run_recipes.hpp"
+#include "tests/tools/real_data.hpp"
 #include "tools/imaging/files/image_files.hpp"
 #include "tools/imaging/recipes/segmentation.hpp"
 #include "tools/imaging/voxels/label_statistics.hpp"

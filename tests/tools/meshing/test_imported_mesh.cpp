@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstdlib>
 #include <cstring>
 #include <fmt/format.h>
 #include <fstream>
@@ -23,6 +22,7 @@
 #include <vtkXMLUnstructuredGridWriter.h>
 
 #include "tests/tools/meshing/imported_files.hpp"
+#include "tests/tools/real_data.hpp"
 #include "tools/meshing/files/imported_mesh.hpp"
 #include "tools/meshing/files/mesh_files.hpp"
 #include "tools/meshing/measures/quality.hpp"
@@ -478,9 +478,7 @@ TEST_F(ImportedMesh, labels_give_regions_their_values_and_the_surface_its_neighb
 }
 
 TEST_F(ImportedMesh, real_liver_of_gmsh_1_and_its_surface_are_sound) {
-    const char* data = std::getenv("PALPATE_DATA");
-    const fs::path folder = fs::path(data ? data : "") / "mesh_sofa";
-    if (!data || !fs::is_directory(folder)) GTEST_SKIP() << "PALPATE_DATA: mesh_sofa is absent";
+    REQUIRE_REAL_DATA(folder, "mesh_sofa");
     ImportedMeshOptions options;
     options.unit = "cm";
     const TetMesh mesh = read_imported_tetrahedra(folder / "liver.msh", options);

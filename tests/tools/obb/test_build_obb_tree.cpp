@@ -2,9 +2,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <gtest/gtest.h>
 #include <limits>
 #include <numbers>
@@ -12,6 +10,7 @@
 #include <random>
 
 #include "formats/model/errors.hpp"
+#include "tests/tools/real_data.hpp"
 #include "tools/meshing/files/mesh_files.hpp"
 #include "tools/obb/build_obb_tree.hpp"
 
@@ -186,9 +185,7 @@ TEST(ObbTree, invalid_vertices_and_options_are_refused) {
 }
 
 TEST(ObbTree, skull_of_a_real_head_is_enclosed) {
-    const char* data = std::getenv("PALPATE_DATA");
-    const std::filesystem::path path = std::filesystem::path(data ? data : "") / "bench_skull/skull.vtp";
-    if (!std::filesystem::exists(path)) GTEST_SKIP() << "PALPATE_DATA: bench_skull is absent";
+    REQUIRE_REAL_DATA(path, "bench_skull/skull.vtp");
     const TriangleMesh skull = meshing::read_surface(path);
     const ObbTree tree = build_obb_tree(skull);
     EXPECT_LE(depth(tree), 40U);
