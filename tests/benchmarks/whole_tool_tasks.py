@@ -1,0 +1,200 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whole tools at four tasks: a peg into a hole, a peg along a slot, a scope through a nose, a burr on a skull.
+
+    whole_tool_tasks.py HEAD [-o whole_tool_tasks.svg]     (HEAD: the demo's nasopharynx.vtkhdf; PALPATE_BIN has the programs)
+
+Force and torque on the device with each way to feel a whole tool, drawn over time, and a table. Peg, hole and slot are square, with 0.2 and
+0.3 mm to spare at each side and a bevelled mouth; the hand is off by more than that, in place and in turn. The scope is led through the places
+of the demo's exercise `scope` and keeps the direction from the last to the first; walls of tissue are felt by `continuous` alone. Depth: of points
+of the peg's surface below that of the block, at the worst, by distances to its planes. On a virtual clock; the ticks are this machine's.
+"""
+import argparse
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import tomllib
+
+import h5py
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "tests/benchmarks"), str(ROOT / "sample_data")]
+from plot_condensation import STYLE  # noqa: E402
+from tools import TOOLS, lathe, stl  # noqa: E402
+
+PROGRAMS = pathlib.Path(os.environ.get("PALPATE_BIN", "build/release/bin"))
+SCHEMES = {"continuous": "#3d84d6", "shell": "#d8732a", "solid": "#2f9e77"}
+BEVEL, DEEP = 1.0, 25.0  # of the pocket, mm
+POINTS = 300  # of a curve
+UNSOLVED, UNSETTLED = 1 << 3, 1 << 7  # of a tick's status
+ROWS = """| task | scheme | force at most, N | its largest step in a tick | torque at most, N mm | its largest step | deepest, mm | unsolved / unsettled, of ticks in contact | p50 / p99 / p99.9 in contact, µs |
+|---|---|--:|--:|--:|--:|--:|--:|--:|"""
+
+
+def pocket(half_x, half_y):
+    """A block, its top at z = 0, with a rectangular pocket whose mouth is bevelled."""
+    def ring(x, y, z):
+        return [(-x, -y, z), (x, -y, z), (x, y, z), (-x, y, z)]
+    rings = [ring(half_x + 15, half_y + 15, -DEEP - 10), ring(half_x + 15, half_y + 15, 0), ring(half_x + BEVEL, half_y + BEVEL, 0),
+             ring(half_x, half_y, -BEVEL), ring(half_x, half_y, -DEEP)]
+    return lathe((0, 0, -DEEP - 10), rings, (0, 0, -DEEP))
+
+
+def depth_in_block(points, half_x, half_y):
+    """How far points are below the surface of that block, mm; above it negative. Near edges it is less than that."""
+    x, y, z = np.abs(points[:, 0]), np.abs(points[:, 1]), points[:, 2]
+    beyond = [np.minimum(at - half, (at - half - BEVEL - z) / np.sqrt(2)) for at, half in ((x, half_x), (y, half_y))]
+    return np.minimum(np.maximum.reduce([*beyond, -DEEP - z]), -z)
+
+
+def turn(axis, degrees):
+    """Quaternions x, y, z, w."""
+    half = np.radians(np.asarray(degrees)) / 2
+    return np.column_stack([*(component * np.sin(half) for component in axis), np.cos(half)])
+
+
+def after(second, first):
+    """The quaternions of turning by `first` and then by `second`."""
+    u, v, a, b = second[:, :3], first[:, :3], second[:, 3:], first[:, 3:]
+    return np.hstack([a * v + b * u + np.cross(u, v), a * b - np.sum(u * v, axis=1, keepdims=True)])
+
+
+def matrix_of(quaternion):
+    x, y, z, w = quaternion
+    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                     [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                     [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
+
+
+def along(knots, values):
+    """Straight between values at knots (s), every millisecond."""
+    t = np.arange(0, knots[-1] + 5e-4, 1e-3)
+    return t, np.column_stack([np.interp(t, knots, column) for column in np.asarray(values, float).T])
+
+
+def peg_in_hole():
+    # Aside and tilted, down, turned to either side, and up.
+    t, pose = along([0, 2, 2.3, 2.8, 3.8, 4.3, 6.3], [[8, 0], [-20, 0], [-20, 0], [-20, 8], [-20, -8], [-20, 0], [8, 0]])
+    place = np.column_stack([np.full(len(t), 0.6), np.full(len(t), -0.3), pose[:, 0]])
+    return np.column_stack([t, place, after(turn((0, 1, 0), np.full(len(t), 3.0)), turn((0, 0, 1), pose[:, 1]))])
+
+
+def peg_in_slot():
+    # Down, to and fro along x, swaying across by more than there is room, and turning.
+    t, pose = along([0, 1, 3, 5, 6], [[8, 0], [-15, 0], [-15, 20], [-15, -20], [8, 0]])
+    sway = np.sin(2 * np.pi * 1.5 * np.clip(t - 1, 0, 4))
+    place = np.column_stack([pose[:, 1], 3 * sway, pose[:, 0]])
+    return np.column_stack([t, place, turn((0, 0, 1), 15 * np.sin(2 * np.pi * np.clip(t - 1, 0, 4)))])
+
+
+def scope_through_nose():
+    exercise = next(each for each in tomllib.loads((ROOT / "pipelines/exercises/nasopharynx.toml").read_text())["exercise"]
+                    if each["name"] == "scope")
+    places = np.array(exercise["places_mm"])
+    shaft = (places[0] - places[-1]) / np.linalg.norm(places[0] - places[-1])
+    places = np.vstack([places[0] + 40 * shaft, places])
+    knots = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(places, axis=0), axis=1)) / 20])  # 20 mm/s
+    t, place = along([*knots, knots[-1] + 0.5], [*places, places[-1]])
+    axis = np.cross([0, 0, 1], shaft)
+    held = turn(axis / np.linalg.norm(axis), np.full(len(t), np.degrees(np.arccos(shaft[2]))))
+    return np.column_stack([t, place, held])
+
+
+def run(asset, tool, scheme, folder, *script):
+    """Of each tick force, torque, where the tool is, status, contacts and how long it took."""
+    record = folder / "run.h5"
+    done = subprocess.run([PROGRAMS / "palpate-touch", asset, "--instrument", tool, "--scheme", scheme, "--virtual-clock", "--record", record,
+                           "--force", "--quiet", *map(str, script)], capture_output=True, text=True, timeout=1200)
+    if done.returncode:
+        sys.exit(f"whole_tool_tasks.py: {done.stderr.strip()}")
+    with h5py.File(record) as file:
+        count = int(file["count/ticks"][0])
+        return {name: file["ticks"][name][:count] for name in ("force", "torque", "tool_position", "tool_orientation", "status", "contact_count",
+                                                          "tick_ns")}
+
+
+def samples_of(triangles, apart=0.5):
+    """Points of triangles, no farther than that from the next, mm."""
+    points = []
+    for a, b, c in np.asarray(triangles, float):
+        count = int(np.ceil(max(np.linalg.norm(b - a), np.linalg.norm(c - a), np.linalg.norm(c - b)) / apart))
+        i, j = np.meshgrid(*[np.arange(count + 1)] * 2)
+        u, v = i[i + j <= count] / count, j[i + j <= count] / count
+        points.append(a + np.outer(u, b - a) + np.outer(v, c - a))
+    return np.unique(np.vstack(points), axis=0)
+
+
+def deepest_in_block(ticks, points, half_x, half_y, every=10):
+    return max(depth_in_block(points @ matrix_of(q).T + at, half_x, half_y).max()
+               for at, q in zip(ticks["tool_position"][::every], ticks["tool_orientation"][::every]))
+
+
+def row(task, scheme, ticks, deepest):
+    force, torque = (np.linalg.norm(ticks[name], axis=1) for name in ("force", "torque"))
+    step = [np.linalg.norm(np.diff(ticks[name], axis=0), axis=1).max() for name in ("force", "torque")]
+    touches = ticks["contact_count"] > 0
+    told = " / ".join(str(np.count_nonzero(ticks["status"][touches] & bit)) for bit in (UNSOLVED, UNSETTLED))
+    spent = " / ".join(f"{value / 1000:.0f}" for value in np.percentile(ticks["tick_ns"][touches], [50, 99, 99.9]))
+    return (f"| {task} | `{scheme}` | {force.max():.2f} | {step[0] / force.max():.1%} | {torque.max():.1f} | {step[1] / torque.max():.1%} | "
+            f"{deepest} | {told} of {np.count_nonzero(touches)} | {spent} |")
+
+
+def draw(axes, scheme, ticks):
+    seconds = len(ticks["force"]) / 1000
+    edges = np.linspace(0, len(ticks["force"]), POINTS + 1).astype(int)
+    for axis, name in zip(axes, ("force", "torque")):
+        size = np.linalg.norm(ticks[name], axis=1)
+        most = [size[a:b].max() for a, b in zip(edges, edges[1:]) if b > a]
+        axis.plot(np.linspace(0, seconds, len(most)), most, color=SCHEMES[scheme], lw=1.2, label=scheme)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("head", type=pathlib.Path)
+    parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("whole_tool_tasks.svg"))
+    arguments = parser.parse_args()
+    print(ROWS, flush=True)
+    with tempfile.TemporaryDirectory() as name, matplotlib.rc_context(STYLE):
+        folder = pathlib.Path(name)
+        for tool in ("peg", "endoscope", "drill"):
+            (folder / f"{tool}.stl").write_bytes(stl(tool, TOOLS[tool]()))
+
+        def block(of, half_x, half_y):
+            (folder / f"{of}.stl").write_bytes(stl(of, pocket(half_x, half_y)))
+            for command in (["surface", "--surface-file", folder / f"{of}.stl", "--min-triangles", "1", "-o", folder / f"{of}.vtp"],
+                            ["pack", "--name", of, "--rigid", f"{of}={folder / of}.vtp", "-o", folder / f"{of}.vtkhdf"]):
+                subprocess.run([PROGRAMS / "palpate", *command, "--quiet"], check=True)
+            return folder / f"{of}.vtkhdf"
+
+        def script(of, rows):
+            np.savetxt(folder / f"{of}.txt", rows, fmt="%.9g")
+            return "--script", folder / f"{of}.txt"
+
+        # title, asset, tool, script, half widths of the pocket
+        tasks = [("peg in a hole", block("hole", 5.2, 5.2), "peg", script("peg_in_hole", peg_in_hole()), (5.2, 5.2)),
+                 ("peg along a slot", block("slot", 30, 5.3), "peg", script("peg_in_slot", peg_in_slot()), (30, 5.3)),
+                 ("scope through a nose", arguments.head, "endoscope", script("scope", scope_through_nose()), None),
+                 ("burr on a skull", arguments.head, "drill", ("--body", "skull", "--script", "slide", "--seconds", "4"), None)]
+        figure = Figure(figsize=(9, 2.1 * len(tasks)), layout="constrained")
+        grid = figure.subplots(len(tasks), 2)
+        points = samples_of(TOOLS["peg"]())
+        for axes, (title, asset, tool, hand, halves) in zip(grid, tasks):
+            for scheme in SCHEMES:
+                ticks = run(asset, folder / f"{tool}.stl", scheme, folder, *hand)
+                print(row(title, scheme, ticks, f"{deepest_in_block(ticks, points, *halves):.3f}" if halves else "–"), flush=True)
+                draw(axes, scheme, ticks)
+            axes[0].set_title(f"{title}: force, N")
+            axes[1].set_title("torque, N mm")
+        for axis in grid[-1]:
+            axis.set_xlabel("s")
+        grid[0][0].legend(frameon=False)
+        figure.savefig(arguments.output, transparent=True, metadata={"Date": None})
+
+
+if __name__ == "__main__":
+    main()
