@@ -40,6 +40,8 @@ std::array<double, 3> shaft_of(const TouchOptions& options, const TouchPlan& pla
     return {along[0], along[1], along[2]};
 }
 
+constexpr double random_turn = 0.5;  // rad: what a wrist does while an instrument works at one place
+
 // Deeper than hands press organs: perhaps a unit was mistaken.
 void question_depth(double depth) {
     constexpr double most = 50;  // mm
@@ -78,7 +80,8 @@ TouchPlan plan_of(const TouchOptions& options, const DeviceKind& device, const C
     const ScriptSettings settings{.tool_radius = model.contact_radius(),
                                   .depth = options.depth,
                                   .speed = options.speed,
-                                  .seconds = options.seconds};
+                                  .seconds = options.seconds,
+                                  .turn = patient_case.tool && options.shaft.empty() ? random_turn : 0};
     if (!options.column)
         return {.path = made_to_measure_path(options.script, target.place, settings, options.seed),
                 .target = target,

@@ -70,6 +70,7 @@ struct ScriptSettings {
     double tremor = 0.3;      ///< mm to either side, along each axis, of a hand that trembles
     double slide_length = 4;  ///< mm to either side
     double seconds = 10;      ///< s; repeated until this time
+    double turn = 0;  ///< rad by which a hand at random tilts and turns a tool at most; 0: it does not
 };
 
 /// Presses at the point along its normal and leaves, over and over. Starts clearance (at most 5 mm) outside.

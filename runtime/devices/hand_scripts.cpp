@@ -12,22 +12,31 @@
 namespace palpate::devices {
 namespace {
 
+using Eigen::AngleAxisd;
+using Eigen::Quaterniond;
 using Eigen::Vector3d;
+
+constexpr double turning_speed = 1.5;  // rad/s, at the most
 
 // Appends straight motions.
 class Stroke {
   public:
-    Stroke(const Vector3d& start, double speed) : keys_{{0, start}}, speed_(speed) {}
+    Stroke(const Vector3d& start, double speed, const Quaterniond& orientation = {0, 0, 0, 0})
+        : keys_{{0, start, true, orientation}}, speed_(speed) {}
 
     void move_to(const Vector3d& p) { move_to(p, speed_); }
-    void move_to(const Vector3d& p, double speed) {
-        const double length = (p - keys_.back().position).norm();
-        if (length > 0) keys_.push_back({keys_.back().time + length / speed, p});
+    void move_to(const Vector3d& p, double speed) { move_to(p, speed, keys_.back().orientation); }
+    void move_to(const Vector3d& p, double speed, const Quaterniond& orientation) {
+        const HandPath::Key& from = keys_.back();
+        const double turn =
+                         orientation.coeffs().isZero(0) ? 0 : from.orientation.angularDistance(orientation),
+                     took = std::max((p - from.position).norm() / speed, turn / turning_speed);
+        if (took > 0) keys_.push_back({from.time + took, p, true, orientation});
     }
     void hold(double seconds) {
-        if (seconds > 0) keys_.push_back({keys_.back().time + seconds, keys_.back().position});
+        if (seconds > 0) be_at(keys_.back().time + seconds, keys_.back().position);
     }
-    void be_at(double time, const Vector3d& p) { keys_.push_back({time, p}); }
+    void be_at(double time, const Vector3d& p) { keys_.push_back({time, p, true, keys_.back().orientation}); }
     // Here and until the next motion ends.
     void let_go() { keys_.back().holds = false; }
     double time() const { return keys_.back().time; }
@@ -105,14 +114,25 @@ HandPath random_path(const TouchPoint& target, const ScriptSettings& settings, s
                         aside * (std::cos(angle) * target.tangent + std::sin(angle) * bitangent));
     };
     const auto some_speed = [&] { return settings.speed * uniform(random, 0.1, 1); };
-    Stroke stroke(outside, settings.speed);
+    const Quaterniond upright = settings.turn > 0
+                                    ? Quaterniond::FromTwoVectors(Vector3d::UnitZ(), target.normal)
+                                    : Quaterniond(0, 0, 0, 0);
+    const auto turned = [&] {
+        if (settings.turn == 0) return upright;
+        const double angle = uniform(random, 0, 2 * std::numbers::pi),
+                     tilt = uniform(random, 0, settings.turn),
+                     roll = uniform(random, -settings.turn, settings.turn);
+        const Vector3d axis = std::cos(angle) * target.tangent + std::sin(angle) * bitangent;
+        return Quaterniond(AngleAxisd(tilt, axis) * upright * AngleAxisd(roll, Vector3d::UnitZ()));
+    };
+    Stroke stroke(outside, settings.speed, upright);
     do {
         const auto places = static_cast<int>(uniform(random, 1, 5));  // a push, and up to three slides
         for (int place = 0; place < places; ++place) {
-            stroke.move_to(somewhere(), some_speed());
+            stroke.move_to(somewhere(), some_speed(), turned());
             stroke.hold(uniform(random, 0, settings.hold_s));
         }
-        stroke.move_to(outside, some_speed());
+        stroke.move_to(outside, some_speed(), upright);
     } while (stroke.time() < settings.seconds);
     return stroke.path();
 }

@@ -114,7 +114,8 @@ void ContinuousContact::add_rigid_contacts(std::size_t t, TickResult& result) no
 // What is in equilibrium is no farther from the device than a tool would be if nothing gave way, for there
 // its energy is higher; and what friction holds is no farther than it was. In a narrow wedge, where the
 // planes of contact push far beyond the surfaces that they stand for, a solution may be. Other tools may push
-// tissue against this one: their energy counts too.
+// tissue against this one: their energy counts too. A tool that turns may be held where its spheres by
+// themselves would not be, as behind a ridge that they slid over, but no farther than it was.
 bool ContinuousContact::within_reach(std::size_t t, const Vector3d& force) const noexcept {
     double reach = 0, held = 0;
     for (std::size_t other = 0; other < tools_.size(); ++other) {
@@ -125,6 +126,7 @@ bool ContinuousContact::within_reach(std::size_t t, const Vector3d& force) const
         held = std::max(held, equilibrium_.held_reach(other));
     }
     if (friction_.any()) reach = std::max(reach, held);
+    if (torsion_ > 0) reach = std::max(reach, tools_[t].off_before + tools_[t].moved);
     const double room = torsion_ > 0 ? room_to_follow : room_for_rounding;
     return force.norm() <= coupling_ * (reach + room);
 }

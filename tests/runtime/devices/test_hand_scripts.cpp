@@ -66,6 +66,26 @@ TEST(RandomPath, stays_within_depth_length_and_speed_and_leaves_at_the_end) {
     EXPECT_EQ(path.at(99), path.at(0));
 }
 
+TEST(RandomPath, turns_a_tool_as_far_as_it_is_asked_to_and_no_faster_than_a_wrist) {
+    const ScriptSettings settings{.speed = 50, .hold_s = 0.1, .seconds = 60, .turn = 0.5};
+    const HandPath path = random_path(target, settings, 5);
+    double most_tilt = 0, most_turn = 0, fastest = 0;
+    for (double t = 0; t < path.duration(); t += 1e-3) {
+        const Eigen::Quaterniond q = path.orientation_at(t);
+        ASSERT_NEAR(q.norm(), 1, 1e-12);
+        most_tilt = std::max(most_tilt, std::acos(std::min(1.0, (q * Vector3d::UnitZ()).dot(target.normal))));
+        most_turn = std::max(most_turn, q.angularDistance(path.orientation_at(0)));
+        fastest = std::max(fastest, q.angularDistance(path.orientation_at(t + 1e-3)) * 1e3);
+    }
+    EXPECT_LE(most_tilt, 0.5 + 1e-9);
+    EXPECT_GT(most_tilt, 0.45);
+    EXPECT_GT(most_turn, 0.55);  // about its shaft too
+    EXPECT_LE(fastest, 1.5 + 1e-6);
+    EXPECT_GT(fastest, 1.4);
+    EXPECT_EQ(path.orientation_at(0) * Vector3d::UnitZ(), target.normal);
+    EXPECT_EQ(random_path(target, {}, 5).orientation_at(1).norm(), 0);
+}
+
 TEST(RandomPath, the_seed_decides) {
     const HandPath a = random_path(target, {}, 1), b = random_path(target, {}, 1),
                    c = random_path(target, {}, 2);

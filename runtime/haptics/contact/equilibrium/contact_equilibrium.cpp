@@ -296,7 +296,7 @@ void ContactEquilibrium::iterate(int most) noexcept {
 }
 
 // A tool that nothing presses is clear of the tissue on which it would rest if nothing gave way, or other
-// tools have moved that out of its way. Otherwise it has gone through.
+// tools have moved that out of its way, or bone holds one that turns off it. Otherwise it has gone through.
 bool ContactEquilibrium::found(std::size_t t) const noexcept {
     const Tool& tool = tools_[t];
     if (!tool.outside || tool.press != Vector3d::Zero()) return tool.outside;
@@ -311,7 +311,9 @@ bool ContactEquilibrium::found(std::size_t t) const noexcept {
             for (std::size_t i = 0; i < 3; ++i)
                 foot += touch.foot.barycentric[static_cast<Index>(i)] * corners[i];
             const double reach = first_reach + patches_[soft].body().cut_off(touch.foot);
-            if (touch.normal.dot(foot - part.sphere.device) + part.radius > reach) return false;
+            const Vector3d at =
+                turns() ? Vector3d(part.sphere.device + off_of(tool, part)) : part.sphere.device;
+            if (touch.normal.dot(foot - at) + part.radius > reach) return false;
         }
     }
     return true;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // An instrument with a surface of its own in continuous contact: spheres that fill it feel tissue and bone.
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
@@ -7,6 +8,7 @@
 #include "formats/model/contact/compliance_blocks.hpp"
 #include "runtime/haptics/whole_tool/rod.hpp"
 #include "tests/runtime/allocation_trap.hpp"
+#include "tests/runtime/collision/collision_scene.hpp"
 #include "tests/runtime/haptics/turning/turned_tool.hpp"
 
 namespace palpate {
@@ -47,6 +49,22 @@ Vector3d moment_of_spheres(const HapticModel& model, const TickResult& result) {
         moment += (quaternion_of(result.tool_orientation) * place).cross(force_on_tool(contact));
     }
     return moment;
+}
+
+// How far a sphere of the tool is in a rigid body, mm; of depths up to 5 mm.
+double deepest_sphere(const HapticModel& model, const TickResult& result) {
+    double deepest = 0;
+    for (const auto& [place, radius] : model.tool_spheres()) {
+        const Vector3d at = tool_of(result) + quaternion_of(result.tool_orientation) * place;
+        for (std::size_t body = 0; body < model.rigid_count(); ++body) {
+            const auto near = model.surface(body).closest_point(at, 5);
+            if (!near) continue;
+            const double outside =
+                model.surface(body).is_outside(at, *near) ? near->distance : -near->distance;
+            deepest = std::max(deepest, radius - outside);
+        }
+    }
+    return deepest;
 }
 
 TEST(Instrument, that_is_a_ball_is_felt_as_the_cases_own) {
@@ -168,6 +186,32 @@ TEST(Instrument, bone_holds_it_as_it_is) {
     EXPECT_NEAR(force_of(turned).z(), coupling * 2, 0.01);
 }
 
+// Its spheres by themselves would rest elsewhere among the spikes than the tool does, on their far sides too.
+TEST(Instrument, among_spikes_of_bone_is_held_outside_and_solved_in_every_tick) {
+    Case c = plate_and_bar();
+    c.rigid_bodies[0] = rigid("spikes", spiky_ball(3));
+    const double top =
+        std::ranges::max(c.rigid_bodies[0].surface.vertices, {}, [](const Vector3d& v) { return v.z(); }).z();
+    HapticModel model(c);
+    TickResult result{};
+    double deepest = 0;
+    int touching = 0;
+    for (int tick = 0; tick < 8000; ++tick) {
+        const double s = 1e-3 * tick;
+        const Vector3d at(6 * std::sin(1.3 * s), 5 * std::sin(1.7 * s + 1),
+                          top + 1 - 4 * (1 - std::cos(2.1 * s)));
+        const Quaterniond turned = about(Vector3d::UnitX(), 25 * std::sin(1.1 * s)) *
+                                   about(Vector3d::UnitY(), 25 * std::sin(0.9 * s)) *
+                                   about(Vector3d::UnitZ(), 60 * std::sin(0.7 * s));
+        model.tick(turned_at(at, turned), result);
+        touching += result.contact_count > 0;
+        ASSERT_EQ(result.status & ~std::uint32_t{contact_unsettled}, 0U) << tick;
+        if (tick % 10 == 0) deepest = std::max(deepest, deepest_sphere(model, result));
+    }
+    EXPECT_GT(touching, 3000);
+    EXPECT_LT(deepest, 0.01);
+}
+
 // It lies there on more walls than a tick solves.
 TEST(Instrument, thrown_on_a_thin_sheet_has_no_sphere_in_it_in_any_tick) {
     double deepest = 0;
@@ -195,18 +239,7 @@ TEST(Instrument, in_a_slot_turns_as_far_as_the_slot_lets_it) {
         const double down = std::min(tick / 1500.0, 1.0), turned = std::max(0.0, tick / 1500.0 - 1);
         model.tick(turned_at({0, 0, 5 - 20 * down}, about(Vector3d::UnitY(), 30 * turned)), result);
         ASSERT_EQ(result.status & ~std::uint32_t{contact_unsettled}, 0U) << tick;
-        if (tick % 10 > 0) continue;
-        for (const auto& [place, radius] : model.tool_spheres()) {
-            const Vector3d at =
-                vector_of(result.tool_position) + quaternion_of(result.tool_orientation) * place;
-            for (std::size_t body = 0; body < 2; ++body) {
-                const auto near = model.surface(body).closest_point(at, 5);
-                if (near && model.surface(body).is_outside(at, *near))
-                    deepest = std::max(deepest, radius - near->distance);
-                else if (near)
-                    deepest = std::max(deepest, radius + near->distance);
-            }
-        }
+        if (tick % 10 == 0) deepest = std::max(deepest, deepest_sphere(model, result));
     }
     EXPECT_LT(deepest, 0.01);
     // Corners of 1 mm around a middle that is 15 mm deep: the slot of 3 mm lets it turn by some 4 degrees.
