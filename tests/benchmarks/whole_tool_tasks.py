@@ -3,11 +3,16 @@
 """Whole tools at four tasks: a peg into a hole, a peg along a slot, a scope through a nose, a burr on a skull.
 
     whole_tool_tasks.py HEAD [-o whole_tool_tasks.svg]     (HEAD: the demo's nasopharynx.vtkhdf; PALPATE_BIN has the programs)
+    whole_tool_tasks.py HEAD --at-random SECONDS
 
 Force and torque on the device with each way to feel a whole tool, drawn over time, and a table. Peg, hole and slot are square, with 0.2 and
 0.3 mm to spare at each side and a bevelled mouth; the hand is off by more than that, in place and in turn. The scope is led through the places
 of the demo's exercise `scope` and keeps the direction from the last to the first; walls of tissue are felt by `continuous` alone. Depth: of points
 of the peg's surface below that of the block, at the worst, by distances to its planes. On a virtual clock; the ticks are this machine's.
+
+At random, three tools are pushed, slid and turned on the skull in the hand of a simulated Premium, with `continuous`. Energy: what the hand was
+given more than it gave from one free tick to the next, of what the springs held at most in between; of visits that held a twentieth of the
+most of any.
 """
 import argparse
 import os
@@ -34,6 +39,9 @@ POINTS = 300  # of a curve
 UNSOLVED, UNSETTLED = 1 << 3, 1 << 7  # of a tick's status
 ROWS = """| task | scheme | force at most, N | its largest step in a tick | torque at most, N mm | its largest step | deepest, mm | unsolved / unsettled, of ticks in contact | p50 / p99 / p99.9 in contact, µs |
 |---|---|--:|--:|--:|--:|--:|--:|--:|"""
+
+RANDOM_ROWS = """| tool | visits | force at most, N | its largest step in a tick | torque at most, N mm | a visit's gain, of what it held | of the most held | unsolved / unsettled |
+|---|--:|--:|--:|--:|--:|--:|--:|"""
 
 
 def pocket(half_x, half_y):
@@ -115,7 +123,7 @@ def run(asset, tool, scheme, folder, *script):
     with h5py.File(record) as file:
         count = int(file["count/ticks"][0])
         return {name: file["ticks"][name][:count] for name in ("force", "torque", "tool_position", "tool_orientation", "status", "contact_count",
-                                                          "tick_ns")}
+                                                          "tick_ns", "device_position", "orientation")}
 
 
 def samples_of(triangles, apart=0.5):
@@ -153,11 +161,42 @@ def draw(axes, scheme, ticks):
         axis.plot(np.linspace(0, seconds, len(most)), most, color=SCHEMES[scheme], lw=1.2, label=scheme)
 
 
+def gains(ticks, coupling=0.5, torsional=450.0):
+    """Of each visit: work on the hand, and what the springs (N/mm, N mm/rad) held at most, N mm."""
+    before, after_it = ticks["orientation"][:-1], ticks["orientation"][1:]
+    after_it = np.where(np.sum(before * after_it, axis=1, keepdims=True) < 0, -after_it, after_it)
+    turn = 2 * (before[:, 3:] * after_it[:, :3] - after_it[:, 3:] * before[:, :3] - np.cross(after_it[:, :3], before[:, :3]))
+    mean = {name: (ticks[name][1:] + ticks[name][:-1]) / 2 for name in ("force", "torque")}
+    work = np.sum(mean["force"] * np.diff(ticks["device_position"], axis=0) + mean["torque"] * turn, axis=1)
+    held = np.sum(ticks["force"] ** 2, axis=1) / (2 * coupling) + np.sum(ticks["torque"] ** 2, axis=1) / (2 * torsional)
+    free = np.flatnonzero(ticks["contact_count"] == 0)
+    return np.array([(work[i:j].sum(), held[i:j].max()) for i, j in zip(free, free[1:]) if j > i + 1])
+
+
+def at_random(head, seconds):
+    print(RANDOM_ROWS, flush=True)
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        for tool in ("probe", "endoscope", "drill"):
+            (folder / f"{tool}.stl").write_bytes(stl(tool, TOOLS[tool]()))
+            ticks = run(head, folder / f"{tool}.stl", "continuous", folder, "--body", "skull", "--device", "premium", "--script", "random",
+                        "--seconds", seconds, "--record-seconds", seconds)
+            visits = gains(ticks)
+            telling = visits[visits[:, 1] > visits[:, 1].max() / 20]
+            force, step = (np.linalg.norm(of, axis=1).max() for of in (ticks["force"], np.diff(ticks["force"], axis=0)))
+            print(f"| {tool} | {len(visits)} | {force:.2f} | {step:.2f} | {np.linalg.norm(ticks['torque'], axis=1).max():.2f} | "
+                  f"{np.max(telling[:, 0] / telling[:, 1]):.2%} | {visits[:, 0].max() / visits[:, 1].max():.2%} | "
+                  f"{np.count_nonzero(ticks['status'] & UNSOLVED)} / {np.count_nonzero(ticks['status'] & UNSETTLED)} |", flush=True)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("head", type=pathlib.Path)
     parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("whole_tool_tasks.svg"))
+    parser.add_argument("--at-random", type=float, metavar="SECONDS")
     arguments = parser.parse_args()
+    if arguments.at_random:
+        return at_random(arguments.head, arguments.at_random)
     print(ROWS, flush=True)
     with tempfile.TemporaryDirectory() as name, matplotlib.rc_context(STYLE):
         folder = pathlib.Path(name)
