@@ -23,7 +23,7 @@ ATTRIBUTES = {"file": {"multiple", "fileExtensions"}, "string": {"multiple"}, "i
               "boolean": set()}
 
 # What a command needs though no single one of it is required: a value, or "" for the input file.
-BEYOND_REQUIRED = {"palpate-import": {"output": "made.nrrd"}, "palpate-report": {"asset": ""},
+BEYOND_REQUIRED = {"palpate-doctor": {"seconds": "0.1"}, "palpate-import": {"output": "made.nrrd"}, "palpate-report": {"asset": ""},
                    "palpate-mesh": {"labels": "", "region": "none"}, "palpate-surface": {"labels": "", "label": "liver"},
                    "palpate-segment": {"labels": "", "structure": "liver: recipe=import"}}
 OUTPUTS = {"palpate-build": "made.vtkhdf", "palpate-init": "made.toml", "palpate-surface": "made.vtp", "palpate-segment": "made.seg.nrrd"}

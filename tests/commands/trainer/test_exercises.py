@@ -260,7 +260,10 @@ class Exercises(TrainerCase):
         kept = json.loads((self.attempts / "T-1" / attempt["file"]).read_text())
         self.assertEqual(kept["metrics"], attempt["metrics"])
         rows = (self.attempts / "T-1" / attempt["file"]).with_suffix(".csv").read_text().splitlines()
-        self.assertAlmostEqual(len(rows) / 100, attempt["metrics"]["time_s"], delta=0.2)
+        times = [float(row.split(",")[0]) for row in rows[1:]]  # a busy machine leaves some out
+        self.assertEqual(times, sorted(set(times)))
+        self.assertAlmostEqual(times[-1], attempt["metrics"]["time_s"], delta=0.2)
+        self.assertLessEqual(len(times), 100 * attempt["metrics"]["time_s"] + 1)
         statement = json.loads((self.attempts / "T-1" / "statements.jsonl").read_text())
         self.assertEqual(statement["actor"]["account"]["name"], "T-1")
         self.assertEqual(statement["verb"]["id"], "http://adlnet.gov/expapi/verbs/suspended")
