@@ -40,7 +40,7 @@ std::array<double, 3> shaft_of(const TouchOptions& options, const TouchPlan& pla
     return {along[0], along[1], along[2]};
 }
 
-constexpr double random_turn = 0.5;  // rad: what a wrist does while an instrument works at one place
+constexpr double random_turn = 0.5;  // rad, a choice
 
 // Deeper than hands press organs: perhaps a unit was mistaken.
 void question_depth(double depth) {

@@ -81,7 +81,8 @@ HandPath slide_path(const TouchPoint& target, const ScriptSettings& settings);
 
 /// Pushes at random places within slide_length of the point, as deep as `depth` at most and at a tenth of
 /// `speed` to the whole; holds, slides to others, and leaves; over and over until the time is over, ending
-/// outside. The same seed gives the same path.
+/// outside. With `turn` it tilts the tool's shaft from the normal and turns it about the shaft on the way, at
+/// 1.5 rad/s at the most, and holds it upright outside. The same seed gives the same path.
 HandPath random_path(const TouchPoint& target, const ScriptSettings& settings, std::uint64_t seed);
 
 /// Presses, trembles at full depth until the time is over, then leaves. Physiological tremor: along each axis

@@ -16,7 +16,7 @@ using Eigen::AngleAxisd;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double turning_speed = 1.5;  // rad/s, at the most
+constexpr double turning_speed = 1.5;  // rad/s, at the most: a choice
 
 // Appends straight motions.
 class Stroke {

@@ -28,8 +28,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "tests/benchmarks"), str(ROOT / "sample_data")]
+sys.path[:0] = [str(ROOT / folder) for folder in ("tests/benchmarks", "tests/commands", "sample_data")]
 from plot_condensation import STYLE  # noqa: E402
+from recorded import kept  # noqa: E402
 from tools import TOOLS, lathe, stl  # noqa: E402
 
 PROGRAMS = pathlib.Path(os.environ.get("PALPATE_BIN", "build/release/bin"))
@@ -37,6 +38,8 @@ SCHEMES = {"continuous": "#3d84d6", "shell": "#d8732a", "solid": "#2f9e77"}
 BEVEL, DEEP = 1.0, 25.0  # of the pocket, mm
 POINTS = 300  # of a curve
 UNSOLVED, UNSETTLED = 1 << 3, 1 << 7  # of a tick's status
+COLUMNS = ("force", "torque", "device_position", "orientation", "tool_position", "tool_orientation", "status", "contact_count", "tick_ns")
+SPRINGS = (("coupling_stiffness", "haptics"), ("torsional_stiffness", "tool"))  # N/mm and N mm/rad
 ROWS = """| task | scheme | force at most, N | its largest step in a tick | torque at most, N mm | its largest step | deepest, mm | unsolved / unsettled, of ticks in contact | p50 / p99 / p99.9 in contact, µs |
 |---|---|--:|--:|--:|--:|--:|--:|--:|"""
 
@@ -114,16 +117,13 @@ def scope_through_nose():
 
 
 def run(asset, tool, scheme, folder, *script):
-    """Of each tick force, torque, where the tool is, status, contacts and how long it took."""
+    """The recording's COLUMNS, by tick, and its SPRINGS."""
     record = folder / "run.h5"
     done = subprocess.run([PROGRAMS / "palpate-touch", asset, "--instrument", tool, "--scheme", scheme, "--virtual-clock", "--record", record,
                            "--force", "--quiet", *map(str, script)], capture_output=True, text=True, timeout=1200)
     if done.returncode:
         sys.exit(f"whole_tool_tasks.py: {done.stderr.strip()}")
-    with h5py.File(record) as file:
-        count = int(file["count/ticks"][0])
-        return {name: file["ticks"][name][:count] for name in ("force", "torque", "tool_position", "tool_orientation", "status", "contact_count",
-                                                          "tick_ns", "device_position", "orientation")}
+    return {name: kept(record, f"ticks/{name}") for name in COLUMNS} | {name: h5py.File(record)[group].attrs[name] for name, group in SPRINGS}
 
 
 def samples_of(triangles, apart=0.5):
@@ -161,14 +161,15 @@ def draw(axes, scheme, ticks):
         axis.plot(np.linspace(0, seconds, len(most)), most, color=SCHEMES[scheme], lw=1.2, label=scheme)
 
 
-def gains(ticks, coupling=0.5, torsional=450.0):
-    """Of each visit: work on the hand, and what the springs (N/mm, N mm/rad) held at most, N mm."""
+def gains(ticks):
+    """Of each visit: work on the hand, and what the springs held at most, N mm."""
     before, after_it = ticks["orientation"][:-1], ticks["orientation"][1:]
     after_it = np.where(np.sum(before * after_it, axis=1, keepdims=True) < 0, -after_it, after_it)
     turn = 2 * (before[:, 3:] * after_it[:, :3] - after_it[:, 3:] * before[:, :3] - np.cross(after_it[:, :3], before[:, :3]))
     mean = {name: (ticks[name][1:] + ticks[name][:-1]) / 2 for name in ("force", "torque")}
     work = np.sum(mean["force"] * np.diff(ticks["device_position"], axis=0) + mean["torque"] * turn, axis=1)
-    held = np.sum(ticks["force"] ** 2, axis=1) / (2 * coupling) + np.sum(ticks["torque"] ** 2, axis=1) / (2 * torsional)
+    held = sum(np.sum(ticks[name] ** 2, axis=1) / (2 * ticks[spring])
+               for name, spring in (("force", "coupling_stiffness"), ("torque", "torsional_stiffness")))
     free = np.flatnonzero(ticks["contact_count"] == 0)
     return np.array([(work[i:j].sum(), held[i:j].max()) for i, j in zip(free, free[1:]) if j > i + 1])
 

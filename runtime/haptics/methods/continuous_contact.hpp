@@ -62,10 +62,9 @@ class ContinuousContact final : public ContactMethod {
         Eigen::Vector3d tip = Eigen::Vector3d::Zero();  // on its device, mm
         bool held_beside_tip = false;                   // by a sphere that is not about its tip
         std::size_t measured_last = 0;                  // of the parts: how far from all bodies
-        bool was_off_device = false;       // at the end of the tick before, where it turns by itself
-        double off_before = 0, moved = 0;  // mm: by how much then, and how far its device went since
-        bool waits = false;                // to be clear of every body
-        std::size_t stuck = 0;             // the part that was not
+        bool was_off_device = false;  // at the end of the tick before, where it turns by itself
+        bool waits = false;           // to be clear of every body
+        std::size_t stuck = 0;        // the part that was not
     };
 
     // That a sphere would meet between its rest on rigid bodies and where the solution has it: how far its

@@ -70,18 +70,16 @@ bool ContinuousContact::hold_off_rigid(std::span<TickResult> results) noexcept {
     }
     if (met_.empty()) return false;
     if (equilibrium_.walls_are_full()) drop_idle_walls(results);
-    bool any = false;
+    const bool all_press = equilibrium_.walls_are_full();
     for (const MetWall& met : met_) {
         TickResult& result = results[met.tool];
-        if (hold_by(met.tool, met.part, rigid_contact(met.touch, met.touch.normal, met.gap), result))
-            any = true;
-        else if (!any)
-            result.status |= contacts_cut;
+        if (all_press) result.status |= contacts_cut;
+        hold_by(met.tool, met.part, rigid_contact(met.touch, met.touch.normal, met.gap), result);
     }
     return true;
 }
 
-// Adds a wall that holds part `p` of a tool, as long as there is room.
+// Adds a wall that holds part `p` of a tool; false where there is no more room.
 bool ContinuousContact::hold_by(std::size_t t, std::size_t p, const Contact& wall,
                                 TickResult& result) noexcept {
     if (equilibrium_.walls_are_full()) return false;
@@ -112,10 +110,10 @@ void ContinuousContact::add_rigid_contacts(std::size_t t, TickResult& result) no
 }
 
 // What is in equilibrium is no farther from the device than a tool would be if nothing gave way, for there
-// its energy is higher; and what friction holds is no farther than it was. In a narrow wedge, where the
-// planes of contact push far beyond the surfaces that they stand for, a solution may be. Other tools may push
-// tissue against this one: their energy counts too. A tool that turns may be held where its spheres by
-// themselves would not be, as behind a ridge that they slid over, but no farther than it was.
+// its energy is higher; what friction holds is no farther than it was, and so is a tool that turns, which may
+// be held where its spheres by themselves would not be, as behind a ridge that they slid over. In a narrow
+// wedge, where the planes of contact push far beyond the surfaces that they stand for, a solution may be.
+// Other tools may push tissue against this one: their energy counts too.
 bool ContinuousContact::within_reach(std::size_t t, const Vector3d& force) const noexcept {
     double reach = 0, held = 0;
     for (std::size_t other = 0; other < tools_.size(); ++other) {
@@ -125,8 +123,7 @@ bool ContinuousContact::within_reach(std::size_t t, const Vector3d& force) const
             reach += (part.on_all.position() - part.device).norm();
         held = std::max(held, equilibrium_.held_reach(other));
     }
-    if (friction_.any()) reach = std::max(reach, held);
-    if (torsion_ > 0) reach = std::max(reach, tools_[t].off_before + tools_[t].moved);
+    if (friction_.any() || torsion_ > 0) reach = std::max(reach, held);
     const double room = torsion_ > 0 ? room_to_follow : room_for_rounding;
     return force.norm() <= coupling_ * (reach + room);
 }
@@ -134,15 +131,14 @@ bool ContinuousContact::within_reach(std::size_t t, const Vector3d& force) const
 // Friction of the walls that hold part `p` of a tool besides tissue, N.
 Vector3d ContinuousContact::friction_of(std::size_t t, std::size_t p,
                                         const TickResult& result) const noexcept {
+    Vector3d drag = -coupling_ * tools_[t].parts[p].on_rigid.held_back();
+    if (drag.isZero(0)) return drag;
     double press = 0;
     for (const Contact& contact : result.active_contacts())
         if (is_wall(contact) && contact.part == static_cast<std::int32_t>(p))
             press += static_cast<double>(contact.force);
-    if (!(press > 0)) return Vector3d::Zero();
-    Vector3d drag = -coupling_ * tools_[t].parts[p].on_rigid.held_back();
     const double most = friction_.at_rest * press, wanted = drag.norm();
-    if (wanted > most) drag *= most / wanted;
-    return drag;
+    return wanted > most ? most / wanted * drag : drag;
 }
 
 // The same of all parts of a tool on which `force` (N) acts besides, but for what would drag it into a wall

@@ -60,7 +60,6 @@ void ContinuousContact::tick(std::span<const ContactPose> poses, double coupling
 void ContinuousContact::settle(std::size_t t, const Vector3d& force, const TickResult& result) noexcept {
     Tool& tool = tools_[t];
     tool.was_off_device = !force.isZero(0) || !equilibrium_.turn(t).isZero(0);
-    tool.off_before = force.norm() / coupling_;
     for (Part& part : tool.parts) part.wall_press.setZero();
     if (!tool.was_off_device) return;
     for (const Contact& contact : result.active_contacts())
@@ -161,7 +160,6 @@ void ContinuousContact::place(std::size_t t, const ContactPose& pose, TickResult
     else
         axes.col(2) = pose.shaft;
     tool.tip = pose.tip;
-    tool.moved = 0;
     const std::size_t felt = axes.isZero(0) ? 1 : tool.parts.size();
     for (std::size_t p = 0; p < felt; ++p) {
         Part& part = tool.parts[p];
@@ -172,7 +170,6 @@ void ContinuousContact::place(std::size_t t, const ContactPose& pose, TickResult
             part.on_all.reset();
             tool.waits = tool.waits || is_instrument_;
         }
-        if (p < tool.parts_felt) tool.moved = std::max(tool.moved, (to - part.device).norm());
         part.device = to;
     }
     tool.parts_felt = felt;
@@ -210,7 +207,6 @@ bool ContinuousContact::is_clear(Tool& tool) const noexcept {
 void ContinuousContact::forget(std::size_t t) noexcept {
     tools_[t].waits = torsion_ > 0;
     tools_[t].was_off_device = false;
-    tools_[t].off_before = 0;
     for (Part& part : tools_[t].parts) {
         part.on_rigid.reset();
         part.on_all.reset();

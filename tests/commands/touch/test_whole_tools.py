@@ -68,6 +68,12 @@ class WholeTools(SampleAsset):
         for a, b in zip(found, expected):
             self.assertAlmostEqual(sign * a, b, delta=LOGGED)
 
+    def test_a_hand_at_random_turns_an_instrument_but_not_where_a_shaft_is_given(self):
+        for shaft in ([], ["--shaft", "0,0,1"]):
+            _, rows = self.logged("--instrument", self.peg, "--script", "random", "--seconds", 3, *shaft)
+            turns = {tuple(self.quaternion(row, "device")) for row in rows}
+            self.assertEqual(len(turns) > 100, not shaft)
+
     def test_a_peg_beside_the_top_is_turned_by_its_lever_and_the_result_says_how(self):
         script = self.hand(BESIDE_THE_TOP.format("0 0 0 1"))
         result, rows = self.logged("--instrument", self.peg, "--script", script, "--scheme", "shell")

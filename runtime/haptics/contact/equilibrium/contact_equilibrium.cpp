@@ -149,7 +149,7 @@ void ContactEquilibrium::pull(std::size_t t, const Vector3d& tip, std::span<cons
     tool.touching = tool.touching || meets;
     tool.reach = tool.cold ? cold_reach : first_reach + 2 * moved;
     tool.near = tool.cold ? first_reach : 2 * moved;
-    tool.held_reach = tool.cold ? 0 : (tool.last_tip - tool.last_device_tip).norm() + moved;
+    tool.held_reach = tool.cold && !turns() ? 0 : (tool.last_tip - tool.last_device_tip).norm() + moved;
     tool.off = tool.cold ? Vector3d::Zero() : Vector3d(tool.last_tip - tip);
     if (turns()) pull_arms(tool);
 }
@@ -185,8 +185,9 @@ std::size_t ContactEquilibrium::drop_idle_walls(std::size_t t, std::span<Contact
 }
 
 std::size_t ContactEquilibrium::wall_count() const noexcept {
-    return static_cast<std::size_t>(
-        std::ranges::count_if(rows_, [](const Row& row) { return row.wall != nullptr; }));
+    const auto is_wall = [](const Row& row) { return row.wall != nullptr; };
+    return static_cast<std::size_t>(std::partition_point(rows_.begin(), rows_.end(), is_wall) -
+                                    rows_.begin());
 }
 
 void ContactEquilibrium::solve() noexcept {
@@ -296,7 +297,7 @@ void ContactEquilibrium::iterate(int most) noexcept {
 }
 
 // A tool that nothing presses is clear of the tissue on which it would rest if nothing gave way, or other
-// tools have moved that out of its way, or bone holds one that turns off it. Otherwise it has gone through.
+// tools have moved that out of its way. Otherwise it has gone through.
 bool ContactEquilibrium::found(std::size_t t) const noexcept {
     const Tool& tool = tools_[t];
     if (!tool.outside || tool.press != Vector3d::Zero()) return tool.outside;
@@ -311,9 +312,7 @@ bool ContactEquilibrium::found(std::size_t t) const noexcept {
             for (std::size_t i = 0; i < 3; ++i)
                 foot += touch.foot.barycentric[static_cast<Index>(i)] * corners[i];
             const double reach = first_reach + patches_[soft].body().cut_off(touch.foot);
-            const Vector3d at =
-                turns() ? Vector3d(part.sphere.device + off_of(tool, part)) : part.sphere.device;
-            if (touch.normal.dot(foot - at) + part.radius > reach) return false;
+            if (touch.normal.dot(foot - part.sphere.device) + part.radius > reach) return false;
         }
     }
     return true;
@@ -352,7 +351,10 @@ void ContactEquilibrium::write_contacts(std::size_t t, TickResult& result) const
 
 void ContactEquilibrium::end_tick() noexcept {
     bool any = false;
-    for (Tool& tool : tools_) tool.turn_before = tool.felt > 0 ? tool.turn : Vector3d::Zero();
+    for (Tool& tool : tools_) {
+        tool.turn_before = tool.felt > 0 ? tool.turn : Vector3d::Zero();
+        if (turns()) tool.last_tip = tool.tip + (tool.felt > 0 ? tool.off : Vector3d::Zero());
+    }
     last_motion_ = 0;
     for (const DeformedPatch& patch : patches_) last_motion_ = std::max(last_motion_, patch.motion());
     remember_pushes();

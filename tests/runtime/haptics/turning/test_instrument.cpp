@@ -20,6 +20,8 @@ using Eigen::Vector3d;
 
 constexpr double told_rounding = 1e-6;  // relative: contacts are told in float32
 constexpr double twist = 100;           // N mm/rad
+// mm: a plane that turning bends is passed by up to 0.002 mm before the next tick finds it.
+constexpr double passed_by = 0.005;
 
 ToolBody instrument(const TriangleMesh& surface, double torsional_stiffness = twist) {
     return {.surface = surface,
@@ -209,7 +211,7 @@ TEST(Instrument, among_spikes_of_bone_is_held_outside_and_solved_in_every_tick) 
         if (tick % 10 == 0) deepest = std::max(deepest, deepest_sphere(model, result));
     }
     EXPECT_GT(touching, 3000);
-    EXPECT_LT(deepest, 0.01);
+    EXPECT_LT(deepest, passed_by);
 }
 
 // It lies there on more walls than a tick solves.
@@ -221,7 +223,7 @@ TEST(Instrument, thrown_on_a_thin_sheet_has_no_sphere_in_it_in_any_tick) {
             deepest = std::max(deepest, radius - (tool_of(result) + tool * place).z());
         ASSERT_EQ(result.status & ~std::uint32_t{contact_unsettled}, 0U);
     });
-    EXPECT_LT(deepest, 0.005);
+    EXPECT_LT(deepest, passed_by);
 }
 
 // Where the device has it, it is deep in both blocks.
