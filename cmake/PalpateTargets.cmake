@@ -95,17 +95,44 @@ function(palpate_reuse_precompiled target set)
     endif()
 endfunction()
 
-# palpate_library(<folder/name> SOURCES ... [LINKS ...] [PRIVATE_LINKS ...] [PRECOMPILED set] [OBJECT_PER_FILE]
+# Where a preset compiles several files at once: compiles the tick's (the arguments) together, apart from the target's
+# others. Notes source and object of each for tests/house/tick_imports.py.
+function(palpate_keep_tick_apart target)
+    set(most 8)  # files a compilation: few enough that two processors share a room
+    get_target_property(sources ${target} SOURCES)
+    get_target_property(unity ${target} UNITY_BUILD)
+    set(tick_count 0)
+    set(other_count 0)
+    foreach(source IN LISTS sources)
+        set(kind other)
+        if(source IN_LIST ARGN)
+            set(kind tick)
+        endif()
+        math(EXPR group "${${kind}_count} / ${most}")
+        math(EXPR ${kind}_count "${${kind}_count} + 1")
+        set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${kind}${group})
+        set(object ${source}.o)
+        if(unity)
+            set(object Unity/unity_${kind}${group}_cxx.cxx.o)
+        endif()
+        if(kind STREQUAL tick)
+            set_property(GLOBAL APPEND PROPERTY PALPATE_TICK_OBJECTS
+                "${CMAKE_CURRENT_SOURCE_DIR}/${source}\t${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/${target}.dir/${object}")
+        endif()
+    endforeach()
+    set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+endfunction()
+
+# palpate_library(<folder/name> SOURCES ... [TICK ...] [LINKS ...] [PRIVATE_LINKS ...] [PRECOMPILED set]
 #                 [INSTALL HEADERS ...])
 # Makes target palpate_<name> with alias Palpate::<name>. Headers are included as "<folder>/<name>/x.hpp"; those of an
-# installed library are listed. OBJECT_PER_FILE: the tick's rooms, whose objects tests/house/tick_imports.py reads,
-# also where a preset compiles several files at once; not so in presets without PALPATE_TICK_OBJECTS, whose objects it
-# does not read: instrumented, or never built.
+# installed library are listed. TICK: the sources that run in a tick; they may import nothing that allocates, locks, throws,
+# waits or does I/O.
 function(palpate_library path)
-    cmake_parse_arguments(arg "INSTALL;OBJECT_PER_FILE" "PRECOMPILED" "SOURCES;HEADERS;LINKS;PRIVATE_LINKS" ${ARGN})
+    cmake_parse_arguments(arg "INSTALL" "PRECOMPILED" "SOURCES;TICK;HEADERS;LINKS;PRIVATE_LINKS" ${ARGN})
     get_filename_component(name ${path} NAME)
     set(target palpate_${name})
-    add_library(${target} STATIC ${arg_SOURCES})
+    add_library(${target} STATIC ${arg_SOURCES} ${arg_TICK})
     add_library(Palpate::${name} ALIAS ${target})
     set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
     target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
@@ -116,8 +143,8 @@ function(palpate_library path)
         set(arg_PRECOMPILED values)
     endif()
     palpate_reuse_precompiled(${target} ${arg_PRECOMPILED})
-    if(arg_OBJECT_PER_FILE AND PALPATE_TICK_OBJECTS)
-        set_target_properties(${target} PROPERTIES UNITY_BUILD OFF)
+    if(arg_TICK)
+        palpate_keep_tick_apart(${target} ${arg_TICK})
     endif()
     if(arg_INSTALL)
         set_property(GLOBAL APPEND PROPERTY PALPATE_INSTALLED_LIBRARIES ${target})

@@ -2,71 +2,23 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fails if an object file of the tick imports anything that may allocate, lock, throw, wait or do I/O.
 
-tick_imports.py <build folder>     the objects listed below, by what the linker will see of them
+tick_imports.py <build folder>     the objects of palpate_library(TICK ...), by what the linker will see of them
 tick_imports.py --objects A.o ...  these objects instead
 
-Every undefined symbol of a listed object must be harmless (HARMLESS) or defined in a listed object, so the list is closed
-under calls: what the tick calls is on it. Calls through virtual functions and function pointers leave no symbol; those of
-contact methods are on the list by their folder, the allocation trap of tests/runtime sees the others.
+Every undefined symbol of a tick's object must be harmless (HARMLESS) or defined in another, so the list is closed under calls:
+what the tick calls is on it. Calls through virtual functions and function pointers leave no symbol; those of contact methods
+are to be on the list (METHODS), the allocation trap of tests/runtime sees the others.
 Instrumented builds import their sanitizer, so they are not checked.
 """
 import subprocess
 import sys
 from pathlib import Path
 
-# Target folder: object -> why it is the tick's.
-TICK = {
-    "runtime/collision/CMakeFiles/palpate_collision.dir": {
-        "features/surface_features": "which vertex, edge or face is nearest",
-        "field/distance_field_queries": "distance by voxels",
-        "neighbourhood": "sweeps against the triangles next to the tool",
-        "rounded_triangle": "a point against one triangle that is round at its edges",
-        "segment_queries": "segments against segments and triangles",
-        "surface_access": "triangles and nodes, read by every query",
-        "surface_normals": "inside or outside, normals",
-        "surface_queries": "nearest point, sweep, triangles near",
-        "surroundings": "gathers the triangles around the tool",
-        "tree_pairs": "surface against surface",
-        "triangle_queries": "point and sphere against one triangle",
-    },
-    "runtime/haptics/CMakeFiles/palpate_haptics.dir": {
-        "contact/contact_lcp": "complementarity",
-        "contact/equilibrium/contact_equilibrium": "tools and tissue, brought to rest together",
-        "contact/equilibrium/equilibrium_friction": "the same, friction",
-        "contact/equilibrium/equilibrium_iterates": "the same, the way there",
-        "contact/equilibrium/equilibrium_rows": "the same, what may press",
-        "contact/equilibrium/equilibrium_sinking": "the same, how far spheres sink in",
-        "contact/equilibrium/equilibrium_turning": "the same, tools that turn",
-        "contact/equilibrium/neighbour_contact": "bodies beside each other",
-        "contact/deformable_contact": "compliance and displacements of an elastic body",
-        "contact/equilibrium/deformed_patch": "the part of a surface that tools are near",
-        "contact/equilibrium/deformed_patch_creep": "what is left of earlier forces on it",
-        "contact/equilibrium/deformed_patch_large": "and how it leans on a shape of large deformation",
-        "contact/large/large_deformation": "shapes taken in, forces told",
-        "contact/god_object": "the tool that stays outside",
-        "force_limiter": "force and slew limits",
-        "haptic_tick": "one tick, from positions to forces",
-        "passivity_observer": "no more energy out than in",
-        "shell/shell_equilibrium": "a whole tool, brought to rest",
-        "shell/shell_watch": "which points of it are inside a body",
-        "solid/least_distance": "the motion that keeps a tool's touches",
-        "solid/solid_equilibrium": "a tool's triangles, brought to rest",
-        "solid/solid_watch": "which of them are close to a body's",
-    },
-    "runtime/realtime/CMakeFiles/palpate_realtime.dir": {
-        "histogram": "what a tick spent",
-    },
-    "formats/model/CMakeFiles/palpate_model.dir": {
-        "compliance": "blocks and products of the compliance",
-        "contact/local_indentation": "what a sphere sinks in",
-    },
-}
-# Called through a virtual function, so that no symbol leads here: every object of a contact method but those that set
-# it up and the table of them all.
-METHODS = "runtime/haptics/methods"
-for source in sorted((Path(__file__).resolve().parents[2] / METHODS).glob("*.cpp")):
-    if not source.stem.endswith("_setup") and source.stem != "contact_methods":
-        TICK["runtime/haptics/CMakeFiles/palpate_haptics.dir"][f"methods/{source.stem}"] = "a contact method's tick"
+SOURCE = Path(__file__).resolve().parents[2]
+# Called through virtual functions, so that no symbol leads here: every source of a contact method but those that set it up and
+# the table of them all.
+METHODS = sorted(path for path in (SOURCE / "runtime/haptics/methods").glob("*.cpp")
+                 if not path.stem.endswith("_setup") and path.stem != "contact_methods")
 HARMLESS = {
     "memcpy": "compilers emit it for copies",
     "memmove": "the same",
@@ -98,10 +50,17 @@ def main(arguments):
     if arguments[0] == "--objects":
         objects = [Path(name) for name in arguments[1:]]
     else:
-        objects = [Path(arguments[0]) / folder / f"{name}.cpp.o" for folder, names in TICK.items() for name in names]
+        rows = (Path(arguments[0]) / "tick_objects.txt").read_text().splitlines()
+        object_of = {Path(source): Path(built) for source, built in (row.split("\t") for row in rows)}
+        objects = sorted(set(object_of.values()))
+        left_out = [path for path in METHODS if path not in object_of]
+        for path in left_out:
+            print(f"{path.name}: a contact method's, but not of the tick; add it to TICK of runtime/haptics/CMakeLists.txt")
+        if left_out or not objects:
+            return 1
     missing = [path for path in objects if not path.exists()]
     for path in missing:
-        print(f"{path}: not there; build it, or correct the list in tests/house/tick_imports.py")
+        print(f"{path}: not there; build it")
     if missing:
         return 1
     imports = {path: symbols(path, "--undefined-only") for path in objects}
