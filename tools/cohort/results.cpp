@@ -8,24 +8,29 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "formats/records/felt_region.hpp"
+
 namespace palpate::cohort {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<Figure, 9> all_figures{{
+constexpr std::array<Figure, 11> all_figures{{
     {"volume_ml", "Volume", "ml"},
     {"tetrahedra", "Tetrahedra", ""},
     {"contact_nodes", "Nodes that can be touched", ""},
     {"min_dihedral_deg", "Smallest dihedral angle", "°"},
     {"residual", "Certificate's residual", ""},
     {"peak_force_n", "Peak force of the press", "N"},
+    {"felt_regions", "Regions that can be felt", ""},
+    {"contrast_percent", "Contrast of the faintest region", "%"},
     {"asset_mb", "Asset", "MB"},
     {"seconds", "Time, all stages", "s"},
     {"peak_memory_mb", "Peak memory", "MB"},
 }};
 
-// The figures of the finished stages; sums over bodies, but for angles and residuals, of which the worst.
+// The figures of the finished stages; sums over bodies, but for angles, residuals and contrasts, of which the
+// worst.
 Json figures_of(const std::vector<case_builder::Stage>& stages, const std::vector<StageState>& states) {
     Json found = Json::object();
     const auto combine = [&](const char* key, double value, auto&& operation) {
@@ -49,6 +54,11 @@ Json figures_of(const std::vector<case_builder::Stage>& stages, const std::vecto
             combine("residual", result.at("certificate").at("residual"), larger);
         } else if (stages[i].command == "pack") {
             found["asset_mb"] = result.at("bytes").get<double>() / 1e6;
+            for (const Json& region : result.value("felt", Json::array())) {
+                combine("felt_regions", region.at("verdict") == verdict_word(FeltVerdict::felt) ? 1 : 0,
+                        std::plus<>());
+                combine("contrast_percent", std::abs(region.at("contrast_percent").get<double>()), smaller);
+            }
         } else if (stages[i].command == "touch") {
             found["peak_force_n"] = result.at("force_peak_n");
         }

@@ -57,6 +57,19 @@ TEST(Results, figures_are_of_all_bodies) {
                              {"peak_memory_mb", 50.0}}));
 }
 
+TEST(Results, say_how_many_regions_can_be_felt_and_how_faint_the_faintest_is) {
+    auto states = all_finished();
+    states[2] = finished(4, {{"bytes", 3'000'000},
+                             {"felt",
+                              {{{"verdict", "felt"}, {"contrast_percent", 41.5}},
+                               {{"verdict", "too faint"}, {"contrast_percent", -7.5}}}}});
+    const PatientResult result = result_of(patient("anna"), states);
+    const Json figures = status_json(result).at("figures");
+    EXPECT_EQ(figures.at("felt_regions"), 1);
+    EXPECT_EQ(figures.at("contrast_percent"), 7.5);
+    EXPECT_THAT(cohort_page("cohort", std::vector{result}), HasSubstr("Contrast of the faintest region"));
+}
+
 TEST(Results, a_patient_that_failed_says_where_and_why) {
     const PatientResult failed = result_of(patient("bert"), second_failed());
     const Json json = status_json(failed);
