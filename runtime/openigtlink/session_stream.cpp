@@ -33,6 +33,11 @@ std::string fixed(double value, int digits) {
     return {text.data(), end};
 }
 
+// "x y z N"
+std::string vector_text(const Eigen::Vector3d& v, const char* unit) {
+    return fixed(v.x(), 4) + " " + fixed(v.y(), 4) + " " + fixed(v.z(), 4) + " " + unit;
+}
+
 const StreamSettings& checked(const StreamSettings& settings) {
     if (settings.rate_hz > 0 && settings.rate_hz <= 1000) return settings;
     throw InvalidInput({"stream", "a rate of " + fixed(settings.rate_hz, 1) + " Hz",
@@ -150,24 +155,24 @@ void SessionStream::append_tool(const Shown& shown, std::size_t tool, std::uint6
     const TickResult& result = shown.result;
     const std::string number = tool == 0 ? "" : std::to_string(tool + 1);
     const Eigen::Vector3d at_tool = ras(result.tool_position), at_device = ras(result.device_position);
-    const Eigen::Vector3d force = ras(result.force), shaft = ras(result.shaft);
+    const Eigen::Vector3d force = ras(result.force), torque = ras(result.torque), shaft = ras(result.shaft);
     const Eigen::Quaterniond q_device = quaternion_of(result.orientation);
     const Eigen::Quaterniond q_tool = quaternion_of(result.tool_orientation);
-    if (!(at_tool.allFinite() && at_device.allFinite() && force.allFinite() && shaft.allFinite() &&
-          q_device.coeffs().allFinite() && q_tool.coeffs().allFinite()))
+    if (!(at_tool.allFinite() && at_device.allFinite() && force.allFinite() && torque.allFinite() &&
+          shaft.allFinite() && q_device.coeffs().allFinite() && q_tool.coeffs().allFinite()))
         return;
+    const bool turns = !q_tool.coeffs().isZero(0);
 
     const Eigen::Matrix3d led = q_device.coeffs().isZero(0) ? rotation_with_z(-shaft) : axes_of(q_device);
-    append_transform(frame_, {"PalpateTool" + number, time},
-                     q_tool.coeffs().isZero(0) ? led : axes_of(q_tool), at_tool);
+    append_transform(frame_, {"PalpateTool" + number, time}, turns ? axes_of(q_tool) : led, at_tool);
     append_transform(frame_, {"PalpateDevice" + number, time}, led, at_device);
 
     const std::string force_name = "PalpateForce" + number;
     Eigen::Matrix3d arrow = rotation_with_z(force.normalized());
     arrow.col(2) *= std::max(force.norm(), shortest_arrow);
     append_transform(frame_, {force_name, time}, arrow, at_tool);
-    append_string(frame_, {force_name, time},
-                  fixed(force.x(), 4) + " " + fixed(force.y(), 4) + " " + fixed(force.z(), 4) + " N");
+    append_string(frame_, {force_name, time}, vector_text(force, "N"));
+    if (turns) append_string(frame_, {"PalpateTorque" + number, time}, vector_text(torque, "N mm"));
     if (settings_.force_sensor) append_force_sensor(frame_, {force_name, time}, force);
 
     std::vector<std::string> labels;

@@ -47,7 +47,8 @@ struct StreamReport {
 ///   TRANSFORM PalpateForce     an arrow at the tool: z the force on the device in N, so that a model 10 mm
 ///                              long along z shows 10 mm for each newton; x and y unit
 ///   STRING    PalpateForce     the force: "x y z N"
-///   SENSOR    PalpateForce     the same, where StreamSettings::force_sensor
+///   STRING    PalpateTorque    of a tool that turns by itself, about the device: "x y z N mm"
+///   SENSOR    PalpateForce     the force, where StreamSettings::force_sensor
 ///   POINT     PalpateContacts  the contact points, each labelled with its force, "0.42 N"; without contact
 ///                              one point that is hidden, because 3D Slicer overlooks an empty list
 /// and, on connection and whenever faults change,

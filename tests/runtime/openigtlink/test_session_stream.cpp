@@ -138,6 +138,29 @@ TEST(SessionStream, sends_only_what_slicer_knows_unless_asked) {
                                               "STRING PalpateForce", "POINT PalpateContacts"}));
 }
 
+TEST(SessionStream, sends_the_torque_of_a_tool_that_turns_and_of_no_other) {
+    SessionStream stream(any_port(2));
+    TickResult ball = sample();
+    ball.torque = {9, 9, 9};
+    stream.publish(ball, {});
+    TickResult instrument = sample();
+    instrument.tool = 1;
+    instrument.tool_orientation = {0, 0, 0, 1};
+    instrument.torque = {1.5, -2, 40};
+    stream.publish(instrument, {});
+    WatchingPeer peer(stream.port());
+    for (;;) {
+        const Received received = peer.next();
+        ASSERT_NE(received.type, "") << "the frame's last message is POINT PalpateContacts2";
+        EXPECT_NE(received.device, "PalpateTorque");
+        if (received.device != "PalpateTorque2") continue;
+        const auto text = received.as<igtl::StringMessage>();
+        ASSERT_TRUE(text.IsNotNull());
+        EXPECT_STREQ(text->GetString(), "-1.5000 2.0000 40.0000 N mm");
+        break;
+    }
+}
+
 TEST(SessionStream, tells_of_faults_when_they_change) {
     SessionStream stream(any_port());
     WatchingPeer peer(stream.port());
