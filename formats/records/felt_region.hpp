@@ -37,8 +37,8 @@ inline constexpr std::tuple felt_region_fields{
 /// Weber fraction of compliance, which people tell apart by pressing: 15 % (Tiest, Kappers 2009, Cues for
 /// haptic perception of compliance, IEEE Transactions on Haptics 2:189-199).
 inline constexpr double told_contrast = 0.15;
-/// The least difference of force that counts as rendered, N: the friction in the joints of a Touch X by its
-/// data sheet, in which less is lost. A Premium 1.5 has 0.04 N, a Touch 0.26 N.
+/// The least difference of force that counts as rendered where no device is named, N: the friction in the
+/// joints of a Touch X by its data sheet, in which less is lost. A Premium 1.5 has 0.04 N, a Touch 0.26 N.
 inline constexpr double rendered_force = 0.06;
 
 /// How much stiffer the region makes the surface, as part of the stiffness without it; below 0 if softer.
@@ -51,7 +51,7 @@ enum class FeltVerdict {
     felt,        ///< none of the below
     too_faint,   ///< its contrast is below told_contrast
     too_varied,  ///< its contrast is below what the stiffness varies by around it anyway
-    too_weak,    ///< it changes the force at the reference depth by less than rendered_force
+    too_weak,    ///< it changes the force at the reference depth by less than a device renders
 };
 
 /// "felt", "too faint", "too varied", "too weak".
@@ -60,13 +60,13 @@ inline const char* verdict_word(FeltVerdict verdict) {
     return words[static_cast<std::size_t>(verdict)];
 }
 
-/// The first that holds, in the order of the list from too_faint on. `depth` is that of the press, mm.
-inline FeltVerdict verdict_of(const FeltRegion& felt, double depth) {
+/// The first that holds, in the order of the list from too_faint on. `depth` is that of the press, mm;
+/// `rendered` the least difference of force that the device renders, N.
+inline FeltVerdict verdict_of(const FeltRegion& felt, double depth, double rendered = rendered_force) {
     const double contrast = std::abs(contrast_of(felt));
     if (contrast < told_contrast) return FeltVerdict::too_faint;
     if (contrast < felt.variation) return FeltVerdict::too_varied;
-    if (std::abs(felt.stiffness - felt.stiffness_without) * depth < rendered_force)
-        return FeltVerdict::too_weak;
+    if (std::abs(felt.stiffness - felt.stiffness_without) * depth < rendered) return FeltVerdict::too_weak;
     return FeltVerdict::felt;
 }
 

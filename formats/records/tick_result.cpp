@@ -11,7 +11,7 @@ std::span<const StatusText, status_count> status_texts() {
         {rate_limited, "rate_limited", shown_text("the force was kept from changing faster than it may"),
          false},
         {contacts_cut, "contacts_cut",
-         shown_text("more points touch than a tick solves: the shallowest are left out"), true},
+         shown_text("more points touch than a tick solves: those that matter least are left out"), true},
         {contact_unsolved, "contact_unsolved",
          shown_text("contacts contradict each other, as in a wedge: no body gives way"), true},
         {starts_inside, "starts_inside",

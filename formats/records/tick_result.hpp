@@ -23,9 +23,9 @@ inline constexpr std::size_t max_contacts = 64;
 /// told apart.
 enum TickStatus : std::uint32_t {
     tick_ok = 0,
-    force_limited = 1U << 0,      ///< cut to HapticSettings::max_force
-    rate_limited = 1U << 1,       ///< cut to HapticSettings::max_force_rate
-    contacts_cut = 1U << 2,       ///< more contact points than max_contacts: the shallowest were left out
+    force_limited = 1U << 0,  ///< cut to HapticSettings::max_force
+    rate_limited = 1U << 1,   ///< cut to HapticSettings::max_force_rate
+    contacts_cut = 1U << 2,  ///< more contact points than max_contacts: those that matter least were left out
     contact_unsolved = 1U << 3,   ///< contacts contradict each other, as in a wedge: no body gave way
     starts_inside = 1U << 4,      ///< a body is not felt until the tool has been clear of it once
     coming_back = 1U << 5,        ///< after a fault, the force returns by and by

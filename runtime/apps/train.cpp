@@ -12,6 +12,7 @@
 #include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
 #include "formats/provenance/cautions.hpp"
+#include "runtime/apps/exercises/save_exercise.hpp"
 #include "runtime/apps/exercises/train_lesson.hpp"
 #include "runtime/apps/first_sight.hpp"
 #include "runtime/apps/options/large_option.hpp"
@@ -23,6 +24,7 @@
 #include "runtime/apps/start_recording.hpp"
 #include "runtime/apps/tell_statuses.hpp"
 #include "runtime/apps/train_run.hpp"
+#include "runtime/devices/device_model.hpp"
 #include "runtime/devices/jaws/jaws.hpp"
 #include "runtime/devices/mounted_device.hpp"
 #include "runtime/devices/simulation.hpp"
@@ -53,20 +55,21 @@ struct Options {
     std::vector<std::filesystem::path> trusted;
     LessonOptions lesson;
     PlaybackOptions playback;
-    std::string size = "1280x720", script, second, body, target, scheme{usual_contact_method}, device, stream;
+    std::string size, script, second, body, target, scheme{usual_contact_method}, device, stream;
     double seconds = 0, record_seconds = 300;
     ToolOption tool;
     std::vector<std::string> hyperelastic;
 };
 
-std::pair<int, int> size_of(const std::string& text) {
+std::optional<WindowSize> size_of(const std::string& text) {
+    if (text.empty()) return std::nullopt;
     int width = 0, height = 0;
     const char* end = text.data() + text.size();
     const auto first = std::from_chars(text.data(), end, width);
     if (first.ec == std::errc{} && first.ptr != end && *first.ptr == 'x' &&
         std::from_chars(first.ptr + 1, end, height).ptr == end && width >= 320 && height >= 240 &&
         width <= 16384 && height <= 16384)
-        return {width, height};
+        return WindowSize{width, height};
     throw UsageError({"--size", text, "WIDTHxHEIGHT in pixels, 320x240 or more", "for example 1280x720"});
 }
 
@@ -150,7 +153,7 @@ TouchTarget start_of(const Options& options, const Session& run) {
 
 Json train(const Options& options, cli::Session& session) {
     const auto asked = Clock::now();
-    const auto [width, height] = size_of(options.size);
+    const auto size = size_of(options.size);
     if (!options.record.empty()) cli::seekable_target(options.record);
     std::optional<cli::StagedFile> picture;
     if (!options.screenshot.empty()) picture.emplace(options.screenshot, session.force);
@@ -178,8 +181,7 @@ Json train(const Options& options, cli::Session& session) {
                                                         .stream = options.stream},
                                          [](const std::string& sentence) { spdlog::warn("{}", sentence); });
     });
-    auto opened =
-        open_window(width, height, texts::translated("reading {}", options.asset.filename().string()));
+    auto opened = open_window(size, texts::translated("reading {}", options.asset.filename().string()));
     const std::unique_ptr<Session> read = reading.get();
     Session& run = *read;
     std::optional<ExpertGhost> ghost;
@@ -205,6 +207,8 @@ Json train(const Options& options, cli::Session& session) {
     run.hold(device.open(request_of(options, device.kind, run.model(), place, grasp, start,
                                     window_settings.sight.axes())),
              grasp ? grasp->grasp.orientation : Eigen::Quaterniond::Identity());
+    if (const DeviceModel* model = model_of_device(run.device_name()))
+        window_settings.rendered = model->coulomb_friction;
 
     std::vector<LaidOut> exercises = lay_out_exercises(options.lesson, run, target);
     // What an exercise leads along is looked at closely too.
@@ -231,14 +235,15 @@ Json train(const Options& options, cli::Session& session) {
 
     if (!options.record.empty()) start_recording(run, options.record, options.record_seconds, session);
     RunKeys run_keys(run, options.record_seconds, session);
-    const auto [frame_ns, seconds, felt] = run_in_window({.session = run,
-                                                          .window = window,
-                                                          .lesson = lesson,
-                                                          .keys = run_keys,
-                                                          .ghost = ghost ? &*ghost : nullptr,
-                                                          .shows_shaft = !device.kind.simulated || grasp,
-                                                          .seconds = options.seconds},
-                                                         frame);
+    const auto [frame_ns, late_ns, seconds, felt] =
+        run_in_window({.session = run,
+                       .window = window,
+                       .lesson = lesson,
+                       .keys = run_keys,
+                       .ghost = ghost ? &*ghost : nullptr,
+                       .shows_shaft = !device.kind.simulated || grasp,
+                       .seconds = options.seconds},
+                      frame);
     if (cli::interrupt_asked()) {
         spdlog::warn("interrupted: the force has gone to zero, recording and attempts alone are kept");
         throw cli::Interrupted();
@@ -261,6 +266,7 @@ Json train(const Options& options, cli::Session& session) {
                 {"frames", frame_ns.count()},
                 {"frames_per_second", static_cast<double>(frame_ns.count()) / seconds},
                 {"frame_ms", percentiles_json(frame_ns, 1e6)},
+                {"shown_late_ms", percentiles_json(late_ns, 1e6)},
                 {"detail",
                  {{"level", window.detail().level},
                   {"levels", window.detail().levels},
@@ -302,7 +308,8 @@ int main(int argc, char** argv) {
              "presses. Without a button W, S and the arrow keys step. Drag with the right button to turn the "
              "view, with the middle one or Shift and left to shift it, with Ctrl and left to roll it; the "
              "wheel, + and - zoom, C cuts the bodies open, B hides the rigid ones, I shows and hides "
-             "how the case was made, T shows what they enclose, V looks from the tool's tip, first in the "
+             "how the case was made, T shows what they enclose, G how stiff they are, V looks from the "
+             "tool's tip, first in the "
              "whole "
              "window, then in a corner of it, P saves a "
              "picture in this folder, O records every tick there from then on or stops, A lets the force be "
@@ -322,7 +329,10 @@ int main(int argc, char** argv) {
              " mouse and keyboard, or a script, hold a simulated device that gives way."});
     Options options;
     const auto asset = command.input("asset", options.asset, "the case (.vtkhdf)").required();
-    const auto size = command.option("--size", options.size, "WIDTHxHEIGHT of the window", "pixels");
+    const auto size = command.option(
+        "--size", options.size,
+        "WIDTHxHEIGHT of the window; two thirds of a large display, 1280x720 or less of others, if not given",
+        "pixels");
     const auto seconds =
         command.option("--seconds", options.seconds, "close after this time; 0: when told to", "s");
     command.input(
@@ -341,7 +351,8 @@ int main(int argc, char** argv) {
     declare(command, options.tool);
     declare_large_deformation(command, options.hyperelastic);
     command.input("--exercises", options.lesson.exercises,
-                  "exercises of your own (.toml); those that every patient offers if not given");
+                  "exercises of your own (.toml); ASSET-exercises.toml beside the asset, and those that "
+                  "every patient offers, if not given");
     command.option("--exercise", options.lesson.exercise, "begin with this one instead of the start page");
     command.option("--trainee", options.lesson.trainee, "a pseudonym, under which attempts are kept");
     command.option("--attempts", options.lesson.attempts,
@@ -361,6 +372,7 @@ int main(int argc, char** argv) {
         check_playback();
         check(command, options.tool, options.scheme);
         check_large_deformation(options.hyperelastic, options.scheme);
+        options.lesson.usual = usual_exercise_file(options.asset);
         if (options.playback.play.empty()) return train(options, session);
         return play_recording(options.playback,
                               {.asset = options.asset,

@@ -52,6 +52,7 @@ void fill_frame(const TrainRun& run, std::span<const TickResult* const> ticks, V
     frame.tool_position = vector_of(tick.tool_position);
     frame.force = vector_of(tick.force);
     if (run.session.jaws()) frame.force += vector_of(ticks[1]->force);
+    frame.torque = vector_of(tick.torque);
     frame.depth = tick.depth;
     frame.overruns = tick.overruns;
     if (run.shows_shaft) frame.shaft = vector_of(tick.shaft);
@@ -84,9 +85,9 @@ void take_keys(const TrainRun& run, const TickResult& tick, bool page_takes_them
     }
 }
 
-void take_one(const TrainRun& run, const TickResult& tick, Felt& felt) {
-    felt.add(tick);
-    run.lesson.take(tick);
+// Nothing is left out between frames, so that a tap is seen that was quicker.
+void widen(Eigen::Vector2d& range, double newtons) {
+    range = {std::min(range[0], newtons), std::max(range[1], newtons)};
 }
 
 }  // namespace
@@ -105,18 +106,24 @@ TrainOutcome run_in_window(const TrainRun& run, VisualFrame& frame) {
     session::Session& session = run.session;
     TrainOutcome outcome;
     TickResult first_jaw;
+    const auto take_one = [&](const TickResult& tick) {
+        outcome.felt.add(tick);
+        run.lesson.take(tick);
+        if (tick.tool == 0) widen(frame.force_range, vector_of(tick.force).norm());
+    };
     const session::Session::Sink take = [&](const TickResult& tick) {
-        if (!session.jaws()) return take_one(run, tick, outcome.felt);
+        if (!session.jaws()) return take_one(tick);
         // Of a forceps the exercise sees what the hand that holds both jaws does.
         if (tick.tool == 0)
             copy_active(tick, first_jaw);
         else
-            take_one(run, session::joined_jaws(first_jaw, tick, session.jaws()->jaw_length), outcome.felt);
+            take_one(session::joined_jaws(first_jaw, tick, session.jaws()->jaw_length));
     };
     TickRate rate;
     ServoPulse pulse;
     session::DrawnShape shape(session.patient_case());
     std::vector<const TickResult*> ticks(session.model().tool_count());
+    frame.device = session.device_name();
     session.start();
     const auto began = Clock::now();
     auto frame_began = began;
@@ -131,10 +138,14 @@ TrainOutcome run_in_window(const TrainRun& run, VisualFrame& frame) {
         frame.tick_rate_hz = rate.update(tick.tick);
         shape.follow(session.model(), tick.time, ticks, frame.displacements);
         fill_frame(run, ticks, frame);
+        const double drawn = tick.time;
         run.window.show(frame);
+        const double late = session.latest().time - drawn;
+        outcome.late_ns.record(static_cast<std::uint64_t>(1e9 * std::max(0.0, late)));
         run.keys.sound().follow(frame.force.norm());
         session.visual_beat();
         session.guide(run.window.hand());
+        frame.force_range.setConstant(frame.force.norm());
         session.pump(take);
         std::this_thread::sleep_until(frame_began + shortest_frame);
         const auto now = Clock::now();

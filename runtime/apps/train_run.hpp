@@ -36,6 +36,7 @@ struct TrainRun {
 /// What came of it.
 struct TrainOutcome {
     realtime::Histogram frame_ns;
+    realtime::Histogram late_ns;  ///< how old the tick is that a frame shows, once it is on the screen
     double seconds = 0;
     Felt felt;
 };

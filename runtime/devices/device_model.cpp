@@ -91,4 +91,13 @@ const DeviceModel& find_device_model(std::string_view name) {
     throw UsageError({"device model", std::string(name), names, ""});
 }
 
+const DeviceModel* model_of_device(std::string_view device_name) {
+    const auto is_it = [&](const DeviceModel& model) {
+        return device_name.starts_with(model.product) ||
+               device_name.starts_with("simulated " + model.name + ",");
+    };
+    const auto found = std::ranges::find_if(models, is_it);
+    return found == models.end() ? nullptr : &*found;
+}
+
 }  // namespace palpate::devices

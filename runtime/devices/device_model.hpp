@@ -33,5 +33,8 @@ DeviceLimits limits_of(const DeviceModel& model);
 std::span<const DeviceModel> device_models();
 /// By name; throws UsageError listing the names.
 const DeviceModel& find_device_model(std::string_view name);
+/// What is known of a device by what it calls itself: "PHANTOM Omni 4711 'Left'", "simulated touch, scripted
+/// hand"; null if that is none of the models.
+const DeviceModel* model_of_device(std::string_view device_name);
 
 }  // namespace palpate::devices

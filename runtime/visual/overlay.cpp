@@ -19,6 +19,8 @@
 #include "runtime/texts/translated.hpp"
 #include "runtime/visual/cautions_text.hpp"
 #include "runtime/visual/quads.hpp"
+#include "runtime/visual/readings/force_colour.hpp"
+#include "runtime/visual/readings/health.hpp"
 
 namespace palpate::visual {
 namespace {
@@ -26,7 +28,10 @@ namespace {
 using texts::looked_up;
 using texts::translated;
 
-constexpr double bar_width = 240, bar_height = 10;
+// Pixels at 1280x720; the places of what is fixed to an edge are shares of the window.
+constexpr double left_edge = 0.017, bar_bottom = 0.885;
+constexpr double bar_width = 240, bar_height = 10, strip_height = 44, gap = 8, light_size = 11;
+constexpr int small_font = 13;
 constexpr auto help_text = shown_text(
     "left button  press      held, wheel or W S  deeper, back      W S, arrows  move the tool\n"
     "right drag  turn      middle drag  move the view      wheel, + -  zoom");
@@ -37,9 +42,8 @@ constexpr auto playback_help_text = shown_text(
     "Space  pause, go on      , .  slower, faster      arrows  step      Home, End      timeline  go there\n"
     "right drag  turn      middle drag  move the view      wheel, + -  zoom");
 constexpr double help_opacity = 0.75;
-constexpr double above_buttons = 0.085, above_timeline = 0.21;  // of the window's height
-constexpr std::size_t cautions_width = 64;                      // characters
-constexpr double cautions_room = 460;  // pixels that so many take, mostly, at 1280x720
+constexpr double above_buttons = 0.085, above_both_rows = 0.13, above_timeline = 0.21;  // of the height
+constexpr std::size_t cautions_width = 64;                                              // characters
 
 // Lines that start below each other, at the right of a window of any size.
 void start_left_of_its_place(vtkTextActor* actor) {
@@ -53,8 +57,12 @@ void start_left_of_its_place(vtkTextActor* actor) {
 void make_bar(vtkActor2D* actor, vtkPoints* points, double opacity, vtkRenderer* renderer) {
     make_quads(actor, points, Rgb(255, 255, 255), opacity, renderer);
     actor->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
-    actor->SetPosition(0.017, 0.885);
+    actor->SetPosition(left_edge, bar_bottom);
     actor->VisibilityOn();
+}
+
+void paint(vtkActor2D* actor, const Rgb& colour) {
+    actor->GetProperty()->SetColor(colour[0] / 255, colour[1] / 255, colour[2] / 255);
 }
 
 }  // namespace
@@ -79,20 +87,41 @@ std::string title_of(const std::string& case_name, const VisualFrame& frame) {
     return translated("{}, large deformation: {}", case_name, bodies);
 }
 
+std::string figures_of(const VisualFrame& frame, double frames_per_second, const ShownDetail& detail) {
+    const std::string torque =
+        turns(frame) ? translated("torque {:.1f} N mm", frame.torque.norm()) + "\n" : "";
+    const std::string level =
+        detail.levels > 0 ? translated(", detail {} of {}", detail.level, detail.levels) : "";
+    return translated("depth {:.1f} mm", std::max(0.0, frame.depth)) + "\n" + torque +
+           translated("{:.0f} ticks/s, {} overruns\n{:.0f} frames/s{}", frame.tick_rate_hz, frame.overruns,
+                      frames_per_second, level);
+}
+
 double display_scale(int width, int height) {
     constexpr double smallest = 0.7;
     return std::max(smallest, std::min(width / 1280.0, height / 720.0));
 }
 
+std::array<int, 2> usual_window_size(int display_width, int display_height) {
+    const double scale = std::max(1.0, std::min(display_width / 1920.0, display_height / 1080.0));
+    return {std::min(display_width, static_cast<int>(1280 * scale)),
+            std::min(display_height, static_cast<int>(720 * scale))};
+}
+
 Overlay::Overlay(const std::string& case_name, double max_force, std::span<const std::string> cautions,
                  vtkRenderer* renderer)
-    : case_name_(case_name), renderer_(renderer), max_force_(max_force) {
+    : case_name_(case_name), renderer_(renderer), max_force_(max_force), strip_(renderer) {
     make_bar(bar_frame_, whole_bar_points_, 0.3, renderer);
     make_bar(bar_, bar_points_, 1, renderer);
-    place(force_, 0.017, 0.975, 30, false, true);
-    place(figures_, 0.017, 0.865, 16, false, true);
+    make_quads(light_, light_points_, health_colour(Health::good), 1, renderer);
+    light_->VisibilityOn();
+    place(force_, left_edge, 0.975, 30, false, true);
+    place(most_force_, left_edge, bar_bottom, small_font, false, false);
+    most_force_->SetInput(fmt::format("{:g} N", max_force).c_str());
+    place(health_, left_edge, bar_bottom, 14, false, true);
+    place(figures_, left_edge, bar_bottom, 16, false, true);
     place(title_, 0.983, 0.975, 18, true, true);
-    place(help_, 0.017, above_buttons, 14, false, false);
+    place(help_, left_edge, above_buttons, 14, false, false);
     place(told_, 0.983, above_buttons, 16, true, false);
     place(notice_, 0.5, 0.86, 20, false, true);
     notice_->GetTextProperty()->SetJustificationToCentered();
@@ -130,8 +159,29 @@ void Overlay::fit_window() {
     scale_ = scale;
     for (const SizedText& text : texts_)
         text.actor->GetTextProperty()->SetFontSize(static_cast<int>(std::lround(scale * text.size)));
-    cautions_->SetPosition(-scale * cautions_room, 0);
+    double wide[2];  // and high, pixels
+    cautions_->GetSize(renderer_, wide);
+    cautions_->SetPosition(-wide[0], 0);
     set_quad(whole_bar_points_, 0, 0, 0, scale * bar_width, scale * bar_height);
+}
+
+// Below the number, from the bar down: the last seconds, the light, the figures; nothing below a page.
+void Overlay::show_readings(bool with_strip) {
+    const int* size = renderer_->GetVTKWindow()->GetSize();
+    const int width = size[0], height = size[1];
+    const double left = left_edge * width, bar = bar_bottom * height;
+    most_force_->SetPosition((left + scale_ * (bar_width + gap)) / width, bar_bottom);
+    const double strip_bottom = bar - scale_ * (gap + strip_height);
+    strip_.place({left, strip_bottom, scale_ * bar_width, scale_ * strip_height},
+                 static_cast<int>(std::lround(scale_ * small_font)));
+    strip_.show(with_strip && !page_shown_);
+    for (vtkActor2D* part : {bar_.Get(), bar_frame_.Get(), light_.Get()}) part->SetVisibility(!page_shown_);
+    for (vtkTextActor* text : {most_force_.Get(), health_.Get(), figures_.Get()})
+        text->SetVisibility(!page_shown_);
+    const double light_top = (with_strip ? strip_bottom : bar) - scale_ * 1.5 * gap;
+    set_quad(light_points_, 0, left, light_top - scale_ * light_size, left + scale_ * light_size, light_top);
+    health_->SetPosition((left + scale_ * (light_size + gap)) / width, (light_top + scale_ * 2) / height);
+    figures_->SetPosition(left_edge, (light_top - scale_ * (light_size + gap)) / height);
 }
 
 void Overlay::update(const VisualFrame& frame, double frames_per_second, const ShownDetail& detail) {
@@ -145,27 +195,25 @@ void Overlay::update(const VisualFrame& frame, double frames_per_second, const S
     }
     const double share = std::min(1.0, newtons / max_force_);
     set_quad(bar_points_, 0, 0, 0, scale_ * bar_width * share, scale_ * bar_height);
-    bar_->GetProperty()->SetColor(share < 0.5 ? 0.35 + 1.3 * share : 1,
-                                  share < 0.5 ? 0.82 : 1.64 - 1.64 * share, 0.3);
+    paint(bar_, force_colour(share));
     const auto now = std::chrono::steady_clock::now();
+    strip_.add(now, frame.force_range);
     filmed_ = frame.film_rate_hz.has_value();
     if (now - last_ < 200ms && !filmed_) return;
     fade_help(now);
     last_ = now;
+    show_readings(!frame.timeline);
     told_->SetVisibility(now < told_until_);
     const auto hints = frame.timeline      ? playback_help_text
                        : frame.jaws_closed ? forceps_help_text
                                            : help_text;
     help_->SetInput(looked_up(hints).data());
-    for (vtkTextActor* text : {help_.Get(), told_.Get()})
-        text->SetPosition(text->GetPosition()[0], frame.timeline ? above_timeline : above_buttons);
+    const double low = frame.timeline ? above_timeline : exercise_shown_ ? above_both_rows : above_buttons;
+    for (vtkTextActor* text : {help_.Get(), told_.Get()}) text->SetPosition(text->GetPosition()[0], low);
     force_->SetInput(fmt::format("{:.2f} N", newtons).c_str());
-    const std::string level =
-        detail.levels > 0 ? translated(", detail {} of {}", detail.level, detail.levels) : "";
-    figures_->SetInput(translated("depth {:.1f} mm\n{:.0f} ticks/s, {} overruns\n{:.0f} frames/s{}",
-                                  std::max(0.0, frame.depth), frame.tick_rate_hz, frame.overruns,
-                                  frames_per_second, level)
-                           .c_str());
+    figures_->SetInput(figures_of(frame, frames_per_second, detail).c_str());
+    health_->SetInput(health_text(frame).c_str());
+    paint(light_, health_colour(health_of(frame)));
     notice_->SetInput(notice_of(frame).c_str());
     title_->SetInput(title_of(case_name_, frame).c_str());
 }

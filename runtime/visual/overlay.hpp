@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <chrono>
 #include <span>
 #include <string>
@@ -11,6 +12,7 @@
 #include <vtkTextActor.h>
 
 #include "runtime/visual/detail/detail.hpp"
+#include "runtime/visual/readings/force_strip.hpp"
 #include "runtime/visual/visual_frame.hpp"
 
 namespace palpate::visual {
@@ -19,12 +21,19 @@ namespace palpate::visual {
 /// force, a line each; empty where there is nothing to say.
 std::string notice_of(const VisualFrame& frame);
 
+/// Depth, torque where a tool turns, and how loop and window keep up: a line each.
+std::string figures_of(const VisualFrame& frame, double frames_per_second, const ShownDetail& detail);
+
 /// Names the case, and the bodies that are not linear tissue now.
 std::string title_of(const std::string& case_name, const VisualFrame& frame);
 
 /// How much larger texts and bars are than in a window of 1280x720 pixels: as the window, so that they take
 /// the same share of it; never so small that they cannot be read.
 double display_scale(int width, int height);
+
+/// Width and height (pixels) of a window on a display of that size: two thirds of 1920x1080, more where there
+/// is more, and all of a display that has less.
+std::array<int, 2> usual_window_size(int display_width, int display_height);
 
 /// The figures and key hints that lie over the scene. Texts are set anew five times a second: often enough to
 /// read, seldom enough to cost nothing.
@@ -39,7 +48,8 @@ class Overlay {
     bool help_shown() const { return help_shown_; }
     /// Shows the case's cautions, or hides them. They are shown from the start until something is touched.
     void turn_cautions();
-    /// Hides hints and cautions while a page lies over the scene, cautions while an exercise goes on.
+    /// Hides hints, cautions and all figures but the force while a page lies over the scene, cautions while
+    /// an exercise goes on.
     void make_room(bool for_page, bool for_exercise);
     /// Says something for a few seconds.
     void tell(const std::string& sentence);
@@ -49,6 +59,7 @@ class Overlay {
     void fade_help(std::chrono::steady_clock::time_point now);
     void place(vtkTextActor* actor, double x, double y, int size, bool right, bool top);
     void fit_window();
+    void show_readings(bool with_strip);
 
     // A text's size in a window of 1280x720.
     struct SizedText {
@@ -67,10 +78,11 @@ class Overlay {
     std::chrono::steady_clock::duration help_seen_{};
     bool page_shown_ = false, exercise_shown_ = false, filmed_ = false;
     std::chrono::steady_clock::time_point last_{};
-    vtkNew<vtkTextActor> force_, figures_, title_, help_, notice_, cautions_, told_;
+    vtkNew<vtkTextActor> force_, most_force_, health_, figures_, title_, help_, notice_, cautions_, told_;
     std::chrono::steady_clock::time_point told_until_{};
-    vtkNew<vtkPoints> bar_points_, whole_bar_points_;
-    vtkNew<vtkActor2D> bar_, bar_frame_;
+    vtkNew<vtkPoints> bar_points_, whole_bar_points_, light_points_;
+    vtkNew<vtkActor2D> bar_, bar_frame_, light_;
+    ForceStrip strip_;
 };
 
 }  // namespace palpate::visual

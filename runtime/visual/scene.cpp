@@ -14,6 +14,7 @@
 
 #include "runtime/visual/actors.hpp"
 #include "runtime/visual/bodies/tissue_colours.hpp"
+#include "runtime/visual/readings/force_colour.hpp"
 #include "runtime/visual/tools/tool_shapes.hpp"
 
 namespace palpate::visual {
@@ -22,12 +23,6 @@ namespace {
 using Eigen::Vector3d;
 
 const Rgb white(245, 245, 245);
-
-// Green for little, yellow for half, red for the largest force.
-Rgb force_colour(double share) {
-    const auto s = static_cast<float>(share);
-    return s < 0.5F ? Rgb(90 + 330 * s, 210, 90) : Rgb(255, 370 - 320 * s, 60);
-}
 
 // Of tissue: seen as grain in the first view, whatever its scale.
 double grain_of(const Sight& sight) {
@@ -65,7 +60,7 @@ constexpr double handle_share = 0.35;  // of the field of view: how long a shaft
 }  // namespace
 
 Scene::Scene(const Case& patient_case, const Sight& sight, std::int64_t rigid_budget,
-             std::optional<double> jaw_length, vtkRenderer* renderer, vtkRenderer* front)
+             std::optional<double> jaw_length, double rendered, vtkRenderer* renderer, vtkRenderer* front)
     : tool_radius_(patient_case.haptics.tool_radius),
       max_force_((jaw_length ? 2 : 1) * patient_case.haptics.max_force),
       arrow_length_(0.5 * sight.field),
@@ -78,7 +73,8 @@ Scene::Scene(const Case& patient_case, const Sight& sight, std::int64_t rigid_bu
                .arrow_length = arrow_length_,
                .shaft_length = shaft_length_,
                .shaft_way = shaft_way_},
-              renderer, front) {
+              renderer, front),
+      stiffness_(patient_case, front) {
     // What is near and small comes first: software rendering then shades little that is covered later.
     add_tool(patient_case, sight, renderer, front);
     if (jaw_length) {
@@ -86,9 +82,9 @@ Scene::Scene(const Case& patient_case, const Sight& sight, std::int64_t rigid_bu
         renderer->AddActor(handle_);
     }
     for (const DeformableBody& body : patient_case.deformable_bodies)
-        soft_.emplace_back(body, sight.toward_eye, grain_of(sight), renderer);
+        soft_.emplace_back(body, sight.toward_eye, grain_of(sight), stiffness_, renderer);
     add_rigid(patient_case, sight, rigid_budget, renderer);
-    add_regions(patient_case, sight, front);
+    add_regions(patient_case, sight, rendered, front);
 }
 
 void Scene::add_rigid(const Case& patient_case, const Sight& sight, std::int64_t budget,
@@ -103,10 +99,10 @@ void Scene::add_rigid(const Case& patient_case, const Sight& sight, std::int64_t
     }
 }
 
-void Scene::add_regions(const Case& patient_case, const Sight& sight, vtkRenderer* front) {
+void Scene::add_regions(const Case& patient_case, const Sight& sight, double rendered, vtkRenderer* front) {
     std::size_t count = 0;
     for (const DeformableBody& body : patient_case.deformable_bodies) {
-        regions_.emplace_back(body, sight.toward_eye, count, front);
+        regions_.emplace_back(body, sight.toward_eye, count, rendered, front);
         for (const std::string& name : regions_.back().names())
             region_names_ += (count++ == 0 ? "" : ", ") + name;
     }
@@ -114,6 +110,12 @@ void Scene::add_regions(const Case& patient_case, const Sight& sight, vtkRendere
 
 void Scene::show_regions(bool on) {
     for (EnclosedRegions& regions : regions_) regions.show(on);
+}
+
+void Scene::show_stiffness(bool on) {
+    for (SoftSurface& body : soft_) body.show_stiffness(on);
+    if (on) stiffness_.fit();
+    stiffness_.show(on);
 }
 
 void Scene::add_tool(const Case& patient_case, const Sight& sight, vtkRenderer* renderer,
@@ -161,12 +163,10 @@ void Scene::update(const VisualFrame& frame) {
 
 // A tool that turns by itself is drawn as it is turned.
 void Scene::place_tool(const VisualFrame& frame) {
-    const bool turns = !frame.tool_orientation.coeffs().isZero(0);
-    Vector3d shaft = frame.shaft.isZero() ? shaft_way_ : frame.shaft;
-    if (turns) shaft = frame.tool_orientation * Vector3d::UnitZ();
+    const Vector3d known = shaft_of(frame), shaft = known.isZero() ? shaft_way_ : known;
     place_along(shaft_, frame.tool_position, shaft, 1);
     Eigen::Quaterniond held = Eigen::Quaterniond::Identity();  // a ball looks alike from everywhere
-    if (turns)
+    if (turns(frame))
         held = frame.tool_orientation;
     else if (is_instrument_)
         held = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), shaft);

@@ -14,6 +14,7 @@
 #include "runtime/visual/bodies/rigid_surface.hpp"
 #include "runtime/visual/bodies/soft_surface.hpp"
 #include "runtime/visual/detail/detail.hpp"
+#include "runtime/visual/readings/stiffness_map.hpp"
 #include "runtime/visual/sight.hpp"
 #include "runtime/visual/tools/other_tools.hpp"
 #include "runtime/visual/visual_frame.hpp"
@@ -25,10 +26,10 @@ class Scene {
   public:
     /// `patient_case` must outlive it. `rigid_budget`: triangles that all rigid bodies together may have on
     /// the screen. `jaw_length`: mm, of a forceps, whose other jaw is the first of the other tools; nothing:
-    /// no forceps. `front` is drawn over `renderer`: the force and the device show through whatever covers
-    /// them.
+    /// no forceps. `rendered`: the least difference of force that the device renders, N. `front` is drawn
+    /// over `renderer`: the force and the device show through whatever covers them.
     Scene(const Case& patient_case, const Sight& sight, std::int64_t rigid_budget,
-          std::optional<double> jaw_length, vtkRenderer* renderer, vtkRenderer* front);
+          std::optional<double> jaw_length, double rendered, vtkRenderer* renderer, vtkRenderer* front);
 
     void update(const VisualFrame& frame);
     void show_rigid(bool on);
@@ -38,8 +39,12 @@ class Scene {
     std::array<vtkActor*, 2> tool_parts() const { return {tool_, shaft_}; }
     /// Shows what deformable bodies enclose, hidden at first; it moves with them.
     void show_regions(bool on);
-    /// Their names, "tumour, cyst"; empty where nothing is enclosed.
+    /// Their names and what is felt of them; empty where nothing is enclosed.
     const std::string& region_names() const { return region_names_; }
+    /// Colours what deforms by how stiff it is under the tool, with a scale; not at first.
+    void show_stiffness(bool on);
+    /// Whether anybody knows that of this case.
+    bool has_stiffness() const { return !stiffness_.empty(); }
     /// Tells whether a cut may show bodies from inside; where none does, their far sides are not drawn.
     void show_inside(bool on);
     /// Draws bodies in that detail.
@@ -49,7 +54,7 @@ class Scene {
 
   private:
     void add_rigid(const Case& patient_case, const Sight& sight, std::int64_t budget, vtkRenderer* renderer);
-    void add_regions(const Case& patient_case, const Sight& sight, vtkRenderer* front);
+    void add_regions(const Case& patient_case, const Sight& sight, double rendered, vtkRenderer* front);
     void add_tool(const Case& patient_case, const Sight& sight, vtkRenderer* renderer, vtkRenderer* front);
     void place_tool(const VisualFrame& frame);
 
@@ -59,6 +64,7 @@ class Scene {
     double shaft_length_;        // mm
     Eigen::Vector3d shaft_way_;  // unit, from the tool to the hand
     OtherTools others_;
+    StiffnessMap stiffness_;
     std::vector<SoftSurface> soft_;
     std::vector<RigidSurface> rigid_;
     std::vector<EnclosedRegions> regions_;  // of each deformable body

@@ -72,17 +72,19 @@ struct TrainWindow::Parts {
           case_name(patient_case.name),
           scene(patient_case, window_settings.sight, window_settings.rigid_budget,
                 window_settings.forceps ? std::optional(window_settings.forceps->jaw_length) : std::nullopt,
-                renderer, front),
+                window_settings.rendered, renderer, front),
           shadow(renderer),
           overlay(patient_case.name, (window_settings.forceps ? 2 : 1) * patient_case.haptics.max_force,
                   window_settings.cautions, front),
           lesson_scene(renderer),
           thumbnails(window, window_settings.sight),
           panel(front),
-          buttons(front, window_settings.forceps.has_value()),
+          buttons(front, 0),
+          lesson_buttons(front, 1),
           timeline(front, interactor),
           tool_radius(patient_case.haptics.tool_radius),
           cut(window_settings.sight.blocked) {
+        buttons.set(window_buttons(window_settings.forceps.has_value()));
         if (patient_case.scan) scan.emplace(*patient_case.scan, scene.bodies(), renderer, front);
         renderer->SetNearClippingPlaneTolerance(
             0.002);  // of the far one: an eye in a passage is near its walls
@@ -121,7 +123,11 @@ struct TrainWindow::Parts {
         const std::array hidden{tip, shaft, shade, rim};
         scene.show_tool(!endoscope.fills_window());
         if (endoscope.fills_window()) shadow.update(frame.tool_position, std::nullopt);
-        endoscope.follow({frame.tool_position, frame.shaft, frame.lesson.look_at}, tool_radius, hidden);
+        endoscope.follow({.tip = frame.tool_position,
+                          .shaft = shaft_of(frame),
+                          .orientation = frame.tool_orientation,
+                          .look_at = frame.lesson.look_at},
+                         tool_radius, hidden);
         if (!endoscope.fills_window()) set_clipping_range(frame.tool_position);
     }
 
@@ -175,8 +181,8 @@ struct TrainWindow::Parts {
     // Whether the pointer was on a button or on a page, whose choice is taken if it was on one.
     bool click() {
         const int* at = interactor->GetEventPosition();
-        if (const std::string_view key = buttons.key_at(at[0], at[1]); !key.empty()) {
-            act_on(std::string(key));
+        if (const std::string key = button_at(at[0], at[1]); !key.empty()) {
+            act_on(key);
             return true;
         }
         std::string choice = panel.choice_at(at[0], at[1]);
@@ -210,6 +216,7 @@ struct TrainWindow::Parts {
         const int* now = interactor->GetEventPosition();
         panel.hover(now[0], now[1]);
         buttons.hover(now[0], now[1]);
+        lesson_buttons.hover(now[0], now[1]);
         const int* before = interactor->GetLastEventPosition();
         const double dx = now[0] - before[0], dy = now[1] - before[1];
         if (drag == Drag::none) {
@@ -228,8 +235,14 @@ struct TrainWindow::Parts {
         hand.view_changed();
     }
 
+    // The key of the button there; empty: none.
+    std::string button_at(int x, int y) const {
+        const std::string key = lesson_buttons.key_at(x, y);
+        return key.empty() ? buttons.key_at(x, y) : key;
+    }
+
     // Whether something to click on lies over the scene there.
-    bool covered(int x, int y) const { return panel.covers(x, y) || !buttons.key_at(x, y).empty(); }
+    bool covered(int x, int y) const { return panel.covers(x, y) || !button_at(x, y).empty(); }
 
     void keep_view() {
         if (!endoscope.fills_window())
@@ -298,6 +311,7 @@ struct TrainWindow::Parts {
             {"b", [](Parts& p) { p.scene.show_rigid(p.rigid_shown = !p.rigid_shown); }},
             {"t", &Parts::turn_regions},
             {"x", &Parts::turn_slices},
+            {"g", &Parts::turn_stiffness},
             {"v", [](Parts& p) { p.endoscope.turn(); }},
             {"u", &Parts::undo_view},
             {"r", &Parts::go_back},
@@ -326,12 +340,21 @@ struct TrainWindow::Parts {
         buttons.light("c", cut);
         buttons.light("b", rigid_shown);
         buttons.light("t", regions_shown);
+        buttons.light("g", stiffness_shown);
         buttons.light("x", scan && scan->shows_slice());
         buttons.light("v", endoscope.on());
         buttons.light("j", frame.jaws_closed.value_or(false));
         buttons.light("o", frame.recording);
         buttons.light("a", frame.audible);
         buttons.light("h", overlay.help_shown());
+    }
+
+    void show_lesson_buttons(const std::vector<LessonChoice>& actions, bool shown) {
+        std::vector<ButtonText> texts;
+        for (const LessonChoice& action : actions) texts.push_back({action.key, action.text});
+        lesson_buttons.set(texts);
+        const int* size = window->GetSize();
+        lesson_buttons.update(shown, size[0], size[1]);
     }
 
     void turn_regions() {
@@ -344,6 +367,15 @@ struct TrainWindow::Parts {
                                    : translated("{}: hidden", names));
     }
 
+    void turn_stiffness() {
+        if (!scene.has_stiffness())
+            return overlay.tell(translated("nobody has computed how stiff this feels"));
+        if (exercising) return overlay.tell(translated("in this exercise it stays hidden"));
+        scene.show_stiffness(stiffness_shown = !stiffness_shown);
+        if (stiffness_shown)
+            overlay.tell(translated("how stiff each place is under this tool, pressed alone"));
+    }
+
     void turn_slices() {
         if (!scan) return overlay.tell(translated("this case has no scan"));
         if (exercising) return overlay.tell(translated("in this exercise it stays hidden"));
@@ -353,9 +385,9 @@ struct TrainWindow::Parts {
     // Whoever is asked to find something is not shown where it is.
     void see_exercise(bool goes_on) {
         exercising = goes_on;
-        if (!exercising || !regions_shown) return;
-        regions_shown = false;
-        scene.show_regions(false);
+        if (!exercising) return;
+        if (std::exchange(regions_shown, false)) scene.show_regions(false);
+        if (std::exchange(stiffness_shown, false)) scene.show_stiffness(false);
     }
 
     std::shared_ptr<OpenedWindow> opened;
@@ -375,7 +407,7 @@ struct TrainWindow::Parts {
     LessonScene lesson_scene;
     Thumbnails thumbnails;
     LessonPanel panel;
-    ButtonBar buttons;
+    ButtonBar buttons, lesson_buttons;
     Timeline timeline;
     ViewHistory views;
     std::optional<ScanView> scan;
@@ -383,7 +415,7 @@ struct TrainWindow::Parts {
     double tool_radius;             // mm
     bool cut;
     bool rigid_shown = true;
-    bool regions_shown = false;
+    bool regions_shown = false, stiffness_shown = false;
     bool exercising = false;
     bool page_takes_keys = false;
     bool picture_asked = false;
@@ -428,7 +460,9 @@ void TrainWindow::draw(const VisualFrame& frame) {
     const int* size = p.window->GetSize();
     p.panel.update(frame.lesson, p.thumbnails, frame.force.norm(), size[0], size[1]);
     p.light_buttons(frame);
-    p.buttons.update(!frame.lesson.page && !frame.film_rate_hz, size[0], size[1]);
+    const bool no_page = !frame.lesson.page && !frame.film_rate_hz;
+    p.buttons.update(no_page, size[0], size[1]);
+    p.show_lesson_buttons(frame.lesson.actions, no_page);
     p.timeline.update(frame.timeline);
     p.window->Render();
     if (const auto told = p.pictures.outcome()) p.overlay.tell(*told);

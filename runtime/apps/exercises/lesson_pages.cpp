@@ -77,16 +77,32 @@ std::string progress_of(const Exercise& exercise, const Goals& goals) {
     return "";
 }
 
+// The key as people call it, and what it does.
+LessonChoice action(const char* key, const std::string& called, const std::string& does) {
+    return {key, called + "  " + does};
+}
+
+std::vector<LessonChoice> actions_of(Task task, bool paused) {
+    std::vector<LessonChoice> actions{
+        action("space", translated("Space"), paused ? translated("Go on") : translated("Pause")),
+        action("e", "E", translated("End")), action("n", "N", translated("Anew"))};
+    if (task == Task::find) {
+        actions.push_back(action("k", "K", translated("A point of its border")));
+        actions.push_back(action("m", "M", translated("It is here")));
+    }
+    return actions;
+}
+
 void show_doing(const Attempt& attempt, double force, LessonView& view) {
     const Exercise& exercise = attempt.exercise();
     view.instruction = looked_up(exercise.instruction.c_str());
     view.status = progress_of(exercise, attempt.goals()) +
-                  clock_of(exercise.time_limit > 0 ? exercise.time_limit - attempt.time() : attempt.time()) +
-                  "   " + translated("Space pauses, E ends, N anew");
+                  clock_of(exercise.time_limit > 0 ? exercise.time_limit - attempt.time() : attempt.time());
+    view.actions = actions_of(exercise.task, attempt.paused());
     view.least_force = exercise.least_force;
     view.most_force = exercise.most_force;
     if (attempt.paused())
-        view.warning = translated("paused: Space goes on");
+        view.warning = translated("paused");
     else if (force > exercise.most_force)
         view.warning = translated("too hard: {:.2f} N, at most {:.2f} N", force, exercise.most_force);
     else if (exercise.task == Task::trace && attempt.goals().was_astray && force >= exercise.least_force)
@@ -151,8 +167,9 @@ LessonView lesson_view(const Lesson& lesson, const LessonSetting& setting, doubl
             break;
         case Phase::counting_down:
             view.instruction = looked_up(lesson.exercises()[lesson.chosen()].instruction.c_str());
-            view.status = translated("begins in {:.0f}   Enter: now   F2: change it",
-                                     std::ceil(lesson.seconds_to_begin()));
+            view.status = translated("begins in {:.0f}", std::ceil(lesson.seconds_to_begin()));
+            view.actions = {action("return", translated("Enter"), translated("Now")),
+                            action("f2", "F2", translated("Change it"))};
             show_places(lesson.exercises()[lesson.chosen()], {}, false, view);
             break;
         case Phase::doing:
@@ -160,7 +177,7 @@ LessonView lesson_view(const Lesson& lesson, const LessonSetting& setting, doubl
             break;
         case Phase::looking_back:
             if (lesson.page_hidden())
-                view.status = translated("Space: back to the figures");
+                view.actions = {action("space", translated("Space"), translated("Back to the figures"))};
             else
                 view.page = result;
             show_places(lesson.attempt()->exercise(), lesson.attempt()->goals(), true, view);

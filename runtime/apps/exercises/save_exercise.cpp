@@ -8,15 +8,14 @@
 
 #include "formats/model/errors.hpp"
 #include "runtime/training/teacher/exercise_text.hpp"
-#include "runtime/visual/controls/free_path.hpp"
 #include "tools/cli/outputs/staged_file.hpp"
 
 namespace palpate::apps {
 
 using namespace training;
 
-std::filesystem::path usual_exercise_file(const std::string& case_name) {
-    return visual::plain_name(case_name) + "-exercises.toml";
+std::filesystem::path usual_exercise_file(const std::filesystem::path& asset) {
+    return asset.parent_path() / (asset.stem().string() + "-exercises.toml");
 }
 
 void save_exercise(const std::filesystem::path& file, const ExerciseRecipe& recipe) {

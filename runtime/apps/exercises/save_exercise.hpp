@@ -7,8 +7,9 @@
 
 namespace palpate::apps {
 
-/// The file in the current folder that keeps a case's exercises if no other is named: "CASE-exercises.toml".
-std::filesystem::path usual_exercise_file(const std::string& case_name);
+/// The file that keeps an asset's exercises if no other is named, beside it: "liver-exercises.toml" of
+/// "liver.vtkhdf".
+std::filesystem::path usual_exercise_file(const std::filesystem::path& asset);
 
 /// Puts an exercise into a file, a new one if there is none: see with_exercise(). The file appears whole, and
 /// only once read_exercises() has read the same recipe from it; otherwise the old one stays. Throws

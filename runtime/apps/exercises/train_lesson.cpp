@@ -48,6 +48,19 @@ std::size_t index_of(const std::string& name, const std::vector<LaidOut>& exerci
     throw UsageError({"--exercise", "no exercise '" + name + "'", names, ""});
 }
 
+// The asset's own, and of the standard ones those that none of them replaces.
+std::vector<ExerciseRecipe> usual_exercises(const std::filesystem::path& file, bool with_forceps) {
+    std::vector<ExerciseRecipe> recipes;
+    if (std::filesystem::exists(file)) recipes = read_exercises(file);
+    std::erase_if(recipes, [&](const ExerciseRecipe& recipe) {
+        return recipe.task != Task::free && (recipe.task == Task::retract) != with_forceps;
+    });
+    for (ExerciseRecipe& standard : standard_exercises(with_forceps))
+        if (std::ranges::find(recipes, standard.name, &ExerciseRecipe::name) == recipes.end())
+            recipes.push_back(std::move(standard));
+    return recipes;
+}
+
 std::vector<Exercise> exercises_of(const std::vector<LaidOut>& laid_out) {
     std::vector<Exercise> exercises;
     for (const LaidOut& each : laid_out) exercises.push_back(each.exercise);
@@ -69,10 +82,10 @@ std::vector<LaidOut> lay_out_exercises(const LessonOptions& options, session::Se
     if (!is_pseudonym(options.trainee))
         throw UsageError({"--trainee", "'" + options.trainee + "'", "1 to 40 letters, digits, '-' and '_'",
                           "a pseudonym, not a name"});
-    const bool standard = options.exercises.empty();
+    const bool named = !options.exercises.empty();
     std::vector<LaidOut> exercises;
     for (const ExerciseRecipe& recipe :
-         standard ? standard_exercises(run.jaws().has_value()) : read_exercises(options.exercises)) {
+         named ? read_exercises(options.exercises) : usual_exercises(options.usual, run.jaws().has_value())) {
         if (recipe.task == Task::retract && !run.jaws())
             throw InvalidInput({recipe.written_at, "task 'retract' without a forceps", "",
                                 "start with --instrument forceps, or leave it out"});
@@ -80,7 +93,7 @@ std::vector<LaidOut> lay_out_exercises(const LessonOptions& options, session::Se
             if (auto exercise = lay_out(recipe, run.patient_case(), run.model(), start))
                 exercises.push_back({recipe, std::move(*exercise)});
         } catch (const InvalidInput& error) {
-            if (!standard) throw;
+            if (named) throw;
             spdlog::info("without the exercise '{}': {}", recipe.title, error.what());
         }
     }
@@ -96,8 +109,7 @@ TrainLesson::TrainLesson(const LessonOptions& options, const std::vector<LaidOut
       run_(run),
       lesson_(exercises_of(exercises), run.patient_case(), scripted ? 0 : countdown,
               [this](const Attempt& attempt) { keep(attempt); }),
-      exercise_file_(options.exercises.empty() ? usual_exercise_file(setting_.case_name)
-                                               : options.exercises) {
+      exercise_file_(options.exercises.empty() ? options.usual : options.exercises) {
     for (const LaidOut& exercise : exercises) recipes_.push_back(exercise.recipe);
     if (!options.exercise.empty())
         lesson_.choose(index_of(options.exercise, exercises));

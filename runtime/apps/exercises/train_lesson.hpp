@@ -16,7 +16,8 @@ namespace palpate::apps {
 
 /// What of a command line is about exercises.
 struct LessonOptions {
-    std::filesystem::path exercises;  ///< a file; empty: the standard ones
+    std::filesystem::path exercises;  ///< a file; empty: `usual` and the standard ones
+    std::filesystem::path usual;      ///< the asset's own, which need not be there: usual_exercise_file()
     std::string exercise;             ///< to begin with; empty: the start page
     std::string trainee = "guest";    ///< a pseudonym
     std::string attempts;             ///< folder for results; empty: usual_attempts_folder()
@@ -32,10 +33,10 @@ struct LaidOut {
     training::Exercise exercise;
 };
 
-/// Lays the exercises out on the session's patient, around `start`. Of the standard ones those that find no
-/// room on this patient are left out, and said; those of a file that cannot be are refused. After hold(),
-/// before the loops run. Throws as read_exercises(), lay_out(); UsageError for a pseudonym that is none or an
-/// exercise that is not there.
+/// Lays the exercises out on the session's patient, around `start`. Those of a file that cannot be are
+/// refused if the user named it; of the asset's own and the standard ones those that find no room on this
+/// patient are left out, and said. After hold(), before the loops run. Throws as read_exercises(), lay_out();
+/// UsageError for a pseudonym that is none or an exercise that is not there.
 std::vector<LaidOut> lay_out_exercises(const LessonOptions& options, session::Session& run,
                                        const session::TouchTarget& start);
 

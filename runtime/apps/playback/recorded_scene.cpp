@@ -69,6 +69,8 @@ const Tick& RecordedScene::fill(visual::VisualFrame& frame, double time) {
     frame.shaft = vector_of(tick.shaft);
     frame.tool_orientation = quaternion_of(tick.tool_orientation);
     frame.force = felt(tick);
+    frame.torque = vector_of(tick.torque);
+    frame.device = recording_.head.devices[static_cast<std::size_t>(tick.tool)].name;
     frame.depth = tick.depth;
     frame.overruns = tick.overruns;
     frame.tick_rate_hz = tick_rate_at(track_, time);

@@ -210,9 +210,7 @@ Json play_recording(const PlaybackOptions& options, const PlaybackWindow& shown,
     if (!shown.screenshot.empty()) picture.emplace(shown.screenshot, session.force);
     FilmOutput film(options.video, options.pictures, options.film_rate, session);
 
-    const auto [width, height] = shown.size;
-    auto opened =
-        open_window(width, height, texts::translated("reading {}", options.play.filename().string()));
+    auto opened = open_window(shown.size, texts::translated("reading {}", options.play.filename().string()));
     session.progress.step("reading the recording", 0);
     const recording::Recording recording = recording::read_recording(options.play);
     session.progress.step("reading the case", 0.3);

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "runtime/visual/controls/open_window.hpp"
 #include "tools/cli/command.hpp"
 
 namespace palpate::apps {
@@ -24,10 +25,10 @@ struct PlaybackOptions {
 struct PlaybackWindow {
     std::filesystem::path asset;
     std::vector<std::string>
-        trusted_keys;                  ///< one of which must have signed it; none: no signature is asked for
-    std::pair<int, int> size;          ///< pixels
-    double seconds = 0;                ///< s, after which it closes; 0: when told to
-    std::filesystem::path screenshot;  ///< at the end; empty: none
+        trusted_keys;  ///< one of which must have signed it; none: no signature is asked for
+    std::optional<visual::WindowSize> size;  ///< pixels; if not given, as open_window() has it
+    double seconds = 0;                      ///< s, after which it closes; 0: when told to
+    std::filesystem::path screenshot;        ///< at the end; empty: none
 };
 
 /// Adds the options to the command. `beside`: others of its options that count beside --play. Returns a

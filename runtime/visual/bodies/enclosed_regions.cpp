@@ -7,13 +7,14 @@
 
 #include "formats/model/regions.hpp"
 #include "runtime/visual/bodies/tissue_colours.hpp"
+#include "runtime/visual/readings/felt_text.hpp"
 
 namespace palpate::visual {
 
 using Eigen::Vector3f;
 
 EnclosedRegions::EnclosedRegions(const DeformableBody& body, const Eigen::Vector3d& toward_eye,
-                                 std::size_t first, vtkRenderer* front)
+                                 std::size_t first, double rendered, vtkRenderer* front)
     : body_(&body), inner_nodes_(std::make_shared<std::optional<elasticity::InnerNodes>>()) {
     // Yellow, reddish purple, bluish green: told apart by colour-blind people too (Okabe, Ito 2008).
     const std::array<Rgb, 3> colours{Rgb(240, 228, 66), Rgb(204, 121, 167), Rgb(0, 158, 115)};
@@ -27,7 +28,8 @@ EnclosedRegions::EnclosedRegions(const DeformableBody& body, const Eigen::Vector
         drawn->VisibilityOff();
         front->AddActor(drawn);
         regions_.push_back({outline.nodes, std::move(surface), drawn});
-        names_.push_back(label.name);
+        const std::string felt = felt_text(body, label.value, rendered);
+        names_.push_back(felt.empty() ? label.name : label.name + " (" + felt + ")");
     }
 }
 

@@ -24,10 +24,11 @@ namespace palpate::visual {
 class EnclosedRegions {
   public:
     /// `body` must outlive it. A region without a colour of its own gets one of three by its number, `first`
-    /// and on.
+    /// and on. `rendered`: the least difference of force that the device renders, N.
     EnclosedRegions(const DeformableBody& body, const Eigen::Vector3d& toward_eye, std::size_t first,
-                    vtkRenderer* front);
+                    double rendered, vtkRenderer* front);
 
+    /// "tumour (stiffer by 34 %, can be felt)", in the user's language.
     const std::vector<std::string>& names() const { return names_; }
     void show(bool on);
     /// Moves what is shown; one displacement (mm) per surface vertex of the body.

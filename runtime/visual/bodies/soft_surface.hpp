@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
-#include <array>
 #include <vector>
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
 
 #include "formats/model/body.hpp"
 #include "runtime/visual/bodies/moving_surface.hpp"
+#include "runtime/visual/readings/stiffness_map.hpp"
 
 namespace palpate::visual {
 
@@ -17,23 +17,26 @@ class SoftSurface {
   public:
     /// `grain`: as of grained_tissue_actor().
     SoftSurface(const DeformableBody& body, const Eigen::Vector3d& toward_eye, double grain,
-                vtkRenderer* renderer);
+                const StiffnessMap& map, vtkRenderer* renderer);
 
     /// Moves the surface; one displacement (mm) per surface vertex.
     void deform(const std::vector<Eigen::Vector3f>& displacements) { surface_.displace(displacements); }
 
-    /// As it is drawn now.
-    vtkActor* actor() const { return grained_->GetVisibility() != 0 ? grained_ : plain_; }
     /// Draws the finest spots and their relief, or leaves them out.
     void show_grain(bool on);
+    /// Draws it in the map's colours where that knows it, or as tissue.
+    void show_stiffness(bool on);
     /// Whether a cut may show the body from inside.
     void show_inside(bool on);
     /// All that ever draw it.
-    std::array<vtkActor*, 2> actors() const { return {grained_, plain_}; }
+    std::vector<vtkActor*> actors() const;
 
   private:
+    void choose();
+
     MovingSurface surface_;
-    vtkSmartPointer<vtkActor> grained_, plain_;  // of the same data; one is shown
+    bool grain_shown_ = true, stiffness_shown_ = false;
+    vtkSmartPointer<vtkActor> grained_, plain_, mapped_;  // of the same data; one is shown
 };
 
 }  // namespace palpate::visual

@@ -27,24 +27,48 @@ void dress(vtkTextActor* actor, vtkRenderer* renderer) {
 
 }  // namespace
 
-ButtonBar::ButtonBar(vtkRenderer* renderer, bool has_jaws) : renderer_(renderer) {
+std::vector<ButtonText> window_buttons(bool has_jaws) {
+    std::vector<ButtonText> buttons;
     for (const WindowKey& entry : window_keys()) {
         if (entry.of_jaws && !has_jaws) continue;
-        Button button{entry.key, texts::looked_up(entry.tip), vtkSmartPointer<vtkTextActor>::New()};
         const char letter = static_cast<char>(std::toupper(static_cast<unsigned char>(entry.key.front())));
-        // Blanks are the button's margin: a text's background ends with its letters.
-        button.text->SetInput(fmt::format("  {}  {}  ", letter, texts::looked_up(entry.label)).c_str());
-        dress(button.text, renderer);
-        paint(button, false);
-        buttons_.push_back(button);
+        buttons.push_back({std::string(entry.key),
+                           fmt::format("{}  {}", letter, texts::looked_up(entry.label)),
+                           std::string(texts::looked_up(entry.tip))});
     }
+    return buttons;
+}
+
+ButtonBar::ButtonBar(vtkRenderer* renderer, int row) : renderer_(renderer), row_(row) {
     dress(tip_, renderer);
     tip_->GetTextProperty()->SetColor(0.93, 0.95, 0.97);
     tip_->GetTextProperty()->SetBackgroundColor(0.05, 0.07, 0.09);
+    tip_->GetTextProperty()->SetBackgroundOpacity(0.95);
+    tip_->SetLayerNumber(1);  // over a row above
+}
+
+void ButtonBar::set(const std::vector<ButtonText>& buttons) {
+    if (buttons == texts_) return;
+    texts_ = buttons;
+    for (const Button& button : buttons_) renderer_->RemoveActor2D(button.actor);
+    buttons_.clear();
+    for (const ButtonText& text : buttons) {
+        Button button{text, vtkSmartPointer<vtkTextActor>::New()};
+        // Blanks are the button's margin: a text's background ends with its letters.
+        button.actor->SetInput(fmt::format("  {}  ", text.text).c_str());
+        dress(button.actor, renderer_);
+        button.actor->SetVisibility(shown_);
+        paint(button, false);
+        buttons_.push_back(button);
+    }
+    if (shown_)
+        fit(width_, height_);
+    else
+        width_ = 0;  // to be made when it is shown
 }
 
 void ButtonBar::paint(const Button& button, bool under_pointer) {
-    vtkTextProperty* text = button.text->GetTextProperty();
+    vtkTextProperty* text = button.actor->GetTextProperty();
     // Told apart by lightness, for eyes that do not tell colours apart.
     if (button.on) {
         text->SetColor(0.05, 0.07, 0.09);
@@ -61,13 +85,14 @@ void ButtonBar::fit(int width, int height) {
     width_ = width;
     height_ = height;
     const double scale = display_scale(width, height);
-    top_ = scale * (bar_bottom + button_height);
+    bottom_ = scale * (bar_bottom + row_ * (button_height + button_gap));
+    top_ = bottom_ + scale * button_height;
     double left = scale * bar_edge;
     for (Button& button : buttons_) {
-        button.text->GetTextProperty()->SetFontSize(std::max(9, static_cast<int>(scale * button_font)));
-        button.text->SetPosition(left, scale * (bar_bottom + button_height / 2));
+        button.actor->GetTextProperty()->SetFontSize(std::max(9, static_cast<int>(scale * button_font)));
+        button.actor->SetPosition(left, (bottom_ + top_) / 2);
         double box[4];
-        button.text->GetBoundingBox(renderer_, box);
+        button.actor->GetBoundingBox(renderer_, box);
         button.left = left;
         button.right = left + box[1] - box[0];
         left = button.right + scale * button_gap;
@@ -79,32 +104,34 @@ void ButtonBar::update(bool shown, int width, int height) {
     if (shown && (width != width_ || height != height_)) fit(width, height);
     if (shown == shown_) return;
     shown_ = shown;
-    for (const Button& button : buttons_) button.text->SetVisibility(shown);
+    for (const Button& button : buttons_) button.actor->SetVisibility(shown);
     if (!shown) tip_->VisibilityOff();
 }
 
 void ButtonBar::light(std::string_view key, bool on) {
-    const auto button = std::ranges::find(buttons_, key, &Button::key);
+    const auto button = std::ranges::find_if(buttons_, [&](const Button& b) { return b.text.key == key; });
     if (button == buttons_.end() || button->on == on) return;
     button->on = on;
     paint(*button, false);
 }
 
-std::string_view ButtonBar::key_at(int x, int y) const {
-    if (!shown_ || y >= top_) return {};
+std::string ButtonBar::key_at(int x, int y) const {
+    const bool inside = shown_ && y < top_ && (row_ == 0 || y >= bottom_);
     const auto button =
         std::ranges::find_if(buttons_, [&](const Button& b) { return x >= b.left && x <= b.right; });
-    return button != buttons_.end() ? button->key : std::string_view();
+    return inside && button != buttons_.end() ? button->text.key : "";
 }
 
 void ButtonBar::hover(int x, int y) {
-    const std::string_view key = key_at(x, y);
-    tip_->SetVisibility(!key.empty());
+    const std::string key = key_at(x, y);
+    tip_->VisibilityOff();
     for (const Button& button : buttons_) {
-        paint(button, button.key == key);
-        if (button.key != key) continue;
-        tip_->SetInput(fmt::format(" {} ", button.tip).c_str());
-        tip_->SetPosition(button.left, 1.45 * top_);
+        const bool under_pointer = button.text.key == key;
+        paint(button, under_pointer);
+        if (!under_pointer || button.text.tip.empty()) continue;
+        tip_->SetInput(fmt::format(" {} ", button.text.tip).c_str());
+        tip_->SetPosition(button.left, top_ + 0.8 * (top_ - bottom_));
+        tip_->VisibilityOn();
     }
 }
 

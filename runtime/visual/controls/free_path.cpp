@@ -5,6 +5,7 @@
 #include <system_error>
 
 namespace palpate::visual {
+namespace {
 
 std::string plain_name(const std::string& case_name) {
     constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_";
@@ -13,6 +14,8 @@ std::string plain_name(const std::string& case_name) {
         if (plain.find(c) == std::string_view::npos) c = '_';
     return name;
 }
+
+}  // namespace
 
 std::filesystem::path free_path(const std::filesystem::path& folder, const std::string& case_name,
                                 const std::string& extension) {

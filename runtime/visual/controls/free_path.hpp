@@ -5,12 +5,8 @@
 
 namespace palpate::visual {
 
-/// A case's name as a part of file names: what is neither letter, digit, hyphen nor underscore becomes an
-/// underscore.
-std::string plain_name(const std::string& case_name);
-
 /// The first path "palpate-CASE-N" with that extension (".png") in `folder`, N = 1, 2, ..., at which nothing
-/// is yet; CASE as plain_name() has it.
+/// is yet; in CASE what is neither letter, digit, hyphen nor underscore becomes an underscore.
 std::filesystem::path free_path(const std::filesystem::path& folder, const std::string& case_name,
                                 const std::string& extension);
 

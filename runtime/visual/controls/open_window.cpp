@@ -10,9 +10,12 @@
 
 namespace palpate::visual {
 
-std::shared_ptr<OpenedWindow> open_window(int width, int height, const std::string& sentence) {
+std::shared_ptr<OpenedWindow> open_window(const std::optional<WindowSize>& size,
+                                          const std::string& sentence) {
     constexpr double points = 20;  // in a window of 1280x720
     auto opened = std::make_shared<OpenedWindow>();
+    const int* display = opened->window->GetScreenSize();
+    const auto [width, height] = size.value_or(usual_window_size(display[0], display[1]));
     opened->renderer->SetBackground(0.10, 0.13, 0.16);  // a gradient takes a twentieth of a frame
     opened->front->SetLayer(1);
     opened->window->SetNumberOfLayers(2);

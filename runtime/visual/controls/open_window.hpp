@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace palpate::visual {
 
 struct OpenedWindow;  // controls/opened_window.hpp
 
-/// Opens an empty window of so many pixels that says what is waited for: display and graphics begin while
-/// another thread still reads the case. Throws SystemFailure if no X display answers.
-std::shared_ptr<OpenedWindow> open_window(int width, int height, const std::string& sentence);
+/// Width and height, pixels.
+using WindowSize = std::array<int, 2>;
+
+/// Opens an empty window that says what is waited for: display and graphics begin while another thread still
+/// reads the case. `size`: if not given, as usual_window_size() of the display. Throws SystemFailure if no X
+/// display answers.
+std::shared_ptr<OpenedWindow> open_window(const std::optional<WindowSize>& size, const std::string& sentence);
 
 }  // namespace palpate::visual

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/visual/inside/endoscope.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <functional>
 #include <vector>
@@ -103,8 +102,13 @@ bool Endoscope::covers(int x, int y) const {
 }
 
 void Endoscope::look_along(const ScopePose& pose) {
-    if (!placed_) tip_ = pose.tip;
+    const bool turns = !pose.orientation.coeffs().isZero(0);
+    if (!placed_) {
+        tip_ = pose.tip;
+        up_in_tool_ = pose.orientation.conjugate() * Vector3d(camera_->GetViewUp());
+    }
     placed_ = true;
+    if (turns) camera_->SetViewUp(Vector3d(pose.orientation * up_in_tool_).data());
     Vector3d way = pose.tip - tip_;
     // What is drawn back goes on looking ahead.
     if (way.dot(forward_) < 0) {

@@ -59,6 +59,7 @@ struct LessonView {
     std::string instruction;  ///< over the scene, as are the next two; empty: none
     std::string status;
     std::string warning;
+    std::vector<LessonChoice> actions;       ///< what can be done now, as buttons below the scene
     double least_force = 0, most_force = 0;  ///< N: the band that the force is to keep to; 0, 0: none
     bool hides_regions = false;              ///< what bodies enclose must not be seen
     std::vector<LessonMark> marks;

@@ -10,6 +10,7 @@
 
 #include "runtime/visual/overlay.hpp"
 #include "runtime/visual/quads.hpp"
+#include "runtime/visual/readings/force_columns.hpp"
 
 namespace palpate::visual {
 
@@ -37,12 +38,12 @@ Timeline::Timeline(vtkRenderer* renderer, vtkRenderWindowInteractor* interactor)
 
 void Timeline::handle(unsigned long event) {
     const int* at = interactor_->GetEventPosition();
-    const bool inside =
-        shown_ && at[0] >= left_ && at[0] <= left_ + width_ && at[1] >= bottom_ && at[1] <= bottom_ + height_;
+    const bool inside = shown_ && at[0] >= box_.left && at[0] <= box_.left + box_.width &&
+                        at[1] >= box_.bottom && at[1] <= box_.bottom + box_.height;
     if (event == vtkCommand::LeftButtonPressEvent) dragged_ = inside;
     events_->SetAbortFlag(dragged_);
     if (!dragged_) return;
-    sought_ = std::clamp((at[0] - left_) / width_, 0.0, 1.0);
+    sought_ = std::clamp((at[0] - box_.left) / box_.width, 0.0, 1.0);
     if (event == vtkCommand::LeftButtonReleaseEvent) dragged_ = false;
 }
 
@@ -54,30 +55,18 @@ void Timeline::lay_out() {
     constexpr double margin = 0.017;                               // of the window's width
     constexpr double height = 56, below = 52, gap = 6, font = 15;  // pixels at 1280x720
     const double scale = display_scale(window_[0], window_[1]);
-    left_ = margin * window_[0];
-    width_ = std::max(1.0, window_[0] - 2 * left_);
-    bottom_ = scale * below;
-    height_ = scale * height;
-    set_quad(band_points_, 0, left_, bottom_, left_ + width_, bottom_ + height_);
-    text_->SetPosition(left_, bottom_ + height_ + scale * gap);
+    const double left = margin * window_[0];
+    box_ = {left, scale * below, std::max(1.0, window_[0] - 2 * left), scale * height};
+    set_quad(band_points_, 0, box_.left, box_.bottom, box_.left + box_.width, box_.bottom + box_.height);
+    text_->SetPosition(box_.left, box_.bottom + box_.height + scale * gap);
     text_->GetTextProperty()->SetFontSize(static_cast<int>(std::lround(scale * font)));
 }
 
-// A column reaches from its least to its largest force, and up to the next one's, so that a line is whole.
 void Timeline::draw_curve() {
-    constexpr double headroom = 0.92, thinnest = 1.5;  // of the band; pixels
+    constexpr double headroom = 0.92;  // of the band
     double most = 0;
     for (const Eigen::Vector2d& column : forces_) most = std::max(most, column[1]);
-    const double pixels = most > 0 ? headroom * height_ / most : 0;
-    const double step = width_ / static_cast<double>(std::max<std::size_t>(1, forces_.size()));
-    set_quad_count(curve_, curve_points_, static_cast<vtkIdType>(forces_.size()));
-    for (std::size_t i = 0; i < forces_.size(); ++i) {
-        const Eigen::Vector2d& next = forces_[std::min(i + 1, forces_.size() - 1)];
-        const double low = std::min(forces_[i][0], next[1]), high = std::max(forces_[i][1], next[0]);
-        const double left = left_ + step * static_cast<double>(i);
-        set_quad(curve_points_, static_cast<vtkIdType>(i), left, bottom_ + pixels * low, left + step,
-                 bottom_ + std::max(pixels * high, pixels * low + thinnest));
-    }
+    draw_columns(curve_, curve_points_, forces_, most / headroom, box_);
 }
 
 void Timeline::update(const std::optional<TimelineView>& view) {
@@ -96,8 +85,8 @@ void Timeline::update(const std::optional<TimelineView>& view) {
         forces_ = view->forces;
         draw_curve();
     }
-    const double half = std::max(1.0, 0.02 * height_), at = left_ + view->share * width_;
-    set_quad(head_points_, 0, at - half, bottom_, at + half, bottom_ + height_);
+    const double half = std::max(1.0, 0.02 * box_.height), at = box_.left + view->share * box_.width;
+    set_quad(head_points_, 0, at - half, box_.bottom, at + half, box_.bottom + box_.height);
     text_->SetInput(view->text.c_str());
 }
 

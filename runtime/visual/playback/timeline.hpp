@@ -13,6 +13,7 @@
 #include <vtkTextActor.h>
 
 #include "runtime/visual/playback/playback_view.hpp"
+#include "runtime/visual/readings/force_columns.hpp"
 
 namespace palpate::visual {
 
@@ -41,9 +42,9 @@ class Timeline {
     vtkNew<vtkPoints> band_points_, curve_points_, head_points_;
     vtkNew<vtkActor2D> band_, curve_, head_;
     vtkNew<vtkTextActor> text_;
-    std::vector<Eigen::Vector2d> forces_;                    // N, as drawn
-    std::array<int, 2> window_{0, 0};                        // pixels, as drawn
-    double left_ = 0, bottom_ = 0, width_ = 1, height_ = 1;  // pixels, of the band
+    std::vector<Eigen::Vector2d> forces_;  // N, as drawn
+    std::array<int, 2> window_{0, 0};      // pixels, as drawn
+    Box box_;                              // of the band
     bool shown_ = false, dragged_ = false;
     std::optional<double> sought_;
 };

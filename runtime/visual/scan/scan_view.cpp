@@ -13,6 +13,8 @@ ScanView::ScanView(const Scan& scan, std::span<vtkActor* const> bodies, vtkRende
     for (vtkActor* body : bodies) faces_.paint(body);
     text_->GetTextProperty()->SetJustificationToCentered();
     text_->GetTextProperty()->SetVerticalJustificationToTop();
+    text_->GetTextProperty()->SetBackgroundColor(0.05, 0.07, 0.09);
+    text_->GetTextProperty()->SetBackgroundOpacity(0.55);
     text_->VisibilityOff();
     front->AddActor2D(text_);
 }
@@ -34,7 +36,7 @@ void ScanView::show_text() {
     if (!shows_slice()) return;
     constexpr double font_size = 16;  // points in a window of 1280x720
     const int* size = front_->GetSize();
-    text_->SetInput(slices_.text().c_str());
+    text_->SetInput((" " + slices_.text() + " ").c_str());
     text_->GetTextProperty()->SetFontSize(static_cast<int>(font_size * display_scale(size[0], size[1])));
     text_->SetPosition(0.5 * size[0], 0.975 * size[1]);
 }

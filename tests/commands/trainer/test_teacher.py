@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A teacher makes an exercise in a real window of palpate-train, by mouse and keys; a hand does it afterwards."""
 
+import pathlib
+import shutil
 import time
 import tomllib
 import unittest
@@ -19,6 +21,7 @@ class Teacher(TrainerCase):
     def setUp(self):
         self.own = self.folder / self.id().rsplit(".")[-1]
         self.own.mkdir()
+        self.asset = pathlib.Path(shutil.copy(self.asset, self.own))
 
     def start(self, *options):
         process = self.launch("--attempts", self.own / "attempts", *options, folder=self.own)
@@ -77,7 +80,8 @@ class Teacher(TrainerCase):
                 rows.append(" ".join(f"{value:.4f}" for value in (t, *at)))
         hand = self.own / "hand.txt"
         hand.write_text("\n".join(["0 " + rows[0].split(" ", 1)[1], *rows]))
-        process, _ = self.start("--exercises", file, "--exercise", "touch-1", "--script", hand, "--seconds", t + 0.5)
+        self.assertEqual(file.name, "sample-exercises.toml")  # beside the asset, which takes it from now on
+        process, _ = self.start("--exercise", "touch-1", "--script", hand, "--seconds", t + 0.5)
         (attempt,) = self.finish(process)
         self.assertEqual(attempt["ending"], "all reached")
         self.assertGreater(attempt["metrics"]["score"], 90)

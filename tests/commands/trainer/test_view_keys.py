@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What changes palpate-train's view and not where its tool is, in a real window: zoom, bones, cut."""
+"""What changes palpate-train's view and not where its tool is, in a real window: zoom, bones, cut, stiffness."""
 
 import unittest
 
@@ -29,13 +29,15 @@ def tool(scene):
     return (b > g + 20) & (g > r + 20)
 
 
-class ViewKeys(OpenedTrainer):
+class ViewOfOrgan(OpenedTrainer):
     def seen(self):
         """How many pixels between texts and buttons are bone, tissue, tool, and where the tool is, pixels from the left."""
         scene = self.scene()[SCENE]
         places = np.nonzero(tool(scene))[1]
         return int(bone(scene).sum()), int(tissue(scene).sum()), len(places), float(places.mean()) if len(places) else None
 
+
+class ViewKeys(ViewOfOrgan):
     def test_wheel_keys_and_ctrl_drag_zoom_by_equal_steps_and_leave_the_tool(self):
         process, _ = self.open_window()
         width = lambda: int(tissue(self.scene()[360]).sum())  # of the organ, in the middle row
@@ -96,6 +98,25 @@ class ViewKeys(OpenedTrainer):
         self.assertEqual(ball, 0)
         self.assertAlmostEqual(whole_organ / organ, 1, delta=STEPPED)
         self.assertEqual(self.close(process)["device_travel_mm"], 0)
+
+
+class StiffnessMap(ViewOfOrgan):
+    variant = ("stiffness",)
+
+    def test_g_colours_the_organ_by_its_stiffness_beside_a_scale_and_back(self):
+        process, _ = self.open_window()
+        organ = self.seen()[1]
+        scale = (slice(330, 560), slice(30, 100))  # rows and columns: between figures and hints at the left
+        before = self.scene()
+        self.x("xdotool", "key", "g")
+        self.come_to_rest()
+        coloured = self.scene()
+        self.assertLess(int(tissue(coloured[SCENE]).sum()), 0.5 * organ)
+        self.assertGreater(np.ptp(coloured[scale].sum(2)), np.ptp(before[scale].sum(2)) + 100)
+        self.x("xdotool", "key", "g")
+        self.come_to_rest()
+        self.assertAlmostEqual(self.seen()[1] / organ, 1, delta=STEPPED)
+        self.close(process)
 
 
 if __name__ == "__main__":

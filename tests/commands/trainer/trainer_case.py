@@ -108,8 +108,8 @@ class TrainerCase(SampleAsset):
         return rgb
 
     def picture(self):
-        """The scene so, coarse: without the grain."""
-        return self.take_picture("-gravity", "center", "-crop", "100%x50%+0+0", "+repage", "-scale", "160x45!")
+        """The scene so, coarse: without the grain, and without the figures at the left."""
+        return self.take_picture("-gravity", "east", "-crop", "75%x50%+0+0", "+repage", "-scale", "120x45!")
 
     def scene(self):
         """All 1280x720 pixels so, in rows from above: (r, g, b) each."""

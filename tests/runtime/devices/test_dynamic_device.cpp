@@ -409,6 +409,18 @@ TEST(DeviceModel, a_model_has_a_workspace_and_bears_less_for_ever_than_at_most) 
     }
 }
 
+TEST(DeviceModel, is_known_by_what_a_device_calls_itself) {
+    const auto name_of = [](const char* device) {
+        const DeviceModel* model = model_of_device(device);
+        return model ? model->name : "";
+    };
+    EXPECT_EQ(name_of("PHANTOM Omni 4711 'Left'"), "touch");
+    EXPECT_EQ(name_of("PHANTOM Premium 1.5 'Default'"), "premium");
+    EXPECT_EQ(name_of("simulated desktop, scripted hand"), "desktop");
+    EXPECT_EQ(name_of("simulated, scripted hand"), "");
+    EXPECT_EQ(name_of("HDAPI device"), "");
+}
+
 TEST(DeviceModel, an_unknown_name_is_answered_with_the_known_ones) {
     try {
         find_device_model("falcon");

@@ -4,8 +4,10 @@
 #include <vector>
 #include <vtkActor.h>
 #include <vtkActorCollection.h>
+#include <vtkDataArray.h>
 #include <vtkMapper.h>
 #include <vtkNew.h>
+#include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkRenderer.h>
 
@@ -13,6 +15,7 @@
 #include "formats/model/contact/compliance_blocks.hpp"
 #include "formats/model/contact/load_shares.hpp"
 #include "runtime/session/drawn_shape.hpp"
+#include "runtime/visual/actors.hpp"
 #include "runtime/visual/bodies/soft_surface.hpp"
 #include "tests/formats/sample_case.hpp"
 #include "tests/runtime/elastic_cube.hpp"
@@ -62,6 +65,13 @@ class DisplayedSurface : public ::testing::Test {
         return positions;
     }
 
+    std::vector<Vector3f> normals_of(const std::vector<Vector3d>& positions) const {
+        std::vector<Vector3f> drawn, normals(positions.size());
+        for (const Vector3d& p : positions) drawn.push_back(p.cast<float>());
+        visual::vertex_normals(drawn, dense_.boundary.surface.triangles, normals);
+        return normals;
+    }
+
     // Leads a tool over and into the body; at each frame of 16 ticks, compares what is displayed.
     void press_and_compare(const DeformableBody& body, double tolerance) {
         const Case patient_case = cube(body);
@@ -70,14 +80,16 @@ class DisplayedSurface : public ::testing::Test {
         std::vector<std::vector<Vector3f>> displacements{
             std::vector<Vector3f>(body.boundary.nodes.size(), Vector3f::Constant(9))};  // which must go
         vtkNew<vtkRenderer> renderer;
-        visual::SoftSurface surface(patient_case.deformable_bodies[0], Vector3d::UnitZ(), 1, renderer);
+        const visual::StiffnessMap map(patient_case, renderer);
+        visual::SoftSurface surface(patient_case.deformable_bodies[0], Vector3d::UnitZ(), 1, map, renderer);
         auto* const data =
             vtkPolyData::SafeDownCast(renderer->GetActors()->GetLastActor()->GetMapper()->GetInput());
         ASSERT_EQ(data->GetNumberOfPoints(), static_cast<vtkIdType>(body.boundary.nodes.size()));
 
+        const std::vector<Vector3f> at_rest = normals_of(body.boundary.surface.vertices);
         realtime::DeviceState state{};
         TickResult tick{};
-        double deepest = 0, largest_error = 0;
+        double deepest = 0, largest_error = 0, turned = 0, largest_turn = 0;
         int several = 0;
         for (int i = 0; i < 1600; ++i) {
             const double t = 1e-3 * i;
@@ -96,10 +108,19 @@ class DisplayedSurface : public ::testing::Test {
                 deepest = std::max(deepest, (positions[v] - body.boundary.surface.vertices[v]).norm());
                 largest_error = std::max(largest_error, (drawn - positions[v]).norm());
             }
+            const std::vector<Vector3f> normals = normals_of(positions);
+            for (std::size_t v = 0; v < positions.size(); ++v) {
+                const Vector3d drawn(
+                    data->GetPointData()->GetNormals()->GetTuple3(static_cast<vtkIdType>(v)));
+                turned = std::max(turned, (drawn - at_rest[v].cast<double>()).norm());
+                largest_turn = std::max(largest_turn, (drawn - normals[v].cast<double>()).norm());
+            }
         }
         EXPECT_GT(several, 2);
         EXPECT_GT(deepest, 1);  // mm
         EXPECT_LT(largest_error, tolerance * deepest);
+        EXPECT_GT(turned, 0.1) << "shading follows";
+        EXPECT_LT(largest_turn, std::max(100 * tolerance, 1e-3) * turned);
     }
 
     const DeformableBody dense_ = sample::true_elastic_cube(5);

@@ -5,6 +5,7 @@
 
 #include "runtime/visual/bodies/tissue_colours.hpp"
 #include "tests/formats/sample_case.hpp"
+#include "tests/runtime/visual/luminance.hpp"
 
 namespace palpate {
 namespace {
@@ -32,11 +33,6 @@ TEST(TissueColours, the_last_word_that_is_known_counts) {
     EXPECT_FALSE(look_alike("gallbladder", "urinary_bladder"));
     EXPECT_FALSE(look_alike("masseter", "mass"));
     EXPECT_FALSE(look_alike("hippocampus", "hip"));
-}
-
-// Relative luminance, ITU-R BT.709, of colours taken as linear.
-float luminance(const Rgb& colour) {
-    return 0.2126F * colour[0] + 0.7152F * colour[1] + 0.0722F * colour[2];
 }
 
 TEST(TissueColours, neighbours_differ_in_lightness_for_eyes_that_tell_few_hues) {

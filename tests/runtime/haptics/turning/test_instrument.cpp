@@ -99,6 +99,31 @@ TEST(Instrument, its_torque_is_the_moment_of_its_contacts_and_what_the_spring_is
     }
 }
 
+TEST(Instrument, its_torque_keeps_to_its_bounds_in_size_and_step_and_says_so) {
+    const auto at = turned_at({14, 1, -3}, about(Vector3d::UnitY(), -84));
+    Case c = soft_block_and(box({-1, -1, 0}, {1, 1, 25}));
+    HapticModel unbounded(c);
+    const Vector3d wanted = torque_of(rest_at(unbounded, at, 8));
+    const double most = wanted.norm() / 3, most_a_tick = most / 20;  // N mm
+    c.tool->settings.max_torque = most;
+    c.tool->settings.max_torque_rate = most_a_tick;
+    HapticModel model(c);
+    TickResult result{};
+    Vector3d before = Vector3d::Zero();
+    bool limited = false, slowed = false;
+    for (int tick = 0; tick < 600; ++tick) {  // put there at once, and taken away at once
+        model.tick(tick < 300 ? at : turned_at({14, 1, 40}, Quaterniond::Identity()), result);
+        EXPECT_LE(torque_of(result).norm(), most * (1 + 1e-12)) << tick;
+        EXPECT_LE((torque_of(result) - before).norm(), most_a_tick * (1 + 1e-12)) << tick;
+        limited |= (result.status & force_limited) != 0;
+        slowed |= (result.status & rate_limited) != 0;
+        before = torque_of(result);
+        if (tick == 299) EXPECT_LT((before - wanted.normalized() * most).norm(), 1e-3 * most);
+    }
+    EXPECT_TRUE(limited && slowed);
+    EXPECT_EQ(before, Vector3d::Zero());
+}
+
 TEST(Instrument, a_closed_loop_of_position_and_orientation_gives_no_energy) {
     HapticModel model(soft_block_and(box({-1, -1, 0}, {1, 1, 25})));
     const auto device = [](double s) {

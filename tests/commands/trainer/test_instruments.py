@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: Apache-2.0
+"""palpate-train with a whole instrument: what is drawn, seen from its tip and recorded is the body that is felt."""
+
+import json
+import math
+import os
+import pathlib
+import subprocess
+import sys
+import time
+import unittest
+
+import numpy as np
+
+from test_view_keys import SCENE, bone, tissue
+from trainer_case import TRAIN, TrainerCase, difference
+
+TOOLS = pathlib.Path(os.environ["PALPATE_SOURCE"]) / "sample_data" / "tools.py"
+HALF = math.sqrt(0.5)
+UPRIGHT, LYING, UPSIDE_DOWN = "0 0 0 1", f"{HALF} 0 0 {HALF}", "1 0 0 0"
+BETWEEN = 28, 10, 42  # mm, above organ (x < 20) and skull (its top at x = 40): both are within 45 degrees of straight down
+
+
+class Instruments(TrainerCase):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        subprocess.run([sys.executable, TOOLS, cls.folder], check=True, stdout=subprocess.DEVNULL)
+
+    def start(self, instrument, rows, *options):
+        hand = self.folder / "hand.txt"
+        hand.write_text("".join(f"{row}\n" for row in rows))
+        process = self.launch("--instrument", self.folder / f"{instrument}.stl", "--script", hand, *options)
+        self.find_window()
+        return process
+
+    def held(self, instrument, orientation, *keys):
+        """The trainer with the instrument held there, after those keys."""
+        place = " ".join(map(str, BETWEEN))
+        process = self.start(instrument, [f"0 {place} {orientation}", f"60 {place} {orientation}"])
+        self.x("xdotool", "key", "h", *keys)
+        return process
+
+    def close_after(self, process, take):
+        time.sleep(1.5)  # the endoscope turns by and by
+        taken = take()
+        self.x("xdotool", "key", "q")
+        self.finish(process)
+        return taken
+
+    def from_outside(self, turn):
+        process = self.held("peg", turn)
+        self.x("xdotool", "click", "--repeat", 10, 5)  # so far away that all of it is seen
+        return self.close_after(process, lambda: self.scene()[SCENE].ravel().tolist())
+
+    def from_tip(self):
+        """How many pixels the endoscope has of bone and of tissue, and the way from the one's middle to the other's."""
+        scene = self.scene()[SCENE]
+        bones, organ = (np.argwhere(kind(scene)) for kind in (bone, tissue))
+        return len(bones), len(organ), organ.mean(0) - bones.mean(0) if len(bones) and len(organ) else None
+
+    def test_an_instrument_is_drawn_as_it_is_turned(self):
+        upright, again, lying = map(self.from_outside, (UPRIGHT, UPRIGHT, LYING))
+        self.assertGreater(difference(upright, lying), 3 * max(difference(upright, again), 0.2))
+
+    def test_the_endoscope_looks_along_an_instrument(self):
+        bones, organ, _ = self.close_after(self.held("endoscope", UPRIGHT, "v"), self.from_tip)
+        self.assertGreater(min(bones, organ), 3000)
+        self.assertEqual(self.close_after(self.held("endoscope", UPSIDE_DOWN, "v"), self.from_tip), (0, 0, None))
+
+    def test_the_endoscope_s_picture_turns_with_the_instrument(self):
+        place, quarter = " ".join(map(str, BETWEEN)), 6  # s that a quarter of a turn about its shaft takes
+        turns = [(math.sin(n * math.pi / 4), math.cos(n * math.pi / 4)) for n in range(11)]
+        process = self.start("endoscope", [f"{n * quarter} {place} 0 0 {s} {c}" for n, (s, c) in enumerate(turns)])
+        self.x("xdotool", "key", "h", "v")
+
+        def two_views():
+            first = self.from_tip()[2]
+            time.sleep(0.4 * quarter)
+            return first, self.from_tip()[2]
+
+        before, after = self.close_after(process, two_views)
+        cosine = before @ after / (np.linalg.norm(before) * np.linalg.norm(after))
+        self.assertLess(cosine, math.cos(math.radians(20)))  # 36 degrees or more
+
+    def test_what_is_felt_in_the_window_is_recorded_and_replays(self):
+        recording = self.folder / "peg.h5"
+        rows = [f"0 36 10 30 {UPRIGHT}", f"0.5 36 10 23 {UPRIGHT}", f"1 36 10 23 {UPRIGHT}", f"1.5 36 10 30 {UPRIGHT}"]
+        process = self.start("peg", rows, "--seconds", 2, "--record", recording)
+        result = self.finish(process)
+        self.assertGreater(result["force_peak_n"], 0.5)
+        self.assertLess(result["shown_late_ms"]["p50"], 2 * result["frame_ms"]["p50"] + 2)  # two frames, and a tick or two
+        touch = subprocess.run([TRAIN.with_name("palpate-touch"), self.asset, "--replay", recording, "--json", "-"], capture_output=True,
+                               text=True, timeout=60)
+        self.assertEqual(touch.returncode, 0, touch.stderr)
+        replayed = json.loads(touch.stdout)
+        self.assertEqual(replayed["replay"]["different_ticks"], 0)
+        self.assertGreater(replayed["torque_peak_n_mm"], 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
