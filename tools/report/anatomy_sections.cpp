@@ -189,12 +189,12 @@ std::string bodies_section(const ReportPage& page) {
         }
         return "<div class=\"two\">\n" + figures + "</div>\n";
     };
-    std::string content = side_by_side(scene_pictures(patient_case, directions), "All bodies");
+    std::string content = side_by_side(scene_pictures(*page.window, patient_case, directions), "All bodies");
     for (const DeformableBody& body : patient_case.deformable_bodies) {
         std::string regions;
         for (const Label& label : body.mesh.region_names) regions += "<li>" + swatch(label) + "</li>";
-        content += side_by_side(body_pictures(body, directions), body.name) + "<ul class=\"legend\">" +
-                   regions +
+        content += side_by_side(body_pictures(*page.window, body, directions), body.name) +
+                   "<ul class=\"legend\">" + regions +
                    "<li><span class=\"dot\"></span>fixed node</li><li><span class=\"swatch\" "
                    "style=\"background:#9ea8b2\"></span>surface that cannot be touched</li></ul>\n";
     }

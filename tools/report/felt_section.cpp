@@ -42,7 +42,7 @@ std::vector<double> values_of_triangles(const TriangleMesh& surface, const std::
     return means;
 }
 
-std::string map_of(const DeformableBody& body) {
+std::string map_of(const PictureWindow& window, const DeformableBody& body) {
     const Feel& feel = *body.feel;
     const TriangleMesh& surface = body.boundary.surface;
     const std::vector<double> values = values_of_triangles(surface, feel.stiffness);
@@ -61,8 +61,9 @@ std::string map_of(const DeformableBody& body) {
                "the body cannot be pressed. The ring is {}; it may lie behind what is seen.</p>\n",
                feel.tool_radius, feel.depth,
                feel.regions.empty() ? "the stiffest place" : "where a region changes it most") +
-           figures_of(coloured_pictures(surface, values, scale, surface.vertices[marked], directions()),
-                      body.name, {name}) +
+           figures_of(
+               coloured_pictures(window, surface, values, scale, surface.vertices[marked], directions()),
+               body.name, {name}) +
            "<figure>" + scale_svg(scale, "N/mm") + "</figure>\n";
 }
 
@@ -74,7 +75,7 @@ std::string felt_section(const ReportPage& page) {
     for (const DeformableBody& body : page.inputs.patient_case.deformable_bodies) {
         if (!body.feel) continue;
         for (const FeltRegion& felt : body.feel->regions) rows.push_back(felt_row(body, felt));
-        maps += map_of(body);
+        maps += map_of(*page.window, body);
     }
     if (maps.empty()) return "";
     const std::string table = rows.empty() ? ""

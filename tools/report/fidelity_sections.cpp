@@ -31,7 +31,7 @@ std::vector<WorstElement> worst_of(const TetMesh& mesh) {
     return worst;
 }
 
-std::string worst_of_body(const DeformableBody& body) {
+std::string worst_of_body(const PictureWindow& window, const DeformableBody& body) {
     const std::vector<WorstElement> worst = worst_of(body.mesh);
     std::vector<std::size_t> tetrahedra;
     std::vector<std::string> numbers;
@@ -51,7 +51,7 @@ std::string worst_of_body(const DeformableBody& body) {
                              fmt::format("<b>Element {}</b>, the angle between the two faces at each edge",
                                          numbers.back()));
     }
-    return figures_of(tetrahedra_pictures(body, tetrahedra, directions()), body.name, numbers) +
+    return figures_of(tetrahedra_pictures(window, body, tetrahedra, directions()), body.name, numbers) +
            html::table({{"", true},
                         {"Region"},
                         {"Sharpest angle", true},
@@ -94,7 +94,8 @@ std::string worst_section(const ReportPage& page) {
     if (bodies.empty()) return "";
     std::string content;
     for (const MeasuredBody& measured : bodies)
-        content += "<h3>" + html::escaped(measured.body.name) + "</h3>\n" + worst_of_body(measured.body);
+        content += "<h3>" + html::escaped(measured.body.name) + "</h3>\n" +
+                   worst_of_body(*page.window, measured.body);
     return html::section(
         "worst", "Worst elements",
         "The tetrahedra whose dihedral angles come nearest to 0° or 180°, ringed and solid in the "
@@ -118,7 +119,7 @@ std::string distances_section(const ReportPage& page) {
         const ColourScale scale = scale_for(comparison.triangle_distances);
         content += "<h3>" + html::escaped(comparison.body) + " against " + html::escaped(comparison.against) +
                    "</h3>\n" +
-                   figures_of(coloured_pictures(*surface, comparison.triangle_distances, scale,
+                   figures_of(coloured_pictures(*page.window, *surface, comparison.triangle_distances, scale,
                                                 comparison.farthest, directions()),
                               comparison.body, {fmt::format("{:.2f} mm", comparison.maximum)}) +
                    "<figure>" + scale_svg(scale, "mm") + "</figure>\n";

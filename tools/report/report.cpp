@@ -96,7 +96,7 @@ std::string page_html(const ReportPage& page, const std::string& header, std::sp
 std::string html_failure(const ReportInputs& inputs, const std::string& message) {
     constexpr Section sections[] = {{"slices", "Slices", slices_section},
                                     {"stages", "Stages", stages_section}};
-    return page_html({inputs, {}},
+    return page_html({.inputs = inputs, .bodies = {}},
                      "<div class=\"verdict failed\"><strong>✗ Not built</strong><div>" +
                          html::escaped(message) + "</div></div>\n",
                      sections);
@@ -104,13 +104,15 @@ std::string html_failure(const ReportInputs& inputs, const std::string& message)
 
 std::string thumbnail_png(const Case& patient_case) {
     const VirtualDisplay display;
-    return png_bytes(
-        shrunk(scene_pictures(patient_case, {view_directions().front().direction}).front().picture, 4));
+    const PictureWindow window;
+    return png_bytes(shrunk(
+        scene_pictures(window, patient_case, {view_directions().front().direction}).front().picture, 4));
 }
 
 std::string html_report(const ReportInputs& inputs) {
     const VirtualDisplay display;
-    ReportPage page{inputs, {}};
+    const PictureWindow window;
+    ReportPage page{.inputs = inputs, .bodies = {}, .window = &window};
     for (const DeformableBody& body : inputs.patient_case.deformable_bodies) {
         MeshSummary mesh = summarise(body.mesh);
         std::optional<AllowedLoadError> allowed;

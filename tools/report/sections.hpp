@@ -21,6 +21,7 @@ struct MeasuredBody {
 struct ReportPage {
     const ReportInputs& inputs;
     std::vector<MeasuredBody> bodies;
+    const PictureWindow* window = nullptr;  ///< null where no body is drawn
 };
 
 using SectionFunction = std::string(const ReportPage&);

@@ -103,8 +103,9 @@ std::string label_preview_png(const LabelMap& map, const Volume* volume) {
 std::string mesh_preview_png(const TetMesh& mesh) {
     const std::vector<ViewDirection> sides{{-0.7, -1, 0.45}, {0.85, 0.75, 0.4}},
         cuts{{0, -1, 0.02}, {-1, 0, 0.02}};
-    std::vector<SceneView> views = mesh_pictures(mesh, sides, false);
-    for (SceneView& view : mesh_pictures(mesh, cuts, true)) views.push_back(std::move(view));
+    const PictureWindow window;
+    std::vector<SceneView> views = mesh_pictures(window, mesh, sides, false);
+    for (SceneView& view : mesh_pictures(window, mesh, cuts, true)) views.push_back(std::move(view));
     const std::vector<std::string> words{"from the right, front and above", "from the left, back and above",
                                          "cut open, from the front", "cut open, from the right"};
     const meshing::EdgeLengths edges = meshing::edge_lengths(mesh);

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
+#include <span>
 #include <vtkActor.h>
 #include <vtkActorCollection.h>
 #include <vtkCamera.h>
@@ -184,18 +185,22 @@ Picture grabbed(vtkRenderWindow* window) {
     vtkImageData* image = grab->GetOutput();
     Picture picture{width, height, {}};
     picture.rgb.resize(picture.offset(0, height));
+    // Three bytes a pixel, rows from below.
+    const std::span pixels(static_cast<const std::uint8_t*>(image->GetScalarPointer()),
+                           samples * samples * picture.rgb.size());
+    const auto sampled = [&](int x, int y, std::size_t channel) {
+        const auto row = static_cast<std::size_t>(samples * height - 1 - y);
+        return pixels[3 * (row * samples * width + static_cast<std::size_t>(x)) + channel];
+    };
     for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            std::array<int, 3> sum{};
-            for (int sample = 0; sample < samples * samples; ++sample) {
-                const auto* pixel = static_cast<const std::uint8_t*>(image->GetScalarPointer(
-                    samples * x + sample % samples, samples * (height - 1 - y) + sample / samples, 0));
-                for (std::size_t channel = 0; channel < 3; ++channel) sum[channel] += pixel[channel];
-            }
-            for (std::size_t channel = 0; channel < 3; ++channel)
+        for (int x = 0; x < width; ++x)
+            for (std::size_t channel = 0; channel < 3; ++channel) {
+                int sum = 0;
+                for (int sample = 0; sample < samples * samples; ++sample)
+                    sum += sampled(samples * x + sample % samples, samples * y + sample / samples, channel);
                 picture.rgb[picture.offset(x, y) + channel] =
-                    static_cast<std::uint8_t>(sum[channel] / (samples * samples));
-        }
+                    static_cast<std::uint8_t>(sum / (samples * samples));
+            }
     return picture;
 }
 
@@ -205,13 +210,10 @@ Eigen::Vector2d seen_at(vtkRenderer* renderer, const Eigen::Vector3d& p_P) {
     return {(x + 1) / 2 * width, (1 - y) / 2 * height};
 }
 
-std::vector<SceneView> draw(vtkRenderer* renderer, const std::vector<ViewDirection>& directions,
+std::vector<SceneView> draw(const PictureWindow& window, vtkRenderer* renderer,
+                            const std::vector<ViewDirection>& directions,
                             const std::vector<Eigen::Vector3d>& marked = {}, bool parallel = false) {
-    vtkNew<vtkRenderWindow> window;
-    window->SetOffScreenRendering(1);
-    window->SetMultiSamples(0);
-    window->SetSize(samples * width, samples * height);
-    window->AddRenderer(renderer);
+    window.get()->AddRenderer(renderer);
     renderer->SetBackground(0.965, 0.972, 0.98);
     std::vector<SceneView> views;
     for (const ViewDirection& from : directions) {
@@ -222,35 +224,42 @@ std::vector<SceneView> draw(vtkRenderer* renderer, const std::vector<ViewDirecti
         camera->SetViewUp(0, 0, 1);
         camera->SetParallelProjection(parallel);
         fit(renderer);
-        window->Render();
-        SceneView view{grabbed(window), {}, parallel ? 2 * camera->GetParallelScale() / height : 0};
+        window.get()->Render();
+        SceneView view{grabbed(window.get()), {}, parallel ? 2 * camera->GetParallelScale() / height : 0};
         for (const Eigen::Vector3d& p : marked) view.marks.push_back(seen_at(renderer, p));
         views.push_back(std::move(view));
     }
+    window.get()->RemoveRenderer(renderer);
     return views;
 }
 
 }  // namespace
 
-std::vector<SceneView> scene_pictures(const Case& patient_case,
+PictureWindow::PictureWindow() {
+    window_->SetOffScreenRendering(1);
+    window_->SetMultiSamples(0);
+    window_->SetSize(samples * width, samples * height);
+}
+
+std::vector<SceneView> scene_pictures(const PictureWindow& window, const Case& patient_case,
                                       const std::vector<ViewDirection>& directions) {
     vtkNew<vtkRenderer> renderer;
     for (const DeformableBody& body : patient_case.deformable_bodies) add_regions(renderer, body, 0.55);
     const double opacity = patient_case.deformable_bodies.empty() ? 1 : 0.25;
     for (const RigidBody& body : patient_case.rigid_bodies)
         renderer->AddActor(surface_actor(body.surface.vertices, body.surface.triangles, bone, opacity));
-    return draw(renderer, directions);
+    return draw(window, renderer, directions);
 }
 
-std::vector<SceneView> body_pictures(const DeformableBody& body,
+std::vector<SceneView> body_pictures(const PictureWindow& window, const DeformableBody& body,
                                      const std::vector<ViewDirection>& directions) {
     vtkNew<vtkRenderer> renderer;
     add_regions(renderer, body, 0.45);
     renderer->AddActor(dots(body.mesh, body.fixed_nodes));
-    return draw(renderer, directions);
+    return draw(window, renderer, directions);
 }
 
-std::vector<SceneView> tetrahedra_pictures(const DeformableBody& body,
+std::vector<SceneView> tetrahedra_pictures(const PictureWindow& window, const DeformableBody& body,
                                            const std::vector<std::size_t>& tetrahedra,
                                            const std::vector<ViewDirection>& directions) {
     constexpr Colour red{0.75F, 0.10F, 0.08F};
@@ -268,11 +277,11 @@ std::vector<SceneView> tetrahedra_pictures(const DeformableBody& body,
     renderer->AddActor(
         surface_actor(body.boundary.surface.vertices, body.boundary.surface.triangles, untouchable, 0.3));
     renderer->AddActor(actor_of(poly_data(solid.vertices, solid.triangles), red, 1));
-    return draw(renderer, directions, centroids);
+    return draw(window, renderer, directions, centroids);
 }
 
-std::vector<SceneView> mesh_pictures(const TetMesh& mesh, const std::vector<ViewDirection>& directions,
-                                     bool cut) {
+std::vector<SceneView> mesh_pictures(const PictureWindow& window, const TetMesh& mesh,
+                                     const std::vector<ViewDirection>& directions, bool cut) {
     std::vector<SceneView> views;
     for (const ViewDirection& direction : directions) {
         const TetMesh shown = cut ? back_half(mesh, direction) : mesh;
@@ -295,12 +304,12 @@ std::vector<SceneView> mesh_pictures(const TetMesh& mesh, const std::vector<View
             property->SetLineWidth(1);
             renderer->AddActor(actor);
         }
-        views.push_back(draw(renderer, {direction}, {}, true).front());
+        views.push_back(draw(window, renderer, {direction}, {}, true).front());
     }
     return views;
 }
 
-std::vector<SceneView> coloured_pictures(const TriangleMesh& surface,
+std::vector<SceneView> coloured_pictures(const PictureWindow& window, const TriangleMesh& surface,
                                          const std::vector<double>& triangle_values, const ColourScale& scale,
                                          const Eigen::Vector3d& marked,
                                          const std::vector<ViewDirection>& directions) {
@@ -317,7 +326,7 @@ std::vector<SceneView> coloured_pictures(const TriangleMesh& surface,
     actor->GetProperty()->SetDiffuse(0.55);
     vtkNew<vtkRenderer> renderer;
     renderer->AddActor(actor);
-    return draw(renderer, directions, {marked});
+    return draw(window, renderer, directions, {marked});
 }
 
 }  // namespace palpate::report

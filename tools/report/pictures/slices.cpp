@@ -14,9 +14,8 @@ struct Neighbour {
     double weight;
 };
 
-// The eight voxels around p_P with their trilinear weights; none outside the grid.
-std::optional<std::array<Neighbour, 8>> neighbours(const ImageGrid& grid, const Eigen::Vector3d& p_P) {
-    const Eigen::Vector3d index = grid.index_of(p_P);
+// The eight voxels around an index with their trilinear weights; none outside the grid.
+std::optional<std::array<Neighbour, 8>> neighbours(const ImageGrid& grid, const Eigen::Vector3d& index) {
     std::array<std::array<std::int32_t, 2>, 3> side{};
     std::array<double, 3> part{};
     for (int axis = 0; axis < 3; ++axis) {
@@ -39,11 +38,14 @@ std::optional<std::array<Neighbour, 8>> neighbours(const ImageGrid& grid, const 
     return result;
 }
 
-// The label with the largest share of p_P: contours come out smooth, not as stairs of voxels.
-std::uint16_t label_at(const LabelMap& map, const Eigen::Vector3d& p_P) {
-    const auto around = neighbours(map.grid, p_P);
+// The label with the largest share of an index: contours come out smooth, not as stairs of voxels.
+std::uint16_t label_at(const LabelMap& map, const Eigen::Vector3d& index) {
+    const auto around = neighbours(map.grid, index);
     if (!around) return 0;
-    std::uint16_t best = 0;
+    std::uint16_t best = map.labels[around->front().offset];
+    if (std::ranges::all_of(*around,
+                            [&](const Neighbour& other) { return map.labels[other.offset] == best; }))
+        return best;
     double best_share = 0;
     for (const Neighbour& candidate : *around) {
         const std::uint16_t label = map.labels[candidate.offset];
@@ -63,13 +65,30 @@ std::array<float, 3> colour_of(const LabelMap& map, std::uint16_t value) {
     return label != map.names.end() ? label->colour : default_label_colour(value);
 }
 
-float grey_at(const Volume& volume, const GreyWindow& grey, const Eigen::Vector3d& p_P) {
-    const auto around = neighbours(volume.grid, p_P);
+float grey_at(const Volume& volume, const GreyWindow& grey, const Eigen::Vector3d& index) {
+    const auto around = neighbours(volume.grid, index);
     if (!around) return 0;
     double value = 0;
     for (const Neighbour& voxel : *around) value += voxel.weight * volume.values[voxel.offset];
     return std::clamp((static_cast<float>(value) - grey.black) / (grey.white - grey.black), 0.0F, 1.0F);
 }
+
+// The indices of a window's pixels in a grid; an index depends on the place as a line does.
+class PixelIndices {
+  public:
+    PixelIndices(const SliceWindow& window, const ImageGrid& grid) {
+        const double pixel = window.side / window.pixels, middle = (window.pixels - 1) / 2.0;
+        const Eigen::Vector3d right = pixel * window.right(), down = pixel * window.down();
+        const Eigen::Vector3d first = window.center - middle * (right + down);
+        first_ = grid.index_of(first);
+        right_ = grid.index_of(first + right) - first_;
+        down_ = grid.index_of(first + down) - first_;
+    }
+    Eigen::Vector3d at(int x, int y) const { return first_ + x * right_ + y * down_; }
+
+  private:
+    Eigen::Vector3d first_, right_, down_;
+};
 
 }  // namespace
 
@@ -113,11 +132,8 @@ Picture slice_picture(const SliceWindow& window, const Volume* volume, const Lab
     Picture picture{window.pixels, window.pixels, {}};
     picture.rgb.resize(picture.offset(0, window.pixels));
     const int n = window.pixels;
-    const double pixel = window.side / n;
-    const auto point_of = [&](int x, int y) -> Eigen::Vector3d {
-        return window.center + window.right() * (x + 0.5 - n / 2.0) * pixel +
-               window.down() * (y + 0.5 - n / 2.0) * pixel;
-    };
+    const PixelIndices in_volume(window, volume ? volume->grid : ImageGrid{}),
+        in_labels(window, labels ? labels->grid : ImageGrid{});
     const float paper = 0.16F;  // behind labels without a volume
 
     std::vector<std::uint16_t> label(static_cast<std::size_t>(n) * static_cast<std::size_t>(n), 0);
@@ -127,11 +143,11 @@ Picture slice_picture(const SliceWindow& window, const Volume* volume, const Lab
     };
     if (labels)
         for (int y = 0; y < n; ++y)
-            for (int x = 0; x < n; ++x) at(x, y) = label_at(*labels, point_of(x, y));
+            for (int x = 0; x < n; ++x) at(x, y) = label_at(*labels, in_labels.at(x, y));
 
     for (int y = 0; y < n; ++y)
         for (int x = 0; x < n; ++x) {
-            const float value = volume ? grey_at(*volume, grey, point_of(x, y)) : paper;
+            const float value = volume ? grey_at(*volume, grey, in_volume.at(x, y)) : paper;
             const std::uint16_t own = at(x, y);
             const bool contour =
                 at(x - 1, y) != own || at(x + 1, y) != own || at(x, y - 1) != own || at(x, y + 1) != own;
