@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 
 #include "formats/model/errors.hpp"
 
@@ -38,8 +39,9 @@ const std::array<DeviceModel, 3> models{{
      .thermal_time_s = thermal_time_s,
      .workspace_low = {-80, -60, -35},
      .workspace_high = {80, 60, 35},
-     .product = "PHANTOM Omni"},
-    {.name = "desktop",  // and the Touch X
+     .product = "PHANTOM Omni",
+     .heir = "Touch"},
+    {.name = "desktop",
      .mass_kg = 0.045,
      .damping = damping_for(1.0),
      .coulomb_friction = 0.06,
@@ -51,7 +53,8 @@ const std::array<DeviceModel, 3> models{{
      .thermal_time_s = thermal_time_s,
      .workspace_low = {-80, -60, -60},
      .workspace_high = {80, 60, 60},
-     .product = "PHANTOM Desktop"},
+     .product = "PHANTOM Desktop",
+     .heir = "Touch X"},
     {.name = "premium",
      .mass_kg = 0.075,
      .damping = damping_for(0.8),
@@ -66,6 +69,10 @@ const std::array<DeviceModel, 3> models{{
      .workspace_high = {190.5, 133.5, 95.5},
      .product = "PHANTOM Premium 1.5"},
 }};
+
+char lower(char letter) {
+    return static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+}
 
 }  // namespace
 
@@ -92,12 +99,19 @@ const DeviceModel& find_device_model(std::string_view name) {
 }
 
 const DeviceModel* model_of_device(std::string_view device_name) {
-    const auto is_it = [&](const DeviceModel& model) {
-        return device_name.starts_with(model.product) ||
-               device_name.starts_with("simulated " + model.name + ",");
+    const auto calls_itself = [&](const std::string& name) {
+        return !name.empty() && device_name.size() >= name.size() &&
+               std::ranges::equal(name, device_name.substr(0, name.size()), {}, lower, lower);
     };
-    const auto found = std::ranges::find_if(models, is_it);
-    return found == models.end() ? nullptr : &*found;
+    const DeviceModel* found = nullptr;
+    std::size_t longest = 0;  // so that a Touch X is no Touch
+    for (const DeviceModel& model : models)
+        for (const std::string& name : {model.product, model.heir, "simulated " + model.name + ","})
+            if (calls_itself(name) && name.size() > longest) {
+                found = &model;
+                longest = name.size();
+            }
+    return found;
 }
 
 }  // namespace palpate::devices

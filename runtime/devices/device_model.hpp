@@ -24,6 +24,7 @@ struct DeviceModel {
     std::array<double, 3> workspace_low{0, 0, 0};  ///< mm, corners of the usable box, frame D
     std::array<double, 3> workspace_high{0, 0, 0};
     std::string product{};  ///< what is simulated: "PHANTOM Omni"
+    std::string heir{};     ///< what is sold in its place: "Touch"
 };
 
 /// What a device of this model states of itself, at 1 kHz.
@@ -33,8 +34,8 @@ DeviceLimits limits_of(const DeviceModel& model);
 std::span<const DeviceModel> device_models();
 /// By name; throws UsageError listing the names.
 const DeviceModel& find_device_model(std::string_view name);
-/// What is known of a device by what it calls itself: "PHANTOM Omni 4711 'Left'", "simulated touch, scripted
-/// hand"; null if that is none of the models.
+/// What is known of a device by what it calls itself, in letters of either case: "PHANTOM Omni 4711 'Left'",
+/// "Touch X", "simulated touch, scripted hand"; null if that is none of the models.
 const DeviceModel* model_of_device(std::string_view device_name);
 
 }  // namespace palpate::devices

@@ -2,11 +2,13 @@
 #include "runtime/apps/options/tool_option.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <spdlog/spdlog.h>
 #include <vector>
 
 #include "formats/model/errors.hpp"
 #include "formats/stl_file/read_stl.hpp"
+#include "runtime/devices/device_model.hpp"
 #include "runtime/devices/jaws/grasp_script.hpp"
 #include "runtime/haptics/methods/contact_methods.hpp"
 #include "runtime/session/hand_script.hpp"
@@ -109,6 +111,27 @@ void tell_unfelt(const Case& patient_case, const std::string& scheme) {
     for (const DeformableBody& body : patient_case.deformable_bodies)
         names += (names.empty() ? "'" : ", '") + body.name + "'";
     spdlog::warn("scheme '{}' feels rigid bodies alone: nothing is felt of {}", scheme, names);
+}
+
+void tell_too_weak(const Case& patient_case, const std::string& device) {
+    const devices::DeviceModel* model = devices::model_of_device(device);
+    if (!model) return;
+    for (const DeformableBody& body : patient_case.deformable_bodies) {
+        if (!body.feel) continue;
+        for (const FeltRegion& felt : body.feel->regions) {
+            const double depth = body.feel->depth, lost = model->coulomb_friction;
+            if (verdict_of(felt, depth, lost) != FeltVerdict::too_weak) continue;
+            const double change = std::abs(felt.stiffness - felt.stiffness_without);  // N/mm
+            const auto name = std::ranges::find(body.mesh.region_names, felt.region, &Label::value);
+            spdlog::warn(
+                "'{}' changes the force on a press of {:g} mm by {:.2g} N, and the joints of a {} lose {:g} "
+                "N: it "
+                "is felt from {:.0f} mm on, or by a device with less friction",
+                name == body.mesh.region_names.end() ? std::to_string(felt.region) : name->name, depth,
+                change * depth, model->heir.empty() ? model->product : model->heir, lost,
+                std::ceil(lost / change));
+        }
+    }
 }
 
 }  // namespace palpate::apps

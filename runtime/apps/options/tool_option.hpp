@@ -43,6 +43,10 @@ std::optional<JawSettings> jaws_of(const ToolOption& option);
 /// Warns of what of a case is not felt with a scheme.
 void tell_unfelt(const Case& patient_case, const std::string& scheme);
 
+/// Warns of each region of a case whose change of the force the device loses in its joints, and says how deep
+/// to press instead; nothing of a device that is not known. `device`: what it calls itself.
+void tell_too_weak(const Case& patient_case, const std::string& device);
+
 /// Warns where a tool was inside a body from the run's first tick to its last.
 void tell_misfit(const StatusCounts& statuses, std::int64_t ticks);
 

@@ -300,20 +300,48 @@ class Devices(DeviceRun):
         self.assertEqual(code, 4)
         self.assertIn("licence", found["device"]["found"])
 
-    @unittest.skipUnless((BIN / "palpate-train").exists(), "PALPATE_VISUAL is off")
-    @unittest.skipUnless(shutil.which("Xvfb"), "PALPATE: xvfb is missing")
-    def test_the_trainer_is_held_by_a_driver_s_device(self):
+
+@unittest.skipUnless((BIN / "palpate-train").exists(), "PALPATE_VISUAL is off")
+@unittest.skipUnless(shutil.which("Xvfb") and shutil.which("convert"), "PALPATE: xvfb or imagemagick is missing")
+class HeldTrainer(DeviceRun):
+    def train(self, *options, devices):
+        with XServer() as server:
+            run = subprocess.run([BIN / "palpate-train", self.asset, *map(str, options), "--json", "-"], capture_output=True, text=True,
+                                 timeout=60, env=self.driver(*devices, DISPLAY=server.environment["DISPLAY"]))
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return json.loads(run.stdout)
+
+    def test_two_devices_of_one_driver_hold_two_tools(self):
         # The device's axes are the screen's: z comes out of it, and the surface faces the eye within 45 degrees.
         into_screen = [[0, 0, 0, 0], [3, 0, 0, 0], [4, 0, 0, -20], [100, 0, 0, -20]]
-        with XServer() as server:
-            run = subprocess.run(
-                [BIN / "palpate-train", self.asset, "--device", "openhaptics", "--seconds", "6", "--json", "-"],
-                capture_output=True, text=True, timeout=60,
-                env=self.driver({"path": into_screen}, DISPLAY=server.environment["DISPLAY"]))
-        self.assertEqual(run.returncode, 0, run.stderr)
-        result = json.loads(run.stdout)
-        self.assertEqual(result["device"], "touch Default Device")
-        self.assertGreater(result["force_peak_n"], 0.01)
+        beside = [[t, x + 5, y, z] for t, x, y, z in into_screen]
+        recording = self.fresh(".h5")
+        result = self.train("--device", "openhaptics:A,B", "--seconds", 6, "--record", recording,
+                            devices=[{"name": "A", "path": into_screen}, {"name": "B", "path": beside}])
+        self.assertEqual(result["device"], "touch A 'A'")
+        force, tool = (kept(recording, f"ticks/{column}") for column in ("force", "tool"))
+        for which in (0, 1):
+            self.assertGreater(np.linalg.norm(force[tool == which], axis=1).max(), 0.01, which)
+
+    def test_a_tool_is_drawn_along_the_stylus(self):
+        pictures = []
+        for shaft in ([0, 0, 1], [1, 0, 0], [1, 0, 0]):
+            path = self.fresh(".png")
+            self.train("--device", "openhaptics", "--exercise", "free", "--seconds", 2, "--screenshot", path, devices=[{"shaft": shaft}])
+            rgb = subprocess.run(["convert", path, "-gravity", "south", "-crop", "100%x25%+0+0", "-depth", "8", "rgb:-"], check=True,
+                                 capture_output=True).stdout
+            pictures.append(np.frombuffer(rgb, np.uint8).astype(int))
+        out_of_screen, across, again = pictures
+        self.assertGreater(np.abs(out_of_screen - across).mean(), 3 * max(np.abs(again - across).mean(), 0.05))
+
+
+class WeakDevices(DeviceRun):
+    variant = ("stiffness",)
+
+    def test_what_a_device_loses_in_its_joints_is_warned_of_with_what_to_do(self):
+        for device, told in (("touch", True), ("premium", False)):
+            _, talk = self.result("--device", device, "--virtual-clock", "--seconds", 0.1)
+            self.assertEqual("the joints of a Touch lose 0.26 N: it is felt from 14 mm on" in talk, told, talk)
 
 
 if __name__ == "__main__":
