@@ -137,8 +137,20 @@ class DemoCases(unittest.TestCase):
                 self.assertGreater(drawn.pull, 0.99 * drawn.most)
                 self.assertLess(drawn.step, 0.03 * drawn.pull)
 
+    def find_its_exercises(self, asset, folder):
+        """Those that come with the case are offered from beside the asset, each with room on this liver."""
+        if not (BIN / "palpate-train").exists() or not shutil.which("Xvfb"):
+            self.skipTest("PALPATE: the trainer or xvfb is missing; all but the trainer was tested")
+        shutil.copy(SOURCE / "pipelines" / "exercises" / "liver.toml", asset.with_name(f"{asset.stem}-exercises.toml"))
+        with XServer() as server:
+            for held, offered in (((), "find, touch, trace, free"), (("--instrument", "forceps"), "retract, free")):
+                train = subprocess.run([BIN / "palpate", "train", asset, "--exercise", "none", "--attempts", folder / "attempts", *held],
+                                       capture_output=True, text=True, timeout=120, env=server.environment)
+                self.assertEqual(train.returncode, 2, train.stderr)
+                self.assertIn(f"no exercise 'none' (expected {offered})", train.stderr)
+
     def test_liver(self):
-        self.check("liver", self.draw_the_rim_out)
+        self.check("liver", lambda *made: (self.draw_the_rim_out(*made), self.find_its_exercises(*made)))
 
 
 if __name__ == "__main__":
