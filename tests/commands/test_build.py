@@ -133,6 +133,16 @@ class Build(unittest.TestCase):
         seen = run(BIN / "palpate", "inspect", self.folder / "case.vtkhdf", "--json", "-")
         self.assertRegex(json.loads(seen.stdout)["provenance"]["notes"][-1], "^‘liver’ hangs")
 
+    def test_bone_within_a_soft_body_is_told_by_build_and_asset(self):
+        self.change('[[rigid]]\nname = "spine"\n', '[[deformable]]\nname = "spine"\nmesh = { cell_size_mm = 8 }\n'
+                    'fixed = [{ plane_mm = [0, 30, 0, 0, 1, 0] }]\n[[deformable.region]]\nlabel = "spine"\ntissue = "liver"\n')
+        for stage in ("mesh spine", "condense spine", "pack"):
+            built = self.build_in(self.folder, "--stage", stage)
+            self.assertEqual(built.returncode, 0, built.stderr)
+        self.assertRegex(built.stderr, r"‘spine’ holds .* ml \(\d+ %\) of 300 HU and more, .*; look at its slices, and leave that out")
+        seen = run(BIN / "palpate", "inspect", self.folder / "case.vtkhdf", "--json", "-")
+        self.assertRegex(json.loads(seen.stdout)["provenance"]["notes"][-1], "^‘spine’ holds .* elsewhere.$")
+
     def test_an_asset_s_case_is_built_again_elsewhere_to_the_same_bytes(self):
         there = self.folder / "there"
         there.mkdir()

@@ -50,7 +50,7 @@ int main(int argc, char** argv) {
     return command.run(argc, argv, [&](cli::Session& session) {
         cli::StagedFile staged = session.stage(request.output);
         fem::set_linear_algebra_threads(1);  // for last digits depend on it
-        const auto [patient_case, hanging] =
+        const auto [patient_case, to_look_at] =
             make_case(request, session.threads,
                       [&](std::string_view what, double done) { session.progress.step(what, done); });
         Json feel = Json::array(), felt = Json::array();
@@ -59,9 +59,7 @@ int main(int argc, char** argv) {
             for (Json& row : stages::felt_rows(body)) felt.push_back(std::move(row));
         }
         std::vector<std::string> warnings = unfelt(patient_case, session.threads);
-        for (const std::string& sentence : hanging)
-            warnings.push_back(sentence +
-                               "; hold it there too ('fixed'), or thicken what links it ('close_mm')");
+        warnings.insert(warnings.end(), to_look_at.begin(), to_look_at.end());
         if (!request.scan.empty() && !patient_case.scan)
             warnings.push_back("the scan shows nothing of the bodies and is left out");
         for (const std::string& warning : warnings) spdlog::warn("{}", warning);

@@ -14,6 +14,7 @@
 #include "tools/imaging/faces/face.hpp"
 #include "tools/imaging/files/image_files.hpp"
 #include "tools/imaging/files/shallow_json.hpp"
+#include "tools/imaging/voxels/bone_inside.hpp"
 #include "tools/imaging/voxels/scan_of.hpp"
 #include "tools/meshing/files/mesh_files.hpp"
 #include "tools/meshing/files/surface_repair.hpp"
@@ -168,20 +169,30 @@ MadeCase make_case(const PackRequest& request, int threads, const ProgressCallba
         made.scan = imaging::scan_of(imaging::read_volume(request.scan), points_of(made));
         if (made.scan && imaging::shows_face(*made.scan)) notes.push_back(face_note);
     }
-    std::vector<std::string> hanging;
+    std::vector<std::string> warnings;
+    const auto warn = [&](const std::string& sentence, const std::string& remedy) {
+        notes.push_back(sentence + ".");
+        warnings.push_back(sentence + "; " + remedy);
+    };
     for (DeformableBody& body : made.deformable_bodies) {
         progress("press " + body.name + " all over", 0.3);
         body.feel = fem::feel_of(body, made.haptics.tool_radius, threads);
+        const std::string name = "\u2018" + body.name + "\u2019 ";
         if (const fem::Sway sway = fem::sway_of(body); fem::hangs(body, sway))
-            hanging.push_back("\u2018" + body.name + "\u2019 " + fem::hanging_text(sway));
+            warn(name + fem::hanging_text(sway),
+                 "hold it there too ('fixed'), or thicken what links it ('close_mm')");
+        if (!made.scan) continue;
+        if (const std::string bone = imaging::bone_text(imaging::bone_inside(body.mesh, *made.scan));
+            !bone.empty())
+            warn(name + bone,
+                 "look at its slices, and leave that out of its structure or make it a body of its own");
     }
-    for (const std::string& sentence : hanging) notes.push_back(sentence + ".");
     made.provenance = Json{
         {"software", cli::software_versions()},
         {"build", read_provenance(request.provenance)},
         {"meshes", read_mesh_results(request.mesh_results)},
         {"notes", notes}}.dump();
-    return {std::move(made), std::move(hanging)};
+    return {std::move(made), std::move(warnings)};
 }
 
 }  // namespace palpate::stages

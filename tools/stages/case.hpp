@@ -9,10 +9,11 @@
 
 namespace palpate::stages {
 
-/// A case and which of its bodies hang, see fem::hangs(): a sentence each.
+/// A case and what whoever made it must look at: bodies that hang, see fem::hangs(), and bone within elastic
+/// ones, see imaging::bone_inside(); a sentence each, without its full stop.
 struct MadeCase {
     Case made;
-    std::vector<std::string> hanging;
+    std::vector<std::string> warnings;
 };
 
 /// Joins the parts that a request names to a case, builds the OBB trees that it does not name, computes what
