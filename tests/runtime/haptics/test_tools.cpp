@@ -266,7 +266,6 @@ TEST(TwoTools, keep_their_walls_and_their_share_where_contacts_are_too_many) {
     for (double y = 9; y < 11.9; y += 0.1) go(y, 19.4);
     for (int tick = 0; tick < settling; ++tick) go(11.9, 19.4);
     ASSERT_GT(both[0].contact_count + both[1].contact_count, 30);
-    EXPECT_TRUE((both[0].status & contacts_cut) != 0) << "and says so";
     // 11.9 mm + 0.4 mm of radius is 0.3 mm beyond the wall's face.
     EXPECT_NEAR(force_of(both[0]).y(), -0.3 * c.haptics.coupling_stiffness, 0.01);
     EXPECT_GT(force_of(both[0]).z(), 0.01);

@@ -104,15 +104,17 @@ TEST(Instrument, its_torque_keeps_to_its_bounds_in_size_and_step_and_says_so) {
     Case c = soft_block_and(box({-1, -1, 0}, {1, 1, 25}));
     HapticModel unbounded(c);
     const Vector3d wanted = torque_of(rest_at(unbounded, at, 8));
-    const double most = wanted.norm() / 3, most_a_tick = most / 20;  // N mm
+    const double most = wanted.norm() / 3, most_a_tick = most / 10;  // N mm
     c.tool->settings.max_torque = most;
     c.tool->settings.max_torque_rate = most_a_tick;
     HapticModel model(c);
     TickResult result{};
     Vector3d before = Vector3d::Zero();
     bool limited = false, slowed = false;
-    for (int tick = 0; tick < 600; ++tick) {  // put there at once, and taken away at once
-        model.tick(tick < 300 ? at : turned_at({14, 1, 40}, Quaterniond::Identity()), result);
+    realtime::DeviceState state = at;
+    for (int tick = 0; tick < 600; ++tick) {  // lowered on the block, and taken away at once
+        state.position[2] = tick < 300 ? at.position[2] + 8 * std::max(0.0, 1 - tick / 250.0) : 40;
+        model.tick(state, result);
         EXPECT_LE(torque_of(result).norm(), most * (1 + 1e-12)) << tick;
         EXPECT_LE((torque_of(result) - before).norm(), most_a_tick * (1 + 1e-12)) << tick;
         limited |= (result.status & force_limited) != 0;
