@@ -61,8 +61,9 @@ struct Options {
     std::vector<std::string> hyperelastic;
 };
 
-std::optional<WindowSize> size_of(const std::string& text) {
-    if (text.empty()) return std::nullopt;
+// `for_pictures`: which are alike on every machine.
+std::optional<WindowSize> size_of(const std::string& text, bool for_pictures) {
+    if (text.empty()) return for_pictures ? std::optional(WindowSize{1280, 720}) : std::nullopt;
     int width = 0, height = 0;
     const char* end = text.data() + text.size();
     const auto first = std::from_chars(text.data(), end, width);
@@ -153,7 +154,7 @@ TouchTarget start_of(const Options& options, const Session& run) {
 
 Json train(const Options& options, cli::Session& session) {
     const auto asked = Clock::now();
-    const auto size = size_of(options.size);
+    const auto size = size_of(options.size, !options.screenshot.empty());
     if (!options.record.empty()) cli::seekable_target(options.record);
     std::optional<cli::StagedFile> picture;
     if (!options.screenshot.empty()) picture.emplace(options.screenshot, session.force);
@@ -221,7 +222,8 @@ Json train(const Options& options, cli::Session& session) {
     TrainLesson lesson(options.lesson, exercises, run,
                        {.case_name = patient_case.name,
                         .trainee = options.lesson.trainee,
-                        .cautions = window_settings.cautions},
+                        .cautions = window_settings.cautions,
+                        .can_edit = !run.jaws()},
                        !options.script.empty());
 
     session.progress.step("filling the window", 0.5);
@@ -231,6 +233,7 @@ Json train(const Options& options, cli::Session& session) {
     for (const DeformableBody& body : patient_case.deformable_bodies)
         frame.displacements.emplace_back(body.boundary.nodes.size());
     frame.device_position = frame.tool_position = start;
+    frame.device = run.device_name();
     window.show(frame);  // the first frame compiles shaders
     const double first_frame_s = std::chrono::duration<double>(Clock::now() - asked).count();
 
@@ -330,10 +333,10 @@ int main(int argc, char** argv) {
              " mouse and keyboard, or a script, hold a simulated device that gives way."});
     Options options;
     const auto asset = command.input("asset", options.asset, "the case (.vtkhdf)").required();
-    const auto size = command.option(
-        "--size", options.size,
-        "WIDTHxHEIGHT of the window; two thirds of a large display, 1280x720 or less of others, if not given",
-        "pixels");
+    const auto size = command.option("--size", options.size,
+                                     "WIDTHxHEIGHT of the window; if not given, two thirds of a large "
+                                     "display, 1280x720 or less of others and for pictures and films",
+                                     "pixels");
     const auto seconds =
         command.option("--seconds", options.seconds, "close after this time; 0: when told to", "s");
     command.input(
@@ -375,12 +378,14 @@ int main(int argc, char** argv) {
         check_large_deformation(options.hyperelastic, options.scheme);
         options.lesson.usual = usual_exercise_file(options.asset);
         if (options.playback.play.empty()) return train(options, session);
-        return play_recording(options.playback,
-                              {.asset = options.asset,
-                               .trusted_keys = asset::read_public_keys(options.trusted),
-                               .size = size_of(options.size),
-                               .seconds = options.seconds,
-                               .screenshot = options.screenshot},
-                              session);
+        return play_recording(
+            options.playback,
+            {.asset = options.asset,
+             .trusted_keys = asset::read_public_keys(options.trusted),
+             .size = size_of(options.size, !(options.screenshot.empty() && options.playback.video.empty() &&
+                                             options.playback.pictures.empty())),
+             .seconds = options.seconds,
+             .screenshot = options.screenshot},
+            session);
     });
 }

@@ -123,7 +123,6 @@ TrainOutcome run_in_window(const TrainRun& run, VisualFrame& frame) {
     ServoPulse pulse;
     session::DrawnShape shape(session.patient_case());
     std::vector<const TickResult*> ticks(session.model().tool_count());
-    frame.device = session.device_name();
     session.start();
     const auto began = Clock::now();
     auto frame_began = began;

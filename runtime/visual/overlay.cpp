@@ -208,7 +208,7 @@ void Overlay::update(const VisualFrame& frame, double frames_per_second, const S
                        : frame.jaws_closed ? forceps_help_text
                                            : help_text;
     help_->SetInput(looked_up(hints).data());
-    const double low = frame.timeline ? above_timeline : exercise_shown_ ? above_both_rows : above_buttons;
+    const double low = frame.timeline ? above_timeline : button_rows_ > 1 ? above_both_rows : above_buttons;
     for (vtkTextActor* text : {help_.Get(), told_.Get()}) text->SetPosition(text->GetPosition()[0], low);
     force_->SetInput(fmt::format("{:.2f} N", newtons).c_str());
     figures_->SetInput(figures_of(frame, frames_per_second, detail).c_str());
@@ -248,7 +248,8 @@ void Overlay::turn_cautions() {
     show_texts();
 }
 
-void Overlay::make_room(bool for_page, bool for_exercise) {
+void Overlay::make_room(bool for_page, bool for_exercise, int button_rows) {
+    button_rows_ = button_rows;
     page_shown_ = for_page;
     exercise_shown_ = for_exercise;
     show_texts();

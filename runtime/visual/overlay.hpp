@@ -50,7 +50,8 @@ class Overlay {
     void turn_cautions();
     /// Hides hints, cautions and all figures but the force while a page lies over the scene, cautions while
     /// an exercise goes on.
-    void make_room(bool for_page, bool for_exercise);
+    /// Above the buttons there are one or two rows of, `button_rows`, stand hints and what is told.
+    void make_room(bool for_page, bool for_exercise, int button_rows);
     /// Says something for a few seconds.
     void tell(const std::string& sentence);
 
@@ -77,6 +78,7 @@ class Overlay {
     bool help_fades_ = true;  // until it is asked for
     std::chrono::steady_clock::duration help_seen_{};
     bool page_shown_ = false, exercise_shown_ = false, filmed_ = false;
+    int button_rows_ = 1;
     std::chrono::steady_clock::time_point last_{};
     vtkNew<vtkTextActor> force_, most_force_, health_, figures_, title_, help_, notice_, cautions_, told_;
     std::chrono::steady_clock::time_point told_until_{};

@@ -60,7 +60,8 @@ constexpr double handle_share = 0.35;  // of the field of view: how long a shaft
 }  // namespace
 
 Scene::Scene(const Case& patient_case, const Sight& sight, std::int64_t rigid_budget,
-             std::optional<double> jaw_length, double rendered, vtkRenderer* renderer, vtkRenderer* front)
+             std::optional<double> jaw_length, std::optional<double> rendered, vtkRenderer* renderer,
+             vtkRenderer* front)
     : tool_radius_(patient_case.haptics.tool_radius),
       max_force_((jaw_length ? 2 : 1) * patient_case.haptics.max_force),
       arrow_length_(0.5 * sight.field),
@@ -99,7 +100,8 @@ void Scene::add_rigid(const Case& patient_case, const Sight& sight, std::int64_t
     }
 }
 
-void Scene::add_regions(const Case& patient_case, const Sight& sight, double rendered, vtkRenderer* front) {
+void Scene::add_regions(const Case& patient_case, const Sight& sight, std::optional<double> rendered,
+                        vtkRenderer* front) {
     std::size_t count = 0;
     for (const DeformableBody& body : patient_case.deformable_bodies) {
         regions_.emplace_back(body, sight.toward_eye, count, rendered, front);

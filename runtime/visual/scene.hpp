@@ -26,10 +26,11 @@ class Scene {
   public:
     /// `patient_case` must outlive it. `rigid_budget`: triangles that all rigid bodies together may have on
     /// the screen. `jaw_length`: mm, of a forceps, whose other jaw is the first of the other tools; nothing:
-    /// no forceps. `rendered`: the least difference of force that the device renders, N. `front` is drawn
+    /// no forceps. `rendered`: as of felt_text(). `front` is drawn
     /// over `renderer`: the force and the device show through whatever covers them.
     Scene(const Case& patient_case, const Sight& sight, std::int64_t rigid_budget,
-          std::optional<double> jaw_length, double rendered, vtkRenderer* renderer, vtkRenderer* front);
+          std::optional<double> jaw_length, std::optional<double> rendered, vtkRenderer* renderer,
+          vtkRenderer* front);
 
     void update(const VisualFrame& frame);
     void show_rigid(bool on);
@@ -54,7 +55,8 @@ class Scene {
 
   private:
     void add_rigid(const Case& patient_case, const Sight& sight, std::int64_t budget, vtkRenderer* renderer);
-    void add_regions(const Case& patient_case, const Sight& sight, double rendered, vtkRenderer* front);
+    void add_regions(const Case& patient_case, const Sight& sight, std::optional<double> rendered,
+                     vtkRenderer* front);
     void add_tool(const Case& patient_case, const Sight& sight, vtkRenderer* renderer, vtkRenderer* front);
     void place_tool(const VisualFrame& frame);
 

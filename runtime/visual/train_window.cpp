@@ -369,11 +369,11 @@ struct TrainWindow::Parts {
 
     void turn_stiffness() {
         if (!scene.has_stiffness())
-            return overlay.tell(translated("nobody has computed how stiff this feels"));
+            return overlay.tell(translated("how stiff this case feels is not known: build it again"));
         if (exercising) return overlay.tell(translated("in this exercise it stays hidden"));
         scene.show_stiffness(stiffness_shown = !stiffness_shown);
         if (stiffness_shown)
-            overlay.tell(translated("how stiff each place is under this tool, pressed alone"));
+            overlay.tell(translated("how stiff each body is under the case's ball, pressed by itself"));
     }
 
     void turn_slices() {
@@ -382,12 +382,11 @@ struct TrainWindow::Parts {
         scan->turn();
     }
 
-    // Whoever is asked to find something is not shown where it is.
-    void see_exercise(bool goes_on) {
+    // Whoever is asked to find something is not shown where it is, nor do a page's small pictures.
+    void see_exercise(bool goes_on, bool page_shown) {
         exercising = goes_on;
-        if (!exercising) return;
-        if (std::exchange(regions_shown, false)) scene.show_regions(false);
-        if (std::exchange(stiffness_shown, false)) scene.show_stiffness(false);
+        if (exercising && std::exchange(regions_shown, false)) scene.show_regions(false);
+        if ((exercising || page_shown) && std::exchange(stiffness_shown, false)) scene.show_stiffness(false);
     }
 
     std::shared_ptr<OpenedWindow> opened;
@@ -453,9 +452,10 @@ void TrainWindow::draw(const VisualFrame& frame) {
     else if (p.scan)
         p.scan->follow(frame.tool_position, p.cut && !p.endoscope.fills_window());
     p.overlay.update(frame, frame.film_rate_hz.value_or(frames_per_second()), detail());
-    p.see_exercise(frame.lesson.hides_regions);
+    p.see_exercise(frame.lesson.hides_regions, frame.lesson.page.has_value());
     p.page_takes_keys = frame.lesson.takes_keys;
-    p.overlay.make_room(frame.lesson.page.has_value(), !frame.lesson.instruction.empty());
+    p.overlay.make_room(frame.lesson.page.has_value(), !frame.lesson.instruction.empty(),
+                        frame.lesson.actions.empty() ? 1 : 2);
     p.lesson_scene.update(frame.lesson);
     const int* size = p.window->GetSize();
     p.panel.update(frame.lesson, p.thumbnails, frame.force.norm(), size[0], size[1]);

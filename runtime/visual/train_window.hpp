@@ -29,7 +29,7 @@ struct WindowSettings {
     std::vector<std::string> cautions{};              ///< what a certificate does not say of the case
     /// Of a forceps, which a drag of the mouse carries where it would press a ball in; nothing: a ball.
     std::optional<HeldForceps> forceps{};
-    double rendered = rendered_force;  ///< N, the least difference of force that the device renders
+    std::optional<double> rendered{};  ///< as of felt_text()
     /// The bodies' rest surfaces, as in HapticModel: what the pointer touches. They outlive the window.
     std::vector<const collision::CollisionSurface*> surfaces{};
 };

@@ -51,7 +51,7 @@ def main(arguments):
         objects = [Path(name) for name in arguments[1:]]
     else:
         rows = (Path(arguments[0]) / "tick_objects.txt").read_text().splitlines()
-        object_of = {Path(source): Path(built) for source, built in (row.split("\t") for row in rows)}
+        object_of = {Path(source).resolve(): Path(built) for source, built in (row.split("\t") for row in rows)}
         objects = sorted(set(object_of.values()))
         left_out = [path for path in METHODS if path not in object_of]
         for path in left_out:

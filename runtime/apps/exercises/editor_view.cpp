@@ -96,9 +96,9 @@ LessonView editor_view(const ExerciseEditor& editor, const Exercise& draft, cons
     view.instruction = recipe.task == Task::guide
                            ? translated("Lead the tip to where a gate is to be, press M")
                            : translated("Touch the organ where a mark is to be, press M");
-    view.status = marks_of(recipe);
-    view.actions = {{"m", "M  " + translated("Set a mark")},
-                    {"delete", translated("Delete") + "  " + translated("Take the last back")},
+    // Set by a key or the device alone: a mouse that clicks does not touch.
+    view.status = marks_of(recipe) + "   " + translated("M sets one");
+    view.actions = {{"delete", translated("Delete") + "  " + translated("Take the last back")},
                     {"space", translated("Space") + "  " + translated("The settings")}};
     view.warning = looked_up(editor.message().c_str());
     view.least_force = recipe.least_force.value_or(0);

@@ -43,7 +43,8 @@ LessonPage start_page(const Lesson& lesson, const LessonSetting& setting) {
                                 fmt::format("{}   {}", number, looked_up(exercise.title.c_str())),
                                 picture_of(exercise)});
     }
-    page.choices.push_back({"f2", "F2   " + translated("Make an exercise of your own")});
+    if (setting.can_edit)
+        page.choices.push_back({"f2", "F2   " + translated("Make an exercise of your own")});
     page.choices.push_back({"backspace", "Backspace   " + translated("Look around first, and come back")});
     return page;
 }
@@ -112,7 +113,7 @@ void show_doing(const Attempt& attempt, double force, LessonView& view) {
 
 }  // namespace
 
-LessonPage result_page(const Attempt& attempt, std::span<const PastAttempt> history) {
+LessonPage result_page(const Attempt& attempt, std::span<const PastAttempt> history, bool can_edit) {
     LessonPage page;
     page.title = std::string(looked_up(attempt.exercise().title.c_str())) + ": " +
                  std::string(looked_up(words_of(attempt.ending()).data()));
@@ -152,8 +153,9 @@ LessonPage result_page(const Attempt& attempt, std::span<const PastAttempt> hist
     }
     page.choices = {{"return", translated("Enter") + "   " + translated("Once more")},
                     {"space", translated("Space") + "   " + translated("Look at the way that the hand took")},
-                    {"f2", "F2   " + translated("Change this exercise")},
                     {"backspace", "Backspace   " + translated("Other exercises")}};
+    if (can_edit)
+        page.choices.insert(page.choices.end() - 1, {"f2", "F2   " + translated("Change this exercise")});
     return page;
 }
 
@@ -168,8 +170,8 @@ LessonView lesson_view(const Lesson& lesson, const LessonSetting& setting, doubl
         case Phase::counting_down:
             view.instruction = looked_up(lesson.exercises()[lesson.chosen()].instruction.c_str());
             view.status = translated("begins in {:.0f}", std::ceil(lesson.seconds_to_begin()));
-            view.actions = {action("return", translated("Enter"), translated("Now")),
-                            action("f2", "F2", translated("Change it"))};
+            view.actions = {action("return", translated("Enter"), translated("Now"))};
+            if (setting.can_edit) view.actions.push_back(action("f2", "F2", translated("Change it")));
             show_places(lesson.exercises()[lesson.chosen()], {}, false, view);
             break;
         case Phase::doing:

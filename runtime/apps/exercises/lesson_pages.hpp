@@ -14,12 +14,13 @@ namespace palpate::apps {
 struct LessonSetting {
     std::string case_name, trainee;
     std::vector<std::string> cautions;  ///< of the case
+    bool can_edit = true;               ///< exercises are made and changed in the window
 };
 
 /// The page after an attempt: metrics, force and the scores of `history`, its own included. Costs the
 /// attempt's metrics: once an attempt, not once a frame.
 visual::LessonPage result_page(const training::Attempt& attempt,
-                               std::span<const training::PastAttempt> history);
+                               std::span<const training::PastAttempt> history, bool can_edit);
 
 /// What the window shows of a lesson. `force`: N, on the device; `result`: of the attempt that is looked back
 /// at.

@@ -48,16 +48,18 @@ std::size_t index_of(const std::string& name, const std::vector<LaidOut>& exerci
     throw UsageError({"--exercise", "no exercise '" + name + "'", names, ""});
 }
 
-// The asset's own, and of the standard ones those that none of them replaces.
+std::vector<ExerciseRecipe> written_in(const std::filesystem::path& file) {
+    return std::filesystem::exists(file) ? read_exercises(file) : std::vector<ExerciseRecipe>{};
+}
+
+// The asset's own that are for what is held, and the standard ones, which count where the asset has none of
+// their name that finds room.
 std::vector<ExerciseRecipe> usual_exercises(const std::filesystem::path& file, bool with_forceps) {
-    std::vector<ExerciseRecipe> recipes;
-    if (std::filesystem::exists(file)) recipes = read_exercises(file);
+    std::vector<ExerciseRecipe> recipes = written_in(file);
     std::erase_if(recipes, [&](const ExerciseRecipe& recipe) {
         return recipe.task != Task::free && (recipe.task == Task::retract) != with_forceps;
     });
-    for (ExerciseRecipe& standard : standard_exercises(with_forceps))
-        if (std::ranges::find(recipes, standard.name, &ExerciseRecipe::name) == recipes.end())
-            recipes.push_back(std::move(standard));
+    std::ranges::move(standard_exercises(with_forceps), std::back_inserter(recipes));
     return recipes;
 }
 
@@ -89,6 +91,8 @@ std::vector<LaidOut> lay_out_exercises(const LessonOptions& options, session::Se
         if (recipe.task == Task::retract && !run.jaws())
             throw InvalidInput({recipe.written_at, "task 'retract' without a forceps", "",
                                 "start with --instrument forceps, or leave it out"});
+        const auto same = [&](const LaidOut& other) { return other.recipe.name == recipe.name; };
+        if (!named && std::ranges::any_of(exercises, same)) continue;
         try {
             if (auto exercise = lay_out(recipe, run.patient_case(), run.model(), start))
                 exercises.push_back({recipe, std::move(*exercise)});
@@ -111,6 +115,7 @@ TrainLesson::TrainLesson(const LessonOptions& options, const std::vector<LaidOut
               [this](const Attempt& attempt) { keep(attempt); }),
       exercise_file_(options.exercises.empty() ? options.usual : options.exercises) {
     for (const LaidOut& exercise : exercises) recipes_.push_back(exercise.recipe);
+    for (const ExerciseRecipe& recipe : written_in(exercise_file_)) written_.push_back(recipe.name);
     if (!options.exercise.empty())
         lesson_.choose(index_of(options.exercise, exercises));
     else if (scripted)
@@ -140,6 +145,7 @@ void TrainLesson::begin_to_edit() {
     } else if (lesson_.phase() == Phase::choosing) {
         std::vector<std::string> taken;
         for (const ExerciseRecipe& recipe : recipes_) taken.push_back(recipe.name);
+        taken.insert(taken.end(), written_.begin(), written_.end());
         ExerciseRecipe fresh;
         fresh.task = Task::touch;
         fresh.least_force = chosen.least_force;
@@ -242,9 +248,10 @@ void TrainLesson::keep(const Attempt& attempt) {
     } catch (const std::exception& error) {
         spdlog::warn("the attempt is not kept: {}", error.what());
     }
-    result_ =
-        result_page(attempt, read_history(folder_, head.case_name, attempt.exercise().name,
-                                          [](const std::string& sentence) { spdlog::warn("{}", sentence); }));
+    result_ = result_page(attempt,
+                          read_history(folder_, head.case_name, attempt.exercise().name,
+                                       [](const std::string& sentence) { spdlog::warn("{}", sentence); }),
+                          setting_.can_edit);
 }
 
 }  // namespace palpate::apps

@@ -85,6 +85,7 @@ class TrainLesson {
 
     std::vector<training::ExerciseRecipe> recipes_;  // of the lesson's exercises
     std::filesystem::path exercise_file_;            // keeps what a teacher makes
+    std::vector<std::string> written_;               // names in it at first, also of what found no room here
     std::optional<training::ExerciseEditor> editor_;
     training::Exercise draft_;  // as the editor has it
     bool button_ = false;       // at the last tick

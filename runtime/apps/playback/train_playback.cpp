@@ -19,6 +19,7 @@
 #include "runtime/apps/playback/expert_ghost.hpp"
 #include "runtime/apps/playback/film_output.hpp"
 #include "runtime/apps/playback/recorded_scene.hpp"
+#include "runtime/devices/device_model.hpp"
 #include "runtime/session/playback/playback_clock.hpp"
 #include "runtime/session/replay.hpp"
 #include "runtime/sound/force_sound.hpp"
@@ -227,6 +228,9 @@ Json play_recording(const PlaybackOptions& options, const PlaybackWindow& shown,
                             .sight = scene.sight(),
                             .cautions = provenance::cautions_in(patient_case.provenance),
                             .surfaces = surfaces_of(*model)};
+    const auto tool = static_cast<std::size_t>(options.tool);
+    if (const auto* model = devices::model_of_device(recording.head.devices[tool].name))
+        settings.rendered = model->coulomb_friction;
     if (const auto& jaws = recording.head.jaws)
         settings.forceps = {vector_of(scene.track().front()->shaft), jaws->jaw_length};
     TrainWindow window(std::move(opened), patient_case, settings);

@@ -14,7 +14,7 @@ namespace palpate::visual {
 using Eigen::Vector3f;
 
 EnclosedRegions::EnclosedRegions(const DeformableBody& body, const Eigen::Vector3d& toward_eye,
-                                 std::size_t first, double rendered, vtkRenderer* front)
+                                 std::size_t first, std::optional<double> rendered, vtkRenderer* front)
     : body_(&body), inner_nodes_(std::make_shared<std::optional<elasticity::InnerNodes>>()) {
     // Yellow, reddish purple, bluish green: told apart by colour-blind people too (Okabe, Ito 2008).
     const std::array<Rgb, 3> colours{Rgb(240, 228, 66), Rgb(204, 121, 167), Rgb(0, 158, 115)};

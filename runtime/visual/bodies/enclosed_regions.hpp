@@ -24,9 +24,9 @@ namespace palpate::visual {
 class EnclosedRegions {
   public:
     /// `body` must outlive it. A region without a colour of its own gets one of three by its number, `first`
-    /// and on. `rendered`: the least difference of force that the device renders, N.
+    /// and on. `rendered`: as of felt_text().
     EnclosedRegions(const DeformableBody& body, const Eigen::Vector3d& toward_eye, std::size_t first,
-                    double rendered, vtkRenderer* front);
+                    std::optional<double> rendered, vtkRenderer* front);
 
     /// "tumour (stiffer by 34 %, can be felt)", in the user's language.
     const std::vector<std::string>& names() const { return names_; }

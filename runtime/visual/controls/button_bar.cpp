@@ -44,7 +44,6 @@ ButtonBar::ButtonBar(vtkRenderer* renderer, int row) : renderer_(renderer), row_
     tip_->GetTextProperty()->SetColor(0.93, 0.95, 0.97);
     tip_->GetTextProperty()->SetBackgroundColor(0.05, 0.07, 0.09);
     tip_->GetTextProperty()->SetBackgroundOpacity(0.95);
-    tip_->SetLayerNumber(1);  // over a row above
 }
 
 void ButtonBar::set(const std::vector<ButtonText>& buttons) {
@@ -132,6 +131,9 @@ void ButtonBar::hover(int x, int y) {
         tip_->SetInput(fmt::format(" {} ", button.text.tip).c_str());
         tip_->SetPosition(button.left, top_ + 0.8 * (top_ - bottom_));
         tip_->VisibilityOn();
+        // What was added last is drawn over a row above.
+        renderer_->RemoveActor2D(tip_);
+        renderer_->AddActor2D(tip_);
     }
 }
 

@@ -14,7 +14,7 @@ std::span<const WindowKey> window_keys() {
         {"t", shown_text("Inside"), shown_text("show or hide what organs enclose, such as a tumour")},
         {"x", shown_text("Slices"),
          shown_text("the scan's slice through the tool: axial, coronal, sagittal, none")},
-        {"g", shown_text("Map"), shown_text("colour the surface by how stiff it is under this tool")},
+        {"g", shown_text("Map"), shown_text("colour the surface by how stiff it is under the case's ball")},
         {"v", shown_text("Tip"), shown_text("look from the tool's tip, then in a corner too, then not")},
         {"j", shown_text("Jaws"), shown_text("close the jaws, or open them"), true},
         {"u", shown_text("Undo"), shown_text("the view before the last turn, shift or zoom")},

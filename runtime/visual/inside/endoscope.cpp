@@ -21,6 +21,13 @@ constexpr double brightness = 1.4, half_light = 30;  // mm, at which half of it 
 // Of the window: a corner's width, its height at most, and where it begins.
 constexpr double corner_width = 0.3, corner_height = 0.5, corner_margin = 0.017, corner_bottom = 0.1;
 
+// Of a direction in a tool's frame what is across its shaft, unit; any where it runs along that.
+Vector3d across(const Vector3d& direction) {
+    constexpr double least = 0.3;
+    const Vector3d aside(direction.x(), direction.y(), 0);
+    return aside.norm() < least * direction.norm() ? Vector3d::UnitX() : aside.normalized();
+}
+
 void only_light(vtkRenderer* renderer, vtkLight* own, bool on) {
     vtkLightCollection* lights = renderer->GetLights();
     lights->InitTraversal();
@@ -105,7 +112,7 @@ void Endoscope::look_along(const ScopePose& pose) {
     const bool turns = !pose.orientation.coeffs().isZero(0);
     if (!placed_) {
         tip_ = pose.tip;
-        up_in_tool_ = pose.orientation.conjugate() * Vector3d(camera_->GetViewUp());
+        up_in_tool_ = across(pose.orientation.conjugate() * Vector3d(camera_->GetViewUp()));
     }
     placed_ = true;
     if (turns) camera_->SetViewUp(Vector3d(pose.orientation * up_in_tool_).data());

@@ -10,20 +10,21 @@ namespace palpate::visual {
 
 using texts::translated;
 
-std::string felt_text(const DeformableBody& body, std::int32_t region, double rendered) {
+std::string felt_text(const DeformableBody& body, std::int32_t region, std::optional<double> rendered) {
     if (!body.feel) return "";
     const auto felt = std::ranges::find(body.feel->regions, region, &FeltRegion::region);
     if (felt == body.feel->regions.end()) return "";
     const double percent = 100 * contrast_of(*felt);
     const std::string contrast =
         percent < 0 ? translated("softer by {:.0f} %", -percent) : translated("stiffer by {:.0f} %", percent);
-    switch (verdict_of(*felt, body.feel->depth, rendered)) {
+    switch (verdict_of(*felt, body.feel->depth, rendered.value_or(rendered_force))) {
         case FeltVerdict::too_faint:
             return translated("{}, too faint to feel", contrast);
         case FeltVerdict::too_varied:
             return translated("{}, no more than tissue varies by around it", contrast);
         case FeltVerdict::too_weak:
-            return translated("{}, too weak for this device", contrast);
+            return rendered ? translated("{}, too weak for this device", contrast)
+                            : translated("{}, too weak for many devices", contrast);
         case FeltVerdict::felt:
             break;
     }

@@ -4,7 +4,7 @@
 
 namespace palpate::visual {
 
-/// What a force looks like: dark blue for none, over orange, to pale yellow for the largest, lighter all the
+/// What a force looks like: blue for none, over orange, to pale yellow for the largest, lighter all the
 /// way, so that eyes that do not tell colours apart tell it too. `share`: of the largest, 0 ... 1.
 Rgb force_colour(double share);
 

@@ -38,7 +38,7 @@ Rgb health_colour(Health health) {
         case Health::good:
             return {86, 180, 233};  // sky blue
         case Health::limited:
-            return {230, 159, 0};  // orange
+            return {220, 140, 0};  // orange, a little darker than theirs
         case Health::no_force:
             break;
     }

@@ -76,8 +76,9 @@ TEST(Health, says_the_worst_first_and_names_the_device) {
     frame.faults = motors_warm;
     EXPECT_EQ(health_of(frame), Health::no_force);
     EXPECT_EQ(health_text(frame), "a device: no force");
-    EXPECT_GT(luminance(visual::health_colour(Health::good)),
-              luminance(visual::health_colour(Health::no_force)));
+    const auto light = [](Health health) { return luminance(visual::health_colour(health)); };
+    EXPECT_GT(light(Health::good), light(Health::limited) + 10);
+    EXPECT_GT(light(Health::limited), light(Health::no_force) + 10);
 }
 
 TEST(FeltText, says_how_much_stiffer_a_region_feels_and_whether_this_device_tells_it) {

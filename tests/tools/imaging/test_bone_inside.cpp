@@ -19,10 +19,10 @@ TetMesh box() {
     return mesh;
 }
 
-// Around it by 3 mm, of voxels whose middles lie on no face of it: bone where x < 4 mm.
+// Around it by 3 mm, of voxels many of whose middles lie between two tetrahedra: bone where x < 4 mm.
 Scan ct(double bone_hu) {
     Scan scan;
-    scan.grid = {.size = {26, 26, 26}, .spacing = {1, 1, 1}, .origin = {-2.61, -2.53, -2.47}};
+    scan.grid = {.size = {26, 26, 26}, .spacing = {1, 1, 1}, .origin = {-2.5, -2.5, -2.5}};
     scan.hounsfield = true;
     for (int k = 0; k < 26; ++k)
         for (int j = 0; j < 26; ++j)

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <vector>
 
 namespace palpate::imaging {
 namespace {
@@ -43,17 +44,20 @@ void for_each_voxel(const std::array<Vector3d, 4>& corners, const ImageGrid& gri
 BoneInside bone_inside(const TetMesh& mesh, const Scan& scan) {
     if (!scan.hounsfield) return {};
     std::int64_t all = 0, dense = 0;
+    std::vector<bool> counted(scan.values.size());  // a voxel on a face is in two
     for (const Tetrahedron& nodes : mesh.tetrahedra) {
         std::array<Vector3d, 4> corners;
         for (std::size_t c = 0; c < 4; ++c)
             corners[c] = scan.grid.index_of(mesh.rest_positions[static_cast<std::size_t>(nodes[c])]);
         for_each_voxel(corners, scan.grid, [&](std::size_t offset) {
+            if (counted[offset]) return;
+            counted[offset] = true;
             ++all;
             dense += scan.values[offset] >= dense_hu;
         });
     }
     if (all == 0) return {};
-    return {static_cast<double>(dense) * scan.grid.spacing.prod(),
+    return {static_cast<double>(dense) * scan.grid.voxel_volume(),
             static_cast<double>(dense) / static_cast<double>(all)};
 }
 
