@@ -143,7 +143,7 @@ class DemoCases(unittest.TestCase):
             self.skipTest("PALPATE: the trainer or xvfb is missing; all but the trainer was tested")
         shutil.copy(SOURCE / "pipelines" / "exercises" / "liver.toml", asset.with_name(f"{asset.stem}-exercises.toml"))
         with XServer() as server:
-            for held, offered in (((), "find, touch, trace, free"), (("--instrument", "forceps"), "retract, free")):
+            for held, offered in (((), "touch, find, trace, free"), (("--instrument", "forceps"), "retract, free")):
                 train = subprocess.run([BIN / "palpate", "train", asset, "--exercise", "none", "--attempts", folder / "attempts", *held],
                                        capture_output=True, text=True, timeout=120, env=server.environment)
                 self.assertEqual(train.returncode, 2, train.stderr)
