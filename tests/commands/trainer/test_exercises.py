@@ -135,8 +135,9 @@ class Exercises(TrainerCase):
         self.assertEqual(good["ending"], "all reached")
         self.assertGreater(good["metrics"]["score"], 95)
         self.assertEqual(good["metrics"]["peak_force_n"], 0)
-        # From each gate over the cube down into it, and up again to the next.
-        scraping = [row for i, (x, y, z) in enumerate(gates) for row in ((2 * i + 0.5, x, y, z), (2 * i + 1.5, x, y, 16))]
+        # From each gate over the cube down into it, there for a second, and up again to the next.
+        scraping = [row for i, (x, y, z) in enumerate(gates)
+                    for row in ((3 * i + 0.5, x, y, z), (3 * i + 1.5, x, y, 16), (3 * i + 2.5, x, y, 16))]
         clumsy = self.with_hand("scope", [(0, -8, 10, 26), *scraping], *exercise)
         self.assertEqual(clumsy["ending"], "all reached")
         self.assertGreater(clumsy["metrics"]["peak_force_n"], 0.05)
