@@ -9,6 +9,7 @@
 
 #include "formats/elasticity/shape_gradients.hpp"
 #include "formats/model/errors.hpp"
+#include "formats/model/regions.hpp"
 
 namespace palpate::elasticity {
 namespace {
@@ -48,12 +49,6 @@ ElementStiffness element_stiffness(const std::array<Eigen::Vector3d, 4>& corners
             stiffness.block<3, 3>(a, b).diagonal().array() += lame.mu * product.trace();
         }
     return stiffness;
-}
-
-std::string region_name(const TetMesh& mesh, std::int32_t value) {
-    for (const Label& label : mesh.region_names)
-        if (label.value == value) return label.name;
-    return "region " + std::to_string(value);
 }
 
 }  // namespace

@@ -12,6 +12,11 @@ std::int32_t main_region(const TetMesh& mesh) {
     return std::ranges::max_element(volumes, {}, [](const auto& entry) { return entry.second; })->first;
 }
 
+std::string region_name(const TetMesh& mesh, std::int32_t region) {
+    const auto found = std::ranges::find(mesh.region_names, region, &Label::value);
+    return found != mesh.region_names.end() ? found->name : "label " + std::to_string(region);
+}
+
 std::vector<Label> enclosed_regions(const TetMesh& mesh) {
     const std::int32_t main = main_region(mesh);
     std::vector<Label> enclosed;

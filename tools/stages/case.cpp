@@ -14,11 +14,11 @@
 #include "tools/imaging/faces/face.hpp"
 #include "tools/imaging/files/image_files.hpp"
 #include "tools/imaging/files/shallow_json.hpp"
-#include "tools/imaging/voxels/bone_inside.hpp"
 #include "tools/imaging/voxels/scan_of.hpp"
 #include "tools/meshing/files/mesh_files.hpp"
 #include "tools/meshing/files/surface_repair.hpp"
 #include "tools/obb/build_obb_tree.hpp"
+#include "tools/stages/bone_inside.hpp"
 
 namespace palpate::stages {
 namespace {
@@ -182,8 +182,7 @@ MadeCase make_case(const PackRequest& request, int threads, const ProgressCallba
             warn(name + fem::hanging_text(sway),
                  "hold it there too ('fixed'), or thicken what links it ('close_mm')");
         if (!made.scan) continue;
-        if (const std::string bone = imaging::bone_text(imaging::bone_inside(body.mesh, *made.scan));
-            !bone.empty())
+        if (const std::string bone = bone_text(bone_inside(body.mesh, *made.scan)); !bone.empty())
             warn(name + bone,
                  "look at its slices, and leave that out of its structure or make it a body of its own");
     }

@@ -10,7 +10,7 @@
 namespace palpate::stages {
 
 /// A case and what whoever made it must look at: bodies that hang, see fem::hangs(), and bone within elastic
-/// ones, see imaging::bone_inside(); a sentence each, without its full stop.
+/// ones, see bone_inside(); a sentence each, without its full stop.
 struct MadeCase {
     Case made;
     std::vector<std::string> warnings;

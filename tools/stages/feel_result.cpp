@@ -6,15 +6,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "formats/model/regions.hpp"
+
 namespace palpate::stages {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string region_name(const DeformableBody& body, std::int32_t region) {
-    const auto found = std::ranges::find(body.mesh.region_names, region, &Label::value);
-    return found == body.mesh.region_names.end() ? std::to_string(region) : found->name;
-}
 
 double force_difference(const FeltRegion& felt, double depth) {
     return (felt.stiffness - felt.stiffness_without) * depth;
@@ -51,7 +48,7 @@ std::vector<Json> felt_rows(const DeformableBody& body) {
     for (const FeltRegion& felt : body.feel->regions) {
         const Eigen::Vector3d& place = body.boundary.surface.vertices[static_cast<std::size_t>(felt.vertex)];
         rows.push_back({{"body", body.name},
-                        {"region", region_name(body, felt.region)},
+                        {"region", region_name(body.mesh, felt.region)},
                         {"verdict", verdict_word(verdict_of(felt, body.feel->depth))},
                         {"contrast_percent", 100 * contrast_of(felt)},
                         {"variation_percent", 100 * felt.variation},
@@ -89,7 +86,7 @@ std::string unfelt_warning(const DeformableBody& body, const FeltRegion& felt,
     }
     return fmt::format(
         "'{}' of '{}' cannot be felt with this tool: where it is felt best, {:.1f} mm above it, it {}; {}",
-        region_name(body, felt.region), body.name, felt.depth, shortfall(felt, body.feel->depth),
+        region_name(body.mesh, felt.region), body.name, felt.depth, shortfall(felt, body.feel->depth),
         would_do.empty()
             ? fmt::format("try it nearer to the surface and larger at once, for none of these alone "
                           "would do: {}",

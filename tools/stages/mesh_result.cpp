@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "formats/model/errors.hpp"
+#include "formats/model/regions.hpp"
 #include "tools/meshing/contract/contract_json.hpp"
 
 namespace palpate::stages {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "formats/model/errors.hpp"
+#include "formats/model/regions.hpp"
 #include "formats/stl_file/read_stl.hpp"
 #include "runtime/devices/device_model.hpp"
 #include "runtime/devices/jaws/grasp_script.hpp"
@@ -122,14 +123,12 @@ void tell_too_weak(const Case& patient_case, const std::string& device) {
             const double depth = body.feel->depth, lost = model->coulomb_friction;
             if (verdict_of(felt, depth, lost) != FeltVerdict::too_weak) continue;
             const double change = std::abs(felt.stiffness - felt.stiffness_without);  // N/mm
-            const auto name = std::ranges::find(body.mesh.region_names, felt.region, &Label::value);
             spdlog::warn(
                 "'{}' changes the force on a press of {:g} mm by {:.2g} N, and the joints of a {} lose {:g} "
                 "N: it "
                 "is felt from {:.0f} mm on, or by a device with less friction",
-                name == body.mesh.region_names.end() ? std::to_string(felt.region) : name->name, depth,
-                change * depth, model->heir.empty() ? model->product : model->heir, lost,
-                std::ceil(lost / change));
+                region_name(body.mesh, felt.region), depth, change * depth,
+                model->heir.empty() ? model->product : model->heir, lost, std::ceil(lost / change));
         }
     }
 }

@@ -26,6 +26,11 @@ TEST(RegionSurface, all_regions_but_the_largest_are_enclosed) {
     EXPECT_EQ(enclosed.front().name, "lump");
 }
 
+TEST(RegionName, is_the_mesh_s_or_its_value) {
+    EXPECT_EQ(region_name(two_regions(), 7), "lump");
+    EXPECT_EQ(region_name(two_regions(), 3), "label 3");
+}
+
 TEST(RegionSurface, has_only_faces_towards_other_regions) {
     const TriangleMesh surface = surface_of_region(two_regions(), 7).surface;
     EXPECT_EQ(surface.triangles.size(), 6U);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "formats/model/regions.hpp"
 #include "tools/meshing/files/text.hpp"
 #include "tools/meshing/surfaces/surfaces.hpp"
 
@@ -50,11 +51,6 @@ std::vector<ComponentCover> cover_components(const RegionLabels& labels,
 }
 
 }  // namespace
-
-std::string region_name(const TetMesh& mesh, std::int32_t region) {
-    const auto found = std::ranges::find(mesh.region_names, region, &Label::value);
-    return found != mesh.region_names.end() ? found->name : fmt::format("label {}", region);
-}
 
 MeshMeasures measure(const TetMesh& mesh, const RegionLabels& labels,
                      std::span<const TriangleMesh> surfaces) {

@@ -51,9 +51,6 @@ struct MeshMeasures {
     std::vector<ComponentCover> components;
 };
 
-/// Returns the name of a mesh's region, or "label <value>".
-std::string region_name(const TetMesh& mesh, std::int32_t region);
-
 /// `labels` are those of prepare_domain(), `surfaces` their region_surfaces(). Throws as compare() does.
 MeshMeasures measure(const TetMesh& mesh, const RegionLabels& labels, std::span<const TriangleMesh> surfaces);
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gmock/gmock.h>
 
-#include "tools/imaging/voxels/bone_inside.hpp"
+#include "tools/stages/bone_inside.hpp"
 
 namespace palpate {
 namespace {
 
-using namespace imaging;
+using namespace stages;
 using Eigen::Vector3d;
 using testing::HasSubstr;
 
@@ -15,6 +15,7 @@ TetMesh box() {
     TetMesh mesh;
     for (int corner = 0; corner < 8; ++corner)
         mesh.rest_positions.emplace_back(20 * (corner & 1), 20 * (corner >> 1 & 1), 20 * (corner >> 2 & 1));
+    mesh.regions.assign(6, 1);
     mesh.tetrahedra = {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
     return mesh;
 }
