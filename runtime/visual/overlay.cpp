@@ -21,6 +21,7 @@
 #include "runtime/visual/quads.hpp"
 #include "runtime/visual/readings/force_colour.hpp"
 #include "runtime/visual/readings/health.hpp"
+#include "runtime/visual/screen_text.hpp"
 
 namespace palpate::visual {
 namespace {
@@ -61,10 +62,6 @@ void make_bar(vtkActor2D* actor, vtkPoints* points, double opacity, vtkRenderer*
     actor->VisibilityOn();
 }
 
-void paint(vtkActor2D* actor, const Rgb& colour) {
-    actor->GetProperty()->SetColor(colour[0] / 255, colour[1] / 255, colour[2] / 255);
-}
-
 }  // namespace
 
 std::string notice_of(const VisualFrame& frame) {
@@ -102,12 +99,6 @@ double display_scale(int width, int height) {
     return std::max(smallest, std::min(width / 1280.0, height / 720.0));
 }
 
-std::array<int, 2> usual_window_size(int display_width, int display_height) {
-    const double scale = std::max(1.0, std::min(display_width / 1920.0, display_height / 1080.0));
-    return {std::min(display_width, static_cast<int>(1280 * scale)),
-            std::min(display_height, static_cast<int>(720 * scale))};
-}
-
 Overlay::Overlay(const std::string& case_name, double max_force, std::span<const std::string> cautions,
                  vtkRenderer* renderer)
     : case_name_(case_name), renderer_(renderer), max_force_(max_force), strip_(renderer) {
@@ -141,11 +132,8 @@ void Overlay::place(vtkTextActor* actor, double x, double y, int size, bool righ
     actor->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
     actor->SetPosition(x, y);
     vtkTextProperty* text = actor->GetTextProperty();
-    text->SetFontFamilyToArial();
-    text->SetColor(0.93, 0.95, 0.97);
+    dress(text, 0.55);
     text->SetLineSpacing(1.25);
-    text->SetBackgroundColor(0.05, 0.07, 0.09);
-    text->SetBackgroundOpacity(0.55);
     if (right) text->SetJustificationToRight();
     if (top) text->SetVerticalJustificationToTop();
     texts_.push_back({actor, size});
@@ -195,7 +183,7 @@ void Overlay::update(const VisualFrame& frame, double frames_per_second, const S
     }
     const double share = std::min(1.0, newtons / max_force_);
     set_quad(bar_points_, 0, 0, 0, scale_ * bar_width * share, scale_ * bar_height);
-    paint(bar_, force_colour(share));
+    set_colour(bar_, force_colour(share));
     const auto now = std::chrono::steady_clock::now();
     strip_.add(now, frame.force_range);
     filmed_ = frame.film_rate_hz.has_value();
@@ -213,7 +201,7 @@ void Overlay::update(const VisualFrame& frame, double frames_per_second, const S
     force_->SetInput(fmt::format("{:.2f} N", newtons).c_str());
     figures_->SetInput(figures_of(frame, frames_per_second, detail).c_str());
     health_->SetInput(health_text(frame).c_str());
-    paint(light_, health_colour(health_of(frame)));
+    set_colour(light_, health_colour(health_of(frame)));
     notice_->SetInput(notice_of(frame).c_str());
     title_->SetInput(title_of(case_name_, frame).c_str());
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <array>
 #include <chrono>
 #include <span>
 #include <string>
@@ -31,10 +30,6 @@ std::string title_of(const std::string& case_name, const VisualFrame& frame);
 /// the same share of it; never so small that they cannot be read.
 double display_scale(int width, int height);
 
-/// Width and height (pixels) of a window on a display of that size: two thirds of 1920x1080, more where there
-/// is more, and all of a display that has less.
-std::array<int, 2> usual_window_size(int display_width, int display_height);
-
 /// The figures and key hints that lie over the scene. Texts are set anew five times a second: often enough to
 /// read, seldom enough to cost nothing.
 class Overlay {
@@ -49,8 +44,7 @@ class Overlay {
     /// Shows the case's cautions, or hides them. They are shown from the start until something is touched.
     void turn_cautions();
     /// Hides hints, cautions and all figures but the force while a page lies over the scene, cautions while
-    /// an exercise goes on.
-    /// Above the buttons there are one or two rows of, `button_rows`, stand hints and what is told.
+    /// an exercise goes on. Hints and what is told keep clear of so many rows of buttons, one or two.
     void make_room(bool for_page, bool for_exercise, int button_rows);
     /// Says something for a few seconds.
     void tell(const std::string& sentence);

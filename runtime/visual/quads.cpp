@@ -16,11 +16,15 @@ void make_quads(vtkActor2D* actor, vtkPoints* points, const Rgb& colour, double 
     vtkNew<vtkPolyDataMapper2D> mapper;
     mapper->SetInputData(data);
     actor->SetMapper(mapper);
-    actor->GetProperty()->SetColor(colour[0] / 255, colour[1] / 255, colour[2] / 255);
+    set_colour(actor, colour);
     actor->GetProperty()->SetOpacity(opacity);
     actor->VisibilityOff();
     set_quad_count(actor, points, 1);
     renderer->AddActor2D(actor);
+}
+
+void set_colour(vtkActor2D* actor, const Rgb& colour) {
+    actor->GetProperty()->SetColor(colour[0] / 255, colour[1] / 255, colour[2] / 255);
 }
 
 void set_quad_count(vtkActor2D* actor, vtkPoints* points, vtkIdType count) {

@@ -13,6 +13,9 @@ namespace palpate::visual {
 void make_quads(vtkActor2D* actor, vtkPoints* points, const Rgb& colour, double opacity,
                 vtkRenderer* renderer);
 
+/// Gives what it draws another colour.
+void set_colour(vtkActor2D* actor, const Rgb& colour);
+
 /// Makes it draw so many, whose places are to be set then.
 void set_quad_count(vtkActor2D* actor, vtkPoints* points, vtkIdType count);
 

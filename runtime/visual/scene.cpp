@@ -60,8 +60,7 @@ constexpr double handle_share = 0.35;  // of the field of view: how long a shaft
 }  // namespace
 
 Scene::Scene(const Case& patient_case, const Sight& sight, std::int64_t rigid_budget,
-             std::optional<double> jaw_length, std::optional<double> rendered, vtkRenderer* renderer,
-             vtkRenderer* front)
+             std::optional<double> jaw_length, vtkRenderer* renderer, vtkRenderer* front)
     : tool_radius_(patient_case.haptics.tool_radius),
       max_force_((jaw_length ? 2 : 1) * patient_case.haptics.max_force),
       arrow_length_(0.5 * sight.field),
@@ -85,7 +84,7 @@ Scene::Scene(const Case& patient_case, const Sight& sight, std::int64_t rigid_bu
     for (const DeformableBody& body : patient_case.deformable_bodies)
         soft_.emplace_back(body, sight.toward_eye, grain_of(sight), stiffness_, renderer);
     add_rigid(patient_case, sight, rigid_budget, renderer);
-    add_regions(patient_case, sight, rendered, front);
+    add_regions(patient_case, sight, front);
 }
 
 void Scene::add_rigid(const Case& patient_case, const Sight& sight, std::int64_t budget,
@@ -100,14 +99,19 @@ void Scene::add_rigid(const Case& patient_case, const Sight& sight, std::int64_t
     }
 }
 
-void Scene::add_regions(const Case& patient_case, const Sight& sight, std::optional<double> rendered,
-                        vtkRenderer* front) {
+void Scene::add_regions(const Case& patient_case, const Sight& sight, vtkRenderer* front) {
     std::size_t count = 0;
     for (const DeformableBody& body : patient_case.deformable_bodies) {
-        regions_.emplace_back(body, sight.toward_eye, count, rendered, front);
-        for (const std::string& name : regions_.back().names())
-            region_names_ += (count++ == 0 ? "" : ", ") + name;
+        regions_.emplace_back(body, sight.toward_eye, count, front);
+        count += regions_.back().count();
     }
+}
+
+std::string Scene::region_names(std::optional<double> rendered) const {
+    std::string names;
+    for (const EnclosedRegions& regions : regions_)
+        for (const std::string& name : regions.names(rendered)) names += (names.empty() ? "" : ", ") + name;
+    return names;
 }
 
 void Scene::show_regions(bool on) {

@@ -26,11 +26,10 @@ class Scene {
   public:
     /// `patient_case` must outlive it. `rigid_budget`: triangles that all rigid bodies together may have on
     /// the screen. `jaw_length`: mm, of a forceps, whose other jaw is the first of the other tools; nothing:
-    /// no forceps. `rendered`: as of felt_text(). `front` is drawn
+    /// no forceps. `front` is drawn
     /// over `renderer`: the force and the device show through whatever covers them.
     Scene(const Case& patient_case, const Sight& sight, std::int64_t rigid_budget,
-          std::optional<double> jaw_length, std::optional<double> rendered, vtkRenderer* renderer,
-          vtkRenderer* front);
+          std::optional<double> jaw_length, vtkRenderer* renderer, vtkRenderer* front);
 
     void update(const VisualFrame& frame);
     void show_rigid(bool on);
@@ -40,8 +39,9 @@ class Scene {
     std::array<vtkActor*, 2> tool_parts() const { return {tool_, shaft_}; }
     /// Shows what deformable bodies enclose, hidden at first; it moves with them.
     void show_regions(bool on);
-    /// Their names and what is felt of them; empty where nothing is enclosed.
-    const std::string& region_names() const { return region_names_; }
+    /// Their names and what is felt of them, in the user's language; empty where nothing is enclosed.
+    /// `rendered`: as of felt_text().
+    std::string region_names(std::optional<double> rendered) const;
     /// Colours what deforms by how stiff it is under the tool, with a scale; not at first.
     void show_stiffness(bool on);
     /// Whether anybody knows that of this case.
@@ -55,8 +55,7 @@ class Scene {
 
   private:
     void add_rigid(const Case& patient_case, const Sight& sight, std::int64_t budget, vtkRenderer* renderer);
-    void add_regions(const Case& patient_case, const Sight& sight, std::optional<double> rendered,
-                     vtkRenderer* front);
+    void add_regions(const Case& patient_case, const Sight& sight, vtkRenderer* front);
     void add_tool(const Case& patient_case, const Sight& sight, vtkRenderer* renderer, vtkRenderer* front);
     void place_tool(const VisualFrame& frame);
 
@@ -70,7 +69,6 @@ class Scene {
     std::vector<SoftSurface> soft_;
     std::vector<RigidSurface> rigid_;
     std::vector<EnclosedRegions> regions_;  // of each deformable body
-    std::string region_names_;
     bool tool_shown_ = true, is_instrument_ = false;
     vtkSmartPointer<vtkActor> tool_, shaft_, device_, arrow_, spring_;
     vtkSmartPointer<vtkActor> handle_;  // of a forceps, from its hinge on

@@ -24,6 +24,7 @@
 #include "runtime/texts/translated.hpp"
 #include "runtime/visual/controls/button_bar.hpp"
 #include "runtime/visual/controls/free_path.hpp"
+#include "runtime/visual/controls/layers.hpp"
 #include "runtime/visual/controls/opened_window.hpp"
 #include "runtime/visual/controls/view_history.hpp"
 #include "runtime/visual/detail/drawn_detail.hpp"
@@ -38,7 +39,6 @@
 #include "runtime/visual/overlay.hpp"
 #include "runtime/visual/pictures.hpp"
 #include "runtime/visual/playback/timeline.hpp"
-#include "runtime/visual/scan/scan_view.hpp"
 #include "runtime/visual/scene.hpp"
 #include "runtime/visual/tool_shadow.hpp"
 
@@ -72,7 +72,8 @@ struct TrainWindow::Parts {
           case_name(patient_case.name),
           scene(patient_case, window_settings.sight, window_settings.rigid_budget,
                 window_settings.forceps ? std::optional(window_settings.forceps->jaw_length) : std::nullopt,
-                window_settings.rendered, renderer, front),
+                renderer, front),
+          layers(patient_case, scene, window_settings.rendered, renderer, front),
           shadow(renderer),
           overlay(patient_case.name, (window_settings.forceps ? 2 : 1) * patient_case.haptics.max_force,
                   window_settings.cautions, front),
@@ -85,7 +86,6 @@ struct TrainWindow::Parts {
           tool_radius(patient_case.haptics.tool_radius),
           cut(window_settings.sight.blocked) {
         buttons.set(window_buttons(window_settings.forceps.has_value()));
-        if (patient_case.scan) scan.emplace(*patient_case.scan, scene.bodies(), renderer, front);
         renderer->SetNearClippingPlaneTolerance(
             0.002);  // of the far one: an eye in a passage is near its walls
         window->SetWindowName(("Palpate: " + patient_case.name).c_str());
@@ -309,9 +309,9 @@ struct TrainWindow::Parts {
         static const std::map<std::string, std::function<void(Parts&)>> acts{
             {"c", [](Parts& p) { p.cut = !p.cut; }},
             {"b", [](Parts& p) { p.scene.show_rigid(p.rigid_shown = !p.rigid_shown); }},
-            {"t", &Parts::turn_regions},
-            {"x", &Parts::turn_slices},
-            {"g", &Parts::turn_stiffness},
+            {"t", [](Parts& p) { p.tell(p.layers.turn_regions()); }},
+            {"x", [](Parts& p) { p.tell(p.layers.turn_slices()); }},
+            {"g", [](Parts& p) { p.tell(p.layers.turn_stiffness()); }},
             {"v", [](Parts& p) { p.endoscope.turn(); }},
             {"u", &Parts::undo_view},
             {"r", &Parts::go_back},
@@ -339,9 +339,9 @@ struct TrainWindow::Parts {
     void light_buttons(const VisualFrame& frame) {
         buttons.light("c", cut);
         buttons.light("b", rigid_shown);
-        buttons.light("t", regions_shown);
-        buttons.light("g", stiffness_shown);
-        buttons.light("x", scan && scan->shows_slice());
+        buttons.light("t", layers.shows_regions());
+        buttons.light("g", layers.shows_stiffness());
+        buttons.light("x", layers.shows_slice());
         buttons.light("v", endoscope.on());
         buttons.light("j", frame.jaws_closed.value_or(false));
         buttons.light("o", frame.recording);
@@ -357,36 +357,8 @@ struct TrainWindow::Parts {
         lesson_buttons.update(shown, size[0], size[1]);
     }
 
-    void turn_regions() {
-        const std::string names = scene.region_names();
-        if (names.empty()) return overlay.tell(translated("this case has no enclosed region"));
-        if (exercising) return overlay.tell(translated("in this exercise they stay hidden"));
-        regions_shown = !regions_shown;
-        scene.show_regions(regions_shown);
-        overlay.tell(regions_shown ? translated("seen through the surface: {}", names)
-                                   : translated("{}: hidden", names));
-    }
-
-    void turn_stiffness() {
-        if (!scene.has_stiffness())
-            return overlay.tell(translated("how stiff this case feels is not known: build it again"));
-        if (exercising) return overlay.tell(translated("in this exercise it stays hidden"));
-        scene.show_stiffness(stiffness_shown = !stiffness_shown);
-        if (stiffness_shown)
-            overlay.tell(translated("how stiff each body is under the case's ball, pressed by itself"));
-    }
-
-    void turn_slices() {
-        if (!scan) return overlay.tell(translated("this case has no scan"));
-        if (exercising) return overlay.tell(translated("in this exercise it stays hidden"));
-        scan->turn();
-    }
-
-    // Whoever is asked to find something is not shown where it is, nor do a page's small pictures.
-    void see_exercise(bool goes_on, bool page_shown) {
-        exercising = goes_on;
-        if (exercising && std::exchange(regions_shown, false)) scene.show_regions(false);
-        if ((exercising || page_shown) && std::exchange(stiffness_shown, false)) scene.show_stiffness(false);
+    void tell(const std::string& sentence) {
+        if (!sentence.empty()) overlay.tell(sentence);
     }
 
     std::shared_ptr<OpenedWindow> opened;
@@ -399,6 +371,7 @@ struct TrainWindow::Parts {
     vtkNew<vtkCallbackCommand> events;
     std::string case_name;
     Scene scene;
+    Layers layers;
     ToolShadow shadow;
     Overlay overlay;
     Endoscope endoscope{window, renderer};
@@ -409,13 +382,10 @@ struct TrainWindow::Parts {
     ButtonBar buttons, lesson_buttons;
     Timeline timeline;
     ViewHistory views;
-    std::optional<ScanView> scan;
     std::vector<std::string> keys;  // for take_keys()
     double tool_radius;             // mm
     bool cut;
     bool rigid_shown = true;
-    bool regions_shown = false, stiffness_shown = false;
-    bool exercising = false;
     bool page_takes_keys = false;
     bool picture_asked = false;
     PictureWriter pictures;
@@ -447,12 +417,8 @@ void TrainWindow::draw(const VisualFrame& frame) {
                                                    shadow_share * p.settings.sight.field));
     p.scene.show_inside(p.cut);
     p.look(frame);
-    if (p.scan && frame.lesson.hides_regions)
-        p.scan->hide();
-    else if (p.scan)
-        p.scan->follow(frame.tool_position, p.cut && !p.endoscope.fills_window());
+    p.layers.follow(frame, p.cut && !p.endoscope.fills_window());
     p.overlay.update(frame, frame.film_rate_hz.value_or(frames_per_second()), detail());
-    p.see_exercise(frame.lesson.hides_regions, frame.lesson.page.has_value());
     p.page_takes_keys = frame.lesson.takes_keys;
     p.overlay.make_room(frame.lesson.page.has_value(), !frame.lesson.instruction.empty(),
                         frame.lesson.actions.empty() ? 1 : 2);

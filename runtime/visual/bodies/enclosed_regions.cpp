@@ -14,7 +14,7 @@ namespace palpate::visual {
 using Eigen::Vector3f;
 
 EnclosedRegions::EnclosedRegions(const DeformableBody& body, const Eigen::Vector3d& toward_eye,
-                                 std::size_t first, std::optional<double> rendered, vtkRenderer* front)
+                                 std::size_t first, vtkRenderer* front)
     : body_(&body), inner_nodes_(std::make_shared<std::optional<elasticity::InnerNodes>>()) {
     // Yellow, reddish purple, bluish green: told apart by colour-blind people too (Okabe, Ito 2008).
     const std::array<Rgb, 3> colours{Rgb(240, 228, 66), Rgb(204, 121, 167), Rgb(0, 158, 115)};
@@ -27,10 +27,17 @@ EnclosedRegions::EnclosedRegions(const DeformableBody& body, const Eigen::Vector
         drawn->GetProperty()->SetOpacity(0.6);
         drawn->VisibilityOff();
         front->AddActor(drawn);
-        regions_.push_back({outline.nodes, std::move(surface), drawn});
-        const std::string felt = felt_text(body, label.value, rendered);
-        names_.push_back(felt.empty() ? label.name : label.name + " (" + felt + ")");
+        regions_.push_back({label, outline.nodes, std::move(surface), drawn});
     }
+}
+
+std::vector<std::string> EnclosedRegions::names(std::optional<double> rendered) const {
+    std::vector<std::string> names;
+    for (const Region& region : regions_) {
+        const std::string felt = felt_text(*body_, region.label.value, rendered);
+        names.push_back(felt.empty() ? region.label.name : region.label.name + " (" + felt + ")");
+    }
+    return names;
 }
 
 void EnclosedRegions::show(bool on) {

@@ -24,18 +24,20 @@ namespace palpate::visual {
 class EnclosedRegions {
   public:
     /// `body` must outlive it. A region without a colour of its own gets one of three by its number, `first`
-    /// and on. `rendered`: as of felt_text().
+    /// and on.
     EnclosedRegions(const DeformableBody& body, const Eigen::Vector3d& toward_eye, std::size_t first,
-                    std::optional<double> rendered, vtkRenderer* front);
+                    vtkRenderer* front);
 
-    /// "tumour (stiffer by 34 %, can be felt)", in the user's language.
-    const std::vector<std::string>& names() const { return names_; }
+    std::size_t count() const { return regions_.size(); }
+    /// "tumour (stiffer by 34 %, can be felt)", in the user's language; `rendered`: as of felt_text().
+    std::vector<std::string> names(std::optional<double> rendered) const;
     void show(bool on);
     /// Moves what is shown; one displacement (mm) per surface vertex of the body.
     void follow(const std::vector<Eigen::Vector3f>& displacements);
 
   private:
     struct Region {
+        Label label;
         std::vector<std::int32_t> nodes;  // mesh node of each vertex
         MovingSurface surface;
         vtkSmartPointer<vtkActor> actor;
@@ -43,7 +45,6 @@ class EnclosedRegions {
 
     const DeformableBody* body_;
     std::vector<Region> regions_;
-    std::vector<std::string> names_;
     bool shown_ = false;
     std::shared_ptr<std::optional<elasticity::InnerNodes>> inner_nodes_;
     std::vector<Eigen::Vector3f> followed_;             // the surface's displacements, as last asked for

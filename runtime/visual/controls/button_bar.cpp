@@ -9,6 +9,7 @@
 #include "runtime/texts/translated.hpp"
 #include "runtime/visual/controls/window_keys.hpp"
 #include "runtime/visual/overlay.hpp"
+#include "runtime/visual/screen_text.hpp"
 
 namespace palpate::visual {
 namespace {
@@ -16,11 +17,9 @@ namespace {
 // Pixels in a window of 1280x720, see display_scale().
 constexpr double bar_edge = 22, bar_bottom = 18, button_height = 24, button_gap = 6, button_font = 14;
 
-void dress(vtkTextActor* actor, vtkRenderer* renderer) {
-    vtkTextProperty* text = actor->GetTextProperty();
-    text->SetFontFamilyToArial();
-    text->SetVerticalJustificationToCentered();
-    text->SetBackgroundOpacity(0.75);
+void make_button(vtkTextActor* actor, double opacity, vtkRenderer* renderer) {
+    dress(actor->GetTextProperty(), opacity);
+    actor->GetTextProperty()->SetVerticalJustificationToCentered();
     actor->VisibilityOff();
     renderer->AddActor2D(actor);
 }
@@ -40,10 +39,7 @@ std::vector<ButtonText> window_buttons(bool has_jaws) {
 }
 
 ButtonBar::ButtonBar(vtkRenderer* renderer, int row) : renderer_(renderer), row_(row) {
-    dress(tip_, renderer);
-    tip_->GetTextProperty()->SetColor(0.93, 0.95, 0.97);
-    tip_->GetTextProperty()->SetBackgroundColor(0.05, 0.07, 0.09);
-    tip_->GetTextProperty()->SetBackgroundOpacity(0.95);
+    make_button(tip_, 0.95, renderer);
 }
 
 void ButtonBar::set(const std::vector<ButtonText>& buttons) {
@@ -55,7 +51,7 @@ void ButtonBar::set(const std::vector<ButtonText>& buttons) {
         Button button{text, vtkSmartPointer<vtkTextActor>::New()};
         // Blanks are the button's margin: a text's background ends with its letters.
         button.actor->SetInput(fmt::format("  {}  ", text.text).c_str());
-        dress(button.actor, renderer_);
+        make_button(button.actor, 0.75, renderer_);
         button.actor->SetVisibility(shown_);
         paint(button, false);
         buttons_.push_back(button);

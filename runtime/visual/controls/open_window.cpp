@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/visual/controls/open_window.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vtkTextActor.h>
 #include <vtkTextProperty.h>
 
 #include "runtime/visual/controls/opened_window.hpp"
 #include "runtime/visual/overlay.hpp"
+#include "runtime/visual/screen_text.hpp"
 
 namespace palpate::visual {
+
+WindowSize usual_window_size(int display_width, int display_height) {
+    const double scale = std::max(1.0, std::min(display_width / 1920.0, display_height / 1080.0));
+    return {std::min(display_width, static_cast<int>(1280 * scale)),
+            std::min(display_height, static_cast<int>(720 * scale))};
+}
 
 std::shared_ptr<OpenedWindow> open_window(const std::optional<WindowSize>& size,
                                           const std::string& sentence) {
@@ -31,8 +39,7 @@ std::shared_ptr<OpenedWindow> open_window(const std::optional<WindowSize>& size,
     text->SetInput(sentence.c_str());
     text->SetPosition(width / 2.0, height / 2.0);
     text->GetTextProperty()->SetJustificationToCentered();
-    text->GetTextProperty()->SetFontFamilyToArial();
-    text->GetTextProperty()->SetColor(0.93, 0.95, 0.97);
+    dress(text->GetTextProperty(), 0);
     text->GetTextProperty()->SetFontSize(
         static_cast<int>(std::lround(points * display_scale(width, height))));
     opened->front->AddActor2D(text);

@@ -22,6 +22,7 @@
 
 #include "runtime/visual/overlay.hpp"
 #include "runtime/visual/quads.hpp"
+#include "runtime/visual/screen_text.hpp"
 
 namespace palpate::visual {
 namespace {
@@ -41,8 +42,7 @@ int font(double size, double scale) {
 
 void make_text(vtkTextActor* actor, bool centred, vtkRenderer* renderer) {
     vtkTextProperty* text = actor->GetTextProperty();
-    text->SetFontFamilyToArial();
-    text->SetColor(0.93, 0.95, 0.97);
+    dress(text, 0);
     text->SetLineSpacing(1.3);
     text->SetVerticalJustificationToTop();
     if (centred) text->SetJustificationToCentered();
@@ -215,7 +215,6 @@ LessonPanel::LessonPanel(vtkRenderer* renderer) : renderer_(renderer) {
     for (vtkTextActor* actor : {instruction_.Get(), status_.Get(), warning_.Get()})
         make_text(actor, true, renderer);
     for (vtkTextActor* actor : {instruction_.Get(), status_.Get(), warning_.Get()}) {
-        actor->GetTextProperty()->SetBackgroundColor(0.05, 0.07, 0.09);
         actor->GetTextProperty()->SetBackgroundOpacity(0.6);
     }
     warning_->GetTextProperty()->SetColor(1, 0.72, 0.3);

@@ -11,6 +11,7 @@
 #include "runtime/visual/overlay.hpp"
 #include "runtime/visual/quads.hpp"
 #include "runtime/visual/readings/force_columns.hpp"
+#include "runtime/visual/screen_text.hpp"
 
 namespace palpate::visual {
 
@@ -19,11 +20,7 @@ Timeline::Timeline(vtkRenderer* renderer, vtkRenderWindowInteractor* interactor)
     make_quads(band_, band_points_, Rgb(13, 18, 23), 0.7, renderer);
     make_quads(curve_, curve_points_, Rgb(115, 199, 255), 1, renderer);
     make_quads(head_, head_points_, Rgb(255, 217, 76), 1, renderer);
-    vtkTextProperty* text = text_->GetTextProperty();
-    text->SetFontFamilyToArial();
-    text->SetColor(0.93, 0.95, 0.97);
-    text->SetBackgroundColor(0.05, 0.07, 0.09);
-    text->SetBackgroundOpacity(0.7);
+    dress(text_->GetTextProperty(), 0.7);
     text_->VisibilityOff();
     renderer->AddActor2D(text_);
     events_->SetClientData(this);

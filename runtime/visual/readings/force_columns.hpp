@@ -10,6 +10,8 @@ namespace palpate::visual {
 /// A rectangle of the window, pixels.
 struct Box {
     double left = 0, bottom = 0, width = 1, height = 1;
+
+    bool operator==(const Box&) const = default;
 };
 
 /// Draws a force over time into `box`, by an actor of make_quads(): a column from the least to the largest

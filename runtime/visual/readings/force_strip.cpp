@@ -6,6 +6,7 @@
 #include <vtkTextProperty.h>
 
 #include "runtime/visual/quads.hpp"
+#include "runtime/visual/screen_text.hpp"
 
 namespace palpate::visual {
 namespace {
@@ -20,26 +21,23 @@ constexpr double least_whole = 0.05;  // N, that the strip's height means at lea
 ForceStrip::ForceStrip(vtkRenderer* renderer) : columns_(column_count, Eigen::Vector2d::Zero()) {
     make_quads(sheet_, sheet_points_, Rgb(13, 18, 23), 0.55, renderer);
     make_quads(curve_, curve_points_, Rgb(115, 199, 255), 1, renderer);
-    vtkTextProperty* text = scale_->GetTextProperty();
-    text->SetFontFamilyToArial();
-    text->SetColor(0.93, 0.95, 0.97);
-    text->SetBackgroundColor(0.05, 0.07, 0.09);
-    text->SetBackgroundOpacity(0.55);
-    text->SetVerticalJustificationToTop();
+    dress(scale_->GetTextProperty(), 0.55);
+    scale_->GetTextProperty()->SetVerticalJustificationToTop();
     renderer->AddActor2D(scale_);
     show(true);
 }
 
 void ForceStrip::add(Time now, const Eigen::Vector2d& range) {
-    if (!started_) began_ = now;
-    latest_ =
-        started_ ? Eigen::Vector2d(std::min(latest_[0], range[0]), std::max(latest_[1], range[1])) : range;
-    started_ = true;
-    const auto ended = std::min<std::ptrdiff_t>((now - began_) / column_time, column_count);
+    if (!began_) {
+        began_ = now;
+        latest_ = range;
+    }
+    latest_ = {std::min(latest_[0], range[0]), std::max(latest_[1], range[1])};
+    const auto ended = std::min<std::ptrdiff_t>((now - *began_) / column_time, column_count);
     if (ended == 0) return;
     std::shift_left(columns_.begin(), columns_.end(), ended);
     std::fill(columns_.end() - ended, columns_.end(), latest_);
-    began_ = std::max(began_ + ended * column_time, now - column_time);
+    began_ = std::max(*began_ + ended * column_time, now - column_time);
     latest_ = range;
     draw();
 }
@@ -53,6 +51,7 @@ void ForceStrip::draw() {
 }
 
 void ForceStrip::place(const Box& box, int font) {
+    if (box == box_) return;
     box_ = box;
     set_quad(sheet_points_, 0, box.left, box.bottom, box.left + box.width, box.bottom + box.height);
     scale_->SetPosition(box.left + box.width + font / 2.0, box.bottom + box.height);

@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <chrono>
+#include <optional>
 #include <vector>
 #include <vtkActor2D.h>
 #include <vtkNew.h>
@@ -34,8 +35,7 @@ class ForceStrip {
 
     std::vector<Eigen::Vector2d> columns_;
     Eigen::Vector2d latest_ = Eigen::Vector2d::Zero();  // of the tenth of a second that goes on
-    Time began_{};                                      // it did
-    bool started_ = false;                              // there is a latest_
+    std::optional<Time> began_;                         // it did
     Box box_;
     vtkNew<vtkPoints> sheet_points_, curve_points_;
     vtkNew<vtkActor2D> sheet_, curve_;

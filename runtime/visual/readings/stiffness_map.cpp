@@ -8,11 +8,13 @@
 #include <vtkPointData.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
+#include <vtkProperty2D.h>
 #include <vtkRenderWindow.h>
 #include <vtkTextProperty.h>
 
 #include "runtime/visual/overlay.hpp"
 #include "runtime/visual/readings/force_colour.hpp"
+#include "runtime/visual/screen_text.hpp"
 
 namespace palpate::visual {
 namespace {
@@ -55,8 +57,7 @@ StiffnessMap::StiffnessMap(const Case& patient_case, vtkRenderer* front) : front
     scale_->GetBackgroundProperty()->SetColor(0.05, 0.07, 0.09);
     scale_->GetBackgroundProperty()->SetOpacity(0.55);
     for (vtkTextProperty* text : {scale_->GetTitleTextProperty(), scale_->GetLabelTextProperty()}) {
-        text->SetFontFamilyToArial();
-        text->SetColor(0.93, 0.95, 0.97);
+        dress(text, 0);
         text->ItalicOff();
         text->ShadowOff();
         text->BoldOff();

@@ -4,6 +4,7 @@
 #include <vtkTextProperty.h>
 
 #include "runtime/visual/overlay.hpp"
+#include "runtime/visual/screen_text.hpp"
 
 namespace palpate::visual {
 
@@ -13,8 +14,7 @@ ScanView::ScanView(const Scan& scan, std::span<vtkActor* const> bodies, vtkRende
     for (vtkActor* body : bodies) faces_.paint(body);
     text_->GetTextProperty()->SetJustificationToCentered();
     text_->GetTextProperty()->SetVerticalJustificationToTop();
-    text_->GetTextProperty()->SetBackgroundColor(0.05, 0.07, 0.09);
-    text_->GetTextProperty()->SetBackgroundOpacity(0.55);
+    dress(text_->GetTextProperty(), 0.55);
     text_->VisibilityOff();
     front->AddActor2D(text_);
 }

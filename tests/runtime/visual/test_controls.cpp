@@ -6,6 +6,7 @@
 #include <vtkNew.h>
 
 #include "runtime/visual/controls/free_path.hpp"
+#include "runtime/visual/controls/open_window.hpp"
 #include "runtime/visual/controls/view_history.hpp"
 #include "runtime/visual/controls/window_keys.hpp"
 
@@ -39,6 +40,14 @@ TEST(WindowKeys, have_one_meaning_each_and_none_that_an_exercise_or_the_hand_has
         EXPECT_FALSE(std::string_view(entry.label).empty());
         EXPECT_FALSE(std::string_view(entry.tip).empty());
     }
+}
+
+TEST(WindowSize, suits_the_display) {
+    using Size = visual::WindowSize;
+    EXPECT_EQ(visual::usual_window_size(1920, 1080), (Size{1280, 720}));
+    EXPECT_EQ(visual::usual_window_size(3840, 2160), (Size{2560, 1440}));
+    EXPECT_EQ(visual::usual_window_size(3840, 1080), (Size{1280, 720})) << "two displays";
+    EXPECT_EQ(visual::usual_window_size(1024, 600), (Size{1024, 600}));
 }
 
 TEST(ViewHistory, goes_back_through_what_was_left_and_no_further) {

@@ -80,8 +80,8 @@ TEST_F(EnclosedRegions, go_with_the_tissue_around_them_once_it_is_known_how) {
     const auto surface = of_nodes(u, body_.boundary.nodes), expected = of_nodes(u, outline_.nodes);
     ASSERT_FALSE(expected.empty());
     vtkNew<vtkRenderer> renderer;
-    visual::EnclosedRegions regions(body_, Vector3d::UnitZ(), 0, rendered_force, renderer);
-    ASSERT_EQ(regions.names(), std::vector<std::string>{"tumour"});
+    visual::EnclosedRegions regions(body_, Vector3d::UnitZ(), 0, renderer);
+    ASSERT_EQ(regions.names(std::nullopt), std::vector<std::string>{"tumour"});
     ASSERT_GT(off_by(renderer, expected), 0.1);  // at rest
 
     regions.follow(surface);

@@ -52,14 +52,6 @@ TEST(Overlay, grows_with_the_window_and_stays_readable_in_a_small_one) {
     EXPECT_GT(14 * visual::display_scale(320, 240), 9) << "points";
 }
 
-TEST(Overlay, opens_a_window_that_suits_the_display) {
-    using Size = std::array<int, 2>;
-    EXPECT_EQ(visual::usual_window_size(1920, 1080), (Size{1280, 720}));
-    EXPECT_EQ(visual::usual_window_size(3840, 2160), (Size{2560, 1440}));
-    EXPECT_EQ(visual::usual_window_size(3840, 1080), (Size{1280, 720})) << "two displays";
-    EXPECT_EQ(visual::usual_window_size(1024, 600), (Size{1024, 600}));
-}
-
 TEST(Overlay, tells_the_torque_of_what_turns_alone) {
     VisualFrame frame;
     frame.depth = 2;
