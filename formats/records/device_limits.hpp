@@ -16,6 +16,10 @@ struct DeviceLimits {
     std::array<double, 3> workspace_low{0, 0, 0};   // mm, frame D
     std::array<double, 3> workspace_high{0, 0, 0};  // mm, frame D
     double max_damping = 0;                         // N s/mm
+    double max_torque = 0;                          // N mm; zero: it renders none
+    double max_continuous_torque = 0;               // N mm
+    double max_torsional_stiffness = 0;             // N mm/rad
+    double torsional_damping = 0;                   // N mm s/rad
 };
 
 inline constexpr std::tuple device_limit_fields{
@@ -29,6 +33,16 @@ inline constexpr std::tuple device_limit_fields{
           "least corner of the box that the tip reaches"),
     Field("workspace_high", &DeviceLimits::workspace_high, "mm", "greatest corner of that box"),
     Field("max_damping", &DeviceLimits::max_damping, "N s/mm", "strongest damping that it renders")
+        .since(1, 0.0),
+    Field("max_torque", &DeviceLimits::max_torque, "N mm", "largest torque; 0: it renders none")
+        .since(1, 0.0),
+    Field("max_continuous_torque", &DeviceLimits::max_continuous_torque, "N mm",
+          "torque that the motors bear for as long as one likes")
+        .since(1, 0.0),
+    Field("max_torsional_stiffness", &DeviceLimits::max_torsional_stiffness, "N mm/rad",
+          "stiffest torsional spring that it renders")
+        .since(1, 0.0),
+    Field("torsional_damping", &DeviceLimits::torsional_damping, "N mm s/rad", "of the device as it turns")
         .since(1, 0.0)};
 
 }  // namespace palpate

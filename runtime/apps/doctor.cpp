@@ -62,7 +62,7 @@ Findings opened_device_findings(const DeviceChoice& asked) {
                 const DeviceState state = devices[i]->read(wake.time);
                 if (tick < ticks) states[i][tick] = state;
             }
-            for (const auto& device : devices) device->write({0, 0, 0});
+            for (const auto& device : devices) device->write({});
             if (tick < ticks) seen.store(tick + 1);
         });
         for (int i = 0; i < 200 && seen.load() < ticks && !cli::interrupt_asked(); ++i)

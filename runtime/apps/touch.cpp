@@ -75,6 +75,7 @@ Json touch(const TouchOptions& options, cli::Session& session) {
     if (!options.virtual_clock) cli::end_softly_on_interrupt();
     run.hold(device.open(request_of(options, device.kind, plan, model)),
              plan.grasp ? plan.grasp->grasp.orientation : Eigen::Quaterniond::Identity());
+    tell_torque(run.model(), run.device_name());
     tell_too_weak(patient_case, run.device_name());
     if (!options.record.empty()) start_recording(run, options.record, options.record_seconds, session);
     std::vector<RunRecord> records = outputs.records_of(model);
@@ -108,6 +109,7 @@ Json touch(const TouchOptions& options, cli::Session& session) {
                 {"large_deformation", run.deforming_far()},
                 {"device", run.device_name()},
                 {"coupling_stiffness_n_per_mm", model.coupling()},
+                {"torque_is_felt", model.torque_is_felt()},
                 {"clock", options.virtual_clock ? "virtual" : "real"},
                 {"ready_s", ready_s},
                 {"ticks", statistics.ticks},

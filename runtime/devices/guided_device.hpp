@@ -22,7 +22,7 @@ class GuidedDevice final : public realtime::Device {
     std::string name() const override { return "simulated, " + hand_.name(); }
     DeviceLimits limits() const override { return limits_; }
     realtime::DeviceState read(double time) noexcept override;
-    void write(const std::array<double, 3>&) noexcept override {}
+    void write(const realtime::Wrench&) noexcept override {}
 
   private:
     GuidedHand hand_;

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "formats/model/errors.hpp"
+#include "runtime/devices/set_orientation.hpp"
 
 namespace palpate::devices {
 namespace {
@@ -22,10 +23,6 @@ using Eigen::Vector3d;
 
 constexpr double unit_tolerance = 1e-9;          // of quaternions in double
 constexpr double written_unit_tolerance = 1e-3;  // of those that people write
-
-bool is_known(const Quaterniond& orientation) {
-    return !orientation.coeffs().isZero(0);
-}
 
 // The numbers of one row; nothing if something else stands there.
 std::optional<std::vector<double>> numbers_of(std::string line) {

@@ -49,8 +49,9 @@ DeviceState MountedDevice::read(double time) noexcept {
     return state;
 }
 
-void MountedDevice::write(const std::array<double, 3>& force) noexcept {
-    device_.write(array_of(X_PD_.linear().transpose() * vector_of(force)));
+void MountedDevice::write(const Wrench& wrench) noexcept {
+    const Eigen::Matrix3d R_DP = X_PD_.linear().transpose();
+    device_.write({array_of(R_DP * vector_of(wrench.force)), array_of(R_DP * vector_of(wrench.torque))});
 }
 
 Eigen::Isometry3d mount(const Eigen::Matrix3d& R_PD, const Vector3d& p_D, const Vector3d& p_P) {

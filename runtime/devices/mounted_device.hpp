@@ -9,7 +9,7 @@
 namespace palpate::devices {
 
 /// A device at its place in the patient: maps positions, directions and orientations from its frame D to P,
-/// and forces back. Lengths and forces keep their size.
+/// and forces and torques back. Lengths, forces and torques keep their size.
 class MountedDevice final : public realtime::Device {
   public:
     /// `device` must outlive this. `X_PD`: a rigid motion (asserted), mm.
@@ -23,7 +23,7 @@ class MountedDevice final : public realtime::Device {
     realtime::Calibration calibration() override { return device_.calibration(); }
     void calibrate() override { device_.calibrate(); }
     realtime::DeviceState read(double time) noexcept override;
-    void write(const std::array<double, 3>& force) noexcept override;
+    void write(const realtime::Wrench& wrench) noexcept override;
 
   private:
     std::unique_ptr<realtime::Device> owned_;  // null: another's

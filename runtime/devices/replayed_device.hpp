@@ -18,7 +18,7 @@ class ReplayedDevice final : public realtime::Device {
     DeviceLimits limits() const override { return limits_; }
     /// The state of the tick nearest to `time` (s); the first before all, the last after all.
     realtime::DeviceState read(double time) noexcept override;
-    void write(const std::array<double, 3>&) noexcept override {}
+    void write(const realtime::Wrench&) noexcept override {}
 
   private:
     std::vector<realtime::DeviceState> states_;

@@ -18,7 +18,7 @@ class SimulatedDevice final : public realtime::Device {
     std::string name() const override { return "simulated, scripted hand"; }
     DeviceLimits limits() const override { return limits_; }
     realtime::DeviceState read(double time) noexcept override;
-    void write(const std::array<double, 3>&) noexcept override {}
+    void write(const realtime::Wrench&) noexcept override {}
 
   private:
     HandPath path_;

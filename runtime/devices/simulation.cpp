@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "formats/model/arrays.hpp"
-#include "runtime/devices/dynamic_device.hpp"
+#include "runtime/devices/dynamics/dynamic_device.hpp"
 #include "runtime/devices/guided_device.hpp"
 #include "runtime/devices/mounted_device.hpp"
 #include "runtime/devices/simulated_device.hpp"

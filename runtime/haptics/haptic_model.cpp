@@ -24,11 +24,25 @@ HapticSettings checked(const Case& patient_case) {
     return patient_case.haptics;
 }
 
-ToolSettings tool_settings(const Case& patient_case) {
+ToolSettings checked_tool(const Case& patient_case) {
     const ToolSettings settings = patient_case.tool ? patient_case.tool->settings : ToolSettings{};
     if (const auto error = first_error(tool_fields, settings))
         throw InvalidInput({option_name(error->name), error->found, error->expected, ""});
     return settings;
+}
+
+// The least of a stiffness that is asked for, a device's largest one and what its damping keeps stable.
+double least_of(double asked, double largest, const char* name, double damping) {
+    double stiffness = asked;
+    const auto limit = [&](double value, const char* what) {
+        if (!(value >= 0 && std::isfinite(value)))
+            throw InvalidInput(
+                {"device", std::string(what) + " is " + std::to_string(value), "0 (not known) or more", ""});
+        if (value > 0) stiffness = std::min(stiffness, value);
+    };
+    limit(largest, name);
+    limit(2 * damping / tick_period, "its stability limit, 2 damping / period,");
+    return stiffness;
 }
 
 // Refuses what the method cannot have.
@@ -45,38 +59,44 @@ const ContactMethodEntry& checked(const ContactMethodEntry& method, std::size_t 
 }  // namespace
 
 double coupling_stiffness(const HapticSettings& settings, const DeviceLimits& device) {
-    double stiffness = settings.coupling_stiffness;
-    const auto limit = [&](double value, const char* name) {
-        if (!(value >= 0 && std::isfinite(value)))
-            throw InvalidInput(
-                {"device", std::string(name) + " is " + std::to_string(value), "0 (not known) or more", ""});
-        if (value > 0) stiffness = std::min(stiffness, value);
-    };
-    limit(device.max_stiffness, "its largest stiffness");
-    limit(2 * device.damping / tick_period, "its stability limit, 2 damping / period,");
-    return stiffness;
+    return least_of(settings.coupling_stiffness, device.max_stiffness, "its largest stiffness",
+                    device.damping);
+}
+
+double torsional_stiffness(const ToolSettings& settings, const DeviceLimits& device) {
+    if (device.max_torque == 0) return settings.torsional_stiffness;
+    return least_of(settings.torsional_stiffness, device.max_torsional_stiffness,
+                    "its largest torsional stiffness", device.torsional_damping);
 }
 
 HapticModel::HapticModel(const Case& patient_case, std::string_view method, std::size_t tool_count)
     : settings_(checked(patient_case)),
+      tool_settings_(checked_tool(patient_case)),
       method_(checked(find_contact_method(method), tool_count, patient_case.name)),
-      coupling_(settings_.coupling_stiffness),
+      coupling_{settings_.coupling_stiffness, tool_settings_.torsional_stiffness},
       contact_radius_(method_.can.has_radius ? tip_reach(patient_case) : 0),
       turns_(method_.can.always_turns || (method_.can.turns && patient_case.tool)),
       bodies_(patient_case, method_.can.spreads_loads),
-      tools_(tool_count, Tool{ForceLimiter(settings_), ForceLimiter(tool_settings(patient_case))}),
+      tools_(tool_count, Tool{ForceLimiter(settings_), ForceLimiter(tool_settings_)}),
       poses_(tool_count),
       forces_(tool_count),
       contact_(method_.make(patient_case, bodies_, tool_count)),
       observer_(tool_count, tool_length(patient_case), has_instrument(patient_case)) {}
 
 void HapticModel::couple_to(std::span<const DeviceLimits> devices) {
-    coupling_ = settings_.coupling_stiffness;
+    coupling_ = {settings_.coupling_stiffness, tool_settings_.torsional_stiffness};
     for (const DeviceLimits& device : devices) {
-        coupling_ = std::min(coupling_, coupling_stiffness(settings_, device));
-        if (device.max_force > 0)
-            for (Tool& tool : tools_) tool.limiter.lower_to(device.max_force);
+        coupling_.stiffness = std::min(coupling_.stiffness, coupling_stiffness(settings_, device));
+        coupling_.torsional_stiffness =
+            std::min(coupling_.torsional_stiffness, torsional_stiffness(tool_settings_, device));
+        for (Tool& tool : tools_) {
+            if (device.max_force > 0) tool.limiter.lower_to(device.max_force);
+            if (device.max_torque > 0) tool.torque_limiter.lower_to(device.max_torque);
+        }
     }
+    observer_.count_torque(turns_ && !devices.empty() &&
+                           std::ranges::none_of(
+                               devices, [](double most) { return most == 0; }, &DeviceLimits::max_torque));
 }
 
 std::int64_t HapticModel::memory_ticks() const noexcept {

@@ -26,6 +26,10 @@ namespace palpate::haptics {
 /// state does not limit. Throws InvalidInput if a limit is negative or not finite.
 double coupling_stiffness(const HapticSettings& settings, const DeviceLimits& device);
 
+/// The same of the spring that turns a tool, N mm/rad, of a device that renders torque; another's does not
+/// limit it.
+double torsional_stiffness(const ToolSettings& settings, const DeviceLimits& device);
+
 /// A patient ready to be touched: everything is allocated and checked here, so that a tick only computes. How
 /// contact is found and answered is a ContactMethod's; faults, coupling and limits are the same for all.
 class HapticModel {
@@ -38,11 +42,18 @@ class HapticModel {
     HapticModel(const HapticModel&) = delete;
     HapticModel& operator=(const HapticModel&) = delete;
 
-    /// Limits the virtual coupling to what every device bears, coupling_stiffness(), and the force to the
-    /// least of their largest ones. Not beside a running tick.
+    /// Limits the virtual coupling to what every device bears, coupling_stiffness() and
+    /// torsional_stiffness(), and force and torque to the least of their largest ones. Not beside a running
+    /// tick.
     void couple_to(std::span<const DeviceLimits> devices);
     /// Of the virtual coupling, N/mm.
-    double coupling() const noexcept { return coupling_; }
+    double coupling() const noexcept { return coupling_.stiffness; }
+    /// The same of what turns a tool that turns by itself, N mm/rad.
+    double torsional_coupling() const noexcept { return coupling_.torsional_stiffness; }
+    /// Whether its tools turn by themselves, so that there is torque.
+    bool turns() const noexcept { return turns_; }
+    /// Whether every device that it was coupled to renders that torque.
+    bool torque_is_felt() const noexcept { return observer_.counts_torque(); }
 
     /// Forgets all contact; every body counts as not yet felt until the tool is clear of it. Not beside a
     /// running tick or detection.
@@ -127,8 +138,9 @@ class HapticModel {
     ContactPose begin(Tool& tool, const realtime::DeviceState& device, TickResult& result) noexcept;
 
     HapticSettings settings_;
+    ToolSettings tool_settings_;
     const ContactMethodEntry& method_;
-    double coupling_;
+    VirtualCoupling coupling_;
     double contact_radius_;
     bool turns_;  // tools, by themselves
     ContactBodies bodies_;

@@ -4,10 +4,25 @@
 #include <algorithm>
 
 #include "formats/model/arrays.hpp"
+#include "formats/model/geometry/rotations.hpp"
 
 namespace palpate::haptics {
 
 using Eigen::Vector3d;
+
+namespace {
+
+// Lowers a force or torque along the way or turn on which it would give as much again; returns what it gives
+// less, at most `most`, N mm.
+double take_back(Vector3d& load, const Vector3d& along, double most) noexcept {
+    const double gives = load.dot(along);  // if the hand goes on so
+    if (!(gives > 0)) return 0;
+    const double taken = std::min(gives, most);
+    load -= taken / along.squaredNorm() * along;
+    return taken;
+}
+
+}  // namespace
 
 void PassivityObserver::reset() noexcept {
     std::fill(tools_.begin(), tools_.end(), Tool{});
@@ -15,31 +30,46 @@ void PassivityObserver::reset() noexcept {
     watching_ = true;
 }
 
-void PassivityObserver::damp(std::span<const ContactPose> poses, double coupling,
+// What a shaft's turning may have stored whose torque nobody feels, N mm.
+double PassivityObserver::stored_unfelt(const Tool& tool, const ContactPose& now,
+                                        double angle) const noexcept {
+    const double turn = are_instruments_ ? angle : (now.shaft - tool.shaft).norm();
+    return tool.pressed * length_ * turn;
+}
+
+// The work that the tool's forces did on its hand since the last tick above what sampling explains, N mm.
+double PassivityObserver::excess_of(Tool& tool, const ContactPose& now,
+                                    const VirtualCoupling& coupling) noexcept {
+    const Vector3d way = now.tip - tool.tip;
+    const Eigen::Quaterniond orientation = orientation_of(now);
+    const Vector3d turn = rotation_between(tool.orientation, orientation);
+    double excess = tool.force.dot(way) - coupling.stiffness * way.norm() * (way.norm() / 2 + resolution);
+    if (torque_is_felt_)
+        excess += tool.torque.dot(turn) -
+                  coupling.torsional_stiffness * turn.norm() * (turn.norm() / 2 + resolution / length_);
+    else
+        excess -= stored_unfelt(tool, now, turn.norm());
+    if (!way.isZero(0)) tool.way = way;
+    if (!turn.isZero(0)) tool.turn = turn;
+    tool.tip = now.tip;
+    tool.shaft = now.shaft;
+    tool.orientation = orientation;
+    return excess;
+}
+
+void PassivityObserver::damp(std::span<const ContactPose> poses, const VirtualCoupling& coupling,
                              std::span<TickResult> results, std::span<Vector3d> forces) noexcept {
-    for (std::size_t t = 0; t < tools_.size(); ++t) {
-        if (!poses[t].trusted) continue;
-        Tool& tool = tools_[t];
-        const Vector3d way = poses[t].tip - tool.tip;
-        const Eigen::Quaterniond orientation = orientation_of(poses[t]);
-        const double turn = are_instruments_ ? orientation.angularDistance(tool.orientation)
-                                             : (poses[t].shaft - tool.shaft).norm();
-        excess_ += tool.force.dot(way) - coupling * way.norm() * (way.norm() / 2 + resolution) -
-                   tool.pressed * length_ * turn;
-        if (!way.isZero(0)) tool.way = way;
-        tool.tip = poses[t].tip;
-        tool.shaft = poses[t].shaft;
-        tool.orientation = orientation;
-    }
+    for (std::size_t t = 0; t < tools_.size(); ++t)
+        if (poses[t].trusted) excess_ += excess_of(tools_[t], poses[t], coupling);
     double left = watching_ ? excess_ : 0;  // N mm to take back
     for (std::size_t t = 0; t < tools_.size() && left > 0; ++t) {
-        const Vector3d& way = tools_[t].way;
-        const double gives = forces[t].dot(way);  // N mm, if the hand goes on so
-        if (!(gives > 0)) continue;
-        const double taken = std::min(gives, left);
-        forces[t] -= taken / way.squaredNorm() * way;
-        left -= taken;
+        Vector3d torque = vector_of(results[t].torque);
+        double taken = take_back(forces[t], tools_[t].way, left);
+        if (torque_is_felt_) taken += take_back(torque, tools_[t].turn, left - taken);
+        if (!(taken > 0)) continue;
+        results[t].torque = array_of(torque);
         results[t].status |= energy_injected;
+        left -= taken;
     }
 }
 
@@ -48,6 +78,7 @@ void PassivityObserver::hold(std::span<const TickResult> results) noexcept {
     for (std::size_t t = 0; t < tools_.size(); ++t) {
         const TickResult& result = results[t];
         tools_[t].force = vector_of(result.force);
+        tools_[t].torque = vector_of(result.torque);
         tools_[t].pressed = 0;
         for (const Contact& contact : result.active_contacts())
             tools_[t].pressed += force_on_tool(contact).norm();

@@ -16,10 +16,12 @@ namespace palpate::haptics {
 ///     sum F . dx <= sum K |dx| (|dx| / 2 + resolution) + P L |ds|,
 /// for a force that is held while the device moves by dx is that of a spring of at most the coupling's
 /// stiffness K, half a step late; P L |ds| is what turning a shaft of length L against forces of sum P may
-/// have stored, for its torque is not felt; of an instrument |ds| is the angle by which it turns. What is
-/// above it is taken back by a damper: the force along the way becomes less, or turns against it no further
-/// than to zero. Contact that keeps energy never needs it. After Hannaford, Ryu, IEEE Trans. Robotics Autom.
-/// 18:1-10 (2002). Realtime-safe but for the constructor.
+/// have stored, for its torque is not felt; of an instrument |ds| is the angle by which it turns. Where
+/// torque is felt, its work T . dphi counts instead, against kappa |dphi| (|dphi| / 2 + resolution / L) of
+/// the spring that turns the tool. What is above it is taken back by a damper: the force along the way, then
+/// the torque along the turn, becomes less, no further than to zero. Contact that keeps energy never needs
+/// it. After Hannaford, Ryu, IEEE Trans. Robotics Autom. 18:1-10 (2002). Realtime-safe but for the
+/// constructor.
 class PassivityObserver {
   public:
     static constexpr double resolution = 1e-3;  ///< mm: to which contact is solved, and encoders read
@@ -30,11 +32,15 @@ class PassivityObserver {
 
     void reset() noexcept;
 
+    /// Whether hands feel torque; they do not until this is called.
+    void count_torque(bool felt) noexcept { torque_is_felt_ = felt; }
+    bool counts_torque() const noexcept { return torque_is_felt_; }
+
     /// Adds the work of the forces that were held since the last tick. If there was more than there may be,
-    /// lowers `forces`, N, along the way on which their tools gave it last, and adds energy_injected to those
-    /// results' status. `coupling`: N/mm.
-    void damp(std::span<const ContactPose> poses, double coupling, std::span<TickResult> results,
-              std::span<Eigen::Vector3d> forces) noexcept;
+    /// lowers `forces`, N, along the way on which their tools gave it last, and the results' torques likewise
+    /// where they are felt, and adds energy_injected to those results' status.
+    void damp(std::span<const ContactPose> poses, const VirtualCoupling& coupling,
+              std::span<TickResult> results, std::span<Eigen::Vector3d> forces) noexcept;
     /// Keeps what the tick ends with: forces as they are held from now on, and contacts. After a fault, whose
     /// forces are not those of contact, watches again once no tool touches.
     void hold(std::span<const TickResult> results) noexcept;
@@ -44,13 +50,19 @@ class PassivityObserver {
         Eigen::Vector3d tip{0, 0, 0}, shaft{0, 0, 0};
         Eigen::Quaterniond orientation{Eigen::Quaterniond::Identity()};
         Eigen::Vector3d way{0, 0, 0};  // the last that was any, mm: coarse encoders do not move in every tick
-        Eigen::Vector3d force{0, 0, 0};  // on the device since the last tick, N
-        double pressed = 0;              // N, sum of contact forces
+        Eigen::Vector3d turn{0, 0, 0};    // likewise, rad
+        Eigen::Vector3d force{0, 0, 0};   // on the device since the last tick, N
+        Eigen::Vector3d torque{0, 0, 0};  // the same, N mm
+        double pressed = 0;               // N, sum of contact forces
     };
+
+    double stored_unfelt(const Tool& tool, const ContactPose& now, double angle) const noexcept;
+    double excess_of(Tool& tool, const ContactPose& now, const VirtualCoupling& coupling) noexcept;
 
     std::vector<Tool> tools_;
     double length_;  // mm
     bool are_instruments_;
+    bool torque_is_felt_ = false;
     double excess_ =
         0;  // of this touch: work on the hands above what there may be, N mm; normally below zero
     bool watching_ = true;

@@ -91,7 +91,7 @@ void ServoLoop::run_virtual(std::int64_t ticks, const std::function<void(const T
         const std::int64_t detection_ns = CollisionLoop::period_of(model.detects());
         if (tick * period_ns / detection_ns > (tick - 1) * period_ns / detection_ns) model.detect();
     }
-    for (Device* device : devices_) device->write({0, 0, 0});
+    for (Device* device : devices_) device->write({});
 }
 
 void ServoLoop::set_fault(Fault fault, bool there) noexcept {
@@ -125,7 +125,8 @@ void ServoLoop::step(const ServoTick& wake) noexcept {
         states_[t].time = wake.time;
     }
     model_.load(std::memory_order_relaxed)->tick(states_, results_, faults_of(wake, begin));
-    for (std::size_t t = 0; t < devices_.size(); ++t) devices_[t]->write(results_[t].force);
+    for (std::size_t t = 0; t < devices_.size(); ++t)
+        devices_[t]->write({results_[t].force, results_[t].torque});
     const std::int64_t tick_ns = monotonic_ns() - begin;
     for (std::size_t t = 0; t < devices_.size(); ++t) {
         results_[t].tick_ns = tick_ns;

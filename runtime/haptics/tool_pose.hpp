@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Geometry>
-#include <cmath>
+
+#include "formats/model/geometry/rotations.hpp"
 
 namespace palpate::haptics {
 
@@ -13,25 +14,6 @@ struct ToolPose {
 
 /// A small motion of a tool: its tip's way (mm), then its rotation vector (rad), both in frame P.
 using Twist = Eigen::Matrix<double, 6, 1>;
-
-/// The rotation vector (rad, frame P) that turns `from` to `to`, the shorter way. Realtime-safe.
-inline Eigen::Vector3d rotation_between(const Eigen::Quaterniond& from,
-                                        const Eigen::Quaterniond& to) noexcept {
-    Eigen::Quaterniond turn = to * from.conjugate();
-    if (turn.w() < 0) turn.coeffs() = -turn.coeffs();
-    const double sine = turn.vec().norm();
-    // 2 asin(s) / s, which is 2 where there is no turn.
-    const double factor = sine > 1e-12 ? 2 * std::atan2(sine, turn.w()) / sine : 2;
-    return factor * turn.vec();
-}
-
-/// The orientation after a rotation vector (rad, frame P). Realtime-safe.
-inline Eigen::Quaterniond turned(const Eigen::Quaterniond& orientation,
-                                 const Eigen::Vector3d& turn) noexcept {
-    const double angle = turn.norm();
-    if (!(angle > 0)) return orientation;
-    return (Eigen::Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) * orientation).normalized();
-}
 
 /// How far a motion moves a point at most that is `arm` from the tool's origin, mm. Realtime-safe.
 inline double reach_of(const Twist& motion, double arm) noexcept {

@@ -57,7 +57,7 @@ class TrackedDevice final : public realtime::Device {
     DeviceLimits limits() const override { return {}; }
     /// Wait-free.
     realtime::DeviceState read(double time) noexcept override;
-    void write(const std::array<double, 3>&) noexcept override {}
+    void write(const realtime::Wrench&) noexcept override {}
 
     /// Not from the servo's thread: it locks.
     TrackerReport report() const;

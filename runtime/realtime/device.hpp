@@ -22,6 +22,12 @@ struct DeviceState {
     std::uint32_t faults = no_fault;  ///< Fault flags
 };
 
+/// What a device is to do to its tool.
+struct Wrench {
+    std::array<double, 3> force{0, 0, 0};   ///< N, frame D
+    std::array<double, 3> torque{0, 0, 0};  ///< N mm, frame D, about the state's position
+};
+
 /// Whether a device knows where it is.
 enum class Calibration {
     ok,
@@ -44,8 +50,8 @@ class Device {
     /// Reads the state at loop time `time` (s); a physical device ignores the argument and reads its
     /// encoders.
     virtual DeviceState read(double time) noexcept = 0;
-    /// Renders `force` (N, frame D) until the next call.
-    virtual void write(const std::array<double, 3>& force) noexcept = 0;
+    /// Renders `wrench` until the next call; of its torque nothing where limits().max_torque is zero.
+    virtual void write(const Wrench& wrench) noexcept = 0;
 };
 
 }  // namespace palpate::realtime

@@ -180,7 +180,7 @@ def at_random(head, seconds):
         folder = pathlib.Path(name)
         for tool in ("probe", "endoscope", "drill"):
             (folder / f"{tool}.stl").write_bytes(stl(tool, TOOLS[tool]()))
-            ticks = run(head, folder / f"{tool}.stl", "continuous", folder, "--body", "skull", "--device", "premium", "--script", "random",
+            ticks = run(head, folder / f"{tool}.stl", "continuous", folder, "--body", "skull", "--device", "premium-6dof", "--script", "random",
                         "--seconds", seconds, "--record-seconds", seconds)
             visits = gains(ticks)
             telling = visits[visits[:, 1] > visits[:, 1].max() / 20]

@@ -74,7 +74,7 @@ class Doctor(SampleAsset):
 
     def test_a_case_is_held_against_every_device(self):
         found = self.findings(self.doctor(self.asset, "--simulated", "--json", "-"))
-        for device in ("touch", "desktop", "premium"):
+        for device in ("touch", "desktop", "premium", "premium-6dof"):
             self.assertIn("wall", found["workspace." + device]["found"])
             self.assertIn("N/mm", found["rendering." + device]["found"])
 

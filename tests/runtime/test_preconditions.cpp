@@ -5,7 +5,7 @@
 
 #include "formats/model/compliance.hpp"
 #include "formats/model/image_grid.hpp"
-#include "runtime/devices/dynamic_device.hpp"
+#include "runtime/devices/dynamics/dynamic_device.hpp"
 #include "runtime/devices/mounted_device.hpp"
 #include "runtime/haptics/haptic_model.hpp"
 #include "runtime/haptics/methods/published_contact.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "runtime/devices/dynamic_device.hpp"
+#include "runtime/devices/dynamics/dynamic_device.hpp"
 #include "runtime/haptics/servo_loop.hpp"
 #include "runtime/session/touch_target.hpp"
 
@@ -54,7 +54,7 @@ class FaultyDevice final : public Device {
         if (injection->fault == pose_frozen) state.position = {0, -110, -35};
         return state;
     }
-    void write(const std::array<double, 3>& force) noexcept override { device_.write(force); }
+    void write(const Wrench& wrench) noexcept override { device_.write(wrench); }
 
   private:
     Device& device_;

@@ -13,7 +13,7 @@
 
 #include "formats/asset/asset.hpp"
 #include "formats/recording/recording_writer.hpp"
-#include "runtime/devices/dynamic_device.hpp"
+#include "runtime/devices/dynamics/dynamic_device.hpp"
 #include "runtime/session/session.hpp"
 #include "runtime/session/statistics_json.hpp"
 #include "runtime/session/touch_target.hpp"

@@ -114,6 +114,12 @@ void tell_unfelt(const Case& patient_case, const std::string& scheme) {
     spdlog::warn("scheme '{}' feels rigid bodies alone: nothing is felt of {}", scheme, names);
 }
 
+void tell_torque(const haptics::HapticModel& model, const std::string& device) {
+    if (model.turns() && !model.torque_is_felt())
+        spdlog::info("'{}' renders no torque: that of the instrument is shown and recorded, and not felt",
+                     device);
+}
+
 void tell_too_weak(const Case& patient_case, const std::string& device) {
     const devices::DeviceModel* model = devices::model_of_device(device);
     if (!model) return;

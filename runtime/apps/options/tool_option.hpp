@@ -7,6 +7,7 @@
 #include "formats/model/body.hpp"
 #include "formats/records/jaw_settings.hpp"
 #include "formats/records/status_counts.hpp"
+#include "runtime/haptics/haptic_model.hpp"
 #include "runtime/session/device_list.hpp"
 #include "tools/cli/command.hpp"
 
@@ -42,6 +43,10 @@ std::optional<JawSettings> jaws_of(const ToolOption& option);
 
 /// Warns of what of a case is not felt with a scheme.
 void tell_unfelt(const Case& patient_case, const std::string& scheme);
+
+/// Says where an instrument's torque is shown and recorded, and the device does not let it be felt. `device`:
+/// what it calls itself.
+void tell_torque(const haptics::HapticModel& model, const std::string& device);
 
 /// Warns of each region of a case whose change of the force the device loses in its joints, and says how deep
 /// to press instead; nothing of a device that is not known. `device`: what it calls itself.

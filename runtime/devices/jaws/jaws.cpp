@@ -43,7 +43,7 @@ class Handle {
     }
     void write(std::size_t jaw, const std::array<double, 3>& force) noexcept {
         forces_[jaw] = vector_of(force);
-        if (jaw + 1 == forces_.size()) device_->write(array_of(Vector3d(forces_[0] + forces_[1])));
+        if (jaw + 1 == forces_.size()) device_->write({array_of(Vector3d(forces_[0] + forces_[1]))});
     }
 
   private:
@@ -74,6 +74,7 @@ class Jaw final : public Device {
         limits.max_force /= 2;
         limits.max_stiffness /= 2;
         limits.damping /= 2;
+        limits.max_torque = 0;  // jaws are not turned by tissue
         return limits;
     }
     Calibration calibration() override { return handle_->device().calibration(); }
@@ -82,7 +83,7 @@ class Jaw final : public Device {
         if (jaw_ == 0) handle_->read(time);
         return handle_->state(jaw_);
     }
-    void write(const std::array<double, 3>& force) noexcept override { handle_->write(jaw_, force); }
+    void write(const Wrench& wrench) noexcept override { handle_->write(jaw_, wrench.force); }
 
   private:
     std::shared_ptr<Handle> handle_;

@@ -80,14 +80,22 @@ enum Parameter : unsigned {
     device_model_type = 0x2501,
     device_serial_number = 0x2504,
     usable_workspace = 0x2551,  ///< mm, low corner, then high corner
+    output_dof = 0x2554,        ///< 6: its gimbal has motors, too
     calibration_style = 0x2555,
-    update_rate = 0x2600,                   ///< Hz
-    nominal_max_stiffness = 0x2602,         ///< N/mm
-    nominal_max_force = 0x2603,             ///< N
-    nominal_max_continuous_force = 0x2604,  ///< N
-    motor_temperature = 0x2605,             ///< 0 ... 1, one for each motor
-    nominal_max_damping = 0x2609,           ///< N s/mm
-    current_force = 0x2700,                 ///< N, 3
+    update_rate = 0x2600,                      ///< Hz
+    nominal_max_stiffness = 0x2602,            ///< N/mm
+    nominal_max_force = 0x2603,                ///< N
+    nominal_max_continuous_force = 0x2604,     ///< N
+    motor_temperature = 0x2605,                ///< 0 ... 1, one for each motor
+    nominal_max_damping = 0x2609,              ///< N s/mm
+    nominal_max_torsional_stiffness = 0x2620,  ///< N mm/rad
+    nominal_max_torque = 0x2622,               ///< N mm
+    nominal_max_continuous_torque = 0x2623,    ///< N mm
+    current_force = 0x2700,                    ///< N, 3
+    // N mm, 3, about the axes of frame D. Later headers call it deprecated for torques about the gimbal's own
+    // axes (0x2704), of which no driver says where they lie; other open clients of 6-DoF Phantoms use it,
+    // too.
+    current_torque = 0x2701,
 };
 
 enum Capability : unsigned { force_output = 0x4000 };

@@ -114,6 +114,7 @@ void HdDevice::describe(const std::string& name) {
     limits_.max_continuous_force = nominal(nominal_max_continuous_force);
     limits_.max_stiffness = nominal(nominal_max_stiffness);
     limits_.max_damping = nominal(nominal_max_damping);
+    describe_torque();
     ask_rate();
     std::array<double, 6> box{};
     api_.get_doubles(usable_workspace, box.data());
@@ -124,6 +125,25 @@ void HdDevice::describe(const std::string& name) {
     int styles = 0;
     api_.get_integers(calibration_style, &styles);
     if (take_hd_errors(api_).code == success) calibration_styles_ = static_cast<unsigned>(styles);
+}
+
+// A device with motors in its gimbal says so and how strong they are. One that does not say how strong, or
+// whose driver refuses a frame without torque, gets none.
+void HdDevice::describe_torque() {
+    int degrees = 0;
+    api_.get_integers(output_dof, &degrees);
+    if (take_hd_errors(api_).code != success || degrees < 6) return;
+    constexpr std::array<double, 3> none{0, 0, 0};
+    api_.begin_frame(handle_);
+    api_.set_doubles(current_torque, none.data());
+    const bool refused = take_hd_errors(api_).code != success;
+    api_.end_frame(handle_);
+    take_hd_errors(api_);
+    if (refused) return;
+    limits_.max_torque = nominal(nominal_max_torque);
+    limits_.max_continuous_torque = nominal(nominal_max_continuous_torque);
+    limits_.max_torsional_stiffness = nominal(nominal_max_torsional_stiffness);
+    renders_torque_ = limits_.max_torque > 0;
 }
 
 void HdDevice::ask_rate() {
@@ -200,11 +220,12 @@ DeviceState HdDevice::read(double time) noexcept {
     return state;
 }
 
-void HdDevice::write(const std::array<double, 3>& force) noexcept {
+void HdDevice::write(const Wrench& wrench) noexcept {
     if (!in_frame_) return;
     in_frame_ = false;
     api_.make_current_device(handle_);
-    api_.set_doubles(current_force, force.data());
+    api_.set_doubles(current_force, wrench.force.data());
+    if (renders_torque_) api_.set_doubles(current_torque, wrench.torque.data());
     api_.end_frame(handle_);
     errors_.drain();
 }

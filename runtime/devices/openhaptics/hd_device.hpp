@@ -17,6 +17,9 @@ namespace palpate::devices {
 /// several devices' frames of one tick overlap, as in the example for two devices that OpenHaptics has. Both
 /// are for the scheduler's thread; everything else for one other thread.
 ///
+/// A device that states six degrees of freedom of its output gets torque besides, where its driver takes it
+/// in frame D; limits().max_torque tells.
+///
 /// Faults: motors_warm from the moment a motor's temperature is 1 until all are below motors_cool;
 /// pose_frozen while the pose is the one of encoders without data; implausible_speed while the position is
 /// farther from the last plausible one than a hand gets in that time, see SpeedWatch; not_calibrated while
@@ -56,13 +59,14 @@ class HdDevice final : public realtime::Device {
     void ask_rate();
 
     realtime::DeviceState read(double time) noexcept override;
-    void write(const std::array<double, 3>& force) noexcept override;
+    void write(const realtime::Wrench& wrench) noexcept override;
 
   private:
     HdErrorInfo open_one_of(const std::string& name, bool or_default);
     HdErrorInfo open(const char* name);
     void describe(const std::string& name);
     double nominal(unsigned parameter) const;
+    void describe_torque();
     void look() noexcept;
     realtime::Calibration ask_calibration() noexcept;
     bool frozen(const std::array<double, 3>& position) noexcept;
@@ -72,6 +76,7 @@ class HdDevice final : public realtime::Device {
     HdHandle handle_ = hdapi::invalid_handle;
     std::string label_;
     DeviceLimits limits_;
+    bool renders_torque_ = false;
     unsigned calibration_styles_ = 0;
     bool opened_instead_ = false;
     std::atomic<realtime::Calibration> calibration_{realtime::Calibration::ok};

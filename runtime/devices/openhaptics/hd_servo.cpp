@@ -148,7 +148,7 @@ void HdServo::time_tick() noexcept {
 
 void HdServo::release() noexcept {
     for (HdDevice* device : devices_) device->read(0);
-    for (HdDevice* device : devices_) device->write({0, 0, 0});
+    for (HdDevice* device : devices_) device->write({});
 }
 
 }  // namespace palpate::devices

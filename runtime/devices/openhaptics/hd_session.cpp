@@ -58,7 +58,7 @@ void calibrate(HdServo& servo, std::span<HdDevice* const> devices) {
     const auto look = [&] {
         servo.tick_once([&](const ServoTick& tick) {
             for (HdDevice* device : devices) device->read(tick.time);
-            for (HdDevice* device : devices) device->write({0, 0, 0});
+            for (HdDevice* device : devices) device->write({});
         });
     };
     look();

@@ -28,6 +28,12 @@ inline Eigen::Quaterniond orientation_of(const ContactPose& pose) noexcept {
     return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), pose.shaft);
 }
 
+/// The springs from a device to its tool.
+struct VirtualCoupling {
+    double stiffness = 0;            ///< N/mm
+    double torsional_stiffness = 0;  ///< N mm/rad, of a tool that turns by itself
+};
+
 /// What a collision loop answers.
 enum class Detects {
     nothing,    ///< nothing: it is not needed
@@ -48,14 +54,14 @@ class ContactMethod {
     virtual void reset() noexcept = 0;
 
     /// Servo's side, 1 kHz: writes the force on each device before any limit (N, frame P) to `forces`, zero
-    /// on entry, for tools at `poses` behind virtual couplings of stiffness `coupling` (N/mm). Appends
+    /// on entry, for tools at `poses` behind virtual couplings like `coupling`. Appends
     /// contacts to the tools' results and raises their depth, body, residual and status; moves tool_position
     /// from the device to where the tool is, where the method tells the two apart, and where the tool turns
     /// by itself writes tool_orientation and the torque (N mm, about the tip) before any limit; may add
     /// faults. A tool that is not trusted feels nothing and its result stays as it is. As many poses, results
     /// and forces as tools (unchecked). One thread; realtime-safe: no allocation, lock or I/O.
-    virtual void tick(std::span<const ContactPose> poses, double coupling, std::span<TickResult> results,
-                      std::span<Eigen::Vector3d> forces) noexcept = 0;
+    virtual void tick(std::span<const ContactPose> poses, const VirtualCoupling& coupling,
+                      std::span<TickResult> results, std::span<Eigen::Vector3d> forces) noexcept = 0;
 
     /// What the collision loop has to find beside the ticks.
     virtual Detects detects() const noexcept { return Detects::nothing; }

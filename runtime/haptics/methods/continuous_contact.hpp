@@ -33,8 +33,8 @@ class ContinuousContact final : public ContactMethod {
     ~ContinuousContact() override;
 
     void reset() noexcept override;
-    void tick(std::span<const ContactPose> poses, double coupling, std::span<TickResult> results,
-              std::span<Eigen::Vector3d> forces) noexcept override;
+    void tick(std::span<const ContactPose> poses, const VirtualCoupling& coupling,
+              std::span<TickResult> results, std::span<Eigen::Vector3d> forces) noexcept override;
     Detects detects() const noexcept override { return large_.any() ? Detects::forces : Detects::nothing; }
     void detect() noexcept override;
     void keep_forces() override;

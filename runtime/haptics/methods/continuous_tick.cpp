@@ -23,11 +23,12 @@ constexpr double farthest_return = 5;  // mm: a sphere of a shaft found again fa
 
 }  // namespace
 
-void ContinuousContact::tick(std::span<const ContactPose> poses, double coupling,
+void ContinuousContact::tick(std::span<const ContactPose> poses, const VirtualCoupling& coupling,
                              std::span<TickResult> results, std::span<Vector3d> forces) noexcept {
-    coupling_ = coupling;
+    coupling_ = coupling.stiffness;
+    if (torsion_ > 0) torsion_ = 1 / coupling.torsional_stiffness;
     if (large_.any()) large_.take(equilibrium_, results);
-    equilibrium_.begin_tick(coupling, torsion_);
+    equilibrium_.begin_tick(coupling_, torsion_);
     for (std::size_t t = 0; t < tools_.size(); ++t) place(t, poses[t], results[t]);
     for (std::size_t t = 0; t < tools_.size(); ++t) follow(t, results[t]);
     bool solve = false;

@@ -94,8 +94,8 @@ class PublishedContact final : public ContactMethod {
     /// the answer to the servo.
     void answer(const Asked& asked) noexcept;
 
-    void tick(std::span<const ContactPose> poses, double coupling, std::span<TickResult> results,
-              std::span<Eigen::Vector3d> forces) noexcept override;
+    void tick(std::span<const ContactPose> poses, const VirtualCoupling& coupling,
+              std::span<TickResult> results, std::span<Eigen::Vector3d> forces) noexcept override;
 
     /// Servo's side, 1 kHz: takes the latest detection, decides, and returns the force on the device before
     /// any limit (N) for the end-effector at `device` (p_P, mm, finite) behind a virtual coupling (N/mm).

@@ -140,10 +140,10 @@ Vector3d PublishedContact::force_of(std::size_t body, const Vector3d& offset, do
     return -(f_P + f_Q + f_R);
 }
 
-void PublishedContact::tick(std::span<const ContactPose> poses, double coupling,
+void PublishedContact::tick(std::span<const ContactPose> poses, const VirtualCoupling& coupling,
                             std::span<TickResult> results, std::span<Vector3d> forces) noexcept {
     if (poses[0].trusted)
-        forces[0] = tick(poses[0].tip, coupling, results[0]);
+        forces[0] = tick(poses[0].tip, coupling.stiffness, results[0]);
     else
         lose();
 }

@@ -28,8 +28,8 @@ class WholeToolContact : public ContactMethod {
 
     ~WholeToolContact() override;
     void reset() noexcept override;
-    void tick(std::span<const ContactPose> poses, double coupling, std::span<TickResult> results,
-              std::span<Eigen::Vector3d> forces) noexcept override;
+    void tick(std::span<const ContactPose> poses, const VirtualCoupling& coupling,
+              std::span<TickResult> results, std::span<Eigen::Vector3d> forces) noexcept override;
 
   protected:
     /// `bodies` must outlive this.

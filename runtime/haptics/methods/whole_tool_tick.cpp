@@ -30,22 +30,23 @@ void WholeToolContact::reset() noexcept {
     }
 }
 
-void WholeToolContact::tick(std::span<const ContactPose> poses, double coupling,
+void WholeToolContact::tick(std::span<const ContactPose> poses, const VirtualCoupling& coupling,
                             std::span<TickResult> results, std::span<Vector3d> forces) noexcept {
     for (std::size_t t = 0; t < tools_.size(); ++t) {
         if (!poses[t].trusted) continue;
         const ToolPose device{poses[t].tip, orientation_of(poses[t])};
         if (!stays_clear(t, poses[t], device, results[t])) continue;
         ToolPose& pose = tools_[t].pose;
-        const ToolRest rest = bring_to_rest(t, {device, coupling, settings_.torsional_stiffness}, pose);
+        const ToolRest rest =
+            bring_to_rest(t, {device, coupling.stiffness, coupling.torsional_stiffness}, pose);
         if (rest == ToolRest::unsettled) results[t].status |= contact_unsettled;
         const bool presses =
             std::ranges::any_of(touches(t), [](const ToolTouch& it) { return it.press > 0; });
         if (!presses && has_arrived(pose, device)) {
             pose = device;  // to the bit, so that a replay may begin in any free tick
         } else {
-            forces[t] = coupling * (pose.position - device.position);
-            results[t].torque = array_of(Vector3d(settings_.torsional_stiffness *
+            forces[t] = coupling.stiffness * (pose.position - device.position);
+            results[t].torque = array_of(Vector3d(coupling.torsional_stiffness *
                                                   rotation_between(device.orientation, pose.orientation)));
         }
         tell(t, device, results[t]);

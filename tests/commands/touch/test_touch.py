@@ -264,7 +264,7 @@ class Touch(SampleAsset):
             (["--seconds", "0"], 2, "--seconds"),
             (["--speed", "-1"], 2, "--speed"),
             (["--scheme", "thrice"], 2, "expected single, twice"),
-            (["--device", "omni"], 2, "touch, desktop, premium"),
+            (["--device", "omni"], 2, "touch, desktop, premium, premium-6dof"),
             (["--shaft", "0,0,0"], 2, "--shaft"),
             (["--scheme", "twice", "--second", self.second()], 2, "one tool"),
             (["--log", self.folder / "no" / "run.csv"], 3, "folder does not exist"),

@@ -20,6 +20,7 @@ TOOLS = pathlib.Path(os.environ["PALPATE_SOURCE"]) / "sample_data" / "tools.py"
 NONE = [0, 0, 0, 0]
 UPRIGHT = [0, 0, 0, 1]
 LOGGED = 1e-6  # of a quaternion in a log, which has six decimals
+HAND_TORSION = 270  # N mm/rad, of the hand that holds a simulated device
 COUPLING, TORSION = 0.4, 450  # N/mm, the sample's; N mm/rad, the default
 FACETS = 0.05  # relative: what the skull's facets and the peg's points are off their lever of 4 mm
 SINKS = 0.15  # mm, that facets are below their sphere and points give way
@@ -123,6 +124,28 @@ class WholeTools(SampleAsset):
         force, torque = result["peak"]["force_n"], result["peak"]["torque_n_mm"]
         self.assertAlmostEqual(force[2], COUPLING * 2, delta=COUPLING * SINKS)
         self.assertAlmostEqual(torque[1], -4 * force[2], delta=4 * FACETS * force[2])
+
+    def test_a_device_with_motors_in_its_gimbal_is_turned_and_any_other_is_said_not_to_be(self):
+        script = self.hand(BESIDE_THE_TOP.format("0 0 0 1"))
+        turned = {}
+        for device in ("premium", "premium-6dof"):
+            run = self.touch("--virtual-clock", "--instrument", self.peg, "--script", script, "--device", device, "--json", "-")
+            self.assertEqual(run.returncode, 0, run.stderr)
+            result = json.loads(run.stdout)
+            self.assertEqual(result["statuses"], {})
+            self.assertEqual(result["torque_is_felt"], device == "premium-6dof")
+            self.assertEqual("renders no torque" in run.stderr, device == "premium")
+            x, y, z, w = result["peak"]["device_orientation"]
+            self.assertLess(norm((x, z)), 0.2 * abs(y) + 1e-9)
+            turned[device] = 2 * math.asin(y) if w > 0 else math.nan
+            torque = result["peak"]["torque_n_mm"][1]
+        self.assertEqual(turned["premium"], 0)
+        # In about as long as the hand takes to settle: as far as its spring bears the torque.
+        self.assertAlmostEqual(turned["premium-6dof"], torque / HAND_TORSION, delta=0.3 * abs(torque) / HAND_TORSION)
+        # What is felt is replayed from what was recorded.
+        record = self.folder / "felt.h5"
+        self.result("--virtual-clock", "--instrument", self.peg, "--script", script, "--device", "premium-6dof", "--record", record)
+        self.assertEqual(self.result("--replay", record)["different_ticks"], 0)
 
     def test_a_script_of_eight_columns_turns_the_tool_and_one_of_seven_turns_it_every_millisecond(self):
         half = math.sqrt(0.5)

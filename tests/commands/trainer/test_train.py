@@ -240,7 +240,7 @@ class Train(OpenedTrainer):
             ([self.asset, "--size", "10x10"], 2, "320x240"),
             ([self.asset, "--script", "dance"], 3, "press, slide"),
             ([self.asset, "--body", "spleen"], 2, "spleen"),
-            ([self.asset, "--device", "omni"], 2, "touch, desktop, premium"),
+            ([self.asset, "--device", "omni"], 2, "touch, desktop, premium, premium-6dof"),
             ([self.asset, "--script", "let-go"], 2, "--device"),
             ([self.folder / "nothing.vtkhdf"], 3, "nothing.vtkhdf"),
         ]

@@ -25,10 +25,10 @@ class ProbeDevice final : public realtime::Device {
         told.time = time;
         return told;
     }
-    void write(const std::array<double, 3>& wanted) noexcept override { force = wanted; }
+    void write(const realtime::Wrench& wanted) noexcept override { wrench = wanted; }
 
     realtime::DeviceState state;
-    std::array<double, 3> force{};
+    realtime::Wrench wrench;
 };
 
 }  // namespace palpate

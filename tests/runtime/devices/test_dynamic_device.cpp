@@ -9,7 +9,7 @@
 
 #include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
-#include "runtime/devices/dynamic_device.hpp"
+#include "runtime/devices/dynamics/dynamic_device.hpp"
 #include "tests/runtime/allocation_trap.hpp"
 
 namespace palpate {
@@ -200,9 +200,9 @@ TEST(DynamicDevice, where_it_goes_does_not_depend_on_how_often_it_is_asked) {
     DynamicDevice asked(model, {}, path), left_alone(model, {}, path), asked_oddly(model, {}, path);
     for (int tick = 0; tick < 10; ++tick) {
         const std::array<double, 3> force{0.1 * tick, -0.2, 0};
-        asked.write(force);
-        left_alone.write(force);
-        asked_oddly.write(force);
+        asked.write({force});
+        left_alone.write({force});
+        asked_oddly.write({force});
         for (int ms = 1; ms <= 10; ++ms) asked.read(1e-2 * tick + 1e-3 * ms);
         left_alone.read(1e-2 * (tick + 1));
         for (const double part : {0.37, 0.1, 1.0}) asked_oddly.read(1e-2 * (tick + part));
@@ -270,7 +270,7 @@ TEST(DynamicDevice, motors_stay_warm_until_they_have_cooled_enough) {
     const double hot = device.motor_temperature();
     ASSERT_GT(hot, 1.5);
     device.write({0, 0, 0});
-    const double cool_at = 0.4 + 0.5 * std::log(hot / DynamicDevice::cool_enough);
+    const double cool_at = 0.4 + 0.5 * std::log(hot / Motors::cool_enough);
     EXPECT_EQ(device.read(cool_at - 1e-3).faults, motors_warm);
     EXPECT_LT(device.motor_temperature(), 1);  // cooler than the limit and still not let on
     EXPECT_EQ(device.read(cool_at + 1e-3).faults, no_fault);
@@ -393,9 +393,11 @@ TEST(DynamicDevice, refuses_figures_that_no_device_has) {
 }
 
 TEST(DeviceModel, a_model_is_damped_so_that_its_stated_stiffness_is_the_most_at_1_khz) {
-    ASSERT_EQ(device_models().size(), 3U);
+    ASSERT_EQ(device_models().size(), 4U);
     for (const DeviceModel& model : device_models())
         EXPECT_NEAR(2 * model.damping / 1e-3, model.max_stiffness, 1e-12) << model.name;
+    const DeviceModel& turned = find_device_model("premium-6dof");
+    EXPECT_NEAR(2 * turned.torsional_damping / 1e-3, turned.max_torsional_stiffness, 1e-9);
     EXPECT_NEAR(find_device_model("touch").damping, 0.25e-3, 1e-15);  // 0.25 N s/m
     EXPECT_EQ(find_device_model("premium").mass_kg, 0.075);
 }
@@ -428,7 +430,7 @@ TEST(DeviceModel, an_unknown_name_is_answered_with_the_known_ones) {
         find_device_model("falcon");
         FAIL() << "found";
     } catch (const UsageError& error) {
-        EXPECT_STREQ(error.what(), "device model: falcon (expected touch, desktop, premium)");
+        EXPECT_STREQ(error.what(), "device model: falcon (expected touch, desktop, premium, premium-6dof)");
     }
 }
 

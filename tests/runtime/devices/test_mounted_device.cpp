@@ -89,13 +89,17 @@ TEST(MountedDevice, a_force_goes_back_from_p_to_d_and_its_power_is_the_same_in_b
     ProbeDevice probe;
     MountedDevice mounted(probe, some_mount());
     const Vector3d velocity_D(30, -7, 12), force_P(0.5, 1.5, -2);  // mm/s, N
+    const Vector3d rate_D(0.3, 2, -1), torque_P(40, -25, 90);      // rad/s, N mm
     probe.state.position = {1, 2, 3};
     const Vector3d before = vector_of(mounted.read(0).position);
     probe.state.position = array_of(Vector3d(1, 2, 3) + velocity_D);
     const Vector3d velocity_P = vector_of(mounted.read(1).position) - before;
-    mounted.write(array_of(force_P));
-    EXPECT_NEAR(vector_of(probe.force).dot(velocity_D), force_P.dot(velocity_P), 1e-10);
-    EXPECT_NEAR(vector_of(probe.force).norm(), force_P.norm(), mounting_error);
+    mounted.write({array_of(force_P), array_of(torque_P)});
+    EXPECT_NEAR(vector_of(probe.wrench.force).dot(velocity_D), force_P.dot(velocity_P), 1e-10);
+    EXPECT_NEAR(vector_of(probe.wrench.force).norm(), force_P.norm(), mounting_error);
+    EXPECT_NEAR(vector_of(probe.wrench.torque).dot(rate_D), torque_P.dot(some_mount().linear() * rate_D),
+                1e-10);
+    EXPECT_NEAR(vector_of(probe.wrench.torque).norm(), torque_P.norm(), 10 * mounting_error);
 }
 
 TEST(MountedDevice, states_the_devices_limits_with_a_workspace_that_holds_all_its_corners) {

@@ -61,6 +61,21 @@ TEST(HapticModel, couples_all_tools_as_the_weakest_device_bears) {
     EXPECT_EQ(model.coupling(), c.haptics.coupling_stiffness);
     const std::array<DeviceLimits, 2> wrong{{{}, {.damping = -1}}};
     EXPECT_THROW(model.couple_to(wrong), InvalidInput);
+    const std::array<DeviceLimits, 1> wrongly_turned{{{.max_torque = 100, .max_torsional_stiffness = -1}}};
+    EXPECT_THROW(model.couple_to(wrongly_turned), InvalidInput);
+}
+
+TEST(HapticModel, only_a_device_that_renders_torque_limits_what_turns_the_tool) {
+    HapticModel model(plate());
+    const double asked = ToolSettings{}.torsional_stiffness;
+    EXPECT_EQ(model.torsional_coupling(), asked);
+    const std::array<DeviceLimits, 1> without{{{.max_torsional_stiffness = 30, .torsional_damping = 0.01}}};
+    model.couple_to(without);
+    EXPECT_EQ(model.torsional_coupling(), asked);
+    const std::array<DeviceLimits, 2> with{{{.max_torque = 100, .max_torsional_stiffness = 300},
+                                            {.max_torque = 100, .torsional_damping = 0.11}}};
+    model.couple_to(with);
+    EXPECT_DOUBLE_EQ(model.torsional_coupling(), 220);
 }
 
 TEST(HapticModel, a_rigid_plate_and_a_fixed_foot_are_as_stiff_as_the_coupling) {
@@ -112,7 +127,7 @@ class StillDevice : public Device {
         state.time = time;
         return state;
     }
-    void write(const std::array<double, 3>&) noexcept override {}
+    void write(const Wrench&) noexcept override {}
 };
 
 TEST(ServoLoop, takes_one_device_for_each_tool_and_couples_to_what_they_bear) {

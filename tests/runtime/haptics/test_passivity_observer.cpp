@@ -13,6 +13,7 @@ using namespace haptics;
 using Eigen::Vector3d;
 
 constexpr double watched_coupling = 0.5;  // N/mm
+constexpr double watched_twist = 450;     // N mm/rad
 
 // A contact that is whatever a test says, under the observer, and what a hand got from it.
 class WatchedContact {
@@ -34,7 +35,7 @@ class WatchedContact {
         result_.status = tick_ok;
         result_.faults = faults;
         Vector3d force = wanted;
-        observer_.damp({&pose, 1}, watched_coupling, {&result_, 1}, {&force, 1});
+        observer_.damp({&pose, 1}, {watched_coupling, watched_twist}, {&result_, 1}, {&force, 1});
         result_.force = {force[0], force[1], force[2]};
         result_.contact_count = wanted.isZero(0) ? 0 : 1;
         result_.contacts[0].normal = {0, 0, 1};
@@ -149,6 +150,64 @@ TEST(PassivityObserver, of_an_instrument_a_turn_about_its_shaft_counts_too) {
     };
     EXPECT_EQ(status_after(true), tick_ok);
     EXPECT_EQ(status_after(false), energy_injected);
+}
+
+// A contact that only turns what it touches, and what a hand that feels torque got from it.
+class WatchedTurn {
+  public:
+    static constexpr double length = 50;  // mm, of the tool
+
+    WatchedTurn() : observer_(1, length, true) { observer_.count_torque(true); }
+
+    std::uint32_t tick(double angle, double wanted) {
+        work_ += result_.torque[0] * (angle - angle_);
+        angle_ = angle;
+        const ContactPose pose{.orientation = Eigen::Quaterniond(Eigen::AngleAxisd(angle, Vector3d::UnitX())),
+                               .trusted = true};
+        result_.status = tick_ok;
+        result_.torque = {wanted, 0, 0};
+        result_.contact_count = 1;
+        Vector3d force = Vector3d::Zero();
+        observer_.damp({&pose, 1}, {watched_coupling, watched_twist}, {&result_, 1}, {&force, 1});
+        observer_.hold({&result_, 1});
+        return result_.status;
+    }
+    double torque() const { return result_.torque[0]; }
+    double work() const { return work_; }  // N mm
+
+  private:
+    PassivityObserver observer_;
+    TickResult result_{};
+    double angle_ = 0, work_ = 0;
+};
+
+TEST(PassivityObserver, a_torsional_spring_that_is_felt_is_left_alone) {
+    WatchedTurn contact;
+    for (int k = 0; k < 5000; ++k) {
+        const double angle = 0.3 * std::sin(0.05 * k);  // 15 rad/s at the most
+        ASSERT_EQ(contact.tick(angle, -watched_twist * angle), tick_ok) << k;
+        ASSERT_EQ(contact.torque(), -watched_twist * angle) << k;
+    }
+}
+
+TEST(PassivityObserver, torque_that_gives_energy_is_damped_to_what_sampling_explains) {
+    WatchedTurn contact;
+    double sampling = 0, undamped = 0, last = 0;
+    int counted = 0;
+    for (int k = 0; k < 6283; ++k) {
+        const double angle = 0.3 * std::sin(1e-2 * k), turn = angle - last;
+        const double torque = turn > 0 ? 40 : 20;  // as if it fell behind the hand by turns
+        sampling += watched_twist * std::abs(turn) *
+                    (std::abs(turn) / 2 + PassivityObserver::resolution / WatchedTurn::length);
+        undamped += torque * turn;
+        counted += (contact.tick(angle, torque) & energy_injected) != 0;
+        ASSERT_GE(contact.torque(), -1e-12);
+        ASSERT_LE(contact.torque(), torque);
+        last = angle;
+    }
+    EXPECT_GT(undamped, 100);
+    EXPECT_GT(counted, 1000);
+    EXPECT_LE(contact.work(), sampling + 40 * 0.003) << "one tick late";
 }
 
 TEST(PassivityObserver, never_moves_on_tissue_and_walls) {

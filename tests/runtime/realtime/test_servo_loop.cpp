@@ -26,7 +26,7 @@ class RecordingDevice final : public Device {
         state.position = {40, 10, time < 0.005 ? 30.0 : 24.5};
         return state;
     }
-    void write(const std::array<double, 3>& force) noexcept override { force_ = force; }
+    void write(const Wrench& wrench) noexcept override { force_ = wrench.force; }
     std::array<double, 3> force_{9, 9, 9};
 };
 

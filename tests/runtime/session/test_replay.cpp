@@ -82,7 +82,7 @@ class Unreliable final : public Device {
         if (phase > 1900 && phase < 1905) state.faults = pose_frozen;
         return state;
     }
-    void write(const std::array<double, 3>&) noexcept override {}
+    void write(const Wrench&) noexcept override {}
 
   private:
     SimulatedDevice hand_;

@@ -42,7 +42,7 @@ Outcome run_approach(haptics::HapticModel& model, const DeviceModel& device_mode
         const double time = approach_tick_s * tick;
         realtime::DeviceState state = device.read(time);
         model.tick(state, result);
-        device.write(result.force);
+        device.write({result.force});
         if (detects_at(time, approach.phase)) model.detect();
 
         const Vector3d way = device.position() - entry;

@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "formats/records/haptic_settings.hpp"
-#include "runtime/devices/dynamic_device.hpp"
+#include "runtime/devices/dynamics/dynamic_device.hpp"
 #include "runtime/haptics/haptic_model.hpp"
 #include "tools/experiments/puncture/approaches.hpp"
 

@@ -93,7 +93,7 @@ TouchFigures touch_published(haptics::HapticModel& model, const DeviceModel& dev
     for (int tick = 0; tick <= ticks; ++tick) {
         const double time = touch_tick_s * tick;
         model.tick(device.read(time), result);
-        device.write(result.force);
+        device.write({result.force});
         if (detects_at(time, phase)) {
             if (crossing == Crossing::synchronised) seen = result;
             if (crossing == Crossing::synchronised || has_seen)

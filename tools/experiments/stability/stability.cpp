@@ -11,7 +11,7 @@
 #include "formats/asset/asset.hpp"
 #include "formats/drawing/chart.hpp"
 #include "formats/model/arrays.hpp"
-#include "runtime/devices/dynamic_device.hpp"
+#include "runtime/devices/dynamics/dynamic_device.hpp"
 #include "runtime/haptics/servo_loop.hpp"
 #include "runtime/session/run_record.hpp"
 #include "runtime/session/touch_target.hpp"

@@ -2,7 +2,7 @@
 #pragma once
 #include <functional>
 
-#include "runtime/devices/dynamic_device.hpp"
+#include "runtime/devices/dynamics/dynamic_device.hpp"
 
 namespace palpate::experiments {
 

@@ -9,8 +9,10 @@
 #include <stdexcept>
 #include <thread>
 
+#include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
-#include "runtime/devices/dynamic_device.hpp"
+#include "formats/model/geometry/rotations.hpp"
+#include "runtime/devices/dynamics/dynamic_device.hpp"
 #include "runtime/devices/openhaptics/hd_session.hpp"
 #include "runtime/haptics/servo_loop.hpp"
 #include "tests/formats/sample_case.hpp"
@@ -165,6 +167,30 @@ TEST(OpenHaptics, a_standstill_of_the_servo_counts_as_overruns) {
     EXPECT_GE(worst, ServoLoop::late_periods);
 }
 
+// Turns the stylus through the whole driver: what was asked for in frame D is what its hand bears.
+TEST(OpenHaptics, a_gimbal_with_motors_is_turned) {
+    HdDevices open(json{{"clock", "virtual"},
+                        {"pause_after_ticks", 3000},
+                        {"devices", {{{"name", "A"}, {"model", "premium-6dof"}, {"shaft", {0, 0, 1}}}}}},
+                   {"A"});
+    Device& device = *open.devices()[0];
+    EXPECT_EQ(device.limits().max_torque, find_device_model("premium-6dof").max_torque);
+    const Eigen::Vector3d torque(20, -40, 30);  // N mm
+    std::array<double, 4> orientation{};
+    std::uint32_t faults = no_fault;
+    open.servo().start([&](const ServoTick& wake) {
+        const DeviceState state = device.read(wake.time);
+        orientation = state.orientation;
+        faults |= state.faults;
+        device.write({{0, 0, 0}, array_of(torque)});
+    });
+    while (library().hardware(0).time < 2.9) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    open.servo().stop();
+    EXPECT_EQ(faults, no_fault);
+    const Eigen::Vector3d turn = rotation_between(Eigen::Quaterniond::Identity(), quaternion_of(orientation));
+    EXPECT_LT((turn - torque / HandImpedance{}.torsional_stiffness).norm(), 1e-6);
+}
+
 // A device that another one's read is timed by, or that reads at a shifted time; both as seen by a loop.
 class Forwarding : public Device {
   public:
@@ -174,7 +200,7 @@ class Forwarding : public Device {
     Calibration calibration() override { return device_.calibration(); }
     void calibrate() override { device_.calibrate(); }
     DeviceState read(double time) noexcept override { return device_.read(time); }
-    void write(const std::array<double, 3>& force) noexcept override { device_.write(force); }
+    void write(const Wrench& wrench) noexcept override { device_.write(wrench); }
 
   private:
     Device& device_;

@@ -49,7 +49,7 @@ std::vector<Seen> run(OpenDevices& open, double seconds,
         now.time = open.time(wake);
         for (std::size_t d = 0; d < open.devices().size(); ++d) {
             now.states[d] = open.devices()[d]->read(wake.time);
-            open.devices()[d]->write(forces[d]);
+            open.devices()[d]->write({forces[d]});
         }
         if (seen.size() < seen.capacity()) seen.push_back(now);
         if (now.time >= seconds || seen.size() == seen.capacity()) over = true;
@@ -80,9 +80,9 @@ class WitnessedDevice final : public Device {
     Calibration calibration() override { return device_->calibration(); }
     void calibrate() override { device_->calibrate(); }
     DeviceState read(double time) noexcept override { return device_->read(time); }
-    void write(const std::array<double, 3>& force) noexcept override {
-        force_ = force;
-        device_->write(force);
+    void write(const Wrench& wrench) noexcept override {
+        force_ = wrench.force;
+        device_->write(wrench);
     }
     std::array<double, 3> force_{0, 0, 0};
 

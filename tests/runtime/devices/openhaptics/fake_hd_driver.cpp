@@ -61,6 +61,8 @@ void get_integers(unsigned parameter, int* values) {
         *values = current().buttons;
     else if (parameter == calibration_style)
         *values = current().styles;
+    else if (parameter == output_dof)
+        *values = current().output_dof;
     else if (parameter == update_rate)
         *values = 1000;
     else
@@ -82,13 +84,21 @@ void get_doubles(unsigned parameter, double* values) {
         values[1] = device.temperature;  // of its second motor
     else if (parameter == nominal_max_force)
         *values = 3.3;
+    else if (parameter == nominal_max_torque && device.output_dof == 6)
+        *values = 170;
     else
         fail(invalid_enum);
 }
 
 void set_doubles(unsigned parameter, const double* values) {
-    if (parameter != current_force || !current().in_frame) return fail(invalid_operation);
-    std::copy_n(values, 3, current().force.begin());
+    FakeHdDevice& device = current();
+    if (!device.in_frame) return fail(invalid_operation);
+    if (parameter == current_force)
+        std::copy_n(values, 3, device.force.begin());
+    else if (parameter == current_torque && device.takes_torque)
+        std::copy_n(values, 3, device.torque.begin());
+    else
+        fail(invalid_enum);
 }
 
 // Calls `callback` as often as the thread gets to it: nothing here depends on the clock but the gap.

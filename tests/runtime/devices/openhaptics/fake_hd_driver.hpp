@@ -13,6 +13,9 @@ namespace palpate {
 struct FakeHdDevice {
     bool open = false, force_output = false, in_frame = false;
     std::array<double, 3> position{0, 0, 0}, joint_angles{0.1, 0.2, 0.3}, force{0, 0, 0};
+    std::array<double, 3> torque{0, 0, 0};
+    int output_dof = 3;
+    bool takes_torque = true;
     std::array<double, 3> stylus{0, 0, 1};                       ///< the transform's third column
     std::array<double, 3> stylus_x{1, 0, 0}, stylus_y{0, 1, 0};  ///< its first two
     int buttons = 0, frames = 0;

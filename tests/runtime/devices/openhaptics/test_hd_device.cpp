@@ -111,6 +111,38 @@ TEST_F(HdDeviceTest, a_limit_that_the_driver_does_not_know_is_zero) {
     EXPECT_EQ(limits.workspace_high[0], 0);
 }
 
+TEST_F(HdDeviceTest, a_gimbal_with_motors_gets_its_torque_and_another_none) {
+    behind().output_dof = 6;
+    HdDevice& device = open();
+    EXPECT_EQ(device.limits().max_torque, 170);
+    device.read(0);
+    device.write({{1, 2, 3}, {40, -50, 60}});
+    EXPECT_THAT(behind().force, ElementsAre(1, 2, 3));
+    EXPECT_THAT(behind().torque, ElementsAre(40, -50, 60));
+    close_all();
+
+    reset_fake_hd_driver();
+    HdDevice& without = open();
+    EXPECT_EQ(without.limits().max_torque, 0);
+    without.read(0);
+    without.write({{1, 2, 3}, {40, -50, 60}});
+    EXPECT_THAT(behind().torque, ElementsAre(0, 0, 0));
+    EXPECT_EQ(without.read(1e-3).faults, no_fault);
+}
+
+TEST_F(HdDeviceTest, a_driver_that_refuses_torque_is_not_asked_again) {
+    behind().output_dof = 6;
+    behind().takes_torque = false;
+    HdDevice& device = open();
+    EXPECT_EQ(device.limits().max_torque, 0);
+    EXPECT_FALSE(behind().in_frame);
+    device.read(0);
+    device.write({{1, 2, 3}, {40, -50, 60}});
+    EXPECT_THAT(behind().force, ElementsAre(1, 2, 3));
+    EXPECT_EQ(device.read(1e-3).faults, no_fault);
+    EXPECT_TRUE(fake_hd_driver().errors.empty());
+}
+
 TEST_F(HdDeviceTest, a_glitch_of_the_encoders_is_a_fault_and_a_fast_hand_is_none) {
     HdDevice& device = open();
     double time = 0;

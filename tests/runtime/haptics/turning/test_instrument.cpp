@@ -120,10 +120,21 @@ TEST(Instrument, its_torque_keeps_to_its_bounds_in_size_and_step_and_says_so) {
         limited |= (result.status & force_limited) != 0;
         slowed |= (result.status & rate_limited) != 0;
         before = torque_of(result);
-        if (tick == 299) EXPECT_LT((before - wanted.normalized() * most).norm(), 1e-3 * most);
+        if (tick == 299) {
+            EXPECT_LT((before - wanted.normalized() * most).norm(), 1e-3 * most);
+        }
     }
     EXPECT_TRUE(limited && slowed);
     EXPECT_EQ(before, Vector3d::Zero());
+}
+
+TEST(Instrument, its_torque_keeps_to_what_the_device_bears) {
+    const auto at = turned_at({14, 1, -3}, about(Vector3d::UnitY(), -84));
+    HapticModel model(soft_block_and(box({-1, -1, 0}, {1, 1, 25})));
+    const double wanted = torque_of(rest_at(model, at, 8)).norm();
+    const DeviceLimits weak{.max_torque = wanted / 2};
+    model.couple_to({&weak, 1});
+    EXPECT_NEAR(torque_of(rest_at(model, at, 8)).norm(), wanted / 2, 1e-9);
 }
 
 TEST(Instrument, a_closed_loop_of_position_and_orientation_gives_no_energy) {

@@ -80,7 +80,7 @@ inline Loop work_of_loop(haptics::HapticModel& model, double torsional_stiffness
         if (tick > 0)
             loop.work += 0.5 * (force_of(result) + force_of(before)).dot(at.position - from.position) +
                          0.5 * (torque_of(result) + torque_of(before))
-                                   .dot(haptics::rotation_between(from.orientation, at.orientation));
+                                   .dot(rotation_between(from.orientation, at.orientation));
         const double turn = torque_of(result).squaredNorm() / torsional_stiffness;
         loop.stored = std::max(loop.stored, 0.5 * (force_of(result).squaredNorm() / coupling + turn));
         before = result;

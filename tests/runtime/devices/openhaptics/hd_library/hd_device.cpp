@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "formats/model/arrays.hpp"
 #include "runtime/devices/simulated_device.hpp"
 #include "tests/runtime/devices/openhaptics/hd_library/touch_angles.hpp"
 
@@ -24,6 +25,18 @@ std::unique_ptr<realtime::Device> device_of(const DeviceScript& script) {
     return std::make_unique<devices::SimulatedDevice>(script.path, DeviceLimits{}, script.shaft);
 }
 
+Vector3d within(const Vector3d& wanted, double most) {
+    const double length = wanted.norm();
+    return length > most ? Vector3d(wanted * (most / length)) : wanted;
+}
+
+// Along the shaft, where the device does not say more.
+Eigen::Quaterniond rotation_of(const realtime::DeviceState& state) {
+    const Eigen::Quaterniond told = quaternion_of(state.orientation);
+    if (!told.coeffs().isZero(0)) return told;
+    return Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), vector_of(state.shaft));
+}
+
 }  // namespace
 
 HdDevice::HdDevice(const DeviceScript& script, double period)
@@ -31,9 +44,6 @@ HdDevice::HdDevice(const DeviceScript& script, double period)
       script_(script),
       period_(period),
       device_(device_of(script)),
-      rotation_(Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(),
-                                                   Eigen::Map<const Vector3d>(script.shaft.data()))
-                    .toRotationMatrix()),
       calibration_(script.calibration) {
     tip_ = script.path.at(0);
     begin_tick(0);
@@ -59,7 +69,8 @@ Code HdDevice::begin_tick(double time) noexcept {
     time_ = time;
     frame_done_ = false;
     const Vector3d before = tip_;
-    tip_ = Eigen::Map<const Vector3d>(device_->read(time).position.data());
+    const realtime::DeviceState state = device_->read(time);
+    tip_ = vector_of(state.position);
     if (elapsed > 0) velocity_ += velocity_smoothing * ((tip_ - before) / elapsed - velocity_);
     if (has(Trouble::disconnect)) return success;
     Vector3d seen = tip_;
@@ -67,6 +78,7 @@ Code HdDevice::begin_tick(double time) noexcept {
     if (has(Trouble::not_a_number)) seen.setConstant(std::numeric_limits<double>::quiet_NaN());
     reading_.velocity = has(Trouble::frozen_pose) ? Vector3d::Zero() : velocity_;
     reading_.position = seen;
+    reading_.rotation = rotation_of(state).toRotationMatrix();
     reading_.joint_angles = touch_angles({seen.x(), seen.y(), seen.z()});
     reading_.buttons = 0;
     for (const ButtonSpan& press : script_.buttons)
@@ -110,7 +122,8 @@ Code HdDevice::end_frame() noexcept {
     }
     ramp_ += ramping_rate * period_;
     const double length = asked_.norm();
-    render(capability(force_ramping) && length > ramp_ ? asked_ * (ramp_ / length) : asked_);
+    const double share = capability(force_ramping) && length > ramp_ ? ramp_ / length : 1;
+    render(share * asked_, share * wanted_torque_);
     return success;
 }
 
@@ -121,7 +134,7 @@ Code HdDevice::refusal_of(const Vector3d& force) const noexcept {
     if (has(Trouble::velocity)) return exceeded_velocity;
     if (has(Trouble::impulse)) return exceeded_impulse;
     if (!is_on(force_output)) return success;
-    if (!force.allFinite()) return force_error;
+    if (!force.allFinite() || !wanted_torque_.allFinite()) return force_error;
     if (!is_on(software_force_limit)) return success;
     if (current_.velocity.norm() > velocity_limit) return exceeded_velocity;
     if ((force - asked_).norm() > impulse_limit) return exceeded_impulse;
@@ -130,15 +143,15 @@ Code HdDevice::refusal_of(const Vector3d& force) const noexcept {
 }
 
 // Motors saturate without losing the direction, whether clamping is on or not.
-void HdDevice::render(const Vector3d& force) noexcept {
-    const double length = force.norm(), most = script_.model.max_force;
-    rendered_ = length > most ? Vector3d(force * (most / length)) : force;
-    device_->write({force[0], force[1], force[2]});
+void HdDevice::render(const Vector3d& force, const Vector3d& torque) noexcept {
+    rendered_ = within(force, script_.model.max_force);
+    torque_ = within(torque, script_.model.max_torque);
+    device_->write({array_of(force), array_of(torque)});
 }
 
 void HdDevice::power_down() noexcept {
     ramp_ = 0;
-    render(Vector3d::Zero());
+    render(Vector3d::Zero(), Vector3d::Zero());
 }
 
 void HdDevice::enable(unsigned which, bool on) noexcept {
@@ -149,6 +162,12 @@ void HdDevice::enable(unsigned which, bool on) noexcept {
 Code HdDevice::set_force(const Vector3d& force) noexcept {
     if (!in_frame()) return invalid_operation;
     wanted_ = force;
+    return success;
+}
+
+Code HdDevice::set_torque(const Vector3d& torque) noexcept {
+    if (!in_frame()) return invalid_operation;
+    if (has_gimbal_motors()) wanted_torque_ = torque;
     return success;
 }
 
@@ -170,6 +189,7 @@ Hardware HdDevice::hardware() const noexcept {
     std::ranges::copy(tip_, state.position);
     std::ranges::copy(asked_, state.asked);
     std::ranges::copy(rendered_, state.rendered);
+    std::ranges::copy(torque_, state.torque);
     return state;
 }
 

@@ -17,6 +17,7 @@ struct Snapshot {
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< mm/s, smoothed
     std::array<double, 3> joint_angles{0, 0, 0};         ///< rad
     std::uint32_t buttons = 0;
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< of the stylus, its third column the shaft
 };
 
 /// One device behind the C interface: a simulated one, its frames, its safety and its troubles. A function
@@ -42,14 +43,16 @@ class HdDevice {
     const Snapshot& current() const noexcept { return current_; }
     const Snapshot& last() const noexcept { return last_; }
     bool in_inkwell() const noexcept { return script_.in_inkwell; }
-    /// Rotation of the stylus, its third column along the shaft.
-    const Eigen::Matrix3d& rotation() const noexcept { return rotation_; }
     double temperature() const noexcept { return has(Trouble::warm_motors) ? 1.0 : 0.2; }
 
     bool& capability(unsigned which) noexcept { return capabilities_[which - force_output]; }
     void enable(unsigned which, bool on) noexcept;
     Code set_force(const Eigen::Vector3d& force) noexcept;
     const Eigen::Vector3d& force() const noexcept { return wanted_; }
+    /// Of a device with motors in its gimbal, N mm, frame D.
+    Code set_torque(const Eigen::Vector3d& torque) noexcept;
+    const Eigen::Vector3d& torque() const noexcept { return wanted_torque_; }
+    bool has_gimbal_motors() const noexcept { return script_.model.max_torque > 0; }
 
     CalibrationState check_calibration() const noexcept;
     Code update_calibration(unsigned style) noexcept;
@@ -65,15 +68,15 @@ class HdDevice {
   private:
     bool has(Trouble trouble) const noexcept;
     Code refusal_of(const Eigen::Vector3d& force) const noexcept;
-    void render(const Eigen::Vector3d& force) noexcept;
+    void render(const Eigen::Vector3d& force, const Eigen::Vector3d& torque) noexcept;
 
     DeviceScript script_;
     double period_, time_ = 0;
     std::unique_ptr<realtime::Device> device_;
-    Eigen::Matrix3d rotation_;
     Snapshot reading_, current_, last_;  // of this tick, of this frame, of the frame before
     Eigen::Vector3d tip_, velocity_ = Eigen::Vector3d::Zero(), wanted_ = Eigen::Vector3d::Zero(),
-                          asked_ = Eigen::Vector3d::Zero(), rendered_ = Eigen::Vector3d::Zero();
+                          asked_ = Eigen::Vector3d::Zero(), rendered_ = Eigen::Vector3d::Zero(),
+                          wanted_torque_ = Eigen::Vector3d::Zero(), torque_ = Eigen::Vector3d::Zero();
     std::array<bool, 5> capabilities_{false, true, true, true, true};
     CalibrationState calibration_;
     double ramp_ = 0;  // N, the most that ramping allows now

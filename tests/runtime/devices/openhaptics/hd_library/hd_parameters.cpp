@@ -43,7 +43,7 @@ Value transform_of(const Eigen::Matrix3d& r, const Vector3d& p) {
 }
 
 // A value that a frame holds; `parameter` is the current one's code.
-std::optional<Value> state_value(HdDevice& device, const Snapshot& state, unsigned parameter) {
+std::optional<Value> state_value(const Snapshot& state, unsigned parameter) {
     switch (parameter) {
         case buttons:
             return value_of(integer, {static_cast<double>(state.buttons)}, true);
@@ -52,7 +52,7 @@ std::optional<Value> state_value(HdDevice& device, const Snapshot& state, unsign
         case current_velocity:
             return state_of(state.velocity);
         case current_transform:
-            return transform_of(device.rotation(), state.position);
+            return transform_of(state.rotation, state.position);
         case current_angular_velocity:
             return state_of(Vector3d::Zero());
         case current_joint_angles:
@@ -67,7 +67,7 @@ std::optional<Value> state_value(HdDevice& device, const Snapshot& state, unsign
 
 // Corners of the box that the data sheet gives, around the origin.
 Value workspace_of(const DeviceModel& model) {
-    if (model.name == "premium") return value_of(real, {-190.5, -133.5, -95.5, 190.5, 133.5, 95.5});
+    if (model.name.starts_with("premium")) return value_of(real, {-190.5, -133.5, -95.5, 190.5, 133.5, 95.5});
     const double z = model.name == "touch" ? 35 : 60;
     return value_of(real, {-80, -60, -z, 80, 60, z});
 }
@@ -78,9 +78,9 @@ double continuous_force_of(const DeviceModel& model) {
 
 std::optional<Value> get(Library& library, HdDevice& device, unsigned parameter) {
     const DeviceModel& model = device.script().model;
-    if (const auto value = state_value(device, device.current(), parameter)) return value;
+    if (const auto value = state_value(device.current(), parameter)) return value;
     if (parameter >= last_of_current)
-        if (const auto value = state_value(device, device.last(), parameter - last_of_current)) return value;
+        if (const auto value = state_value(device.last(), parameter - last_of_current)) return value;
     switch (parameter) {
         case safety_switch:
             return value_of(boolean, {1}, true);
@@ -101,7 +101,7 @@ std::optional<Value> get(Library& library, HdDevice& device, unsigned parameter)
         case input_dof:
             return value_of(integer, {6});
         case output_dof:
-            return value_of(integer, {3});
+            return value_of(integer, {device.has_gimbal_motors() ? 6.0 : 3.0});
         case calibration_style:
             return value_of(integer, {static_cast<double>(device.script().styles)});
         case update_rate:
@@ -126,7 +126,16 @@ std::optional<Value> get(Library& library, HdDevice& device, unsigned parameter)
             return value_of(real, {0.003});
         case current_force:
             return state_of(device.force());
+        case nominal_max_torsional_stiffness:
+            return value_of(real, {model.max_torsional_stiffness});
+        case nominal_max_torsional_damping:
+            return value_of(real, {model.torsional_damping});
+        case nominal_max_torque:
+            return value_of(real, {model.max_torque});
+        case nominal_max_continuous_torque:
+            return value_of(real, {model.max_continuous_torque});
         case current_torque:
+            return state_of(device.torque());
         case current_joint_torque:
         case current_gimbal_torque:
             return state_of(Vector3d::Zero());
@@ -189,8 +198,11 @@ Code set(HdDevice& device, unsigned type, unsigned parameter, const T* in) {
         case current_force:
             return device.set_force(
                 {static_cast<double>(in[0]), static_cast<double>(in[1]), static_cast<double>(in[2])});
+        case current_torque:
+            return device.set_torque(
+                {static_cast<double>(in[0]), static_cast<double>(in[1]), static_cast<double>(in[2])});
         default:
-            return device.in_frame() ? success : invalid_operation;  // a torque: no motors for it
+            return device.in_frame() ? success : invalid_operation;  // about joints: not simulated
     }
 }
 

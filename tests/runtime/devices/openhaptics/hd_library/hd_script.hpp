@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "runtime/devices/device_model.hpp"
-#include "runtime/devices/dynamic_device.hpp"
+#include "runtime/devices/dynamics/dynamic_device.hpp"
 #include "runtime/devices/hand_path.hpp"
 #include "tests/runtime/devices/openhaptics/hd_library/hd_types.hpp"
 

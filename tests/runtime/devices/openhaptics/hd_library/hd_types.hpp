@@ -79,6 +79,10 @@ enum Parameter : unsigned {
     impulse_limit = 0x2607,
     ramping_rate = 0x2608,
     nominal_max_damping = 0x2609,
+    nominal_max_torsional_stiffness = 0x2620,
+    nominal_max_torsional_damping = 0x2621,
+    nominal_max_torque = 0x2622,
+    nominal_max_continuous_torque = 0x2623,
     current_force = 0x2700,
     current_torque = 0x2701,
     current_joint_torque = 0x2703,
@@ -107,6 +111,7 @@ struct Hardware {
     double position[3];  ///< of the tip, true, frame D, mm
     double asked[3];     ///< the force of the last frame that ended, N
     double rendered[3];  ///< what the motors make of it, N
+    double torque[3];    ///< what those of the gimbal make, N mm, frame D
 };
 
 }  // namespace palpate::hd
