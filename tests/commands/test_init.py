@@ -3,8 +3,12 @@
 import json
 import os
 import pathlib
+import pty
+import re
+import select
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
 import tomllib
@@ -15,6 +19,7 @@ from x_server import NEEDED, XServer
 
 BIN = pathlib.Path(os.environ["PALPATE_BIN"])
 DATA = pathlib.Path(os.environ.get("PALPATE_DATA", ""))
+SOURCE = pathlib.Path(os.environ["PALPATE_SOURCE"])
 PHANTOM = pathlib.Path(os.environ["PALPATE_BUILD"]) / "tests" / "phantom"
 
 
@@ -23,7 +28,7 @@ def run(*arguments):
     return subprocess.run(list(map(str, arguments)), text=True, capture_output=True, timeout=200, env=environment)
 
 
-class Init(unittest.TestCase):
+class Cases(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.temporary = tempfile.TemporaryDirectory()
@@ -49,6 +54,8 @@ class Init(unittest.TestCase):
         seen = json.loads(run(BIN / "palpate", "inspect", asset, "--json", "-").stdout)
         return seen, asset.with_suffix(".html").read_text()
 
+
+class Init(Cases):
     def test_a_label_map_becomes_an_organ_with_lesion_and_neighbour_that_builds(self):
         case = self.case("labels.toml", self.labels)
         self.assertEqual([region["label"] for region in case["deformable"][0]["region"]], ["liver", "tumour"])
@@ -151,6 +158,127 @@ def pane_places(grid, window):
     return {"axial": lambda p: (round(left / 2 + (p[0] - middle[0]) / pixel), round(top / 2 + (p[1] - middle[1]) / pixel)),
             "sagittal": lambda p: (round(left + (width - left) / 2 + (p[1] - middle[1]) / pixel),
                                    round(top + (height - top) / 2 - (p[2] - middle[2]) / pixel))}
+
+
+class Terminal:
+    """A command at a terminal of its own, without a display: what it says there, and answers to its questions."""
+
+    def __init__(self, *arguments):
+        self.end, theirs = pty.openpty()
+        environment = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
+        self.process = subprocess.Popen(list(map(str, arguments)), stdin=theirs, stderr=theirs, stdout=subprocess.PIPE, text=True,
+                                        env=environment, start_new_session=True)
+        os.close(theirs)
+        self.said = ""
+
+    def read(self, until, patience=60):
+        """Reads on until that is said, and returns what came up to it."""
+        deadline = time.monotonic() + patience
+        while until not in self.said:
+            left = deadline - time.monotonic()
+            try:
+                if left <= 0 or not select.select([self.end], [], [], left)[0]:
+                    raise TimeoutError
+                self.said += os.read(self.end, 4096).decode()
+            except OSError as error:  # or it has ended
+                raise AssertionError(f"not said: {until}\nbut {self.said}") from error
+        before, self.said = self.said.split(until, 1)
+        return before + until
+
+    def answer(self, question, text):
+        asked = self.read(question)
+        os.write(self.end, (text + "\n").encode())
+        return asked
+
+    def finish(self):
+        out, _ = self.process.communicate(timeout=200)
+        os.close(self.end)
+        return self.process.returncode, out
+
+
+class InitTerminal(Cases):
+    def start(self, *arguments):
+        return Terminal(BIN / "palpate", "init", *arguments)
+
+    def test_what_no_option_says_is_asked_and_the_same_comes_without_questions(self):
+        path = self.folder / "asked.toml"
+        terminal = self.start(self.labels, "-o", path)
+        asked = terminal.answer("Which structure gives way under the tool? [liver]: ", "")
+        self.assertRegex(asked, r"liver, \d+ ml\r\n")
+        terminal.answer("Which side does the tool come from (anterior, posterior, left, right, superior, inferior)? [anterior]: ", "right")
+        terminal.answer("[140]: ", "10")
+        code, out = terminal.finish()
+        self.assertEqual(code, 0)
+        text = path.read_text()
+        again = next(line for line in out.splitlines() if line.startswith("The same without questions: ")).split(": ", 1)[1]
+        self.assertIn("--approach right --size-mib 10", again)
+        path.unlink()
+        made = run("sh", "-c", again.replace("palpate", str(BIN / "palpate"), 1))
+        self.assertEqual(made.returncode, 0, made.stderr)
+        self.assertEqual(path.read_text(), text)
+        # The budget is kept, and used.
+        self.assertBuilds("asked.toml")
+        size = path.with_suffix(".vtkhdf").stat().st_size / 2**20
+        self.assertTrue(3 < size < 11, size)
+
+    def test_an_answer_that_makes_no_sense_is_told_and_asked_for_again(self):
+        path = self.folder / "again.toml"
+        terminal = self.start(self.labels, "-o", path)
+        terminal.answer("[liver]: ", "livr")
+        self.assertIn("liver", terminal.answer("[liver]: ", "liver"))
+        terminal.answer("[anterior]: ", "up")
+        self.assertIn("up", terminal.answer("[anterior]: ", ""))
+        terminal.answer("[140]: ", "-3")
+        self.assertIn("-3", terminal.answer("[140]: ", "20"))
+        self.assertEqual(terminal.finish()[0], 0)
+        self.assertTrue(path.exists())
+
+    def test_a_scan_without_a_display_asks_for_a_point(self):
+        path = self.folder / "point.toml"
+        terminal = self.start(self.volume, "--approach", "anterior", "--contact-nodes", 400, "-o", path)
+        terminal.answer("What gives way under the tool? [nasopharynx]: ", "liver")  # the phantom is as small as a head
+        terminal.answer("A point x,y,z in the liver (LPS, mm): ", "here")
+        terminal.answer("A point x,y,z in the liver (LPS, mm): ", "-30,-8,-4")
+        self.assertEqual(terminal.finish()[0], 0)
+        self.assertIn("-30", path.read_text())
+
+    def test_nothing_is_asked_with_yes_and_an_end_of_the_input_leaves_nothing_behind(self):
+        path = self.folder / "yes.toml"
+        terminal = self.start(self.labels, "-o", path, "--yes")
+        self.assertEqual(terminal.finish()[0], 0)
+        self.assertTrue(path.exists())
+        path = self.folder / "ended.toml"
+        terminal = self.start(self.labels, "-o", path)
+        terminal.answer("[liver]: ", "")
+        terminal.read("[anterior]: ")
+        os.write(terminal.end, b"\x04")
+        self.assertEqual(terminal.finish()[0], 130)
+        self.assertEqual(list(self.folder.glob("*ended*")), [])
+
+    def test_of_several_series_one_is_asked_for_and_the_longest_is_proposed(self):
+        head, both = self.folder / "head.nrrd", self.folder / "series"
+        self.assertEqual(run(PHANTOM, "head", head, self.folder / "head.seg.nrrd").returncode, 0)
+        slices = {}
+        for volume in (self.volume, head):
+            made = run(sys.executable, SOURCE / "sample_data" / "dicom_series.py", volume, both / volume.stem)
+            self.assertEqual(made.returncode, 0, made.stderr)
+            files = sorted((both / volume.stem).iterdir())
+            if volume == head:
+                files.pop().unlink()  # one slice less than the other
+            slices[volume.stem] = len(files)
+        path = self.folder / "series.toml"
+        options = (both, "--organ", "liver", "--seed=-30,-8,-4", "--approach", "anterior", "--contact-nodes", 400, "-o", path)
+        terminal = self.start(*options, "--yes")
+        self.assertEqual(terminal.finish()[0], 3, "nobody says which")
+        terminal = self.start(*options)
+        listed = terminal.read("Which series? [")
+        numbers = {int(count): number for number, count in re.findall(r"(\d+): CT .* x (\d+) voxels", listed)}
+        self.assertEqual(set(numbers), set(slices.values()))
+        proposed = terminal.read("]: ").removesuffix("]: ")
+        self.assertEqual(proposed, numbers[max(slices.values())])
+        os.write(terminal.end, f"{numbers[slices['abdomen']]}\n".encode())
+        self.assertEqual(terminal.finish()[0], 0)
+        self.assertEqual(tomllib.loads(path.read_text())["input"]["series"], numbers[slices["abdomen"]])
 
 
 @unittest.skipUnless(all(map(shutil.which, NEEDED)), "PALPATE: xvfb, xdotool, x11-apps or imagemagick is missing")

@@ -14,6 +14,8 @@
 #include "tools/case_builder/child_process.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/software.hpp"
+#include "tools/commands/init/questions.hpp"
+#include "tools/commands/init/request.hpp"
 #include "tools/draft/anatomy.hpp"
 #include "tools/draft/case_draft.hpp"
 #include "tools/draft/scan_draft.hpp"
@@ -28,15 +30,8 @@
 namespace {
 using namespace palpate;
 using namespace palpate::imaging;
+using namespace palpate::init;
 namespace fs = std::filesystem;
-
-struct InitRequest {
-    fs::path input, output, seeds_file;
-    std::string organ, label_names, approach = "anterior", series;
-    std::vector<std::string> seeds, background_seeds;
-    bool labels = false;
-    double contact_nodes = draft::Wishes{}.contact_nodes;
-};
 
 const NoteSink warn = [](std::string_view said) { spdlog::warn("{}", said); };
 
@@ -50,9 +45,13 @@ std::string import_lines(const std::string& label, const std::string& cleaning) 
     return fmt::format("recipe = \"import\"\nlabel = {}\n{}", toml_file::quoted(label), cleaning);
 }
 
-draft::CaseDraft draft_of_labels(const InitRequest& request, LabelMap map, const draft::Wishes& wishes) {
+draft::CaseDraft draft_of_labels(InitRequest& request, LabelMap map, cli::Questions& questions) {
     name_labels(map, request.label_names, warn);
-    draft::CaseDraft found = draft_case(std::move(map), wishes, request.input.filename().string());
+    ask_organ(request, map, questions);
+    ask_approach(request, questions);
+    ask_size(request, questions);
+    draft::CaseDraft found =
+        draft_case(std::move(map), wishes_of(request), request.input.filename().string());
     found.input = fmt::format("labels = {}\n", path_from(request.output, request.input));
     if (!request.label_names.empty())
         found.input += fmt::format("label_names = {}\n", fs::is_regular_file(request.label_names)
@@ -88,16 +87,16 @@ double largest_extent(const Points& points) {
 }
 
 // What a surface encloses becomes a label map beside the case file, fine enough to keep its shape.
-draft::CaseDraft draft_of_surface(InitRequest request, draft::Wishes wishes, cli::Session& session) {
+draft::CaseDraft draft_of_surface(InitRequest& request, cli::Questions& questions, cli::Session& session) {
     constexpr double voxels_across = 160;
     meshing::ImportedMeshOptions options;
     options.unit =
         draft::plausible_unit(largest_extent(read_unrepaired_surface(request.input, options).vertices));
     const TriangleMesh surface = read_imported_surface(request.input, options, warn);
-    if (wishes.organ.empty()) wishes.organ = request.input.stem().string();
+    ask_name(request, questions);
     const double spacing =
         std::max(0.1, std::round(10 * largest_extent(surface.vertices) / voxels_across) / 10);
-    LabelMap map = meshing::voxelised(surface, wishes.organ, spacing);
+    LabelMap map = meshing::voxelised(surface, request.organ, spacing);
     const double whole_ml =
         static_cast<double>(std::ranges::count(map.labels, 1)) * spacing * spacing * spacing / 1000;
     const fs::path labels = fs::path(request.output).replace_extension(".seg.nrrd");
@@ -105,8 +104,11 @@ draft::CaseDraft draft_of_surface(InitRequest request, draft::Wishes wishes, cli
     write_label_map(staged.path(), map);
     spdlog::info("{}: what it encloses, in voxels of {:g} mm, is in {}", request.input.string(), spacing,
                  labels.string());
-    request.input = labels;
-    draft::CaseDraft found = draft_of_labels(request, std::move(map), wishes);
+    InitRequest of_labels = request;
+    of_labels.input = labels;
+    draft::CaseDraft found = draft_of_labels(of_labels, std::move(map), questions);
+    request.approach = of_labels.approach;
+    request.size_mib = of_labels.size_mib;
     found.structures.front().recipe = import_lines(found.name, "keep_largest = true\n");
     if (found.volume_ml < 0.99 * whole_ml)
         spdlog::warn("{}: of its several pieces the largest is taken, {:.1f} of {:.1f} ml", labels.string(),
@@ -116,13 +118,14 @@ draft::CaseDraft draft_of_surface(InitRequest request, draft::Wishes wishes, cli
 }
 
 // The contract asks of an imported mesh what it has: nobody will make it finer.
-draft::CaseDraft draft_of_mesh(const InitRequest& request, const draft::Wishes& wishes) {
+draft::CaseDraft draft_of_mesh(InitRequest& request, cli::Questions& questions) {
+    ask_approach(request, questions);
     meshing::ImportedMeshOptions options;
     const TetMesh as_numbered = read_imported_tetrahedra(request.input, options);
     options.unit = draft::plausible_unit(largest_extent(as_numbered.rest_positions));
     const TetMesh mesh = read_imported_tetrahedra(request.input, options, warn);
-    draft::CaseDraft found =
-        draft_case(mesh, wishes, request.organ.empty() ? request.input.stem().string() : request.organ);
+    draft::CaseDraft found = draft_case(
+        mesh, wishes_of(request), request.organ.empty() ? request.input.stem().string() : request.organ);
     found.mesh = fmt::format(
         "mesh_file = {}\n# The file does not say its unit; in this one it is as large as organs are.\n"
         "mesh_unit = \"{}\"\n",
@@ -134,8 +137,8 @@ draft::CaseDraft draft_of_mesh(const InitRequest& request, const draft::Wishes& 
     return found;
 }
 
-// Seeds in a window, which shows what the case will make of them, if there is one and the person wants it.
-void place_seeds(InitRequest& request, const draft::ScanRecipes& recipes) {
+// Seeds in a window, which shows what the case will make of them; what was saved before is taken.
+void click_seeds(InitRequest& request, const draft::ScanRecipes& recipes) {
     if (std::getenv("DISPLAY") == nullptr)
         throw UsageError({"--seed", "none given, and there is no display to click one",
                           "a point x,y,z (LPS, mm) in " + recipes.where,
@@ -159,29 +162,24 @@ void place_seeds(InitRequest& request, const draft::ScanRecipes& recipes) {
                             "run again and save with S, or give --seed"});
 }
 
-// What a scan is probably for.
-std::string proposed_organ(const Volume& volume, bool ct) {
-    if (!ct)
-        throw UsageError({"--organ", "none given, and nothing can be proposed where values are no HU", "",
-                          "say what is to be found, for example --organ brain"});
-    const std::string organ = shows_head(volume) ? "nasopharynx" : "liver";
-    spdlog::info("{} is looked for; --organ says otherwise", organ);
-    return organ;
-}
-
 // A structure grown in the scan, as the case will grow it.
-draft::CaseDraft draft_of_volume(InitRequest request, const Volume& volume, draft::Wishes wishes,
+draft::CaseDraft draft_of_volume(InitRequest& request, const Volume& volume, cli::Questions& questions,
                                  cli::Session& session) {
     const bool ct = is_ct(volume);
-    if (wishes.organ.empty()) wishes.organ = proposed_organ(volume, ct);
-    if (request.seeds.empty() && request.seeds_file.empty())
-        place_seeds(request, draft::scan_recipes(wishes.organ, ct, !request.background_seeds.empty(),
-                                                 Eigen::Vector3d::Zero()));
+    ask_organ(request, volume, ct, questions);
+    ask_approach(request, questions);
+    ask_size(request, questions);
+    if (request.seeds.empty() && request.seeds_file.empty()) {
+        const draft::ScanRecipes recipes = draft::scan_recipes(
+            request.organ, ct, !request.background_seeds.empty(), Eigen::Vector3d::Zero());
+        ask_seed(request, recipes, questions);
+        if (request.seeds.empty()) click_seeds(request, recipes);
+    }
     const draft::ScanSeeds seeds{
         request.seeds, request.background_seeds, request.seeds_file,
         request.seeds_file.empty() ? "" : path_from(request.output, request.seeds_file)};
     draft::CaseDraft found = draft::draft_scan(
-        volume, ct, seeds, wishes, request.input.filename().string(),
+        volume, ct, seeds, wishes_of(request), request.input.filename().string(),
         [&](std::string_view name, double done) {
             session.progress.step(fmt::format("finding {}", name), 0.2 + 0.6 * done);
         },
@@ -192,13 +190,12 @@ draft::CaseDraft draft_of_volume(InitRequest request, const Volume& volume, draf
     return found;
 }
 
-draft::CaseDraft draft_of(const InitRequest& request, cli::Session& session) {
-    const draft::Wishes wishes{.organ = request.organ,
-                               .approach = draft::direction_of(request.approach, "--approach"),
-                               .contact_nodes = request.contact_nodes};
+draft::CaseDraft draft_of(InitRequest& request, cli::Questions& questions, cli::Session& session) {
+    wishes_of(request);  // which refuses what makes no sense before anything is read
     session.progress.step("reading", 0);
-    if (is_mesh(request.input)) return draft_of_mesh(request, wishes);
-    if (is_surface(request.input)) return draft_of_surface(request, wishes, session);
+    if (is_mesh(request.input)) return draft_of_mesh(request, questions);
+    if (is_surface(request.input)) return draft_of_surface(request, questions, session);
+    ask_series(request, questions);
     const std::string name = request.input.filename().string();
     const bool labels = request.labels || name.ends_with(".seg.nrrd") || !request.label_names.empty();
     ReadOptions options;
@@ -206,15 +203,13 @@ draft::CaseDraft draft_of(const InitRequest& request, cli::Session& session) {
     FoundImage found =
         read_image(request.input, labels ? ImageKind::labels : ImageKind::found_out, warn, options);
     if (auto* map = std::get_if<LabelMap>(&found.image))
-        return draft_of_labels(request, std::move(*map), wishes);
-    return draft_of_volume(request, std::get<Volume>(found.image), wishes, session);
+        return draft_of_labels(request, std::move(*map), questions);
+    return draft_of_volume(request, std::get<Volume>(found.image), questions, session);
 }
 
 // What is asked of an input that has no such thing, or cannot be written into a case.
 void check(const InitRequest& request) {
-    if (request.organ.find_first_of(":\n\r\t") != std::string::npos)
-        throw UsageError(
-            {"--organ", toml_file::quoted(request.organ), "a name without colons and line breaks", ""});
+    check_name(request.organ);
     for (const auto& [option, points] :
          {std::pair("--seed", &request.seeds), std::pair("--background-seed", &request.background_seeds)})
         for (const std::string& point : *points) draft::check_point(point, option);
@@ -223,14 +218,20 @@ void check(const InitRequest& request) {
                           "given with a surface, which encloses one organ", "", "leave it out"});
 }
 
-nlohmann::ordered_json run_init(const InitRequest& request, cli::Session& session) {
+nlohmann::ordered_json run_init(InitRequest request, cli::Session& session) {
     check(request);
     if (request.output.extension() != ".toml")
         throw UsageError({"--output", request.output.string(), "a name that ends in .toml", ""});
     cli::seekable_target(request.output);  // the case is read again, to check it
     set_imaging_threads(session.threads);
     cli::StagedFile staged = session.stage(request.output);
-    const draft::CaseDraft found = draft_of(request, session);
+    cli::Questions questions(session, request.yes);
+    draft::CaseDraft found = draft_of(request, questions, session);
+    if (request.size_mib > 0)
+        found.mesh += fmt::format(
+            "# What the compliance may take in the file: compressed where all of it takes more.\n"
+            "compliance = {{ size_mib = {:g} }}\n",
+            request.size_mib);
     staged.write_text(draft::case_text(found));
     staged.commit();
     case_builder::check_case_file(request.output, case_builder::read_case_file(request.output));
@@ -240,6 +241,8 @@ nlohmann::ordered_json run_init(const InitRequest& request, cli::Session& sessio
         "Look at it, then: palpate build {} -o {}\n",
         request.output.string(), found.name, found.volume_ml, found.cell_size, found.why_held,
         found.rigid.size(), request.output.string(), asset);
+    if (questions.asks())
+        session.text += fmt::format("The same without questions: {}\n", command_of(request));
     nlohmann::ordered_json regions = nlohmann::ordered_json::array(), rigid = nlohmann::ordered_json::array();
     for (const draft::DraftRigid& body : found.rigid) rigid.push_back(body.label);
     for (const draft::DraftRegion& region : found.regions)
@@ -265,21 +268,25 @@ int main(int argc, char** argv) {
                       "palpate init head_ct.nrrd --organ nasopharynx --seed 0,-5,-40 -o nasopharynx.toml",
                       "palpate init mri.nii.gz --organ brain -o brain.toml",
                       "palpate init prostate.stl -o prostate.toml"},
-         .notes = "A label map (any that 'palpate import --labels' reads; TotalSegmentator's names are "
-                  "known) gives the organ,\n"
-                  "its lesions and its neighbours. In a CT the liver is found from a seed in it or three, "
-                  "the nasopharynx from\n"
-                  "one in the air behind the nose; any other solid organ, and a brain in MRI, from seeds in "
-                  "it or, where that\n"
-                  "leaks, against seeds around it (--background-seed, or points of 'background' in a file). "
-                  "Without seeds the\n"
-                  "window of 'palpate seeds' opens where there is a display, and shows what the case will "
-                  "make of them.\n"
-                  "Tetrahedra keep their regions; what a closed surface encloses becomes a label map beside "
-                  "the case file; both\n"
-                  "in the unit in which they are as large as organs. The file says why each thing is as it "
-                  "is; edit it and\n"
-                  "build."});
+         .notes =
+             "A label map (any that 'palpate import --labels' reads; TotalSegmentator's names are "
+             "known) gives the organ,\n"
+             "its lesions and its neighbours. In a CT the liver is found from a seed in it or three, "
+             "the nasopharynx from\n"
+             "one in the air behind the nose; any other solid organ, and a brain in MRI, from seeds in "
+             "it or, where that\n"
+             "leaks, against seeds around it (--background-seed, or points of 'background' in a file). "
+             "Without seeds the\n"
+             "window of 'palpate seeds' opens where there is a display, and shows what the case will "
+             "make of them.\n"
+             "On a terminal it asks what no option says, with a proposal for each answer; --yes takes them "
+             "all. Elsewhere\n"
+             "it asks nothing.\n"
+             "Tetrahedra keep their regions; what a closed surface encloses becomes a label map beside "
+             "the case file; both\n"
+             "in the unit in which they are as large as organs. The file says why each thing is as it "
+             "is; edit it and\n"
+             "build."});
     InitRequest request;
     command
         .input("input", request.input,
@@ -300,10 +307,23 @@ int main(int argc, char** argv) {
                 "a point x,y,z outside the organ; repeat for more")
         .one_value_each();
     command.input("--seeds-file", request.seeds_file, "points of 3D Slicer or 'palpate seeds'");
-    command.option("--approach", request.approach,
-                   "side that the tool comes from: anterior, posterior, left, right, superior, inferior");
-    command.option("--contact-nodes", request.contact_nodes, "surface nodes that the mesh should have, about")
-        .positive();
+    command
+        .option("--approach", request.approach,
+                "side that the tool comes from: anterior, posterior, left, right, superior, inferior")
+        .shown_default("anterior");
+    const cli::Option nodes = command
+                                  .option("--contact-nodes", request.contact_nodes,
+                                          "surface nodes that the mesh should have, about")
+                                  .positive()
+                                  .shown_default(fmt::format("{:g}", draft::Wishes{}.contact_nodes));
+    command
+        .option("--size-mib", request.size_mib,
+                "how large the asset may be: the mesh is about as fine as that allows, and its compliance is "
+                "compressed where it takes more; 0: as --contact-nodes has it",
+                "MiB")
+        .range(0.0, 100'000.0)
+        .excludes(nodes);
+    command.flag("--yes", request.yes, "ask nothing on a terminal: take what is proposed");
     command.output("-o,--output", request.output, "case file (.toml)").required();
     return command.run(argc, argv, [&](cli::Session& session) { return run_init(request, session); });
 }

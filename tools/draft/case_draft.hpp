@@ -58,6 +58,19 @@ struct Wishes {
     double contact_nodes = 2000;         ///< surface nodes that the mesh should have, about
 };
 
+/// A structure of a label map that gives way, by its name.
+struct OrganChoice {
+    std::string name;
+    double volume_ml = 0;
+    bool tissue_known = false;  ///< by a preset
+};
+
+/// Those of a map, the one first that is meant where none is named: the largest of known tissue.
+std::vector<OrganChoice> organs_in(const LabelMap& map, const Eigen::Vector3d& approach);
+
+/// Surface nodes whose compliance, the most of an asset, takes so many MiB: 36 bytes a pair.
+double nodes_within(double size_mib);
+
 /// Drafts a case from a label map: the largest piece of the organ with its lesions, its neighbours, what
 /// holds it, and how fine the mesh is to be. Structures have no recipe yet; lesions come before the organ, so
 /// that it may close over what is not theirs. Throws InvalidInput naming `culprit` if the organ is no label
