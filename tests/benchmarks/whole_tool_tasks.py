@@ -4,15 +4,19 @@
 
     whole_tool_tasks.py HEAD [-o whole_tool_tasks.svg]     (HEAD: the demo's nasopharynx.vtkhdf; PALPATE_BIN has the programs)
     whole_tool_tasks.py HEAD --at-random SECONDS
+    whole_tool_tasks.py HEAD --felt
 
 Force and torque on the device with each way to feel a whole tool, drawn over time, and a table. Peg, hole and slot are square, with 0.2 and
 0.3 mm to spare at each side and a bevelled mouth; the hand is off by more than that, in place and in turn. The scope is led through the places
 of the demo's exercise `scope` and keeps the direction from the last to the first; walls of tissue are felt by `continuous` alone. Depth: of points
 of the peg's surface below that of the block, at the worst, by distances to its planes. On a virtual clock; the ticks are this machine's.
 
-At random, three tools are pushed, slid and turned on the skull in the hand of a simulated Premium, with `continuous`. Energy: what the hand was
+At random, three tools are pushed, slid and turned on the skull in the hand of a simulated Premium whose gimbal has motors, with `continuous`. Energy: what the hand was
 given more than it gave from one free tick to the next, of what the springs held at most in between; of visits that held a twentieth of the
 most of any.
+
+Felt: the pegs in the hand of a simulated Premium without and with motors in its gimbal. Rough: the second difference of torque from tick to
+tick, root mean square. Energy as at random.
 """
 import argparse
 import os
@@ -45,6 +49,9 @@ ROWS = """| task | scheme | force at most, N | its largest step in a tick | torq
 
 RANDOM_ROWS = """| tool | visits | force at most, N | its largest step in a tick | torque at most, N mm | a visit's gain, of what it held | of the most held | unsolved / unsettled |
 |---|--:|--:|--:|--:|--:|--:|--:|"""
+
+FELT_ROWS = """| task | scheme | device | force at most, N | torque at most, N mm | its largest step in a tick | rough, N mm | turned at most, degrees | gain, of what was held |
+|---|---|---|--:|--:|--:|--:|--:|--:|"""
 
 
 def pocket(half_x, half_y):
@@ -190,12 +197,52 @@ def at_random(head, seconds):
                   f"{np.count_nonzero(ticks['status'] & UNSOLVED)} / {np.count_nonzero(ticks['status'] & UNSETTLED)} |", flush=True)
 
 
+def block(folder, of, half_x, half_y):
+    """The asset of a pocket."""
+    (folder / f"{of}.stl").write_bytes(stl(of, pocket(half_x, half_y)))
+    for command in (["surface", "--surface-file", folder / f"{of}.stl", "--min-triangles", "1", "-o", folder / f"{of}.vtp"],
+                    ["pack", "--name", of, "--rigid", f"{of}={folder / of}.vtp", "-o", folder / f"{of}.vtkhdf"]):
+        subprocess.run([PROGRAMS / "palpate", *command, "--quiet"], check=True, stdout=subprocess.DEVNULL)
+    return folder / f"{of}.vtkhdf"
+
+
+def script(folder, of, rows):
+    np.savetxt(folder / f"{of}.txt", rows, fmt="%.9g")
+    return "--script", folder / f"{of}.txt"
+
+
+def felt():
+    print(FELT_ROWS, flush=True)
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        (folder / "peg.stl").write_bytes(stl("peg", TOOLS["peg"]()))
+        for of, halves, rows in (("hole", (5.2, 5.2), peg_in_hole()), ("slot", (30, 5.3), peg_in_slot())):
+            asset, hand = block(folder, of, *halves), script(folder, of, rows)
+            for scheme in SCHEMES:
+                for device in ("premium", "premium-6dof"):
+                    ticks = run(asset, folder / "peg.stl", scheme, folder, *hand, "--device", device)
+                    force, torque, step, rough = (np.linalg.norm(vectors, axis=1) for vectors in (
+                        ticks["force"], ticks["torque"], np.diff(ticks["torque"], axis=0), np.diff(ticks["torque"], 2, axis=0)))
+                    turn = np.degrees(2 * np.arccos(np.minimum(1, np.abs(np.sum(ticks["orientation"] * rows_at(rows, len(force)), axis=1)))))
+                    visits = gains(ticks)
+                    print(f"| peg in a {of} | `{scheme}` | `{device}` | {force.max():.2f} | {torque.max():.1f} | {step.max():.2f} | "
+                          f"{np.sqrt(np.mean(rough**2)):.3f} | {turn.max():.1f} | {visits[:, 0].max() / visits[:, 1].max():.2%} |", flush=True)
+
+
+def rows_at(rows, count):
+    """The quaternions that a script of one row a millisecond wishes in the ticks, which begin at the first millisecond."""
+    return rows[np.minimum(np.arange(1, count + 1), len(rows) - 1), 4:]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("head", type=pathlib.Path)
     parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("whole_tool_tasks.svg"))
     parser.add_argument("--at-random", type=float, metavar="SECONDS")
+    parser.add_argument("--felt", action="store_true")
     arguments = parser.parse_args()
+    if arguments.felt:
+        return felt()
     if arguments.at_random:
         return at_random(arguments.head, arguments.at_random)
     print(ROWS, flush=True)
@@ -204,21 +251,10 @@ def main():
         for tool in ("peg", "endoscope", "drill"):
             (folder / f"{tool}.stl").write_bytes(stl(tool, TOOLS[tool]()))
 
-        def block(of, half_x, half_y):
-            (folder / f"{of}.stl").write_bytes(stl(of, pocket(half_x, half_y)))
-            for command in (["surface", "--surface-file", folder / f"{of}.stl", "--min-triangles", "1", "-o", folder / f"{of}.vtp"],
-                            ["pack", "--name", of, "--rigid", f"{of}={folder / of}.vtp", "-o", folder / f"{of}.vtkhdf"]):
-                subprocess.run([PROGRAMS / "palpate", *command, "--quiet"], check=True)
-            return folder / f"{of}.vtkhdf"
-
-        def script(of, rows):
-            np.savetxt(folder / f"{of}.txt", rows, fmt="%.9g")
-            return "--script", folder / f"{of}.txt"
-
         # title, asset, tool, script, half widths of the pocket
-        tasks = [("peg in a hole", block("hole", 5.2, 5.2), "peg", script("peg_in_hole", peg_in_hole()), (5.2, 5.2)),
-                 ("peg along a slot", block("slot", 30, 5.3), "peg", script("peg_in_slot", peg_in_slot()), (30, 5.3)),
-                 ("scope through a nose", arguments.head, "endoscope", script("scope", scope_through_nose()), None),
+        tasks = [("peg in a hole", block(folder, "hole", 5.2, 5.2), "peg", script(folder, "peg_in_hole", peg_in_hole()), (5.2, 5.2)),
+                 ("peg along a slot", block(folder, "slot", 30, 5.3), "peg", script(folder, "peg_in_slot", peg_in_slot()), (30, 5.3)),
+                 ("scope through a nose", arguments.head, "endoscope", script(folder, "scope", scope_through_nose()), None),
                  ("burr on a skull", arguments.head, "drill", ("--body", "skull", "--script", "slide", "--seconds", "4"), None)]
         figure = Figure(figsize=(9, 2.1 * len(tasks)), layout="constrained")
         grid = figure.subplots(len(tasks), 2)

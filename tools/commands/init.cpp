@@ -30,7 +30,7 @@
 namespace {
 using namespace palpate;
 using namespace palpate::imaging;
-using namespace palpate::init;
+using namespace palpate::commands;
 namespace fs = std::filesystem;
 
 const NoteSink warn = [](std::string_view said) { spdlog::warn("{}", said); };

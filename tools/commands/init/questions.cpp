@@ -14,7 +14,7 @@
 #include "tools/imaging/faces/face.hpp"
 #include "tools/imaging/files/image_files.hpp"
 
-namespace palpate::init {
+namespace palpate::commands {
 
 void ask_series(InitRequest& request, cli::Questions& questions) {
     if (!questions.asks() || !request.series.empty() || !std::filesystem::is_directory(request.input)) return;
@@ -89,4 +89,4 @@ void ask_seed(InitRequest& request, const draft::ScanRecipes& recipes, cli::Ques
                       [](const std::string& answer) { draft::check_point(answer, "--seed"); }));
 }
 
-}  // namespace palpate::init
+}  // namespace palpate::commands

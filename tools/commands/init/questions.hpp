@@ -6,7 +6,7 @@
 #include "tools/commands/init/request.hpp"
 #include "tools/draft/scan_recipes.hpp"
 
-namespace palpate::init {
+namespace palpate::commands {
 
 // What a person at a terminal is asked that no option said; each writes its answer to the request. Where
 // nobody is asked, the request stays as it is, or gets what is proposed.
@@ -33,4 +33,4 @@ void ask_size(InitRequest& request, cli::Questions& questions);
 /// A point in what is clicked into, where there is no display to click one.
 void ask_seed(InitRequest& request, const draft::ScanRecipes& recipes, cli::Questions& questions);
 
-}  // namespace palpate::init
+}  // namespace palpate::commands

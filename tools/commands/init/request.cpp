@@ -10,7 +10,7 @@
 #include "formats/toml_file/quoted.hpp"
 #include "tools/draft/anatomy.hpp"
 
-namespace palpate::init {
+namespace palpate::commands {
 namespace {
 
 std::string quoted_for_a_shell(const std::string& word) {
@@ -60,4 +60,4 @@ std::string command_of(const InitRequest& request) {
     return command + " --yes";
 }
 
-}  // namespace palpate::init
+}  // namespace palpate::commands

@@ -6,7 +6,7 @@
 
 #include "tools/draft/case_draft.hpp"
 
-namespace palpate::init {
+namespace palpate::commands {
 
 /// What `palpate init` was told, by options or answers. Empty: not told.
 struct InitRequest {
@@ -26,4 +26,4 @@ void check_name(const std::string& organ);
 /// The command line that drafts the same and asks nothing, as a shell reads it.
 std::string command_of(const InitRequest& request);
 
-}  // namespace palpate::init
+}  // namespace palpate::commands
