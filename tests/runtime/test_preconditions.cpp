@@ -54,7 +54,7 @@ TEST(Preconditions, directions_of_a_grid_are_orthonormal) {
 
 TEST(Preconditions, a_device_is_given_a_finite_force) {
     DynamicDevice device(find_device_model("touch"), {}, resting());
-    EXPECT_ASSERTED(device.write({0, 0, std::numeric_limits<double>::quiet_NaN()}));
+    EXPECT_ASSERTED(device.write({{0, 0, std::numeric_limits<double>::quiet_NaN()}}));
 }
 
 TEST(Preconditions, a_device_is_held_by_a_hand) {

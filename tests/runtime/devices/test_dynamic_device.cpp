@@ -49,9 +49,9 @@ double energy_of(const DynamicDevice& device, const DeviceModel& model, const Ha
 
 TEST(DynamicDevice, a_free_mass_slows_down_with_m_over_b) {
     DynamicDevice device(plain(), no_hand, at_origin());
-    device.write({2, -1, 0.5});
+    device.write({{2, -1, 0.5}});
     device.read(0.02);
-    device.write({0, 0, 0});
+    device.write({});
     const Vector3d position = device.position(), velocity = device.velocity();
     ASSERT_GT(velocity.norm(), 100);
     const double tau = 1e-3 * 0.05 / 5e-4, left = std::exp(-0.15 / tau);
@@ -64,7 +64,7 @@ TEST(DynamicDevice, without_damping_a_constant_force_accelerates_uniformly) {
     DeviceModel model = plain();
     model.damping = 0;
     DynamicDevice device(model, no_hand, at_origin());
-    device.write({0, 0, 2});
+    device.write({{0, 0, 2}});
     device.read(0.1);
     const double acceleration = 2 / 5e-5;  // mm/s²
     EXPECT_NEAR(device.velocity().z(), acceleration * 0.1, stepping_error * acceleration);
@@ -74,7 +74,7 @@ TEST(DynamicDevice, without_damping_a_constant_force_accelerates_uniformly) {
 TEST(DynamicDevice, a_constant_force_settles_where_the_hands_spring_bears_it) {
     const HandImpedance hand{.stiffness = 0.3, .damping = 2e-3};
     DynamicDevice device(plain(), hand, HandPath({{0, {1, 2, 3}}}));
-    device.write({0.6, 0, -0.9});
+    device.write({{0.6, 0, -0.9}});
     device.read(2);
     EXPECT_LT((device.position() - Vector3d(1 + 2, 2, 3 - 3)).norm(), 1e-9);
     EXPECT_LT(device.velocity().norm(), 1e-9);
@@ -93,7 +93,7 @@ TEST(DynamicDevice, swings_at_the_frequency_of_mass_and_spring) {
     model.damping = 0;
     const HandImpedance spring{.stiffness = 0.5, .damping = 0};
     DynamicDevice device(model, spring, at_origin());
-    device.write({1, 0, 0});
+    device.write({{1, 0, 0}});
     const double omega = std::sqrt(0.5 / 5e-5);
     for (int tick = 1; tick <= 300; ++tick) {
         device.read(1e-3 * tick);
@@ -112,9 +112,9 @@ TEST(DynamicDevice, energy_never_grows_without_force) {
         model.coulomb_friction = trial % 2 * 0.3 * uniform(random);
         const HandImpedance hand{.stiffness = uniform(random), .damping = 4e-3 * uniform(random)};
         DynamicDevice device(model, hand, at_origin());
-        device.write({4 * uniform(random) - 2, 4 * uniform(random) - 2, 4 * uniform(random) - 2});
+        device.write({{4 * uniform(random) - 2, 4 * uniform(random) - 2, 4 * uniform(random) - 2}});
         device.read(0.03);
-        device.write({0, 0, 0});
+        device.write({});
         double last = energy_of(device, model, hand);
         ASSERT_GT(last, 0);
         for (int step = 1; step <= 8000; ++step) {
@@ -130,10 +130,10 @@ TEST(DynamicDevice, a_tip_at_rest_moves_only_beyond_its_friction) {
     DeviceModel model = plain();
     model.coulomb_friction = 0.26;
     DynamicDevice device(model, no_hand, at_origin());
-    device.write({0.15, -0.15, 0.14});  // 0.254 N
+    device.write({{0.15, -0.15, 0.14}});  // 0.254 N
     device.read(1);
     EXPECT_EQ(device.position(), Vector3d::Zero());
-    device.write({0.27, 0, 0});
+    device.write({{0.27, 0, 0}});
     device.read(1.1);
     EXPECT_GT(device.position().x(), 0);
     EXPECT_EQ(device.position().tail<2>().norm(), 0);
@@ -144,9 +144,9 @@ TEST(DynamicDevice, friction_stops_a_sliding_tip_after_m_v_squared_over_twice_th
     model.damping = 0;
     model.coulomb_friction = 0.2;
     DynamicDevice device(model, no_hand, at_origin());
-    device.write({0, 1.2, 0});
+    device.write({{0, 1.2, 0}});
     device.read(0.01);  // 1 N beyond friction
-    device.write({0, 0, 0});
+    device.write({});
     const double speed = device.velocity().norm(), start = device.position().y();
     EXPECT_NEAR(speed, 1 / 5e-5 * 0.01, 1e-9);
     device.read(1);
@@ -173,7 +173,7 @@ TEST(DynamicDevice, a_force_arrives_after_the_delay_and_stays_for_a_period) {
         Vector3d last = Vector3d::Zero();
         for (int tick = 0; tick < 8; ++tick) {
             device.read(1e-3 * tick);
-            device.write({tick == 0 ? 1.0 : 0.0, 0, 0});
+            device.write({{tick == 0 ? 1.0 : 0.0, 0, 0}});
             device.read(1e-3 * (tick + 1));
             EXPECT_EQ(device.velocity().x() > last.x(), tick == delay) << delay << " ticks, tick " << tick;
             last = device.velocity();
@@ -186,8 +186,8 @@ TEST(DynamicDevice, motors_saturate_and_keep_the_direction) {
     model.damping = 0;
     model.max_force = 2.5;
     DynamicDevice strong(model, no_hand, at_origin()), at_limit(model, no_hand, at_origin());
-    strong.write({30, 0, -40});
-    at_limit.write({1.5, 0, -2});
+    strong.write({{30, 0, -40}});
+    at_limit.write({{1.5, 0, -2}});
     strong.read(0.05);
     at_limit.read(0.05);
     EXPECT_LT((strong.position() - at_limit.position()).norm(), stepping_error * strong.position().norm());
@@ -218,7 +218,7 @@ TEST(DynamicDevice, the_same_calls_give_the_same_bits) {
         std::vector<double> positions;
         for (int tick = 0; tick < 400; ++tick) {
             const Vector3d p = position_read(device, tick);
-            device.write({-0.4 * std::max(0.0, p.x() - 3), 0.1, 0});
+            device.write({{-0.4 * std::max(0.0, p.x() - 3), 0.1, 0}});
             positions.insert(positions.end(), p.begin(), p.end());
         }
         return positions;
@@ -236,7 +236,7 @@ TEST(DynamicDevice, reading_and_writing_never_allocate) {
     for (int tick = 0; tick < 700; ++tick) {
         for (DynamicDevice* each : {&device, &guided}) {
             each->read(1e-3 * tick);
-            each->write({-0.1, 0, 0.3});
+            each->write({{-0.1, 0, 0.3}});
         }
         hand->set_target({1, 2, 0.01 * tick});
     }
@@ -250,7 +250,7 @@ TEST(DynamicDevice, motors_warm_to_their_limit_after_tau_log_of_k_squared_over_k
     for (const double k : {1.1, 2.0, 3.5}) {  // times the force they bear for ever
         DynamicDevice device(model, {}, at_origin());
         const double warm_after = 0.5 * std::log(k * k / (k * k - 1));
-        device.write({0, -0.9 * k, 0});
+        device.write({{0, -0.9 * k, 0}});
         const double tick = 1e-3;
         EXPECT_EQ(device.read(warm_after - tick).faults, no_fault) << k;
         EXPECT_LT(device.motor_temperature(), 1);
@@ -265,11 +265,11 @@ TEST(DynamicDevice, motors_stay_warm_until_they_have_cooled_enough) {
     model.max_continuous_force = 1;
     model.thermal_time_s = 0.5;
     DynamicDevice device(model, {}, at_origin());
-    device.write({2, 0, 0});
+    device.write({{2, 0, 0}});
     device.read(0.4);
     const double hot = device.motor_temperature();
     ASSERT_GT(hot, 1.5);
-    device.write({0, 0, 0});
+    device.write({});
     const double cool_at = 0.4 + 0.5 * std::log(hot / Motors::cool_enough);
     EXPECT_EQ(device.read(cool_at - 1e-3).faults, motors_warm);
     EXPECT_LT(device.motor_temperature(), 1);  // cooler than the limit and still not let on
@@ -281,7 +281,7 @@ TEST(DynamicDevice, motors_bear_their_continuous_force_for_ever) {
     model.max_continuous_force = 0.88;
     model.thermal_time_s = 0.01;
     DynamicDevice device(model, {}, at_origin());
-    device.write({0.88, 0, 0});
+    device.write({{0.88, 0, 0}});
     EXPECT_EQ(device.read(10).faults, no_fault);  // a thousand time constants
     EXPECT_NEAR(device.motor_temperature(), 1, 1e-9);
 }
@@ -294,9 +294,9 @@ TEST(DynamicDevice, without_a_hand_it_moves_as_one_that_never_had_one) {
     EXPECT_EQ(let_go.position(), Vector3d::Zero());
     for (DynamicDevice* device : {&let_go, &alone}) {
         device->read(0.1 - DynamicDevice::step_s);
-        device->write({0, 0.4, 0});
+        device->write({{0, 0.4, 0}});
         device->read(0.2);
-        device->write({0, 0, 0});
+        device->write({});
         device->read(0.59);
     }
     ASSERT_GT(alone.position().y(), 10);
@@ -342,7 +342,7 @@ TEST(DynamicDevice, turns_as_the_hand_wishes_whatever_the_force) {
     DynamicDevice device(plain(), {}, path, {0, 1, 0});
     for (int tick = 0; tick <= 1000; tick += 125) {
         const realtime::DeviceState state = device.read(1e-3 * tick);
-        device.write({1, -2, 3});
+        device.write({{1, -2, 3}});
         const double angle = 2e-3 * tick;
         EXPECT_LT((quaternion_of(state.orientation).coeffs() - about_x(angle).coeffs()).norm(),
                   stepping_error);

@@ -65,8 +65,8 @@ class JawsTest : public ::testing::Test {
 
 TEST_F(JawsTest, the_device_feels_both_and_each_has_half_of_what_it_bears) {
     at(0.001);
-    pair_[0]->write({1, 2, 3});
-    pair_[1]->write({-1, 0.5, 0.25});
+    pair_[0]->write({{1, 2, 3}});
+    pair_[1]->write({{-1, 0.5, 0.25}});
     EXPECT_EQ(probe_->wrench.force, (std::array<double, 3>{0, 2.5, 3.25}));
     for (const auto& jaw : pair_) {
         EXPECT_EQ(jaw->limits().max_force, 1.5);

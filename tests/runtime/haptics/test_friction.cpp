@@ -257,5 +257,37 @@ TEST(Friction, changes_from_rest_to_sliding_by_no_more_than_the_coefficients_do)
     }
 }
 
+// Of the largest force, the largest change of it in a tick of 0.02 mm, on the way over the cube's edge.
+double largest_step_over_edge(double coefficient, double radius, double depth) {
+    Case c = with_friction(soft_cube(3), {coefficient, coefficient});
+    c.haptics.tool_radius = radius;
+    HapticModel model(c);
+    TickResult result{};
+    const double above = 20 + radius;
+    for (double z = above + 1; z > above - depth; z -= 0.02) model.tick(held_at({10, 9.3, z}), result);
+    Vector3d last = force_of(result);
+    double step = 0, most = 0;
+    for (int tick = 0; tick < 800; ++tick) {
+        model.tick(held_at({10 + 0.02 * tick, 9.3, above - depth}), result);
+        EXPECT_EQ(result.status, tick_ok) << coefficient << " " << depth << " " << tick;
+        step = std::max(step, (force_of(result) - last).norm());
+        most = std::max(most, force_of(result).norm());
+        last = force_of(result);
+    }
+    return step / most;
+}
+
+TEST(Friction, lets_go_over_an_edge_no_more_suddenly_than_an_edge_without_it) {
+    constexpr double without_a_snap = 0.05;
+    for (const double radius : {1.0, 3.0})
+        for (const double depth : {0.5, 1.5, 3.0}) {  // the deep ones snap off the edge
+            const double smooth = largest_step_over_edge(0, radius, depth);
+            for (const double coefficient : {0.4, 0.8})
+                EXPECT_LE(largest_step_over_edge(coefficient, radius, depth),
+                          std::max(smooth, without_a_snap))
+                    << coefficient << " " << radius << " " << depth;
+        }
+}
+
 }  // namespace
 }  // namespace palpate

@@ -250,6 +250,31 @@ TEST(LargeTool, is_held_by_the_wall_beside_fine_tissue) {
     EXPECT_GT(force_of(result).z(), 0.05);
 }
 
+// A ball far larger than the cube that comes at once presses more triangles than a tick solves: it says so,
+// the wall beside bears all that is beyond it, and the tissue nearly what it bears of a ball that came
+// slowly; the next ticks make up for the rest.
+TEST(LargeTool, says_where_contacts_are_cut_and_is_held_by_wall_and_tissue) {
+    Case c = cube_for_tools(8, 45);
+    c.haptics.coupling_stiffness = 2;
+    c.rigid_bodies.push_back(rigid("wall", box({60, -80, 45}, {75, 100, 120})));
+    HapticModel slow(c), sudden(c);
+    TickResult result{};
+    for (double z = 68; z > 56; z -= 0.2) slow.tick(held_at({14, 10.2, z}), result);
+    for (double x = 14; x < 15.6; x += 0.07) slow.tick(held_at({x, 10.2, 56}), result);
+    for (int tick = 0; tick < settling; ++tick) slow.tick(held_at({15.6, 10.2, 56}), result);
+    const Vector3d slowly = force_of(result);
+    EXPECT_NEAR(slowly.x(), -2 * 0.6, 0.01);
+    EXPECT_GT(slowly.z(), 0.5);
+    sudden.tick(held_at({14, 10.2, 68}), result);
+    sudden.tick(held_at({15.6, 10.2, 56}), result);
+    EXPECT_TRUE(result.status & contacts_cut);
+    EXPECT_NEAR(force_of(result).x(), slowly.x(), 1e-3);
+    EXPECT_NEAR(force_of(result).z(), slowly.z(), 0.1 * slowly.z());
+    for (int tick = 0; tick < settling; ++tick) sudden.tick(held_at({15.6, 10.2, 56}), result);
+    EXPECT_EQ(result.status, tick_ok);
+    EXPECT_LT((force_of(result) - slowly).norm(), 1e-3 * slowly.norm());
+}
+
 // A long thin shaft lies on tissue in more places than can be solved at once; that takes neither the wall
 // beside it nor the other tool their share.
 TEST(TwoTools, keep_their_walls_and_their_share_where_contacts_are_too_many) {

@@ -39,7 +39,7 @@ TEST(TrackedDevice, reading_allocates_nothing) {
     const AllocationTrap trap;
     for (int i = 0; i < 1000; ++i) {
         device->read(1e-3 * i);
-        device->write({1, 2, 3});
+        device->write({{1, 2, 3}});
     }
     EXPECT_EQ(trap.count(), 0u);
 }

@@ -63,7 +63,7 @@ StabilityTrial try_wall(const WallLoop& loop, double stiffness, const Wall& wall
                 deepest = std::max(deepest, depth);
             }
         }
-        device.write({0, 0, force});
+        device.write({{0, 0, force}});
     }
     const double largest = std::max(deepest - rest, rest - shallowest);
     return {largest <= StabilityTrial::start_deviation, (deepest - shallowest) / 2};

@@ -156,7 +156,7 @@ TEST(OpenHaptics, a_standstill_of_the_servo_counts_as_overruns) {
     std::atomic<bool> over{false};
     open.servo().start([&](const ServoTick& wake) {
         open.devices()[0]->read(wake.time);
-        open.devices()[0]->write({0, 0, 0});
+        open.devices()[0]->write({});
         worst = std::max<std::int64_t>(worst, wake.overruns - last);
         last = wake.overruns;
         if (open.time(wake) > 0.5) over = true;

@@ -171,7 +171,7 @@ TEST_P(DeviceConformance, two_thousand_ticks_allocate_nothing) {
         const AllocationTrap trap;
         for (Device* device : open->devices()) {
             device->read(wake.time);
-            device->write({0.1, 0, 0});
+            device->write({{0.1, 0, 0}});
         }
         allocations += trap.count();
         rising = rising && wake.time > last;

@@ -38,7 +38,7 @@ class HdDeviceTest : public testing::Test {
         std::uint32_t faults = no_fault;
         for (int i = 0; i < times; ++i) {
             faults = device.read(0).faults;
-            device.write({0, 0, 0});
+            device.write({});
         }
         return faults;
     }
@@ -149,7 +149,7 @@ TEST_F(HdDeviceTest, a_glitch_of_the_encoders_is_a_fault_and_a_fast_hand_is_none
     const auto read_at = [&](double x) {
         behind().position = {x, 0, 0};
         const DeviceState state = device.read(time += 1e-3);
-        device.write({0, 0, 0});
+        device.write({});
         return state;
     };
     for (int k = 0; k < 20; ++k) EXPECT_EQ(read_at(2.0 * k).faults, no_fault) << "2 m/s";
@@ -211,8 +211,8 @@ TEST_F(HdDeviceTest, frames_of_two_devices_overlap_and_each_gets_its_own_force) 
     left.read(0);
     right.read(0);
     EXPECT_TRUE(behind(0).in_frame && behind(1).in_frame);
-    left.write({1, 0, 0});
-    right.write({0, 2, 0});
+    left.write({{1, 0, 0}});
+    right.write({{0, 2, 0}});
     EXPECT_THAT(behind(0).force, ElementsAre(1, 0, 0));
     EXPECT_THAT(behind(1).force, ElementsAre(0, 2, 0));
     EXPECT_FALSE(behind(0).in_frame || behind(1).in_frame);
@@ -221,11 +221,11 @@ TEST_F(HdDeviceTest, frames_of_two_devices_overlap_and_each_gets_its_own_force) 
 
 TEST_F(HdDeviceTest, a_write_without_a_read_and_a_second_read_break_no_frame) {
     HdDevice& device = open();
-    device.write({1, 0, 0});
+    device.write({{1, 0, 0}});
     EXPECT_EQ(behind().frames, 0);
     device.read(0);
     device.read(0);
-    device.write({1, 0, 0});
+    device.write({{1, 0, 0}});
     EXPECT_EQ(behind().frames, 1);
     EXPECT_EQ(device.read(0).faults, no_fault);
 }
@@ -295,7 +295,7 @@ TEST_F(HdDeviceTest, a_pose_that_may_be_of_no_encoders_does_not_drag_the_tool) {
     behind().joint_angles = {0, 0, 0};
     for (int i = 0; i <= HdDevice::frozen_ticks + 5; ++i) {
         const DeviceState state = device.read(0);
-        device.write({0, 0, 0});
+        device.write({});
         EXPECT_THAT(state.position, ElementsAre(1, 2, 3));
         EXPECT_EQ(state.faults, i < HdDevice::frozen_ticks ? no_fault : pose_frozen) << i;
     }
@@ -309,13 +309,13 @@ TEST_F(HdDeviceTest, a_pose_that_may_be_of_no_encoders_does_not_turn_the_tool) {
     behind().position = {1, 2, 3};
     turn(Eigen::AngleAxisd(0.9, Vector3d(1, 1, 0).normalized()).toRotationMatrix());
     const DeviceState good = device.read(0);
-    device.write({0, 0, 0});
+    device.write({});
     behind().position = {0, -110, -35};
     behind().joint_angles = {0, 0, 0};
     turn(Eigen::Matrix3d::Identity());
     for (int i = 0; i <= HdDevice::frozen_ticks + 5; ++i) {
         const DeviceState state = device.read(0);
-        device.write({0, 0, 0});
+        device.write({});
         EXPECT_EQ(state.orientation, good.orientation) << i;
         EXPECT_EQ(state.shaft, good.shaft) << i;
     }

@@ -45,7 +45,7 @@ TEST_F(HdServoTest, ends_with_no_force_and_a_scheduler_that_stands) {
     HdServo servo(fake_hd_api(), {device_.get()}, {});
     servo.start([&](const ServoTick& tick) {
         device_->read(tick.time);
-        device_->write({1, 2, 3});
+        device_->write({{1, 2, 3}});
     });
     EXPECT_TRUE(fake_hd_driver().runs);
     servo.stop();
