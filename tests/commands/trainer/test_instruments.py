@@ -14,6 +14,7 @@ import numpy as np
 
 from test_view_keys import SCENE, bone, tissue
 from trainer_case import TRAIN, TrainerCase, difference
+from recorded import kept  # found by trainer_case
 
 TOOLS = pathlib.Path(os.environ["PALPATE_SOURCE"]) / "sample_data" / "tools.py"
 HALF = math.sqrt(0.5)
@@ -96,6 +97,23 @@ class Instruments(TrainerCase):
         replayed = json.loads(touch.stdout)
         self.assertEqual(replayed["replay"]["different_ticks"], 0)
         self.assertGreater(replayed["torque_peak_n_mm"], 1)
+
+    def test_a_device_that_renders_torque_turns_in_its_hand(self):
+        # Levered beside the skull's top for a while, felt and not.
+        rows = [f"0 36 10 30 {UPRIGHT}", f"0.5 36 10 23 {UPRIGHT}", f"1.5 36 10 23 {UPRIGHT}", f"2 36 10 30 {UPRIGHT}"]
+        for device, turns in (("premium", False), ("premium-6dof", True)):
+            recording = self.folder / f"{device}.h5"
+            result = self.finish(self.start("peg", rows, "--device", device, "--seconds", 2, "--record", recording))
+            self.assertEqual(result["device"], f"simulated {device}, scripted hand")
+            angle = np.degrees(2 * np.arccos(np.minimum(1, np.abs(kept(recording, "ticks/orientation")[:, 3])))).max()
+            self.assertEqual(angle > 0.2, turns, angle)
+
+    def test_a_run_whose_tool_began_in_bone_ends_with_a_line_that_says_so(self):
+        process = self.start("peg", [f"0 40 10 15 {UPRIGHT}", f"2 40 10 15 {UPRIGHT}"], "--seconds", 1)
+        out, err = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 0, err)
+        self.assertRegex(err, r"not all ticks were as they should be: .*\d+ starts_inside")
+        self.assertGreater(json.loads(out)["statuses"]["starts_inside"], 100)
 
 
 if __name__ == "__main__":
