@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "formats/model/errors.hpp"
-#include "tools/case_builder/case_check.hpp"
+#include "tools/case_builder/checks/case_check.hpp"
 
 namespace palpate::cohort {
 namespace {

@@ -9,8 +9,9 @@
 #include "formats/model/errors.hpp"
 #include "formats/model/reading/small_file.hpp"
 #include "formats/toml_file/quoted.hpp"
-#include "tools/case_builder/case_check.hpp"
 #include "tools/case_builder/cautions.hpp"
+#include "tools/case_builder/checks/case_check.hpp"
+#include "tools/case_builder/checks/place_check.hpp"
 #include "tools/case_builder/folder_lock.hpp"
 #include "tools/case_builder/forecast.hpp"
 #include "tools/case_builder/kept_case.hpp"
@@ -60,7 +61,9 @@ std::vector<case_builder::Override> overrides_of(const std::vector<std::string>&
 
 // What one build is made of.
 struct Build {
+    const std::filesystem::path& case_path;
     const case_builder::CaseFile& case_file;
+    const std::vector<case_builder::Override>& overrides;
     const case_builder::BuildPaths& paths;
     const std::vector<case_builder::Stage> stages;
     const case_builder::StageRunner& runner;
@@ -99,6 +102,7 @@ std::vector<case_builder::StageRecord> run_all(const Build& build) {
     std::vector<case_builder::StageRecord> records;
     for (const case_builder::Stage& stage : build.stages) {
         records.push_back(run(build, stage));
+        case_builder::check_places(build.case_path, build.case_file, build.overrides, records.back());
         // A stage that ran has said so itself.
         if (const auto& record = records.back(); !record.ran)
             for (const auto& warning : record.result.value("warnings", nlohmann::ordered_json::array()))
@@ -233,7 +237,7 @@ int main(int argc, char** argv) {
         using case_builder::TouchClock;
         const auto stages =
             stages_of(case_file, paths, virtual_clock ? TouchClock::virtual_time : TouchClock::real);
-        const Build build{case_file, paths, stages, runner};
+        const Build build{case_path, case_file, overrides, paths, stages, runner};
         if (forecast_only) return forecast(build, stage_name);
         const auto changed = kept ? changed_since(*kept, case_file) : std::vector<std::string>();
         tell_what_changed(changed, case_path);

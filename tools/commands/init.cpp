@@ -10,7 +10,7 @@
 
 #include "formats/model/errors.hpp"
 #include "formats/toml_file/quoted.hpp"
-#include "tools/case_builder/case_check.hpp"
+#include "tools/case_builder/checks/case_check.hpp"
 #include "tools/case_builder/child_process.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/software.hpp"

@@ -5,7 +5,7 @@
 
 #include "formats/model/errors.hpp"
 #include "tests/formats/scratch.hpp"
-#include "tools/case_builder/case_check.hpp"
+#include "tools/case_builder/checks/case_check.hpp"
 
 namespace palpate::case_builder {
 namespace {

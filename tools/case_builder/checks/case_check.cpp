@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/case_builder/case_check.hpp"
+#include "tools/case_builder/checks/case_check.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -8,6 +8,7 @@
 #include "formats/model/reading/small_file.hpp"
 #include "formats/records/material.hpp"
 #include "formats/toml_file/table_reader.hpp"
+#include "tools/case_builder/checks/mistakes.hpp"
 #include "tools/case_builder/toml_document.hpp"
 #include "tools/imaging/recipes/recipe.hpp"
 #include "tools/imaging/recipes/recipe_json.hpp"
@@ -18,9 +19,6 @@ namespace {
 using toml_file::TableReader;
 
 using Kind = imaging::RecipeParameter::Kind;
-
-// Everything that is wrong, in the order of the checks.
-using Mistakes = std::vector<ErrorDetail>;
 
 std::string nearest(const std::string& name, const std::vector<std::string>& known) {
     const std::vector<std::string> names = nearest_names(name, known);
@@ -258,11 +256,7 @@ void check_case_file(const std::filesystem::path& path, const CaseFile& case_fil
     check_structures(root, case_file, mistakes);
     check_rigid(root, case_file, labels, mistakes);
     check_deformable(root, case_file, labels, mistakes);
-    if (mistakes.empty()) return;
-    if (mistakes.size() == 1) throw InvalidInput(mistakes.front());
-    std::string all = fmt::format("has {} mistakes:", mistakes.size());
-    for (const ErrorDetail& mistake : mistakes) all += "\n  " + to_string(mistake);
-    throw InvalidInput({path.string(), all, "", ""});
+    throw_mistakes(path, mistakes);
 }
 
 }  // namespace palpate::case_builder
