@@ -55,13 +55,16 @@ void check(const cli::Command& command, const ToolOption& option, const std::str
         throw UsageError({"--instrument", "forceps with --scheme " + scheme, "--scheme continuous",
                           "no other feels jaws"});
     if (!option.tool.empty() && !option.has_jaws() && !can.turns)
-        throw UsageError({"--instrument", "with --scheme " + scheme, "--scheme continuous, shell or solid",
-                          "with no other do tools turn"});
+        throw UsageError({"--instrument", "with --scheme " + scheme,
+                          "--scheme continuous, shell, cones or solid", "with no other do tools turn"});
     if (option.has_surface() && !can.samples_surface)
-        for (const std::string name : {"--shell-points", "--voxel", "--contact-stiffness"})
+        for (const std::string name : {"--shell-points", "--voxel"})
             if (is_asked_for(command, name))
                 throw UsageError(
                     {name, "with --scheme " + scheme, "--scheme shell beside it", "no other samples a tool"});
+    if (option.has_surface() && !can.gives_way && is_asked_for(command, "--contact-stiffness"))
+        throw UsageError({"--contact-stiffness", "with --scheme " + scheme,
+                          "--scheme shell or cones beside it", "with no other do touches give way"});
     if (option.tool.empty() || option.has_jaws())
         refuse_settings(command, tool_fields,
                         option.has_jaws() ? "with --instrument forceps" : "without --instrument",

@@ -7,6 +7,7 @@
 
 #include "formats/model/errors.hpp"
 #include "formats/records/shown_text.hpp"
+#include "runtime/haptics/methods/cone_contact.hpp"
 #include "runtime/haptics/methods/continuous_contact.hpp"
 #include "runtime/haptics/methods/published_contact.hpp"
 #include "runtime/haptics/methods/shell_contact.hpp"
@@ -50,8 +51,15 @@ constexpr std::array table{
          .feels_tissue = false,
          .turns = true,
          .always_turns = true,
-         .samples_surface = true},
+         .samples_surface = true,
+         .gives_way = true},
         make_shell},
+    ContactMethodEntry{
+        "cones",
+        shown_text("is published: a whole tool that turns, pushed off by every local minimum of its distance "
+                   "from rigid bodies"),
+        {.has_radius = true, .feels_tissue = false, .turns = true, .always_turns = true, .gives_way = true},
+        make_cones},
     ContactMethodEntry{
         "solid",
         shown_text("is ours: a whole tool that turns, its triangles never through those of rigid bodies"),

@@ -23,7 +23,8 @@ struct ContactCapabilities {
     bool feels_tissue = true;       ///< and not rigid bodies alone
     bool turns = false;             ///< a tool may turn by itself, with a torque: Case::tool
     bool always_turns = false;      ///< and does where a case has none
-    bool samples_surface = false;   ///< as points against voxels, with a stiffness
+    bool samples_surface = false;   ///< as points against voxels
+    bool gives_way = false;         ///< touches are springs: ToolSettings::contact_stiffness
     bool keeps_energy = false;  ///< gives hands no more than they gave it: PassivityObserver holds it to that
     std::size_t most_tools = std::numeric_limits<std::size_t>::max();
 };

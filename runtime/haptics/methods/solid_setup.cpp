@@ -1,21 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a whole tool's triangles against those of rigid bodies are made of.
-#include "formats/model/errors.hpp"
 #include "runtime/collision/features/split_edges.hpp"
 #include "runtime/haptics/methods/solid_contact.hpp"
-#include "runtime/haptics/whole_tool/rod.hpp"
 
 namespace palpate::haptics {
 namespace {
 
 collision::SurfaceFeatures tool_features(const Case& patient_case) {
-    const TriangleMesh surface = has_instrument(patient_case) ? patient_case.tool->surface
-                                                              : rod_surface(patient_case.haptics.tool_radius,
-                                                                            rod_length(patient_case));
-    if (surface.triangles.size() > SolidContact::most_triangles)
-        throw InvalidInput({"instrument", std::to_string(surface.triangles.size()) + " triangles",
-                            std::to_string(SolidContact::most_triangles) + " or fewer",
-                            "simplify its surface, or use contact method 'shell'"});
+    const TriangleMesh surface = tool_surface(patient_case, SolidContact::most_triangles);
     const TriangleMesh split =
         collision::split_long_edges(surface, SolidContact::longest_edge, SolidContact::most_triangles);
     return {split.vertices, split.triangles};

@@ -69,6 +69,10 @@ class WholeToolContact : public ContactMethod {
     std::vector<Tool> tools_;
 };
 
+/// The surface of a case's tool: its own, or that of a ball of the settings' radius with their shaft, of 24
+/// corners around. Throws InvalidInput if it has more than `most_triangles`.
+TriangleMesh tool_surface(const Case& patient_case, std::size_t most_triangles);
+
 /// The settings of a case's tool, or the usual ones. Throws InvalidInput if the case has no rigid body.
 ToolSettings whole_tool_settings(const Case& patient_case, const std::string& method);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/model/errors.hpp"
 #include "runtime/haptics/methods/whole_tool_contact.hpp"
+#include "runtime/haptics/whole_tool/rod.hpp"
 
 namespace palpate::haptics {
 
@@ -12,6 +13,17 @@ WholeToolContact::WholeToolContact(const ContactBodies& bodies, const ToolSettin
 }
 
 WholeToolContact::~WholeToolContact() = default;
+
+TriangleMesh tool_surface(const Case& patient_case, std::size_t most_triangles) {
+    TriangleMesh surface = has_instrument(patient_case)
+                               ? patient_case.tool->surface
+                               : rod_surface(patient_case.haptics.tool_radius, rod_length(patient_case));
+    if (surface.triangles.size() > most_triangles)
+        throw InvalidInput({"instrument", std::to_string(surface.triangles.size()) + " triangles",
+                            std::to_string(most_triangles) + " or fewer",
+                            "simplify its surface, or use contact method 'shell'"});
+    return surface;
+}
 
 ToolSettings whole_tool_settings(const Case& patient_case, const std::string& method) {
     if (patient_case.rigid_bodies.empty())

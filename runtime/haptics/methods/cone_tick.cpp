@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// How normal cones find what a whole tool is pushed off by.
+#include <algorithm>
+
+#include "runtime/haptics/methods/cone_contact.hpp"
+#include "runtime/haptics/whole_tool/penalty_equilibrium.hpp"
+
+namespace palpate::haptics {
+
+using Eigen::Vector3d;
+
+namespace {
+
+// A look costs some tens of microseconds, and what is left of a way the next tick goes on with.
+constexpr PenaltyEffort effort{.rounds = 4, .halvings = 2};
+
+}  // namespace
+
+void ConeContact::forget(std::size_t tool) noexcept {
+    watches_[tool].reset();
+}
+
+bool ConeContact::is_clear(std::size_t tool, const ToolPose& pose) noexcept {
+    if (watches_[tool].meets(pose)) return false;
+    // No surface cuts another: one point of the tool tells whether it is in a body.
+    const Vector3d p = pose.position + pose.orientation * tool_.vertex(0);
+    return std::ranges::all_of(std::span(bodies_.surfaces).first(bodies_.rigid_count()),
+                               [&](const auto& surface) { return surface->is_outside(p); });
+}
+
+ToolRest ConeContact::bring_to_rest(std::size_t tool, const TurningCoupling& coupling,
+                                    ToolPose& pose) noexcept {
+    ConeWatch& watch = watches_[tool];
+    const ToolRest rest = rest_of_penalties(
+        watch, coupling, settings_.contact_stiffness, [&] { return watch.longest_step(); }, effort, pose);
+    watch.press(settings_.contact_stiffness);
+    return rest;
+}
+
+std::span<const ToolTouch> ConeContact::touches(std::size_t tool) noexcept {
+    return watches_[tool].close();
+}
+
+double ConeContact::depth_of(const ToolTouch& /*touch*/) const noexcept {
+    return 0;
+}
+
+double ConeContact::surface_within(const ToolTouch& /*touch*/) const noexcept {
+    return reach_;
+}
+
+}  // namespace palpate::haptics

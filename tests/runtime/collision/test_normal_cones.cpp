@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+// The search by normal cones against all pairs of triangles.
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numbers>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "runtime/collision/cones/cone_pairs.hpp"
+#include "runtime/collision/cones/local_minima.hpp"
+#include "runtime/collision/tree_pairs.hpp"
+#include "tests/formats/sample_case.hpp"
+#include "tests/runtime/samples.hpp"
+
+namespace palpate {
+namespace {
+
+using namespace collision;
+using Eigen::Vector3d;
+
+// A ball with bumps and hollows, so that distances have minima in many places.
+TriangleMesh bumpy_ball(double radius, int refinements, double bump) {
+    TriangleMesh mesh = sample::sphere_surface({0, 0, 0}, radius, refinements);
+    for (Vector3d& v : mesh.vertices)
+        v *= 1 + bump * std::sin(0.9 * v.x()) * std::cos(1.1 * v.y()) * std::sin(0.7 * v.z() + 1);
+    return mesh;
+}
+
+class Pairs {
+  public:
+    Pairs(const TriangleMesh& a, const TriangleMesh& b)
+        : features_a_(a.vertices, a.triangles),
+          features_b_(b.vertices, b.triangles),
+          tree_a_(features_a_),
+          tree_b_(features_b_) {}
+
+    std::vector<LocalMinimum> by_cones(const Eigen::Isometry3d& X_BA, double within) {
+        std::vector<LocalMinimum> minima;
+        looked_at_ = 0;
+        const ConeReach reach{.within = within};
+        for_each_pair(
+            tree_a_, tree_b_,
+            [&](const ConeNode& a, const ConeNode& b) { return may_be_nearest(a, X_BA, b, reach); },
+            [&](const ConeNode& a, const ConeNode& b) {
+                add(X_BA, a.triangle, b.triangle, within, minima);
+                return true;
+            });
+        return minima;
+    }
+    std::vector<LocalMinimum> by_all(const Eigen::Isometry3d& X_BA, double within) {
+        std::vector<LocalMinimum> minima;
+        for (std::size_t a = 0; a < features_a_.triangle_count(); ++a)
+            for (std::size_t b = 0; b < features_b_.triangle_count(); ++b)
+                add(X_BA, static_cast<std::int32_t>(a), static_cast<std::int32_t>(b), within, minima);
+        return minima;
+    }
+    // The least distance of any two triangles, mm.
+    double apart(const Eigen::Isometry3d& X_BA) const {
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t a = 0; a < features_a_.triangle_count(); ++a)
+            for (std::size_t b = 0; b < features_b_.triangle_count(); ++b)
+                least = std::min(least, closest_points_of_triangles(placed(X_BA, a), features_b_.corners(b))
+                                            .on_a.squared_distance);
+        return std::sqrt(least);
+    }
+    std::size_t looked_at() const { return looked_at_; }
+    const NormalConeTree& tree_a() const { return tree_a_; }
+    const SurfaceFeatures& features_a() const { return features_a_; }
+
+  private:
+    TriangleCorners placed(const Eigen::Isometry3d& X_BA, std::size_t a) const {
+        TriangleCorners corners = features_a_.corners(a);
+        for (Vector3d& corner : corners) corner = X_BA * corner;
+        return corners;
+    }
+    void add(const Eigen::Isometry3d& X_BA, std::int32_t a, std::int32_t b, double within,
+             std::vector<LocalMinimum>& minima) {
+        ++looked_at_;
+        const auto ia = static_cast<std::size_t>(a), ib = static_cast<std::size_t>(b);
+        const TriangleCorners of_a = placed(X_BA, ia), of_b = features_b_.corners(ib);
+        std::array<LocalMinimum, most_minima_of_pair> found;
+        const std::size_t count =
+            local_minima({features_a_, features_b_, ia, ib, X_BA, of_a, of_b}, within, found);
+        minima.insert(minima.end(), found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));
+    }
+
+    SurfaceFeatures features_a_, features_b_;
+    NormalConeTree tree_a_, tree_b_;
+    std::size_t looked_at_ = 0;
+};
+
+std::vector<double> distances_of(const std::vector<LocalMinimum>& minima) {
+    std::vector<double> distances;
+    for (const LocalMinimum& minimum : minima) distances.push_back(minimum.distance);
+    std::ranges::sort(distances);
+    return distances;
+}
+
+Eigen::Isometry3d any_pose(double away, std::mt19937& random) {
+    std::normal_distribution<double> component(0, 1);
+    Eigen::Isometry3d X_BA = Eigen::Isometry3d::Identity();
+    X_BA.linear() =
+        Eigen::Quaterniond(component(random), component(random), component(random), component(random))
+            .normalized()
+            .toRotationMatrix();
+    X_BA.translation() =
+        away * Vector3d(component(random), component(random), component(random)).normalized();
+    return X_BA;
+}
+
+TEST(NormalCones, find_every_local_minimum_that_all_pairs_of_triangles_have) {
+    Pairs pairs(bumpy_ball(4, 2, 0.2), bumpy_ball(10, 2, 0.15));
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> away(14, 19);
+    std::size_t found = 0, looked_at = 0;
+    const int poses = samples_of(200);
+    for (int pose = 0; pose < poses; ++pose) {
+        const Eigen::Isometry3d X_BA = any_pose(away(random), random);
+        const std::vector<double> all = distances_of(pairs.by_all(X_BA, 6));
+        EXPECT_EQ(distances_of(pairs.by_cones(X_BA, 6)), all) << pose;
+        found += all.size();
+        looked_at += pairs.looked_at();
+        const double apart = pairs.apart(X_BA);
+        if (apart > 0 && apart < 6) {
+            ASSERT_FALSE(all.empty()) << pose;
+            EXPECT_NEAR(all.front(), apart, 1e-9) << pose;
+        }
+    }
+    EXPECT_GT(found, static_cast<std::size_t>(poses));
+    // Cones leave out most of 320 x 320 pairs.
+    EXPECT_LT(looked_at, static_cast<std::size_t>(poses) * 320 * 320 / 50);
+}
+
+TEST(NormalCones, the_points_of_a_minimum_are_nearest_among_all_beside_them) {
+    Pairs pairs(bumpy_ball(4, 2, 0.2), bumpy_ball(10, 2, 0.15));
+    std::mt19937 random(6);
+    std::normal_distribution<double> aside(0, 1);
+    for (int pose = 0; pose < 20; ++pose) {
+        const Eigen::Isometry3d X_BA = any_pose(16, random);
+        for (const LocalMinimum& minimum : pairs.by_all(X_BA, 6)) {
+            EXPECT_NEAR((minimum.on_a - minimum.on_b).norm(), minimum.distance, 1e-12);
+            // Moved a little straight apart, they are so much farther; nothing nearby is nearer than to first
+            // order.
+            const Vector3d d = (minimum.on_a - minimum.on_b) / minimum.distance;
+            for (std::size_t t = 0; t < pairs.features_a().triangle_count(); ++t)
+                for (const Vector3d& corner : pairs.features_a().corners(t)) {
+                    const Vector3d p = X_BA * corner;
+                    if ((p - minimum.on_a).norm() > 0.3) continue;
+                    EXPECT_GE((p - minimum.on_a).dot(d), -1e-6);
+                }
+        }
+    }
+}
+
+TEST(NormalCones, a_cone_holds_the_normals_of_its_triangles_and_a_ball_their_corners) {
+    Pairs pairs(bumpy_ball(4, 2, 0.2), bumpy_ball(10, 1, 0.15));
+    const NormalConeTree& tree = pairs.tree_a();
+    std::set<std::int32_t> seen;
+    const auto walk = [&](const auto& self, std::int32_t index, std::vector<ConeNode> above) -> void {
+        const ConeNode& node = tree.node(index);
+        above.push_back(node);
+        if (node.left >= 0) {
+            self(self, node.left, above);
+            self(self, node.left + 1, above);
+            return;
+        }
+        seen.insert(node.triangle);
+        const TriangleCorners corners = pairs.features_a().corners(static_cast<std::size_t>(node.triangle));
+        const Vector3d normal = unit_normal(corners);
+        for (const ConeNode& each : above) {
+            const Vector3d axis(each.axis[0], each.axis[1], each.axis[2]),
+                centre(each.centre[0], each.centre[1], each.centre[2]);
+            EXPECT_GE(axis.dot(normal), each.cosine - 1e-6F);
+            for (const Vector3d& corner : corners) EXPECT_LE((corner - centre).norm(), each.radius);
+        }
+    };
+    walk(walk, 0, {});
+    EXPECT_EQ(seen.size(), pairs.features_a().triangle_count());
+    EXPECT_LE(tree.depth(), 10);
+}
+
+TEST(NormalCones, a_surface_moved_within_its_slack_has_no_minimum_that_was_left_out) {
+    const TriangleMesh small = bumpy_ball(4, 1, 0.2), large = bumpy_ball(10, 2, 0.15);
+    Pairs pairs(small, large);
+    const SurfaceFeatures features_a(small.vertices, small.triangles),
+        features_b(large.vertices, large.triangles);
+    const NormalConeTree tree_a(features_a), tree_b(features_b);
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> part(-1, 1);
+    const ConeReach wide{.within = 3, .slack = 0.5, .turn = 0.05};
+    for (int pose = 0; pose < 50; ++pose) {
+        const Eigen::Isometry3d X_BA = any_pose(15.5, random);
+        std::set<std::pair<std::int32_t, std::int32_t>> kept;
+        for_each_pair(
+            tree_a, tree_b,
+            [&](const ConeNode& a, const ConeNode& b) { return may_be_nearest(a, X_BA, b, wide); },
+            [&](const ConeNode& a, const ConeNode& b) { return kept.emplace(a.triangle, b.triangle), true; });
+        Eigen::Isometry3d moved = X_BA;  // by 0.05 rad about its middle, 0.25 mm of its surface, and 0.2 mm
+        moved.linear() =
+            Eigen::AngleAxisd(0.05, Vector3d(part(random), part(random), part(random)).normalized()) *
+            X_BA.linear();
+        moved.translation() += 0.2 * Vector3d(part(random), part(random), part(random)).normalized();
+        const ConeReach exact{.within = 3};
+        std::array<LocalMinimum, most_minima_of_pair> found;
+        for_each_pair(
+            tree_a, tree_b,
+            [&](const ConeNode& a, const ConeNode& b) { return may_be_nearest(a, moved, b, exact); },
+            [&](const ConeNode& a, const ConeNode& b) {
+                const auto ia = static_cast<std::size_t>(a.triangle),
+                           ib = static_cast<std::size_t>(b.triangle);
+                TriangleCorners of_a = features_a.corners(ia);
+                for (Vector3d& corner : of_a) corner = moved * corner;
+                const TriangleCorners of_b = features_b.corners(ib);
+                if (local_minima({features_a, features_b, ia, ib, moved, of_a, of_b}, 3, found) > 0) {
+                    EXPECT_TRUE(kept.contains({a.triangle, b.triangle})) << pose;
+                }
+                return true;
+            });
+    }
+}
+
+}  // namespace
+}  // namespace palpate
