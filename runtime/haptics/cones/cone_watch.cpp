@@ -16,6 +16,7 @@ using Eigen::Vector3d;
 
 namespace {
 
+constexpr double least_step = 0.005;   // mm, that is taken though nobody knows what it meets
 constexpr double part_of_least = 0.9;  // of the least distance, that a step may take
 
 Eigen::Isometry3d placed(const ToolPose& pose) noexcept {
@@ -35,10 +36,19 @@ collision::TriangleCorners placed(const Eigen::Isometry3d& X_PT,
 void ConeWatch::look(const ToolPose& pose) noexcept {
     pose_ = pose;
     const Eigen::Isometry3d X_PT = placed(pose);
+    met_ = (met_ || part_of_least * least_ < least_step) && meets(pose);
     if (!holds(around_)) gather(X_PT);
     touch_count_ = 0;
     placed_ = -1;
-    if (!keeps_) return search(X_PT);
+    if (keeps_)
+        look_at_kept(X_PT);
+    else
+        search(X_PT);
+    least_ = within_;
+    for (const ToolTouch& touch : close()) least_ = std::min(least_, touch.distance + reach_);
+}
+
+void ConeWatch::look_at_kept(const Eigen::Isometry3d& X_PT) noexcept {
     if (!holds(closer_)) refine(X_PT);
     const ConeReach reach{.within = within_};
     for (const Kept& pair : closer_.all())
@@ -134,9 +144,7 @@ void ConeWatch::press(double stiffness) noexcept {
 }
 
 double ConeWatch::longest_step() const noexcept {
-    double least = reach_;
-    for (const ToolTouch& touch : close()) least = std::min(least, touch.distance + reach_);
-    return std::min(part_of_least * least, ahead * reach_);
+    return std::clamp(part_of_least * least_, least_step, ahead * reach_);
 }
 
 bool ConeWatch::meets(const ToolPose& pose) const noexcept {

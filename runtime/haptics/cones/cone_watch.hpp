@@ -30,7 +30,10 @@ class ConeWatch {
               double reach);
 
     /// Forgets where the tool was.
-    void reset() noexcept { around_.valid = closer_.valid = false; }
+    void reset() noexcept {
+        around_.valid = closer_.valid = met_ = false;
+        least_ = 0;
+    }
 
     /// How far beyond its reach it finds minima, of the reach: so far a step may take a point at most.
     static constexpr double ahead = 0.5;
@@ -51,8 +54,11 @@ class ConeWatch {
         return haptics::reach_of(motion, tool_.longest_arm());
     }
     /// How far any point may go from the pose last looked at, mm, so that nothing is met: the least distance
-    /// is a minimum, too (conservative advancement, Mirtich 1996).
+    /// is a minimum, too (conservative advancement, Mirtich 1996). Where that is hardly any, a little
+    /// nevertheless, or nothing would come away again: then the next look() sees whether it meets a body.
     double longest_step() const noexcept;
+    /// Whether the pose last looked at meets a body, as far as longest_step() may have led there.
+    bool met() const noexcept { return met_; }
 
   private:
     struct Kept {
@@ -73,6 +79,7 @@ class ConeWatch {
     void gather(const Eigen::Isometry3d& X_PT) noexcept;
     void refine(const Eigen::Isometry3d& X_PT) noexcept;
     void search(const Eigen::Isometry3d& X_PT) noexcept;
+    void look_at_kept(const Eigen::Isometry3d& X_PT) noexcept;
     void look_at(const Eigen::Isometry3d& X_PT, const Kept& pair) noexcept;
     void add(const Kept& pair, const Eigen::Vector3d& on_tool, const Eigen::Vector3d& on_body,
              double distance) noexcept;
@@ -81,7 +88,8 @@ class ConeWatch {
     std::span<const collision::NormalConeTree> bodies_;
     double reach_, within_;  // mm, in which minima press and are found
     ToolPose pose_;
-    bool keeps_ = false;
+    bool keeps_ = false, met_ = false;
+    double least_ = 0;  // mm, at the pose last looked at: the least distance, within_ at most
     Near around_, closer_;
     std::vector<ToolTouch> touches_;  // the first touch_count_
     std::size_t touch_count_ = 0;

@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 namespace {
 
 // A look costs some tens of microseconds, and what is left of a way the next tick goes on with.
-constexpr PenaltyEffort effort{.rounds = 4, .halvings = 2};
+constexpr PenaltyEffort effort{.rounds = 4, .halvings = 2, .crosses_kinks = true};
 
 }  // namespace
 

@@ -34,6 +34,9 @@ class ShellWatch {
     /// Whether any of it is inside.
     bool touches() const noexcept;
 
+    /// Points inside push, and meet nothing.
+    static constexpr bool met() noexcept { return false; }
+
     /// How far a motion moves any point of the shell at most, mm.
     double reach_of(const Twist& motion) const noexcept { return haptics::reach_of(motion, longest_arm_); }
 

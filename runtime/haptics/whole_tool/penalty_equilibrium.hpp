@@ -2,6 +2,8 @@
 #pragma once
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "runtime/haptics/tool_pose.hpp"
 #include "runtime/haptics/whole_tool/tool_rest.hpp"
@@ -12,7 +14,8 @@ namespace palpate::haptics {
 /// How much a search for rest may cost in a tick.
 struct PenaltyEffort {
     int rounds = 16;
-    int halvings = 8;  ///< of a round's step
+    int halvings = 8;            ///< of a round's step
+    bool crosses_kinks = false;  ///< takes the last of them though the energy rises, unless something is met
 };
 inline constexpr int penalty_turns = 20, penalty_halvings = 8;  // of the search in a round's model
 inline constexpr double energy_round_off = 1e-12;               // of an energy
@@ -28,6 +31,7 @@ struct PenaltySituation {
 
 template <typename Watch>
 double energy_of(const PenaltySituation<Watch>& at) noexcept {
+    if (at.watch.met()) return std::numeric_limits<double>::infinity();
     double contact = 0;
     for (const ToolTouch& touch : at.watch.close()) {
         const double depth = std::min(touch.distance, 0.0);
@@ -105,9 +109,9 @@ class PenaltyModel {
 ///     E = 1/2 k |x - x_d|^2 + 1/2 kappa |theta|^2 + sum_i 1/2 K d_i^2,
 /// x its position, theta the rotation vector from the device's orientation to its own, d_i < 0 the distances
 /// of `watch`'s touches; in rounds, each to the least of E where these change in proportion to the motion
-/// (Gauss-Newton, those that come in or go out among them), halved until E goes down. No step takes a point
-/// farther than longest_step(), mm, for the pose last looked at. Leaves in `watch` what is close to the pose.
-/// Realtime-safe where `watch` is: look(), close() and reach_of() are asked of it.
+/// (Gauss-Newton, those that come in or go out among them), halved until E goes down and nothing is met. No
+/// step takes a point farther than longest_step(), mm, for the pose last looked at. Leaves in `watch` what is
+/// close to the pose. Realtime-safe where `watch` is: look(), close(), met() and reach_of() are asked of it.
 template <typename Watch, typename LongestStep>
 ToolRest rest_of_penalties(Watch& watch, const TurningCoupling& coupling, double contact_stiffness,
                            const LongestStep& longest_step, const PenaltyEffort& effort,
@@ -133,7 +137,11 @@ ToolRest rest_of_penalties(Watch& watch, const TurningCoupling& coupling, double
                 energy = lower;
                 break;
             }
-            if (halving == effort.halvings) {  // a minimum, at a kink of the field
+            if (halving == effort.halvings && effort.crosses_kinks && std::isfinite(lower)) {
+                energy = lower;
+                break;
+            }
+            if (halving == effort.halvings) {  // a minimum, at a kink
                 pose = from;
                 watch.look(pose);
                 return ToolRest::settled;

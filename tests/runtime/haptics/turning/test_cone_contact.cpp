@@ -4,6 +4,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
+#include <numbers>
 
 #include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
@@ -138,6 +139,24 @@ TEST(Cones, no_tool_passes_through_a_thin_sheet_at_any_speed) {
         ASSERT_FALSE(result.status & starts_inside);
         ASSERT_GT(lowest_of_bar(result), 0);
     });
+}
+
+TEST(Cones, pressed_harder_than_a_minimum_bears_a_tool_stays_outside_and_comes_away_again) {
+    Case c = plate_and_bar();
+    c.haptics.max_force = 3;
+    c.tool->settings.contact_stiffness = 10;  // 3 N from 0.3 mm on, and 5 N are asked for
+    HapticModel model(c, "cones");
+    const Quaterniond on_a_corner = about(Vector3d(1, 1, 0).normalized(), 35);
+    TickResult result{};
+    double nearest = 1;
+    for (int tick = 0; tick < 2000; ++tick) {
+        const double z = 5 - 15 * std::sin(std::numbers::pi * tick / 2000.0);
+        model.tick(turned_at({0, 0, z}, on_a_corner), result);
+        ASSERT_GT(lowest_of_bar(result), 0) << tick;
+        nearest = std::min(nearest, lowest_of_bar(result));
+    }
+    EXPECT_LT(nearest, 0.02);
+    EXPECT_LT((tool_of(result) - Vector3d(0, 0, 5)).norm(), 0.1);
 }
 
 TEST(Cones, without_a_body_of_its_own_the_tool_is_the_cases_ball) {
