@@ -75,7 +75,7 @@ Json touch(const TouchOptions& options, cli::Session& session) {
     if (!options.virtual_clock) cli::end_softly_on_interrupt();
     run.hold(device.open(request_of(options, device.kind, plan, model)),
              plan.grasp ? plan.grasp->grasp.orientation : Eigen::Quaterniond::Identity());
-    tell_torque(run.model(), run.device_name());
+    if (!options.device.empty()) tell_torque(run.model(), run.device_name());
     tell_too_weak(patient_case, run.device_name());
     if (!options.record.empty()) start_recording(run, options.record, options.record_seconds, session);
     std::vector<RunRecord> records = outputs.records_of(model);

@@ -208,7 +208,7 @@ Json train(const Options& options, cli::Session& session) {
     run.hold(device.open(request_of(options, device.kind, run.model(), place, grasp, start,
                                     window_settings.sight.axes())),
              grasp ? grasp->grasp.orientation : Eigen::Quaterniond::Identity());
-    tell_torque(run.model(), run.device_name());
+    if (!options.device.empty()) tell_torque(run.model(), run.device_name());
     tell_too_weak(patient_case, run.device_name());
     if (const DeviceModel* model = model_of_device(run.device_name()))
         window_settings.rendered = model->coulomb_friction;

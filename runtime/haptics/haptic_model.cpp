@@ -64,6 +64,9 @@ double coupling_stiffness(const HapticSettings& settings, const DeviceLimits& de
 }
 
 double torsional_stiffness(const ToolSettings& settings, const DeviceLimits& device) {
+    if (!(device.max_torque >= 0 && std::isfinite(device.max_torque)))
+        throw InvalidInput({"device", "its largest torque is " + std::to_string(device.max_torque),
+                            "0 (it renders none) or more", ""});
     if (device.max_torque == 0) return settings.torsional_stiffness;
     return least_of(settings.torsional_stiffness, device.max_torsional_stiffness,
                     "its largest torsional stiffness", device.torsional_damping);
@@ -94,9 +97,14 @@ void HapticModel::couple_to(std::span<const DeviceLimits> devices) {
             if (device.max_torque > 0) tool.torque_limiter.lower_to(device.max_torque);
         }
     }
-    observer_.count_torque(turns_ && !devices.empty() &&
-                           std::ranges::none_of(
-                               devices, [](double most) { return most == 0; }, &DeviceLimits::max_torque));
+    for (std::size_t t = 0; t < tools_.size(); ++t) {
+        tools_[t].feels_torque = turns_ && t < devices.size() && devices[t].max_torque > 0;
+        observer_.count_torque(t, tools_[t].feels_torque);
+    }
+}
+
+bool HapticModel::torque_is_felt() const noexcept {
+    return std::ranges::all_of(tools_, &Tool::feels_torque);
 }
 
 std::int64_t HapticModel::memory_ticks() const noexcept {

@@ -43,8 +43,8 @@ class HapticModel {
     HapticModel& operator=(const HapticModel&) = delete;
 
     /// Limits the virtual coupling to what every device bears, coupling_stiffness() and
-    /// torsional_stiffness(), and force and torque to the least of their largest ones. Not beside a running
-    /// tick.
+    /// torsional_stiffness(), and force and torque to the least of their largest ones. `devices`: of the
+    /// tools, in their order. Throws InvalidInput for limits that make no sense. Not beside a running tick.
     void couple_to(std::span<const DeviceLimits> devices);
     /// Of the virtual coupling, N/mm.
     double coupling() const noexcept { return coupling_.stiffness; }
@@ -52,8 +52,8 @@ class HapticModel {
     double torsional_coupling() const noexcept { return coupling_.torsional_stiffness; }
     /// Whether its tools turn by themselves, so that there is torque.
     bool turns() const noexcept { return turns_; }
-    /// Whether every device that it was coupled to renders that torque.
-    bool torque_is_felt() const noexcept { return observer_.counts_torque(); }
+    /// Whether the devices of all its tools, as it was coupled to them, render that torque.
+    bool torque_is_felt() const noexcept;
 
     /// Forgets all contact; every body counts as not yet felt until the tool is clear of it. Not beside a
     /// running tick or detection.
@@ -131,8 +131,9 @@ class HapticModel {
   private:
     struct Tool {
         ForceLimiter limiter, torque_limiter;
-        ContactPose last{};  // that was to be trusted
-        bool lost = false;   // the last position was not
+        ContactPose last{};         // that was to be trusted
+        bool lost = false;          // the last position was not
+        bool feels_torque = false;  // its device renders it
     };
 
     ContactPose begin(Tool& tool, const realtime::DeviceState& device, TickResult& result) noexcept;

@@ -25,7 +25,7 @@ double take_back(Vector3d& load, const Vector3d& along, double most) noexcept {
 }  // namespace
 
 void PassivityObserver::reset() noexcept {
-    std::fill(tools_.begin(), tools_.end(), Tool{});
+    for (Tool& tool : tools_) tool = Tool{.feels_torque = tool.feels_torque};
     excess_ = 0;
     watching_ = true;
 }
@@ -44,7 +44,7 @@ double PassivityObserver::excess_of(Tool& tool, const ContactPose& now,
     const Eigen::Quaterniond orientation = orientation_of(now);
     const Vector3d turn = rotation_between(tool.orientation, orientation);
     double excess = tool.force.dot(way) - coupling.stiffness * way.norm() * (way.norm() / 2 + resolution);
-    if (torque_is_felt_)
+    if (tool.feels_torque)
         excess += tool.torque.dot(turn) -
                   coupling.torsional_stiffness * turn.norm() * (turn.norm() / 2 + resolution / length_);
     else
@@ -65,7 +65,7 @@ void PassivityObserver::damp(std::span<const ContactPose> poses, const VirtualCo
     for (std::size_t t = 0; t < tools_.size() && left > 0; ++t) {
         Vector3d torque = vector_of(results[t].torque);
         double taken = take_back(forces[t], tools_[t].way, left);
-        if (torque_is_felt_) taken += take_back(torque, tools_[t].turn, left - taken);
+        if (tools_[t].feels_torque) taken += take_back(torque, tools_[t].turn, left - taken);
         if (!(taken > 0)) continue;
         results[t].torque = array_of(torque);
         results[t].status |= energy_injected;

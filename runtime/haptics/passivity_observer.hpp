@@ -32,9 +32,8 @@ class PassivityObserver {
 
     void reset() noexcept;
 
-    /// Whether hands feel torque; they do not until this is called.
-    void count_torque(bool felt) noexcept { torque_is_felt_ = felt; }
-    bool counts_torque() const noexcept { return torque_is_felt_; }
+    /// Whether a tool's hand feels its torque; none does until this is called.
+    void count_torque(std::size_t tool, bool felt) noexcept { tools_[tool].feels_torque = felt; }
 
     /// Adds the work of the forces that were held since the last tick. If there was more than there may be,
     /// lowers `forces`, N, along the way on which their tools gave it last, and the results' torques likewise
@@ -54,6 +53,7 @@ class PassivityObserver {
         Eigen::Vector3d force{0, 0, 0};   // on the device since the last tick, N
         Eigen::Vector3d torque{0, 0, 0};  // the same, N mm
         double pressed = 0;               // N, sum of contact forces
+        bool feels_torque = false;
     };
 
     double stored_unfelt(const Tool& tool, const ContactPose& now, double angle) const noexcept;
@@ -62,7 +62,6 @@ class PassivityObserver {
     std::vector<Tool> tools_;
     double length_;  // mm
     bool are_instruments_;
-    bool torque_is_felt_ = false;
     double excess_ =
         0;  // of this touch: work on the hands above what there may be, N mm; normally below zero
     bool watching_ = true;

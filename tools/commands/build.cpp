@@ -61,9 +61,7 @@ std::vector<case_builder::Override> overrides_of(const std::vector<std::string>&
 
 // What one build is made of.
 struct Build {
-    const std::filesystem::path& case_path;
     const case_builder::CaseFile& case_file;
-    const std::vector<case_builder::Override>& overrides;
     const case_builder::BuildPaths& paths;
     const std::vector<case_builder::Stage> stages;
     const case_builder::StageRunner& runner;
@@ -92,7 +90,7 @@ case_builder::StageRecord run(const Build& build, const case_builder::Stage& sta
 
 // While one build is at its parts another waits, for with the same parts it might be of another version of
 // the case.
-std::vector<case_builder::StageRecord> run_all(const Build& build) {
+std::vector<case_builder::StageRecord> run_all(const Build& build, case_builder::PlaceCheck& places) {
     const std::filesystem::path& parts = build.paths.parts;
     std::filesystem::create_directories(parts);
     if (case_builder::FolderLock::held_by_another(parts, "build"))
@@ -102,7 +100,7 @@ std::vector<case_builder::StageRecord> run_all(const Build& build) {
     std::vector<case_builder::StageRecord> records;
     for (const case_builder::Stage& stage : build.stages) {
         records.push_back(run(build, stage));
-        case_builder::check_places(build.case_path, build.case_file, build.overrides, records.back());
+        places.after(records.back());
         // A stage that ran has said so itself.
         if (const auto& record = records.back(); !record.ran)
             for (const auto& warning : record.result.value("warnings", nlohmann::ordered_json::array()))
@@ -226,6 +224,7 @@ int main(int argc, char** argv) {
                               "is missing, for the asset does not keep which series was chosen",
                               "its number, UID or description", "'palpate import FOLDER --list' lists them"});
         case_builder::check_case_file(case_path, case_file, overrides);
+        case_builder::PlaceCheck places(case_path, case_file, overrides);
         if (stage_name.empty())
             for (const std::string& doubt : case_builder::doubts_of(case_file)) spdlog::warn("{}", doubt);
         if (kept && !session.threads_given) session.threads = kept->threads.value_or(session.threads);
@@ -237,11 +236,12 @@ int main(int argc, char** argv) {
         using case_builder::TouchClock;
         const auto stages =
             stages_of(case_file, paths, virtual_clock ? TouchClock::virtual_time : TouchClock::real);
-        const Build build{case_path, case_file, overrides, paths, stages, runner};
+        const Build build{case_file, paths, stages, runner};
         if (forecast_only) return forecast(build, stage_name);
         const auto changed = kept ? changed_since(*kept, case_file) : std::vector<std::string>();
         tell_what_changed(changed, case_path);
-        const auto records = stage_name.empty() ? run_all(build) : std::vector{run_one(build, stage_name)};
+        const auto records =
+            stage_name.empty() ? run_all(build, places) : std::vector{run_one(build, stage_name)};
         nlohmann::ordered_json result{{"asset", paths.asset.string()},
                                       {"report", paths.report.string()},
                                       {"stages", stages_json(records)}};

@@ -317,10 +317,11 @@ int main(int argc, char** argv) {
                                   .positive()
                                   .shown_default(fmt::format("{:g}", draft::Wishes{}.contact_nodes));
     command
-        .option("--size-mib", request.size_mib,
-                "how large the asset may be: the mesh is about as fine as that allows, and its compliance is "
-                "compressed where it takes more; 0: as --contact-nodes has it",
-                "MiB")
+        .option(
+            "--size-mib", request.size_mib,
+            "what the compliance, most of an asset, may take: the mesh is about as fine as that allows, and "
+            "the compliance is compressed where it takes more; 0: as --contact-nodes has it",
+            "MiB")
         .range(0.0, 100'000.0)
         .excludes(nodes);
     command.flag("--yes", request.yes, "ask nothing on a terminal: take what is proposed");

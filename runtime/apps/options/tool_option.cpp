@@ -119,8 +119,7 @@ void tell_unfelt(const Case& patient_case, const std::string& scheme) {
 
 void tell_torque(const haptics::HapticModel& model, const std::string& device) {
     if (model.turns() && !model.torque_is_felt())
-        spdlog::info("'{}' renders no torque: that of the instrument is shown and recorded, and not felt",
-                     device);
+        spdlog::info("'{}' renders no torque: that of the tool is shown and recorded, and not felt", device);
 }
 
 void tell_too_weak(const Case& patient_case, const std::string& device) {

@@ -44,8 +44,8 @@ std::optional<JawSettings> jaws_of(const ToolOption& option);
 /// Warns of what of a case is not felt with a scheme.
 void tell_unfelt(const Case& patient_case, const std::string& scheme);
 
-/// Says where an instrument's torque is shown and recorded, and the device does not let it be felt. `device`:
-/// what it calls itself.
+/// Says where a tool's torque is shown and recorded, and a device does not let it be felt. `device`: what it
+/// calls itself.
 void tell_torque(const haptics::HapticModel& model, const std::string& device);
 
 /// Warns of each region of a case whose change of the force the device loses in its joints, and says how deep

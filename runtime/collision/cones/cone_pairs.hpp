@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "runtime/collision/cones/normal_cone_tree.hpp"
@@ -20,7 +21,7 @@ struct ConeReach {
 /// Realtime-safe.
 bool may_be_nearest(const ConeNode& a, const Eigen::Isometry3d& X_BA, const ConeNode& b,
                     const ConeReach& reach) noexcept;
-/// Whether their balls are near enough.
+/// Whether their balls are within so much of each other, mm. Realtime-safe.
 bool may_be_near(const ConeNode& a, const Eigen::Isometry3d& X_BA, const ConeNode& b, double within) noexcept;
 
 /// Calls visit(node of a, node of b) for all pairs of leaves all of whose nodes above `may_be`, a
@@ -28,7 +29,7 @@ bool may_be_near(const ConeNode& a, const Eigen::Isometry3d& X_BA, const ConeNod
 template <typename MayBe, typename Visit>
 bool for_each_pair(const NormalConeTree& a, const NormalConeTree& b, const MayBe& may_be,
                    const Visit& visit) noexcept {
-    constexpr std::size_t deepest = 128;  // of both trees together: they are balanced
+    constexpr std::size_t deepest = 64;  // of both trees together, which are balanced
     std::array<std::array<std::int32_t, 2>, deepest + 2> stack;
     std::size_t pending = 1;
     stack[0] = {0, 0};

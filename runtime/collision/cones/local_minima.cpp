@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/collision/cones/local_minima.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "runtime/collision/segment_queries.hpp"
 
@@ -10,27 +13,18 @@ namespace {
 
 using Eigen::Vector3d;
 
-bool has_bit(std::uint8_t bits, std::size_t i) noexcept {
-    return (bits >> i & 1U) != 0;
-}
-
 // Out of a triangle's face, or from an edge or a corner of it.
 bool is_outside_of(const TriangleCorners& triangle, const TrianglePoint& foot, const Vector3d& d) noexcept {
     return foot.feature != Feature::face || unit_normal(triangle).dot(d) > 0;
 }
 
-bool is_of(const TriangleFeatures& triangle, const TrianglePoint& foot, bool vertices_too) noexcept {
-    if (foot.feature == Feature::face) return true;
-    if (foot.feature == Feature::edge) return has_bit(triangle.own_edges, edge_of(foot));
-    return vertices_too && has_bit(triangle.own_vertices, corner_of(foot));
-}
-
 class Finder {
   public:
-    Finder(const FeaturePair& pair, double within, std::span<LocalMinimum> found) noexcept
+    Finder(const FeaturePair& pair, double within, PairMinima& found) noexcept
         : pair_(pair), within_(within), found_(found) {}
 
-    std::size_t find() noexcept {
+    void find() noexcept {
+        found_.count = 0;
         const TriangleFeatures &of_a = pair_.a.of(pair_.triangle_a), &of_b = pair_.b.of(pair_.triangle_b);
         for (std::size_t i = 0; i < 3; ++i) {
             if (has_bit(of_a.own_vertices, i)) vertex_of_a(of_a, of_b, i);
@@ -39,7 +33,7 @@ class Finder {
             for (std::size_t j = 0; j < 3; ++j)
                 if (has_bit(of_b.own_sharp_edges, j)) edges(i, j);
         }
-        return count_;
+        found_.least = std::sqrt(least_);
     }
 
   private:
@@ -51,7 +45,7 @@ class Finder {
         const Vector3d& p = pair_.corners_a[i];
         const TrianglePoint foot = closest_point_on_triangle(p, pair_.corners_b);
         const Vector3d d = p - foot.point;
-        if (is_far(foot.squared_distance) || !is_of(of_b, foot, true) ||
+        if (is_far(foot.squared_distance) || !belongs_to(of_b, foot) ||
             !is_outside_of(pair_.corners_b, foot, d) || !pair_.b.is_nearest(pair_.triangle_b, foot, d) ||
             !pair_.a.is_nearest_at_vertex(of_a.vertices[i], direction_in_a(-d)))
             return;
@@ -63,7 +57,7 @@ class Finder {
         const Vector3d& p = pair_.corners_b[i];
         TrianglePoint foot = closest_point_on_triangle(p, pair_.corners_a);
         const Vector3d on_a = foot.point, d = p - on_a;
-        if (is_far(foot.squared_distance) || !is_of(of_a, foot, false) ||
+        if (is_far(foot.squared_distance) || foot.feature == Feature::vertex || !belongs_to(of_a, foot) ||
             !is_outside_of(pair_.corners_a, foot, d) || !pair_.b.is_nearest_at_vertex(of_b.vertices[i], -d))
             return;
         foot.point = point_in_a(on_a);
@@ -81,24 +75,24 @@ class Finder {
             add(near.first, near.second);
     }
 
-    bool is_far(double squared_distance) const noexcept {
+    bool is_far(double squared_distance) noexcept {
+        least_ = std::min(least_, squared_distance);
         return !(squared_distance > 0) || squared_distance > within_ * within_;
     }
     void add(const Vector3d& on_a, const Vector3d& on_b) noexcept {
-        found_[count_++] = {on_a, on_b, (on_a - on_b).norm()};
+        found_.minima[found_.count++] = {on_a, on_b, (on_a - on_b).norm()};
     }
 
     const FeaturePair& pair_;
     const double within_;
-    std::span<LocalMinimum> found_;
-    std::size_t count_ = 0;
+    PairMinima& found_;
+    double least_ = std::numeric_limits<double>::infinity();  // mm²
 };
 
 }  // namespace
 
-std::size_t local_minima(const FeaturePair& pair, double within,
-                         std::span<LocalMinimum, most_minima_of_pair> found) noexcept {
-    return Finder(pair, within, found).find();
+void local_minima(const FeaturePair& pair, double within, PairMinima& found) noexcept {
+    Finder(pair, within, found).find();
 }
 
 }  // namespace palpate::collision

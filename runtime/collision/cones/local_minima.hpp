@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstddef>
-#include <span>
+#include <limits>
 
 #include "runtime/collision/features/surface_features.hpp"
 
@@ -29,11 +29,17 @@ struct FeaturePair {
 /// Most local minima between what belongs to two triangles: vertices of either on the other, and edges.
 inline constexpr std::size_t most_minima_of_pair = 3 + 3 + 9;
 
-/// Writes the local minima of the distance, no farther than `within` (mm), between what belongs to the two
-/// triangles, and returns how many there are: vertices and triangles of either, and convex edges of both.
-/// What triangles share belongs to one of them, so that over all pairs each minimum is found once.
+/// What a pair of triangles has.
+struct PairMinima {
+    std::size_t count = 0;                                   ///< of `minima`
+    std::array<LocalMinimum, most_minima_of_pair> minima;    ///< in the order of A's features
+    double least = std::numeric_limits<double>::infinity();  ///< mm, of all distances that were asked
+};
+
+/// Writes to `found` the local minima of the distance, no farther than `within` (mm), between what belongs to
+/// the two triangles, and the least distance of these: vertices and triangles of either, and convex edges of
+/// both. What triangles share belongs to one of them, so that over all pairs each minimum is found once.
 /// Realtime-safe.
-std::size_t local_minima(const FeaturePair& pair, double within,
-                         std::span<LocalMinimum, most_minima_of_pair> found) noexcept;
+void local_minima(const FeaturePair& pair, double within, PairMinima& found) noexcept;
 
 }  // namespace palpate::collision

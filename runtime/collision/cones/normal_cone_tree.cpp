@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <span>
+#include <utility>
 
 #include "formats/model/errors.hpp"
 
@@ -37,13 +39,12 @@ class Builder {
         nodes_.emplace_back();
     }
 
-    // Returns the depth.
-    std::int32_t split(std::size_t index, std::span<std::int32_t> part) {
+    void split(std::size_t index, std::span<std::int32_t> part) {
         set_ball(nodes_[index], part);
         set_cone(nodes_[index], part);
         if (part.size() == 1) {
             nodes_[index].triangle = part.front();
-            return 1;
+            return;
         }
         const std::size_t half = part.size() / 2;
         const Eigen::Index axis = longest_axis(part);
@@ -54,8 +55,8 @@ class Builder {
         nodes_[index].left = static_cast<std::int32_t>(left);
         nodes_.emplace_back();
         nodes_.emplace_back();
-        const std::int32_t first = split(left, part.first(half));
-        return 1 + std::max(first, split(left + 1, part.subspan(half)));
+        split(left, part.first(half));
+        split(left + 1, part.subspan(half));
     }
 
     std::span<std::int32_t> all() { return order_; }
@@ -70,8 +71,7 @@ class Builder {
             double spread = 0;
             for (std::size_t i = 0; i < 3; ++i) {
                 const std::int32_t from = its.vertices[i], to = its.vertices[(i + 1) % 3];
-                const bool vertex = (its.own_vertices >> i & 1U) != 0,
-                           edge = (its.own_sharp_edges >> i & 1U) != 0;
+                const bool vertex = has_bit(its.own_vertices, i), edge = has_bit(its.own_sharp_edges, i);
                 if (edge && its.across[i] < 0) spread = std::numbers::pi;
                 for (const std::int32_t other : rings_[static_cast<std::size_t>(from)])
                     if (vertex || (edge && has_vertex(other, to)))
@@ -165,7 +165,7 @@ NormalConeTree::NormalConeTree(const SurfaceFeatures& features) : features_(feat
     if (features.triangle_count() == 0)
         throw InvalidInput({"normal cones", "a surface without triangles", "one at least", ""});
     Builder builder(features, nodes_);
-    depth_ = builder.split(0, builder.all());
+    builder.split(0, builder.all());
     for (std::size_t t = 0; t < features.triangle_count(); ++t)
         for (const Vector3d& corner : features.corners(t))
             longest_arm_ = std::max(longest_arm_, corner.norm());

@@ -2,8 +2,8 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "runtime/collision/features/surface_features.hpp"
@@ -22,7 +22,8 @@ struct ConeNode {
 };
 
 /// A hierarchy of balls and normal cones over a surface (Johnson, Cohen 2001, "Spatialized normal cone
-/// hierarchies"); a leaf is one triangle. A triangle's cone holds its normal, those beyond the sharp edges
+/// hierarchies"); a leaf is one triangle, and halves are of equal count, so that no
+/// path is longer than 32 nodes. A triangle's cone holds its normal, those beyond the sharp edges
 /// that belong to it and those about its vertices, and so all directions of its features; at a border any.
 class NormalConeTree {
   public:
@@ -35,14 +36,11 @@ class NormalConeTree {
     const SurfaceFeatures& features() const noexcept { return features_; }
     /// The farthest that any vertex is from the origin, mm.
     double longest_arm() const noexcept { return longest_arm_; }
-    /// Nodes from the root to the deepest leaf.
-    std::int32_t depth() const noexcept { return depth_; }
 
   private:
     const SurfaceFeatures& features_;
     std::vector<ConeNode> nodes_;
     double longest_arm_ = 0;
-    std::int32_t depth_ = 0;
 };
 
 }  // namespace palpate::collision

@@ -59,6 +59,11 @@ class SurfaceFeatures {
     std::vector<std::int32_t> ring_;        // the other ends of its edges
 };
 
+/// Whether bit `i` of a triangle's own vertices or edges is set. Realtime-safe.
+inline bool has_bit(std::uint8_t bits, std::size_t i) noexcept {
+    return (bits >> i & 1U) != 0;
+}
+
 /// The corner, or the edge's first corner, that a query's point lies on, by its weights.
 inline std::size_t corner_of(const TrianglePoint& found) noexcept {
     Eigen::Index corner = 0;
@@ -69,6 +74,13 @@ inline std::size_t edge_of(const TrianglePoint& found) noexcept {
     Eigen::Index across = 0;
     found.barycentric.minCoeff(&across);
     return (static_cast<std::size_t>(across) + 1) % 3;
+}
+
+/// Whether the feature that a query's point lies on belongs to the triangle. Realtime-safe.
+inline bool belongs_to(const TriangleFeatures& triangle, const TrianglePoint& found) noexcept {
+    if (found.feature == Feature::face) return true;
+    return found.feature == Feature::vertex ? has_bit(triangle.own_vertices, corner_of(found))
+                                            : has_bit(triangle.own_edges, edge_of(found));
 }
 
 }  // namespace palpate::collision

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/devices/dynamics/dynamic_device.hpp"
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <memory>
+#include <string>
 #include <utility>
 
 #include "formats/model/arrays.hpp"

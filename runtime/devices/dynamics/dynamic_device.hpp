@@ -27,7 +27,8 @@ namespace palpate::devices {
 /// take_up_speed beyond its own motion, so that nothing jumps. Time goes in steps of 1/16 ms, over which h
 /// moves uniformly and friction keeps its direction; the rest is solved exactly. While Motors are warm the
 /// state carries motors_warm; they go on. The tool of a device that renders torque turns as a Wrist has it,
-/// once it is known how it is turned; that of another turns as the hand wishes. Same calls, same bits.
+/// if it is known at the start how it is turned; that of another turns as the hand wishes. Same calls, same
+/// bits.
 class DynamicDevice final : public realtime::Device {
   public:
     static constexpr double step_s = 1e-3 / 16;

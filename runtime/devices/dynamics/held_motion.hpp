@@ -8,6 +8,7 @@ namespace palpate::devices {
 /// m x'' + c x' + k x = F. In translation in mm, N and m in N s²/mm; in rotation in rad, N mm and N mm s².
 class HeldMotion {
   public:
+    /// `mass`: m, above zero (unchecked), `damping`: c, `stiffness`: k; `step_s`: of each step, s.
     HeldMotion(double mass, double damping, double stiffness, double step_s);
 
     Eigen::Vector3d offset(const Eigen::Vector3d& x, const Eigen::Vector3d& velocity,

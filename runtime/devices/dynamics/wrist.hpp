@@ -28,10 +28,10 @@ class Wrist {
     /// the motors meanwhile, N mm, frame D.
     void step(const Eigen::Quaterniond& wish, bool holds, const Eigen::Vector3d& torque) noexcept;
 
-    const Eigen::Quaterniond& orientation() const noexcept { return orientation_; }  ///< R_DT
-    const Eigen::Vector3d& angular_velocity() const noexcept {
-        return angular_velocity_;
-    }  ///< rad/s, frame D
+    /// R_DT.
+    const Eigen::Quaterniond& orientation() const noexcept { return orientation_; }
+    /// rad/s, frame D.
+    const Eigen::Vector3d& angular_velocity() const noexcept { return angular_velocity_; }
 
   private:
     Eigen::Quaterniond grip(const Eigen::Quaterniond& wish, bool holds) noexcept;

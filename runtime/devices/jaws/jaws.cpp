@@ -74,7 +74,8 @@ class Jaw final : public Device {
         limits.max_force /= 2;
         limits.max_stiffness /= 2;
         limits.damping /= 2;
-        limits.max_torque = 0;  // jaws are not turned by tissue
+        limits.max_torque = limits.max_continuous_torque = 0;  // jaws are not turned by tissue
+        limits.max_torsional_stiffness = limits.torsional_damping = 0;
         return limits;
     }
     Calibration calibration() override { return handle_->device().calibration(); }

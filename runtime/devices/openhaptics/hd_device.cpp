@@ -128,7 +128,7 @@ void HdDevice::describe(const std::string& name) {
 }
 
 // A device with motors in its gimbal says so and how strong they are. One that does not say how strong, or
-// whose driver refuses a frame without torque, gets none.
+// whose driver refuses a frame of zero torque, gets none.
 void HdDevice::describe_torque() {
     int degrees = 0;
     api_.get_integers(output_dof, &degrees);
@@ -136,13 +136,11 @@ void HdDevice::describe_torque() {
     constexpr std::array<double, 3> none{0, 0, 0};
     api_.begin_frame(handle_);
     api_.set_doubles(current_torque, none.data());
-    const bool refused = take_hd_errors(api_).code != success;
     api_.end_frame(handle_);
-    take_hd_errors(api_);
-    if (refused) return;
-    limits_.max_torque = nominal(nominal_max_torque);
-    limits_.max_continuous_torque = nominal(nominal_max_continuous_torque);
-    limits_.max_torsional_stiffness = nominal(nominal_max_torsional_stiffness);
+    if (take_hd_errors(api_).code != success) return;
+    limits_.max_torque = std::max(0.0, nominal(nominal_max_torque));
+    limits_.max_continuous_torque = std::max(0.0, nominal(nominal_max_continuous_torque));
+    limits_.max_torsional_stiffness = std::max(0.0, nominal(nominal_max_torsional_stiffness));
     renders_torque_ = limits_.max_torque > 0;
 }
 

@@ -70,10 +70,10 @@ Finding limits(const DeviceLimits& limits) {
     if (!(limits.max_force > 0))
         return {"limits", device_group, Level::warning, "the device does not say how strong it is",
                 "# keep 'max_force_n' in the case file's [haptics] to what its data sheet says"};
-    const std::string torque = limits.max_torque > 0
-                                   ? fmt::format("; {:.0f} N mm, for long {:.0f} N mm", limits.max_torque,
-                                                 limits.max_continuous_torque)
-                                   : "; no torque";
+    std::string torque = ", no torque";
+    if (limits.max_torque > 0) torque = fmt::format(", torque {:.0f} N mm", limits.max_torque);
+    if (limits.max_continuous_torque > 0)
+        torque += fmt::format(", for long {:.0f} N mm", limits.max_continuous_torque);
     return {"limits", device_group, Level::ok,
             fmt::format("{:.1f} N, for long {:.2f} N, stiffness {:.2f} N/mm, {:.0f} Hz", limits.max_force,
                         limits.max_continuous_force, limits.max_stiffness, limits.rate_hz) +

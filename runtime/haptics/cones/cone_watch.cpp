@@ -5,7 +5,6 @@
 #include <array>
 
 #include "runtime/collision/cones/cone_pairs.hpp"
-#include "runtime/collision/cones/local_minima.hpp"
 #include "runtime/collision/tree_pairs.hpp"
 
 namespace palpate::haptics {
@@ -39,13 +38,12 @@ void ConeWatch::look(const ToolPose& pose) noexcept {
     met_ = (met_ || part_of_least * least_ < least_step) && meets(pose);
     if (!holds(around_)) gather(X_PT);
     touch_count_ = 0;
+    least_ = within_;
     placed_ = -1;
     if (keeps_)
         look_at_kept(X_PT);
     else
         search(X_PT);
-    least_ = within_;
-    for (const ToolTouch& touch : close()) least_ = std::min(least_, touch.distance + reach_);
 }
 
 void ConeWatch::look_at_kept(const Eigen::Isometry3d& X_PT) noexcept {
@@ -113,10 +111,9 @@ void ConeWatch::look_at(const Eigen::Isometry3d& X_PT, const Kept& pair) noexcep
     if (placed_ != pair.mine->triangle) corners_ = placed(X_PT, mine.corners(triangle));
     placed_ = pair.mine->triangle;
     const collision::TriangleCorners corners = its.corners(other);
-    std::array<collision::LocalMinimum, collision::most_minima_of_pair> found;
-    const std::size_t count =
-        collision::local_minima({mine, its, triangle, other, X_PT, corners_, corners}, within_, found);
-    for (const collision::LocalMinimum& minimum : std::span(found).first(count))
+    collision::local_minima({mine, its, triangle, other, X_PT, corners_, corners}, within_, found_);
+    least_ = std::min(least_, found_.least);
+    for (const collision::LocalMinimum& minimum : std::span(found_.minima).first(found_.count))
         add(pair, minimum.on_a, minimum.on_b, minimum.distance);
 }
 

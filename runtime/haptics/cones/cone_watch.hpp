@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "runtime/collision/cones/local_minima.hpp"
 #include "runtime/collision/cones/normal_cone_tree.hpp"
 #include "runtime/collision/triangle_queries.hpp"
 #include "runtime/haptics/tool_pose.hpp"
@@ -14,10 +15,10 @@
 namespace palpate::haptics {
 
 /// Finds where the distance between a tool's surface and those of bodies has local minima within `reach` or a
-/// little more: the
-/// spatialized normal cone search of Johnson, Willemsen, Cohen 2005, "Six degree-of-freedom haptic rendering
-/// using spatialized normal cone search". The pairs of triangles that may hold one are kept while the tool
-/// moves and turns a little. Everything is allocated on construction; look() and meets() are realtime-safe.
+/// little more: the spatialized normal cone search of Johnson, Willemsen, Cohen 2005, "Six degree-of-freedom
+/// haptic rendering using spatialized normal cone search". The pairs of triangles that may hold one are kept
+/// while the tool moves and turns a little. Everything is allocated on construction; look() and meets() are
+/// realtime-safe.
 class ConeWatch {
   public:
     /// Pairs of triangles that are kept; where more are near, all are searched for anew.
@@ -95,6 +96,7 @@ class ConeWatch {
     std::size_t touch_count_ = 0;
     std::int32_t placed_ = -1;  // the tool's triangle whose corners are these, frame P
     collision::TriangleCorners corners_;
+    collision::PairMinima found_;  // of the pair that is looked at
 };
 
 }  // namespace palpate::haptics

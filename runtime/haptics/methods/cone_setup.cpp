@@ -10,7 +10,7 @@ namespace {
 
 // So far from a surface a single minimum gives the largest force before they meet, mm; within bounds that are
 // choices.
-double reach_of(const HapticSettings& settings, double contact_stiffness) {
+double reach_from(const HapticSettings& settings, double contact_stiffness) {
     constexpr double least = 0.2, most = 2;
     return std::clamp(settings.max_force / contact_stiffness, least, most);
 }
@@ -24,7 +24,7 @@ collision::SurfaceFeatures features_of_tool(const Case& patient_case) {
 
 ConeContact::ConeContact(const Case& patient_case, const ContactBodies& bodies, std::size_t tool_count)
     : WholeToolContact(bodies, whole_tool_settings(patient_case, "cones"), tool_count),
-      reach_(reach_of(patient_case.haptics, settings_.contact_stiffness)),
+      reach_(reach_from(patient_case.haptics, settings_.contact_stiffness)),
       tool_(features_of_tool(patient_case)),
       tool_tree_(tool_) {
     for (const RigidBody& body : patient_case.rigid_bodies)

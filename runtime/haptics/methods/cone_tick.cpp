@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // How normal cones find what a whole tool is pushed off by.
-#include <algorithm>
-
 #include "runtime/haptics/methods/cone_contact.hpp"
 #include "runtime/haptics/whole_tool/penalty_equilibrium.hpp"
 
 namespace palpate::haptics {
-
-using Eigen::Vector3d;
 
 namespace {
 
@@ -23,9 +19,7 @@ void ConeContact::forget(std::size_t tool) noexcept {
 bool ConeContact::is_clear(std::size_t tool, const ToolPose& pose) noexcept {
     if (watches_[tool].meets(pose)) return false;
     // No surface cuts another: one point of the tool tells whether it is in a body.
-    const Vector3d p = pose.position + pose.orientation * tool_.vertex(0);
-    return std::ranges::all_of(std::span(bodies_.surfaces).first(bodies_.rigid_count()),
-                               [&](const auto& surface) { return surface->is_outside(p); });
+    return is_outside_all(pose.position + pose.orientation * tool_.vertex(0));
 }
 
 ToolRest ConeContact::bring_to_rest(std::size_t tool, const TurningCoupling& coupling,

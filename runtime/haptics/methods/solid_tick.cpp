@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // How triangles find what a whole tool touches.
-#include <algorithm>
-
 #include "runtime/haptics/methods/solid_contact.hpp"
 
 namespace palpate::haptics {
-
-using Eigen::Vector3d;
 
 void SolidContact::forget(std::size_t tool) noexcept {
     watches_[tool].reset();
@@ -17,8 +13,7 @@ bool SolidContact::is_clear(std::size_t tool, const ToolPose& pose) noexcept {
     watch.look(pose);
     if (watch.meets()) return false;
     // No surface cuts another: one point of the tool tells whether it is in a body.
-    const Vector3d p = pose.position + pose.orientation * surface_.vertex(0);
-    return std::ranges::all_of(solids_, [&](const SolidBody& body) { return body.surface->is_outside(p); });
+    return is_outside_all(pose.position + pose.orientation * surface_.vertex(0));
 }
 
 ToolRest SolidContact::bring_to_rest(std::size_t tool, const TurningCoupling& coupling,

@@ -49,6 +49,9 @@ class WholeToolContact : public ContactMethod {
     /// Within which distance of a touch's point its body's surface is, mm.
     virtual double surface_within(const ToolTouch& touch) const noexcept = 0;
 
+    /// Whether a point (p_P, mm) is outside of every rigid body.
+    bool is_outside_all(const Eigen::Vector3d& p) const noexcept;
+
     const ContactBodies& bodies_;
     const ToolSettings settings_;
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <functional>
 #include <limits>
+#include <span>
 
 #include "formats/model/arrays.hpp"
 #include "runtime/haptics/methods/whole_tool_contact.hpp"
@@ -51,6 +52,11 @@ void WholeToolContact::tick(std::span<const ContactPose> poses, const VirtualCou
         }
         tell(t, device, results[t]);
     }
+}
+
+bool WholeToolContact::is_outside_all(const Vector3d& p) const noexcept {
+    return std::ranges::all_of(std::span(bodies_.surfaces).first(bodies_.rigid_count()),
+                               [&](const auto& surface) { return surface->is_outside(p); });
 }
 
 // Whether the tool has been clear of every body since it was placed; until then it is where its device is.

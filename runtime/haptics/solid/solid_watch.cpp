@@ -11,6 +11,7 @@
 namespace palpate::haptics {
 
 using collision::Feature;
+using collision::has_bit;
 using collision::TriangleCorners;
 using Eigen::Vector3d;
 
@@ -25,10 +26,6 @@ constexpr double float_rounding = 1e-4;  // mm: of float32 about distances that 
 // How far the balls about two segments are apart, mm.
 double balls_apart(const Vector3d& a0, const Vector3d& a1, const Vector3d& b0, const Vector3d& b1) noexcept {
     return 0.5 * ((a0 + a1 - b0 - b1).norm() - (a1 - a0).norm() - (b1 - b0).norm());
-}
-
-bool has_bit(std::uint8_t bits, std::size_t i) noexcept {
-    return (bits >> i & 1U) != 0;
 }
 
 }  // namespace
@@ -273,10 +270,7 @@ double SolidWatch::look_at_vertex(const Pair& pair, std::size_t i, double height
     const double distance = std::sqrt(foot.squared_distance);
     if (!(distance < close) || !(distance > 0)) return distance;
     const collision::SurfaceFeatures& features = *bodies_[static_cast<std::size_t>(pair.body)].features;
-    const collision::TriangleFeatures& its = features.of(pair.slot);
-    const bool is_its = foot.feature == Feature::face ||
-                        (foot.feature == Feature::vertex && has_bit(its.own_vertices, corner_of(foot))) ||
-                        (foot.feature == Feature::edge && has_bit(its.own_edges, edge_of(foot)));
+    const bool is_its = collision::belongs_to(features.of(pair.slot), foot);
     found(pair, plane_between(p, foot.point, distance), p,
           is_its && features.is_nearest(pair.slot, foot, p - foot.point));
     return distance;
@@ -291,9 +285,8 @@ double SolidWatch::look_at_its_vertex(const Pair& pair, std::size_t i, double he
     auto foot = collision::closest_point_on_triangle(p, pair.tool.corners);
     const double distance = std::sqrt(foot.squared_distance);
     if (!(distance < close) || !(distance > 0)) return distance;
-    const collision::TriangleFeatures& mine = tool_.of(pair.triangle);
-    const bool is_mine = foot.feature == Feature::face ||
-                         (foot.feature == Feature::edge && has_bit(mine.own_edges, edge_of(foot)));
+    const bool is_mine =
+        foot.feature != Feature::vertex && collision::belongs_to(tool_.of(pair.triangle), foot);
     PartingPlane plane = plane_between(foot.point, p, distance);
     plane.turns = true;
     const Vector3d on_tool = foot.point;

@@ -62,7 +62,7 @@ class PenaltyModel {
         return 0.5 * ((pulled_ + motion).cwiseAbs2().dot(spring_) + at_.contact_stiffness * contact);
     }
 
-    // The least of the piece that a motion lies in: with those points as springs that are inside there.
+    /// The least of the piece that a motion lies in: with those points as springs that are inside there.
     Twist least_of_piece(const Twist& motion) const noexcept {
         Eigen::Matrix<double, 6, 6> H = spring_.asDiagonal();
         Twist gradient = spring_.cwiseProduct(pulled_);
@@ -75,7 +75,7 @@ class PenaltyModel {
         return -H.selfadjointView<Eigen::Lower>().ldlt().solve(gradient);
     }
 
-    // The motion of least energy, piece by piece downhill.
+    /// The motion of least energy, piece by piece downhill.
     Twist least() const noexcept {
         Twist motion = Twist::Zero();
         double lowest = energy(motion);
@@ -109,7 +109,8 @@ class PenaltyModel {
 ///     E = 1/2 k |x - x_d|^2 + 1/2 kappa |theta|^2 + sum_i 1/2 K d_i^2,
 /// x its position, theta the rotation vector from the device's orientation to its own, d_i < 0 the distances
 /// of `watch`'s touches; in rounds, each to the least of E where these change in proportion to the motion
-/// (Gauss-Newton, those that come in or go out among them), halved until E goes down and nothing is met. No
+/// (Gauss-Newton, those that come in or go out among them), halved until E goes down and nothing is met; with
+/// crosses_kinks the last half is taken nevertheless where E jumps. No
 /// step takes a point farther than longest_step(), mm, for the pose last looked at. Leaves in `watch` what is
 /// close to the pose. Realtime-safe where `watch` is: look(), close(), met() and reach_of() are asked of it.
 template <typename Watch, typename LongestStep>
@@ -141,10 +142,10 @@ ToolRest rest_of_penalties(Watch& watch, const TurningCoupling& coupling, double
                 energy = lower;
                 break;
             }
-            if (halving == effort.halvings) {  // a minimum, at a kink
+            if (halving == effort.halvings) {  // a minimum at a kink, or the way is barred
                 pose = from;
                 watch.look(pose);
-                return ToolRest::settled;
+                return std::isfinite(lower) ? ToolRest::settled : ToolRest::unsettled;
             }
             step *= 0.5;
         }

@@ -18,7 +18,9 @@ class ProbeDevice final : public realtime::Device {
                 .max_continuous_force = 1,
                 .rate_hz = 1000,
                 .workspace_low = {-80, -60, -35},
-                .workspace_high = {80, 60, 45}};
+                .workspace_high = {80, 60, 45},
+                .max_torque = 100,
+                .max_torsional_stiffness = 500};
     }
     realtime::DeviceState read(double time) noexcept override {
         realtime::DeviceState told = state;

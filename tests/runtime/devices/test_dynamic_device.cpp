@@ -418,6 +418,7 @@ TEST(DeviceModel, is_known_by_what_a_device_calls_itself) {
     };
     EXPECT_EQ(name_of("PHANTOM Omni 4711 'Left'"), "touch");
     EXPECT_EQ(name_of("PHANTOM Premium 1.5 'Default'"), "premium");
+    EXPECT_EQ(name_of("PHANTOM Premium 1.5/6DOF 7"), "premium-6dof");
     EXPECT_EQ(name_of("Touch X 12"), "desktop");
     EXPECT_EQ(name_of("touch Default Device"), "touch");
     EXPECT_EQ(name_of("simulated desktop, scripted hand"), "desktop");

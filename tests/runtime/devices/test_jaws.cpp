@@ -72,6 +72,8 @@ TEST_F(JawsTest, the_device_feels_both_and_each_has_half_of_what_it_bears) {
         EXPECT_EQ(jaw->limits().max_force, 1.5);
         EXPECT_EQ(jaw->limits().max_stiffness, 0.25);
         EXPECT_EQ(jaw->limits().damping, 5e-4);
+        EXPECT_EQ(jaw->limits().max_torque, 0);
+        EXPECT_EQ(jaw->limits().max_torsional_stiffness, 0);
     }
 }
 

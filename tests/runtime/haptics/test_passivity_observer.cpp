@@ -157,7 +157,7 @@ class WatchedTurn {
   public:
     static constexpr double length = 50;  // mm, of the tool
 
-    WatchedTurn() : observer_(1, length, true) { observer_.count_torque(true); }
+    WatchedTurn() : observer_(1, length, true) { observer_.count_torque(0, true); }
 
     std::uint32_t tick(double angle, double wanted) {
         work_ += result_.torque[0] * (angle - angle_);

@@ -3,9 +3,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
 
+#include "formats/model/image_grid.hpp"
 #include "formats/model/label_map.hpp"
 #include "formats/toml_file/table_reader.hpp"
 #include "tools/case_builder/checks/mistakes.hpp"
@@ -30,7 +34,7 @@ std::string text_of(const Vector3d& p) {
 }
 
 std::string text_of(const AlignedBox3d& box) {
-    return fmt::format("between {} and {} mm", text_of(box.min()), text_of(box.max()));
+    return fmt::format("{} and {} mm", text_of(box.min()), text_of(box.max()));
 }
 
 Vector3d point_of(const ordered_json& numbers, std::size_t first = 0) {
@@ -80,15 +84,22 @@ void check_seeds(const TableReader& table, const StructureSpec& structure, const
     }
 }
 
+// A corner of the box that a structure is cut to.
+std::optional<Vector3d> corner_of(const StructureSpec& structure, const std::string& key) {
+    if (!structure.parameters.contains(key)) return std::nullopt;
+    const imaging::RecipeValue value = imaging::recipe_value(structure.parameters.at(key), key);
+    const auto* numbers = std::get_if<std::vector<double>>(&value);
+    if (numbers == nullptr || numbers->size() != 3) return std::nullopt;
+    return Vector3d(numbers->data());
+}
+
 void check_cut_box(const TableReader& table, const StructureSpec& structure, const AlignedBox3d& image,
                    Mistakes& mistakes) {
-    const ordered_json& given = structure.parameters;
-    if (!given.contains("box_min_mm") || !given.contains("box_max_mm")) return;
-    const AlignedBox3d cut(point_of(given["box_min_mm"]), point_of(given["box_max_mm"]));
-    if (!cut.intersects(image))
+    const auto low = corner_of(structure, "box_min_mm"), high = corner_of(structure, "box_max_mm");
+    if (low && high && !AlignedBox3d(*low, *high).intersects(image))
         mistakes.push_back(table.complaint(table.node("box_min_mm"), "box_min_mm",
                                            "begins a box that lies beside the image",
-                                           "a box within " + text_of(image).substr(8), frame_hint));
+                                           "a box that reaches between " + text_of(image), frame_hint));
 }
 
 void check_structures(TableReader& root, const CaseFile& case_file, const ImageGrid& grid,
@@ -101,15 +112,14 @@ void check_structures(TableReader& root, const CaseFile& case_file, const ImageG
     }
 }
 
-// The box around a label's voxels and a voxel more.
+// The box around a label's voxels.
 AlignedBox3d box_of(const ordered_json& label) {
-    const double voxels = label.at("voxels"), volume_ml = label.at("volume_ml");
-    const Vector3d more = Vector3d::Constant(std::cbrt(1000 * volume_ml / voxels));
-    return {point_of(label.at("box_min_mm")) - more, point_of(label.at("box_max_mm")) + more};
+    return {point_of(label.at("box_min_mm")), point_of(label.at("box_max_mm"))};
 }
 
-// That around all labels of a body; empty if one of them was not found.
-AlignedBox3d box_of(const DeformableSpec& body, const ordered_json& found) {
+// That around all labels of a body, and as much more as a mesh of them may reach: a voxel's edge and a
+// cell's, mm. Empty if a label was not found.
+AlignedBox3d box_of(const DeformableSpec& body, const ordered_json& found, double voxel) {
     std::vector<Label> names;
     for (const ordered_json& label : found) names.push_back({label.at("value"), label.at("name")});
     AlignedBox3d box;
@@ -119,7 +129,8 @@ AlignedBox3d box_of(const DeformableSpec& body, const ordered_json& found) {
         box.extend(box_of(*std::ranges::find_if(
             found, [&](const ordered_json& label) { return label.at("value") == called->value; })));
     }
-    return box;
+    const Vector3d more = Vector3d::Constant(voxel + body.mesh.sizing.cell_size);
+    return {box.min() - more, box.max() + more};
 }
 
 // What a rule is that can pick nothing in the box; null if it may.
@@ -148,17 +159,18 @@ void check_picks(TableReader& table, const std::string& key, const std::vector<s
         if (kind == nullptr) continue;
         mistakes.push_back(table.complaint(rule.raw(), key,
                                            fmt::format("has a {} that lies beside '{}'", kind, spec.name),
-                                           "a place where it lies, " + text_of(body), frame_hint));
+                                           "a place where it lies, between " + text_of(body), frame_hint));
     }
 }
 
-void check_bodies(TableReader& root, const CaseFile& case_file, const ordered_json& labels,
+void check_bodies(TableReader& root, const CaseFile& case_file, const ordered_json& labels, double voxel,
                   Mistakes& mistakes) {
     std::size_t index = 0;
     for (TableReader& table : root.tables("deformable")) {
         const DeformableSpec& spec = case_file.deformable[index++];
-        const AlignedBox3d body = box_of(spec, labels);
-        if (body.isEmpty() || !spec.mesh.mesh_file.empty()) continue;
+        if (!spec.mesh.mesh_file.empty()) continue;
+        const AlignedBox3d body = box_of(spec, labels, voxel);
+        if (body.isEmpty()) continue;
         check_picks(table, "fixed", spec.condense.fixed, spec, body, mistakes);
         check_picks(table, "contact", spec.condense.contact, spec, body, mistakes);
     }
@@ -166,19 +178,33 @@ void check_bodies(TableReader& root, const CaseFile& case_file, const ordered_js
 
 }  // namespace
 
-void check_places(const std::filesystem::path& path, const CaseFile& case_file,
-                  std::span<const Override> overrides, const StageRecord& done) {
+struct PlaceCheck::Read {
+    const CaseFile& case_file;
+    std::filesystem::path path;
+    toml::table document;
+    double voxel = 0;  // mm, the longest edge of the image's
+};
+
+PlaceCheck::PlaceCheck(const std::filesystem::path& path, const CaseFile& case_file,
+                       std::span<const Override> overrides)
+    : read_(new Read{case_file, path, read_toml(path, overrides)}) {}
+
+PlaceCheck::~PlaceCheck() = default;
+
+void PlaceCheck::after(const StageRecord& done) {
     // Of two images seeds are meant in the volume.
-    const bool imported = done.name == (case_file.volume ? "import volume" : "import labels");
+    const bool imported = done.name == (read_->case_file.volume ? "import volume" : "import labels");
     if (!imported && done.name != "segment") return;
-    const toml::table document = read_toml(path, overrides);
-    TableReader root(document, path.string(), "");
+    TableReader root(read_->document, read_->path.string(), "");
     Mistakes mistakes;
-    if (imported)
-        check_structures(root, case_file, grid_of(done.result.at("grid")), mistakes);
-    else
-        check_bodies(root, case_file, done.result.at("labels"), mistakes);
-    throw_mistakes(path, mistakes);
+    if (imported) {
+        const ImageGrid grid = grid_of(done.result.at("grid"));
+        read_->voxel = grid.spacing.maxCoeff();
+        check_structures(root, read_->case_file, grid, mistakes);
+    } else {
+        check_bodies(root, read_->case_file, done.result.at("labels"), read_->voxel, mistakes);
+    }
+    throw_mistakes(read_->path, mistakes);
 }
 
 }  // namespace palpate::case_builder

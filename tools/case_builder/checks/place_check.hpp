@@ -1,19 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <filesystem>
+#include <memory>
 #include <span>
 
-#include "formats/model/image_grid.hpp"
 #include "tools/case_builder/case_file.hpp"
+#include "tools/case_builder/overrides.hpp"
 #include "tools/case_builder/stage_runner.hpp"
 
 namespace palpate::case_builder {
 
-/// Looks in a case for places that miss what the stages before have found, so that it is told before the next
-/// one works: once an image is imported, seeds and cut boxes beside it; once it is segmented, rules for
-/// nodes (a box, a sphere, a plane) beside the labels of their body. `done`: the stage that has just been
-/// done, of this case. Throws InvalidInput that names every such place with line and key.
-void check_places(const std::filesystem::path& path, const CaseFile& case_file,
-                  std::span<const Override> overrides, const StageRecord& done);
+/// Looks in a case for places that miss what a build's stages find, so that it is told before the next one
+/// works: once an image is imported, seeds and boxes that structures are cut to; once it is segmented, rules
+/// for nodes (a box, a sphere, a plane) beside the labels of their body. Seeds of files and scribbles are not
+/// looked at: `palpate segment` does.
+class PlaceCheck {
+  public:
+    /// Reads the case file, of which `case_file` was made with `overrides` and must outlive this, as it is
+    /// now. Throws as read_toml().
+    PlaceCheck(const std::filesystem::path& path, const CaseFile& case_file,
+               std::span<const Override> overrides);
+    ~PlaceCheck();
+
+    /// To be called after each stage, in their order. Throws InvalidInput that names every place beside what
+    /// that stage found, with line and key.
+    void after(const StageRecord& done);
+
+  private:
+    struct Read;
+    std::unique_ptr<Read> read_;
+};
 
 }  // namespace palpate::case_builder

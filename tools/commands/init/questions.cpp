@@ -73,8 +73,8 @@ void ask_size(InitRequest& request, cli::Questions& questions) {
     if (!questions.asks() || request.size_mib > 0 || request.contact_nodes > 0) return;
     static constexpr double least = 1, most = 100'000, usual = 140;  // MiB, of some 2 000 nodes
     request.size_mib = std::stod(questions.ask(
-        "How large may the asset be, MiB? Half of it is a mesh a fifth coarser", fmt::format("{}", usual),
-        [](const std::string& answer) {
+        "What may the compliance, most of the asset, take, MiB? Half of it is a mesh a fifth coarser",
+        fmt::format("{}", usual), [](const std::string& answer) {
             char* end = nullptr;
             const double size = std::strtod(answer.c_str(), &end);
             if (end == answer.c_str() || *end != '\0' || !(size >= least && size <= most))

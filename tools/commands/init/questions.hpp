@@ -27,7 +27,7 @@ void ask_name(InitRequest& request, cli::Questions& questions);
 /// Where the tool comes from.
 void ask_approach(InitRequest& request, cli::Questions& questions);
 
-/// How large the asset may be.
+/// What the compliance may take.
 void ask_size(InitRequest& request, cli::Questions& questions);
 
 /// A point in what is clicked into, where there is no display to click one.

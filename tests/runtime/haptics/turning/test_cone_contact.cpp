@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <limits>
 #include <numbers>
+#include <random>
+#include <vector>
 
 #include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
@@ -114,6 +116,16 @@ TEST(Cones, a_bar_that_is_held_over_a_rim_turns_and_gives_the_torque_of_its_leve
     const double tolerance = 0.03 * torque_of(result).norm();
     EXPECT_NEAR(torque_of(result).y(), arm.cross(force_of(result)).y(), tolerance);
     EXPECT_LT(std::abs(torque_of(result).x()), tolerance);
+}
+
+// Minima that come and go take their force along at once, so a closed way is not without loss here; it gives
+// little.
+TEST(Cones, a_closed_loop_of_position_and_orientation_gives_hardly_any_energy) {
+    HapticModel model(plate_and_bar(), "cones");
+    const Loop loop = work_of_loop(model, 450);
+    RecordProperty("work_of_stored", std::to_string(loop.work / loop.stored));
+    EXPECT_GT(loop.stored, 0.3);
+    EXPECT_LT(loop.work, 0.05 * loop.stored);
 }
 
 TEST(Cones, a_tool_that_begins_inside_feels_nothing_until_it_has_been_clear) {
