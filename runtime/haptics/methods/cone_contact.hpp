@@ -18,9 +18,9 @@ namespace palpate::haptics {
 /// Where it is not as in 2005, and why: there the tool has a mass and its motion is integrated, and what goes
 /// through is lost; here it is at rest (Wan, McNeely 2003) and moves no farther at a time than its least
 /// distance; where that is hardly any it moves by 0.005 mm if that meets nothing, so that it goes through
-/// nothing. There new minima are searched for in a loop of their own and
-/// followed by local descent in the haptic one; here all are found in every tick. As there, a minimum that
-/// merges with another takes its force along at once.
+/// nothing. There new minima are searched for in a loop of their own and followed by local descent in the
+/// haptic one; here all are found in every tick. As there, a minimum that merges with another takes its force
+/// along at once.
 ///
 /// A tool without a body of its own (Case::tool) is a ball of the settings' radius with their shaft, of 24
 /// corners around.

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "runtime/haptics/methods/cone_contact.hpp"
-#include "runtime/haptics/whole_tool/rod.hpp"
 
 namespace palpate::haptics {
 namespace {

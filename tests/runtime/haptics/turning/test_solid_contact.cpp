@@ -150,19 +150,10 @@ TEST(Solid, a_closed_loop_of_position_and_orientation_gives_no_energy) {
 }
 
 TEST(Solid, a_tool_that_begins_inside_feels_nothing_until_it_has_been_clear) {
+    feels_nothing_from_inside("solid");
     HapticModel model(plate_and_bar(), "solid");
     TickResult result{};
-    for (const double z : {-1.0, -30.0}) {  // its tip's face in the plate, and through all of it
-        model.reset();
-        model.tick(turned_at({0, 0, z}, Quaterniond::Identity()), result);
-        EXPECT_TRUE(result.status & starts_inside) << z;
-        EXPECT_EQ(force_of(result).norm(), 0) << z;
-    }
-    Case c = plate();
-    c.rigid_bodies[0] = rigid("block", box({-60, -60, -60}, {60, 60, 60}));
-    c.tool = bar();
-    HapticModel within(c, "solid");  // it cuts no triangle
-    within.tick(turned_at({0, 0, 0}, Quaterniond::Identity()), result);
+    model.tick(turned_at({0, 0, -1}, Quaterniond::Identity()), result);
     EXPECT_TRUE(result.status & starts_inside);
     model.tick(turned_at({0, 0, 1}, Quaterniond::Identity()), result);
     EXPECT_EQ(result.status, tick_ok);

@@ -123,4 +123,24 @@ void throw_on_sheet(const std::string& scheme, const Look& look) {
     }
 }
 
+/// A tool that begins inside a body says so and feels nothing: with its tip's face in the plate, through all
+/// of it, and within a block of which it cuts no triangle.
+inline void feels_nothing_from_inside(const std::string& scheme) {
+    const auto begins_inside = [](haptics::HapticModel& model, double z) {
+        TickResult result{};
+        model.tick(turned_at({0, 0, z}, Eigen::Quaterniond::Identity()), result);
+        EXPECT_TRUE(result.status & starts_inside) << z;
+        EXPECT_EQ(force_of(result).norm(), 0) << z;
+    };
+    haptics::HapticModel model(plate_and_bar(), scheme);
+    for (const double z : {-1.0, -30.0}) {
+        model.reset();
+        begins_inside(model, z);
+    }
+    Case c = plate_and_bar();
+    c.rigid_bodies[0] = rigid("block", box({-60, -60, -60}, {60, 60, 60}));
+    haptics::HapticModel within(c, scheme);
+    begins_inside(within, 0);
+}
+
 }  // namespace palpate
