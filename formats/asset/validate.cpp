@@ -393,14 +393,13 @@ void check_enclosure(const ObbTree& tree, const TriangleMesh& surface, const std
         }
     // How far the triangles reach along each box's axes.
     std::vector<Eigen::Vector3d> reach(tree.nodes.size(), Eigen::Vector3d::Zero());
-    const auto check_box_around = [&](std::int32_t index, std::span<const std::int32_t> triangles) {
+    const auto check_box_around = [&](std::int32_t index, std::span<const std::int32_t> vertices) {
         const ObbNode& box = tree.nodes[static_cast<std::size_t>(index)];
         const Eigen::Matrix3d axes = box.axes.cast<double>();
         const Eigen::Vector3d center = box.center.cast<double>(), half = box.half_extents.cast<double>();
         Eigen::Vector3d& farthest = reach[static_cast<std::size_t>(index)];
-        for (const std::int32_t t : triangles)
-            for (const std::int32_t v : surface.triangles[t])
-                farthest = farthest.cwiseMax((axes * (surface.vertices[v] - center)).cwiseAbs());
+        for (const std::int32_t v : vertices)
+            farthest = farthest.cwiseMax((axes * (surface.vertices[v] - center)).cwiseAbs());
         const double escape = (farthest - half).maxCoeff();
         if (escape > farthest_escape)
             refuse(where,
@@ -409,12 +408,17 @@ void check_enclosure(const ObbTree& tree, const TriangleMesh& surface, const std
                    "boxes that enclose their triangles");
     };
     const std::span<const std::int32_t> order = tree.triangle_order;
+    std::vector<std::int32_t> vertices;  // of a leaf, each once: a triangle's are its neighbours' too
     for (std::size_t leaf = 0; leaf < tree.nodes.size(); ++leaf) {
         const ObbNode& node = tree.nodes[leaf];
         if (node.count == 0) continue;
-        const auto triangles =
-            order.subspan(static_cast<std::size_t>(node.first), static_cast<std::size_t>(node.count));
-        for (auto i = static_cast<std::int32_t>(leaf); i >= 0; i = parent[i]) check_box_around(i, triangles);
+        vertices.clear();
+        for (const std::int32_t t :
+             order.subspan(static_cast<std::size_t>(node.first), static_cast<std::size_t>(node.count)))
+            vertices.insert(vertices.end(), surface.triangles[t].begin(), surface.triangles[t].end());
+        std::ranges::sort(vertices);
+        vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+        for (auto i = static_cast<std::int32_t>(leaf); i >= 0; i = parent[i]) check_box_around(i, vertices);
     }
     for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
         const double slack = (tree.nodes[i].half_extents.cast<double>() - reach[i]).maxCoeff();

@@ -32,6 +32,10 @@ std::string_view words_of(Ending ending) {
             return shown_text("not yet");
         case Ending::all_reached:
             return shown_text("all reached");
+        case Ending::found:
+            return shown_text("found");
+        case Ending::not_found:
+            return shown_text("not found");
         case Ending::time_is_up:
             return shown_text("time is up");
         case Ending::ended:
@@ -40,6 +44,14 @@ std::string_view words_of(Ending ending) {
             break;
     }
     return shown_text("cut short");
+}
+
+bool came_to_its_end(Ending ending) {
+    return reached_all(ending) || ending == Ending::not_found || ending == Ending::time_is_up;
+}
+
+bool reached_all(Ending ending) {
+    return ending == Ending::all_reached || ending == Ending::found;
 }
 
 Attempt::Attempt(Exercise exercise, const Case& patient_case)
@@ -96,7 +108,7 @@ void Attempt::pause(bool on) {
 void Attempt::mark_found() {
     if (over() || paused_) return;
     mark(exercise_, goals_);
-    if (goals_.reached_all) end(Ending::all_reached);
+    if (goals_.reached_all) end(goals_.misses == 0 ? Ending::found : Ending::not_found);
 }
 
 void Attempt::mark_border_point() {

@@ -15,14 +15,20 @@ namespace palpate::training {
 /// How an attempt ended.
 enum class Ending {
     not_yet,
-    all_reached,  ///< every goal, or the trainee's answer
+    all_reached,  ///< every goal
+    found,        ///< a search: the trainee's answer is near enough ...
+    not_found,    ///< ... or is not
     time_is_up,
     ended,      ///< by the trainee
     cut_short,  ///< by a closed window, an interrupt or a fault
 };
 
-/// "not yet", "all reached", "time is up", "ended", "cut short".
+/// "not yet", "all reached", "found", "not found", "time is up", "ended", "cut short".
 std::string_view words_of(Ending ending);
+/// Whether nobody broke it off.
+bool came_to_its_end(Ending ending);
+/// Whether all that was asked for was reached.
+bool reached_all(Ending ending);
 
 /// One trainee at one exercise: takes the ticks of the first tool, follows the goals, keeps what metrics are
 /// computed from. One thread. The case must outlive it.

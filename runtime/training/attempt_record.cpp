@@ -8,7 +8,6 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "formats/asset/hdf5/digest.hpp"
 #include "formats/model/reading/small_file.hpp"
 
 namespace palpate::training {
@@ -40,35 +39,6 @@ Json exercise_json(const Exercise& exercise) {
             {"region", exercise.region},
             {"places_mm", places_json(exercise.places)},
             {"outline_mm", places_json(exercise.outline)}};
-}
-
-// A UUID made from a text: version 8, a rule of one's own (RFC 9562), here its SHA-256.
-std::string uuid_of(const std::string& text) {
-    const std::string hex = asset::sha256(text);
-    return fmt::format("{}-{}-8{}-8{}-{}", hex.substr(0, 8), hex.substr(8, 4), hex.substr(13, 3),
-                       hex.substr(17, 3), hex.substr(20, 12));
-}
-
-// Letters, digits and '-' of a text: what an address bears without escapes.
-std::string slug_of(const std::string& text) {
-    std::string slug;
-    for (const unsigned char letter : text)
-        slug += std::isalnum(letter) != 0 ? static_cast<char>(letter) : '-';
-    return slug;
-}
-
-std::string verb_of(Ending ending) {
-    switch (ending) {
-        case Ending::all_reached:
-        case Ending::time_is_up:
-            return "completed";
-        case Ending::ended:
-            return "terminated";
-        case Ending::not_yet:
-        case Ending::cut_short:
-            break;
-    }
-    return "suspended";
 }
 
 }  // namespace
@@ -104,31 +74,6 @@ std::string attempt_csv(const Attempt& attempt) {
         text += fmt::format("{:.3f},{:.4f},{:.4f},{:.4f},{:.5f},{:.4f}\n", s.time, s.position[0],
                             s.position[1], s.position[2], s.force, s.depth);
     return text;
-}
-
-Json xapi_statement(const AttemptHead& head, const Attempt& attempt) {
-    const Metrics metrics = attempt.metrics();
-    const Exercise& exercise = attempt.exercise();
-    const std::string verb = verb_of(attempt.ending());
-    const bool completed = verb == "completed";
-    Json result{{"completion", completed}, {"duration", fmt::format("PT{:.2f}S", metrics.time)}};
-    if (std::isfinite(metrics.score))
-        result["score"] = {{"scaled", metrics.score / 100}, {"raw", metrics.score}, {"min", 0}, {"max", 100}};
-    Json statement{
-        {"actor",
-         {{"objectType", "Agent"},
-          {"account", {{"homePage", "https://palpate.invalid/trainee"}, {"name", head.trainee}}}}},
-        {"verb", {{"id", "http://adlnet.gov/expapi/verbs/" + verb}, {"display", {{"en", verb}}}}},
-        {"object",
-         {{"objectType", "Activity"},
-          {"id", "https://palpate.invalid/case/" + slug_of(head.case_name) + "/exercise/" + exercise.name},
-          {"definition",
-           {{"name", {{"en", exercise.title}}},
-            {"type", "http://adlnet.gov/expapi/activities/simulation"}}}}},
-        {"result", result},
-        {"timestamp", head.when}};
-    statement["id"] = uuid_of(statement.dump());
-    return statement;
 }
 
 std::vector<PastAttempt> read_history(const std::filesystem::path& folder, const std::string& case_name,

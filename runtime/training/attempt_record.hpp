@@ -13,7 +13,8 @@ namespace palpate::training {
 /// Who did what, when and with what.
 struct AttemptHead {
     std::string trainee;  ///< a pseudonym: see is_pseudonym()
-    std::string when;     ///< of the end, UTC, "2026-03-01T09:30:00Z"
+    std::string began;    ///< UTC, "2026-03-01T09:28:40Z"
+    std::string when;     ///< of the end, likewise
     std::string case_name;
     std::string device;
     std::string scheme;   ///< the contact method's name
@@ -33,12 +34,6 @@ nlohmann::ordered_json attempt_json(const AttemptHead& head, const Attempt& atte
 /// The hand's way and force as CSV, one row every hundredth of a second: time_s, x_mm, y_mm, z_mm (frame P),
 /// force_n, depth_mm.
 std::string attempt_csv(const Attempt& attempt);
-
-/// The attempt as an xAPI 1.0.3 statement: actor an account of the pseudonym at urn-like home page
-/// https://palpate.invalid/trainee, verb "completed", "terminated" or "suspended" of ADL's vocabulary, object
-/// the exercise on that case, result with scaled score, completion and ISO 8601 duration. An id made from the
-/// content: the same attempt gives the same statement. Source: xAPI-Spec 1.0.3, part two.
-nlohmann::ordered_json xapi_statement(const AttemptHead& head, const Attempt& attempt);
 
 /// What is known of an earlier attempt.
 struct PastAttempt {

@@ -51,6 +51,8 @@ using Eigen::Vector3d;
 
 constexpr double step = 0.5;          // mm a key press
 constexpr double wheel_depth = 0.5;   // mm a notch
+constexpr double scope_step = 1.5;    // mm a notch, of an endoscope that fills the window
+constexpr double scope_sight = 15;    // mm before its tip: what stays under a pointer that is dragged
 constexpr double zoom_step = 1.15;    // a key press
 constexpr double zoom_pixels = 20;    // of a drag that zooms by one step
 constexpr double shadow_share = 0.3;  // of the field: how far the tool's shadow falls
@@ -196,6 +198,8 @@ struct TrainWindow::Parts {
             begin(Drag::shift);
         else if (interactor->GetControlKey())
             begin(Drag::roll);
+        else if (endoscope.fills_window())
+            begin(Drag::carry);
         else if (const int* now = interactor->GetEventPosition(); !endoscope.covers(now[0], now[1]))
             settings.forceps ? begin(Drag::carry) : press(true);
     }
@@ -226,13 +230,19 @@ struct TrainWindow::Parts {
         }
         vtkCamera* camera = renderer->GetActiveCamera();
         const int height = window->GetSize()[1];
-        if (drag == Drag::carry)
-            return hand.move(way_of_drag(camera, dx, dy, depth_of(camera, hand.place()), height));
+        if (drag == Drag::carry) return carry(dx, dy);
         if (drag == Drag::turn) turn_view(camera, dx, dy);
         if (drag == Drag::shift) pan_view(camera, dx, dy, height);
         if (drag == Drag::roll) roll_view(camera, dx);
         if (drag == Drag::zoom) camera->Dolly(std::pow(zoom_step, dy / zoom_pixels));
         hand.view_changed();
+    }
+
+    // In the picture's plane: what is carried stays under the pointer, of an endoscope what it looks at does.
+    void carry(double dx, double dy) {
+        vtkCamera* camera = renderer->GetActiveCamera();
+        const double depth = endoscope.fills_window() ? scope_sight : depth_of(camera, hand.place());
+        hand.move(way_of_drag(camera, dx, dy, depth, window->GetSize()[1]));
     }
 
     // The key of the button there; empty: none.
@@ -262,7 +272,9 @@ struct TrainWindow::Parts {
     }
 
     void wheel_turned(double notches) {
-        if (drag == Drag::carry)
+        if (endoscope.fills_window())
+            hand.move(-scope_step * notches * view_axes(renderer->GetActiveCamera())[2]);
+        else if (drag == Drag::carry)
             hand.move(-wheel_depth * notches * settings.forceps->shaft);
         else if (hand.pressing())
             hand.deepen(wheel_depth * notches);
@@ -411,6 +423,7 @@ void TrainWindow::draw(const VisualFrame& frame) {
     Parts& p = *parts_;
     p.interactor->ProcessEvents();
     if (p.closed || lost()) return;
+    p.hand.feel(frame.force.norm(), frame.lesson.press_force);
     p.lead_hand();
     p.scene.update(frame);
     p.shadow.update(frame.tool_position, drop_mark(p.touchable(), frame.tool_position, p.tool_radius,

@@ -75,7 +75,7 @@ LessonPage page_of(const ExerciseEditor& editor, const ExerciseRecipe& recipe, c
         add("space", translated("Space") + "   " + translated("To the organ, to set marks ({})", marks));
     add("t", "T   " + translated("Try it"));
     add("s", "S   " + translated("Save to {}", file));
-    add("backspace", "Backspace   " + translated("Leave"));
+    add("backspace", translated("Backspace") + "   " + translated("Leave"));
     return page;
 }
 

@@ -45,7 +45,9 @@ LessonPage start_page(const Lesson& lesson, const LessonSetting& setting) {
     }
     if (setting.can_edit)
         page.choices.push_back({"f2", "F2   " + translated("Make an exercise of your own")});
-    page.choices.push_back({"backspace", "Backspace   " + translated("Look around first, and come back")});
+    page.choices.push_back({"f3", "F3   " + translated("Another trainee")});
+    page.choices.push_back(
+        {"backspace", translated("Backspace") + "   " + translated("Look around first, and come back")});
     return page;
 }
 
@@ -102,6 +104,8 @@ void show_doing(const Attempt& attempt, double force, LessonView& view) {
     view.actions = actions_of(exercise.task, attempt.paused());
     view.least_force = exercise.least_force;
     view.most_force = exercise.most_force;
+    if (exercise.task == Task::touch || exercise.task == Task::find || exercise.task == Task::trace)
+        view.press_force = (exercise.least_force + exercise.most_force) / 2;
     if (attempt.paused())
         view.warning = translated("paused");
     else if (force > exercise.most_force)
@@ -153,10 +157,22 @@ LessonPage result_page(const Attempt& attempt, std::span<const PastAttempt> hist
     }
     page.choices = {{"return", translated("Enter") + "   " + translated("Once more")},
                     {"space", translated("Space") + "   " + translated("Look at the way that the hand took")},
-                    {"backspace", "Backspace   " + translated("Other exercises")}};
+                    {"backspace", translated("Backspace") + "   " + translated("Other exercises")}};
     if (can_edit)
         page.choices.insert(page.choices.end() - 1, {"f2", "F2   " + translated("Change this exercise")});
     return page;
+}
+
+LessonView trainee_view(const std::string& typed, const LessonSetting& setting) {
+    LessonView view;
+    view.takes_keys = true;
+    view.page.emplace();
+    view.page->title = setting.case_name;
+    view.page->text = translated("Trainee: {}", typed + "_") + "\n" +
+                      translated("A pseudonym, under which attempts are kept: letters, digits, - and _");
+    view.page->choices = {{"Return", translated("Enter") + "   " + translated("Take it")},
+                          {"Escape", translated("Esc") + "   " + translated("Stay {}", setting.trainee)}};
+    return view;
 }
 
 LessonView lesson_view(const Lesson& lesson, const LessonSetting& setting, double force,

@@ -22,6 +22,9 @@ struct LessonSetting {
 visual::LessonPage result_page(const training::Attempt& attempt,
                                std::span<const training::PastAttempt> history, bool can_edit);
 
+/// The page on which another pseudonym is typed; `typed`: so far.
+visual::LessonView trainee_view(const std::string& typed, const LessonSetting& setting);
+
 /// What the window shows of a lesson. `force`: N, on the device; `result`: of the attempt that is looked back
 /// at.
 visual::LessonView lesson_view(const training::Lesson& lesson, const LessonSetting& setting, double force,

@@ -14,6 +14,7 @@
 #include "runtime/apps/exercises/save_exercise.hpp"
 #include "runtime/texts/translated.hpp"
 #include "runtime/training/lay_out.hpp"
+#include "runtime/training/statements.hpp"
 #include "runtime/training/touched_place.hpp"
 #include "tools/cli/command.hpp"
 #include "tools/cli/outputs/staged_file.hpp"
@@ -25,8 +26,8 @@ using namespace training;
 
 constexpr double countdown = 3;  // s
 
-std::string now_utc() {
-    return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+std::string utc(std::time_t time) {
+    return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(time));
 }
 
 // "20260301T093000Z_touch", with a number behind it where there is such a file.
@@ -107,8 +108,8 @@ std::vector<LaidOut> lay_out_exercises(const LessonOptions& options, session::Se
 
 TrainLesson::TrainLesson(const LessonOptions& options, const std::vector<LaidOut>& exercises,
                          const session::Session& run, LessonSetting setting, bool scripted)
-    : folder_((options.attempts.empty() ? usual_attempts_folder() : std::filesystem::path(options.attempts)) /
-              options.trainee),
+    : attempts_folder_(options.attempts.empty() ? usual_attempts_folder()
+                                                : std::filesystem::path(options.attempts)),
       setting_(std::move(setting)),
       run_(run),
       lesson_(exercises_of(exercises), run.patient_case(), scripted ? 0 : countdown,
@@ -123,9 +124,12 @@ TrainLesson::TrainLesson(const LessonOptions& options, const std::vector<LaidOut
 }
 
 void TrainLesson::press(const std::string& key, const TickResult& tick) {
+    if (typed_trainee_) return type_trainee(key);
     if (!editor_) {
         if (key == "f2")
             begin_to_edit();
+        else if (key == "f3" && lesson_.phase() == Phase::choosing)
+            typed_trainee_.emplace();
         else
             lesson_.press(key);
         return;
@@ -135,6 +139,16 @@ void TrainLesson::press(const std::string& key, const TickResult& tick) {
                        .touched = touched_place(run_.patient_case(), tick)};
     grant(editor_->press(key, hand));
     if (editor_) draft_ = lay_out_draft().value_or(Exercise{});
+}
+
+// As X11 names keys. What would make no pseudonym is not taken.
+void TrainLesson::type_trainee(const std::string& key) {
+    std::string& name = *typed_trainee_;
+    if (key == "BackSpace" && !name.empty()) name.pop_back();
+    const std::string letter = key == "minus" ? "-" : key == "underscore" ? "_" : key;
+    if (letter.size() == 1 && is_pseudonym(name + letter)) name += letter;
+    if (key == "Return" && !name.empty()) setting_.trainee = name;
+    if (key == "Return" || key == "Escape") typed_trainee_.reset();
 }
 
 void TrainLesson::begin_to_edit() {
@@ -206,6 +220,7 @@ void TrainLesson::take(const TickResult& tick) {
 }
 
 visual::LessonView TrainLesson::view(double force) const {
+    if (typed_trainee_) return trainee_view(*typed_trainee_, setting_);
     if (editor_) return editor_view(*editor_, draft_, exercise_file_.filename().string());
     return lesson_view(lesson_, setting_, force, result_);
 }
@@ -230,26 +245,30 @@ std::optional<Eigen::Vector3d> TrainLesson::hand(const Eigen::Vector3d& now) {
 }
 
 void TrainLesson::keep(const Attempt& attempt) {
+    const std::time_t now = std::time(nullptr);
     const AttemptHead head{.trainee = setting_.trainee,
-                           .when = now_utc(),
+                           .began = utc(now - static_cast<std::time_t>(attempt.time())),
+                           .when = utc(now),
                            .case_name = setting_.case_name,
                            .device = run_.device_name(),
                            .scheme = std::string(run_.model().method().name),
                            .version = cli::version()};
     attempts_.push_back(attempt_json(head, attempt));
+    const std::filesystem::path folder = attempts_folder_ / head.trainee;
     try {
-        std::filesystem::create_directories(folder_);
-        const std::filesystem::path path = free_name(folder_, head.when, attempt.exercise().name);
+        std::filesystem::create_directories(folder);
+        const std::filesystem::path path = free_name(folder, head.when, attempt.exercise().name);
         cli::write_text_file(path.string() + ".csv", attempt_csv(attempt), false);
         cli::write_text_file(path.string() + ".json", attempts_.back().dump(2) + "\n", false);
-        std::ofstream(folder_ / "statements.jsonl", std::ios::app)
-            << xapi_statement(head, attempt).dump() << '\n';
+        std::ofstream statements(folder / "statements.jsonl", std::ios::app);
+        for (const nlohmann::ordered_json& statement : statements_of(head, attempt))
+            statements << statement.dump() << '\n';
         attempts_.back()["file"] = path.filename().string() + ".json";
     } catch (const std::exception& error) {
         spdlog::warn("the attempt is not kept: {}", error.what());
     }
     result_ = result_page(attempt,
-                          read_history(folder_, head.case_name, attempt.exercise().name,
+                          read_history(folder, head.case_name, attempt.exercise().name,
                                        [](const std::string& sentence) { spdlog::warn("{}", sentence); }),
                           setting_.can_edit);
 }

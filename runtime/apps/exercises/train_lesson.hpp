@@ -52,8 +52,8 @@ class TrainLesson {
     TrainLesson& operator=(const TrainLesson&) = delete;
 
     /// A key, or a page's choice, while `tick` is felt: "f2" begins to make an exercise on the start page,
-    /// and to change the chosen one while it counts down or is looked back at; see ExerciseEditor then, and
-    /// Lesson otherwise.
+    /// and to change the chosen one while it counts down or is looked back at; see ExerciseEditor then. "f3"
+    /// on the start page begins to type another pseudonym. Lesson otherwise.
     void press(const std::string& key, const TickResult& tick);
     /// Takes a tick of any tool, see Lesson; while marks are set, a press of the lowest button sets one.
     void take(const TickResult& tick);
@@ -71,13 +71,15 @@ class TrainLesson {
   private:
     void keep(const training::Attempt& attempt);
     void begin_to_edit();
+    void type_trainee(const std::string& key);
     void grant(training::Wish wish);
     std::optional<training::Exercise> lay_out_draft();
 
     std::vector<Eigen::Vector3d> way_back_;  // empty but while that countdown goes on
 
-    std::filesystem::path folder_;
+    std::filesystem::path attempts_folder_;  // of all trainees
     LessonSetting setting_;
+    std::optional<std::string> typed_trainee_;  // while it is typed
     const session::Session& run_;
     visual::LessonPage result_;  // of the last attempt
     nlohmann::ordered_json attempts_ = nlohmann::ordered_json::array();

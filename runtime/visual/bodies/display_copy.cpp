@@ -75,10 +75,13 @@ TriangleMesh display_copy(const TriangleMesh& surface, std::int64_t budget,
     if (fits(surface)) return surface;
     std::vector<double> distances;
     for (const Eigen::Vector3d& p : surface.vertices) distances.push_back(distance_to(focus, p, near));
-    // Finer steps would not be seen: cells come in powers of two.
+    // Triangles are fewer by the square of the cells' size at most, so that a step does not go too far; steps
+    // finer than the least would not be seen, for cells come in powers of two.
+    constexpr double least_step = 1.4;
     TriangleMesh copy;
     for (double coarseness = 1.0 / 64; !fits(copy = clustered(surface, distances, coarseness));)
-        coarseness *= 1.4;
+        coarseness *= std::max(
+            least_step, std::sqrt(static_cast<double>(copy.triangles.size()) / static_cast<double>(budget)));
     return copy;
 }
 

@@ -16,6 +16,7 @@ namespace {
 
 // Pixels in a window of 1280x720, see display_scale().
 constexpr double bar_edge = 22, bar_bottom = 18, button_height = 24, button_gap = 6, button_font = 14;
+constexpr int least_font = 6;
 
 void make_button(vtkTextActor* actor, double opacity, vtkRenderer* renderer) {
     dress(actor->GetTextProperty(), opacity);
@@ -76,15 +77,23 @@ void ButtonBar::paint(const Button& button, bool under_pointer) {
     if (under_pointer) text->SetColor(0.05, 0.07, 0.09);
 }
 
+// Some languages say things at greater length: their buttons are written smaller.
 void ButtonBar::fit(int width, int height) {
     width_ = width;
     height_ = height;
     const double scale = display_scale(width, height);
     bottom_ = scale * (bar_bottom + row_ * (button_height + button_gap));
     top_ = bottom_ + scale * button_height;
+    int font = std::max(9, static_cast<int>(scale * button_font));
+    tip_->GetTextProperty()->SetFontSize(font);
+    while (lay_out(font, scale) > width - scale * bar_edge && font > least_font) --font;
+}
+
+// Returns where the last one ends.
+double ButtonBar::lay_out(int font, double scale) {
     double left = scale * bar_edge;
     for (Button& button : buttons_) {
-        button.actor->GetTextProperty()->SetFontSize(std::max(9, static_cast<int>(scale * button_font)));
+        button.actor->GetTextProperty()->SetFontSize(font);
         button.actor->SetPosition(left, (bottom_ + top_) / 2);
         double box[4];
         button.actor->GetBoundingBox(renderer_, box);
@@ -92,7 +101,7 @@ void ButtonBar::fit(int width, int height) {
         button.right = left + box[1] - box[0];
         left = button.right + scale * button_gap;
     }
-    tip_->GetTextProperty()->SetFontSize(std::max(9, static_cast<int>(scale * button_font)));
+    return buttons_.empty() ? 0 : buttons_.back().right;
 }
 
 void ButtonBar::update(bool shown, int width, int height) {

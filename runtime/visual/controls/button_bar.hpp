@@ -50,6 +50,7 @@ class ButtonBar {
     };
 
     void fit(int width, int height);
+    double lay_out(int font, double scale);
     void paint(const Button& button, bool under_pointer);
 
     vtkRenderer* renderer_;

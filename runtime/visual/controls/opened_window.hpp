@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <vtkNew.h>
-#include <vtkRenderWindow.h>
 #include <vtkRenderWindowInteractor.h>
 #include <vtkRenderer.h>
 
 #include "runtime/visual/controls/display.hpp"
+#include "runtime/visual/controls/display_window.hpp"
 
 namespace palpate::visual {
 
@@ -13,7 +13,7 @@ namespace palpate::visual {
 struct OpenedWindow {
     DisplayConnection display;
     vtkNew<vtkRenderer> renderer, front;  ///< the scene, and what is drawn over it
-    vtkNew<vtkRenderWindow> window;
+    vtkNew<DisplayWindow> window;
     vtkNew<vtkRenderWindowInteractor> interactor;
 };
 

@@ -13,11 +13,12 @@ using Eigen::Vector3d;
 constexpr double usual_depth = 3;                                                         // mm, at least
 constexpr double depth_radii = 1.2;                                                       // of a larger tool
 constexpr double sink_speed = 15, lift_speed = 40, travel_speed = 150, slide_speed = 60;  // mm/s
-constexpr double longest_frame = 0.08;  // s: a slow picture must not make long steps
-constexpr double pixel_step = 5;        // between two places that are looked up
-constexpr int most_lookups = 48;        // a frame
-constexpr double shortest_rest = 0.2;   // s over a place that only a jump leads to
-constexpr double shortest_jump = 8;     // mm between two neighbouring pixels: the surface ends between them
+constexpr double slowest_sinking = 0.1;  // of that speed, where a wanted force is nearly felt
+constexpr double longest_frame = 0.08;   // s: a slow picture must not make long steps
+constexpr double pixel_step = 5;         // between two places that are looked up
+constexpr int most_lookups = 48;         // a frame
+constexpr double shortest_rest = 0.2;    // s over a place that only a jump leads to
+constexpr double shortest_jump = 8;      // mm between two neighbouring pixels: the surface ends between them
 
 double toward(double from, double to, double by) {
     return std::clamp(to, from - by, from + by);
@@ -36,11 +37,18 @@ void PointerHand::point(const Vector2d& pixel) {
 
 void PointerHand::press(bool on) {
     pressed_ = on;
+    found_depth_.reset();
     if (on) led_ = seeking_ = true;
 }
 
 void PointerHand::deepen(double by) {
-    depth_ = std::clamp(depth_ + by, least_depth, most_depth);
+    double& depth = found_depth_ ? *found_depth_ : depth_;
+    depth = std::clamp(depth + by, least_depth, most_depth);
+}
+
+void PointerHand::feel(double force, const std::optional<double>& wanted) {
+    force_ = force;
+    wanted_ = wanted;
 }
 
 void PointerHand::move(const Vector3d& by) {
@@ -107,6 +115,17 @@ void PointerHand::seek_next_pixel(const PointerScene& scene) {
     found_ = true;
 }
 
+// A hand that feels its way in: the nearer to what is wanted, the slower.
+void PointerHand::sink(double seconds) {
+    double share = 1;
+    if (wanted_ && !found_depth_) {
+        if (force_ >= *wanted_) found_depth_ = std::max(least_depth, -offset_);
+        share = std::max(slowest_sinking, 1 - force_ / *wanted_);
+    }
+    const double depth = found_depth_ ? *found_depth_ : wanted_ ? most_depth : depth_;
+    offset_ = toward(offset_, -depth, seconds * share * sink_speed);
+}
+
 void PointerHand::advance(double seconds, const PointerScene& scene) {
     if (!led_) return;
     rested_ += seconds;
@@ -135,7 +154,7 @@ void PointerHand::advance(double seconds, const PointerScene& scene) {
         ++lookups;
     }
     if (!anchor_ || !detour_.empty()) return;
-    if (pressed_ && (found_ || offset_ < hover)) offset_ = toward(offset_, -depth_, seconds * sink_speed);
+    if (pressed_ && (found_ || offset_ < hover)) sink(seconds);
     place_ = goal();
 }
 

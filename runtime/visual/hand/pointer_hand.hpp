@@ -18,7 +18,8 @@ struct PointerScene {
 };
 
 /// The hand as the mouse holds it: it hovers over the surface under the pointer; while the button is held it
-/// sinks to a depth below that surface, along its inward normal, and slides where the pointer is dragged. It
+/// sinks to a depth below that surface, along its inward normal, and slides where the pointer is dragged;
+/// where a force is wanted it sinks until that is felt and keeps the depth. It
 /// never jumps: it goes over the surface between two pixels, and where that ends, to what the pointer rests
 /// on behind the edge, around what stands in its way, towards the eye.
 class PointerHand {
@@ -30,14 +31,17 @@ class PointerHand {
     PointerHand(const Eigen::Vector3d& start, double tool_radius);
 
     const Eigen::Vector3d& place() const { return place_; }  ///< of the tool's centre, p_P, mm
-    double depth() const { return depth_; }                  ///< to which a press goes, mm
+    /// To which a press goes, mm, where no force is wanted.
+    double depth() const { return depth_; }
     bool pressing() const { return pressed_; }
 
     /// The pointer moved to a pixel, which takes the hand there.
     void point(const Eigen::Vector2d& pixel);
     void press(bool on);
-    /// Changes how deep a press goes, mm.
+    /// Changes how deep a press goes, mm; of one that has felt what is wanted, that one alone.
     void deepen(double by);
+    /// What the tool feels now, and what a press is to make; without that, a press goes to depth(). N.
+    void feel(double force, const std::optional<double>& wanted);
     /// Takes the hand off the surface (mm), until the pointer moves again.
     void move(const Eigen::Vector3d& by);
     /// Puts it at a place of its own, p_P, mm.
@@ -49,6 +53,7 @@ class PointerHand {
 
   private:
     Eigen::Vector3d goal() const;
+    void sink(double seconds);
     void seek_next_pixel(const PointerScene& scene);
     void go_around(const SeenPoint& next, const PointerScene& scene);
 
@@ -58,7 +63,10 @@ class PointerHand {
     bool led_ = false;       // by the pointer, not by keys
     bool seeking_ = false;   // what is under it, which a new view leaves until it moves again
     bool pressed_ = false;
-    double rested_ = 0;  // s, the pointer
+    double force_ = 0;                   // N
+    std::optional<double> wanted_;       // N
+    std::optional<double> found_depth_;  // mm, of this press: where it felt what is wanted
+    double rested_ = 0;                  // s, the pointer
     Eigen::Vector2d pointer_ = Eigen::Vector2d::Zero();
     std::optional<Eigen::Vector2d> reached_;  // the pixel of anchor_ or of nothing
     std::optional<SeenPoint> anchor_;

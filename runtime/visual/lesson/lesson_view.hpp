@@ -61,6 +61,7 @@ struct LessonView {
     std::string warning;
     std::vector<LessonChoice> actions;       ///< what can be done now, as buttons below the scene
     double least_force = 0, most_force = 0;  ///< N: the band that the force is to keep to; 0, 0: none
+    std::optional<double> press_force;       ///< N: what a press by the mouse is to make
     bool hides_regions = false;              ///< what bodies enclose must not be seen
     std::vector<LessonMark> marks;
     std::vector<Eigen::Vector3d> line, line_done;  ///< p_P, mm

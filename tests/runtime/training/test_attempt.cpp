@@ -126,12 +126,21 @@ TEST_F(AttemptTest, ticks_of_another_tool_and_after_the_end_do_not_count) {
     other.tool = 1;
     attempt.add(other);
     attempt.mark_found();
-    EXPECT_EQ(attempt.ending(), Ending::all_reached);
+    EXPECT_EQ(attempt.ending(), Ending::found);
     EXPECT_DOUBLE_EQ(attempt.metrics().score, 100);
     press(attempt, 0.2, 5, 1);
     attempt.end(Ending::cut_short);
-    EXPECT_EQ(attempt.ending(), Ending::all_reached);
+    EXPECT_EQ(attempt.ending(), Ending::found);
     EXPECT_DOUBLE_EQ(attempt.metrics().peak_force, 0.5);
+}
+
+TEST_F(AttemptTest, an_answer_elsewhere_is_not_called_found) {
+    Attempt attempt(exercise(Task::find), case_);
+    press(attempt, 0.2, 0.5, 1);
+    attempt.mark_found();
+    ASSERT_GT((vertex(1) - vertex(0)).norm(), attempt.exercise().tolerance);
+    EXPECT_EQ(attempt.ending(), Ending::not_found);
+    EXPECT_EQ(attempt.metrics().misses, 1);
 }
 
 TEST_F(AttemptTest, a_free_one_has_no_score) {

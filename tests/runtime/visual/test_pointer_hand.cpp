@@ -70,6 +70,34 @@ TEST_F(PointerHandTest, hovers_over_the_surface_under_the_pointer) {
     EXPECT_NEAR(hand.place().x() / hand.place().norm(), 6.0 / 20, 0.02);
 }
 
+// On tissue of 0.1 N/mm whose force a hand sees three frames late.
+TEST_F(PointerHandTest, sinks_until_it_feels_what_is_wanted_and_keeps_that_depth) {
+    constexpr double stiffness = 0.1, wanted = 0.25;  // N/mm, N
+    PointerHand hand({0, 0, 60}, tool_radius);
+    std::vector<double> forces(3, 0.0);
+    const auto press = [&](int frames) {
+        double most = 0;
+        for (int frame = 0; frame < frames; ++frame) {
+            hand.feel(forces[forces.size() - 3], wanted);
+            hand.advance(frame_s, scene());
+            forces.push_back(stiffness * std::max(0.0, 20 + tool_radius - hand.place().norm()));
+            most = std::max(most, forces.back());
+        }
+        return most;
+    };
+    hand.point(pixel_over(3, 2));
+    hand.press(true);
+    EXPECT_LT(press(1000), 1.2 * wanted);
+    EXPECT_GE(forces.back(), wanted - stiffness * facets);
+    hand.deepen(1);
+    press(100);
+    EXPECT_NEAR(forces.back(), wanted + stiffness * 1, 0.1 * wanted + stiffness * facets);
+    hand.press(false);
+    press(100);
+    hand.press(true);
+    EXPECT_LT(press(1000), 1.2 * wanted) << "the next press feels its way in anew";
+}
+
 TEST_F(PointerHandTest, sinks_to_its_depth_while_pressed_and_rises_when_released) {
     PointerHand hand({0, 0, 60}, tool_radius);
     hand.point(pixel_over(3, 2));

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <vtkXOpenGLRenderWindow.h>
+
+namespace palpate::visual {
+
+/// A window on the display. With every frame VTK would copy the picture's depth into it through a shader, which
+/// nothing here reads from there and takes software rendering an eighth of the frame: this one has none.
+class DisplayWindow : public vtkXOpenGLRenderWindow {
+  public:
+    static DisplayWindow* New();
+    vtkTypeMacro(DisplayWindow, vtkXOpenGLRenderWindow);
+
+    using vtkXOpenGLRenderWindow::TextureDepthBlit;
+    void TextureDepthBlit(vtkTextureObject* depth) override;
+};
+
+}  // namespace palpate::visual
