@@ -220,9 +220,10 @@ function(palpate_test room)
         PROPERTIES LABELS ${arg_LABEL} TIMEOUT ${arg_TIMEOUT} ${alone})
 endfunction()
 
-# palpate_command_test(<file.py> [LABEL ...]): a Python unittest that drives the executables in PALPATE_BIN.
+# palpate_command_test(<file.py> [LABEL ...] [MAKES ...] [NEEDS ...]): a Python unittest that drives the executables in
+# PALPATE_BIN. What one MAKES another NEEDS: ctest's fixtures.
 function(palpate_command_test file)
-    cmake_parse_arguments(arg "" "LABEL;TIMEOUT" "" ${ARGN})
+    cmake_parse_arguments(arg "" "LABEL;TIMEOUT;MAKES;NEEDS" "" ${ARGN})
     if(NOT arg_LABEL)
         set(arg_LABEL command)
     endif()
@@ -236,5 +237,5 @@ function(palpate_command_test file)
     # unittest's closing line: nothing failed and something was skipped. COST: what may take longest begins first, so
     # that no core idles at the end.
     set_tests_properties(commands.${name} PROPERTIES LABELS ${arg_LABEL} TIMEOUT ${arg_TIMEOUT} COST ${arg_TIMEOUT}
-        SKIP_REGULAR_EXPRESSION "OK \\(skipped=")
+        SKIP_REGULAR_EXPRESSION "OK \\(skipped=" FIXTURES_SETUP "${arg_MAKES}" FIXTURES_REQUIRED "${arg_NEEDS}")
 endfunction()

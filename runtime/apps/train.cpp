@@ -213,7 +213,9 @@ Json train(const Options& options, cli::Session& session) {
     if (const DeviceModel* model = model_of_device(run.device_name()))
         window_settings.rendered = model->coulomb_friction;
 
-    std::vector<LaidOut> exercises = lay_out_exercises(options.lesson, run, target);
+    std::vector<LaidOut> exercises =
+        lay_out_exercises(options.lesson, run, target,
+                          {.place = window_settings.sight.eye(), .cuts = window_settings.sight.blocked});
     // What an exercise leads along is looked at closely too.
     for (const LaidOut& laid_out : exercises)
         if (laid_out.exercise.task == training::Task::guide)

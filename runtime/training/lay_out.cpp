@@ -18,6 +18,7 @@
 namespace palpate::training {
 namespace {
 
+using devices::TouchPoint;
 using Eigen::Vector3d;
 using haptics::HapticModel;
 using session::TouchTarget;
@@ -113,8 +114,30 @@ std::optional<TouchTarget> reached(const Case& patient_case, const HapticModel& 
     return target;
 }
 
-std::vector<Vector3d> draw_marks(const ExerciseRecipe& recipe, const Case& patient_case,
-                                 const HapticModel& model, const TouchTarget& start, double apart) {
+// Whether a place faces an eye and nothing stands between.
+bool is_seen(const HapticModel& model, const TouchPoint& place, const FirstEye& eye) {
+    constexpr double facing = 0.5;              // least cosine: 60 degrees
+    constexpr double off = 1, thickness = 0.2;  // mm, of the line of sight: where it begins, its radius
+    if (place.normal.dot((eye.place - place.point).normalized()) < facing) return false;
+    if (eye.cuts) return true;
+    const Vector3d begin = place.point + off * place.normal;
+    for (std::size_t body = 0; body < model.body_count(); ++body)
+        if (model.surface(body).sweep_sphere(begin, eye.place, thickness)) return false;
+    return true;
+}
+
+// A place of the start's body that the tool reaches on the start's side, seen by the eye if there is one.
+std::optional<TouchTarget> reached_in_sight(const Case& patient_case, const HapticModel& model,
+                                            const TouchTarget& start, const Vector3d& place,
+                                            const std::optional<FirstEye>& eye) {
+    auto target = reached(patient_case, model, start.body, place, start.place.normal);
+    return target && eye && !is_seen(model, target->place, *eye) ? std::nullopt : target;
+}
+
+// Fewer than are wanted where there is no room.
+std::vector<Vector3d> marks_in_sight(const ExerciseRecipe& recipe, const Case& patient_case,
+                                     const HapticModel& model, const TouchTarget& start, double apart,
+                                     const std::optional<FirstEye>& eye) {
     const std::vector<Vector3d> candidates = places_around(patient_case, start, recipe.spread, recipe.seed);
     const auto wanted = static_cast<std::size_t>(recipe.count);
     // As far apart as the surface lets them be.
@@ -123,14 +146,24 @@ std::vector<Vector3d> draw_marks(const ExerciseRecipe& recipe, const Case& patie
         for (const Vector3d& candidate : candidates) {
             const bool clear = std::ranges::all_of(
                 marks, [&](const Vector3d& mark) { return (mark - candidate).norm() >= distance; });
-            if (clear && reached(patient_case, model, start.body, candidate, start.place.normal))
+            if (clear && reached_in_sight(patient_case, model, start, candidate, eye))
                 marks.push_back(candidate);
             if (marks.size() == wanted) return marks;
         }
     }
-    throw InvalidInput({recipe.written_at.empty() ? recipe.name : recipe.written_at,
-                        fmt::format("{} marks find no room within {} mm of the start", wanted, recipe.spread),
-                        "", "ask for fewer ('count'), a wider 'spread_mm', or write 'places_mm'"});
+    return {};
+}
+
+std::vector<Vector3d> draw_marks(const ExerciseRecipe& recipe, const Case& patient_case,
+                                 const HapticModel& model, const TouchTarget& start, double apart,
+                                 const FirstEye& eye) {
+    for (const std::optional<FirstEye>& seen_by : {std::optional(eye), std::optional<FirstEye>()})
+        if (auto marks = marks_in_sight(recipe, patient_case, model, start, apart, seen_by); !marks.empty())
+            return marks;
+    throw InvalidInput(
+        {recipe.written_at.empty() ? recipe.name : recipe.written_at,
+         fmt::format("{} marks find no room within {} mm of the start", recipe.count, recipe.spread), "",
+         "ask for fewer ('count'), a wider 'spread_mm', or write 'places_mm'"});
 }
 
 // The place nearest to the one above a region, on its side, that the tool reaches.
@@ -160,12 +193,12 @@ bool is_clear_between(const HapticModel& model, const TouchTarget& from, const T
 
 // Along the surface from the start, step by step, as long as the tool comes there.
 std::vector<Vector3d> walk(const Case& patient_case, const HapticModel& model, const TouchTarget& start,
-                           Vector3d way, double length) {
+                           Vector3d way, double length, const std::optional<FirstEye>& eye) {
     constexpr double step = 1;  // mm
     std::vector<Vector3d> points;
     Vector3d at = start.place.point;
     for (double gone = step; gone <= length; gone += step) {
-        const auto next = reached(patient_case, model, start.body, at + step * way, start.place.normal);
+        const auto next = reached_in_sight(patient_case, model, start, at + step * way, eye);
         if (!next || (next->place.point - at).norm() < 0.5 * step) break;
         way = next->place.point - at;
         way = (way - next->place.normal * next->place.normal.dot(way)).normalized();
@@ -177,42 +210,53 @@ std::vector<Vector3d> walk(const Case& patient_case, const HapticModel& model, c
 
 // The longest line through a place, of several directions.
 std::vector<Vector3d> line_through(const Case& patient_case, const HapticModel& model,
-                                   const TouchTarget& middle, double spread) {
+                                   const TouchTarget& middle, double spread,
+                                   const std::optional<FirstEye>& eye) {
     constexpr int directions = 6;
     std::vector<Vector3d> longest;
     for (int i = 0; i < directions; ++i) {
         const Eigen::AngleAxisd turn(std::numbers::pi * i / directions, middle.place.normal);
         const Vector3d way = turn * middle.place.tangent;
-        std::vector<Vector3d> line = walk(patient_case, model, middle, -way, spread);
+        std::vector<Vector3d> line = walk(patient_case, model, middle, -way, spread, eye);
         std::ranges::reverse(line);
         line.push_back(middle.place.point);
-        const std::vector<Vector3d> other = walk(patient_case, model, middle, way, spread);
+        const std::vector<Vector3d> other = walk(patient_case, model, middle, way, spread, eye);
         line.insert(line.end(), other.begin(), other.end());
         if (line.size() > longest.size()) longest = line;
     }
     return longest;
 }
 
-std::vector<Vector3d> draw_line(const ExerciseRecipe& recipe, const Case& patient_case,
-                                const HapticModel& model, const TouchTarget& start) {
+// As long as the recipe asks for, or the longest of some.
+std::vector<Vector3d> line_in_sight(const ExerciseRecipe& recipe, const Case& patient_case,
+                                    const HapticModel& model, const TouchTarget& start,
+                                    const std::optional<FirstEye>& eye) {
     constexpr std::size_t most_tries = 30;
-    constexpr double shortest = 10;  // mm
     std::vector<Vector3d> middles = places_around(patient_case, start, recipe.spread, recipe.seed);
     middles.insert(middles.begin(), start.place.point);
     middles.resize(std::min(middles.size(), most_tries));
     std::vector<Vector3d> longest;
     for (const Vector3d& place : middles) {
-        const auto middle = reached(patient_case, model, start.body, place, start.place.normal);
+        const auto middle = reached_in_sight(patient_case, model, start, place, eye);
         if (!middle) continue;
-        std::vector<Vector3d> line = line_through(patient_case, model, *middle, recipe.spread);
+        std::vector<Vector3d> line = line_through(patient_case, model, *middle, recipe.spread, eye);
         if (line.size() > longest.size()) longest = std::move(line);
-        if (length_of(longest) >= recipe.spread) return longest;
+        if (length_of(longest) >= recipe.spread) break;
     }
-    if (length_of(longest) < shortest)
+    return longest;
+}
+
+std::vector<Vector3d> draw_line(const ExerciseRecipe& recipe, const Case& patient_case,
+                                const HapticModel& model, const TouchTarget& start, const FirstEye& eye) {
+    constexpr double shortest = 10;  // mm
+    std::vector<Vector3d> line = line_in_sight(recipe, patient_case, model, start, eye);
+    if (length_of(line) >= shortest) return line;
+    line = line_in_sight(recipe, patient_case, model, start, std::nullopt);
+    if (length_of(line) < shortest)
         throw InvalidInput({recipe.written_at.empty() ? recipe.name : recipe.written_at,
                             "a line finds no room near the start", "",
                             "write 'places_mm', or start elsewhere"});
-    return longest;
+    return line;
 }
 
 // Between the points of a line others, on the surface that is nearest to them.
@@ -319,7 +363,7 @@ std::optional<Exercise> lay_out_settled(const ExerciseRecipe& recipe, const Case
 }
 
 std::optional<Exercise> lay_out(const ExerciseRecipe& recipe, const Case& patient_case, HapticModel& model,
-                                const TouchTarget& start) {
+                                const TouchTarget& start, const FirstEye& eye) {
     ExerciseRecipe whole = recipe;
     const auto usual_force = [&](double depth) {
         return two_digits(
@@ -333,9 +377,9 @@ std::optional<Exercise> lay_out(const ExerciseRecipe& recipe, const Case& patien
     if (!whole.least_force) whole.least_force = usual_force(least_depth);
     if (!whole.most_force) whole.most_force = usual_force(most_depth);
     if (whole.places.empty() && recipe.task == Task::touch)
-        whole.places = draw_marks(recipe, patient_case, model, start, 2 * tolerance_of(recipe, model));
+        whole.places = draw_marks(recipe, patient_case, model, start, 2 * tolerance_of(recipe, model), eye);
     if (whole.places.empty() && recipe.task == Task::trace)
-        whole.places = draw_line(recipe, patient_case, model, start);
+        whole.places = draw_line(recipe, patient_case, model, start, eye);
     return lay_out_settled(whole, patient_case, model);
 }
 

@@ -36,17 +36,24 @@ std::vector<HiddenRegion> hidden_regions(const Case& patient_case);
 session::TouchTarget choose_start(const Case& patient_case, const haptics::HapticModel& model,
                                   const std::string& body_name, std::uint64_t seed);
 
+/// From where a patient is looked at first.
+struct FirstEye {
+    Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< p_P, mm
+    bool cuts = false;                                ///< what stands before is cut away
+};
+
 /// Lays an exercise out on a patient, around the place where the hand starts. What the recipe leaves open:
 /// marks are drawn within `spread` of the start on the side that is seen from above it, at places that the
-/// tool reaches; a line goes along the surface, through the start or, where it would be shorter than
-/// `spread`, near it; the least force is what the tool makes 1 mm deep there, the most 4 mm deep (no more
-/// than four fifths of what the case allows); tolerances are one and a half tool radii, 2 mm at least, 10 mm
-/// where something is to be found; tissue is drawn back by 5 mm out of the rim at the start, within 2 mm and
-/// with no more than 1 N. Nothing for a search in a case that hides nothing. Throws InvalidInput naming the
-/// recipe for a region that the case has not, or a surface on which the marks or the line find no room.
-/// Presses with the model, which it resets: not beside a running tick.
+/// tool reaches and, if enough are, that the eye sees; a line, likewise, goes along the surface, through the
+/// start or, where it would be shorter than `spread`, near it; the least force is what the tool makes 1 mm
+/// deep there, the most 4 mm deep (no more than four fifths of what the case allows); tolerances are one and
+/// a half tool radii, 2 mm at least, 10 mm where something is to be found; tissue is drawn back by 5 mm out
+/// of the rim at the start, within 2 mm and with no more than 1 N. Nothing for a search in a case that hides
+/// nothing. Throws InvalidInput naming the recipe for a region that the case has not, or a surface on which
+/// the marks or the line find no room. Presses with the model, which it resets: not beside a running tick.
 std::optional<Exercise> lay_out(const ExerciseRecipe& recipe, const Case& patient_case,
-                                haptics::HapticModel& model, const session::TouchTarget& start);
+                                haptics::HapticModel& model, const session::TouchTarget& start,
+                                const FirstEye& eye);
 
 /// Lays out a recipe that leaves nothing open: forces are given, and places where its task has any. Nothing
 /// for a search in a case that hides nothing. Between two written points of a line others are put, a

@@ -18,6 +18,7 @@ SOURCE = pathlib.Path(os.environ["PALPATE_SOURCE"])
 ORACLE = pathlib.Path(os.environ["PALPATE_BUILD"]) / "tests" / "press_oracle"
 VTK_SUMMARY = pathlib.Path(os.environ["PALPATE_BUILD"]) / "tests" / "vtk_summary"
 SAMPLES = SOURCE / "build" / "sample_data"
+KEPT = pathlib.Path(os.environ["PALPATE_BUILD"]) / "tests" / "demo_cases"  # for commands.demo_exercises
 
 UNSETTLED_SHARE = 0.004  # of a slide's ticks; 0.001 measured
 FORCE_TOLERANCE = 0.01  # relative; what a press may differ from the direct solve
@@ -66,6 +67,8 @@ class DemoCases(unittest.TestCase):
             self.check_slide_comes_to_rest(asset)
             if and_then:
                 and_then(asset, folder)
+            KEPT.mkdir(parents=True, exist_ok=True)
+            shutil.copy(asset, KEPT / f"{name}.vtkhdf")
 
     def check_slide_comes_to_rest(self, asset):
         """But where it slips over an edge, whose saddle the search for an equilibrium is not to stay at."""

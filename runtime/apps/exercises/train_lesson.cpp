@@ -81,7 +81,7 @@ std::filesystem::path usual_attempts_folder() {
 }
 
 std::vector<LaidOut> lay_out_exercises(const LessonOptions& options, session::Session& run,
-                                       const session::TouchTarget& start) {
+                                       const session::TouchTarget& start, const FirstEye& eye) {
     if (!is_pseudonym(options.trainee))
         throw UsageError({"--trainee", "'" + options.trainee + "'", "1 to 40 letters, digits, '-' and '_'",
                           "a pseudonym, not a name"});
@@ -95,7 +95,7 @@ std::vector<LaidOut> lay_out_exercises(const LessonOptions& options, session::Se
         const auto same = [&](const LaidOut& other) { return other.recipe.name == recipe.name; };
         if (!named && std::ranges::any_of(exercises, same)) continue;
         try {
-            if (auto exercise = lay_out(recipe, run.patient_case(), run.model(), start))
+            if (auto exercise = lay_out(recipe, run.patient_case(), run.model(), start, eye))
                 exercises.push_back({recipe, std::move(*exercise)});
         } catch (const InvalidInput& error) {
             if (named) throw;

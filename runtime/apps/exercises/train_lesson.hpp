@@ -9,6 +9,7 @@
 #include "runtime/apps/exercises/lesson_pages.hpp"
 #include "runtime/session/session.hpp"
 #include "runtime/session/touch_target.hpp"
+#include "runtime/training/lay_out.hpp"
 #include "runtime/training/lesson.hpp"
 #include "runtime/training/teacher/exercise_editor.hpp"
 
@@ -33,12 +34,12 @@ struct LaidOut {
     training::Exercise exercise;
 };
 
-/// Lays the exercises out on the session's patient, around `start`. Those of a file that cannot be are
-/// refused if the user named it; of the asset's own and the standard ones those that find no room on this
-/// patient are left out, and said. After hold(), before the loops run. Throws as read_exercises(), lay_out();
-/// UsageError for a pseudonym that is none or an exercise that is not there.
+/// Lays the exercises out on the session's patient, around `start` and in the eye's sight. Those of a file
+/// that cannot be are refused if the user named it; of the asset's own and the standard ones those that find
+/// no room on this patient are left out, and said. After hold(), before the loops run. Throws as
+/// read_exercises(), lay_out(); UsageError for a pseudonym that is none or an exercise that is not there.
 std::vector<LaidOut> lay_out_exercises(const LessonOptions& options, session::Session& run,
-                                       const session::TouchTarget& start);
+                                       const session::TouchTarget& start, const training::FirstEye& eye);
 
 /// The exercises of one run of the trainer, their attempts and the files that keep them, and the making of
 /// new ones.

@@ -16,6 +16,7 @@ from trainer_case import TrainerCase  # noqa: E402
 TOUCH = Path(os.environ["PALPATE_BIN"]) / "palpate-touch"
 # About the sample's soft cube of 20 mm.
 FORCEPS = "--instrument", "forceps", "--jaw-length", 16, "--jaw-radius", 1, "--jaw-opening", 120
+BUTTON_ROW = 690  # pixels from the window's top
 WAY_IN = 32  # steps of half a millimetre from the start, twice half a jaw's length outside
 
 
@@ -112,6 +113,24 @@ class ForcepsInTheWindow(TrainerCase):
         self.assertGreater(played["force_peak_n"], 0)
         self.assertLessEqual(played["force_peak_n"], max(math.hypot(*hand) for hand in both) + 1e-9)
         self.assertLess(played["force_peak_n"], 0.9 * max(math.hypot(*jaw) for jaw in force))  # they press against each other
+
+    def test_a_language_of_longer_words_has_all_buttons_in_the_window(self):
+        german = {**self.server.environment, "LC_ALL": "C.UTF-8", "LANGUAGE": "de"}
+        process = self.launch(*FORCEPS, "--size", "1280x720", environment=german)  # most buttons
+        window = self.find_window()
+        self.wait_for(lambda: self.shows_page(window))
+        self.x("xdotool", "key", "BackSpace")
+        self.come_to_rest()
+        closed_at = None
+        for x in range(1278, 1150, -8):  # from the edge until the last button, which closes the window, is hit
+            subprocess.run(["xdotool", "mousemove", "--window", window, str(x), str(BUTTON_ROW), "click", "1"],
+                           env=self.server.environment, capture_output=True, timeout=60)
+            time.sleep(0.4)
+            if process.poll() is not None:
+                closed_at = x
+                break
+        self.assertIsNotNone(closed_at, "the last button is not in the window")
+        self.assertLess(closed_at, 1280 - 16, "it reaches to the window's edge, or beyond")
 
 
 if __name__ == "__main__":

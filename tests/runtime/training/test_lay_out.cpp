@@ -27,6 +27,7 @@ class LayOut : public ::testing::Test {
     const std::vector<ExerciseRecipe> recipes_ = standard_exercises(false);
     const Case case_ = make_case();
     haptics::HapticModel model_{case_};
+    const FirstEye above_{.place = {10, 10, 100}};
     const session::TouchTarget start_ = session::choose_touch_target(case_, model_, "", std::nullopt);
 };
 
@@ -42,44 +43,61 @@ TEST_F(LayOut, what_a_body_encloses_is_hidden_below_its_free_surface) {
 TEST_F(LayOut, marks_lie_apart_on_the_side_of_the_start_and_the_tool_comes_there) {
     ExerciseRecipe recipe = standard("touch");
     recipe.tolerance = 2;
-    const auto exercise = lay_out(recipe, case_, model_, start_);
+    const auto exercise = lay_out(recipe, case_, model_, start_, above_);
     ASSERT_TRUE(exercise);
     ASSERT_EQ(exercise->places.size(), 5U);
     for (std::size_t i = 0; i < 5; ++i) {
         EXPECT_NEAR(exercise->places[i].z(), 20, 1e-9);
         for (std::size_t j = 0; j < i; ++j) EXPECT_GE((exercise->places[i] - exercise->places[j]).norm(), 4);
     }
-    EXPECT_EQ(lay_out(recipe, case_, model_, start_)->places, exercise->places);
+    EXPECT_EQ(lay_out(recipe, case_, model_, start_, above_)->places, exercise->places);
     recipe.seed = 2;
-    EXPECT_NE(lay_out(recipe, case_, model_, start_)->places, exercise->places);
+    EXPECT_NE(lay_out(recipe, case_, model_, start_, above_)->places, exercise->places);
+}
+
+TEST_F(LayOut, marks_and_lines_lie_where_the_eye_sees_them_if_there_is_room) {
+    // From close to the top's plane, beside x = 0: what lies farther away is seen too flat.
+    const FirstEye low{.place = {0, 10, 28}};
+    ExerciseRecipe recipe = standard("touch");
+    recipe.count = 3;
+    recipe.tolerance = 1;
+    const auto marks = lay_out(recipe, case_, model_, start_, low);
+    for (const Vector3d& mark : marks->places)
+        EXPECT_GT((low.place - mark).normalized().z(), 0.5 - 1e-9) << mark.transpose();
+    const FirstEye near{.place = {10, 10, 33}};
+    const auto line = lay_out(standard("trace"), case_, model_, start_, near);
+    for (const Vector3d& point : line->places)
+        EXPECT_GT((near.place - point).normalized().z(), 0.5 - 1e-9) << point.transpose();
+    const FirstEye below{.place = {10, 10, -100}};
+    EXPECT_EQ(lay_out(recipe, case_, model_, start_, below)->places.size(), 3U) << "better unseen than none";
 }
 
 TEST_F(LayOut, marks_without_room_are_refused) {
     ExerciseRecipe recipe = standard("touch");
     recipe.count = 500;
     recipe.written_at = "exercises.toml:7";
-    EXPECT_THAT(sample::refusal([&] { lay_out(recipe, case_, model_, start_); }),
+    EXPECT_THAT(sample::refusal([&] { lay_out(recipe, case_, model_, start_, above_); }),
                 ::testing::HasSubstr("exercises.toml:7"));
 }
 
 TEST_F(LayOut, a_search_is_for_the_hidden_region_and_needs_one) {
     ExerciseRecipe recipe = standard("find");
-    const auto exercise = lay_out(recipe, case_, model_, start_);
+    const auto exercise = lay_out(recipe, case_, model_, start_, above_);
     EXPECT_EQ(exercise->region, "tumour");
     EXPECT_EQ(exercise->places.front(), hidden_regions(case_)[0].above);
     for (const Vector3d& point : exercise->outline)
         EXPECT_LT((point - exercise->places.front()).norm(), 20) << "around what is hidden";
     EXPECT_GT(exercise->outline.size(), 5U);
     recipe.region = "tumor";
-    EXPECT_THAT(sample::refusal([&] { lay_out(recipe, case_, model_, start_); }),
+    EXPECT_THAT(sample::refusal([&] { lay_out(recipe, case_, model_, start_, above_); }),
                 ::testing::HasSubstr("'tumour'"));
     Case plain = case_;
     std::ranges::fill(plain.deformable_bodies[0].mesh.regions, 1);
-    EXPECT_FALSE(lay_out(standard("find"), plain, model_, start_));
+    EXPECT_FALSE(lay_out(standard("find"), plain, model_, start_, above_));
 }
 
 TEST_F(LayOut, a_line_runs_along_the_surface_and_keeps_off_its_edges) {
-    const auto exercise = lay_out(standard("trace"), case_, model_, start_);
+    const auto exercise = lay_out(standard("trace"), case_, model_, start_, above_);
     EXPECT_GT(length_of(exercise->places), 10);
     for (const Vector3d& place : exercise->places) {
         EXPECT_NEAR(place.z(), 20, 1e-9);
@@ -92,7 +110,7 @@ TEST_F(LayOut, points_of_a_written_line_are_joined_along_the_surface) {
     ExerciseRecipe recipe = standard("trace");
     // Over the cube's edge from its top to its side: straight on, the line would run through it.
     recipe.places = {{10, 10, 20}, {20, 10, 10}};
-    const auto exercise = lay_out(recipe, case_, model_, start_);
+    const auto exercise = lay_out(recipe, case_, model_, start_, above_);
     EXPECT_GT(exercise->places.size(), 10U);
     EXPECT_EQ(exercise->places.front(), recipe.places.front());
     EXPECT_EQ(exercise->places.back(), recipe.places.back());
@@ -105,12 +123,12 @@ TEST_F(LayOut, points_of_a_written_line_are_joined_along_the_surface) {
 
 TEST_F(LayOut, forces_are_what_this_tissue_answers_and_those_of_the_file_go_before) {
     ExerciseRecipe recipe = standard("free");
-    const auto exercise = lay_out(recipe, case_, model_, start_);
+    const auto exercise = lay_out(recipe, case_, model_, start_, above_);
     EXPECT_NEAR(exercise->least_force, force_at_depth(model_, start_.place, 1), 0.06 * exercise->least_force);
     EXPECT_GT(exercise->most_force, 2 * exercise->least_force);
     EXPECT_LE(exercise->most_force, case_.haptics.max_force);
     recipe.most_force = 0.25;
-    EXPECT_EQ(lay_out(recipe, case_, model_, start_)->most_force, 0.25);
+    EXPECT_EQ(lay_out(recipe, case_, model_, start_, above_)->most_force, 0.25);
 }
 
 TEST_F(LayOut, a_press_is_of_the_first_tool_whether_there_are_others_or_not) {

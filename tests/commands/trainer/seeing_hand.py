@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A hand that does the trainer's exercises with mouse and keys, and knows what is seen in the window and nothing else."""
+import subprocess
+import time
+
+import numpy as np
+
+SCENE = slice(105, 590)  # rows between texts and buttons, of 720
+WARNING = slice(0, 45)  # of those, which a warning takes
+YELLOW = np.array([255, 214, 64]) / 255  # of the mark that is due and of a line
+DEEPER = 8  # notches of the wheel with which a clumsy hand presses, half a millimetre each
+
+
+class SeeingHand:
+    """On a window of 1280x720 pixels; `x(*command)` runs a command in its display and returns what that prints."""
+
+    def __init__(self, x, window):
+        self.x, self.window = x, window
+
+    def key(self, *keys, delay=12):
+        self.x("xdotool", "key", "--delay", delay, *keys)
+
+    def point(self, pixel):
+        self.x("xdotool", "mousemove", "--window", self.window, *map(int, pixel))
+
+    def look(self):
+        """Rows from above of (r, g, b)."""
+        dump = self.x("xwd", "-silent", "-id", self.window)
+        rgb = subprocess.run(["convert", "xwd:-", "-depth", "8", "rgb:-"], input=dump, capture_output=True, check=True).stdout
+        return np.frombuffer(rgb, np.uint8).reshape(720, 1280, 3).astype(int)
+
+    def yellow(self, warned=True):
+        """Pixels (n, 2), x and y, of the mark that is due and of the line."""
+        seen = self.look()[SCENE]
+        brightest = seen.max(-1)
+        alike = np.abs(seen / brightest[..., None].clip(1) - YELLOW).max(-1) < 0.12
+        if warned:
+            alike[WARNING] = False
+        y, x = np.nonzero(alike & (brightest > 150))
+        return np.column_stack([x, y + SCENE.start])
+
+    def due(self):
+        """Where the mark that is due is seen; None where there is none."""
+        pixels = self.yellow()
+        return np.median(pixels, axis=0) if len(pixels) > 8 else None
+
+    def begin(self):
+        """Away from everything, and not after a countdown."""
+        self.point((30, 300))
+        self.key("Return")
+        time.sleep(1)
+
+    def hold(self, deeper):
+        """Presses where it is, and the wheel, if it is a clumsy hand."""
+        self.x("xdotool", "mousedown", 1)
+        time.sleep(0.5)
+        if deeper:
+            self.x("xdotool", "click", "--repeat", deeper, 4)
+        time.sleep(1)
+
+    def let_go(self):
+        self.x("xdotool", "mouseup", 1)
+        time.sleep(0.4)
+
+    def touch(self, deeper=0, seconds=60):
+        """Presses each mark that becomes due, until none is seen."""
+        self.begin()
+        end = time.monotonic() + seconds
+        while time.monotonic() < end and (due := self.due()) is not None:
+            self.point(due)
+            time.sleep(0.6)  # the tool goes there
+            self.hold(deeper)
+            time.sleep(0.2)
+            self.let_go()
+
+    def trace(self, deeper=0, aside=0):
+        """Drags along the line, or so many pixels beside it, and a little beyond its end."""
+        self.begin()
+        way = self.line() + (aside, 0)
+        beyond = way[-1] + np.arange(1, 4)[:, None] * (way[-1] - way[-2])
+        self.point(way[0])
+        time.sleep(0.8)
+        self.hold(deeper)
+        for pixel in (*way[1:], *beyond):
+            self.point(pixel)
+            time.sleep(0.15)
+        self.let_go()
+
+    def line(self, step=6):
+        """Pixels so far apart along the yellow line, from the end where the ball is."""
+        left = self.yellow(warned=False).astype(float)
+        crowd = (np.linalg.norm(left[:, None] - left, axis=2) < 12).sum(1)  # the ball is where most is yellow
+        way = [left[np.argmax(crowd)]]
+        while True:
+            distance = np.linalg.norm(left - way[-1], axis=1)
+            left, distance = left[distance > step], distance[distance > step]
+            if not len(left) or distance.min() > 3 * step:
+                return np.array(way)
+            way.append(left[np.argmin(distance)])
+
+    def answer(self, pixel, deeper=0):
+        """Presses there and says that it is here."""
+        self.begin()
+        self.point(pixel)
+        time.sleep(1)
+        self.hold(deeper)
+        self.key("m")
+        self.let_go()
+
+    def drag(self, button, dx, dy):
+        """From the picture's middle."""
+        self.point((640, 360))
+        self.x("xdotool", "mousedown", button)
+        for _ in range(10):
+            self.x("xdotool", "mousemove_relative", "--", dx // 10, dy // 10)
+            time.sleep(0.03)
+        self.x("xdotool", "mouseup", button)
+        time.sleep(0.5)
+
+    def lead_scope(self):
+        """Through the endoscope's picture, always ahead, by wheel and key."""
+        self.begin()
+        self.key("v")
+        for _ in range(10):
+            self.x("xdotool", "click", "--repeat", 4, "--delay", 120, 4)
+            self.key(*["w"] * 12, delay=33)
+
+    def scrape(self):
+        """As that, but drags the tip against the wall every now and then."""
+        self.begin()
+        self.key("v")
+        for _ in range(10):
+            self.key(*["w"] * 20, delay=33)
+            self.drag(1, 400, 0)
+            self.drag(1, -400, 0)

@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The exercises that come with the demo's cases, done in a real window with mouse and keys alone: by a good hand, by a clumsy one, by
+an idle one, with the score that each deserves."""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(0, f"{os.environ['PALPATE_SOURCE']}/tests/commands")
+from seeing_hand import DEEPER, SeeingHand  # noqa: E402
+from x_server import NEEDED, XServer  # noqa: E402
+
+TRAIN = pathlib.Path(os.environ["PALPATE_BIN"]) / "palpate-train"
+CASES = pathlib.Path(os.environ["PALPATE_BUILD"]) / "tests" / "demo_cases"  # of commands.demo_cases
+EXERCISES = pathlib.Path(os.environ["PALPATE_SOURCE"]) / "pipelines" / "exercises"
+GOOD, BAD = 80, 60  # of 100: a good hand has more, a clumsy one less
+
+
+@unittest.skipUnless(TRAIN.exists(), "PALPATE_VISUAL is off")
+@unittest.skipUnless(all(map(shutil.which, NEEDED)), "PALPATE: xvfb, xdotool, x11-apps or imagemagick is missing")
+class DemoExercises(unittest.TestCase):
+    case = None
+
+    @classmethod
+    def setUpClass(cls):
+        cls.asset = CASES / f"{cls.case}.vtkhdf"
+        if not cls.asset.exists():
+            raise unittest.SkipTest("PALPATE: commands.demo_cases, which builds the demo's cases, has not run")
+        cls.server = cls.enterClassContext(XServer("1280x720"))
+        cls.folder = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
+        shutil.copy(EXERCISES / f"{cls.case}.toml", cls.folder / "exercises.toml")
+
+    def x(self, *command):
+        return subprocess.run([*map(str, command)], env=self.server.environment, check=True, capture_output=True, timeout=90).stdout
+
+    def attempt(self, exercise, act, *options, file=None):
+        """How an exercise ended that `act(hand)` did, and its metrics."""
+        command = [TRAIN, self.asset, "--exercises", file or self.folder / "exercises.toml", "--exercise", exercise, "--size", "1280x720",
+                   "--attempts", self.folder / "attempts", "--quiet", "--json", "-", *options]
+        train = subprocess.Popen([*map(str, command)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=self.server.environment)
+        self.addCleanup(train.communicate)
+        self.addCleanup(train.kill)
+        window = self.x("xdotool", "search", "--sync", "--onlyvisible", "--name", f"Palpate: {self.case}").split()[0].decode()
+        time.sleep(1)
+        self.x("xdotool", "windowfocus", "--sync", window)
+        act(SeeingHand(self.x, window))
+        time.sleep(0.3)
+        self.x("xdotool", "key", "q")
+        out, err = train.communicate(timeout=60)
+        self.assertEqual(train.returncode, 0, err)
+        (attempt,) = json.loads(out)["attempts"]
+        return attempt["ending"], attempt["metrics"], attempt["exercise"]
+
+    def do_well(self, exercise, act, *options, ending="all reached"):
+        ended, metrics, _ = self.attempt(exercise, act, *options)
+        self.assertEqual(ended, ending, metrics)
+        self.assertGreater(metrics["score"], GOOD, metrics)
+
+    def do_badly(self, exercise, act, *options):
+        _, metrics, _ = self.attempt(exercise, act, *options)
+        self.assertLess(metrics["score"], BAD, metrics)
+        return metrics
+
+    def idle(self, exercise, *options):
+        ended, metrics, _ = self.attempt(exercise, SeeingHand.begin, *options)
+        self.assertEqual((ended, metrics["score"]), ("cut short", 0))
+
+    def touch_and_trace(self):
+        for exercise, act in (("touch", SeeingHand.touch), ("trace", SeeingHand.trace)):
+            with self.subTest(exercise):
+                self.do_well(exercise, act)
+                clumsy = self.do_badly(exercise, lambda hand, act=act: act(hand, deeper=DEEPER))
+                self.assertGreater(clumsy["time_above_limit_s"], 1)
+                self.idle(exercise)
+
+    def find(self, turn):
+        """A good hand knows from a mark of its teacher's where it is; `turn` is how the view is moved so that it is seen."""
+        _, clumsy, hidden = self.attempt("find", lambda hand: hand.answer((640, 360), deeper=DEEPER))
+        self.assertLess(clumsy["score"], BAD)
+        there = self.folder / "there.toml"
+        there.write_text(f'schema = 1\n[[exercise]]\nname = "there"\ntask = "touch"\nplaces_mm = {hidden["places_mm"]}\n')
+        seen = []
+        self.attempt("there", lambda hand: (hand.begin(), hand.drag(*turn), hand.point((30, 300)), time.sleep(1), seen.append(hand.due())), file=there)
+        self.assertIsNotNone(seen[0], "the place is not seen")
+        self.do_well("find", lambda hand: (hand.begin(), hand.drag(*turn), hand.answer(seen[0])), ending="found")
+        self.idle("find")
+
+
+class Liver(DemoExercises):
+    case = "liver"
+
+    def test_marks_and_a_line(self):
+        self.touch_and_trace()
+
+    def test_the_hidden_tumour(self):
+        self.find((2, 0, 160))  # the organ's upper part from behind the texts
+
+    def test_the_edge_held_back(self):
+        def retract(hand, steps, closes=True):
+            hand.begin()
+            hand.key(*["w"] * steps, delay=60)  # half a millimetre each
+            time.sleep(1)
+            if closes:
+                hand.key("j")
+                time.sleep(2.5)
+            hand.key(*["s"] * 12, delay=120)
+            time.sleep(2.5)
+            hand.key("j")
+            time.sleep(2.5)
+            hand.key(*["s"] * steps, delay=60)
+            time.sleep(0.5)
+
+        forceps = "--instrument", "forceps"
+        self.do_well("retract", lambda hand: retract(hand, 40), *forceps)
+        slipped = self.do_badly("retract", lambda hand: retract(hand, 20), *forceps)
+        self.assertGreaterEqual(slipped["misses"], 1)
+        self.idle("retract", *forceps)
+
+
+class Nasopharynx(DemoExercises):
+    case = "nasopharynx"
+
+    def test_marks_and_a_line(self):
+        self.touch_and_trace()
+
+    def test_the_hidden_tumour(self):
+        self.find((3, 0, -300))
+
+    def test_the_scope_by_its_own_picture(self):
+        self.do_well("scope", SeeingHand.lead_scope)
+        scraped = self.do_badly("scope", SeeingHand.scrape)
+        self.assertGreater(scraped["time_above_limit_s"], 0.2)
+        self.idle("scope")
+
+
+del DemoExercises  # has no tests of its own
+
+if __name__ == "__main__":
+    unittest.main()
