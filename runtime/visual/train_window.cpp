@@ -51,8 +51,9 @@ using Eigen::Vector3d;
 
 constexpr double step = 0.5;          // mm a key press
 constexpr double wheel_depth = 0.5;   // mm a notch
-constexpr double scope_step = 1.5;    // mm a notch, of an endoscope that fills the window
+constexpr double scope_step = 1;      // mm a notch, of an endoscope that fills the window
 constexpr double scope_sight = 15;    // mm before its tip: what stays under a pointer that is dragged
+constexpr double scope_leash = 3;     // mm that a hand which sees from the tip goes ahead of it
 constexpr double zoom_step = 1.15;    // a key press
 constexpr double zoom_pixels = 20;    // of a drag that zooms by one step
 constexpr double shadow_share = 0.3;  // of the field: how far the tool's shadow falls
@@ -242,7 +243,15 @@ struct TrainWindow::Parts {
     void carry(double dx, double dy) {
         vtkCamera* camera = renderer->GetActiveCamera();
         const double depth = endoscope.fills_window() ? scope_sight : depth_of(camera, hand.place());
-        hand.move(way_of_drag(camera, dx, dy, depth, window->GetSize()[1]));
+        move_hand(way_of_drag(camera, dx, dy, depth, window->GetSize()[1]));
+    }
+
+    // What sees from the tip feels in the picture where that is held up, and does not push on and on.
+    void move_hand(const Vector3d& by) {
+        hand.move(by);
+        if (!endoscope.fills_window()) return;
+        const Vector3d ahead = hand.place() - tip;
+        if (ahead.norm() > scope_leash) hand.put(tip + scope_leash * ahead.normalized());
     }
 
     // The key of the button there; empty: none.
@@ -273,7 +282,7 @@ struct TrainWindow::Parts {
 
     void wheel_turned(double notches) {
         if (endoscope.fills_window())
-            hand.move(-scope_step * notches * view_axes(renderer->GetActiveCamera())[2]);
+            move_hand(-scope_step * notches * view_axes(renderer->GetActiveCamera())[2]);
         else if (drag == Drag::carry)
             hand.move(-wheel_depth * notches * settings.forceps->shaft);
         else if (hand.pressing())
@@ -304,7 +313,7 @@ struct TrainWindow::Parts {
         const Vector3d back = settings.forceps ? settings.forceps->shaft : eye;
         const std::map<std::string, Vector3d> moves{{"Left", -right}, {"Right", right}, {"Up", up},
                                                     {"Down", -up},    {"w", -back},     {"s", back}};
-        if (const auto move = moves.find(key); move != moves.end()) hand.move(step * move->second);
+        if (const auto move = moves.find(key); move != moves.end()) move_hand(step * move->second);
     }
 
     void key_pressed(const char* symbol) {
@@ -394,8 +403,9 @@ struct TrainWindow::Parts {
     ButtonBar buttons, lesson_buttons;
     Timeline timeline;
     ViewHistory views;
-    std::vector<std::string> keys;  // for take_keys()
-    double tool_radius;             // mm
+    std::vector<std::string> keys;    // for take_keys()
+    double tool_radius;               // mm
+    Vector3d tip = Vector3d::Zero();  // of the tool as it is drawn, p_P, mm
     bool cut;
     bool rigid_shown = true;
     bool page_takes_keys = false;
@@ -423,6 +433,7 @@ void TrainWindow::draw(const VisualFrame& frame) {
     Parts& p = *parts_;
     p.interactor->ProcessEvents();
     if (p.closed || lost()) return;
+    p.tip = frame.tool_position;
     p.hand.feel(frame.force.norm(), frame.lesson.press_force);
     p.lead_hand();
     p.scene.update(frame);

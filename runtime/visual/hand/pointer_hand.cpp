@@ -72,9 +72,9 @@ Vector3d PointerHand::goal() const {
     return anchor_->point + (radius_ + offset_) * anchor_->normal;
 }
 
-// No farther towards the eye than it must: a fiftieth of the way, or twice as much, ...
-void PointerHand::go_around(const SeenPoint& next, const PointerScene& scene) {
-    offset_ = hover;
+// No farther towards the eye than it must: a fiftieth of the way, or twice as much, ... Whether there is a
+// way.
+bool PointerHand::go_around(const SeenPoint& next, const PointerScene& scene) {
     const Vector3d above = next.point + (radius_ + hover) * next.normal;
     Vector3d from = place_;
     Vector3d from_eye = place_ + next.seen_from - next.point;
@@ -83,13 +83,16 @@ void PointerHand::go_around(const SeenPoint& next, const PointerScene& scene) {
         from_eye = anchor_->seen_from;
     }
     std::vector<Vector3d> way;
-    if (scene.blocked(from, above))
-        for (const double share : {0.02, 0.04, 0.08, 0.16, 0.32, 0.64}) {
-            way = {above + share * (next.seen_from - above), from + share * (from_eye - from)};
-            if (!scene.blocked(way[1], way[0])) break;
-        }
+    bool blocked = scene.blocked(from, above);
+    for (double share = 0.02; blocked && share < 1; share *= 2) {
+        way = {above + share * (next.seen_from - above), from + share * (from_eye - from)};
+        blocked = scene.blocked(way[1], way[0]);
+    }
+    if (blocked) return false;
+    offset_ = hover;
     detour_ = std::move(way);
     if (anchor_) detour_.push_back(from);
+    return true;
 }
 
 void PointerHand::seek_next_pixel(const PointerScene& scene) {
@@ -104,12 +107,11 @@ void PointerHand::seek_next_pixel(const PointerScene& scene) {
     if (!next) return;
     const Vector3d before = anchor_ ? anchor_->point : place_;
     if ((next->point - before).norm() > std::max(shortest_jump, 3 * radius_)) {
-        // What is only passed is not gone into.
-        if (*reached_ != pointer_ || rested_ < shortest_rest) {
+        // What is only passed is not gone into, and nothing is gone through.
+        if (*reached_ != pointer_ || rested_ < shortest_rest || !go_around(*next, scene)) {
             reached_.reset();
             return;
         }
-        go_around(*next, scene);
     }
     anchor_ = next;
     found_ = true;

@@ -21,7 +21,7 @@ struct PointerScene {
 /// sinks to a depth below that surface, along its inward normal, and slides where the pointer is dragged;
 /// where a force is wanted it sinks until that is felt and keeps the depth. It
 /// never jumps: it goes over the surface between two pixels, and where that ends, to what the pointer rests
-/// on behind the edge, around what stands in its way, towards the eye.
+/// on behind the edge, around what stands in its way, towards the eye; where there is no such way it stays.
 class PointerHand {
   public:
     static constexpr double hover = 2;                           ///< mm, of the tool over the surface
@@ -55,7 +55,7 @@ class PointerHand {
     Eigen::Vector3d goal() const;
     void sink(double seconds);
     void seek_next_pixel(const PointerScene& scene);
-    void go_around(const SeenPoint& next, const PointerScene& scene);
+    bool go_around(const SeenPoint& next, const PointerScene& scene);
 
     double radius_, depth_;
     Eigen::Vector3d place_;

@@ -109,8 +109,8 @@ bool Endoscope::covers(int x, int y) const {
 }
 
 void Endoscope::look_along(const ScopePose& pose) {
-    const bool turns = !pose.orientation.coeffs().isZero(0);
-    if (!placed_) {
+    const bool turns = !pose.orientation.coeffs().isZero(0), first = !placed_;
+    if (first) {
         tip_ = pose.tip;
         up_in_tool_ = across(pose.orientation.conjugate() * Vector3d(camera_->GetViewUp()));
     }
@@ -125,7 +125,7 @@ void Endoscope::look_along(const ScopePose& pose) {
     if (pose.look_at) way = *pose.look_at - pose.tip;
     if (!pose.shaft.isZero()) way = -pose.shaft;
     if (way.norm() < least_step) return;
-    forward_ = (forward_ + agility * (way.normalized() - forward_)).normalized();
+    forward_ = (forward_ + (first ? 1 : agility) * (way.normalized() - forward_)).normalized();
     tip_ = pose.tip;
 }
 

@@ -121,15 +121,15 @@ class SeeingHand:
         """Through the endoscope's picture, always ahead, by wheel and key."""
         self.begin()
         self.key("v")
-        for _ in range(10):
-            self.x("xdotool", "click", "--repeat", 4, "--delay", 120, 4)
-            self.key(*["w"] * 12, delay=33)
+        for _ in range(16):
+            self.x("xdotool", "click", "--repeat", 3, "--delay", 100, 4)
+            self.key(*["w"] * 14, delay=40)
 
     def scrape(self):
         """As that, but drags the tip against the wall every now and then."""
         self.begin()
         self.key("v")
         for _ in range(10):
-            self.key(*["w"] * 20, delay=33)
+            self.key(*["w"] * 20, delay=40)
             self.drag(1, 400, 0)
             self.drag(1, -400, 0)
