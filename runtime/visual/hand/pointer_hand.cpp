@@ -42,6 +42,7 @@ void PointerHand::press(bool on) {
 }
 
 void PointerHand::deepen(double by) {
+    if (wanted_ && pressed_ && !found_depth_) found_depth_ = std::max(least_depth, -offset_);
     double& depth = found_depth_ ? *found_depth_ : depth_;
     depth = std::clamp(depth + by, least_depth, most_depth);
 }

@@ -38,7 +38,8 @@ class PointerHand {
     /// The pointer moved to a pixel, which takes the hand there.
     void point(const Eigen::Vector2d& pixel);
     void press(bool on);
-    /// Changes how deep a press goes, mm; of one that has felt what is wanted, that one alone.
+    /// Changes how deep a press goes, mm; where a force is wanted that of this press alone, which then goes no
+    /// further by itself.
     void deepen(double by);
     /// What the tool feels now, and what a press is to make; without that, a press goes to depth(). N.
     void feel(double force, const std::optional<double>& wanted);

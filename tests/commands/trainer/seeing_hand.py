@@ -8,7 +8,7 @@ import numpy as np
 SCENE = slice(105, 590)  # rows between texts and buttons, of 720
 WARNING = slice(0, 45)  # of those, which a warning takes
 YELLOW = np.array([255, 214, 64]) / 255  # of the mark that is due and of a line
-DEEPER = 8  # notches of the wheel with which a clumsy hand presses, half a millimetre each
+DEEPER = 12  # notches of the wheel with which a clumsy hand presses, half a millimetre each
 
 
 class SeeingHand:
@@ -53,10 +53,10 @@ class SeeingHand:
     def hold(self, deeper):
         """Presses where it is, and the wheel, if it is a clumsy hand."""
         self.x("xdotool", "mousedown", 1)
-        time.sleep(0.5)
+        time.sleep(0.3)
         if deeper:
             self.x("xdotool", "click", "--repeat", deeper, 4)
-        time.sleep(1)
+        time.sleep(1.2)
 
     def let_go(self):
         self.x("xdotool", "mouseup", 1)

@@ -78,7 +78,7 @@ class DemoExercises(unittest.TestCase):
                 self.do_well(exercise, act)
                 clumsy = self.do_badly(exercise, lambda hand, act=act: act(hand, deeper=DEEPER))
                 self.assertGreater(clumsy["time_above_limit_s"], 1)
-                self.idle(exercise)
+        self.idle("touch")
 
     def find(self, turn):
         """A good hand knows from a mark of its teacher's where it is; `turn` is how the view is moved so that it is seen."""
@@ -90,7 +90,6 @@ class DemoExercises(unittest.TestCase):
         self.attempt("there", lambda hand: (hand.begin(), hand.drag(*turn), hand.point((30, 300)), time.sleep(1), seen.append(hand.due())), "--exercises", there)
         self.assertIsNotNone(seen[0], "the place is not seen")
         self.do_well("find", lambda hand: (hand.begin(), hand.drag(*turn), hand.answer(seen[0])), ending="found")
-        self.idle("find")
 
 
 class Liver(DemoExercises):
