@@ -114,7 +114,7 @@ Overlay::Overlay(const std::string& case_name, double max_force, std::span<const
     place(title_, 0.983, 0.975, 18, true, true);
     place(help_, left_edge, above_buttons, 14, false, false);
     place(told_, 0.983, above_buttons, 16, true, false);
-    place(notice_, 0.5, 0.86, 20, false, true);
+    place(notice_, 0.5, 0.69, 20, false, true);  // below the figures
     notice_->GetTextProperty()->SetJustificationToCentered();
     notice_->GetTextProperty()->SetColor(1, 0.75, 0.3);
     place(cautions_, 0.983, 0.92, 14, false, true);
