@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <optional>
 #include <span>
@@ -52,7 +53,7 @@ using Eigen::Vector3d;
 constexpr double step = 0.5;          // mm a key press
 constexpr double wheel_depth = 0.5;   // mm a notch
 constexpr double scope_step = 1;      // mm a notch, of an endoscope that fills the window
-constexpr double scope_sight = 15;    // mm before its tip: what stays under a pointer that is dragged
+constexpr double scope_sight = 15;    // mm before its tip: how far a drag leads it is as there
 constexpr double scope_leash = 3;     // mm that a hand which sees from the tip goes ahead of it
 constexpr double zoom_step = 1.15;    // a key press
 constexpr double zoom_pixels = 20;    // of a drag that zooms by one step
@@ -239,7 +240,8 @@ struct TrainWindow::Parts {
         hand.view_changed();
     }
 
-    // In the picture's plane: what is carried stays under the pointer, of an endoscope what it looks at does.
+    // In the picture's plane, as far as what lies as deep goes with the pointer: what is carried, an
+    // endoscope's tip.
     void carry(double dx, double dy) {
         vtkCamera* camera = renderer->GetActiveCamera();
         const double depth = endoscope.fills_window() ? scope_sight : depth_of(camera, hand.place());
@@ -249,7 +251,7 @@ struct TrainWindow::Parts {
     // What sees from the tip feels in the picture where that is held up, and does not push on and on.
     void move_hand(const Vector3d& by) {
         hand.move(by);
-        if (!endoscope.fills_window()) return;
+        if (!endoscope.fills_window() || settings.forceps) return;
         const Vector3d ahead = hand.place() - tip;
         if (ahead.norm() > scope_leash) hand.put(tip + scope_leash * ahead.normalized());
     }
@@ -281,9 +283,9 @@ struct TrainWindow::Parts {
     }
 
     void wheel_turned(double notches) {
-        if (endoscope.fills_window())
+        if (endoscope.fills_window() && !settings.forceps)
             move_hand(-scope_step * notches * view_axes(renderer->GetActiveCamera())[2]);
-        else if (drag == Drag::carry)
+        else if (drag == Drag::carry && settings.forceps)
             hand.move(-wheel_depth * notches * settings.forceps->shaft);
         else if (hand.pressing())
             hand.deepen(wheel_depth * notches);
@@ -403,9 +405,9 @@ struct TrainWindow::Parts {
     ButtonBar buttons, lesson_buttons;
     Timeline timeline;
     ViewHistory views;
-    std::vector<std::string> keys;    // for take_keys()
-    double tool_radius;               // mm
-    Vector3d tip = Vector3d::Zero();  // of the tool as it is drawn, p_P, mm
+    std::vector<std::string> keys;  // for take_keys()
+    double tool_radius;             // mm
+    Vector3d tip = settings.start;  // of the tool as it is drawn, p_P, mm
     bool cut;
     bool rigid_shown = true;
     bool page_takes_keys = false;
@@ -434,7 +436,9 @@ void TrainWindow::draw(const VisualFrame& frame) {
     p.interactor->ProcessEvents();
     if (p.closed || lost()) return;
     p.tip = frame.tool_position;
-    p.hand.feel(frame.force.norm(), frame.lesson.press_force);
+    // Where a fault takes the force away, a press goes no deeper in search of it.
+    p.hand.feel(frame.faults == 0 ? frame.force.norm() : std::numeric_limits<double>::infinity(),
+                frame.lesson.press_force);
     p.lead_hand();
     p.scene.update(frame);
     p.shadow.update(frame.tool_position, drop_mark(p.touchable(), frame.tool_position, p.tool_radius,

@@ -32,6 +32,7 @@ class DemoCases(unittest.TestCase):
     def check(self, name, and_then=None):
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder)
+            (KEPT / f"{name}.vtkhdf").unlink(missing_ok=True)
             asset, log, touch = folder / "case.vtkhdf", folder / "log.csv", folder / "touch.json"
             build = [BIN / "palpate", "build", SOURCE / "pipelines" / "cases" / f"{name}.toml", "-o", asset]
             built = run(*build)

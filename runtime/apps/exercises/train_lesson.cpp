@@ -212,6 +212,7 @@ void TrainLesson::grant(Wish wish) {
 }
 
 void TrainLesson::take(const TickResult& tick) {
+    if (lesson_.phase() == Phase::doing && !began_) began_ = std::time(nullptr);
     lesson_.take(tick);
     if (tick.tool != 0) return;
     const bool pressed = (tick.buttons & 1U) != 0;
@@ -246,8 +247,9 @@ std::optional<Eigen::Vector3d> TrainLesson::hand(const Eigen::Vector3d& now) {
 
 void TrainLesson::keep(const Attempt& attempt) {
     const std::time_t now = std::time(nullptr);
+    const auto begun = std::exchange(began_, std::nullopt);
     const AttemptHead head{.trainee = setting_.trainee,
-                           .began = utc(now - static_cast<std::time_t>(attempt.time())),
+                           .began = utc(begun.value_or(now)),
                            .when = utc(now),
                            .case_name = setting_.case_name,
                            .device = run_.device_name(),

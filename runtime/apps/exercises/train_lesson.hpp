@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <ctime>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -53,8 +54,8 @@ class TrainLesson {
     TrainLesson& operator=(const TrainLesson&) = delete;
 
     /// A key, or a page's choice, while `tick` is felt: "f2" begins to make an exercise on the start page,
-    /// and to change the chosen one while it counts down or is looked back at; see ExerciseEditor then. "f3"
-    /// on the start page begins to type another pseudonym. Lesson otherwise.
+    /// and to change the chosen one while it counts down or is looked back at, see ExerciseEditor then; "f3"
+    /// there begins to type another pseudonym; see Lesson for all others.
     void press(const std::string& key, const TickResult& tick);
     /// Takes a tick of any tool, see Lesson; while marks are set, a press of the lowest button sets one.
     void take(const TickResult& tick);
@@ -90,8 +91,9 @@ class TrainLesson {
     std::filesystem::path exercise_file_;            // keeps what a teacher makes
     std::vector<std::string> written_;               // names in it at first, also of what found no room here
     std::optional<training::ExerciseEditor> editor_;
-    training::Exercise draft_;  // as the editor has it
-    bool button_ = false;       // at the last tick
+    training::Exercise draft_;          // as the editor has it
+    bool button_ = false;               // at the last tick
+    std::optional<std::time_t> began_;  // of the attempt that goes on
 };
 
 }  // namespace palpate::apps

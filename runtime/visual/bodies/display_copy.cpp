@@ -75,8 +75,8 @@ TriangleMesh display_copy(const TriangleMesh& surface, std::int64_t budget,
     if (fits(surface)) return surface;
     std::vector<double> distances;
     for (const Eigen::Vector3d& p : surface.vertices) distances.push_back(distance_to(focus, p, near));
-    // Triangles are fewer by the square of the cells' size at most, so that a step does not go too far; steps
-    // finer than the least would not be seen, for cells come in powers of two.
+    // Of a smooth surface triangles are fewer by the square of the cells' size; steps finer than the least
+    // would not be seen, for cells come in powers of two.
     constexpr double least_step = 1.4;
     TriangleMesh copy;
     for (double coarseness = 1.0 / 64; !fits(copy = clustered(surface, distances, coarseness));)

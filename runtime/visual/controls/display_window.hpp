@@ -4,8 +4,9 @@
 
 namespace palpate::visual {
 
-/// A window on the display. With every frame VTK would copy the picture's depth into it through a shader, which
-/// nothing here reads from there and takes software rendering an eighth of the frame: this one has none.
+/// A window on the display. With every frame VTK would copy the picture's depth into it through a shader,
+/// which nothing here reads from there and takes software rendering an eighth of the frame: this one has
+/// none.
 class DisplayWindow : public vtkXOpenGLRenderWindow {
   public:
     static DisplayWindow* New();

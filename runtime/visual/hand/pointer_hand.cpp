@@ -13,6 +13,7 @@ using Eigen::Vector3d;
 constexpr double usual_depth = 3;                                                         // mm, at least
 constexpr double depth_radii = 1.2;                                                       // of a larger tool
 constexpr double sink_speed = 15, lift_speed = 40, travel_speed = 150, slide_speed = 60;  // mm/s
+constexpr double far_depths = 3;         // of a press' depth: how far a wanted force is looked for
 constexpr double slowest_sinking = 0.1;  // of that speed, where a wanted force is nearly felt
 constexpr double longest_frame = 0.08;   // s: a slow picture must not make long steps
 constexpr double pixel_step = 5;         // between two places that are looked up
@@ -125,8 +126,9 @@ void PointerHand::sink(double seconds) {
         if (force_ >= *wanted_) found_depth_ = std::max(least_depth, -offset_);
         share = std::max(slowest_sinking, 1 - force_ / *wanted_);
     }
-    const double depth = found_depth_ ? *found_depth_ : wanted_ ? most_depth : depth_;
-    offset_ = toward(offset_, -depth, seconds * share * sink_speed);
+    const double farthest = std::min(most_depth, far_depths * depth_);
+    const double depth = found_depth_ ? *found_depth_ : wanted_ ? farthest : depth_;
+    offset_ = toward(offset_, -depth, std::min(longest_frame, seconds) * share * sink_speed);
 }
 
 void PointerHand::advance(double seconds, const PointerScene& scene) {

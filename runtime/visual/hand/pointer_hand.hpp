@@ -19,7 +19,7 @@ struct PointerScene {
 
 /// The hand as the mouse holds it: it hovers over the surface under the pointer; while the button is held it
 /// sinks to a depth below that surface, along its inward normal, and slides where the pointer is dragged;
-/// where a force is wanted it sinks until that is felt and keeps the depth. It
+/// where a force is wanted it sinks until that is felt, three times as deep at most, and keeps the depth. It
 /// never jumps: it goes over the surface between two pixels, and where that ends, to what the pointer rests
 /// on behind the edge, around what stands in its way, towards the eye; where there is no such way it stays.
 class PointerHand {
@@ -38,8 +38,8 @@ class PointerHand {
     /// The pointer moved to a pixel, which takes the hand there.
     void point(const Eigen::Vector2d& pixel);
     void press(bool on);
-    /// Changes how deep a press goes, mm; where a force is wanted that of this press alone, which then goes no
-    /// further by itself.
+    /// Changes how deep a press goes, mm; where a force is wanted that of this press alone, which then goes
+    /// no further by itself.
     void deepen(double by);
     /// What the tool feels now, and what a press is to make; without that, a press goes to depth(). N.
     void feel(double force, const std::optional<double>& wanted);

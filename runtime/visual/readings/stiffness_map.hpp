@@ -5,10 +5,10 @@
 #include <vtkNew.h>
 #include <vtkPolyData.h>
 #include <vtkRenderer.h>
-#include <vtkScalarBarActor.h>
 #include <vtkSmartPointer.h>
 
 #include "formats/model/body.hpp"
+#include "runtime/visual/readings/colour_scale.hpp"
 
 namespace palpate::visual {
 
@@ -25,15 +25,14 @@ class StiffnessMap {
     /// nobody knows. Adds an array to the points of `data`.
     vtkSmartPointer<vtkActor> actor_of(const DeformableBody& body, vtkPolyData* data) const;
     /// Shows the scale.
-    void show(bool on);
+    void show(bool on) { scale_.show(on); }
     /// Sizes follow the window.
-    void fit();
+    void fit() { scale_.fit(); }
 
   private:
-    vtkRenderer* front_;
     bool empty_ = true;
     vtkNew<vtkLookupTable> colours_;
-    vtkNew<vtkScalarBarActor> scale_;
+    ColourScale scale_;
 };
 
 }  // namespace palpate::visual

@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
-#include <vtkLookupTable.h>
 #include <vtkMatrix4x4.h>
 
 namespace palpate::visual {
@@ -17,10 +16,17 @@ ScanImage::ScanImage(const Scan& scan)
     voxels->SetSpacing(grid.spacing.data());
     voxels->AllocateScalars(VTK_SHORT, 1);
     std::ranges::copy(scan.values, static_cast<std::int16_t*>(voxels->GetScalarPointer()));
+    greys->SetRange(window.black, window.white);
+    greys->SetHueRange(0, 0);
+    greys->SetSaturationRange(0, 0);
+    greys->SetValueRange(0, 1);
+    greys->SetRampToLinear();
+    greys->SetNanColor(0, 0, 0, 0);
+    greys->Build();
 }
 
 ScanSampler::ScanSampler(const ScanImage& image) : grid_(image.grid) {
-    // What lies beyond the scan is no number, and the table makes that transparent.
+    // What lies beyond the scan is no number.
     constexpr double beyond = std::numeric_limits<double>::quiet_NaN();
     reslice_->SetInputData(image.voxels);
     reslice_->SetInterpolationModeToLinear();
@@ -28,15 +34,7 @@ ScanSampler::ScanSampler(const ScanImage& image) : grid_(image.grid) {
     reslice_->SetOutputExtent(0, 0, 0, 0, 0, 0);  // until a plane is asked for
     reslice_->SetOutputScalarType(VTK_FLOAT);
     reslice_->SetBackgroundColor(beyond, beyond, beyond, beyond);
-    vtkNew<vtkLookupTable> greys;
-    greys->SetRange(image.window.black, image.window.white);
-    greys->SetHueRange(0, 0);
-    greys->SetSaturationRange(0, 0);
-    greys->SetValueRange(0, 1);
-    greys->SetRampToLinear();
-    greys->SetNanColor(0, 0, 0, 0);
-    greys->Build();
-    colours_->SetLookupTable(greys);
+    colours_->SetLookupTable(image.greys);
     colours_->SetOutputFormatToRGBA();
     colours_->SetInputConnection(reslice_->GetOutputPort());
     texture_->SetInputConnection(colours_->GetOutputPort());

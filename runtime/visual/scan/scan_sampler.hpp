@@ -3,6 +3,7 @@
 #include <vtkImageData.h>
 #include <vtkImageMapToColors.h>
 #include <vtkImageReslice.h>
+#include <vtkLookupTable.h>
 #include <vtkNew.h>
 #include <vtkSmartPointer.h>
 #include <vtkTexture.h>
@@ -18,6 +19,7 @@ struct ScanImage {
     ImageGrid grid;
     GreyWindow window;
     vtkSmartPointer<vtkImageData> voxels;  ///< in mm along the grid's axes, voxel (0, 0, 0) at the origin
+    vtkNew<vtkLookupTable> greys;          ///< of the window; transparent where there is no number
 };
 
 /// A scan on a plane, as a texture of greys, transparent beyond the scan.

@@ -7,10 +7,20 @@
 #include "runtime/visual/screen_text.hpp"
 
 namespace palpate::visual {
+namespace {
+
+constexpr double right_edge = 0.908;  // of the window: where its scale begins
+
+}  // namespace
 
 ScanView::ScanView(const Scan& scan, std::span<vtkActor* const> bodies, vtkRenderer* renderer,
                    vtkRenderer* front)
-    : renderer_(renderer), front_(front), image_(scan), slices_(image_, renderer), faces_(image_) {
+    : renderer_(renderer),
+      front_(front),
+      image_(scan),
+      slices_(image_, renderer),
+      faces_(image_),
+      scale_(image_.greys, scan.hounsfield ? "HU" : "", right_edge, front) {
     for (vtkActor* body : bodies) faces_.paint(body);
     text_->GetTextProperty()->SetJustificationToCentered();
     text_->GetTextProperty()->SetVerticalJustificationToTop();
@@ -22,16 +32,18 @@ ScanView::ScanView(const Scan& scan, std::span<vtkActor* const> bodies, vtkRende
 void ScanView::follow(const Eigen::Vector3d& tool, bool cut) {
     slices_.follow(tool);
     faces_.follow(renderer_, cut);
-    show_text();
+    tell(cut);
 }
 
 void ScanView::hide() {
     slices_.hide();
     faces_.follow(renderer_, false);
-    show_text();
+    tell(false);
 }
 
-void ScanView::show_text() {
+void ScanView::tell(bool cut) {
+    scale_.show(cut || shows_slice());
+    scale_.fit();
     text_->SetVisibility(shows_slice());
     if (!shows_slice()) return;
     constexpr double font_size = 16;  // points in a window of 1280x720

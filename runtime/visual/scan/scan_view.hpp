@@ -7,13 +7,14 @@
 #include <vtkRenderer.h>
 #include <vtkTextActor.h>
 
+#include "runtime/visual/readings/colour_scale.hpp"
 #include "runtime/visual/scan/cut_faces.hpp"
 #include "runtime/visual/scan/scan_slices.hpp"
 
 namespace palpate::visual {
 
-/// What the window shows of a case's scan: a slice through the tool when it is asked for, and the faces of a
-/// cut.
+/// What the window shows of a case's scan: a slice through the tool when it is asked for, the faces of a cut,
+/// and what their greys mean, in HU of a CT.
 class ScanView {
   public:
     /// `bodies` are those that a cut opens; `front` is drawn over `renderer` and has the slice's name.
@@ -28,12 +29,13 @@ class ScanView {
     void hide();
 
   private:
-    void show_text();
+    void tell(bool cut);
 
     vtkRenderer *renderer_, *front_;
     ScanImage image_;
     ScanSlices slices_;
     CutFaces faces_;
+    ColourScale scale_;
     vtkNew<vtkTextActor> text_;
 };
 

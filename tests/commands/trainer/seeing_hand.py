@@ -44,6 +44,15 @@ class SeeingHand:
         pixels = self.yellow()
         return np.median(pixels, axis=0) if len(pixels) > 8 else None
 
+    @staticmethod
+    def wait_for(look, seconds=20):
+        """What is seen, once it is: a busy machine draws late."""
+        end = time.monotonic() + seconds
+        while (seen := look()) is None or seen is False:
+            assert time.monotonic() < end, "what was waited for is not seen"
+            time.sleep(0.2)
+        return seen
+
     def begin(self):
         """Away from everything, and not after a countdown."""
         self.point((30, 300))
@@ -65,6 +74,7 @@ class SeeingHand:
     def touch(self, deeper=0, seconds=60):
         """Presses each mark that becomes due, until none is seen."""
         self.begin()
+        self.wait_for(self.due)
         end = time.monotonic() + seconds
         while time.monotonic() < end and (due := self.due()) is not None:
             self.point(due)
@@ -76,6 +86,7 @@ class SeeingHand:
     def trace(self, deeper=0, aside=0):
         """Drags along the line, or so many pixels beside it, and a little beyond its end."""
         self.begin()
+        self.wait_for(self.due)
         way = self.line() + (aside, 0)
         beyond = way[-1] + np.arange(1, 4)[:, None] * (way[-1] - way[-2])
         self.point(way[0])
@@ -88,7 +99,7 @@ class SeeingHand:
 
     def line(self, step=6):
         """Pixels so far apart along the yellow line, from the end where the ball is."""
-        left = self.yellow(warned=False).astype(float)
+        left = self.yellow(warned=False)[::2].astype(float)
         crowd = (np.linalg.norm(left[:, None] - left, axis=2) < 12).sum(1)  # the ball is where most is yellow
         way = [left[np.argmax(crowd)]]
         while True:

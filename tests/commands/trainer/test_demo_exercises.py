@@ -48,9 +48,10 @@ class DemoExercises(unittest.TestCase):
         self.addCleanup(train.communicate)
         self.addCleanup(train.kill)
         window = self.x("xdotool", "search", "--sync", "--onlyvisible", "--name", f"Palpate: {self.case}").split()[0].decode()
-        time.sleep(1)
         self.x("xdotool", "windowfocus", "--sync", window)
-        act(SeeingHand(self.x, window))
+        hand = SeeingHand(self.x, window)
+        hand.wait_for(lambda: hand.look().max() > 100)  # drawn
+        act(hand)
         time.sleep(0.3)
         self.x("xdotool", "key", "q")
         out, err = train.communicate(timeout=60)
@@ -82,13 +83,14 @@ class DemoExercises(unittest.TestCase):
 
     def find(self, turn):
         """A good hand knows from a mark of its teacher's where it is; `turn` is how the view is moved so that it is seen."""
-        _, clumsy, hidden = self.attempt("find", lambda hand: hand.answer((640, 360), deeper=DEEPER))
+        ended, clumsy, hidden = self.attempt("find", lambda hand: hand.answer((640, 360), deeper=DEEPER))
+        self.assertEqual(ended, "not found")
         self.assertLess(clumsy["score"], BAD)
+        self.assertGreater(clumsy["peak_force_n"], hidden["most_force_n"])
         there = self.folder / "there.toml"
         there.write_text(f'schema = 1\n[[exercise]]\nname = "there"\ntask = "touch"\nplaces_mm = {hidden["places_mm"]}\n')
         seen = []
-        self.attempt("there", lambda hand: (hand.begin(), hand.drag(*turn), hand.point((30, 300)), time.sleep(1), seen.append(hand.due())), "--exercises", there)
-        self.assertIsNotNone(seen[0], "the place is not seen")
+        self.attempt("there", lambda hand: (hand.begin(), hand.drag(*turn), hand.point((30, 300)), time.sleep(1), seen.append(hand.wait_for(hand.due))), "--exercises", there)
         self.do_well("find", lambda hand: (hand.begin(), hand.drag(*turn), hand.answer(seen[0])), ending="found")
 
 

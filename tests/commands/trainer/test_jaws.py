@@ -125,10 +125,12 @@ class ForcepsInTheWindow(TrainerCase):
         for x in range(1278, 1150, -8):  # from the edge until the last button, which closes the window, is hit
             subprocess.run(["xdotool", "mousemove", "--window", window, str(x), str(BUTTON_ROW), "click", "1"],
                            env=self.server.environment, capture_output=True, timeout=60)
-            time.sleep(0.4)
-            if process.poll() is not None:
+            try:
+                process.wait(timeout=1)
                 closed_at = x
                 break
+            except subprocess.TimeoutExpired:
+                continue
         self.assertIsNotNone(closed_at, "the last button is not in the window")
         self.assertLess(closed_at, 1280 - 16, "it reaches to the window's edge, or beyond")
 

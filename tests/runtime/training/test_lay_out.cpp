@@ -64,7 +64,7 @@ TEST_F(LayOut, marks_and_lines_lie_where_the_eye_sees_them_if_there_is_room) {
     const auto marks = lay_out(recipe, case_, model_, start_, low);
     for (const Vector3d& mark : marks->places)
         EXPECT_GT((low.place - mark).normalized().z(), 0.5 - 1e-9) << mark.transpose();
-    const FirstEye near{.place = {10, 10, 33}};
+    const FirstEye near{.place = {4, 10, 26}};
     const auto line = lay_out(standard("trace"), case_, model_, start_, near);
     for (const Vector3d& point : line->places)
         EXPECT_GT((near.place - point).normalized().z(), 0.5 - 1e-9) << point.transpose();

@@ -70,6 +70,44 @@ TEST_F(PointerHandTest, hovers_over_the_surface_under_the_pointer) {
     EXPECT_NEAR(hand.place().x() / hand.place().norm(), 6.0 / 20, 0.02);
 }
 
+TEST_F(PointerHandTest, looks_for_a_force_that_is_not_there_no_farther_than_three_times_as_deep) {
+    PointerHand hand({0, 0, 60}, tool_radius);
+    hand.feel(0, 1.0);
+    hand.point(pixel_over(3, 2));
+    hand.press(true);
+    hand.advance(0.5, scene());  // a picture that comes late
+    EXPECT_GT(hand.place().norm(), 20 + tool_radius) << "does not make it fall in";
+    settle(hand);
+    EXPECT_NEAR(hand.place().norm(), 20 + tool_radius - 3 * hand.depth(), facets);
+}
+
+TEST_F(PointerHandTest, goes_no_deeper_by_itself_once_the_wheel_has_turned) {
+    PointerHand hand({0, 0, 60}, tool_radius);
+    hand.feel(0, 1.0);
+    hand.point(pixel_over(3, 2));
+    settle(hand);
+    hand.press(true);
+    for (int frame = 0; frame < 30; ++frame) hand.advance(frame_s, scene());  // on its way
+    const double deep = 20 + tool_radius - hand.place().norm();
+    ASSERT_GT(deep, PointerHand::least_depth);
+    hand.deepen(1);
+    settle(hand);
+    EXPECT_NEAR(20 + tool_radius - hand.place().norm(), deep + 1, facets);
+}
+
+TEST_F(PointerHandTest, stays_where_no_way_leads_around) {
+    PointerHand hand({0, 0, 60}, tool_radius);
+    hand.point(pixel_over(-15, 0));
+    settle(hand);
+    const Vector3d before = hand.place();
+    PointerScene walled = scene();
+    walled.blocked = [](const Vector3d&, const Vector3d&) { return true; };
+    hand.view_changed();
+    hand.point(pixel_over(15, 0));
+    for (int frame = 0; frame < 500; ++frame) hand.advance(frame_s, walled);
+    EXPECT_LT((hand.place() - before).norm(), facets);
+}
+
 // On tissue of 0.1 N/mm whose force a hand sees three frames late.
 TEST_F(PointerHandTest, sinks_until_it_feels_what_is_wanted_and_keeps_that_depth) {
     constexpr double stiffness = 0.1, wanted = 0.25;  // N/mm, N
