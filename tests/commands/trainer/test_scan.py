@@ -24,10 +24,18 @@ class ScanInTheWindow(TrainerCase):
         return self.finish(process)
 
     def scene(self, window):
-        """The pixels between texts and buttons, as (r, g, b)."""
-        rgb = subprocess.run(["convert", "xwd:-", "-crop", "1280x500+0+120", "+repage", "-depth", "8", "rgb:-"],
+        """The pixels between texts and buttons, as (r, g, b), but for the scale at the right."""
+        return self.pixels_in(window, "1140x500+0+120")
+
+    def pixels_in(self, window, part):
+        rgb = subprocess.run(["convert", "xwd:-", "-crop", part, "+repage", "-depth", "8", "rgb:-"],
                              input=self.screen(window), capture_output=True, check=True).stdout
         return list(zip(rgb[0::3], rgb[1::3], rgb[2::3]))
+
+    def scale(self, window):
+        """Whether a bar from white above to black below says what the greys mean."""
+        column = self.pixels_in(window, "1x220+1180+345")
+        return all(r == g == b for r, g, b in column) and column == sorted(column, reverse=True) and column[0][0] - column[-1][0] > 200
 
     def greys(self, window):
         return [r for r, g, b in self.scene(window) if r == g == b]
@@ -35,13 +43,16 @@ class ScanInTheWindow(TrainerCase):
     def test_x_goes_through_the_slices_whose_greys_are_the_scans(self):
         process, window = self.open_window()
         before = len(self.greys(window))
+        self.assertFalse(self.scale(window))
         for plane in ("axial", "coronal", "sagittal"):
             self.press("x")
             greys = self.greys(window)
             with self.subTest(plane):
                 self.assertGreater(len(greys), before + 2000)
                 self.assertGreater(len(set(greys)), 25)  # the scan's values rise all over
+                self.assertTrue(self.scale(window))
         self.press("x")
+        self.assertFalse(self.scale(window))
         self.assertLess(len(self.greys(window)), before + 200)
         self.close(process)
 
