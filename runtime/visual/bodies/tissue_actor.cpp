@@ -41,10 +41,11 @@ void add_shades(vtkPolyData* data, double grain) {
     data->GetPointData()->AddArray(shades);
 }
 
-// The waves of blotch() again, for what is finer than triangles; they bend the normal too.
+// The waves of blotch() again, for what is finer than triangles; they bend the normal too. Where waves of two
+// sizes pass through zero run vessels, those of the smaller ones thinner; what is dry shows none.
 void roughen(vtkActor* actor, double grain, double wetness) {
     constexpr double mottle = 0.045;
-    const double bump = 0.05 * wetness;
+    const double bump = 0.05 * wetness, vessels = 0.8 * wetness;
     vtkShaderProperty* shader = actor->GetShaderProperty();
     shader->AddVertexShaderReplacement(
         "//VTK::Normal::Dec", true,
@@ -66,8 +67,16 @@ void roughen(vtkActor* actor, double grain, double wetness) {
                     "  vec3 wave = sin(tissuePlaceVS + 1.6 * bend);\n"
                     "  vec3 spots = wave * wave.yzx;\n"
                     "  diffuseColor *= tissueShadeVS + {:.6f} * (spots.x + spots.y + spots.z);\n"
-                    "  ambientColor *= tissueShadeVS;\n",
-                    mottle),
+                    "  ambientColor *= tissueShadeVS;\n"
+                    "  vec3 p = tissuePlaceVS - vec3(23.0, -17.0, 11.0) * tissueShadeVS;\n"
+                    "  vec3 large = 0.11 * p + 0.5 * sin(0.21 * p.yzx) + 0.13 * sin(0.61 * p.zxy);\n"
+                    "  vec3 small = 0.29 * p.zxy + 0.6 * sin(0.41 * p) + 0.13 * sin(0.97 * p.yzx);\n"
+                    "  float trunk = abs(sin(large.x) + sin(large.y) + sin(large.z));\n"
+                    "  float branch = abs(sin(small.x) + sin(small.y) + sin(small.z));\n"
+                    "  float vessel = max(1.0 - smoothstep(0.05, 0.20, trunk),\n"
+                    "                     0.6 - 0.6 * smoothstep(0.05, 0.24, branch));\n"
+                    "  diffuseColor *= mix(vec3(1.0), vec3(0.62, 0.45, 0.60), {:.6f} * vessel);\n",
+                    mottle, vessels),
         false);
     shader->AddFragmentShaderReplacement(
         "//VTK::Normal::Impl", true,
