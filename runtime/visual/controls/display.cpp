@@ -3,6 +3,7 @@
 
 #include <X11/Xlib.h>
 #include <csetjmp>
+#include <csignal>
 
 #include "formats/model/errors.hpp"
 
@@ -38,6 +39,7 @@ DisplayConnection::~DisplayConnection() {
 }
 
 void survive_loss_of(void* display) {
+    std::signal(SIGPIPE, SIG_IGN);  // of what is still written to it
     XSetErrorHandler(note_loss);
     XSetIOErrorHandler([](Display*) { return 0; });  // Xlib's own writes to stderr
     XSetIOErrorExitHandler(static_cast<Display*>(display), leave, nullptr);

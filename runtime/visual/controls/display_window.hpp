@@ -6,7 +6,8 @@ namespace palpate::visual {
 
 /// A window on the display. With every frame VTK would copy the picture's depth into it through a shader,
 /// which nothing here reads from there and takes software rendering an eighth of the frame: this one has
-/// none.
+/// none. Into a window that somebody else has closed nothing is drawn, which software rendering would not
+/// survive: see display_lost().
 class DisplayWindow : public vtkXOpenGLRenderWindow {
   public:
     static DisplayWindow* New();
@@ -14,6 +15,9 @@ class DisplayWindow : public vtkXOpenGLRenderWindow {
 
     using vtkXOpenGLRenderWindow::TextureDepthBlit;
     void TextureDepthBlit(vtkTextureObject* depth) override;
+
+  protected:
+    void BlitDisplayFramebuffersToHardware() override;
 };
 
 }  // namespace palpate::visual
