@@ -43,6 +43,7 @@ constexpr auto playback_help_text = shown_text(
     "Space  pause, go on      , .  slower, faster      arrows  step      Home, End      timeline  go there\n"
     "right drag  turn      middle drag  move the view      wheel, + -  zoom");
 constexpr double help_opacity = 0.75;
+constexpr double notice_top = 0.86, notice_top_played = 0.82;  // below the health of what is played
 constexpr double above_buttons = 0.085, above_both_rows = 0.13, above_timeline = 0.21;  // of the height
 constexpr std::size_t cautions_width = 64;                                              // characters
 
@@ -114,7 +115,7 @@ Overlay::Overlay(const std::string& case_name, double max_force, std::span<const
     place(title_, 0.983, 0.975, 18, true, true);
     place(help_, left_edge, above_buttons, 14, false, false);
     place(told_, 0.983, above_buttons, 16, true, false);
-    place(notice_, 0.5, 0.69, 20, false, true);  // below the figures
+    place(notice_, 0.5, notice_top, 20, false, true);
     notice_->GetTextProperty()->SetJustificationToCentered();
     notice_->GetTextProperty()->SetColor(1, 0.75, 0.3);
     place(cautions_, 0.983, 0.92, 14, false, true);
@@ -196,6 +197,7 @@ void Overlay::update(const VisualFrame& frame, double frames_per_second, const S
                        : frame.jaws_closed ? forceps_help_text
                                            : help_text;
     help_->SetInput(looked_up(hints).data());
+    notice_->SetPosition(0.5, frame.timeline ? notice_top_played : notice_top);
     const double low = frame.timeline ? above_timeline : button_rows_ > 1 ? above_both_rows : above_buttons;
     for (vtkTextActor* text : {help_.Get(), told_.Get()}) text->SetPosition(text->GetPosition()[0], low);
     force_->SetInput(fmt::format("{:.2f} N", newtons).c_str());
