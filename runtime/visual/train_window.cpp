@@ -131,8 +131,13 @@ struct TrainWindow::Parts {
                           .shaft = shaft_of(frame),
                           .orientation = frame.tool_orientation,
                           .look_at = frame.lesson.look_at},
-                         tool_radius, hidden);
+                         tool_radius, picture_seconds(frame), hidden);
         if (!endoscope.fills_window()) set_clipping_range(frame.tool_position);
+    }
+
+    // Since the last one.
+    double picture_seconds(const VisualFrame& frame) const {
+        return frame.film_rate_hz ? 1 / *frame.film_rate_hz : led_seconds;
     }
 
     // With the cut on, whatever stands between eye and target or tool falls before the near plane.
@@ -301,8 +306,8 @@ struct TrainWindow::Parts {
     // Takes the tool towards what is under the pointer.
     void lead_hand() {
         const auto now = std::chrono::steady_clock::now();
-        const double seconds = std::chrono::duration<double>(now - std::exchange(hand_led, now)).count();
-        hand.advance(seconds, pointed_scene(renderer, touchable(), tool_radius, cut));
+        led_seconds = std::chrono::duration<double>(now - std::exchange(hand_led, now)).count();
+        hand.advance(led_seconds, pointed_scene(renderer, touchable(), tool_radius, cut));
     }
 
     void move_by_key(const std::string& key) {
@@ -417,6 +422,7 @@ struct TrainWindow::Parts {
     bool closed = false;
     FramePace pace;
     std::chrono::steady_clock::time_point hand_led = std::chrono::steady_clock::now();
+    double led_seconds = 0;
 };
 
 TrainWindow::TrainWindow(std::shared_ptr<OpenedWindow> opened, const Case& patient_case,

@@ -7,10 +7,11 @@ import pathlib
 import shutil
 import subprocess
 import tempfile
+import tomllib
 import unittest
 
 from drawn_out import draw_out
-from x_server import XServer
+from x_server import NEEDED, XServer
 
 BIN = pathlib.Path(os.environ["PALPATE_BIN"])
 SOURCE = pathlib.Path(os.environ["PALPATE_SOURCE"])
@@ -92,8 +93,43 @@ class DemoCases(unittest.TestCase):
         released = next(index for index in range(deepest, len(depth)) if depth[index] == 0)
         self.assertEqual(magnitude[released + 25], 0, "a force stayed after release")
 
+    def lead_through_the_nose(self, asset, folder):
+        """The exercise that comes with the case, in a real window: by a good hand, one that scrapes along, and an idle one."""
+        if not (BIN / "palpate-train").exists() or not all(map(shutil.which, NEEDED)):
+            self.skipTest("PALPATE: the trainer, xvfb, xdotool, x11-apps or imagemagick is missing; all but the trainer was tested")
+        exercises = SOURCE / "pipelines" / "exercises" / "nasopharynx.toml"
+        (scope,) = [row for row in tomllib.loads(exercises.read_text())["exercise"] if row["name"] == "scope"]
+        gates = scope["places_mm"]
+        outside = [p + away for p, away in zip(gates[0], (-6, -9, -6))]
+        through = [(0.6 * (i + 1), *gate) for i, gate in enumerate(gates)]
+        scraping = [(1.4 * i + dt, x + aside, y, z) for i, (x, y, z) in enumerate(gates)  # into what is beside each gate
+                    for dt, aside in ((0.6, 0), (1.0, 12), (1.4, 0))]
+        with XServer() as server:
+            def lead(*rows):
+                hand = folder / "hand.txt"
+                hand.write_text("\n".join(" ".join(f"{value:.3f}" for value in row) for row in ((0, *outside), *rows)))
+                train = subprocess.run(
+                    [BIN / "palpate", "train", asset, "--exercises", exercises, "--exercise", "scope", "--script", hand, "--seconds",
+                     str(rows[-1][0] + 1), "--attempts", folder / "attempts", "--quiet", "--json", "-"],
+                    capture_output=True, text=True, timeout=120, env=server.environment)
+                self.assertEqual(train.returncode, 0, train.stderr)
+                (attempt,) = json.loads(train.stdout)["attempts"]
+                return attempt["ending"], attempt["metrics"]
+
+            ending, good = lead(*through)
+            self.assertEqual(ending, "all reached")
+            self.assertGreater(good["score"], 95)
+            self.assertLess(good["peak_force_n"], scope["most_force_n"])
+            self.assertLess(good["position_error_mm"], 1)
+            ending, clumsy = lead(*scraping)
+            self.assertEqual(ending, "all reached")
+            self.assertLess(clumsy["score"], 60)
+            self.assertGreater(clumsy["time_above_limit_s"], 0.2)
+            ending, idle = lead((2, *outside))
+            self.assertEqual((ending, idle["score"]), ("cut short", 0))
+
     def test_nasopharynx(self):
-        self.check("nasopharynx")
+        self.check("nasopharynx", self.lead_through_the_nose)
 
     def draw_the_rim_out(self, asset, folder):
         """By 20 mm: a forceps holds it to the end, without a step of force, whatever the tissue is like."""

@@ -2,6 +2,7 @@
 #include "runtime/visual/inside/endoscope.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <vector>
 #include <vtkActorCollection.h>
@@ -15,7 +16,7 @@ using Eigen::Vector3d;
 
 constexpr double view_angle = 90;                    // degrees
 constexpr double farthest_seen = 400;                // mm
-constexpr double agility = 0.15;                     // part of the turn that a frame makes
+constexpr double turning_time = 0.2;                 // s in which it turns to 63 % of what it is to
 constexpr double least_step = 0.2;                   // mm, of a motion that has a direction
 constexpr double brightness = 1.4, half_light = 30;  // mm, at which half of it is left
 // Of the window: a corner's width, its height at most, and where it begins.
@@ -108,7 +109,7 @@ bool Endoscope::covers(int x, int y) const {
     return x >= origin[0] && x < origin[0] + size[0] && y >= origin[1] && y < origin[1] + size[1];
 }
 
-void Endoscope::look_along(const ScopePose& pose) {
+void Endoscope::look_along(const ScopePose& pose, double seconds) {
     const bool turns = !pose.orientation.coeffs().isZero(0), first = !placed_;
     if (first) {
         tip_ = pose.tip;
@@ -125,7 +126,9 @@ void Endoscope::look_along(const ScopePose& pose) {
     if (pose.look_at) way = *pose.look_at - pose.tip;
     if (!pose.shaft.isZero()) way = -pose.shaft;
     if (way.norm() < least_step) return;
-    forward_ = (forward_ + (first ? 1 : agility) * (way.normalized() - forward_)).normalized();
+    forward_ =
+        (forward_ + (first ? 1 : 1 - std::exp(-seconds / turning_time)) * (way.normalized() - forward_))
+            .normalized();
     tip_ = pose.tip;
 }
 
@@ -152,9 +155,10 @@ void Endoscope::share_scene(std::span<vtkActor* const> hidden) {
     });
 }
 
-void Endoscope::follow(const ScopePose& pose, double tool_radius, std::span<vtkActor* const> hidden) {
+void Endoscope::follow(const ScopePose& pose, double tool_radius, double seconds,
+                       std::span<vtkActor* const> hidden) {
     if (!on()) return;
-    look_along(pose);
+    look_along(pose, seconds);
     const Vector3d ahead = pose.tip + forward_;
     camera_->SetPosition(pose.tip.data());
     camera_->SetFocalPoint(ahead.data());

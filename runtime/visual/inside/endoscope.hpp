@@ -41,15 +41,15 @@ class Endoscope {
     /// Whether it has that pixel, `x` from the left, `y` from below.
     bool covers(int x, int y) const;
 
-    /// Follows the tool, by and by, so that a trembling hand does not shake the picture. `hidden`: what of
-    /// the scene the eye is in.
-    void follow(const ScopePose& pose, double tool_radius, std::span<vtkActor* const> hidden);
+    /// Follows the tool, by and by, so that a trembling hand does not shake the picture. `seconds`: since the
+    /// last picture; `hidden`: what of the scene the eye is in.
+    void follow(const ScopePose& pose, double tool_radius, double seconds, std::span<vtkActor* const> hidden);
 
   private:
     enum class Place { nowhere, window, corner };
     void fill_window();
     void leave_window();
-    void look_along(const ScopePose& pose);
+    void look_along(const ScopePose& pose, double seconds);
     void share_scene(std::span<vtkActor* const> hidden);
     void fit_corner();
 

@@ -53,6 +53,16 @@ class SeeingHand:
             time.sleep(0.2)
         return seen
 
+    def rest(self, seconds=6):
+        """Until nothing moves in the picture, or so long: a busy machine takes its time."""
+        end, before = time.monotonic() + seconds, self.look()[SCENE]
+        while time.monotonic() < end:
+            time.sleep(0.25)
+            now = self.look()[SCENE]
+            if np.abs(now - before).mean() < 0.3:
+                return
+            before = now
+
     def begin(self):
         """Away from everything, and not after a countdown."""
         self.point((30, 300))
@@ -78,7 +88,7 @@ class SeeingHand:
         end = time.monotonic() + seconds
         while time.monotonic() < end and (due := self.due()) is not None:
             self.point(due)
-            time.sleep(0.6)  # the tool goes there
+            self.rest()  # the tool goes there
             self.hold(deeper)
             time.sleep(0.2)
             self.let_go()
@@ -90,7 +100,7 @@ class SeeingHand:
         way = self.line() + (aside, 0)
         beyond = way[-1] + np.arange(1, 4)[:, None] * (way[-1] - way[-2])
         self.point(way[0])
-        time.sleep(0.8)
+        self.rest()
         self.hold(deeper)
         for pixel in (*way[1:], *beyond):
             self.point(pixel)
@@ -113,8 +123,9 @@ class SeeingHand:
         """Presses there and says that it is here."""
         self.begin()
         self.point(pixel)
-        time.sleep(1)
+        self.rest()
         self.hold(deeper)
+        self.rest()
         self.key("m")
         self.let_go()
 
@@ -127,20 +138,3 @@ class SeeingHand:
             time.sleep(0.03)
         self.x("xdotool", "mouseup", button)
         time.sleep(0.5)
-
-    def lead_scope(self):
-        """Through the endoscope's picture, always ahead, by wheel and key."""
-        self.begin()
-        self.key("v")
-        for _ in range(16):
-            self.x("xdotool", "click", "--repeat", 3, "--delay", 100, 4)
-            self.key(*["w"] * 14, delay=40)
-
-    def scrape(self):
-        """As that, but drags the tip against the wall every now and then."""
-        self.begin()
-        self.key("v")
-        for _ in range(10):
-            self.key(*["w"] * 20, delay=40)
-            self.drag(1, 400, 0)
-            self.drag(1, -400, 0)

@@ -134,12 +134,6 @@ class Nasopharynx(DemoExercises):
     def test_the_hidden_tumour(self):
         self.find((2, -200, 0))
 
-    def test_the_scope_by_its_own_picture(self):
-        self.do_well("scope", SeeingHand.lead_scope)
-        scraped = self.do_badly("scope", SeeingHand.scrape)
-        self.assertGreater(scraped["time_above_limit_s"], 0.2)
-        self.idle("scope")
-
 
 del DemoExercises  # has no tests of its own
 
