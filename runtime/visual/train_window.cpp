@@ -32,6 +32,7 @@
 #include "runtime/visual/detail/frame_pace.hpp"
 #include "runtime/visual/hand/pointed_scene.hpp"
 #include "runtime/visual/hand/pointer_hand.hpp"
+#include "runtime/visual/hand/steering.hpp"
 #include "runtime/visual/hand/view_control.hpp"
 #include "runtime/visual/inside/endoscope.hpp"
 #include "runtime/visual/lesson/lesson_panel.hpp"
@@ -50,11 +51,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double step = 0.5;          // mm a key press
+constexpr double key_depth = 0.5;     // mm a key press
 constexpr double wheel_depth = 0.5;   // mm a notch
-constexpr double scope_step = 1;      // mm a notch, of an endoscope that fills the window
-constexpr double scope_sight = 15;    // mm before its tip: how far a drag leads it is as there
-constexpr double scope_leash = 3;     // mm that a hand which sees from the tip goes ahead of it
 constexpr double zoom_step = 1.15;    // a key press
 constexpr double zoom_pixels = 20;    // of a drag that zooms by one step
 constexpr double shadow_share = 0.3;  // of the field: how far the tool's shadow falls
@@ -131,13 +129,8 @@ struct TrainWindow::Parts {
                           .shaft = shaft_of(frame),
                           .orientation = frame.tool_orientation,
                           .look_at = frame.lesson.look_at},
-                         tool_radius, picture_seconds(frame), hidden);
+                         tool_radius, frame.film_rate_hz ? 1 / *frame.film_rate_hz : frame_seconds, hidden);
         if (!endoscope.fills_window()) set_clipping_range(frame.tool_position);
-    }
-
-    // Since the last one.
-    double picture_seconds(const VisualFrame& frame) const {
-        return frame.film_rate_hz ? 1 / *frame.film_rate_hz : led_seconds;
     }
 
     // With the cut on, whatever stands between eye and target or tool falls before the near plane.
@@ -237,7 +230,7 @@ struct TrainWindow::Parts {
         }
         vtkCamera* camera = renderer->GetActiveCamera();
         const int height = window->GetSize()[1];
-        if (drag == Drag::carry) return carry(dx, dy);
+        if (drag == Drag::carry) return drag_hand(steering(), dx, dy);
         if (drag == Drag::turn) turn_view(camera, dx, dy);
         if (drag == Drag::shift) pan_view(camera, dx, dy, height);
         if (drag == Drag::roll) roll_view(camera, dx);
@@ -245,20 +238,13 @@ struct TrainWindow::Parts {
         hand.view_changed();
     }
 
-    // In the picture's plane, as far as what lies as deep goes with the pointer: what is carried, an
-    // endoscope's tip.
-    void carry(double dx, double dy) {
-        vtkCamera* camera = renderer->GetActiveCamera();
-        const double depth = endoscope.fills_window() ? scope_sight : depth_of(camera, hand.place());
-        move_hand(way_of_drag(camera, dx, dy, depth, window->GetSize()[1]));
-    }
-
-    // What sees from the tip feels in the picture where that is held up, and does not push on and on.
-    void move_hand(const Vector3d& by) {
-        hand.move(by);
-        if (!endoscope.fills_window() || settings.forceps) return;
-        const Vector3d ahead = hand.place() - tip;
-        if (ahead.norm() > scope_leash) hand.put(tip + scope_leash * ahead.normalized());
+    Steering steering() {
+        std::optional<Vector3d> shaft, seen_from;
+        if (settings.forceps)
+            shaft = settings.forceps->shaft;
+        else if (endoscope.fills_window())
+            seen_from = tip;
+        return {hand, renderer->GetActiveCamera(), window->GetSize()[1], shaft, seen_from};
     }
 
     // The key of the button there; empty: none.
@@ -288,10 +274,9 @@ struct TrainWindow::Parts {
     }
 
     void wheel_turned(double notches) {
-        if (endoscope.fills_window() && !settings.forceps)
-            move_hand(-scope_step * notches * view_axes(renderer->GetActiveCamera())[2]);
-        else if (drag == Drag::carry && settings.forceps)
-            hand.move(-wheel_depth * notches * settings.forceps->shaft);
+        const Steering now = steering();
+        if (now.tip || (now.shaft && drag == Drag::carry))
+            roll_hand(now, notches);
         else if (hand.pressing())
             hand.deepen(wheel_depth * notches);
         else
@@ -304,23 +289,15 @@ struct TrainWindow::Parts {
     }
 
     // Takes the tool towards what is under the pointer.
-    void lead_hand() {
-        const auto now = std::chrono::steady_clock::now();
-        led_seconds = std::chrono::duration<double>(now - std::exchange(hand_led, now)).count();
-        hand.advance(led_seconds, pointed_scene(renderer, touchable(), tool_radius, cut));
-    }
+    void lead_hand() { hand.advance(frame_seconds, pointed_scene(renderer, touchable(), tool_radius, cut)); }
 
     void move_by_key(const std::string& key) {
         if (hand.pressing()) {
-            if (key == "w") hand.deepen(step);
-            if (key == "s") hand.deepen(-step);
+            if (key == "w") hand.deepen(key_depth);
+            if (key == "s") hand.deepen(-key_depth);
             return;
         }
-        const auto [right, up, eye] = view_axes(renderer->GetActiveCamera());
-        const Vector3d back = settings.forceps ? settings.forceps->shaft : eye;
-        const std::map<std::string, Vector3d> moves{{"Left", -right}, {"Right", right}, {"Up", up},
-                                                    {"Down", -up},    {"w", -back},     {"s", back}};
-        if (const auto move = moves.find(key); move != moves.end()) move_hand(step * move->second);
+        step_hand(steering(), key);
     }
 
     void key_pressed(const char* symbol) {
@@ -421,8 +398,7 @@ struct TrainWindow::Parts {
     Drag drag = Drag::none;
     bool closed = false;
     FramePace pace;
-    std::chrono::steady_clock::time_point hand_led = std::chrono::steady_clock::now();
-    double led_seconds = 0;
+    double frame_seconds = 0;  // from picture to picture
 };
 
 TrainWindow::TrainWindow(std::shared_ptr<OpenedWindow> opened, const Case& patient_case,
@@ -471,8 +447,9 @@ void TrainWindow::draw(const VisualFrame& frame) {
     if (frame.lesson.page && p.pace.frames() > 0)  // the first frame is not to wait for them
         p.thumbnails.take_next(*frame.lesson.page, display_scale(size[0], size[1]));
     const double seconds = p.pace.frame_drawn();
-    // A film has time for everything.
-    if (p.pace.frames() > 1) p.detail.frame_took(frame.film_rate_hz ? 0 : seconds);
+    if (p.pace.frames() < 2) return;
+    p.frame_seconds = seconds;
+    p.detail.frame_took(frame.film_rate_hz ? 0 : seconds);  // a film has time for everything
 }
 
 bool TrainWindow::closed() const {

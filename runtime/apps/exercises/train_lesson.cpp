@@ -145,8 +145,7 @@ void TrainLesson::press(const std::string& key, const TickResult& tick) {
 void TrainLesson::type_trainee(const std::string& key) {
     std::string& name = *typed_trainee_;
     if (key == "BackSpace" && !name.empty()) name.pop_back();
-    const std::string letter = key == "minus" ? "-" : key == "underscore" ? "_" : key;
-    if (letter.size() == 1 && is_pseudonym(name + letter)) name += letter;
+    if (const char letter = typed_letter(key); is_pseudonym(name + letter)) name += letter;
     if (key == "Return" && !name.empty()) setting_.trainee = name;
     if (key == "Return" || key == "Escape") typed_trainee_.reset();
 }

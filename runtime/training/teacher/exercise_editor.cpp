@@ -46,9 +46,18 @@ std::size_t least_places(Task task) {
     return task == Task::trace || task == Task::guide ? 2 : 0;
 }
 
-// The letter that a key types; 0: none.
-char letter_of(std::string_view key) {
-    constexpr std::array<std::pair<std::string_view, char>, 8> named{{{"space", ' '},
+}  // namespace
+
+std::string free_exercise_name(Task task, std::span<const std::string> taken) {
+    for (int number = 1;; ++number) {
+        std::string name = fmt::format("{}-{}", name_of(task), number);
+        if (std::ranges::find(taken, name) == taken.end()) return name;
+    }
+}
+
+char typed_letter(std::string_view key) {
+    constexpr std::array<std::pair<std::string_view, char>, 9> named{{{"space", ' '},
+                                                                      {"underscore", '_'},
                                                                       {"minus", '-'},
                                                                       {"comma", ','},
                                                                       {"period", '.'},
@@ -59,15 +68,6 @@ char letter_of(std::string_view key) {
     if (key.size() == 1) return key[0];
     const auto found = std::ranges::find(named, key, &std::pair<std::string_view, char>::first);
     return found != named.end() ? found->second : '\0';
-}
-
-}  // namespace
-
-std::string free_exercise_name(Task task, std::span<const std::string> taken) {
-    for (int number = 1;; ++number) {
-        std::string name = fmt::format("{}-{}", name_of(task), number);
-        if (std::ranges::find(taken, name) == taken.end()) return name;
-    }
 }
 
 ExerciseRecipe settled(ExerciseRecipe recipe, const Exercise& exercise) {
@@ -178,7 +178,7 @@ void ExerciseEditor::type(std::string_view key) {
         typing_ = false;
     } else if (key == "BackSpace") {
         if (!draft_.title.empty()) draft_.title.pop_back();
-    } else if (const char letter = letter_of(key); letter != '\0' && draft_.title.size() < longest_title) {
+    } else if (const char letter = typed_letter(key); letter != '\0' && draft_.title.size() < longest_title) {
         draft_.title += letter;
     }
 }

@@ -31,6 +31,9 @@ enum class Wish {
     leave,    ///< to leave it, unsaved
 };
 
+/// The letter that a key types, by its X11 name ("a", "A", "minus"); 0: none.
+char typed_letter(std::string_view key);
+
 /// "touch-1", or the first higher number that is not taken.
 std::string free_exercise_name(Task task, std::span<const std::string> taken);
 

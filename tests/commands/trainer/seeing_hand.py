@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A hand that does the trainer's exercises with mouse and keys, and knows what is seen in the window and nothing else."""
-import subprocess
 import time
 
 import numpy as np
+
+from trainer_case import pixels
 
 SCENE = slice(105, 590)  # rows between texts and buttons, of 720
 WARNING = slice(0, 45)  # of those, which a warning takes
@@ -26,8 +27,7 @@ class SeeingHand:
     def look(self):
         """Rows from above of (r, g, b)."""
         dump = self.x("xwd", "-silent", "-id", self.window)
-        rgb = subprocess.run(["convert", "xwd:-", "-depth", "8", "rgb:-"], input=dump, capture_output=True, check=True).stdout
-        return np.frombuffer(rgb, np.uint8).reshape(720, 1280, 3).astype(int)
+        return np.frombuffer(pixels(dump), np.uint8).reshape(720, 1280, 3).astype(int)
 
     def yellow(self, warned=True):
         """Pixels (n, 2), x and y, of the mark that is due and of the line."""
@@ -45,17 +45,17 @@ class SeeingHand:
         return np.median(pixels, axis=0) if len(pixels) > 8 else None
 
     @staticmethod
-    def wait_for(look, seconds=20):
+    def wait_for(look):
         """What is seen, once it is: a busy machine draws late."""
-        end = time.monotonic() + seconds
+        end = time.monotonic() + 20
         while (seen := look()) is None or seen is False:
             assert time.monotonic() < end, "what was waited for is not seen"
             time.sleep(0.2)
         return seen
 
-    def rest(self, seconds=6):
-        """Until nothing moves in the picture, or so long: a busy machine takes its time."""
-        end, before = time.monotonic() + seconds, self.look()[SCENE]
+    def rest(self):
+        """Until nothing moves in the picture, or six seconds: a busy machine takes its time."""
+        end, before = time.monotonic() + 6, self.look()[SCENE]
         while time.monotonic() < end:
             time.sleep(0.25)
             now = self.look()[SCENE]
@@ -81,11 +81,11 @@ class SeeingHand:
         self.x("xdotool", "mouseup", 1)
         time.sleep(0.4)
 
-    def touch(self, deeper=0, seconds=60):
-        """Presses each mark that becomes due, until none is seen."""
+    def touch(self, deeper=0):
+        """Presses each mark that becomes due, until none is seen, for a minute at most."""
         self.begin()
         self.wait_for(self.due)
-        end = time.monotonic() + seconds
+        end = time.monotonic() + 60
         while time.monotonic() < end and (due := self.due()) is not None:
             self.point(due)
             self.rest()  # the tool goes there
@@ -93,11 +93,11 @@ class SeeingHand:
             time.sleep(0.2)
             self.let_go()
 
-    def trace(self, deeper=0, aside=0):
-        """Drags along the line, or so many pixels beside it, and a little beyond its end."""
+    def trace(self, deeper=0):
+        """Drags along the line and a little beyond its end."""
         self.begin()
         self.wait_for(self.due)
-        way = self.line() + (aside, 0)
+        way = self.line()
         beyond = way[-1] + np.arange(1, 4)[:, None] * (way[-1] - way[-2])
         self.point(way[0])
         self.rest()
@@ -107,11 +107,11 @@ class SeeingHand:
             time.sleep(0.15)
         self.let_go()
 
-    def line(self, step=6):
-        """Pixels so far apart along the yellow line, from the end where the ball is."""
+    def line(self):
+        """Pixels six apart along the yellow line, from the end where the ball is."""
         left = self.yellow(warned=False)[::2].astype(float)
         crowd = (np.linalg.norm(left[:, None] - left, axis=2) < 12).sum(1)  # the ball is where most is yellow
-        way = [left[np.argmax(crowd)]]
+        step, way = 6, [left[np.argmax(crowd)]]
         while True:
             distance = np.linalg.norm(left - way[-1], axis=1)
             left, distance = left[distance > step], distance[distance > step]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The exercises that come with the demo's cases, done in a real window with mouse and keys alone: by a good hand, by a clumsy one, by
-an idle one, with the score that each deserves."""
+an idle one, with the score that each deserves. The scope is led by a script, in commands.demo_cases."""
 import json
 import os
 import pathlib
@@ -90,7 +90,8 @@ class DemoExercises(unittest.TestCase):
         there = self.folder / "there.toml"
         there.write_text(f'schema = 1\n[[exercise]]\nname = "there"\ntask = "touch"\nplaces_mm = {hidden["places_mm"]}\n')
         seen = []
-        self.attempt("there", lambda hand: (hand.begin(), hand.drag(*turn), hand.point((30, 300)), time.sleep(1), seen.append(hand.wait_for(hand.due))), "--exercises", there)
+        self.attempt("there", lambda hand: (hand.begin(), hand.drag(*turn), hand.point((30, 300)), hand.rest(), seen.append(hand.wait_for(hand.due))),
+                     "--exercises", there)
         self.do_well("find", lambda hand: (hand.begin(), hand.drag(*turn), hand.answer(seen[0])), ending="found")
 
 
@@ -104,13 +105,12 @@ class Liver(DemoExercises):
         self.find((2, 0, 160))  # the organ's upper part from behind the texts
 
     def test_the_edge_held_back(self):
-        def retract(hand, steps, closes=True):
+        def retract(hand, steps):
             hand.begin()
             hand.key(*["w"] * steps, delay=60)  # half a millimetre each
             time.sleep(1)
-            if closes:
-                hand.key("j")
-                time.sleep(2.5)
+            hand.key("j")
+            time.sleep(2.5)
             hand.key(*["s"] * 12, delay=120)
             time.sleep(2.5)
             hand.key("j")

@@ -7,6 +7,7 @@
 #include "runtime/training/attempt_record.hpp"
 #include "tests/formats/sample_case.hpp"
 #include "tests/formats/scratch.hpp"
+#include "tests/runtime/training/attempt_head.hpp"
 
 namespace palpate {
 namespace {
@@ -15,15 +16,6 @@ using namespace training;
 
 class AttemptRecord : public ::testing::Test {
   protected:
-    static AttemptHead head(const std::string& when) {
-        return {.trainee = "T-07",
-                .began = "2026-03-01T09:29:00Z",
-                .when = when,
-                .case_name = "liver 3",
-                .device = "simulated",
-                .scheme = "continuous",
-                .version = "1.0"};
-    }
     Attempt attempt(Ending ending) const {
         Attempt made(
             {.name = "touch",
@@ -61,7 +53,7 @@ TEST_F(AttemptRecord, a_pseudonym_names_files_and_nothing_else) {
 }
 
 TEST_F(AttemptRecord, json_has_every_metric_and_null_for_what_is_not_defined) {
-    const auto json = attempt_json(head("2026-03-01T09:30:00Z"), attempt(Ending::ended));
+    const auto json = attempt_json(sample::attempt_head("2026-03-01T09:30:00Z"), attempt(Ending::ended));
     EXPECT_EQ(json["schema"], "palpate.attempt/1");
     EXPECT_EQ(json["ending"], "ended");
     EXPECT_EQ(json["metrics"].size(), std::tuple_size_v<decltype(metric_fields)>);
@@ -81,17 +73,17 @@ TEST_F(AttemptRecord, history_is_by_time_and_leaves_out_what_does_not_belong) {
     const auto write = [&](const std::string& name, const nlohmann::ordered_json& json) {
         std::ofstream(scratch_ / name) << json.dump();
     };
-    write("b.json", attempt_json(head("2026-03-02T09:30:00Z"), attempt(Ending::time_is_up)));
-    write("a.json", attempt_json(head("2026-03-01T09:30:00Z"), attempt(Ending::ended)));
-    write("c.json", attempt_json(head("2026-03-03T09:30:00Z"), attempt(Ending::cut_short)));
-    auto other = attempt_json(head("2026-03-04T09:30:00Z"), attempt(Ending::ended));
+    write("b.json", attempt_json(sample::attempt_head("2026-03-02T09:30:00Z"), attempt(Ending::time_is_up)));
+    write("a.json", attempt_json(sample::attempt_head("2026-03-01T09:30:00Z"), attempt(Ending::ended)));
+    write("c.json", attempt_json(sample::attempt_head("2026-03-03T09:30:00Z"), attempt(Ending::cut_short)));
+    auto other = attempt_json(sample::attempt_head("2026-03-04T09:30:00Z"), attempt(Ending::ended));
     other["case"] = "another";
     write("d.json", other);
     std::ofstream(scratch_ / "e.json") << "{ not json";
     write("f.json", {{"schema", "palpate.attempt/1"}, {"metrics", 3}});
     std::ofstream(scratch_ / "g.csv") << "time_s\n";
     std::ofstream(scratch_ / "h.json")
-        << attempt_json(head("2026-03-05T09:30:00Z"), attempt(Ending::ended)).dump()
+        << attempt_json(sample::attempt_head("2026-03-05T09:30:00Z"), attempt(Ending::ended)).dump()
         << std::string(std::size_t{1} << 20, ' ');
     std::filesystem::create_symlink("/dev/zero", scratch_ / "i.json");
     std::vector<std::string> told;

@@ -7,6 +7,7 @@
 
 #include "runtime/training/statements.hpp"
 #include "tests/formats/sample_case.hpp"
+#include "tests/runtime/training/attempt_head.hpp"
 
 namespace palpate {
 namespace {
@@ -17,15 +18,6 @@ using ::testing::ElementsAre;
 
 class Statements : public ::testing::Test {
   protected:
-    static AttemptHead head(const std::string& when = "2026-03-01T09:30:00Z") {
-        return {.trainee = "T-07",
-                .began = "2026-03-01T09:29:00Z",
-                .when = when,
-                .case_name = "liver 3",
-                .device = "simulated",
-                .scheme = "continuous",
-                .version = "1.0"};
-    }
     Attempt attempt(Ending ending, Task task = Task::touch) const {
         Attempt made({.name = "one",
                       .title = "Touch the marks",
@@ -53,11 +45,12 @@ class Statements : public ::testing::Test {
         return names;
     }
     const Case case_ = sample::sample_case();
+    const std::string end_ = "2026-03-01T09:30:00Z";
 };
 
 TEST_F(Statements, tell_how_an_attempt_ended) {
     const auto told = [&](Ending ending, Task task = Task::touch) {
-        return verbs(statements_of(head(), attempt(ending, task)));
+        return verbs(statements_of(sample::attempt_head(end_), attempt(ending, task)));
     };
     EXPECT_THAT(told(Ending::all_reached), ElementsAre("initialized", "completed", "passed", "terminated"));
     EXPECT_THAT(told(Ending::found), ElementsAre("initialized", "completed", "passed", "terminated"));
@@ -74,7 +67,7 @@ TEST_F(Statements, follow_xapi_and_cmi5) {
     const std::regex uuid("[0-9a-f]{8}-[0-9a-f]{4}-[1-8][0-9a-f]{3}-[89ab][0-9a-f]{3}-[0-9a-f]{12}");
     const std::string cmi5 = "https://w3id.org/xapi/cmi5/context/";
     std::set<std::string> ids;
-    for (const Json& s : statements_of(head(), attempt(Ending::not_found))) {
+    for (const Json& s : statements_of(sample::attempt_head(end_), attempt(Ending::not_found))) {
         const std::string verb = s["verb"]["display"]["en"];
         EXPECT_TRUE(std::regex_match(s["id"].get<std::string>(), uuid)) << s["id"];
         EXPECT_TRUE(ids.insert(s["id"]).second) << "twice";
@@ -102,9 +95,10 @@ TEST_F(Statements, follow_xapi_and_cmi5) {
 }
 
 TEST_F(Statements, are_the_same_of_the_same_attempt_alone) {
-    EXPECT_EQ(statements_of(head(), attempt(Ending::ended)), statements_of(head(), attempt(Ending::ended)));
-    EXPECT_NE(statements_of(head("2026-03-01T09:31:00Z"), attempt(Ending::ended))[0]["id"],
-              statements_of(head(), attempt(Ending::ended))[0]["id"]);
+    EXPECT_EQ(statements_of(sample::attempt_head(end_), attempt(Ending::ended)),
+              statements_of(sample::attempt_head(end_), attempt(Ending::ended)));
+    EXPECT_NE(statements_of(sample::attempt_head("2026-03-01T09:31:00Z"), attempt(Ending::ended))[0]["id"],
+              statements_of(sample::attempt_head(end_), attempt(Ending::ended))[0]["id"]);
 }
 
 }  // namespace
