@@ -36,7 +36,8 @@
 // (deformed_patch_creep.cpp, remember_pushes()). The forces answer with the next x = d + sum f n / K, u = -C
 // sum w n f and s, and so on until nothing changes. Answers are combined as Anderson (1965) has it, for two
 // sets of contacts would take turns for ever, with steps between answers of the tick before besides: so two
-// answers do in most ticks. Friction is part of state and answer.
+// answers do in most ticks, and one where a hand is steady, for the search begins where going on as in the
+// tick before would lead. Friction is part of state and answer.
 
 namespace palpate::haptics {
 namespace {
@@ -77,7 +78,7 @@ void ContactEquilibrium::reset() noexcept {
 
 void ContactEquilibrium::forget(std::size_t t) noexcept {
     Tool& tool = tools_[t];
-    bank_ = in_row_ = carried_ = 0;
+    bank_ = in_row_ = carried_ = states_known_ = 0;
     tool.touching = tool.at_rest = false;
     tool.off.setZero();
     tool.turn.setZero();
@@ -89,6 +90,7 @@ void ContactEquilibrium::forget(std::size_t t) noexcept {
         for (std::size_t soft = 0; soft < patches_.size(); ++soft) {
             Touch& touch = part.touches[soft];
             touch.near.clear();
+            touch.gathered_in = -1;
             touch.sunk = local_dent(part.radius, touch, patches_[soft]);
             touch.push.setZero();
             touch.shared.setZero();
@@ -104,6 +106,7 @@ void ContactEquilibrium::begin_tick(double stiffness, double torsion) noexcept {
     torsion_ = torsion;
     resists_turning_ = false;
     spare_iterations_ = spare_iterations;
+    if (std::exchange(begins_, true)) states_known_ = 0;
     rows_.clear();
     groups_.clear();
     residual_ = change_ = 0;
@@ -126,6 +129,7 @@ void ContactEquilibrium::begin_tick(double stiffness, double torsion) noexcept {
 void ContactEquilibrium::pull(std::size_t t, const Vector3d& tip, std::span<const Sphere> spheres) noexcept {
     Tool& tool = tools_[t];
     tool.last_device_tip = std::exchange(tool.tip, tip);
+    tool.last_way = std::exchange(tool.way, tip - tool.last_device_tip);
     double moved = 0;
     bool meets = false;
     for (std::size_t p = 0; p < spheres.size(); ++p) {
@@ -148,7 +152,7 @@ void ContactEquilibrium::pull(std::size_t t, const Vector3d& tip, std::span<cons
     tool.cold = !tool.touching;
     tool.touching = tool.touching || meets;
     tool.reach = tool.cold ? cold_reach : first_reach + 2 * moved;
-    tool.near = tool.cold ? first_reach : 2 * moved;
+    tool.near = tool.farthest_near = tool.cold ? first_reach : 2 * moved;
     tool.held_reach = tool.cold && !turns() ? 0 : (tool.last_tip - tool.last_device_tip).norm() + moved;
     tool.off = tool.cold ? Vector3d::Zero() : Vector3d(tool.last_tip - tip);
     if (turns()) pull_arms(tool);
@@ -191,6 +195,7 @@ std::size_t ContactEquilibrium::wall_count() const noexcept {
 }
 
 void ContactEquilibrium::solve() noexcept {
+    if (std::exchange(begins_, false)) go_on();
     carry_over();
     const auto starts = [](const Tool& tool) { return tool.felt > 0 && tool.touching && tool.cold; };
     iterate(std::ranges::any_of(tools_, starts) ? cold_iterations : warm_iterations);
@@ -225,8 +230,6 @@ bool ContactEquilibrium::start_anew() noexcept {
 void ContactEquilibrium::iterate(int most) noexcept {
     std::size_t known = 0;
     double before = std::numeric_limits<double>::infinity();
-    double went =
-        std::numeric_limits<double>::infinity();  // mm, at the most, since spheres looked around them
     std::size_t spent = 0;
     const auto may_go_on = [&](int iteration) {
         const std::size_t rows = rows_.size() + neighbours_.row_count() + tangents_.size();
@@ -240,20 +243,21 @@ void ContactEquilibrium::iterate(int most) noexcept {
         watched_.clear();
         double longest = cold_reach;
         bool predicts = false;
-        const bool walks = went > first_reach;
-        if (walks) went = 0;
+        ++round_;
+        for (DeformedPatch& patch : patches_) patch.measure_step();
         for (std::size_t t = 0; t < tools_.size(); ++t) {
             Tool& tool = tools_[t];
             if (tool.felt == 0) continue;
             tool.outside = true;
             tool.cut = false;
+            if (iteration == foreseen_rounds) tool.near = tool.farthest_near;
             const bool starts = tool.touching && tool.cold && (iteration == 0 || tool.at_rest);
             for (std::size_t p = 0; p < tool.felt; ++p) {
                 if (starts) gather_at_rest(t, p);
                 for (std::size_t soft = 0; !starts && soft < patches_.size(); ++soft) {
                     if (!tool.touching && !patches_[soft].bears_force()) continue;
                     if (iteration == (tool.touching && tool.cold ? 1 : 0)) look_around(t, p, soft);
-                    tool.outside = gather(t, p, soft, walks) && tool.outside;
+                    tool.outside = gather(t, p, soft) && tool.outside;
                 }
             }
             predicts = predicts || starts;
@@ -274,7 +278,6 @@ void ContactEquilibrium::iterate(int most) noexcept {
         // Where answers of a tick before have led astray, it goes on from what they were added to.
         if (known > 0 && carried_ > 1 && change > before) {
             carried_ = known = 0;
-            went += walked_ahead * change;
             neighbours_.move(change);
             relax_to(alone(answer_of(round - 1)), longest);
             continue;
@@ -282,14 +285,10 @@ void ContactEquilibrium::iterate(int most) noexcept {
         if (known > 1 && change > helped * before) carried_ = 0;
         // An answer from far off says little about the next one, and one to surfaces at rest nothing.
         known = change > far_off * before ? 1 : std::min(known + 1, first_answers);
-        if (predicts) {
-            known = 0;
-            went = std::numeric_limits<double>::infinity();
-        }
+        if (predicts) known = 0;
         if (known == round + 1) in_row_ = known;
         before = change;
         neighbours_.move(change);
-        went += walked_ahead * change;
         const Weights next = change < settled ? alone(newest) : next_state(round, known, change);
         relax_to(next, predicts ? std::numeric_limits<double>::infinity() : longest);
         if (change < settled && watched_are_clear() && neighbours_.is_clear(patches_)) break;
@@ -395,9 +394,10 @@ void ContactEquilibrium::forget_tissue() noexcept {
     // A sphere may have looked around in vain.
     for (Tool& tool : tools_)
         for (Part& part : tool.parts)
-            for (Touch& touch : part.touches) touch.way = -1;
+            for (Touch& touch : part.touches) touch.way = touch.gathered_in = -1;
     if (any) neighbours_.forget();
-    active_count_ = bank_ = in_row_ = carried_ = 0;
+    active_count_ = bank_ = in_row_ = carried_ = states_known_ = 0;
+    state_ = first_state;
     last_motion_ = 0;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -117,10 +118,14 @@ class ContactEquilibrium {
     static constexpr double farthest_ahead = 4, walked_ahead = farthest_ahead + 1;
     // mm beyond a sphere within which triangles count: of a tool at rest, and where contact starts.
     static constexpr double first_reach = 0.1, cold_reach = 0.5;
+    // Of what is solved otherwise, how far from a tool it is where its state is foreseen; so many rounds.
+    static constexpr double foreseen = 0.1;
+    static constexpr int foreseen_rounds = 2;
 
-    // Of the answers to states: the first ones of a tick, of this one and of one before it, and later ones.
-    static constexpr std::size_t first_answers = 3;
-    static_assert(DeformedPatch::iterates == 3 * first_answers);
+    // Of the answers to states: the first ones of a tick, of this one and of one before it, and later ones;
+    // then the states in which this tick began, and the one before.
+    static constexpr std::size_t first_answers = 3, first_state = 3 * first_answers;
+    static_assert(DeformedPatch::iterates == first_state + 2);
     using Weights = std::array<double, DeformedPatch::iterates>;
     using Offsets = std::array<Eigen::Vector3d, DeformedPatch::iterates>;
     static Offsets no_offsets() noexcept {
@@ -172,9 +177,20 @@ class ContactEquilibrium {
         std::int32_t tree_slot = 0, triangle = 0;
         double due = 0;  // mm of the way
     };
+    // A triangle near a sphere: it is clear of it until sphere and tissue have gone so far, mm of
+    // `gathered_way`.
+    struct Near {
+        std::int32_t triangle = 0, rounds = 0;  // since it was looked at
+        double clear = std::numeric_limits<double>::lowest();
+    };
     // One sphere of a tool on one body.
     struct Touch {
-        FixedList<std::int32_t, most_near> near;  // triangles, when it was looked last
+        FixedList<Near, most_near> near;  // when it was looked last
+        // What sphere and tissue went from round to round of the search, mm; where they were in the last one.
+        double gathered_way = 0;
+        Eigen::Vector3d gathered_centre = Eigen::Vector3d::Zero(), gathered_sunk = Eigen::Vector3d::Zero();
+        std::int64_t gathered_in = -1;  // that round
+        double walked_until = 0;        // mm of `gathered_way` for which the last walk has found all
         // How far the sphere sinks into what gives way beyond what the surface does, against the press there;
         // and the press (N) about which that is linearised: sunk_free + sinking * press.
         Eigen::Vector3d sunk = Eigen::Vector3d::Zero(), push = Eigen::Vector3d::Zero();
@@ -239,15 +255,16 @@ class ContactEquilibrium {
         double longest_arm = 0;                         // mm, of the parts that are felt
         Eigen::Vector3d tip = Eigen::Vector3d::Zero();  // as the device has it, mm
         Eigen::Vector3d last_device_tip = Eigen::Vector3d::Zero(), last_tip = Eigen::Vector3d::Zero();
-        Eigen::Vector3d press = Eigen::Vector3d::Zero(), drag = Eigen::Vector3d::Zero();  // N
+        Eigen::Vector3d way = Eigen::Vector3d::Zero(), last_way = Eigen::Vector3d::Zero();  // of the device
+        Eigen::Vector3d press = Eigen::Vector3d::Zero(), drag = Eigen::Vector3d::Zero();    // N
         double held_reach = 0;
         bool touching = false;  // tissue, at the end of the last tick
         bool cold = false;      // starts from what its god-objects say
         bool outside = true;    // of the tissue
         bool at_rest = false;   // no equilibrium was found
         bool cut = false;
-        double reach = 0;  // mm: triangles nearer than this to a sphere are looked at
-        double near = 0;   // mm: those nearer than this are solved
+        double reach = 0;                    // mm: triangles nearer than this to a sphere are looked at
+        double near = 0, farthest_near = 0;  // mm: those nearer than this are solved; at the most
     };
 
     static void find_part_giving_way(Row& row, const DeformedPatch& patch,
@@ -301,7 +318,8 @@ class ContactEquilibrium {
         return part.sphere.device + off_of(tool, part) + touch.sunk;
     }
     void look_around(std::size_t tool, std::size_t part, std::size_t soft) noexcept;
-    bool gather(std::size_t tool, std::size_t part, std::size_t soft, bool walks) noexcept;
+    bool gather(std::size_t tool, std::size_t part, std::size_t soft) noexcept;
+    bool follow(Touch& touch, const Eigen::Vector3d& centre, const DeformedPatch& patch) const noexcept;
     bool stays_outside(const Part& part, const Touch& touch, const DeformedPatch& patch,
                        const Eigen::Vector3d& centre, double nearest) const noexcept;
     bool found(std::size_t tool) const noexcept;
@@ -312,6 +330,7 @@ class ContactEquilibrium {
     bool watched_are_clear() const noexcept;
     void cut_rows() noexcept;
     void group_rows() noexcept;
+    void find_slots_of_rows() noexcept;
     void solve_rows() noexcept;
     // By how much a force of a row sinks in another sphere of its tool, mm/N.
     double shared_by(const Row& pressing, std::int32_t part) const noexcept {
@@ -367,6 +386,9 @@ class ContactEquilibrium {
     }
     std::size_t carried_answer(std::size_t k) const noexcept { return (1 - bank_) * first_answers + k; }
     void carry_over() noexcept;
+    void go_on() noexcept;
+    bool is_steady() const noexcept;
+    double steadiness() const noexcept;
     void compare(std::size_t iteration) noexcept;
     Weights mix(std::size_t iteration, std::size_t known, std::size_t carried) const noexcept;
     static Weights alone(std::size_t answer) noexcept {
@@ -409,15 +431,20 @@ class ContactEquilibrium {
     FixedList<Tangent, ContactLcp::most_tangents> tangents_;
     std::vector<std::vector<std::uint32_t>> visited_;  // by patch and triangle: the search that saw it last
     std::uint32_t search_ = 0;
+    std::int64_t round_ = 0;  // of all searches
     FixedList<std::int32_t, most_rows> queue_;
+    FixedList<Near, most_near> passed_over_;           // of what is near a sphere: clear of it
     std::array<std::int64_t, max_contacts> active_{};  // keys of rows that pressed in the last solution
     std::size_t active_count_ = 0;
     ContactLcp lcp_;
     DeformedPatch::Field field_;  // of a row's force
+    FixedList<std::int32_t, static_cast<std::size_t>(DeformedPatch::most_vertices)> slots_of_rows_;
     // Inner products of the answers' differences from their states, mm²; where this tick's answers are, how
     // many of the first there are in a row, and how many are left of a tick before.
     Eigen::Matrix<double, DeformedPatch::iterates, DeformedPatch::iterates> products_;
     std::size_t bank_ = 0, in_row_ = 0, carried_ = 0;
+    std::size_t state_ = first_state, states_known_ = 0;  // of the one in which this tick began; in a row
+    bool begins_ = false;                                 // this tick, which nothing was solved in
     double residual_ = 0, change_ = 0;
     double last_motion_ = 0;    // mm, of tissue, in the tick before
     int spare_iterations_ = 0;  // left in this tick

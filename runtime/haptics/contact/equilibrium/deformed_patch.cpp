@@ -97,6 +97,7 @@ void DeformedPatch::drop(std::int32_t slot) noexcept {
     gives_way_[static_cast<std::size_t>(slot)] = gives_way_[static_cast<std::size_t>(last)];
     moved_[slot] = moved_[last];
     before_[slot] = before_[last];
+    measured_[slot] = measured_[last];
     held_moved_[slot] = held_moved_[last];
     seen_[slot] = seen_[last];
     creeps_as_[slot] = creeps_as_[last];
@@ -161,7 +162,8 @@ std::int32_t DeformedPatch::slot_of(std::int32_t vertex) noexcept {
         leans_[slot] = leant_[slot] = lasting_[slot] = beyond_at(vertex);
         if (body_->creeps()) enter_creep(slot);
         held_moved_[slot] += lasting_[slot];
-        before_[slot] = moved_[slot] = displacement_under(forces_, slot) + held_moved_[slot];
+        measured_[slot] = before_[slot] = moved_[slot] =
+            displacement_under(forces_, slot) + held_moved_[slot];
         for (Answer& answer : answers_) {
             answer.held_moved[slot] = displacement_under(answer.held, slot) + lasting_[slot];
             answer.moved[slot] = displacement_under(answer.forces, slot) + answer.held_moved[slot];
@@ -193,9 +195,8 @@ collision::TriangleCorners DeformedPatch::look_at(std::int32_t triangle,
 
 Vector3d DeformedPatch::look_at_vertex(std::int32_t vertex) const noexcept {
     const std::int32_t slot = slots_[vertex];
-    Vector3d at = body_->rest_position(vertex);
-    if (slot != no_slot) return at + moved_[slot];
-    at += beyond_at(vertex);
+    if (slot != no_slot) return position(slot);
+    Vector3d at = body_->rest_position(vertex) + beyond_at(vertex);
     const auto add = [&](std::int32_t loaded, const Vector3d& force) {
         at += (growth(body_->creep_of(vertex), creeps_as_[loaded]) *
                (body_->compliance_between(vertex, vertices_[loaded]) * force.cast<float>()))
@@ -207,11 +208,16 @@ Vector3d DeformedPatch::look_at_vertex(std::int32_t vertex) const noexcept {
     return at;
 }
 
-double DeformedPatch::motion() const noexcept {
+double DeformedPatch::farthest_from(const std::vector<Vector3d>& there) const noexcept {
     double most = 0;
     for (std::int32_t slot = 0; slot < size_; ++slot)
-        most = std::max(most, (moved_[slot] - before_[slot]).squaredNorm());
+        most = std::max(most, (moved_[slot] - there[slot]).squaredNorm());
     return std::sqrt(most);
+}
+
+void DeformedPatch::measure_step() noexcept {
+    step_ = farthest_from(measured_);
+    std::copy_n(moved_.begin(), size_, measured_.begin());
 }
 
 Vector3d DeformedPatch::displacement_under(const Forces& forces, std::int32_t slot) const noexcept {
@@ -223,10 +229,20 @@ Vector3d DeformedPatch::displacement_under(const Forces& forces, std::int32_t sl
 // The same for every slot.
 void DeformedPatch::displace(const Forces& forces, std::vector<Vector3d>& moved) noexcept {
     std::fill_n(sum_.begin(), size_, Vector4f::Zero());
-    for (const std::int32_t loaded : forces.loaded) {
-        const Vector3f force = forces.at[loaded].cast<float>();
-        const Block* const row = blocks_of(loaded);
-        for (std::int32_t slot = 0; slot < size_; ++slot) sum_[slot] += row[slot] * force;
+    // By twos: sums need not be written as often.
+    const auto loaded = forces.loaded.begin();
+    std::size_t k = 0;
+    for (; k + 1 < forces.loaded.size(); k += 2) {
+        const Vector3f force = forces.at[loaded[k]].cast<float>(),
+                       other = forces.at[loaded[k + 1]].cast<float>();
+        const Block *const rows = blocks_of(loaded[k]), *const others = blocks_of(loaded[k + 1]);
+        for (std::int32_t slot = 0; slot < size_; ++slot)
+            sum_[slot] += rows[slot] * force + others[slot] * other;
+    }
+    if (k < forces.loaded.size()) {
+        const Vector3f force = forces.at[loaded[k]].cast<float>();
+        const Block* const rows = blocks_of(loaded[k]);
+        for (std::int32_t slot = 0; slot < size_; ++slot) sum_[slot] += rows[slot] * force;
     }
     for (std::int32_t slot = 0; slot < size_; ++slot) moved[slot] = sum_[slot].head<3>().cast<double>();
 }
@@ -251,54 +267,36 @@ void DeformedPatch::load_answer(std::size_t iterate, std::int32_t slot, const Ve
 double DeformedPatch::end_answer(std::size_t iterate) noexcept {
     Answer& answer = answers_[iterate];
     displace(answer.forces, answer.moved);
-    double most = 0;
-    for (std::int32_t slot = 0; slot < size_; ++slot) {
-        answer.moved[slot] += answer.held_moved[slot];
-        answer.difference[slot] = answer.moved[slot] - moved_[slot];
-        most = std::max(most, answer.difference[slot].lpNorm<Eigen::Infinity>());
-    }
-    return most;
+    flat(answer.moved) += flat(answer.held_moved);
+    flat(answer.difference) = flat(answer.moved) - flat(moved_);
+    return largest(flat(answer.difference));
 }
 
 double DeformedPatch::product_of_differences(std::size_t a, std::size_t b) const noexcept {
-    double sum = 0;
-    for (std::int32_t slot = 0; slot < size_; ++slot)
-        sum += answers_[a].difference[slot].dot(answers_[b].difference[slot]);
-    return sum;
+    return flat(answers_[a].difference).matrix().dot(flat(answers_[b].difference).matrix());
+}
+
+// The way from where vertices are to where a combination of answers has them.
+auto DeformedPatch::way_from(const std::vector<Vector3d>& from,
+                             const std::array<double, iterates>& weights) const noexcept {
+    auto way = flat(way_);
+    way = -flat(from);
+    for (std::size_t k = 0; k < iterates; ++k)
+        if (weights[k] != 0) way += weights[k] * flat(answers_[k].moved);
+    return way;
 }
 
 double DeformedPatch::departure(const std::array<double, iterates>& weights,
                                 std::size_t from) const noexcept {
-    double most = 0;
-    for (std::int32_t slot = 0; slot < size_; ++slot) {
-        Vector3d way = (weights[from] - 1) * answers_[from].moved[slot];
-        for (std::size_t k = 0; k < iterates; ++k)
-            if (k != from && weights[k] != 0) way += weights[k] * answers_[k].moved[slot];
-        most = std::max(most, way.lpNorm<Eigen::Infinity>());
-    }
-    return most;
-}
-
-Vector3d DeformedPatch::way_of(std::int32_t slot,
-                               const std::array<double, iterates>& weights) const noexcept {
-    Vector3d way = -moved_[slot];
-    for (std::size_t k = 0; k < iterates; ++k)
-        if (weights[k] != 0) way += weights[k] * answers_[k].moved[slot];
-    return way;
+    return largest(way_from(answers_[from].moved, weights));
 }
 
 double DeformedPatch::way_to(const std::array<double, iterates>& weights) const noexcept {
-    double most = 0;
-    for (std::int32_t slot = 0; slot < size_; ++slot)
-        most = std::max(most, way_of(slot, weights).lpNorm<Eigen::Infinity>());
-    return most;
+    return largest(way_from(moved_, weights));
 }
 
 double DeformedPatch::along(const std::array<double, iterates>& weights, std::size_t iterate) const noexcept {
-    double sum = 0;
-    for (std::int32_t slot = 0; slot < size_; ++slot)
-        sum += way_of(slot, weights).dot(answers_[iterate].difference[slot]);
-    return sum;
+    return way_from(moved_, weights).matrix().dot(flat(answers_[iterate].difference).matrix());
 }
 
 // A part `step` of the way from the state's forces to a combination of the answers'.
@@ -324,13 +322,17 @@ void DeformedPatch::combine(Forces& state, Forces Answer::*part, const std::arra
 void DeformedPatch::relax_to(const std::array<double, iterates>& weights, double step) noexcept {
     combine(forces_, &Answer::forces, weights, step);
     combine(held_, &Answer::held, weights, step);
-    const auto flat = [&](std::vector<Vector3d>& by_slot) {
-        return Eigen::Map<Eigen::ArrayXd>(by_slot.front().data(), Eigen::Index{3} * size_);
-    };
     const auto go = [&](std::vector<Vector3d>& state, std::vector<Vector3d> Answer::*part) {
-        flat(state) *= 1 - step;
-        for (std::size_t k = 0; k < iterates; ++k)
-            if (weights[k] != 0) flat(state) += step * weights[k] * flat(answers_[k].*part);
+        bool from_state = step < 1;
+        if (from_state) flat(state) *= 1 - step;
+        for (std::size_t k = 0; k < iterates; ++k) {
+            if (weights[k] == 0) continue;
+            if (from_state)
+                flat(state) += step * weights[k] * flat(answers_[k].*part);
+            else
+                flat(state) = weights[k] * flat(answers_[k].*part);
+            from_state = true;
+        }
     };
     go(moved_, &Answer::moved);
     go(held_moved_, &Answer::held_moved);
@@ -341,6 +343,15 @@ void DeformedPatch::keep_hold(std::size_t iterate) noexcept {
     answer.held.clear();
     for (const std::int32_t slot : held_.loaded) answer.held.add(slot, held_.at[slot]);
     std::copy_n(held_moved_.begin(), size_, answer.held_moved.begin());
+}
+
+void DeformedPatch::keep_state(std::size_t iterate) noexcept {
+    keep_hold(iterate);
+    Answer& answer = answers_[iterate];
+    answer.forces.clear();
+    for (const std::int32_t slot : forces_.loaded) answer.forces.add(slot, forces_.at[slot]);
+    std::copy_n(moved_.begin(), size_, answer.moved.begin());
+    std::fill_n(answer.difference.begin(), size_, Vector3d::Zero());
 }
 
 void DeformedPatch::begin_hold(std::size_t iterate) noexcept {

@@ -24,7 +24,7 @@ inline constexpr double same_place = 1e-6;  ///< mm: closest points nearer than 
 class DeformedPatch {
   public:
     static constexpr std::int32_t most_vertices = 256;
-    static constexpr std::size_t iterates = 9;
+    static constexpr std::size_t iterates = 11;
 
     /// `body` must outlive this.
     explicit DeformedPatch(const DeformableContact& body);
@@ -63,7 +63,10 @@ class DeformedPatch {
     /// Whether nothing is known of it but its rest.
     bool is_at_rest() const noexcept { return size_ == 0; }
     /// The most that any vertex has moved since this tick began, mm.
-    double motion() const noexcept;
+    double motion() const noexcept { return farthest_from(before_); }
+    /// Measures the most that any vertex has moved since this was measured last: step(), mm.
+    void measure_step() noexcept;
+    double step() const noexcept { return step_; }
 
     /// Where the corners of a triangle are, p_P, mm.
     collision::TriangleCorners corners(const std::array<std::int32_t, 3>& slots) const noexcept {
@@ -109,6 +112,18 @@ class DeformedPatch {
     /// Writes what a force (N), shared out to three vertices, displaces each vertex by.
     void yield(const std::array<std::int32_t, 3>& loaded, const Eigen::Vector3d& shares,
                const Eigen::Vector3d& force, Field& moved) const noexcept;
+    /// The same for some of the slots; numbers beyond those that there are do not count.
+    void yield(const std::array<std::int32_t, 3>& loaded, const Eigen::Vector3d& shares,
+               const Eigen::Vector3d& force, const auto& slots, Field& moved) const noexcept {
+        const std::array<const Block*, 3> rows{blocks_of(loaded[0]), blocks_of(loaded[1]),
+                                               blocks_of(loaded[2])};
+        const Eigen::Matrix3f forces = force.cast<float>() * shares.cast<float>().transpose();
+        for (const std::int32_t slot : slots)
+            if (slot < size_)
+                moved[static_cast<std::size_t>(slot)] = rows[0][slot] * forces.col(0) +
+                                                        rows[1][slot] * forces.col(1) +
+                                                        rows[2][slot] * forces.col(2);
+    }
     /// The same of a force shared out to any number of vertices, `bearings` of a slot and its share each.
     void yield(const auto& bearings, const Eigen::Vector3d& force, Field& moved) const noexcept {
         std::fill_n(moved.begin(), size_, Eigen::Vector4f::Zero());
@@ -154,6 +169,8 @@ class DeformedPatch {
     double way_to(const std::array<double, iterates>& weights) const noexcept;
     /// Inner product of the way to a combination of answers with an answer's difference from the state, mm².
     double along(const std::array<double, iterates>& weights, std::size_t iterate) const noexcept;
+    /// Keeps the state as if it were an answer to itself.
+    void keep_state(std::size_t iterate) noexcept;
     /// Moves the state a part `step` of the way to a combination of answers, weights summing to 1.
     void relax_to(const std::array<double, iterates>& weights, double step) noexcept;
 
@@ -213,12 +230,25 @@ class DeformedPatch {
     }
     // In deformed_patch_creep.cpp.
     void creep() noexcept;
+    void add_lasting(std::int32_t slot, const Eigen::Vector3d& more) noexcept;
     void enter_creep(std::int32_t slot) noexcept;
     double dent_at(std::int32_t slot) const noexcept;
     float growth(const TickCreep* a, const TickCreep* b) const noexcept {
         return a != nullptr && a == b ? static_cast<float>(a->now) : 1.0F;
     }
-    Eigen::Vector3d way_of(std::int32_t slot, const std::array<double, iterates>& weights) const noexcept;
+    double farthest_from(const std::vector<Eigen::Vector3d>& there) const noexcept;
+    // What vertices have, by slot, as one array.
+    auto flat(std::vector<Eigen::Vector3d>& by_slot) const noexcept {
+        return Eigen::Map<Eigen::ArrayXd>(by_slot.front().data(), Eigen::Index{3} * size_);
+    }
+    auto flat(const std::vector<Eigen::Vector3d>& by_slot) const noexcept {
+        return Eigen::Map<const Eigen::ArrayXd>(by_slot.front().data(), Eigen::Index{3} * size_);
+    }
+    static double largest(const auto& array) noexcept {
+        return array.size() > 0 ? array.abs().maxCoeff() : 0;
+    }
+    auto way_from(const std::vector<Eigen::Vector3d>& from,
+                  const std::array<double, iterates>& weights) const noexcept;
     Eigen::Vector3d displacement_under(const Forces& forces, std::int32_t slot) const noexcept;
     void combine(Forces& state, Forces Answer::*part, const std::array<double, iterates>& weights,
                  double step) noexcept;
@@ -227,10 +257,12 @@ class DeformedPatch {
     const DeformableContact* body_;
     std::vector<std::int32_t> slots_;     // of each surface vertex
     std::vector<std::int32_t> vertices_;  // this and what follows by slot
-    std::vector<Eigen::Vector3d> rest_, moved_, before_, held_moved_;
+    std::vector<Eigen::Vector3d> rest_, moved_, before_, measured_, held_moved_;
+    double step_ = 0;
     std::bitset<static_cast<std::size_t>(most_vertices)> gives_way_;
     std::vector<std::int64_t> seen_;  // the tick in which it was looked at last
     std::vector<Eigen::Vector4f> sum_;
+    mutable std::vector<Eigen::Vector3d> way_;  // what way_from() worked out last
     // Rows by loaded slot, and which of them are there.
     mutable std::vector<Block> blocks_;
     mutable std::bitset<static_cast<std::size_t>(most_vertices)> known_;

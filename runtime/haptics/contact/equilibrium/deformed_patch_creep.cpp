@@ -36,11 +36,19 @@ void DeformedPatch::creep() noexcept {
         if (creep == nullptr) continue;
         left_forces_[slot].take(*creep, forces_.at[slot] + held_.at[slot]);
         left_moves_[slot].take(*creep, sum_[slot].head<3>().cast<double>() / creep->now);
-        const Vector3d lasting = left_moves_[slot].lasting(*creep) + leans_[slot],
-                       more = lasting - lasting_[slot];
-        lasting_[slot] = lasting;
-        held_moved_[slot] += more;
-        moved_[slot] += more;
+        const Vector3d lasting = left_moves_[slot].lasting(*creep) + leans_[slot];
+        add_lasting(slot, lasting - lasting_[slot]);
+    }
+}
+
+// Lets what displaces a vertex whatever presses in this tick do so by so much more, in all states alike.
+void DeformedPatch::add_lasting(std::int32_t slot, const Vector3d& more) noexcept {
+    lasting_[slot] += more;
+    held_moved_[slot] += more;
+    moved_[slot] += more;
+    for (Answer& answer : answers_) {
+        answer.held_moved[slot] += more;
+        answer.moved[slot] += more;
     }
 }
 

@@ -42,12 +42,9 @@ void DeformedPatch::lean() noexcept {
     leaning_ticks_ = std::min(leaning_ticks_ + 1, ticks_to_lean);
     const double come = static_cast<double>(leaning_ticks_) / ticks_to_lean;
     for (std::int32_t slot = 0; slot < size_; ++slot) {
-        const Vector3d leans = (1 - come) * leant_[slot] + come * beyond_at(vertices_[slot]),
-                       more = leans - leans_[slot];
+        const Vector3d leans = (1 - come) * leant_[slot] + come * beyond_at(vertices_[slot]);
+        add_lasting(slot, leans - leans_[slot]);
         leans_[slot] = leans;
-        lasting_[slot] += more;
-        held_moved_[slot] += more;
-        moved_[slot] += more;
     }
 }
 

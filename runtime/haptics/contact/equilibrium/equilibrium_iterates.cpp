@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "runtime/haptics/contact/equilibrium/contact_equilibrium.hpp"
@@ -14,6 +15,7 @@ using Eigen::Index;
 using Eigen::Vector3d;
 
 constexpr double slight_step = 0.01;  // of what is to be made good
+constexpr double most_steady = 2;     // times as far as in the last tick
 
 }  // namespace
 
@@ -51,6 +53,58 @@ double ContactEquilibrium::answer(std::size_t iterate) noexcept {
     if (turns()) change = std::max(change, answer_turns(iterate));
     for (DeformedPatch& patch : patches_) change = std::max(change, patch.end_answer(iterate));
     return change;
+}
+
+// Begins a tick where tools and tissue come to if they go on as in the last one, by as much as devices do.
+// From there the first answer of a steady hand changes nothing, and no second one need be asked for.
+void ContactEquilibrium::go_on() noexcept {
+    if (!is_steady()) {
+        states_known_ = 0;
+        return;
+    }
+    const std::size_t before = std::exchange(state_, 2 * first_state + 1 - state_);
+    for (Tool& tool : tools_) {
+        tool.next_off[state_] = tool.off;
+        tool.next_off[before] = tool.touching ? Vector3d(tool.next_off[before] - tool.way) : tool.off;
+        for (Part& part : tool.parts)
+            for (Touch& touch : part.touches) {
+                touch.next_sunk[state_] = touch.sunk;
+                touch.next_drag[state_] = touch.drag;
+            }
+    }
+    for (DeformedPatch& patch : patches_) patch.keep_state(state_);
+    if (++states_known_ < 2) return;
+    Weights weights{};
+    const double part = steadiness();
+    weights[state_] = 1 + part;
+    weights[before] = -part;
+    // No farther than what is near was looked at.
+    double longest = std::numeric_limits<double>::infinity(), way = std::abs(part) * last_motion_;
+    for (const Tool& tool : tools_) {
+        if (tool.touching) longest = std::min(longest, tool.near);
+        if (tool.touching) way = std::max(way, (combined(weights, tool.next_off) - tool.off).norm());
+    }
+    if (part == 0 || way > longest) return;
+    relax_to(weights, longest);
+    for (Tool& tool : tools_) tool.near *= foreseen;
+}
+
+// Whether a tick goes on from the one before it, in which the same was felt.
+bool ContactEquilibrium::is_steady() const noexcept {
+    const auto goes_on = [](const Tool& tool) {
+        return tool.felt == tool.was_felt && !(tool.touching && tool.cold);
+    };
+    return !turns() && std::ranges::all_of(tools_, goes_on);
+}
+
+// By how much devices go on as in the last tick.
+double ContactEquilibrium::steadiness() const noexcept {
+    double along = 0, squared = 0;
+    for (const Tool& tool : tools_) {
+        along += tool.way.dot(tool.last_way);
+        squared += tool.last_way.squaredNorm();
+    }
+    return squared > 0 ? std::clamp(along / squared, -1.0, most_steady) : 0;
 }
 
 // Keeps the first answers of the tick before, if they tell anything.

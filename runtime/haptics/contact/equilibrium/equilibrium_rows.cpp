@@ -16,6 +16,8 @@ using Eigen::Index;
 using Eigen::Vector3d;
 
 constexpr double look_margin = 1;  // mm: how much farther around is looked
+constexpr std::int32_t most_rounds =
+    16;  // for which a triangle is passed over: its vertices stay known longer
 
 }  // namespace
 
@@ -94,22 +96,38 @@ void ContactEquilibrium::look_around(std::size_t t, std::size_t p, std::size_t s
         touch.looked_to = centre;
         touch.looked_sunk = touch.sunk;
     }
+    const double soon = limit - first_reach / 2;
     std::vector<std::uint32_t>& visited = visited_[soft];
     ++search_;
-    for (const std::int32_t triangle : touch.near) visited[triangle] = search_;
+    for (const Near& near : touch.near) visited[near.triangle] = search_;
     for (Surrounding& near : touch.around) {
         if (near.due > touch.way || touch.near.full() || visited[near.triangle] == search_) continue;
         const NearestBall ball =
             nearest_ball(centre, patch.rounded(near.triangle, patch.look_at(near.triangle, touch.sunk)));
         const double distance = ball.distance - ball.radius;
-        if (distance < limit) touch.near.push_back(near.triangle);
-        near.due = touch.way + std::max(0.0, distance - limit);
+        if (distance < soon) touch.near.push_back({.triangle = near.triangle});
+        near.due = touch.way + std::max(0.0, distance - soon);
     }
 }
 
+// Measures how far a sphere and the tissue went since the round before; false if it was not gathered then, so
+// that nothing is known of what is near.
+bool ContactEquilibrium::follow(Touch& touch, const Vector3d& centre,
+                                const DeformedPatch& patch) const noexcept {
+    const bool follows = touch.gathered_in == round_ - 1;
+    touch.gathered_way +=
+        patch.step() + (centre - touch.gathered_centre).norm() + (touch.sunk - touch.gathered_sunk).norm();
+    if (!follows) touch.gathered_way = 0;
+    touch.gathered_in = round_;
+    touch.gathered_centre = centre;
+    touch.gathered_sunk = touch.sunk;
+    return follows;
+}
+
 // The triangles near a sphere, walked to over the displaced surface from those that were near it last and
-// from those on which it would rest. Tells whether the centre is outside.
-bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, bool walks) noexcept {
+// from those on which it would rest, once others may have come near. Those that were too far off to be solved
+// or watched, and cannot have come as near since, are passed over. Tells whether the centre is outside.
+bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft) noexcept {
     const Tool& tool = tools_[t];
     Part& part = tools_[t].parts[p];
     Touch& touch = part.touches[soft];
@@ -118,19 +136,42 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
     std::vector<std::uint32_t>& visited = visited_[soft];
     ++search_;
     queue_.clear();
+    passed_over_.clear();
     const auto visit = [&](std::int32_t triangle) {
         if (visited[triangle] == search_ || queue_.full()) return;
         visited[triangle] = search_;
         queue_.push_back(triangle);
     };
-    for (const std::int32_t triangle : touch.near) visit(triangle);
+    // What pressed stays even where an answer has led away from it: another may lead back.
+    const auto pressed = [&](std::int32_t triangle) {
+        return is_active(key_of(static_cast<std::int64_t>(t), static_cast<std::int64_t>(p),
+                                static_cast<std::int64_t>(soft), triangle));
+    };
+    const Vector3d centre = centre_of(tool, part, touch);
+    const bool follows = follow(touch, centre, patch);
+    const bool walks = !follows || touch.gathered_way + tool.near > touch.walked_until;
+    if (walks) touch.walked_until = touch.gathered_way + tool.reach;
+    double passed_over =
+        std::numeric_limits<double>::infinity();  // the nearest of these, at least so far, mm
+    for (const Near& near : touch.near) {
+        const double distance = near.clear - touch.gathered_way;
+        if (!follows || distance < tool.near || near.rounds == most_rounds || pressed(near.triangle)) {
+            visit(near.triangle);
+            continue;
+        }
+        visited[near.triangle] = search_;
+        passed_over_.push_back({near.triangle, near.rounds + 1, near.clear});
+        passed_over = std::min(passed_over, distance);
+    }
     touch.near.clear();
     for (const GodObject::Touch& rests : part.sphere.if_rigid->touches())
         if (rests.surface == bodies_.rigid_count() + soft) visit(rests.foot.triangle);
     const std::size_t seeds = queue_.size();
-    if (seeds == 0) return true;
+    if (seeds == 0 && passed_over_.empty()) return true;
+    if (walks)
+        for (const Near& near : passed_over_)
+            for (const std::int32_t neighbour : body.neighbours(near.triangle)) visit(neighbour);
     linearise(part.radius, touch, patch);
-    const Vector3d centre = centre_of(tool, part, touch);
     const double limit = part.radius + tool.reach;
     FixedList<Vector3d, most_rows> shared;
     FixedList<double, most_rows> shared_distances;  // of these, which tell most of them apart
@@ -141,23 +182,29 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
     FixedList<Nearest, max_contacts> nearest_ones;
     double nearest = limit;
     bool behind_held = false;
-    for (std::size_t next = 0; next < queue_.size(); ++next) {
+    for (std::size_t next = 0;; ++next) {
+        if (next == queue_.size()) {
+            if (nearest - part.radius <= passed_over) break;
+            // Nothing else is as near.
+            for (const Near& near : passed_over_)
+                if (!queue_.full()) queue_.push_back(near.triangle);
+            passed_over_.clear();
+            passed_over = std::numeric_limits<double>::infinity();
+            if (next == queue_.size()) break;
+        }
         const std::int32_t triangle = queue_[next];
         std::array<std::int32_t, 3> slots;
         if (!patch.slots_of(triangle, slots)) break;
         const RoundedTriangle round = patch.rounded(triangle, patch.met_corners(slots, touch.sunk));
         const NearestBall ball = nearest_ball(centre, round);
         const double distance = ball.distance - ball.radius;
-        // What pressed stays even where an answer has led away from it: another may lead back.
-        const auto pressed = [&] {
-            return is_active(key_of(static_cast<std::int64_t>(t), static_cast<std::int64_t>(p),
-                                    static_cast<std::int64_t>(soft), triangle));
-        };
-        const bool near = distance < limit || pressed();
+        const bool near = distance < limit || pressed(triangle);
         if (walks && (near || next < seeds))
             for (const std::int32_t neighbour : body.neighbours(triangle)) visit(neighbour);
         if (!near) continue;
-        if (!touch.near.full()) touch.near.push_back(triangle);
+        if (!touch.near.full())
+            touch.near.push_back(
+                {.triangle = triangle, .clear = touch.gathered_way + distance - part.radius});
         if (!(ball.distance > 0)) continue;
         const auto gives_way = [&](std::int32_t slot) { return patch.gives_way(slot); };
         // A sphere may press thin tissue down to what it is held by at its back.
@@ -202,9 +249,11 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft, 
             row.gap -=
                 row.weights[i] * row.normal.dot(patch.displacement(slot) - patch.held_displacement(slot));
         }
-        auto& list = row.distance < tool.near || pressed() ? rows_ : watched_;
+        auto& list = row.distance < tool.near || pressed(triangle) ? rows_ : watched_;
         if (!list.full()) list.push_back(row);
     }
+    for (const Near& near : passed_over_)
+        if (!touch.near.full()) touch.near.push_back(near);
     if (nearest_ones.empty()) return !behind_held;
     Vector3d normal = Vector3d::Zero(), away = Vector3d::Zero();
     for (const Nearest& one : nearest_ones) {
@@ -305,9 +354,24 @@ double ContactEquilibrium::gap_of_wall(const Row& row) const noexcept {
                                 (tool.turn - tool.unpressed_turn).cross(part.swung));
 }
 
+// The slots of all rows, each once, whatever patch they are of.
+void ContactEquilibrium::find_slots_of_rows() noexcept {
+    slots_of_rows_.clear();
+    std::bitset<static_cast<std::size_t>(DeformedPatch::most_vertices)> known;
+    for (const Row& row : rows_) {
+        if (row.patch < 0) continue;
+        for (const std::int32_t slot : row.slots)
+            if (!known[static_cast<std::size_t>(slot)]) {
+                known[static_cast<std::size_t>(slot)] = true;
+                slots_of_rows_.push_back(slot);
+            }
+    }
+}
+
 void ContactEquilibrium::solve_rows() noexcept {
     const std::size_t n = rows_.size();
     if (turns()) find_levers();
+    find_slots_of_rows();
     std::array<std::size_t, max_contacts> warm;
     std::size_t warm_count = 0;
     for (std::size_t k = 0; k < n; ++k) {
@@ -343,19 +407,27 @@ void ContactEquilibrium::take_forces() noexcept {
 // How far a force of one row opens the others.
 void ContactEquilibrium::fill_column(std::size_t l) noexcept {
     const Row& pressing = rows_[l];
-    if (pressing.patch >= 0)
-        patch_of(pressing).yield(pressing.slots, pressing.weights, pressing.normal, field_);
+    const Vector3d off = pressing.normal / coupling_;
+    Vector3d sunk = Vector3d::Zero();
+    if (pressing.patch >= 0) {
+        const DeformedPatch& patch = patch_of(pressing);
+        if (neighbours_.row_count() > 0)
+            patch.yield(pressing.slots, pressing.weights, pressing.normal, field_);
+        else
+            patch.yield(pressing.slots, pressing.weights, pressing.normal, slots_of_rows_, field_);
+        sunk = pressing.part_giving_way * (touch_of(pressing).sinking * pressing.normal);
+    }
     double* column = &lcp_.matrix()(0, static_cast<Index>(l));
     for (const Row& row : rows_) {
         Vector3d opens = Vector3d::Zero();
-        if (row.tool == pressing.tool) opens = pressing.normal / coupling_;
+        if (row.tool == pressing.tool) opens = off;
         if (row.patch >= 0 && row.patch == pressing.patch) {
             opens += DeformedPatch::mean(field_, row.slots, row.weights);
-            const double give_way = row.part_giving_way * pressing.part_giving_way;
             if (row.tool == pressing.tool && row.part == pressing.part)
-                opens += give_way * (touch_of(row).sinking * pressing.normal);
+                opens += row.part_giving_way * sunk;
             else if (row.tool == pressing.tool)
-                opens += give_way * shared_by(pressing, row.part) * pressing.normal;
+                opens += row.part_giving_way * pressing.part_giving_way * shared_by(pressing, row.part) *
+                         pressing.normal;
         }
         *column++ = row.normal.dot(opens);
     }
