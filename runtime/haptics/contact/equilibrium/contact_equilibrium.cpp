@@ -394,7 +394,10 @@ void ContactEquilibrium::forget_tissue() noexcept {
     // A sphere may have looked around in vain.
     for (Tool& tool : tools_)
         for (Part& part : tool.parts)
-            for (Touch& touch : part.touches) touch.way = touch.gathered_in = -1;
+            for (Touch& touch : part.touches) {
+                touch.way = -1;
+                touch.gathered_in = -1;
+            }
     if (any) neighbours_.forget();
     active_count_ = bank_ = in_row_ = carried_ = states_known_ = 0;
     state_ = first_state;
