@@ -126,9 +126,10 @@ void Endoscope::look_along(const ScopePose& pose, double seconds) {
     if (pose.look_at) way = *pose.look_at - pose.tip;
     if (!pose.shaft.isZero()) way = -pose.shaft;
     if (way.norm() < least_step) return;
-    forward_ =
-        (forward_ + (first ? 1 : 1 - std::exp(-seconds / turning_time)) * (way.normalized() - forward_))
-            .normalized();
+    // By the angle, so that it turns right round too.
+    const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(forward_, way);
+    const double part = first ? 1 : 1 - std::exp(-seconds / turning_time);
+    forward_ = (Eigen::Quaterniond::Identity().slerp(part, turn) * forward_).normalized();
     tip_ = pose.tip;
 }
 
