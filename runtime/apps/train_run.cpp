@@ -62,7 +62,7 @@ void fill_frame(const TrainRun& run, std::span<const TickResult* const> ticks, V
     frame.recording = run.keys.recording();
     frame.audible = run.keys.sound().on();
     frame.deforming_far = run.session.deforming_far();
-    frame.lesson = run.lesson.view(frame.force.norm());
+    frame.lesson = run.lesson.view(frame.force.norm(), frame.tool_position);
     frame.other_tools.clear();
     for (const TickResult* other : ticks.subspan(1))
         frame.other_tools.push_back(run.session.jaws() ? other_jaw_of(*other) : other_tool_of(*other));

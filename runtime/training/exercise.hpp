@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -53,5 +54,19 @@ double length_of(const std::vector<Eigen::Vector3d>& points);
 
 /// The point so far (mm) along that line; its end beyond it. At least one point.
 Eigen::Vector3d point_along(const std::vector<Eigen::Vector3d>& points, double distance);
+
+struct LinePoint {
+    double along = 0;     ///< mm from the line's beginning
+    double distance = 0;  ///< mm
+};
+
+/// The point of that line between `from` and `to` (mm along it) that is nearest to `p`.
+LinePoint nearest_on_line(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& p, double from,
+                          double to);
+
+/// The point of that line so far (mm) ahead of the one nearest to `p`, towards the point of index `due`, but
+/// not beyond that.
+Eigen::Vector3d point_ahead(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& p,
+                            std::size_t due, double distance);
 
 }  // namespace palpate::training

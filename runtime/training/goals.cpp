@@ -2,7 +2,6 @@
 #include "runtime/training/goals.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "runtime/training/metrics.hpp"
 #include "runtime/training/region_outline.hpp"
@@ -64,29 +63,6 @@ void follow_gates(const Exercise& exercise, const Moment& moment, Goals& goals) 
     const bool ends = goals.reached > 0 && goals.reached + 1 == exercise.places.size();
     if (!ends) add_error(goals.nearest = distance, goals);
     reach_next(exercise, goals);
-}
-
-struct LinePoint {
-    double along = 0;     // mm from the line's beginning
-    double distance = 0;  // mm
-};
-
-// The nearest point of the line between `from` and `to` (mm along it).
-LinePoint nearest_on_line(const std::vector<Vector3d>& line, const Vector3d& p, double from, double to) {
-    LinePoint best{.along = from, .distance = std::numeric_limits<double>::max()};
-    double along = 0;
-    for (std::size_t i = 1; i < line.size(); ++i) {
-        const Vector3d way = line[i] - line[i - 1];
-        const double length = way.norm();
-        const double least = std::max(0.0, from - along), most = std::min(length, to - along);
-        if (length > 0 && least <= most) {
-            const double at = std::clamp((p - line[i - 1]).dot(way) / length, least, most);
-            const double distance = (line[i - 1] + way * (at / length) - p).norm();
-            if (distance < best.distance) best = {.along = along + at, .distance = distance};
-        }
-        along += length;
-    }
-    return best;
 }
 
 void follow_line(const Exercise& exercise, const Moment& moment, bool touching, Goals& goals) {

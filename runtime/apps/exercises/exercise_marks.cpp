@@ -31,7 +31,6 @@ void show_places(const Exercise& exercise, const Goals& goals, bool afterwards, 
                 places[std::min(i + 1, places.size() - 1)] - places[i > 0 ? i - 1 : 0];
             view.marks.push_back({places[i], gates ? exercise.tolerance : radius, state,
                                   gates ? axis.normalized() : Eigen::Vector3d::Zero()});
-            if (gates && state == State::due && !afterwards) view.look_at = places[i];
         }
     }
     if (exercise.task == Task::retract) {

@@ -18,6 +18,8 @@ using namespace visual;
 using texts::looked_up;
 using texts::translated;
 
+constexpr double look_tolerances = 2;  // of the gates' tolerance: how far ahead a scope looks
+
 std::string clock_of(double seconds) {
     const auto whole = static_cast<int>(std::max(0.0, seconds));
     return fmt::format("{}:{:02}", whole / 60, whole % 60);
@@ -96,7 +98,13 @@ std::vector<LessonChoice> actions_of(Task task, bool paused) {
     return actions;
 }
 
-void show_doing(const Attempt& attempt, double force, LessonView& view) {
+// Along the line of the gates, also where the one that is due is behind a bend.
+void look_ahead(const Exercise& exercise, std::size_t due, const Eigen::Vector3d& tip, LessonView& view) {
+    if (exercise.task != Task::guide) return;
+    view.look_at = point_ahead(exercise.places, tip, due, look_tolerances * exercise.tolerance);
+}
+
+void show_doing(const Attempt& attempt, double force, const Eigen::Vector3d& tip, LessonView& view) {
     const Exercise& exercise = attempt.exercise();
     view.instruction = looked_up(exercise.instruction.c_str());
     view.status = progress_of(exercise, attempt.goals()) +
@@ -113,6 +121,7 @@ void show_doing(const Attempt& attempt, double force, LessonView& view) {
     else if (exercise.task == Task::trace && attempt.goals().was_astray && force >= exercise.least_force)
         view.warning = translated("beside the line");
     show_places(exercise, attempt.goals(), false, view);
+    look_ahead(exercise, attempt.goals().reached, tip, view);
 }
 
 }  // namespace
@@ -176,22 +185,26 @@ LessonView trainee_view(const std::string& typed, const LessonSetting& setting) 
 }
 
 LessonView lesson_view(const Lesson& lesson, const LessonSetting& setting, double force,
-                       const LessonPage& result) {
+                       const Eigen::Vector3d& tip, const LessonPage& result) {
     LessonView view;
     view.hides_regions = lesson.exercising() && lesson.exercises()[lesson.chosen()].task != Task::free;
     switch (lesson.phase()) {
         case Phase::choosing:
             view.page = start_page(lesson, setting);
             break;
-        case Phase::counting_down:
-            view.instruction = looked_up(lesson.exercises()[lesson.chosen()].instruction.c_str());
+        case Phase::counting_down: {
+            const Exercise& exercise = lesson.exercises()[lesson.chosen()];
+            view.instruction = looked_up(exercise.instruction.c_str());
             view.status = translated("begins in {:.0f}", std::ceil(lesson.seconds_to_begin()));
             view.actions = {action("return", translated("Enter"), translated("Now"))};
             if (setting.can_edit) view.actions.push_back(action("f2", "F2", translated("Change it")));
-            show_places(lesson.exercises()[lesson.chosen()], {}, false, view);
+            show_places(exercise, {}, false, view);
+            // The hand is drawn back to where it begins, and looks where it will go.
+            look_ahead(exercise, exercise.places.size() - 1, tip, view);
             break;
+        }
         case Phase::doing:
-            show_doing(*lesson.attempt(), force, view);
+            show_doing(*lesson.attempt(), force, tip, view);
             break;
         case Phase::looking_back:
             if (lesson.page_hidden())

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <Eigen/Core>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,9 +26,9 @@ visual::LessonPage result_page(const training::Attempt& attempt,
 /// The page on which another pseudonym is typed; `typed`: so far.
 visual::LessonView trainee_view(const std::string& typed, const LessonSetting& setting);
 
-/// What the window shows of a lesson. `force`: N, on the device; `result`: of the attempt that is looked back
-/// at.
+/// What the window shows of a lesson. `force`: N, on the device; `tip`: of the tool, p_P, mm; `result`: of
+/// the attempt that is looked back at.
 visual::LessonView lesson_view(const training::Lesson& lesson, const LessonSetting& setting, double force,
-                               const visual::LessonPage& result);
+                               const Eigen::Vector3d& tip, const visual::LessonPage& result);
 
 }  // namespace palpate::apps

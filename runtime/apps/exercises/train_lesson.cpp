@@ -219,10 +219,10 @@ void TrainLesson::take(const TickResult& tick) {
     button_ = pressed;
 }
 
-visual::LessonView TrainLesson::view(double force) const {
+visual::LessonView TrainLesson::view(double force, const Eigen::Vector3d& tip) const {
     if (typed_trainee_) return trainee_view(*typed_trainee_, setting_);
     if (editor_) return editor_view(*editor_, draft_, exercise_file_.filename().string());
-    return lesson_view(lesson_, setting_, force, result_);
+    return lesson_view(lesson_, setting_, force, tip, result_);
 }
 
 std::optional<Eigen::Vector3d> TrainLesson::hand(const Eigen::Vector3d& now) {

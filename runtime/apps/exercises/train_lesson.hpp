@@ -62,8 +62,8 @@ class TrainLesson {
     const training::Lesson& lesson() const { return lesson_; }
     /// Cuts an attempt short and keeps it.
     void close() { lesson_.close(); }
-    /// `force`: N, on the device.
-    visual::LessonView view(double force) const;
+    /// `force`: N, on the device; `tip`: of the tool, p_P, mm.
+    visual::LessonView view(double force, const Eigen::Vector3d& tip) const;
     /// Where a hand that mouse and keyboard guide is to be while a guided passage counts down: on the way
     /// back through its gates to the first. `now`: where it is, p_P, mm.
     std::optional<Eigen::Vector3d> hand(const Eigen::Vector3d& now);

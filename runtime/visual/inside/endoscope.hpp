@@ -21,13 +21,13 @@ struct ScopePose {
     Eigen::Vector3d tip = Eigen::Vector3d::Zero();    ///< p_P, mm
     Eigen::Vector3d shaft = Eigen::Vector3d::Zero();  ///< unit, from the tip along the tool; zero: not known
     Eigen::Quaterniond orientation{0, 0, 0, 0};       ///< R_PT of a tool that turns by itself, else zero
-    std::optional<Eigen::Vector3d> look_at;           ///< what is due, p_P, mm
+    std::optional<Eigen::Vector3d> look_at;           ///< p_P, mm
 };
 
-/// The view from the tool's tip: along its shaft if that is known, else at what is due, else where the tool
-/// goes; a tool that turns about its shaft turns the picture. 90 degrees wide, as rigid rhinoscopes are (70
-/// to 120), round, and lit from the tip alone, whose light grows fainter with distance. It fills the window,
-/// or has a corner of it beside the view from outside; what a corner costs is paid while it is there.
+/// The view from the tool's tip: along its shaft if that is known, else at what it is to look at, else where
+/// the tool goes; a tool that turns about its shaft turns the picture. 90 degrees wide, as rigid rhinoscopes
+/// are (70 to 120), round, and lit from the tip alone, whose light grows fainter with distance. It fills the
+/// window, or has a corner of it beside the view from outside; what a corner costs is paid while it is there.
 class Endoscope {
   public:
     /// `outside` draws the scene in `window`. Off at first.

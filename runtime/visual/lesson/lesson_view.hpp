@@ -67,7 +67,7 @@ struct LessonView {
     std::vector<Eigen::Vector3d> line, line_done;  ///< p_P, mm
     double line_radius = 0.5;                      ///< mm
     std::vector<Eigen::Vector3d> outline;    ///< closed: of what a search is for, shown afterwards, p_P, mm
-    std::optional<Eigen::Vector3d> look_at;  ///< what is due, for the endoscope, p_P, mm
+    std::optional<Eigen::Vector3d> look_at;  ///< by the endoscope, p_P, mm
     std::vector<Eigen::Vector3d> path;       ///< the hand's way, shown afterwards, p_P, mm
     std::optional<LessonPage> page;
     bool takes_keys = false;  ///< every key goes to the page as X11 names it, none to the window
