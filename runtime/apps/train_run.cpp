@@ -133,12 +133,14 @@ TrainOutcome run_in_window(const TrainRun& run, VisualFrame& frame) {
         for (std::size_t tool = 0; tool < ticks.size(); ++tool) ticks[tool] = &session.latest(tool);
         const TickResult& tick = *ticks.front();
         pulse.see(tick.tick);
-        if (const auto hand = run.lesson.hand(run.window.hand())) run.window.place_hand(*hand);
+        const auto led_hand = run.lesson.hand(run.window.hand());
         frame.tick_rate_hz = rate.update(tick.tick);
         shape.follow(session.model(), tick.time, ticks, frame.displacements);
         fill_frame(run, ticks, frame);
         const double drawn = tick.time;
         run.window.show(frame);
+        // Mouse and keys do not take it off its way: it would come back through what lies between.
+        if (led_hand) run.window.place_hand(*led_hand);
         const double late = session.latest().time - drawn;
         outcome.late_ns.record(static_cast<std::uint64_t>(1e9 * std::max(0.0, late)));
         run.keys.sound().follow(frame.force.norm());
