@@ -129,6 +129,29 @@ class SeeingHand:
         self.key("m")
         self.let_go()
 
+    def lead_scope(self, waits=False, scrapes=False):
+        """Ahead through the endoscope's picture, by the wheel and by W in turn, until the result is there, for two minutes at most.
+        `waits`: after every three millimetres, until the picture rests; `scrapes`: drags the tip to all sides after every 24."""
+        self.point((30, 300))
+        self.key("v")
+        end, steps = time.monotonic() + 120, 0
+        while time.monotonic() < end and not self.sees_result():
+            self.x("xdotool", "click", "--repeat", 3, "--delay", 60, 4)
+            if waits:
+                self.rest()
+            self.key(*["w"] * 6, delay=40)
+            if waits:
+                self.rest()
+            steps += 1
+            for aside in ((400, 0), (-400, 0), (0, 400), (0, -400)) if scrapes and steps % 4 == 0 else ():
+                self.drag(1, *aside)
+                time.sleep(0.5)
+
+    def sees_result(self):
+        """Whether its page lies over the endoscope's picture, which is round: left of that its choices are as yellow as marks."""
+        x, y = self.yellow().T
+        return ((x < 280) & (y > 500)).sum() > 100
+
     def drag(self, button, dx, dy):
         """From the picture's middle."""
         self.point((640, 360))

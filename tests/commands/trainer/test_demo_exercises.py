@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The exercises that come with the demo's cases, done in a real window with mouse and keys alone: by a good hand, by a clumsy one, by
-an idle one, with the score that each deserves. The scope is led by a script, in commands.demo_cases."""
+an idle one, with the score that each deserves."""
 import json
 import os
 import pathlib
@@ -133,6 +133,14 @@ class Nasopharynx(DemoExercises):
 
     def test_the_hidden_tumour(self):
         self.find((2, -200, 0))
+
+    def test_the_scope_by_its_own_picture(self):
+        for waits in (False, True):
+            with self.subTest(waits=waits):
+                self.do_well("scope", lambda hand, waits=waits: hand.lead_scope(waits))
+        scraped = self.do_badly("scope", lambda hand: hand.lead_scope(scrapes=True))
+        self.assertGreater(scraped["time_above_limit_s"], 0.2)
+        self.idle("scope")
 
 
 del DemoExercises  # has no tests of its own
