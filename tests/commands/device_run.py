@@ -19,7 +19,7 @@ from recorded import kept
 BIN = pathlib.Path(os.environ["PALPATE_BIN"])
 LIBRARY = TESTS / "libpalpate_hd_conformance.so"
 # Flags of formats/records/fault.hpp
-DEVICE_LOST, TICK_LATE, ASSET_REMOVED, SERVO_STOPPING = 1 << 1, 1 << 7, 1 << 10, 1 << 11
+DEVICE_LOST, TICK_LATE, VISUAL_STOPPED, ASSET_REMOVED, SERVO_STOPPING = 1 << 1, 1 << 7, 1 << 9, 1 << 10, 1 << 11
 SLEW = 0.25 + 1e-6  # N a tick, the sample's max_force_rate
 PATIENCE = 30  # s, for what comes within one on an idle machine
 

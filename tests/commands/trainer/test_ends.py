@@ -5,19 +5,23 @@ import ctypes
 import json
 import signal
 import subprocess
+import time
 import unittest
 
 import h5py
 import numpy as np
 
 from trainer_case import TRAIN, TrainerCase
-from device_run import DEVICE_LOST, FELT, RAMP, SERVO_STOPPING, DeviceRun
+from device_run import DEVICE_LOST, FELT, RAMP, SERVO_STOPPING, SLEW, VISUAL_STOPPED, DeviceRun
 from x_server import XServer
 
 # The sample's skull is a ball of 15 mm about (40, 10, 10) mm, its tool one of 1.5 mm: 5 mm above it, then 4 mm deep to stay.
 HELD = [(0, 40, 10, 31.5), (0.5, 40, 10, 31.5), (1, 40, 10, 22.5), (100, 40, 10, 22.5)]
 # A driver's device at rest in free space, which is pulled out for a second.
 PULLED_OUT = {"path": [[0, 0, 0, 0], [100, 0, 0, 0]], "faults": [{"fault": "disconnect", "from": 2, "until": 3}]}
+# One that presses on the skull, towards which the first view looks, and is pulled out for good.
+PULLED_OUT_OF_A_PRESS = {"path": [[0, 0, 0, 0], [2, 0, 0, 0], [2.5, 0, 0, -12], [1000, 0, 0, -12]],
+                         "faults": [{"fault": "disconnect", "from": 12, "until": 1000}]}
 
 
 def ask_to_close(display, window):
@@ -37,13 +41,14 @@ def ask_to_close(display, window):
 
 
 class Ends(DeviceRun, TrainerCase):
-    def begin_exercise(self, *options, environment=None):
-        """A trainer in the middle of an attempt whose hand presses on the skull, and its recording."""
+    def begin_exercise(self, *options, environment=None, device=False):
+        """A trainer in the middle of an attempt whose hand, or a driver's device, presses on the skull, and its recording."""
         hand = self.fresh(".txt")
         np.savetxt(hand, HELD)
+        held = ("--device", "openhaptics", "--body", "skull") if device else ("--script", hand)
         self.attempts = self.fresh("-attempts")
         recording = self.fresh(".h5")
-        process = self.launch("--exercise", "free", "--attempts", self.attempts, "--trainee", "T-1", "--script", hand,
+        process = self.launch("--exercise", "free", "--attempts", self.attempts, "--trainee", "T-1", *held,
                               "--record", recording, "--record-seconds", 60, *options, environment=environment)
         self.wait_for_force(recording)
         return process, recording
@@ -95,6 +100,30 @@ class Ends(DeviceRun, TrainerCase):
         there = (faults & DEVICE_LOST) > 0
         self.assert_no_force_while(there, force)
         self.assertTrue((faults[np.flatnonzero(there)[-1] + 1 :] & SERVO_STOPPING).any())
+
+    def test_a_device_that_was_pulled_out_while_it_pressed(self):
+        environment = self.driver(PULLED_OUT_OF_A_PRESS, DISPLAY=self.server.environment["DISPLAY"])
+        process, recording = self.begin_exercise(environment=environment, device=True)
+        self.find_window()
+        self.wait_for_fault(recording, DEVICE_LOST)
+        self.x("xdotool", "key", "q")
+        self.assertEqual(self.assert_ended_in_order(process, recording, 0).count("(device_lost), so the force goes to zero"), 1)
+        force, faults = self.recorded(recording)
+        self.assert_no_force_while((faults & DEVICE_LOST) > 0, force)
+        self.assertLessEqual(np.abs(np.diff(force)).max(), SLEW)
+
+    def test_a_display_that_stood_still_ends_nothing(self):
+        with XServer() as server:
+            process, recording = self.begin_exercise(environment=server.environment)
+            server.process.send_signal(signal.SIGSTOP)
+            time.sleep(4)
+            server.process.send_signal(signal.SIGCONT)
+            self.wait_for_fault(recording, VISUAL_STOPPED)
+            self.wait_for_force(recording)
+            process.send_signal(signal.SIGINT)
+            self.assertIn("(visual_stopped), so the force goes to zero", self.assert_ended_in_order(process, recording, 130))
+        force, faults = self.recorded(recording)
+        self.assert_no_force_while((faults & VISUAL_STOPPED) > 0, force)
 
     def test_a_signal(self):
         for how in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
