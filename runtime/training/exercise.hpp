@@ -55,6 +55,7 @@ double length_of(const std::vector<Eigen::Vector3d>& points);
 /// The point so far (mm) along that line; its end beyond it. At least one point.
 Eigen::Vector3d point_along(const std::vector<Eigen::Vector3d>& points, double distance);
 
+/// A point of a line through points, with straight pieces between them.
 struct LinePoint {
     double along = 0;     ///< mm from the line's beginning
     double distance = 0;  ///< mm
@@ -65,7 +66,7 @@ LinePoint nearest_on_line(const std::vector<Eigen::Vector3d>& points, const Eige
                           double to);
 
 /// The point of that line so far (mm) ahead of the one nearest to `p`, towards the point of index `due`, but
-/// not beyond that.
+/// not beyond that. `due` is one of `points` (unchecked).
 Eigen::Vector3d point_ahead(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& p,
                             std::size_t due, double distance);
 

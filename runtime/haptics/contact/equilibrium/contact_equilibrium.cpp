@@ -195,7 +195,10 @@ std::size_t ContactEquilibrium::wall_count() const noexcept {
 }
 
 void ContactEquilibrium::solve() noexcept {
-    if (std::exchange(begins_, false)) go_on();
+    if (std::exchange(begins_, false))
+        go_on();
+    else
+        look_widely();
     carry_over();
     const auto starts = [](const Tool& tool) { return tool.felt > 0 && tool.touching && tool.cold; };
     iterate(std::ranges::any_of(tools_, starts) ? cold_iterations : warm_iterations);
@@ -205,11 +208,17 @@ void ContactEquilibrium::solve() noexcept {
     }
     // What was found from the last tick on may have led astray: then contact starts anew. And where that does
     // not lead to an equilibrium either, the surface at rest has to do.
+    look_widely();
     if (start_anew()) iterate(cold_iterations);
     if (start_anew()) {
         for (std::size_t t = 0; t < tools_.size(); ++t) tools_[t].at_rest = tools_[t].cold && !found(t);
         iterate(warm_iterations);
     }
+}
+
+// Solves whatever may press a tool, foreseen or not.
+void ContactEquilibrium::look_widely() noexcept {
+    for (Tool& tool : tools_) tool.near = tool.farthest_near;
 }
 
 // Lets the tools start anew that are not in equilibrium; false if there are none.
@@ -244,13 +253,13 @@ void ContactEquilibrium::iterate(int most) noexcept {
         double longest = cold_reach;
         bool predicts = false;
         ++round_;
+        if (iteration == foreseen_rounds) look_widely();
         for (DeformedPatch& patch : patches_) patch.measure_step();
         for (std::size_t t = 0; t < tools_.size(); ++t) {
             Tool& tool = tools_[t];
             if (tool.felt == 0) continue;
             tool.outside = true;
             tool.cut = false;
-            if (iteration == foreseen_rounds) tool.near = tool.farthest_near;
             const bool starts = tool.touching && tool.cold && (iteration == 0 || tool.at_rest);
             for (std::size_t p = 0; p < tool.felt; ++p) {
                 if (starts) gather_at_rest(t, p);
@@ -396,6 +405,7 @@ void ContactEquilibrium::forget_tissue() noexcept {
         for (Part& part : tool.parts)
             for (Touch& touch : part.touches) {
                 touch.way = -1;
+                touch.near.clear();
                 touch.gathered_in = -1;
             }
     if (any) neighbours_.forget();

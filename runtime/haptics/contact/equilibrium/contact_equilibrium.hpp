@@ -22,9 +22,9 @@ namespace palpate::haptics {
 
 /// Finds where tools and tissue come to rest together: tools made of spheres, each pulled by its virtual
 /// coupling, on deformable bodies as they are displaced and on half-spaces that rigid bodies allow, and the
-/// deformable bodies on what lies beside them. The equations stand in contact_equilibrium.cpp. What was found
-/// in one tick is where the next one starts. One thread; realtime-safe: everything is allocated on
-/// construction.
+/// deformable bodies on what lies beside them. The equations stand in contact_equilibrium.cpp. From
+/// what was found in one tick the next one starts, or from where going on as before leads. One thread;
+/// realtime-safe: everything is allocated on construction.
 class ContactEquilibrium {
   public:
     /// A sphere of a tool in one tick.
@@ -74,7 +74,8 @@ class ContactEquilibrium {
         return tools_[tool].felt > 0 && tools_[tool].touching;
     }
 
-    /// Solves from where the last tick or call ended.
+    /// Solves from where the last tick or call ended; the first call of a tick from where going on as in the
+    /// last one leads.
     void solve() noexcept;
 
     /// Whether a tool's equilibrium was found; if not, what the other members say of it is what the surface
@@ -118,12 +119,13 @@ class ContactEquilibrium {
     static constexpr double farthest_ahead = 4, walked_ahead = farthest_ahead + 1;
     // mm beyond a sphere within which triangles count: of a tool at rest, and where contact starts.
     static constexpr double first_reach = 0.1, cold_reach = 0.5;
-    // Of what is solved otherwise, how far from a tool it is where its state is foreseen; so many rounds.
+    // Where the state is foreseen, only what is nearer than this part of Tool::near is solved, for so many
+    // rounds.
     static constexpr double foreseen = 0.1;
     static constexpr int foreseen_rounds = 2;
 
-    // Of the answers to states: the first ones of a tick, of this one and of one before it, and later ones;
-    // then the states in which this tick began, and the one before.
+    // Of the answers to states: the first ones of a tick, of this one and of one before it, and later ones.
+    // After them the states in which this tick and the one before it began.
     static constexpr std::size_t first_answers = 3, first_state = 3 * first_answers;
     static_assert(DeformedPatch::iterates == first_state + 2);
     using Weights = std::array<double, DeformedPatch::iterates>;
@@ -387,6 +389,7 @@ class ContactEquilibrium {
     std::size_t carried_answer(std::size_t k) const noexcept { return (1 - bank_) * first_answers + k; }
     void carry_over() noexcept;
     void go_on() noexcept;
+    void look_widely() noexcept;
     bool is_steady() const noexcept;
     double steadiness() const noexcept;
     void compare(std::size_t iteration) noexcept;

@@ -53,12 +53,14 @@ void DeformedPatch::reset() noexcept {
     for (std::int32_t slot = 0; slot < size_; ++slot) slots_[vertices_[slot]] = no_slot;
     size_ = 0;
     tick_ = 0;
+    kept_in_ = not_kept;
     remembers_ = false;
     load_ = part_ = 0;
 }
 
 void DeformedPatch::begin_tick() noexcept {
     ++tick_;
+    kept_in_ = not_kept;
     std::copy_n(moved_.begin(), size_, before_.begin());
     if (shape_ != nullptr) lean();
     if (body_->creeps()) creep();
@@ -169,6 +171,7 @@ std::int32_t DeformedPatch::slot_of(std::int32_t vertex) noexcept {
             answer.moved[slot] = displacement_under(answer.forces, slot) + answer.held_moved[slot];
             answer.difference[slot].setZero();
         }
+        if (kept_in_ != not_kept) before_[slot] = answers_[kept_in_].moved[slot];
     }
     seen_[slot] = tick_;
     return slot;
@@ -346,6 +349,7 @@ void DeformedPatch::keep_hold(std::size_t iterate) noexcept {
 }
 
 void DeformedPatch::keep_state(std::size_t iterate) noexcept {
+    kept_in_ = iterate;
     keep_hold(iterate);
     Answer& answer = answers_[iterate];
     answer.forces.clear();

@@ -169,7 +169,7 @@ class DeformedPatch {
     double way_to(const std::array<double, iterates>& weights) const noexcept;
     /// Inner product of the way to a combination of answers with an answer's difference from the state, mm².
     double along(const std::array<double, iterates>& weights, std::size_t iterate) const noexcept;
-    /// Keeps the state as if it were an answer to itself.
+    /// Keeps the state in which a tick begins as if it were an answer to itself.
     void keep_state(std::size_t iterate) noexcept;
     /// Moves the state a part `step` of the way to a combination of answers, weights summing to 1.
     void relax_to(const std::array<double, iterates>& weights, double step) noexcept;
@@ -259,6 +259,8 @@ class DeformedPatch {
     std::vector<std::int32_t> vertices_;  // this and what follows by slot
     std::vector<Eigen::Vector3d> rest_, moved_, before_, measured_, held_moved_;
     double step_ = 0;
+    static constexpr std::size_t not_kept = iterates;
+    std::size_t kept_in_ = not_kept;  // the answer that has the state in which this tick began
     std::bitset<static_cast<std::size_t>(most_vertices)> gives_way_;
     std::vector<std::int64_t> seen_;  // the tick in which it was looked at last
     std::vector<Eigen::Vector4f> sum_;

@@ -62,7 +62,8 @@ void ContactEquilibrium::go_on() noexcept {
         states_known_ = 0;
         return;
     }
-    const std::size_t before = std::exchange(state_, 2 * first_state + 1 - state_);
+    const std::size_t before = state_;
+    state_ = before == first_state ? first_state + 1 : first_state;
     for (Tool& tool : tools_) {
         tool.next_off[state_] = tool.off;
         tool.next_off[before] = tool.touching ? Vector3d(tool.next_off[before] - tool.way) : tool.off;
@@ -75,16 +76,20 @@ void ContactEquilibrium::go_on() noexcept {
     for (DeformedPatch& patch : patches_) patch.keep_state(state_);
     if (++states_known_ < 2) return;
     Weights weights{};
-    const double part = steadiness();
-    weights[state_] = 1 + part;
-    weights[before] = -part;
+    const double steady = steadiness();
+    weights[state_] = 1 + steady;
+    weights[before] = -steady;
     // No farther than what is near was looked at.
-    double longest = std::numeric_limits<double>::infinity(), way = std::abs(part) * last_motion_;
+    double longest = std::numeric_limits<double>::infinity(), way = std::abs(steady) * last_motion_;
     for (const Tool& tool : tools_) {
-        if (tool.touching) longest = std::min(longest, tool.near);
-        if (tool.touching) way = std::max(way, (combined(weights, tool.next_off) - tool.off).norm());
+        if (!tool.touching) continue;
+        longest = std::min(longest, tool.near);
+        way = std::max(way, (combined(weights, tool.next_off) - tool.off).norm());
+        for (const Part& part : std::span(tool.parts).first(tool.felt))
+            for (const Touch& touch : part.touches)
+                way = std::max(way, (combined(weights, touch.next_sunk) - touch.sunk).norm());
     }
-    if (part == 0 || way > longest) return;
+    if (steady == 0 || way > longest) return;
     relax_to(weights, longest);
     for (Tool& tool : tools_) tool.near *= foreseen;
 }
@@ -97,10 +102,11 @@ bool ContactEquilibrium::is_steady() const noexcept {
     return !turns() && std::ranges::all_of(tools_, goes_on);
 }
 
-// By how much devices go on as in the last tick.
+// By how much the devices of tools that touch go on as in the last tick.
 double ContactEquilibrium::steadiness() const noexcept {
     double along = 0, squared = 0;
     for (const Tool& tool : tools_) {
+        if (!tool.touching) continue;
         along += tool.way.dot(tool.last_way);
         squared += tool.last_way.squaredNorm();
     }

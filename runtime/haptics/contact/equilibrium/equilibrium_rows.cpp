@@ -2,7 +2,9 @@
 // Which triangles may press a tool in a tick, and their complementarity problem; part of the tick.
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <bitset>
 #include <cmath>
+#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -16,8 +18,8 @@ using Eigen::Index;
 using Eigen::Vector3d;
 
 constexpr double look_margin = 1;  // mm: how much farther around is looked
-constexpr std::int32_t most_rounds =
-    16;  // for which a triangle is passed over: its vertices stay known longer
+// Rounds for which a triangle is passed over. The patch knows its vertices for longer.
+constexpr std::int32_t most_rounds = 16;
 
 }  // namespace
 
@@ -96,6 +98,7 @@ void ContactEquilibrium::look_around(std::size_t t, std::size_t p, std::size_t s
         touch.looked_to = centre;
         touch.looked_sunk = touch.sunk;
     }
+    // Half of what lies between what is solved and what is near: it is looked at again before it is solved.
     const double soon = limit - first_reach / 2;
     std::vector<std::uint32_t>& visited = visited_[soft];
     ++search_;
@@ -137,8 +140,11 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft) 
     ++search_;
     queue_.clear();
     passed_over_.clear();
+    bool found_all = true;
     const auto visit = [&](std::int32_t triangle) {
-        if (visited[triangle] == search_ || queue_.full()) return;
+        if (visited[triangle] == search_) return;
+        found_all = found_all && !queue_.full();
+        if (queue_.full()) return;
         visited[triangle] = search_;
         queue_.push_back(triangle);
     };
@@ -151,8 +157,7 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft) 
     const bool follows = follow(touch, centre, patch);
     const bool walks = !follows || touch.gathered_way + tool.near > touch.walked_until;
     if (walks) touch.walked_until = touch.gathered_way + tool.reach;
-    double passed_over =
-        std::numeric_limits<double>::infinity();  // the nearest of these, at least so far, mm
+    double nearest_passed = std::numeric_limits<double>::infinity();  // mm, at least
     for (const Near& near : touch.near) {
         const double distance = near.clear - touch.gathered_way;
         if (!follows || distance < tool.near || near.rounds == most_rounds || pressed(near.triangle)) {
@@ -161,7 +166,7 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft) 
         }
         visited[near.triangle] = search_;
         passed_over_.push_back({near.triangle, near.rounds + 1, near.clear});
-        passed_over = std::min(passed_over, distance);
+        nearest_passed = std::min(nearest_passed, distance);
     }
     touch.near.clear();
     for (const GodObject::Touch& rests : part.sphere.if_rigid->touches())
@@ -184,24 +189,34 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft) 
     bool behind_held = false;
     for (std::size_t next = 0;; ++next) {
         if (next == queue_.size()) {
-            if (nearest - part.radius <= passed_over) break;
+            if (nearest - part.radius + same_place <= nearest_passed) break;
             // Nothing else is as near.
             for (const Near& near : passed_over_)
                 if (!queue_.full()) queue_.push_back(near.triangle);
             passed_over_.clear();
-            passed_over = std::numeric_limits<double>::infinity();
+            nearest_passed = std::numeric_limits<double>::infinity();
             if (next == queue_.size()) break;
         }
         const std::int32_t triangle = queue_[next];
         std::array<std::int32_t, 3> slots;
-        if (!patch.slots_of(triangle, slots)) break;
+        if (!patch.slots_of(triangle, slots)) {
+            found_all = false;
+            break;
+        }
         const RoundedTriangle round = patch.rounded(triangle, patch.met_corners(slots, touch.sunk));
         const NearestBall ball = nearest_ball(centre, round);
         const double distance = ball.distance - ball.radius;
         const bool near = distance < limit || pressed(triangle);
         if (walks && (near || next < seeds))
             for (const std::int32_t neighbour : body.neighbours(triangle)) visit(neighbour);
-        if (!near) continue;
+        if (!near) {
+            // Forgotten between two walks, it has to be found by one before it is near again.
+            if (!walks)
+                touch.walked_until =
+                    std::min(touch.walked_until, touch.gathered_way + distance - part.radius);
+            continue;
+        }
+        found_all = found_all && !touch.near.full();
         if (!touch.near.full())
             touch.near.push_back(
                 {.triangle = triangle, .clear = touch.gathered_way + distance - part.radius});
@@ -252,8 +267,11 @@ bool ContactEquilibrium::gather(std::size_t t, std::size_t p, std::size_t soft) 
         auto& list = row.distance < tool.near || pressed(triangle) ? rows_ : watched_;
         if (!list.full()) list.push_back(row);
     }
-    for (const Near& near : passed_over_)
+    for (const Near& near : passed_over_) {
+        found_all = found_all && !touch.near.full();
         if (!touch.near.full()) touch.near.push_back(near);
+    }
+    if (!found_all) touch.walked_until = std::numeric_limits<double>::lowest();
     if (nearest_ones.empty()) return !behind_held;
     Vector3d normal = Vector3d::Zero(), away = Vector3d::Zero();
     for (const Nearest& one : nearest_ones) {
