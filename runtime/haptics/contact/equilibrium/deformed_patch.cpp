@@ -31,6 +31,11 @@ void DeformedPatch::Forces::add(std::int32_t slot, const Vector3d& force) noexce
     at[slot] += force;
 }
 
+void DeformedPatch::Forces::take(const Forces& other) noexcept {
+    clear();
+    for (const std::int32_t slot : other.loaded) add(slot, other.at[slot]);
+}
+
 void DeformedPatch::Forces::drop(std::int32_t slot) noexcept {
     if (!is_loaded[static_cast<std::size_t>(slot)]) return;
     loaded.erase_if([&](std::int32_t other) { return other == slot; });
@@ -250,15 +255,6 @@ void DeformedPatch::displace(const Forces& forces, std::vector<Vector3d>& moved)
     for (std::int32_t slot = 0; slot < size_; ++slot) moved[slot] = sum_[slot].head<3>().cast<double>();
 }
 
-void DeformedPatch::yield(const std::array<std::int32_t, 3>& loaded, const Vector3d& shares,
-                          const Vector3d& force, Field& moved) const noexcept {
-    const std::array<const Block*, 3> rows{blocks_of(loaded[0]), blocks_of(loaded[1]), blocks_of(loaded[2])};
-    const Eigen::Matrix3f forces = force.cast<float>() * shares.cast<float>().transpose();
-    for (std::int32_t slot = 0; slot < size_; ++slot)
-        moved[static_cast<std::size_t>(slot)] =
-            rows[0][slot] * forces.col(0) + rows[1][slot] * forces.col(1) + rows[2][slot] * forces.col(2);
-}
-
 void DeformedPatch::begin_answer(std::size_t iterate) noexcept {
     answers_[iterate].forces.clear();
 }
@@ -343,19 +339,15 @@ void DeformedPatch::relax_to(const std::array<double, iterates>& weights, double
 
 void DeformedPatch::keep_hold(std::size_t iterate) noexcept {
     Answer& answer = answers_[iterate];
-    answer.held.clear();
-    for (const std::int32_t slot : held_.loaded) answer.held.add(slot, held_.at[slot]);
+    answer.held.take(held_);
     std::copy_n(held_moved_.begin(), size_, answer.held_moved.begin());
 }
 
 void DeformedPatch::keep_state(std::size_t iterate) noexcept {
     kept_in_ = iterate;
     keep_hold(iterate);
-    Answer& answer = answers_[iterate];
-    answer.forces.clear();
-    for (const std::int32_t slot : forces_.loaded) answer.forces.add(slot, forces_.at[slot]);
-    std::copy_n(moved_.begin(), size_, answer.moved.begin());
-    std::fill_n(answer.difference.begin(), size_, Vector3d::Zero());
+    answers_[iterate].forces.take(forces_);
+    std::copy_n(moved_.begin(), size_, answers_[iterate].moved.begin());
 }
 
 void DeformedPatch::begin_hold(std::size_t iterate) noexcept {

@@ -5,6 +5,7 @@
 #include <array>
 #include <bitset>
 #include <cstdint>
+#include <ranges>
 #include <vector>
 
 #include "runtime/collision/rounded_triangle.hpp"
@@ -111,7 +112,9 @@ class DeformedPatch {
     using Field = std::array<Eigen::Vector4f, static_cast<std::size_t>(most_vertices)>;
     /// Writes what a force (N), shared out to three vertices, displaces each vertex by.
     void yield(const std::array<std::int32_t, 3>& loaded, const Eigen::Vector3d& shares,
-               const Eigen::Vector3d& force, Field& moved) const noexcept;
+               const Eigen::Vector3d& force, Field& moved) const noexcept {
+        yield(loaded, shares, force, std::views::iota(0, size_), moved);
+    }
     /// The same for some of the slots; numbers beyond those that there are do not count.
     void yield(const std::array<std::int32_t, 3>& loaded, const Eigen::Vector3d& shares,
                const Eigen::Vector3d& force, const auto& slots, Field& moved) const noexcept {
@@ -195,6 +198,7 @@ class DeformedPatch {
         explicit Forces(std::size_t slots) : at(slots, Eigen::Vector3d::Zero()) {}
         void clear() noexcept;
         void add(std::int32_t slot, const Eigen::Vector3d& force) noexcept;
+        void take(const Forces& other) noexcept;  // instead of its own
         void drop(std::int32_t slot) noexcept;
         void move(std::int32_t from, std::int32_t to) noexcept;  // which bears nothing
     };

@@ -90,7 +90,7 @@ void ContactEquilibrium::go_on() noexcept {
                 way = std::max(way, (combined(weights, touch.next_sunk) - touch.sunk).norm());
     }
     if (steady == 0 || way > longest) return;
-    relax_to(weights, longest);
+    relax_to(weights, std::numeric_limits<double>::infinity());
     for (Tool& tool : tools_) tool.near *= foreseen;
 }
 
