@@ -70,11 +70,11 @@ class Trainer:
         self.process.wait()
 
 
-def after(case, *keys, seconds=1):
+def after(case, *keys, seconds=1, options=()):
     """A screen that so many keys lead to, so many seconds later."""
 
     def reach(server, folder):
-        trainer = Trainer(server, case, folder, "--attempts", folder / "attempts")
+        trainer = Trainer(server, case, folder, "--attempts", folder / "attempts", *options)
         trainer.keys(*keys)
         trainer.wait(seconds)
         return trainer
@@ -98,6 +98,12 @@ def result(server, folder):
         trainer.let_go()
     trainer.keys("e")
     trainer.wait(1)
+    return trainer
+
+
+def way(server, folder):
+    trainer = result(server, folder)
+    trainer.keys("space")
     return trainer
 
 
@@ -128,12 +134,22 @@ def forceps(server, folder):
     return played(server, folder, "--instrument", "forceps", "--depth", "20", "--seconds", "3.8")
 
 
+FORCEPS = "--instrument", "forceps"
+
 SCREENS = {
     "start": after("liver"),
+    "head": after("nasopharynx"),
+    "trainee": after("liver", "F3"),
     "press": press,
+    "stiffness": after("liver", "BackSpace", "g"),
     "touch": after("liver", "1", seconds=COUNTDOWN),
+    "paused": after("liver", "1", "Return", "space"),
     "result": result,
+    "way": way,
     "found": found,
+    "trace": after("liver", "3", seconds=COUNTDOWN),
+    "scope": after("nasopharynx", "1", "v", seconds=COUNTDOWN),
+    "retract": after("liver", "1", seconds=COUNTDOWN, options=FORCEPS),
     "teacher": after("liver", "F2"),
     "scan": after("nasopharynx", "BackSpace", "c", "x"),
     "hidden": after("liver", "BackSpace", "t"),

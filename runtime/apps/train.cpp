@@ -225,8 +225,7 @@ Json train(const Options& options, cli::Session& session) {
     TrainLesson lesson(options.lesson, exercises, run,
                        {.case_name = patient_case.name,
                         .trainee = options.lesson.trainee,
-                        .cautions = window_settings.cautions,
-                        .can_edit = !run.jaws()},
+                        .cautions = window_settings.cautions},
                        !options.script.empty());
 
     session.progress.step("filling the window", 0.5);

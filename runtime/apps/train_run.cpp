@@ -14,14 +14,12 @@
 #include "runtime/apps/servo_pulse.hpp"
 #include "runtime/session/drawn_shape.hpp"
 #include "runtime/session/jaws/joined_jaws.hpp"
-#include "runtime/texts/translated.hpp"
 #include "tools/cli/command.hpp"
 
 namespace palpate::apps {
 namespace {
 
 using namespace visual;
-using texts::translated;
 
 using Clock = std::chrono::steady_clock;
 
@@ -72,12 +70,18 @@ void fill_frame(const TrainRun& run, std::span<const TickResult* const> ticks, V
                           std::back_inserter(frame.other_tools));
 }
 
-void take_keys(const TrainRun& run, const TickResult& tick, bool page_takes_them) {
+// What the hand did in the last tick.
+TickResult hand_tick(session::Session& session) {
+    if (session.jaws())
+        return session::joined_jaws(session.latest(0), session.latest(1), session.jaws()->jaw_length);
+    TickResult tick;
+    copy_active(session.latest(), tick);
+    return tick;
+}
+
+void take_keys(const TrainRun& run, bool page_takes_them) {
     for (const std::string& key : run.window.take_keys()) {
-        if (key == "f2" && run.session.jaws()) {
-            run.window.tell(translated("exercises with a forceps are written in a file"));
-            continue;
-        }
+        const TickResult tick = hand_tick(run.session);
         run.lesson.press(key, tick);
         if (page_takes_them) continue;
         const std::string told = run.keys.press(key, run.lesson.lesson().exercising());
@@ -129,7 +133,7 @@ TrainOutcome run_in_window(const TrainRun& run, VisualFrame& frame) {
     const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - began).count(); };
     while (!run.window.closed() && !run.window.lost() && !cli::interrupt_asked() &&
            (run.seconds <= 0 || elapsed() < run.seconds)) {
-        take_keys(run, session.latest(), frame.lesson.takes_keys);
+        take_keys(run, frame.lesson.takes_keys);
         for (std::size_t tool = 0; tool < ticks.size(); ++tool) ticks[tool] = &session.latest(tool);
         const TickResult& tick = *ticks.front();
         pulse.see(tick.tick);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <vtkCellArray.h>
 #include <vtkNew.h>
@@ -186,8 +187,7 @@ void Scene::place_tool(const VisualFrame& frame) {
 std::vector<vtkActor*> Scene::bodies() const {
     std::vector<vtkActor*> actors;
     for (const RigidSurface& body : rigid_) actors.push_back(body.actor());
-    for (const SoftSurface& body : soft_)
-        for (vtkActor* actor : body.actors()) actors.push_back(actor);
+    for (const SoftSurface& body : soft_) std::ranges::copy(body.actors(), std::back_inserter(actors));
     return actors;
 }
 
@@ -201,8 +201,23 @@ void Scene::show_tool(bool on) {
     if (handle_) handle_->SetVisibility(on);
 }
 
+std::vector<vtkActor*> Scene::sections() const {
+    std::vector<vtkActor*> actors;
+    for (const RigidSurface& body : rigid_) actors.push_back(body.section());
+    return actors;
+}
+
+std::vector<vtkActor*> Scene::opened() const {
+    std::vector<vtkActor*> actors = sections();
+    for (const SoftSurface& body : soft_) std::ranges::copy(body.actors(), std::back_inserter(actors));
+    return actors;
+}
+
+void Scene::follow_cut(vtkRenderer* renderer, bool cut) {
+    for (RigidSurface& body : rigid_) body.follow_cut(renderer, cut);
+}
+
 void Scene::show_inside(bool on) {
-    for (RigidSurface& body : rigid_) body.show_inside(on);
     for (SoftSurface& body : soft_) body.show_inside(on);
 }
 

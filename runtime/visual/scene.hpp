@@ -46,12 +46,18 @@ class Scene {
     void show_stiffness(bool on);
     /// Whether anybody knows that of this case.
     bool has_stiffness() const { return !stiffness_.empty(); }
-    /// Tells whether a cut may show bodies from inside; where none does, their far sides are not drawn.
+    /// Tells whether a cut may show soft bodies from inside; where none does, their far sides are not drawn.
     void show_inside(bool on);
+    /// Shows what the near plane of the renderer's camera cuts of rigid bodies, or not.
+    void follow_cut(vtkRenderer* renderer, bool cut);
     /// Draws bodies in that detail.
     void draw(const Detail& detail);
     /// What draws the bodies, rigid and deformable.
     std::vector<vtkActor*> bodies() const;
+    /// Sections of rigid bodies, each seen from the eye that follow_cut() was told of.
+    std::vector<vtkActor*> sections() const;
+    /// Whose far sides a cut shows: sections, and deformable bodies.
+    std::vector<vtkActor*> opened() const;
 
   private:
     void add_rigid(const Case& patient_case, const Sight& sight, std::int64_t budget, vtkRenderer* renderer);

@@ -3,16 +3,17 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 #include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
 #include <vtkImageData.h>
@@ -122,7 +123,9 @@ struct TrainWindow::Parts {
     void look(const VisualFrame& frame) {
         const auto [tip, shaft] = scene.tool_parts();
         const auto [shade, rim] = shadow.parts();
-        const std::array hidden{tip, shaft, shade, rim};
+        // What is at the eye, or the other view's.
+        std::vector<vtkActor*> hidden{tip, shaft, shade, rim};
+        std::ranges::copy(scene.sections(), std::back_inserter(hidden));
         scene.show_tool(!endoscope.fills_window());
         if (endoscope.fills_window()) shadow.update(frame.tool_position, std::nullopt);
         endoscope.follow({.tip = frame.tool_position,
@@ -131,7 +134,11 @@ struct TrainWindow::Parts {
                           .look_at = frame.lesson.look_at},
                          tool_radius, frame.film_rate_hz ? 1 / *frame.film_rate_hz : frame_seconds, hidden);
         if (!endoscope.fills_window()) set_clipping_range(frame.tool_position);
+        scene.follow_cut(renderer, cuts());
+        layers.follow(frame, cuts());
     }
+
+    bool cuts() const { return cut && !endoscope.fills_window(); }
 
     // With the cut on, whatever stands between eye and target or tool falls before the near plane.
     // Rasterisers clip there for nothing, where clipping in a shader costs a third of the frames.
@@ -427,7 +434,6 @@ void TrainWindow::draw(const VisualFrame& frame) {
                                                    shadow_share * p.settings.sight.field));
     p.scene.show_inside(p.cut);
     p.look(frame);
-    p.layers.follow(frame, p.cut && !p.endoscope.fills_window());
     p.overlay.update(frame, frame.film_rate_hz.value_or(frames_per_second()), detail());
     p.page_takes_keys = frame.lesson.takes_keys;
     p.overlay.make_room(frame.lesson.page.has_value(), !frame.lesson.instruction.empty(),

@@ -17,12 +17,16 @@ using texts::translated;
 
 constexpr double point_radius = 1;  // mm, of a line's points
 
-std::pair<std::string, std::string> name_and_value(Setting setting, const ExerciseRecipe& recipe) {
+// `region`: that the exercise hides.
+std::pair<std::string, std::string> name_and_value(Setting setting, const ExerciseRecipe& recipe,
+                                                   const std::string& region) {
     switch (setting) {
         case Setting::task:
             return {translated("Task"), std::string(looked_up(name_of(recipe.task).data()))};
         case Setting::title:
             return {translated("Title"), recipe.title};
+        case Setting::region:
+            return {translated("Hidden"), region};
         case Setting::least_force:
             return {translated("Touching from"), fmt::format("{:g} N", *recipe.least_force)};
         case Setting::most_force:
@@ -41,12 +45,28 @@ std::pair<std::string, std::string> name_and_value(Setting setting, const Exerci
 std::string marks_of(const ExerciseRecipe& recipe) {
     if (recipe.task == Task::find || recipe.task == Task::free) return "";
     const std::size_t count = recipe.places.size();
+    if (recipe.task == Task::retract)
+        return count == 0   ? translated("no rim")
+               : count == 3 ? translated("rim and place")
+                            : translated("rim alone");
     return recipe.task == Task::guide   ? translated("{} gates", count)
            : recipe.task == Task::trace ? translated("{} points", count)
                                         : translated("{} marks", count);
 }
 
-LessonPage page_of(const ExerciseEditor& editor, const ExerciseRecipe& recipe, const std::string& file) {
+std::string how_to_mark(Task task) {
+    switch (task) {
+        case Task::guide:
+            return translated("Lead the tip to where a gate is to be, press M");
+        case Task::retract:
+            return translated("Close the jaws on a rim, press M; draw it to its place, press M again");
+        default:
+            return translated("Touch the organ where a mark is to be, press M");
+    }
+}
+
+LessonPage page_of(const ExerciseEditor& editor, const ExerciseRecipe& recipe, const std::string& region,
+                   const std::string& file) {
     LessonPage page;
     page.title = translated("Exercise {}", recipe.name);
     page.text = editor.typing()            ? translated("Type the title; Enter ends")
@@ -59,7 +79,7 @@ LessonPage page_of(const ExerciseEditor& editor, const ExerciseRecipe& recipe, c
     int number = 0;
     for (const Setting setting : editor.settings()) {
         ++number;
-        const auto [name, value] = name_and_value(setting, recipe);
+        const auto [name, value] = name_and_value(setting, recipe, region);
         const bool chosen = setting == editor.chosen();
         const char* mark = !chosen                     ? ""
                            : setting == Setting::title ? (editor.typing() ? "_" : "")
@@ -90,12 +110,10 @@ LessonView editor_view(const ExerciseEditor& editor, const Exercise& draft, cons
             view.marks.push_back({place, point_radius, LessonMark::State::waiting, Eigen::Vector3d::Zero()});
     view.takes_keys = editor.page_shown();
     if (editor.page_shown()) {
-        view.page = page_of(editor, recipe, file);
+        view.page = page_of(editor, recipe, draft.region, file);
         return view;
     }
-    view.instruction = recipe.task == Task::guide
-                           ? translated("Lead the tip to where a gate is to be, press M")
-                           : translated("Touch the organ where a mark is to be, press M");
+    view.instruction = how_to_mark(recipe.task);
     // Set by a key or the device alone: a mouse that clicks does not touch.
     view.status = marks_of(recipe) + "   " + translated("M sets one");
     view.actions = {{"delete", translated("Delete") + "  " + translated("Take the last back")},

@@ -35,7 +35,9 @@ void show_places(const Exercise& exercise, const Goals& goals, bool afterwards, 
     }
     if (exercise.task == Task::retract) {
         const State take = goals.was_drawn || goals.reached > 0 ? State::done : State::due;
+        if (places.empty()) return;  // as long as a teacher has set none
         view.marks.push_back({places[0], 2 * radius, take, Eigen::Vector3d::Zero()});
+        if (places.size() < 3) return;
         const Eigen::Vector3d pull = places[2] - places[1];
         view.marks.push_back({places[0] + pull, 2 * exercise.tolerance,
                               goals.reached > 0 ? State::done : State::due, pull.normalized()});

@@ -45,8 +45,7 @@ LessonPage start_page(const Lesson& lesson, const LessonSetting& setting) {
                                 fmt::format("{}   {}", number, looked_up(exercise.title.c_str())),
                                 picture_of(exercise)});
     }
-    if (setting.can_edit)
-        page.choices.push_back({"f2", "F2   " + translated("Make an exercise of your own")});
+    page.choices.push_back({"f2", "F2   " + translated("Make an exercise of your own")});
     page.choices.push_back({"f3", "F3   " + translated("Another trainee")});
     page.choices.push_back(
         {"backspace", translated("Backspace") + "   " + translated("Look around first, and come back")});
@@ -126,7 +125,7 @@ void show_doing(const Attempt& attempt, double force, const Eigen::Vector3d& tip
 
 }  // namespace
 
-LessonPage result_page(const Attempt& attempt, std::span<const PastAttempt> history, bool can_edit) {
+LessonPage result_page(const Attempt& attempt, std::span<const PastAttempt> history) {
     LessonPage page;
     page.title = std::string(looked_up(attempt.exercise().title.c_str())) + ": " +
                  std::string(looked_up(words_of(attempt.ending()).data()));
@@ -166,9 +165,8 @@ LessonPage result_page(const Attempt& attempt, std::span<const PastAttempt> hist
     }
     page.choices = {{"return", translated("Enter") + "   " + translated("Once more")},
                     {"space", translated("Space") + "   " + translated("Look at the way that the hand took")},
+                    {"f2", "F2   " + translated("Change this exercise")},
                     {"backspace", translated("Backspace") + "   " + translated("Other exercises")}};
-    if (can_edit)
-        page.choices.insert(page.choices.end() - 1, {"f2", "F2   " + translated("Change this exercise")});
     return page;
 }
 
@@ -196,8 +194,8 @@ LessonView lesson_view(const Lesson& lesson, const LessonSetting& setting, doubl
             const Exercise& exercise = lesson.exercises()[lesson.chosen()];
             view.instruction = looked_up(exercise.instruction.c_str());
             view.status = translated("begins in {:.0f}", std::ceil(lesson.seconds_to_begin()));
-            view.actions = {action("return", translated("Enter"), translated("Now"))};
-            if (setting.can_edit) view.actions.push_back(action("f2", "F2", translated("Change it")));
+            view.actions = {action("return", translated("Enter"), translated("Now")),
+                            action("f2", "F2", translated("Change it"))};
             show_places(exercise, {}, false, view);
             // The hand is drawn back to where it begins, and looks where it will go.
             look_ahead(exercise, exercise.places.size() - 1, tip, view);

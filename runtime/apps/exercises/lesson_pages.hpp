@@ -15,13 +15,12 @@ namespace palpate::apps {
 struct LessonSetting {
     std::string case_name, trainee;
     std::vector<std::string> cautions;  ///< of the case
-    bool can_edit = true;               ///< exercises are made and changed in the window
 };
 
 /// The page after an attempt: metrics, force and the scores of `history`, its own included. Costs the
 /// attempt's metrics: once an attempt, not once a frame.
 visual::LessonPage result_page(const training::Attempt& attempt,
-                               std::span<const training::PastAttempt> history, bool can_edit);
+                               std::span<const training::PastAttempt> history);
 
 /// The page on which another pseudonym is typed; `typed`: so far.
 visual::LessonView trainee_view(const std::string& typed, const LessonSetting& setting);

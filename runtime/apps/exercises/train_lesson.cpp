@@ -12,6 +12,7 @@
 #include "formats/model/errors.hpp"
 #include "runtime/apps/exercises/editor_view.hpp"
 #include "runtime/apps/exercises/save_exercise.hpp"
+#include "runtime/session/jaws/grasp_place.hpp"
 #include "runtime/texts/translated.hpp"
 #include "runtime/training/lay_out.hpp"
 #include "runtime/training/statements.hpp"
@@ -62,6 +63,19 @@ std::vector<ExerciseRecipe> usual_exercises(const std::filesystem::path& file, b
     });
     std::ranges::move(standard_exercises(with_forceps), std::back_inserter(recipes));
     return recipes;
+}
+
+// Where a forceps would hold the rim if it held tissue there.
+std::optional<Eigen::Vector3d> held_rim(const session::Session& run, const TickResult& tick) {
+    if (!run.jaws() || !touched_place(run.patient_case(), tick)) return std::nullopt;
+    return vector_of(tick.tool_position) +
+           session::grasp_depth(run.jaws()->jaw_length) * vector_of(tick.shaft).normalized();
+}
+
+std::vector<std::string> names_of_hidden(const Case& patient_case) {
+    std::vector<std::string> names;
+    for (const HiddenRegion& region : hidden_regions(patient_case)) names.push_back(region.name);
+    return names;
 }
 
 std::vector<Exercise> exercises_of(const std::vector<LaidOut>& laid_out) {
@@ -136,7 +150,8 @@ void TrainLesson::press(const std::string& key, const TickResult& tick) {
     }
     const HandNow hand{.tool = vector_of(tick.tool_position),
                        .force = vector_of(tick.force).norm(),
-                       .touched = touched_place(run_.patient_case(), tick)};
+                       .touched = touched_place(run_.patient_case(), tick),
+                       .rim = held_rim(run_, tick)};
     grant(editor_->press(key, hand));
     if (editor_) draft_ = lay_out_draft().value_or(Exercise{});
 }
@@ -153,18 +168,19 @@ void TrainLesson::type_trainee(const std::string& key) {
 void TrainLesson::begin_to_edit() {
     if (lesson_.exercises().empty()) return;
     const Exercise& chosen = lesson_.exercises()[lesson_.chosen()];
+    Choices choices{.tasks = tasks_of(run_.jaws().has_value()),
+                    .regions = names_of_hidden(run_.patient_case())};
     if (lesson_.phase() == Phase::counting_down || lesson_.phase() == Phase::looking_back) {
-        editor_.emplace(settled(recipes_[lesson_.chosen()], chosen));
+        editor_.emplace(settled(recipes_[lesson_.chosen()], chosen), choices);
     } else if (lesson_.phase() == Phase::choosing) {
-        std::vector<std::string> taken;
-        for (const ExerciseRecipe& recipe : recipes_) taken.push_back(recipe.name);
-        taken.insert(taken.end(), written_.begin(), written_.end());
+        for (const ExerciseRecipe& recipe : recipes_) choices.taken.push_back(recipe.name);
+        choices.taken.insert(choices.taken.end(), written_.begin(), written_.end());
         ExerciseRecipe fresh;
-        fresh.task = Task::touch;
+        fresh.task = choices.tasks.front();
         fresh.least_force = chosen.least_force;
         fresh.most_force = chosen.most_force;
         const auto exercise = lay_out_settled(fresh, run_.patient_case(), run_.model());
-        editor_.emplace(settled(fresh, *exercise), taken);
+        editor_.emplace(settled(fresh, *exercise), choices);
     } else {
         return;
     }
@@ -268,10 +284,9 @@ void TrainLesson::keep(const Attempt& attempt) {
     } catch (const std::exception& error) {
         spdlog::warn("the attempt is not kept: {}", error.what());
     }
-    result_ = result_page(attempt,
-                          read_history(folder, head.case_name, attempt.exercise().name,
-                                       [](const std::string& sentence) { spdlog::warn("{}", sentence); }),
-                          setting_.can_edit);
+    result_ =
+        result_page(attempt, read_history(folder, head.case_name, attempt.exercise().name,
+                                          [](const std::string& sentence) { spdlog::warn("{}", sentence); }));
 }
 
 }  // namespace palpate::apps

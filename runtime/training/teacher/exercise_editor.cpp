@@ -42,11 +42,35 @@ double stepped(double value, double step, int ways, double least) {
 
 // How many places an exercise of a task needs, of those that a person sets.
 std::size_t least_places(Task task) {
-    if (task == Task::touch) return 1;
-    return task == Task::trace || task == Task::guide ? 2 : 0;
+    switch (task) {
+        case Task::touch:
+            return 1;
+        case Task::guide:
+        case Task::trace:
+            return 2;
+        case Task::retract:
+            return 3;
+        case Task::find:
+        case Task::free:
+            break;
+    }
+    return 0;
+}
+
+// The value so many places on, round and round.
+template <typename Value>
+Value turned(const std::vector<Value>& values, const Value& now, int ways) {
+    const auto count = static_cast<int>(values.size());
+    const auto at = static_cast<int>(std::ranges::find(values, now) - values.begin()) % count;
+    return values[static_cast<std::size_t>((at + ways + count) % count)];
 }
 
 }  // namespace
+
+std::vector<Task> tasks_of(bool with_forceps) {
+    if (with_forceps) return {Task::retract, Task::free};
+    return {Task::touch, Task::find, Task::guide, Task::trace, Task::free};
+}
 
 std::string free_exercise_name(Task task, std::span<const std::string> taken) {
     for (int number = 1;; ++number) {
@@ -81,10 +105,10 @@ ExerciseRecipe settled(ExerciseRecipe recipe, const Exercise& exercise) {
     return recipe;
 }
 
-ExerciseEditor::ExerciseEditor(ExerciseRecipe draft, std::vector<std::string> taken)
-    : draft_(std::move(draft)), taken_(std::move(taken)) {
-    if (taken_.empty()) return;
-    draft_.name = draft_.title = free_exercise_name(draft_.task, taken_);
+ExerciseEditor::ExerciseEditor(ExerciseRecipe draft, Choices choices)
+    : draft_(std::move(draft)), choices_(std::move(choices)) {
+    if (choices_.taken.empty()) return;
+    draft_.name = draft_.title = free_exercise_name(draft_.task, choices_.taken);
     draft_.instruction = usual_instruction(draft_.task);
 }
 
@@ -93,8 +117,8 @@ ExerciseRecipe ExerciseEditor::recipe() const {
     ExerciseRecipe recipe = draft_;
     const Task task = recipe.task;
     if (task == Task::free) recipe.tolerance = std::nullopt;
+    if (task != Task::touch && task != Task::retract) recipe.hold = std::nullopt;
     if (task != Task::touch) {
-        recipe.hold = std::nullopt;
         recipe.count = usual.count;
         recipe.seed = usual.seed;
     }
@@ -106,9 +130,11 @@ ExerciseRecipe ExerciseEditor::recipe() const {
 }
 
 std::vector<Setting> ExerciseEditor::settings() const {
-    std::vector<Setting> settings{Setting::task, Setting::title, Setting::least_force, Setting::most_force};
+    std::vector<Setting> settings{Setting::task, Setting::title};
+    if (draft_.task == Task::find && !choices_.regions.empty()) settings.push_back(Setting::region);
+    settings.insert(settings.end(), {Setting::least_force, Setting::most_force});
     if (draft_.task != Task::free) settings.push_back(Setting::tolerance);
-    if (draft_.task == Task::touch) settings.push_back(Setting::hold);
+    if (draft_.task == Task::touch || draft_.task == Task::retract) settings.push_back(Setting::hold);
     settings.push_back(Setting::time_limit);
     return settings;
 }
@@ -132,15 +158,22 @@ Wish ExerciseEditor::press(std::string_view key, const HandNow& hand) {
 
 void ExerciseEditor::press_on_organ(std::string_view key, const HandNow& hand) {
     if (key == "m") mark(hand);
-    if (key == "delete") {
-        message_ = draft_.places.empty() ? shown_text("there is no mark") : "";
-        if (!draft_.places.empty()) draft_.places.pop_back();
-    }
+    if (key == "delete") take_mark_back();
+}
+
+void ExerciseEditor::take_mark_back() {
+    message_ = draft_.places.empty() ? shown_text("there is no mark") : "";
+    if (draft_.places.empty()) return;
+    draft_.places.pop_back();
+    // A rim and the tips that held it are one mark.
+    if (draft_.task == Task::retract && draft_.places.size() == 1) draft_.places.clear();
 }
 
 void ExerciseEditor::mark(const HandNow& hand) {
     message_.clear();
-    if (draft_.task == Task::guide)
+    if (draft_.task == Task::retract)
+        mark_retraction(hand);
+    else if (draft_.task == Task::guide)
         draft_.places.push_back(four_decimals(hand.tool));
     else if (least_places(draft_.task) == 0)
         message_ = shown_text("this task has no marks");
@@ -148,6 +181,20 @@ void ExerciseEditor::mark(const HandNow& hand) {
         draft_.places.push_back(four_decimals(*hand.touched));
     else
         message_ = shown_text("touch the organ where the mark is to be");
+}
+
+void ExerciseEditor::mark_retraction(const HandNow& hand) {
+    std::vector<Vector3d>& places = draft_.places;
+    if (places.size() == 3)
+        message_ = shown_text("rim and place are set; Delete takes the place back");
+    else if (places.empty() && hand.rim)
+        places = {four_decimals(*hand.rim), four_decimals(hand.tool)};
+    else if (places.empty())
+        message_ = shown_text("take hold of the rim first");
+    else if ((hand.tool - places[1]).norm() > *draft_.tolerance)
+        places.push_back(four_decimals(hand.tool));
+    else
+        message_ = shown_text("draw it farther, by more than the tolerance");
 }
 
 Wish ExerciseEditor::press_on_page(std::string_view key, const HandNow& hand) {
@@ -195,6 +242,8 @@ void ExerciseEditor::change(int ways) {
         case Setting::title:
             message_ = shown_text("Enter, and type it");
             return;
+        case Setting::region:
+            return change_region(ways);
         case Setting::least_force:
             return set_force(
                 stepped(*draft_.least_force, second_digit(*draft_.least_force), ways, least_settable));
@@ -215,14 +264,20 @@ void ExerciseEditor::change(int ways) {
 }
 
 void ExerciseEditor::change_task(int ways) {
-    constexpr int count = static_cast<int>(Task::retract);  // the last one, which no ball does
     const bool usual = draft_.instruction == usual_instruction(draft_.task);
     const bool untitled = draft_.title == draft_.name;
-    draft_.task = static_cast<Task>((static_cast<int>(draft_.task) + ways + count) % count);
+    draft_.task = turned(choices_.tasks, draft_.task, ways);
     if (usual) draft_.instruction = usual_instruction(draft_.task);
-    if (taken_.empty()) return;
-    draft_.name = free_exercise_name(draft_.task, taken_);
+    if (choices_.taken.empty()) return;
+    draft_.name = free_exercise_name(draft_.task, choices_.taken);
     if (untitled) draft_.title = draft_.name;
+}
+
+void ExerciseEditor::change_region(int ways) {
+    if (choices_.regions.size() == 1) message_ = shown_text("the case hides nothing else");
+    // None that is named is the first.
+    draft_.region =
+        turned(choices_.regions, draft_.region.empty() ? choices_.regions.front() : draft_.region, ways);
 }
 
 // Of the one that is chosen.
@@ -237,8 +292,9 @@ void ExerciseEditor::set_force(double newtons) {
 bool ExerciseEditor::is_complete() {
     const std::size_t needed = least_places(draft_.task);
     if (draft_.places.size() >= needed) return true;
-    message_ = needed == 1 ? shown_text("set a mark first: Space, then M")
-                           : shown_text("set two marks or more first: Space, then M");
+    message_ = draft_.task == Task::retract ? shown_text("first hold a rim and draw it: Space, then M twice")
+               : needed == 1                ? shown_text("set a mark first: Space, then M")
+                                            : shown_text("set two marks or more first: Space, then M");
     return false;
 }
 

@@ -18,10 +18,23 @@ struct HandNow {
     Eigen::Vector3d tool = Eigen::Vector3d::Zero();  ///< p_P, mm
     double force = 0;                                ///< N
     std::optional<Eigen::Vector3d> touched{};        ///< of the tissue at rest, p_P, mm
+    std::optional<Eigen::Vector3d> rim{};            ///< over a forceps' tips that hold tissue, p_P, mm
 };
 
+/// What a teacher may choose from.
+struct Choices {
+    std::vector<Task> tasks;           ///< at least one
+    std::vector<std::string> regions;  ///< that the case hides
+    /// Names that a new draft must not get; none: the draft keeps its own, so that it takes the place of what
+    /// it was made from.
+    std::vector<std::string> taken{};
+};
+
+/// The tasks that a hand with the case's tool is given, or one with a forceps.
+std::vector<Task> tasks_of(bool with_forceps);
+
 /// What of an exercise is set on the editor's page.
-enum class Setting { task, title, least_force, most_force, tolerance, hold, time_limit };
+enum class Setting { task, title, region, least_force, most_force, tolerance, hold, time_limit };
 
 /// What a key asks of whoever holds the editor.
 enum class Wish {
@@ -44,14 +57,14 @@ ExerciseRecipe settled(ExerciseRecipe recipe, const Exercise& exercise);
 /// A teacher's draft of an exercise, and what keys make of it. Keys are X11 names. On the page a digit or
 /// up and down choose a setting, + and - or right and left change it, "f" takes the force that is felt now,
 /// "Return" or its digit begins to type the title, "t" tries, "s" saves, "BackSpace" leaves. "space" leads to
-/// the organ and back; there "m" sets a mark at the touched tissue (guide: a gate at the tool's tip) and
-/// "Delete" takes the last one back. Forces go by two digits, tolerances by half a millimetre, times by a
-/// tenth of a second or by ten. What is set has four decimals at most.
+/// the organ and back; there "m" sets a mark at the touched tissue (guide: a gate at the tool's tip; retract:
+/// first the rim that is held, then where it is drawn) and "Delete" takes the last one back. Forces go by two
+/// digits, tolerances by half a millimetre, times by a tenth of a second or by ten. What is set has four
+/// decimals at most.
 class ExerciseEditor {
   public:
-    /// A draft that is settled(). `taken`: names that a new draft must not get; without them the draft keeps
-    /// its own, so that it takes the place of what it was made from.
-    explicit ExerciseEditor(ExerciseRecipe draft, std::vector<std::string> taken = {});
+    /// A draft that is settled().
+    ExerciseEditor(ExerciseRecipe draft, Choices choices);
 
     Wish press(std::string_view key, const HandNow& hand);
 
@@ -71,14 +84,17 @@ class ExerciseEditor {
     Wish press_on_page(std::string_view key, const HandNow& hand);
     void type(std::string_view key);
     void mark(const HandNow& hand);
+    void mark_retraction(const HandNow& hand);
+    void take_mark_back();
     void choose(std::size_t row);
     void change(int ways);
     void change_task(int ways);
+    void change_region(int ways);
     void set_force(double newtons);
     bool is_complete();
 
     ExerciseRecipe draft_;
-    std::vector<std::string> taken_;
+    Choices choices_;
     Setting chosen_ = Setting::task;
     bool page_shown_ = true, typing_ = false;
     std::string message_;

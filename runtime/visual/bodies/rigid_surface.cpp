@@ -15,7 +15,9 @@ RigidSurface::RigidSurface(const RigidBody& body, const Sight& sight, std::int64
     : sight_(sight),
       copy_(display_copy(body.surface, budget, sight.close_up, sight.close_up_radius)),
       fine_(poly_data(copy_, sight.toward_eye)),
-      actor_(tissue_actor(fine_, look_of(body))) {
+      actor_(tissue_actor(fine_, look_of(body))),
+      section_(body.surface, look_of(body), renderer) {
+    actor_->GetProperty()->BackfaceCullingOn();
     renderer->AddActor(actor_);
 }
 
@@ -28,8 +30,9 @@ void RigidSurface::show_fine(bool on) {
     vtkPolyDataMapper::SafeDownCast(actor_->GetMapper())->SetInputData(on ? fine_ : coarse_);
 }
 
-void RigidSurface::show_inside(bool on) {
-    actor_->GetProperty()->SetBackfaceCulling(!on);
+void RigidSurface::show(bool on) {
+    shown_ = on;
+    actor_->SetVisibility(on);
 }
 
 }  // namespace palpate::visual

@@ -12,7 +12,7 @@ using texts::translated;
 Layers::Layers(const Case& patient_case, Scene& scene, std::optional<double> rendered, vtkRenderer* renderer,
                vtkRenderer* front)
     : scene_(scene), names_(scene.region_names(rendered)) {
-    if (patient_case.scan) scan_.emplace(*patient_case.scan, scene.bodies(), renderer, front);
+    if (patient_case.scan) scan_.emplace(*patient_case.scan, scene.opened(), renderer, front);
 }
 
 std::string Layers::turn_regions() {

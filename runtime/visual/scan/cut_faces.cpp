@@ -1,22 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/visual/scan/cut_faces.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <numbers>
-#include <vtkCamera.h>
 #include <vtkProperty.h>
 #include <vtkShaderProperty.h>
 #include <vtkUniforms.h>
 
-#include "runtime/visual/hand/view_control.hpp"
+#include "runtime/visual/scan/near_plane.hpp"
 
 namespace palpate::visual {
 namespace {
-
-using Eigen::Vector3d;
 
 constexpr auto picture = "cutScan", reach = "cutReach";
 
@@ -34,27 +28,6 @@ constexpr auto paint_far_sides =
     "    }\n"
     "//VTK::TCoord::Impl";
 
-ScanPlane near_plane(vtkRenderer* renderer) {
-    vtkCamera* camera = renderer->GetActiveCamera();
-    const auto [right, up, toward_eye] = view_axes(camera);
-    const double distance = camera->GetClippingRange()[0],
-                 height = 2 * distance * std::tan(camera->GetViewAngle() * std::numbers::pi / 180 / 2),
-                 width = height * renderer->GetTiledAspectRatio();
-    const Vector3d middle = Vector3d(camera->GetPosition()) - distance * toward_eye;
-    return {middle - right * (width / 2) - up * (height / 2), right, up, width, height};
-}
-
-// Whether two planes show the same to a fiftieth of a texel.
-bool same(const ScanPlane& a, const ScanPlane& b, double texel) {
-    const auto corner = [](const ScanPlane& p, double across, double up) -> Vector3d {
-        return p.corner + across * p.width * p.right + up * p.height * p.up;
-    };
-    double moved = 0;
-    for (const auto& [across, up] : {std::array{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}})
-        moved = std::max(moved, (corner(a, across, up) - corner(b, across, up)).norm());
-    return moved < 0.02 * texel;
-}
-
 }  // namespace
 
 CutFaces::CutFaces(const ScanImage& image) : sampler_(image) {}
@@ -71,13 +44,11 @@ void CutFaces::paint(vtkActor* actor) {
 void CutFaces::follow(vtkRenderer* renderer, bool shown) {
     constexpr int columns = 320;  // a texel takes four pixels of 1280: finer than most scans
     const ScanPlane plane = near_plane(renderer);
-    if (shown && !(sampled_ && same(*sampled_, plane, plane.width / columns))) {
+    if (shown && !(sampled_ && show_the_same(*sampled_, plane, plane.width / columns))) {
         sampler_.sample(plane, columns, std::max(1, static_cast<int>(columns * plane.height / plane.width)));
         sampled_ = plane;
     }
-    const double twice = 2 * renderer->GetActiveCamera()->GetClippingRange()[0];
-    const std::array<float, 2> here{shown ? static_cast<float>(plane.width / twice) : 0,
-                                    shown ? static_cast<float>(plane.height / twice) : 0};
+    const std::array<float, 2> here = shown ? near_reach(renderer) : std::array<float, 2>{0, 0};
     for (vtkActor* actor : actors_)
         actor->GetShaderProperty()->GetFragmentCustomUniforms()->SetUniform2f(reach, here.data());
 }

@@ -9,10 +9,10 @@
 
 namespace palpate::visual {
 
-/// The scan on what a cut lays open. The cut is the camera's near plane, and where a body's far side is seen
-/// through it, the eye's ray has entered the body there: the scan at that place of the near plane is what
-/// lies in the cut. So far sides alone are painted, and near ones cost as much as without. It does not follow
-/// what is pressed: the scan stays at rest.
+/// The scan on what a cut lays open. The cut is the camera's near plane, and where a soft body's far side is
+/// seen through it, the eye's ray has entered the body there: the scan at that place of the near plane is
+/// what lies in the cut. So far sides alone are painted, and near ones cost as much as without; a rigid
+/// body's Section is such a far side. It does not follow what is pressed: the scan stays at rest.
 class CutFaces {
   public:
     explicit CutFaces(const ScanImage& image);

@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 import time
+import tomllib
 import unittest
 from pathlib import Path
 
@@ -62,6 +63,36 @@ class ForcepsInTheWindow(TrainerCase):
         (attempt,) = self.finish(process)["attempts"]
         self.assertEqual(attempt["ending"], "cut short")
         self.assertEqual(attempt["metrics"]["score"], 0)
+
+    def test_a_teacher_sets_the_rim_that_is_held_and_where_it_is_drawn(self):
+        file = self.folder / "made.toml"
+        file.write_text('schema = 1\n[[exercise]]\nname = "back"\ntask = "retract"\n')
+        process, window = self.open_forceps("--exercises", file)
+        self.wait_for(lambda: self.shows_page(window))
+        for key in ("F2", "space"):  # a new one; to the organ
+            self.press(key)
+            time.sleep(0.5)
+        self.press("m")  # nothing is held yet
+        self.press("w", WAY_IN)
+        self.come_to_rest()
+        self.press("j")
+        time.sleep(2.5)
+        self.press("m")
+        self.press("s", 10)
+        self.come_to_rest()
+        for key in ("m", "space", "s", "BackSpace", "q"):
+            self.press(key)
+            time.sleep(0.5)
+        self.finish(process)
+        usual, made = tomllib.loads(file.read_text())["exercise"]
+        self.assertEqual((usual["name"], made["name"], made["task"]), ("back", "retract-1", "retract"))
+        rim, tips, there = made["places_mm"]
+        self.assertAlmostEqual(math.dist(tips, there), 5, delta=1)  # ten steps, less what the tissue holds back
+        self.assertAlmostEqual(math.dist(rim, tips), 8, delta=0.01)  # half a jaw
+
+        process, _ = self.open_forceps("--exercises", file, "--exercise", "retract-1", "--script", "grasp", "--seconds", 6)
+        (attempt,) = self.finish(process)["attempts"]
+        self.assertEqual(attempt["ending"], "all reached")
 
     def test_a_drag_carries_it_and_the_pointer_alone_does_not(self):
         process, window = self.open_forceps()

@@ -32,7 +32,10 @@ class Editor : public ::testing::Test {
         for (const std::string_view key : keys) wish = editor_.press(key, hand);
         return wish;
     }
-    ExerciseEditor editor_{draft(Task::touch), {"touch-1", "mine"}};
+    static Choices choices(std::vector<std::string> taken = {}) {
+        return {.tasks = tasks_of(false), .regions = {"tumour", "vein"}, .taken = std::move(taken)};
+    }
+    ExerciseEditor editor_{draft(Task::touch), choices({"touch-1", "mine"})};
 };
 
 TEST_F(Editor, sets_marks_where_the_organ_is_touched_and_takes_them_back) {
@@ -50,10 +53,56 @@ TEST_F(Editor, sets_marks_where_the_organ_is_touched_and_takes_them_back) {
 }
 
 TEST_F(Editor, sets_gates_where_the_tip_is_without_touching_anything) {
-    editor_ = ExerciseEditor(draft(Task::guide));
+    editor_ = ExerciseEditor(draft(Task::guide), choices());
     press({"space"});
     press({"m"}, {.tool = {1, 2, 3}, .force = 0, .touched = {}});
     EXPECT_THAT(editor_.recipe().places, ElementsAre(Vector3d(1, 2, 3)));
+}
+
+TEST_F(Editor, of_a_forceps_sets_the_rim_that_is_held_and_then_where_it_is_drawn) {
+    const HandNow holding{
+        .tool = {0, 0, 10}, .force = 0.1, .touched = Vector3d(0, 0, 14), .rim = Vector3d(0, 0, 18)};
+    editor_ = ExerciseEditor(draft(Task::retract), {.tasks = tasks_of(true), .regions = {}});
+    EXPECT_EQ(press({"t"}), Wish::nothing);
+    EXPECT_THAT(editor_.message(), HasSubstr("hold a rim"));
+    press({"space", "m"}, {.tool = {0, 0, 10}});
+    EXPECT_THAT(editor_.message(), HasSubstr("take hold"));
+    press({"m"}, holding);
+    EXPECT_THAT(editor_.recipe().places, ElementsAre(Vector3d(0, 0, 18), Vector3d(0, 0, 10)));
+    press({"m"}, holding);
+    EXPECT_THAT(editor_.message(), HasSubstr("farther"));
+    press({"m"}, {.tool = {0, 0, 15}});
+    press({"m"}, {.tool = {0, 0, 16}});
+    EXPECT_THAT(editor_.message(), HasSubstr("are set"));
+    EXPECT_EQ(press({"space", "s"}), Wish::save);
+    EXPECT_THAT(editor_.recipe().places,
+                ElementsAre(Vector3d(0, 0, 18), Vector3d(0, 0, 10), Vector3d(0, 0, 15)));
+    EXPECT_EQ(editor_.recipe().hold, 0.5);
+    press({"space", "Delete"});
+    EXPECT_EQ(editor_.recipe().places.size(), 2U);
+    press({"Delete"});
+    EXPECT_TRUE(editor_.recipe().places.empty());
+    press({"space", "1", "plus"});
+    EXPECT_EQ(editor_.recipe().task, Task::free);
+    press({"plus"});
+    EXPECT_EQ(editor_.recipe().task, Task::retract) << "a forceps has no other";
+}
+
+TEST_F(Editor, goes_through_the_regions_that_a_search_may_hide) {
+    press({"1", "plus"});
+    ASSERT_EQ(editor_.settings()[2], Setting::region);
+    EXPECT_EQ(editor_.recipe().region, "");
+    press({"3", "plus"});
+    EXPECT_EQ(editor_.recipe().region, "vein");
+    press({"plus"});
+    EXPECT_EQ(editor_.recipe().region, "tumour");
+    press({"1", "plus"});
+    EXPECT_EQ(editor_.recipe().region, "") << "no other task hides anything";
+    editor_ = ExerciseEditor(draft(Task::find), {.tasks = tasks_of(false), .regions = {"tumour"}});
+    press({"3", "minus"});
+    EXPECT_THAT(editor_.message(), HasSubstr("nothing else"));
+    editor_ = ExerciseEditor(draft(Task::find), {.tasks = tasks_of(false), .regions = {}});
+    EXPECT_NE(editor_.settings()[2], Setting::region);
 }
 
 TEST_F(Editor, changes_what_is_chosen_in_steps_that_read_well) {
@@ -92,7 +141,7 @@ TEST_F(Editor, names_a_new_exercise_after_its_task_and_keeps_the_name_of_an_old_
     EXPECT_EQ(editor_.recipe().name, "find-1");
     EXPECT_EQ(editor_.recipe().title, "find-1");
     EXPECT_EQ(editor_.recipe().instruction, usual_instruction(Task::find));
-    editor_ = ExerciseEditor(draft(Task::touch));
+    editor_ = ExerciseEditor(draft(Task::touch), choices());
     press({"1", "minus"});
     EXPECT_EQ(editor_.recipe().task, Task::free);
     EXPECT_EQ(editor_.recipe().name, "mine");
@@ -124,7 +173,7 @@ TEST_F(Editor, gives_a_recipe_only_what_its_task_knows) {
     ExerciseRecipe recipe = draft(Task::touch);
     recipe.places = {Vector3d::Zero()};
     recipe.count = 9;
-    editor_ = ExerciseEditor(recipe);
+    editor_ = ExerciseEditor(recipe, choices());
     EXPECT_EQ(editor_.recipe(), recipe);
     press({"1", "minus"});
     EXPECT_TRUE(editor_.recipe().places.empty());
