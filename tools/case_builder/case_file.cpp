@@ -317,6 +317,13 @@ void read_import_options(TableReader& input, CaseFile& result) {
     result.volume_import.series = input.text_or_number("series").value_or("");
     read(input, "accept_gaps", result.volume_import.accept_gaps);
     read(input, "deface", result.volume_import.deface);
+    read(input, "scale", result.volume_import.scale);
+    read(input, "offset", result.volume_import.offset);
+    if (const double scale = result.volume_import.scale; scale == 0 || !std::isfinite(scale))
+        input.fail(input.node("scale"), "scale", fmt::format("is {:g}", scale), "a number that is not 0",
+                   "HU = scale x value + offset");
+    if (const double offset = result.volume_import.offset; !std::isfinite(offset))
+        input.fail(input.node("offset"), "offset", fmt::format("is {:g}", offset), "a number");
     read(input, "nifti_frame", result.volume_import.nifti_frame);
     result.labels_import.nifti_frame = result.volume_import.nifti_frame;
     if (const auto names = input.optional<std::string>("label_names")) {

@@ -156,6 +156,9 @@ void click_seeds(InitRequest& request, const draft::ScanRecipes& recipes) {
             arguments.insert(arguments.end(),
                              {"--structure", draft::with_points(structure, {}, request.background_seeds)});
     if (!request.series.empty()) arguments.insert(arguments.end(), {"--series", request.series});
+    if (request.scale != 0)
+        arguments.insert(arguments.end(), {fmt::format("--scale={:g}", request.scale),
+                                           fmt::format("--offset={:g}", request.offset)});
     const auto child = case_builder::run_child(program, arguments);
     if (child.exit_code != 0 || !fs::exists(request.seeds_file))
         throw InvalidInput({request.seeds_file.string(), "no seeds were saved", "one at least",
@@ -163,8 +166,10 @@ void click_seeds(InitRequest& request, const draft::ScanRecipes& recipes) {
 }
 
 // A structure grown in the scan, as the case will grow it.
-draft::CaseDraft draft_of_volume(InitRequest& request, const Volume& volume, cli::Questions& questions,
+draft::CaseDraft draft_of_volume(InitRequest& request, Volume volume, cli::Questions& questions,
                                  cli::Session& session) {
+    ask_scale(request, volume, questions);
+    if (request.scale != 0) rescale(volume, {request.scale, request.offset});
     const bool ct = is_ct(volume);
     ask_organ(request, volume, ct, questions);
     ask_approach(request, questions);
@@ -187,6 +192,9 @@ draft::CaseDraft draft_of_volume(InitRequest& request, const Volume& volume, cli
     found.input = fmt::format("volume = {}\n", path_from(request.output, request.input));
     if (!request.series.empty())
         found.input += fmt::format("series = {}\n", toml_file::quoted(request.series));
+    if (request.scale != 0)
+        found.input += fmt::format("# HU = scale x value + offset.\nscale = {:g}\noffset = {:g}\n",
+                                   request.scale, request.offset);
     return found;
 }
 
@@ -204,7 +212,7 @@ draft::CaseDraft draft_of(InitRequest& request, cli::Questions& questions, cli::
         read_image(request.input, labels ? ImageKind::labels : ImageKind::found_out, warn, options);
     if (auto* map = std::get_if<LabelMap>(&found.image))
         return draft_of_labels(request, std::move(*map), questions);
-    return draft_of_volume(request, std::get<Volume>(found.image), questions, session);
+    return draft_of_volume(request, std::move(std::get<Volume>(found.image)), questions, session);
 }
 
 // What is asked of an input that has no such thing, or cannot be written into a case.
@@ -300,6 +308,11 @@ int main(int argc, char** argv) {
                  "the input is a label map, as DICOM SEG is; found out without it");
     command.option("--label-names", request.label_names, "names of labels, as 'palpate import' takes them");
     command.option("--series", request.series, "of a DICOM folder with several");
+    const cli::Option scale = command.option(
+        "--scale", request.scale,
+        "of a CT whose values are no HU, as in 8 bit: HU = SCALE x value + OFFSET; without it air and soft "
+        "tissue tell, where they do");
+    command.option("--offset", request.offset, "see --scale", "HU").needs(scale);
     command.option("--seed", request.seeds, "a point x,y,z inside the organ (LPS, mm); repeat for more")
         .one_value_each();
     command

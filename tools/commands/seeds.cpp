@@ -62,6 +62,7 @@ struct SeedsRequest {
     std::vector<std::string> labels, structures;
     std::vector<double> window_level;
     std::string series;
+    imaging::HounsfieldScale to_hounsfield;
 };
 
 void declare_seeds(cli::Command& command, SeedsRequest& request) {
@@ -80,6 +81,9 @@ void declare_seeds(cli::Command& command, SeedsRequest& request) {
         .one_value_each();
     command.option("--series", request.series,
                    "of a DICOM folder with several, as 'palpate import' takes it");
+    command.option("--scale", request.to_hounsfield.scale,
+                   "of a CT whose values are no HU, as 'palpate import' takes it");
+    command.option("--offset", request.to_hounsfield.offset, "see --scale", "HU");
     command.input("--seeds", request.seeds, "seeds to start from (.mrk.json, .fcsv)");
     command
         .option("--window-level", request.window_level,
@@ -118,8 +122,9 @@ ordered_json run_seeds(SeedsRequest request, cli::Session& session) {
     set_imaging_threads(session.threads);
     ReadOptions options;
     options.series = request.series;
-    const Volume volume = read_volume(
+    Volume volume = read_volume(
         request.volume, [](std::string_view text) { spdlog::warn("{}", text); }, options);
+    rescale(volume, request.to_hounsfield);
     const std::vector<Seed> seeds = request.seeds.empty() ? std::vector<Seed>{} : read_seeds(request.seeds);
     for (const Seed& seed : seeds)
         voxel_of_seed(volume.grid, seed.p_P, request.seeds.string() + ", '" + seed.label + "'");

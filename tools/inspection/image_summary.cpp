@@ -55,6 +55,8 @@ ValueUnit unit_of(const Volume& volume, const std::string& modality) {
     if (const double offset = hounsfield_offset(volume); offset > 0)
         return {"",
                 fmt::format("not HU: air and soft tissue lie as if {:g} above; segment shifts them", offset)};
+    if (const auto scale = scale_by_air_and_soft_tissue(volume))
+        return {"", "not HU: by its air and soft tissue, if it is a CT, " + text_of(*scale)};
     return {"", "nothing tells that they are HU"};
 }
 

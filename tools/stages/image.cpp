@@ -2,6 +2,8 @@
 #include "tools/stages/image.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
 
 #include "formats/model/errors.hpp"
 #include "tools/imaging/faces/face.hpp"
@@ -89,6 +91,10 @@ void check_request(const ImportRequest& request) {
     require(labels || request.label_names.empty(), "--label-names", "label maps", "add --labels");
     require(labels || request.overlaps == "refuse", "--overlaps", "label maps", "add --labels");
     require(!labels || !request.deface, "--deface", "images", "leave it out");
+    require(!labels || (request.scale == 1 && request.offset == 0), "--scale", "images", "leave it out");
+    if (!(std::abs(request.scale) > 0) || !std::isfinite(request.scale) || !std::isfinite(request.offset))
+        throw UsageError({"--scale", fmt::format("{:g} and --offset {:g}", request.scale, request.offset),
+                          "finite numbers, a scale that is not 0", ""});
     require(dicom_image || request.series.empty(), "--series", "DICOM images", "leave it out");
     require(dicom_image || !request.accept_gaps, "--accept-gaps", "DICOM images", "leave it out");
     require(request.nifti_frame.empty() || is_nifti(request.input), "--nifti-frame", "NIfTI files",
@@ -118,6 +124,7 @@ nlohmann::ordered_json import_image(const ImportRequest& request, const ReadOpti
         return describe(map);
     }
     Volume volume = read_volume(request.input, note, options);
+    rescale(volume, {request.scale, request.offset});
     if (request.deface) {
         progress("taking the face away", 0.3);
         volume = defaced(std::move(volume), request.input.string(), note);

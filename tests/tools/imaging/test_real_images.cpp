@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -9,6 +10,7 @@
 #include "tools/imaging/files/image_files.hpp"
 #include "tools/imaging/files/label_names.hpp"
 #include "tools/imaging/recipes/segmentation.hpp"
+#include "tools/imaging/voxels/hounsfield.hpp"
 #include "tools/imaging/voxels/label_statistics.hpp"
 
 namespace palpate {
@@ -40,6 +42,33 @@ TEST(RealImages, a_nifti_ct_and_its_labels_lie_on_one_grid_with_the_liver_on_the
     for (const LabelStatistics& label : label_statistics(labels))
         centroids[label.label.value] = label.centroid;
     EXPECT_LT(centroids[liver.value][0], centroids[spleen.value][0]);  // x grows to the left
+}
+
+// As programs write a CT in 8 bits: what lies between two values, evenly, and what lies beyond at the ends.
+Volume in_eight_bits(Volume volume, double black_hu, double white_hu) {
+    for (float& value : volume.values)
+        value = static_cast<float>(
+            std::round(std::clamp((value - black_hu) / (white_hu - black_hu), 0.0, 1.0) * 255));
+    return volume;
+}
+
+TEST(RealImages, a_ct_in_eight_bits_tells_its_scale_by_air_and_soft_tissue) {
+    REQUIRE_REAL_DATA(folder, "head_ct_cranium");
+    const Volume ct = read_volume(folder / "head_ct_cranium.nrrd");
+    for (const auto& [black, white] : {std::pair(-1024.0, 2986.0), {-1024.0, 3071.0}, {-1000.0, 2000.0}}) {
+        const auto found = scale_by_air_and_soft_tissue(in_eight_bits(ct, black, white));
+        ASSERT_TRUE(found) << black << " to " << white;
+        const double step = (white - black) / 255;
+        EXPECT_NEAR(found->scale, step, 0.04 * step);
+        EXPECT_NEAR(found->scale * 80 + found->offset, 80 * step + black, 40) << "HU";
+    }
+    EXPECT_FALSE(scale_by_air_and_soft_tissue(in_eight_bits(ct, -160, 240))) << "air is cut off";
+    EXPECT_FALSE(scale_by_air_and_soft_tissue(in_eight_bits(ct, -500, 1500))) << "air is cut off";
+}
+
+TEST(RealImages, an_mri_is_taken_for_no_ct) {
+    REQUIRE_REAL_DATA(folder, "head_mr_ch2");
+    EXPECT_FALSE(scale_by_air_and_soft_tissue(read_volume(folder / "ch2.nii.gz")));
 }
 
 TEST(RealImages, totalsegmentators_names_in_its_files_are_those_of_its_table) {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -226,6 +228,26 @@ TEST(Segment, values_stored_1000_above_hounsfield_are_told_from_1024_by_their_ai
     const std::vector<StructureRecipe> bone{parse_structure("skull: recipe=bone")};
     segment(&head.volume, nullptr, bone, {}, [&](std::string_view note) { said += note; });
     EXPECT_NE(said.find("probably stored as HU + 1000"), std::string::npos) << said;
+}
+
+TEST(Segment, a_ct_in_eight_bits_is_refused_with_the_scale_that_its_air_and_soft_tissue_tell) {
+    Phantom head = head_phantom({.noise_hu = 10});
+    const LabelMap plain = run(&head.volume, nullptr, {"skull: recipe=bone"});
+    const auto [low, high] = std::ranges::minmax(head.volume.values);
+    const double step = (high - low) / 255, lowest = low;
+    for (float& value : head.volume.values) value = static_cast<float>(std::round((value - lowest) / step));
+    const auto found = scale_by_air_and_soft_tissue(head.volume);
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->scale, step, 0.04 * step);
+    const std::string refusal =
+        test::refusal_of<Error>([&] { run(&head.volume, nullptr, {"skull: recipe=bone"}); });
+    EXPECT_NE(refusal.find("recipe 'bone' looks for HU, and the volume has values of 0 to 255"),
+              std::string::npos)
+        << refusal;
+    EXPECT_NE(refusal.find(fmt::format("scale = {:.4g}", found->scale)), std::string::npos) << refusal;
+    rescale(head.volume, {step, lowest});
+    EXPECT_FALSE(scale_by_air_and_soft_tissue(head.volume) && !is_ct(head.volume));
+    EXPECT_GT(test::dice(run(&head.volume, nullptr, {"skull: recipe=bone"}), "skull", plain, "skull"), 0.97);
 }
 
 TEST(Segment, a_structure_swallowed_by_a_later_one_is_refused_with_both_names) {

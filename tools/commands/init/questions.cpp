@@ -13,6 +13,7 @@
 #include "tools/draft/scan_draft.hpp"
 #include "tools/imaging/faces/face.hpp"
 #include "tools/imaging/files/image_files.hpp"
+#include "tools/imaging/voxels/hounsfield.hpp"
 
 namespace palpate::commands {
 
@@ -54,6 +55,23 @@ void ask_organ(InitRequest& request, const Volume& volume, bool ct, cli::Questio
     const char* proposal = !ct ? "" : imaging::shows_head(volume) ? "nasopharynx" : "liver";
     request.organ = questions.ask("What gives way under the tool?", proposal, check_name);
     if (!questions.asks()) spdlog::info("{} is looked for; --organ says otherwise", request.organ);
+}
+
+void ask_scale(InitRequest& request, const Volume& volume, cli::Questions& questions) {
+    if (request.scale != 0 || imaging::is_ct(volume)) return;
+    const auto found = imaging::scale_by_air_and_soft_tissue(volume);
+    if (!found) return;
+    const std::string said = "values are no HU; by air and soft tissue " + imaging::text_of(*found);
+    const std::string answer = questions.ask(
+        "The " + said + ". Take that for a CT (yes, or no: it is none)?", "yes", [](const std::string& text) {
+            if (text != "yes" && text != "no")
+                throw UsageError({"answer", "'" + text + "'", "yes or no", ""});
+        });
+    if (answer != "yes") return;
+    if (!questions.asks()) spdlog::warn("{}: taken for a CT; --scale and --offset say otherwise", said);
+    // As the case file has them.
+    request.scale = std::stod(fmt::format("{:.4g}", found->scale));
+    request.offset = std::stod(fmt::format("{:.4g}", found->offset));
 }
 
 void ask_name(InitRequest& request, cli::Questions& questions) {

@@ -21,6 +21,10 @@ void ask_organ(InitRequest& request, const LabelMap& map, cli::Questions& questi
 /// UsageError where nobody is asked and the values are no HU.
 void ask_organ(InitRequest& request, const Volume& volume, bool ct, cli::Questions& questions);
 
+/// By which scale the values of what seems to be a CT in other units are HU: proposed is what its air and
+/// soft tissue say, which is taken where nobody is asked.
+void ask_scale(InitRequest& request, const Volume& volume, cli::Questions& questions);
+
 /// What a surface is; proposed is the file's name.
 void ask_name(InitRequest& request, cli::Questions& questions);
 

@@ -15,6 +15,8 @@ struct InitRequest {
     std::vector<std::string> seeds, background_seeds;
     bool labels = false, yes = false;
     double contact_nodes = 0, size_mib = 0;  ///< one of them, or neither
+    /// HU = scale * value + offset, of a CT in other units; a scale of 0: not told.
+    double scale = 0, offset = 0;
 };
 
 /// What that means for a draft. Throws UsageError for an approach that is no side.

@@ -84,7 +84,8 @@ Recipe airway_recipe() {
                  cleaning_parameters()}),
             .if_empty = "raise threshold_hu, lower opening_mm, or check region and cleaning",
             .make = make_airway,
-            .needs_volume = true};
+            .needs_volume = true,
+            .needs_hu = true};
 }
 
 }  // namespace palpate::imaging

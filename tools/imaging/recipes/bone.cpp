@@ -44,7 +44,8 @@ Recipe bone_recipe() {
                  with_defaults(cleaning_parameters(), {{"min_component_ml", "1"}})}),
             .if_empty = "lower threshold_hu or min_component_ml; are the values in HU?",
             .make = make_bone,
-            .needs_volume = true};
+            .needs_volume = true,
+            .needs_hu = true};
 }
 
 }  // namespace palpate::imaging

@@ -62,7 +62,8 @@ Recipe nasopharynx_recipe() {
              region_parameters()}),
         .if_empty = "raise thickness_mm or move the region to the passage's wall",
         .make = make_nasopharynx,
-        .needs_volume = true};
+        .needs_volume = true,
+        .needs_hu = true};
 }
 
 }  // namespace palpate::imaging

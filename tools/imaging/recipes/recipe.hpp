@@ -45,6 +45,7 @@ struct Recipe {
     /// The colour of the label that it takes over; where it gives none, a default one is taken.
     std::optional<std::array<float, 3>> (*colour)(const Job&) = nullptr;
     bool needs_volume = false;  ///< grey values to look at
+    bool needs_hu = false;      ///< of a CT: its numbers mean nothing on another scale
     bool needs_seeds = false;   ///< one at least
     bool makes_up = false;      ///< what it makes is not in the image
 };

@@ -60,6 +60,21 @@ const Volume* in_hounsfield(const Volume* volume, std::optional<Volume>& shifted
     return &*shifted;
 }
 
+// A CT in other units, as in 8 bit, has values that recipes for HU would misread.
+void check_unit(const Volume& volume, const Recipe& recipe, const std::string& culprit) {
+    if (!recipe.needs_hu || is_ct(volume)) return;
+    const auto scale = scale_by_air_and_soft_tissue(volume);
+    if (!scale) return;
+    const auto [low, high] = std::ranges::minmax(volume.values);
+    throw InvalidInput({culprit,
+                        fmt::format("recipe '{}' looks for HU, and the volume has values of {:g} to {:g}",
+                                    recipe.name, low, high),
+                        "a CT in HU",
+                        fmt::format("by its air and soft tissue {}: if that is so, write scale = {:.4g} and "
+                                    "offset = {:.4g} under [input], or give them to 'palpate import'",
+                                    text_of(*scale), scale->scale, scale->offset)});
+}
+
 }  // namespace
 
 LabelMap segment(const Volume* volume, const LabelMap* prior, std::span<const StructureRecipe> structures,
@@ -84,6 +99,7 @@ LabelMap segment(const Volume* volume, const LabelMap* prior, std::span<const St
             throw InvalidInput({"structure '" + structure.name + "'",
                                 "recipe '" + structure.recipe + "' has no volume to look at", "",
                                 "name the volume, for CT with values in HU"});
+        if (hounsfield != nullptr) check_unit(*hounsfield, recipe, "structure '" + structure.name + "'");
         const Job job{structure, parameters, structures, hounsfield, prior, map, note, grown};
         const Mask mask = cleaned(recipe.make(job), job);
         const std::int32_t replaced = replaced_label(map, structure, parameters);

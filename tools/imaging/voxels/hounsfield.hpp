@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <optional>
+#include <string>
+
 #include "tools/imaging/voxels/mask.hpp"
 
 namespace palpate::imaging {
@@ -26,5 +29,24 @@ bool is_ct(const Volume& volume);
 /// below 14, and otherwise 1024, the usual one. The air decides no finer: old scanners have it
 /// tens of HU off.
 double hounsfield_offset(const Volume& volume);
+
+/// HU = scale * value + offset.
+struct HounsfieldScale {
+    double scale = 1, offset = 0;
+
+    bool operator==(const HounsfieldScale&) const = default;
+};
+
+/// Takes the values to HU.
+void rescale(Volume& volume, const HounsfieldScale& to_hounsfield);
+
+/// The scale of a CT in other units, as in 8 bit, by its air (-1000 HU) and soft tissue (40 HU): the values
+/// about which most lie, of the lowest quarter and of those above. To some 4 % where air is stored as such.
+/// Nothing where most of what is no air is no soft tissue or fat by that scale, or its brightest value is not
+/// bone's or metal's: so for MRI, for windows that cut air off, and where fat is the commonest.
+std::optional<HounsfieldScale> scale_by_air_and_soft_tissue(const Volume& volume);
+
+/// "HU = 16.05 x value - 1025".
+std::string text_of(const HounsfieldScale& to_hounsfield);
 
 }  // namespace palpate::imaging

@@ -15,6 +15,7 @@ struct ImportRequest {
     std::string series;            ///< number, UID or description; empty: the only or main one
     bool accept_gaps = false;
     std::string nifti_frame;          ///< "qform", "sform" or empty
+    double scale = 1, offset = 0;     ///< HU = scale * value + offset, of an image
     bool deface = false;              ///< takes a head's face out of a CT
     bool labels = false;              ///< the input is a label map
     std::string label_names;          ///< as name_labels() takes it
