@@ -8,6 +8,7 @@
 #include "tools/cli/command.hpp"
 #include "tools/imaging/files/image_files.hpp"
 #include "tools/imaging/recipes/segmentation.hpp"
+#include "tools/imaging/voxels/hounsfield.hpp"
 #include "tools/imaging/voxels/seed_statistics.hpp"
 #include "tools/seeds/seed_window.hpp"
 

@@ -5,12 +5,16 @@ import subprocess
 import time
 import unittest
 
+import numpy as np
+
 from trainer_case import TrainerCase
+
+BONE_INSIDE = 158, 148, 126  # (r, g, b): 0.7 of how bone is coloured
 
 
 class ScanInTheWindow(TrainerCase):
-    def open_window(self):
-        process, window = super().open_window()
+    def open_window(self, *options):
+        process, window = super().open_window(*options)
         self.leave_start_page(window)
         self.x("xdotool", "key", "h")  # hints fade by themselves
         return process, window
@@ -54,6 +58,21 @@ class ScanInTheWindow(TrainerCase):
         self.press("x")
         self.assertFalse(self.scale(window))
         self.assertLess(len(self.greys(window)), before + 200)
+        self.close(process)
+
+    def test_c_lays_bone_open_in_one_colour_where_there_is_no_scan_of_it(self):
+        process, _ = self.open_window("--body", "skull", "--target", "40,10,25")
+        opened = lambda: int((np.abs(TrainerCase.scene(self) - BONE_INSIDE).max(axis=2) <= 1).sum())
+        before = opened()
+        self.press("c")
+        cut = opened()
+        self.assertGreater(cut, before + 20000)  # pixels; light makes no two of a surface alike
+        self.press("b")
+        self.assertLess(opened(), cut / 10)
+        self.press("b")
+        self.assertGreater(opened(), 0.9 * cut)
+        self.press("v")  # the tip's view cuts nothing
+        self.assertLess(opened(), cut / 10)
         self.close(process)
 
 
