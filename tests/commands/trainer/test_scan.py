@@ -13,8 +13,8 @@ BONE_INSIDE = 158, 148, 126  # (r, g, b): 0.7 of how bone is coloured
 
 
 class ScanInTheWindow(TrainerCase):
-    def open_window(self, *options):
-        process, window = super().open_window(*options)
+    def open_window(self):
+        process, window = super().open_window()
         self.leave_start_page(window)
         self.x("xdotool", "key", "h")  # hints fade by themselves
         return process, window
@@ -61,10 +61,17 @@ class ScanInTheWindow(TrainerCase):
         self.close(process)
 
     def test_c_lays_bone_open_in_one_colour_where_there_is_no_scan_of_it(self):
-        process, _ = self.open_window("--body", "skull", "--target", "40,10,25")
+        hand = self.folder / "still.txt"  # the cut goes with the tool
+        hand.write_text("0 40 10 28\n1000 40 10 28\n")
+        process = self.launch("--body", "skull", "--target", "40,10,25", "--script", hand)
+        self.find_window()
+        for command in (("mousemove", 640, 500), ("mousedown", 3), *([("mousemove_relative", "--", 0, -20)] * 10), ("mouseup", 3)):
+            self.x("xdotool", *command)  # to look from the side, so that half of the ball stands before the tool
         opened = lambda: int((np.abs(TrainerCase.scene(self) - BONE_INSIDE).max(axis=2) <= 1).sum())
+        self.come_to_rest()
         before = opened()
         self.press("c")
+        self.come_to_rest()
         cut = opened()
         self.assertGreater(cut, before + 20000)  # pixels; light makes no two of a surface alike
         self.press("b")
