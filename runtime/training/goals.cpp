@@ -17,9 +17,12 @@ void add_error(double error, Goals& goals) {
     ++goals.error_count;
 }
 
+// At the first of several gates an attempt begins: who stays there has reached nothing.
 void reach_next(const Exercise& exercise, Goals& goals) {
+    const std::size_t begins = exercise.task == Task::guide && exercise.places.size() > 1 ? 1 : 0;
     ++goals.reached;
-    goals.share = static_cast<double>(goals.reached) / static_cast<double>(exercise.places.size());
+    goals.share =
+        static_cast<double>(goals.reached - begins) / static_cast<double>(exercise.places.size() - begins);
     goals.reached_all = goals.reached == exercise.places.size();
 }
 

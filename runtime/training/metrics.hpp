@@ -45,7 +45,8 @@ inline constexpr std::tuple metric_fields{
         "score", &Metrics::score, "",
         "0 to 100: 100 times the share of goals, times the share of the time in contact that was within the "
         "force limit"),
-    Field("goals", &Metrics::goals, "", "share of the goals that were reached"),
+    Field("goals", &Metrics::goals, "",
+          "share of the goals that were reached; guide: of the gates after the first, at which it begins"),
     Field("time", &Metrics::time, "s", "from start to end, without pauses"),
     Field("path_length", &Metrics::path_length, "mm", "of the hand's way"),
     Field("economy_of_motion", &Metrics::economy_of_motion, "",

@@ -79,7 +79,7 @@ class DemoExercises(unittest.TestCase):
                 self.do_well(exercise, act)
                 clumsy = self.do_badly(exercise, lambda hand, act=act: act(hand, deeper=DEEPER))
                 self.assertGreater(clumsy["time_above_limit_s"], 1)
-        self.idle("touch")
+                self.idle(exercise)
 
     def find(self, turn):
         """A good hand knows from a mark of its teacher's where it is; `turn` is how the view is moved so that it is seen."""
@@ -93,6 +93,7 @@ class DemoExercises(unittest.TestCase):
         self.attempt("there", lambda hand: (hand.begin(), hand.drag(*turn), hand.point((30, 300)), hand.rest(), seen.append(hand.wait_for(hand.due))),
                      "--exercises", there)
         self.do_well("find", lambda hand: (hand.begin(), hand.drag(*turn), hand.answer(seen[0])), ending="found")
+        self.idle("find")
 
 
 class Liver(DemoExercises):

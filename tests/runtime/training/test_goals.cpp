@@ -154,11 +154,13 @@ TEST(Goals, gates_are_passed_in_their_order_and_pain_is_counted_once_each_time) 
     stay(exercise, goals, 0.01, 0, {10, 0, 0});
     EXPECT_EQ(goals.reached, 0U);
     stay(exercise, goals, 0.01, 0, {0, 1, 0});
+    EXPECT_EQ(goals.share, 0) << "it begins there";
     stay(exercise, goals, 0.1, 1.5, {5, 0, 0});
     stay(exercise, goals, 0.1, 0.2, {5, 0, 0});
     stay(exercise, goals, 0.1, 1.5, {5, 0, 0});
     EXPECT_EQ(goals.misses, 2U);
     stay(exercise, goals, 0.01, 0, {10, 0, 0});
+    EXPECT_EQ(goals.share, 0.5);
     stay(exercise, goals, 0.01, 0, {20, 0, 1});
     EXPECT_TRUE(goals.reached_all);
     EXPECT_NEAR(goals.errors, 1, 1e-12) << "of the first; the second was met, the last ends it";
