@@ -9,7 +9,7 @@ cd "$root"
 tests/house/tidy.sh formats runtime tools
 ctest --preset clang -j "$(nproc)"
 ctest --preset release -j "$(nproc)"
-ctest --preset fuzz -j "$(nproc)"
+ctest --test-dir build/fuzz -LE "slow|benchmark" -j "$(nproc)" --output-on-failure  # unit tests too, whose own code is looked at here
 rm -rf build/coverage/coverage  # what other tests left
 ctest --preset coverage -j "$(nproc)"
 tests/coverage.sh

@@ -123,10 +123,10 @@ class Init(Cases):
     def test_a_ct_in_eight_bits_gets_its_scale_and_builds(self):
         head, eight = self.folder / "head.nrrd", self.folder / "eight.nrrd"
         self.assertEqual(run(PHANTOM, "head", head, self.folder / "head.seg.nrrd", "--noise", 10).returncode, 0)
-        self.assertEqual(run(BIN / "palpate", "import", head, "-o", eight, "--scale", 0.08, "--offset=80").returncode, 0)
+        self.assertEqual(run(BIN / "palpate", "import", head, "-o", eight, "--scale", 0.08, "--offset=85").returncode, 0)
         case = self.case("eight.toml", eight, "--organ", "nasopharynx", "--seed=0,-5,-40")
         self.assertAlmostEqual(case["input"]["scale"], 1 / 0.08, delta=0.04 / 0.08)
-        self.assertAlmostEqual(case["input"]["offset"], -80 / 0.08, delta=40)
+        self.assertAlmostEqual(case["input"]["offset"], -85 / 0.08, delta=40)
         self.assertBuilds("eight.toml")
 
     def test_what_is_missing_is_asked_for(self):

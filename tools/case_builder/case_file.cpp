@@ -319,8 +319,8 @@ void read_import_options(TableReader& input, CaseFile& result) {
     read(input, "deface", result.volume_import.deface);
     read(input, "scale", result.volume_import.scale);
     read(input, "offset", result.volume_import.offset);
-    if (const double scale = result.volume_import.scale; scale == 0 || !std::isfinite(scale))
-        input.fail(input.node("scale"), "scale", fmt::format("is {:g}", scale), "a number that is not 0",
+    if (const double scale = result.volume_import.scale; !(scale > 0) || !std::isfinite(scale))
+        input.fail(input.node("scale"), "scale", fmt::format("is {:g}", scale), "a number above 0",
                    "HU = scale x value + offset");
     if (const double offset = result.volume_import.offset; !std::isfinite(offset))
         input.fail(input.node("offset"), "offset", fmt::format("is {:g}", offset), "a number");

@@ -156,8 +156,8 @@ void click_seeds(InitRequest& request, const draft::ScanRecipes& recipes) {
             arguments.insert(arguments.end(),
                              {"--structure", draft::with_points(structure, {}, request.background_seeds)});
     if (!request.series.empty()) arguments.insert(arguments.end(), {"--series", request.series});
-    if (request.scale != 0)
-        arguments.insert(arguments.end(), {fmt::format("--scale={:g}", request.scale),
+    if (request.scale)
+        arguments.insert(arguments.end(), {fmt::format("--scale={:g}", *request.scale),
                                            fmt::format("--offset={:g}", request.offset)});
     const auto child = case_builder::run_child(program, arguments);
     if (child.exit_code != 0 || !fs::exists(request.seeds_file))
@@ -168,8 +168,7 @@ void click_seeds(InitRequest& request, const draft::ScanRecipes& recipes) {
 // A structure grown in the scan, as the case will grow it.
 draft::CaseDraft draft_of_volume(InitRequest& request, Volume volume, cli::Questions& questions,
                                  cli::Session& session) {
-    ask_scale(request, volume, questions);
-    if (request.scale != 0) rescale(volume, {request.scale, request.offset});
+    if (request.scale) rescale(volume, {*request.scale, request.offset});
     const bool ct = is_ct(volume);
     ask_organ(request, volume, ct, questions);
     ask_approach(request, questions);
@@ -192,15 +191,24 @@ draft::CaseDraft draft_of_volume(InitRequest& request, Volume volume, cli::Quest
     found.input = fmt::format("volume = {}\n", path_from(request.output, request.input));
     if (!request.series.empty())
         found.input += fmt::format("series = {}\n", toml_file::quoted(request.series));
-    if (request.scale != 0)
-        found.input += fmt::format("# HU = scale x value + offset.\nscale = {:g}\noffset = {:g}\n",
-                                   request.scale, request.offset);
+    if (request.scale)
+        found.input += fmt::format(
+            "# HU = scale x value + offset{}.\nscale = {:g}\noffset = {:g}\n",
+            request.scale_is_guessed ? ", guessed by air and soft tissue to some 4 %: correct it if you know"
+                                     : "",
+            *request.scale, request.offset);
     return found;
+}
+
+void refuse_scale(const InitRequest& request, const char* what) {
+    if (request.scale)
+        throw UsageError({"--scale", std::string("given with ") + what, "a CT", "leave it out"});
 }
 
 draft::CaseDraft draft_of(InitRequest& request, cli::Questions& questions, cli::Session& session) {
     wishes_of(request);  // which refuses what makes no sense before anything is read
     session.progress.step("reading", 0);
+    if (is_mesh(request.input) || is_surface(request.input)) refuse_scale(request, "no image");
     if (is_mesh(request.input)) return draft_of_mesh(request, questions);
     if (is_surface(request.input)) return draft_of_surface(request, questions, session);
     ask_series(request, questions);
@@ -210,9 +218,13 @@ draft::CaseDraft draft_of(InitRequest& request, cli::Questions& questions, cli::
     options.series = request.series;
     FoundImage found =
         read_image(request.input, labels ? ImageKind::labels : ImageKind::found_out, warn, options);
-    if (auto* map = std::get_if<LabelMap>(&found.image))
+    if (auto* map = std::get_if<LabelMap>(&found.image)) {
+        refuse_scale(request, "a label map");
         return draft_of_labels(request, std::move(*map), questions);
-    return draft_of_volume(request, std::move(std::get<Volume>(found.image)), questions, session);
+    }
+    auto& volume = std::get<Volume>(found.image);
+    if (found.modality.empty()) ask_scale(request, volume, questions);  // others say what they are
+    return draft_of_volume(request, std::move(volume), questions, session);
 }
 
 // What is asked of an input that has no such thing, or cannot be written into a case.
@@ -308,10 +320,12 @@ int main(int argc, char** argv) {
                  "the input is a label map, as DICOM SEG is; found out without it");
     command.option("--label-names", request.label_names, "names of labels, as 'palpate import' takes them");
     command.option("--series", request.series, "of a DICOM folder with several");
-    const cli::Option scale = command.option(
-        "--scale", request.scale,
-        "of a CT whose values are no HU, as in 8 bit: HU = SCALE x value + OFFSET; without it air and soft "
-        "tissue tell, where they do");
+    const cli::Option scale = command
+                                  .option("--scale", request.scale,
+                                          "of a CT whose values are no HU, as in 8 bit: HU = SCALE x value + "
+                                          "OFFSET; without it air and soft "
+                                          "tissue tell, where they do")
+                                  .positive();
     command.option("--offset", request.offset, "see --scale", "HU").needs(scale);
     command.option("--seed", request.seeds, "a point x,y,z inside the organ (LPS, mm); repeat for more")
         .one_value_each();

@@ -82,8 +82,10 @@ void declare_seeds(cli::Command& command, SeedsRequest& request) {
         .one_value_each();
     command.option("--series", request.series,
                    "of a DICOM folder with several, as 'palpate import' takes it");
-    command.option("--scale", request.to_hounsfield.scale,
-                   "of a CT whose values are no HU, as 'palpate import' takes it");
+    command
+        .option("--scale", request.to_hounsfield.scale,
+                "of a CT whose values are no HU, as 'palpate import' takes it")
+        .positive();
     command.option("--offset", request.to_hounsfield.offset, "see --scale", "HU");
     command.input("--seeds", request.seeds, "seeds to start from (.mrk.json, .fcsv)");
     command

@@ -2,8 +2,6 @@
 #include "tools/stages/image.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <fmt/format.h>
 
 #include "formats/model/errors.hpp"
 #include "tools/imaging/faces/face.hpp"
@@ -33,9 +31,11 @@ nlohmann::ordered_json describe(const LabelMap& map) {
 
 Volume defaced(Volume volume, const std::string& culprit, const NoteSink& note) {
     if (!is_ct(volume))
-        throw InvalidInput(
-            {culprit, "its values are no HU, by which a face is told from bone and air", "a CT",
-             "leave the image out of what is given away, in a case file by keep_scan = false"});
+        throw InvalidInput({culprit, "its values are no HU, by which a face is told from bone and air",
+                            "a CT",
+                            "give scale and offset where it is a CT in other units; otherwise leave the "
+                            "image out of what is "
+                            "given away, in a case file by keep_scan = false"});
     if (shows_face(volume)) return without_face(volume);
     if (note) note("no face was found in the volume, and nothing taken away");
     return volume;
@@ -91,10 +91,8 @@ void check_request(const ImportRequest& request) {
     require(labels || request.label_names.empty(), "--label-names", "label maps", "add --labels");
     require(labels || request.overlaps == "refuse", "--overlaps", "label maps", "add --labels");
     require(!labels || !request.deface, "--deface", "images", "leave it out");
-    require(!labels || (request.scale == 1 && request.offset == 0), "--scale", "images", "leave it out");
-    if (!(std::abs(request.scale) > 0) || !std::isfinite(request.scale) || !std::isfinite(request.offset))
-        throw UsageError({"--scale", fmt::format("{:g} and --offset {:g}", request.scale, request.offset),
-                          "finite numbers, a scale that is not 0", ""});
+    require(!labels || request.scale == 1, "--scale", "images", "leave it out");
+    require(!labels || request.offset == 0, "--offset", "images", "leave it out");
     require(dicom_image || request.series.empty(), "--series", "DICOM images", "leave it out");
     require(dicom_image || !request.accept_gaps, "--accept-gaps", "DICOM images", "leave it out");
     require(request.nifti_frame.empty() || is_nifti(request.input), "--nifti-frame", "NIfTI files",

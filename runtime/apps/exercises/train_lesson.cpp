@@ -65,9 +65,22 @@ std::vector<ExerciseRecipe> usual_exercises(const std::filesystem::path& file, b
     return recipes;
 }
 
-// Where a forceps would hold the rim if it held tissue there.
+// Whether tissue is pressed from two sides: much of what presses it takes each other away.
+bool is_held(const TickResult& tick, std::size_t rigid_count) {
+    constexpr double left = 0.7;
+    double sum = 0;
+    Eigen::Vector3d together = Eigen::Vector3d::Zero();
+    for (const Contact& contact : tick.active_contacts()) {
+        if (is_of_neighbour(contact) || contact.body < static_cast<std::int32_t>(rigid_count)) continue;
+        sum += contact.force;
+        together += contact.force * normal_of(contact);
+    }
+    return sum > 0 && together.norm() < left * sum;
+}
+
+// Over the tips of a forceps that holds tissue.
 std::optional<Eigen::Vector3d> held_rim(const session::Session& run, const TickResult& tick) {
-    if (!run.jaws() || !touched_place(run.patient_case(), tick)) return std::nullopt;
+    if (!run.jaws() || !is_held(tick, run.patient_case().rigid_bodies.size())) return std::nullopt;
     return vector_of(tick.tool_position) +
            session::grasp_depth(run.jaws()->jaw_length) * vector_of(tick.shaft).normalized();
 }
@@ -75,6 +88,7 @@ std::optional<Eigen::Vector3d> held_rim(const session::Session& run, const TickR
 std::vector<std::string> names_of_hidden(const Case& patient_case) {
     std::vector<std::string> names;
     for (const HiddenRegion& region : hidden_regions(patient_case)) names.push_back(region.name);
+    names.erase(std::unique(names.begin(), names.end()), names.end());  // a search takes the first of a name
     return names;
 }
 

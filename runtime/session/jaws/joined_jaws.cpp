@@ -22,6 +22,7 @@ TickResult joined_jaws(const TickResult& first, const TickResult& second, double
     const Eigen::Vector3d shafts = vector_of(first.shaft) + vector_of(second.shaft);
     joined.device_position = meeting(first.device_position, second.device_position, shafts, jaw_length);
     joined.tool_position = meeting(first.tool_position, second.tool_position, shafts, jaw_length);
+    joined.shaft = array_of(Eigen::Vector3d(shafts.normalized()));
     joined.buttons = 0;
     joined.force = array_of(Eigen::Vector3d(vector_of(first.force) + vector_of(second.force)));
     if (second.depth > first.depth) {

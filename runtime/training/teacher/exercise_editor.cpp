@@ -158,7 +158,7 @@ Wish ExerciseEditor::press(std::string_view key, const HandNow& hand) {
 
 void ExerciseEditor::press_on_organ(std::string_view key, const HandNow& hand) {
     if (key == "m") mark(hand);
-    if (key == "delete") take_mark_back();
+    if (key == "delete" && least_places(draft_.task) > 0) take_mark_back();
 }
 
 void ExerciseEditor::take_mark_back() {
@@ -266,7 +266,9 @@ void ExerciseEditor::change(int ways) {
 void ExerciseEditor::change_task(int ways) {
     const bool usual = draft_.instruction == usual_instruction(draft_.task);
     const bool untitled = draft_.title == draft_.name;
-    draft_.task = turned(choices_.tasks, draft_.task, ways);
+    const Task before = std::exchange(draft_.task, turned(choices_.tasks, draft_.task, ways));
+    // A rim, where closed tips meet there, and where to draw those are no marks of another task.
+    if ((before == Task::retract) != (draft_.task == Task::retract)) draft_.places.clear();
     if (usual) draft_.instruction = usual_instruction(draft_.task);
     if (choices_.taken.empty()) return;
     draft_.name = free_exercise_name(draft_.task, choices_.taken);
@@ -291,7 +293,13 @@ void ExerciseEditor::set_force(double newtons) {
 
 bool ExerciseEditor::is_complete() {
     const std::size_t needed = least_places(draft_.task);
-    if (draft_.places.size() >= needed) return true;
+    const std::vector<Vector3d>& places = draft_.places;
+    if (draft_.task == Task::retract && places.size() == 3 &&
+        (places[2] - places[1]).norm() <= *draft_.tolerance) {
+        message_ = shown_text("draw it farther, by more than the tolerance");
+        return false;
+    }
+    if (places.size() >= needed) return true;
     message_ = draft_.task == Task::retract ? shown_text("first hold a rim and draw it: Space, then M twice")
                : needed == 1                ? shown_text("set a mark first: Space, then M")
                                             : shown_text("set two marks or more first: Space, then M");

@@ -65,8 +65,8 @@ void Section::follow(vtkRenderer* renderer, bool shown) {
     actor_->GetShaderProperty()->GetFragmentCustomUniforms()->SetUniform2f(reach,
                                                                            near_reach(renderer).data());
     constexpr int columns = 640;  // a cell takes two pixels of 1280
-    if (marked_ && show_the_same(*marked_, plane, plane.width / columns)) return;
-    mark(plane, columns);
+    if (!marked_ || !show_the_same(*marked_, plane, plane.width / columns)) mark(plane, columns);
+    actor_->SetVisibility(cuts_);
 }
 
 void Section::place(const ScanPlane& plane, const Vector3d& eye) {
@@ -86,9 +86,10 @@ void Section::mark(const ScanPlane& plane, int columns) {
     const int rows = std::max(1, static_cast<int>(std::lround(columns * plane.height / plane.width)));
     marks_->SetDimensions(columns, rows, 1);
     marks_->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
-    std::ranges::copy(mark_section(*surface_, plane, columns, rows),
-                      static_cast<unsigned char*>(marks_->GetScalarPointer()));
+    const std::vector<unsigned char> marks = mark_section(*surface_, plane, columns, rows);
+    std::ranges::copy(marks, static_cast<unsigned char*>(marks_->GetScalarPointer()));
     marks_->Modified();
+    cuts_ = std::ranges::find(marks, 255) != marks.end();
 }
 
 }  // namespace palpate::visual

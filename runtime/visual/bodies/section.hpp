@@ -32,6 +32,7 @@ class Section {
 
     const TriangleMesh* surface_;
     std::optional<ScanPlane> marked_;
+    bool cuts_ = false;  // the body, there
     vtkSmartPointer<vtkPoints> corners_;
     vtkSmartPointer<vtkImageData> marks_;
     vtkSmartPointer<vtkActor> actor_;

@@ -5,9 +5,9 @@ import unittest
 
 import numpy as np
 
+from trainer_case import TrainerCase
 from device_run import DeviceRun
 from recorded import kept
-from trainer_case import TrainerCase
 
 # Into the picture once the window is there, onto the soft cube, two of them 4 mm beside each other.
 PRESS = [[0, 0, 0, 0], [8, 0, 0, 0], [8.5, 0, 0, -14], [100, 0, 0, -14]]

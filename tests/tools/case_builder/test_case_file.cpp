@@ -78,7 +78,7 @@ TEST(CaseFile, how_the_inputs_are_read_becomes_requests_of_import) {
     const CaseFile scaled = with("scale = 15.7\noffset = -1024\n");
     EXPECT_EQ(scaled.volume_import.scale, 15.7);
     EXPECT_EQ(scaled.volume_import.offset, -1024);
-    EXPECT_THROW(with("scale = 0.0\n"), InvalidInput);
+    EXPECT_THROW(with("scale = -1.0\n"), InvalidInput);
     EXPECT_EQ(with("series = \"portal venous\"\n").volume_import.series, "portal venous");
 
     const auto table = written(minimal).parent_path() / "names.ctbl";

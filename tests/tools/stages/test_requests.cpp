@@ -74,11 +74,13 @@ TEST(Request, of_import_survives_json) {
                                     .series = "3",
                                     .accept_gaps = true,
                                     .nifti_frame = "qform",
+                                    .scale = 15.725,
+                                    .offset = -1024,
                                     .deface = true,
                                     .labels = true,
                                     .label_names = "5=liver,4=gallbladder",
                                     .overlaps = "smaller"},
-                      10);
+                      12);
 }
 
 TEST(Request, of_segment_survives_json_with_parameters_in_their_order) {

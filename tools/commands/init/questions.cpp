@@ -58,7 +58,7 @@ void ask_organ(InitRequest& request, const Volume& volume, bool ct, cli::Questio
 }
 
 void ask_scale(InitRequest& request, const Volume& volume, cli::Questions& questions) {
-    if (request.scale != 0 || imaging::is_ct(volume)) return;
+    if (request.scale || imaging::is_ct(volume)) return;
     const auto found = imaging::scale_by_air_and_soft_tissue(volume);
     if (!found) return;
     const std::string said = "values are no HU; by air and soft tissue " + imaging::text_of(*found);
@@ -72,6 +72,7 @@ void ask_scale(InitRequest& request, const Volume& volume, cli::Questions& quest
     // As the case file has them.
     request.scale = std::stod(fmt::format("{:.4g}", found->scale));
     request.offset = std::stod(fmt::format("{:.4g}", found->offset));
+    request.scale_is_guessed = true;
 }
 
 void ask_name(InitRequest& request, cli::Questions& questions) {

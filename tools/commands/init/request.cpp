@@ -54,8 +54,8 @@ std::string command_of(const InitRequest& request) {
     add("--approach", request.approach);
     if (request.contact_nodes > 0) add("--contact-nodes", fmt::format("{:g}", request.contact_nodes));
     if (request.size_mib > 0) add("--size-mib", fmt::format("{:g}", request.size_mib));
-    if (request.scale != 0)
-        words.insert(words.end(), {fmt::format("--scale={:g}", request.scale),
+    if (request.scale)
+        words.insert(words.end(), {fmt::format("--scale={:g}", *request.scale),
                                    fmt::format("--offset={:g}", request.offset)});
     add("-o", request.output.string());
     std::string command = "palpate init";

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,10 @@ struct InitRequest {
     std::vector<std::string> seeds, background_seeds;
     bool labels = false, yes = false;
     double contact_nodes = 0, size_mib = 0;  ///< one of them, or neither
-    /// HU = scale * value + offset, of a CT in other units; a scale of 0: not told.
-    double scale = 0, offset = 0;
+    /// HU = scale * value + offset, of a CT in other units.
+    std::optional<double> scale;
+    double offset = 0;
+    bool scale_is_guessed = false;
 };
 
 /// What that means for a draft. Throws UsageError for an approach that is no side.

@@ -78,6 +78,7 @@ Recipe liver_recipe() {
         .if_empty = "move the seeds into the liver, or check region and cleaning",
         .make = make_liver,
         .needs_volume = true,
+        .needs_hu = true,
         .needs_seeds = true};
 }
 

@@ -76,6 +76,7 @@ Recipe tumour_recipe() {
             .if_empty = "move the seeds, raise margin_mm, or check region and cleaning",
             .make = make_tumour,
             .needs_volume = true,
+            .needs_hu = true,
             .needs_seeds = true};
 }
 

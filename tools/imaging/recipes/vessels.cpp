@@ -87,7 +87,8 @@ Recipe vessels_recipe() {
              with_defaults(cleaning_parameters(), {{"min_component_ml", "0.05"}})}),
         .if_empty = "lower contrast_hu or min_component_ml, or raise max_radius_mm",
         .make = make_vessels,
-        .needs_volume = true};
+        .needs_volume = true,
+        .needs_hu = true};
 }
 
 }  // namespace palpate::imaging

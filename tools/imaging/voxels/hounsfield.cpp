@@ -47,7 +47,7 @@ struct Histogram {
         if (whole) width = std::max(1.0, std::ceil(width));
         counts.resize(static_cast<std::size_t>((high - low) / width) + 1);
         for (const float value : volume.values) ++counts[static_cast<std::size_t>((value - low) / width)];
-        if (whole) lowest -= width / 2;  // a range of one number has it in its middle
+        if (whole) lowest -= 0.5;  // a range's numbers lie evenly about its middle
     }
 
     // Of the fullest from one range on, and before another, three side by side counting: the mean value.
@@ -100,6 +100,7 @@ std::optional<HounsfieldScale> scale_by_air_and_soft_tissue(const Volume& volume
     constexpr double air_hu = -1000, soft_hu = 40;
     constexpr double least_of_body = 0.72, least_of_all = 0.1;    // soft tissue and fat; air, and the body
     constexpr double darkest_bone = 600, brightest_metal = 4500;  // HU
+    if (std::ranges::any_of(volume.values, [](float value) { return value < 0; })) return std::nullopt;
     const Histogram histogram(volume);
     const std::size_t ranges = histogram.counts.size(), quarter = std::max<std::size_t>(2, ranges / 4);
     const double air = histogram.commonest(0, std::min(quarter, ranges));

@@ -42,8 +42,9 @@ void rescale(Volume& volume, const HounsfieldScale& to_hounsfield);
 
 /// The scale of a CT in other units, as in 8 bit, by its air (-1000 HU) and soft tissue (40 HU): the values
 /// about which most lie, of the lowest quarter and of those above. To some 4 % where air is stored as such.
-/// Nothing where most of what is no air is no soft tissue or fat by that scale, or its brightest value is not
-/// bone's or metal's: so for MRI, for windows that cut air off, and where fat is the commonest.
+/// Nothing where a value is negative, most of what is no air is no soft tissue or fat by that scale, or the
+/// brightest value is not bone's or metal's: so for most MRI, for windows that cut air off, and where fat is
+/// the commonest.
 std::optional<HounsfieldScale> scale_by_air_and_soft_tissue(const Volume& volume);
 
 /// "HU = 16.05 x value - 1025".

@@ -15,8 +15,10 @@ void declare(cli::Command& command, ImportRequest& request) {
                  "interpolate missing, uneven, doubled or tilted DICOM slices linearly onto an even grid");
     command.option("--nifti-frame", request.nifti_frame,
                    "qform or sform, for a NIfTI file in which both are set and disagree");
-    command.option("--scale", request.scale,
-                   "of a CT whose values are no HU, as in 8 bit: HU = SCALE x value + OFFSET");
+    command
+        .option("--scale", request.scale,
+                "of a CT whose values are no HU, as in 8 bit: HU = SCALE x value + OFFSET")
+        .positive();
     command.option("--offset", request.offset, "see --scale", "HU");
     command.flag("--deface", request.deface,
                  "take the face of a head's CT away: soft tissue in front of its bone becomes air");

@@ -86,6 +86,13 @@ TEST_F(Editor, of_a_forceps_sets_the_rim_that_is_held_and_then_where_it_is_drawn
     EXPECT_EQ(editor_.recipe().task, Task::free);
     press({"plus"});
     EXPECT_EQ(editor_.recipe().task, Task::retract) << "a forceps has no other";
+    press({"space", "m"}, holding);
+    press({"m"}, {.tool = {0, 0, 15}});
+    press({"space", "5", "plus", "plus", "plus", "plus", "plus", "plus"});
+    EXPECT_EQ(press({"s"}), Wish::nothing);
+    EXPECT_THAT(editor_.message(), HasSubstr("farther"));
+    press({"1", "plus", "space", "Delete", "space", "1", "plus"});
+    EXPECT_TRUE(editor_.recipe().places.empty()) << "none of another task's are left";
 }
 
 TEST_F(Editor, goes_through_the_regions_that_a_search_may_hide) {
