@@ -3,8 +3,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 
 namespace palpate::visual {
@@ -12,12 +14,6 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-// Where an edge from a to b crosses the plane that they are so far above (third coordinate), which lies
-// between.
-Vector2d crossing(const Vector3d& a, const Vector3d& b) {
-    return a.head<2>() + (b - a).head<2>() * (a.z() / (a.z() - b.z()));
-}
 
 // Where the surface crosses the middles of rows, for each row from left to right.
 class RowCrossings {
@@ -60,23 +56,29 @@ class RowCrossings {
 
 std::vector<unsigned char> mark_section(const TriangleMesh& surface, const ScanPlane& plane, int columns,
                                         int rows) {
-    // In cells along the plane, and above it.
-    Eigen::Matrix3d to_cells;
+    Eigen::Matrix<double, 2, 3> to_cells;
     to_cells << plane.right.transpose() * (columns / plane.width),
-        plane.up.transpose() * (rows / plane.height), plane.right.cross(plane.up).transpose();
-    std::vector<Vector3d> places(surface.vertices.size());
-    std::ranges::transform(surface.vertices, places.begin(),
-                           [&](const Vector3d& p) { return Vector3d(to_cells * (p - plane.corner)); });
+        plane.up.transpose() * (rows / plane.height);
+    const Vector3d normal = plane.right.cross(plane.up);
+    const double height = normal.dot(plane.corner);
+    std::vector<double> heights(surface.vertices.size());  // above the plane, mm
+    std::ranges::transform(surface.vertices, heights.begin(),
+                           [&](const Vector3d& p) { return normal.dot(p) - height; });
+    const auto above = [&](std::int32_t vertex) { return !(heights[vertex] < 0); };
+    // Where an edge crosses the plane, in cells: its two triangles compute the same, bit for bit.
+    const auto crossing = [&](std::int32_t one, std::int32_t other) -> Vector2d {
+        const auto [a, b] = std::minmax(one, other);
+        const double share = heights[a] / (heights[a] - heights[b]);
+        const Vector3d &from = surface.vertices[a], &to = surface.vertices[b];
+        return to_cells * (from + share * (to - from) - plane.corner);
+    };
     RowCrossings crossings(rows);
     for (const Triangle& t : surface.triangles) {
-        std::vector<Vector2d>::size_type count = 0;
-        Vector2d ends[2];
-        for (std::size_t corner = 0; corner < 3; ++corner) {
-            // Both triangles of an edge compute the same point, bit for bit.
-            const auto [a, b] = std::minmax(t[corner], t[(corner + 1) % 3]);
-            if ((places[a].z() < 0) != (places[b].z() < 0)) ends[count++] = crossing(places[a], places[b]);
-        }
-        if (count == 2) crossings.add(ends[0], ends[1]);
+        const std::array<bool, 3> over{above(t[0]), above(t[1]), above(t[2])};
+        if (over[0] == over[1] && over[1] == over[2]) continue;
+        // The corner that is alone on its side.
+        const std::size_t alone = over[1] == over[2] ? 0 : over[0] == over[2] ? 1 : 2;
+        crossings.add(crossing(t[alone], t[(alone + 1) % 3]), crossing(t[alone], t[(alone + 2) % 3]));
     }
     std::vector<unsigned char> marks(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), 0);
     crossings.fill(columns, marks);
