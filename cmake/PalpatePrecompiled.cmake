@@ -8,8 +8,8 @@ palpate_precompiled(values LINKS Eigen3::Eigen HEADERS ${palpate_standard_header
 palpate_precompiled(commands OPTIONS $<$<CONFIG:Release>:-O1> LINKS Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json
     HEADERS ${palpate_standard_headers} <Eigen/Dense> <fmt/format.h> <nlohmann/json.hpp>)
 if(PALPATE_TESTS)
-    # What tests do themselves is not looked at for undefined behaviour, and where time counts not for wrong addresses either:
-    # more than half of the time to compile them. What formats and runtime do is, and what lies on the heap.
+    # What tests do themselves is not looked at for undefined behaviour, with ONCE not for wrong addresses either: more than
+    # half of the time to compile them. What formats and runtime do is, and what lies on the heap.
     if(PALPATE_SANITIZERS MATCHES "undefined")
         set(palpate_unlooked -fno-sanitize=$<$<STREQUAL:${PALPATE_TESTS},ONCE>:address,>undefined)
     endif()

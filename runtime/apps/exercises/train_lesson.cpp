@@ -58,8 +58,9 @@ std::vector<ExerciseRecipe> written_in(const std::filesystem::path& file) {
 // their name that finds room.
 std::vector<ExerciseRecipe> usual_exercises(const std::filesystem::path& file, bool with_forceps) {
     std::vector<ExerciseRecipe> recipes = written_in(file);
+    const std::vector<Task> served = tasks_of(with_forceps);
     std::erase_if(recipes, [&](const ExerciseRecipe& recipe) {
-        return recipe.task != Task::free && (recipe.task == Task::retract) != with_forceps;
+        return std::ranges::find(served, recipe.task) == served.end();
     });
     std::ranges::move(standard_exercises(with_forceps), std::back_inserter(recipes));
     return recipes;

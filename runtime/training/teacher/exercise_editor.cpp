@@ -57,6 +57,11 @@ std::size_t least_places(Task task) {
     return 0;
 }
 
+// Whether a place is far enough off where a rim was held to be drawn to: nearer, holding alone would do.
+bool is_drawn_to(const Vector3d& place, const ExerciseRecipe& recipe) {
+    return (place - recipe.places[1]).norm() > *recipe.tolerance;
+}
+
 // The value so many places on, round and round.
 template <typename Value>
 Value turned(const std::vector<Value>& values, const Value& now, int ways) {
@@ -191,7 +196,7 @@ void ExerciseEditor::mark_retraction(const HandNow& hand) {
         places = {four_decimals(*hand.rim), four_decimals(hand.tool)};
     else if (places.empty())
         message_ = shown_text("take hold of the rim first");
-    else if ((hand.tool - places[1]).norm() > *draft_.tolerance)
+    else if (is_drawn_to(hand.tool, draft_))
         places.push_back(four_decimals(hand.tool));
     else
         message_ = shown_text("draw it farther, by more than the tolerance");
@@ -294,8 +299,7 @@ void ExerciseEditor::set_force(double newtons) {
 bool ExerciseEditor::is_complete() {
     const std::size_t needed = least_places(draft_.task);
     const std::vector<Vector3d>& places = draft_.places;
-    if (draft_.task == Task::retract && places.size() == 3 &&
-        (places[2] - places[1]).norm() <= *draft_.tolerance) {
+    if (draft_.task == Task::retract && places.size() == 3 && !is_drawn_to(places[2], draft_)) {
         message_ = shown_text("draw it farther, by more than the tolerance");
         return false;
     }

@@ -62,8 +62,8 @@ void Section::follow(vtkRenderer* renderer, bool shown) {
     if (!shown) return;
     const ScanPlane plane = near_plane(renderer);
     place(plane, Vector3d(renderer->GetActiveCamera()->GetPosition()));
-    actor_->GetShaderProperty()->GetFragmentCustomUniforms()->SetUniform2f(reach,
-                                                                           near_reach(renderer).data());
+    const Eigen::Vector2f here = near_reach(renderer).cast<float>();
+    actor_->GetShaderProperty()->GetFragmentCustomUniforms()->SetUniform2f(reach, here.data());
     constexpr int columns = 640;  // a cell takes two pixels of 1280
     if (!marked_ || !show_the_same(*marked_, plane, plane.width / columns)) mark(plane, columns);
     actor_->SetVisibility(cuts_);

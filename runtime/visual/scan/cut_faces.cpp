@@ -48,7 +48,7 @@ void CutFaces::follow(vtkRenderer* renderer, bool shown) {
         sampler_.sample(plane, columns, std::max(1, static_cast<int>(columns * plane.height / plane.width)));
         sampled_ = plane;
     }
-    const std::array<float, 2> here = shown ? near_reach(renderer) : std::array<float, 2>{0, 0};
+    const Eigen::Vector2f here = shown ? near_reach(renderer).cast<float>().eval() : Eigen::Vector2f::Zero();
     for (vtkActor* actor : actors_)
         actor->GetShaderProperty()->GetFragmentCustomUniforms()->SetUniform2f(reach, here.data());
 }

@@ -2,6 +2,7 @@
 #include "runtime/visual/scan/near_plane.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vtkCamera.h>
@@ -12,20 +13,18 @@ namespace palpate::visual {
 
 using Eigen::Vector3d;
 
+Eigen::Vector2d near_reach(vtkRenderer* renderer) {
+    const double up = std::tan(renderer->GetActiveCamera()->GetViewAngle() * std::numbers::pi / 180 / 2);
+    return {up * renderer->GetTiledAspectRatio(), up};
+}
+
 ScanPlane near_plane(vtkRenderer* renderer) {
     vtkCamera* camera = renderer->GetActiveCamera();
     const auto [right, up, toward_eye] = view_axes(camera);
-    const double distance = camera->GetClippingRange()[0],
-                 height = 2 * distance * std::tan(camera->GetViewAngle() * std::numbers::pi / 180 / 2),
-                 width = height * renderer->GetTiledAspectRatio();
+    const double distance = camera->GetClippingRange()[0];
+    const Eigen::Vector2d half = distance * near_reach(renderer);
     const Vector3d middle = Vector3d(camera->GetPosition()) - distance * toward_eye;
-    return {middle - right * (width / 2) - up * (height / 2), right, up, width, height};
-}
-
-std::array<float, 2> near_reach(vtkRenderer* renderer) {
-    const ScanPlane plane = near_plane(renderer);
-    const double twice = 2 * renderer->GetActiveCamera()->GetClippingRange()[0];
-    return {static_cast<float>(plane.width / twice), static_cast<float>(plane.height / twice)};
+    return {middle - right * half.x() - up * half.y(), right, up, 2 * half.x(), 2 * half.y()};
 }
 
 bool show_the_same(const ScanPlane& a, const ScanPlane& b, double texel) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <array>
+#include <Eigen/Core>
 #include <vtkRenderer.h>
 
 #include "runtime/visual/scan/scan_plane.hpp"
@@ -10,8 +10,8 @@ namespace palpate::visual {
 /// What a renderer's camera sees of its near plane.
 ScanPlane near_plane(vtkRenderer* renderer);
 
-/// Half the near plane's width and height by its distance: where a ray through the picture meets it.
-std::array<float, 2> near_reach(vtkRenderer* renderer);
+/// Half that plane's width and height by its distance: where a ray through the picture meets it.
+Eigen::Vector2d near_reach(vtkRenderer* renderer);
 
 /// Whether two planes show the same to a fiftieth of a texel of that size (mm).
 bool show_the_same(const ScanPlane& a, const ScanPlane& b, double texel);
