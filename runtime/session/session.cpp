@@ -6,6 +6,7 @@
 #include <future>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <sys/resource.h>
 #include <utility>
 
 #include "formats/asset/asset.hpp"
@@ -40,16 +41,15 @@ Case case_of(const SessionRequest& request) {
     return patient_case;
 }
 
-// A model of a case whose compliances have been found to answer as their meshes do, meanwhile.
-std::unique_ptr<haptics::HapticModel> sound_model(const Case& patient_case, const SessionRequest& request) {
-    auto judged = std::async(std::launch::async, [&] {
+// Whether its compliances answer as its meshes do, beside all else that comes before the first tick.
+std::future<void> judged(const Case& patient_case, const std::filesystem::path& asset) {
+    return std::async(std::launch::async, [&patient_case, asset] {
+        constexpr int lower = 10;
+        setpriority(PRIO_PROCESS, 0, lower);  // of this thread: who waits for a picture goes first
         for (const DeformableBody& body : patient_case.deformable_bodies)
-            elasticity::require_answers_of_mesh(body, request.asset.string() + ": compliance of " + body.name,
+            elasticity::require_answers_of_mesh(body, asset.string() + ": compliance of " + body.name,
                                                 std::random_device{}());
     });
-    auto model = std::make_unique<haptics::HapticModel>(patient_case, request.method, request.tool_count);
-    judged.get();
-    return model;
 }
 
 }  // namespace
@@ -58,7 +58,11 @@ Session::Session(SessionRequest request, std::function<void(const std::string&)>
     : request_(std::move(request)),
       tell_(std::move(tell)),
       case_(case_of(request_)),
-      model_(models_.emplace_back(sound_model(case_, request_)).get()) {}
+      judged_(judged(case_, request_.asset)),
+      model_(models_
+                 .emplace_back(
+                     std::make_unique<haptics::HapticModel>(case_, request_.method, request_.tool_count))
+                 .get()) {}
 
 Session::~Session() {
     stop();
@@ -84,6 +88,10 @@ void Session::hold(devices::OpenDevices devices, const Eigen::Quaterniond& jaws)
     if (!request_.stream.empty()) stream_.emplace(request_.stream, case_, model_->tool_count());
 }
 
+void Session::require_sound() {
+    if (judged_.valid()) judged_.get();
+}
+
 void Session::guide(const Eigen::Vector3d& place) {
     if (devices_.guide) devices_.guide(place);
 }
@@ -96,12 +104,14 @@ recording::RecordingHead Session::recording_head(const std::string& version) con
 }
 
 void Session::record_to(const std::filesystem::path& recording) {
+    require_sound();
     recorder_.emplace(recording);
     recording_ = recording;
 }
 
 void Session::start() {
     try {
+        require_sound();
         loop_->start();
     } catch (...) {
         if (recorder_) std::filesystem::remove(recording_);  // it holds nothing
@@ -143,6 +153,7 @@ void Session::stop() {
 }
 
 void Session::run_virtual(double seconds, const Sink& sink) {
+    require_sound();
     loop_->run_virtual(static_cast<std::int64_t>(std::llround(1000 * seconds)),
                        [&](const TickResult& result) { take(result, sink); });
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <future>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -47,8 +48,9 @@ class Session {
   public:
     using Sink = std::function<void(const TickResult&)>;
 
-    /// Reads the asset, prepares its model, and judges its compliances by its meshes. `tell` gets a sentence
-    /// for each fault when it begins. Throws as load_asset(), HapticModel and require_answers_of_mesh().
+    /// Reads the asset, prepares its model, and begins to judge its compliances by its meshes: nothing ticks
+    /// before that is done. `tell` gets a sentence for each fault when it begins. Throws as load_asset() and
+    /// HapticModel.
     explicit Session(SessionRequest request, std::function<void(const std::string&)> tell = {});
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
@@ -81,13 +83,13 @@ class Session {
     /// What a recording of this session says of it. Throws as recording_head().
     recording::RecordingHead recording_head(const std::string& version) const;
     /// Puts every tick from here on into what make_recording() made with that head, also while it runs.
-    /// Throws as RunRecorder.
+    /// Throws as RunRecorder and require_answers_of_mesh().
     void record_to(const std::filesystem::path& recording);
     /// Ends the recording; the ticks go on.
     void end_recording() { recorder_.reset(); }
 
-    /// Starts to tick against the clock; returns once the servo is set up. Throws as Servo::start(); an empty
-    /// recording is removed then.
+    /// Starts to tick against the clock; returns once the servo is set up. Throws as Servo::start() and
+    /// require_answers_of_mesh(); an empty recording is removed then.
     void start();
     /// While it runs against the clock: goes on with another contact method, as ServoLoop::change_model() has
     /// it; a recording, which is of one method, ends. Earlier models stay, for others may look at their
@@ -102,7 +104,7 @@ class Session {
     /// Takes the forces to zero and ends the servo. What it left is still to be pumped.
     void stop();
 
-    /// Ticks for `seconds` in this thread instead, as fast as possible.
+    /// Ticks for `seconds` in this thread instead, as fast as possible. Throws as require_answers_of_mesh().
     void run_virtual(double seconds, const Sink& sink);
 
     /// Faults of the last two seconds before `time` (s), and of the whole run: see RunWatch.
@@ -116,12 +118,14 @@ class Session {
     haptics::ServoStatistics statistics() const;
 
   private:
+    void require_sound();
     void take(const TickResult& result, const Sink& sink);
     std::vector<realtime::Device*> held() const;
 
     SessionRequest request_;
     std::function<void(const std::string&)> tell_;
     Case case_;
+    std::future<void> judged_;
     std::vector<std::unique_ptr<haptics::HapticModel>> models_;  // one for each method so far
     haptics::HapticModel* model_;                                // that ticks
     devices::OpenDevices devices_;

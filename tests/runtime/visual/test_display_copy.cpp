@@ -60,6 +60,11 @@ TEST(DisplayCopy, keeps_to_the_budget) {
     }
 }
 
+TEST(DisplayCopy, of_less_than_a_body_needs_nothing_is_left) {
+    EXPECT_TRUE(display_copy(sample::sphere_surface(Eigen::Vector3d::Zero(), radius, 0), 1, {focus}, near)
+                    .triangles.empty());
+}
+
 TEST(DisplayCopy, a_surface_within_the_budget_comes_back_as_it_is) {
     const TriangleMesh surface = sample::sphere_surface(center, radius, 3);
     const TriangleMesh copy = display_copy(surface, 512, {focus}, near);

@@ -126,7 +126,7 @@ class NeighbourContact {
     const Interface& interface_of(const Row& row) const noexcept {
         return interfaces_[probe_of(row).interface];
     }
-    void add_interface(std::size_t soft, std::size_t body, double reach);
+    void add_interface(std::size_t soft, std::size_t body, const Eigen::AlignedBox3d& box, double reach);
     static double ahead_of(const Probe& probe, const Interface& interface) noexcept;
     bool look_at(Probe& probe, std::span<const DeformedPatch> patches) noexcept;
     bool corners_of(const Interface& interface, std::span<DeformedPatch> patches, std::int32_t triangle,

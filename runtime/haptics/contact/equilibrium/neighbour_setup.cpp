@@ -2,6 +2,8 @@
 // Which vertices may meet the body beside theirs: found before the first tick.
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <functional>
+#include <future>
 #include <limits>
 
 #include "runtime/haptics/contact/equilibrium/neighbour_contact.hpp"
@@ -71,12 +73,14 @@ NeighbourContact::NeighbourContact(const ContactBodies& bodies) : bodies_(bodies
                                   (edges[body - rigid] == edges[soft] && body < rigid + soft)))
                 continue;
             const double reach = push(rigid + soft) + push(body);
-            if (boxes[rigid + soft].exteriorDistance(boxes[body]) <= reach) add_interface(soft, body, reach);
+            if (boxes[rigid + soft].exteriorDistance(boxes[body]) <= reach)
+                add_interface(soft, body, boxes[body], reach);
         }
     forget();
 }
 
-void NeighbourContact::add_interface(std::size_t soft, std::size_t body, double reach) {
+void NeighbourContact::add_interface(std::size_t soft, std::size_t body, const AlignedBox3d& box,
+                                     double reach) {
     const DeformableContact& owner = bodies_.deformable[soft];
     const CollisionSurface& surface = *bodies_.surfaces[body];
     const std::size_t rigid = bodies_.rigid_count();
@@ -85,7 +89,9 @@ void NeighbourContact::add_interface(std::size_t soft, std::size_t body, double 
     interface.body = static_cast<std::int32_t>(body);
     interface.other = body < rigid ? -1 : static_cast<std::int32_t>(body - rigid);
     interface.first = interface.next = probes_.size();
-    const AlignedBox3d box = box_of(surface);
+    std::future<std::vector<std::array<std::int32_t, 3>>> neighbours;  // of bone, which has many
+    if (body < rigid)
+        neighbours = std::async(std::launch::async, triangle_neighbours, std::cref(bodies_.triangles[body]));
     const std::vector<Vector3d> normals = vertex_normals(owner);
     for (std::size_t v = 0; v < owner.vertex_count(); ++v) {
         Probe probe;
@@ -93,10 +99,9 @@ void NeighbourContact::add_interface(std::size_t soft, std::size_t body, double 
         probe.vertex = static_cast<std::int32_t>(v);
         const Vector3d vertex = owner.rest_position(probe.vertex);
         if (box.exteriorDistance(vertex) > reach) continue;
-        const bool outside = surface.is_outside(vertex);
-        const auto from_vertex =
-            surface.closest_point(vertex, outside ? reach : std::numeric_limits<double>::infinity());
-        if (!from_vertex) continue;
+        const auto from_vertex = surface.closest_point(vertex, std::numeric_limits<double>::infinity());
+        const bool outside = surface.is_outside(vertex, *from_vertex);
+        if (outside && from_vertex->distance > reach) continue;
         // What looks away from the other body does not meet it.
         if (outside && from_vertex->distance > ball_radius && normals[v].dot(from_vertex->point - vertex) < 0)
             continue;
@@ -128,7 +133,7 @@ void NeighbourContact::add_interface(std::size_t soft, std::size_t body, double 
     interface.end = probes_.size();
     if (interface.first == interface.end) return;
     if (body < rigid) {
-        interface.neighbours = triangle_neighbours(bodies_.triangles[body]);
+        interface.neighbours = neighbours.get();
         interface.tree_slots.resize(bodies_.triangles[body].size());
         for (std::int32_t slot = 0; slot < surface.triangle_count(); ++slot)
             interface.tree_slots[static_cast<std::size_t>(surface.mesh_triangle(slot))] = slot;
