@@ -57,7 +57,7 @@ void CoarsePixels::Render(const vtkRenderState* state) {
     const vtkOpenGLState::ScopedglScissor scissor(gl);
     gl->vtkglScissor(left, bottom, width, height);
     gl->vtkglBlitFramebuffer(0, 0, columns, rows, left, bottom, left + width, bottom + height,
-                             GL_COLOR_BUFFER_BIT, GL_LINEAR);
+                             GL_COLOR_BUFFER_BIT, smooth_ ? GL_LINEAR : GL_NEAREST);
     gl->PopReadFramebufferBinding();
 }
 

@@ -16,8 +16,12 @@ class CoarsePixels : public vtkRenderPass {
     static CoarsePixels* New();
     vtkTypeMacro(CoarsePixels, vtkRenderPass);
 
-    /// How many pixels of the window one that is drawn takes along each side, 2 or more.
-    void set_size(int pixels) { size_ = pixels; }
+    /// How many pixels of the window one that is drawn takes along each side, 2 or more, and whether what
+    /// lies between is blended.
+    void set(int pixels, bool smooth) {
+        size_ = pixels;
+        smooth_ = smooth;
+    }
 
     void Render(const vtkRenderState* state) override;
     void ReleaseGraphicsResources(vtkWindow* window) override;
@@ -28,6 +32,7 @@ class CoarsePixels : public vtkRenderPass {
 
   private:
     int size_ = 2;
+    bool smooth_ = true;
     vtkSmartPointer<vtkRenderPass> steps_;
     vtkSmartPointer<vtkOpenGLFramebufferObject> drawn_;
 };

@@ -7,7 +7,8 @@ namespace palpate::visual {
 
 /// What of the picture may be left out where a machine is too slow for it.
 struct Detail {
-    int pixel = 1;  ///< window pixels that one drawn takes along each side
+    int pixel = 1;       ///< window pixels that one drawn takes along each side
+    bool smooth = true;  ///< pixels of the window between those drawn are blended, else as the nearest one
     bool fine_bodies =
         false;               ///< rigid bodies as close to the whole as the budget allows, else a coarser copy
     bool grain = false;      ///< the finest spots of tissue and their relief

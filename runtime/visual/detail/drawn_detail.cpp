@@ -17,7 +17,7 @@ void DrawnDetail::draw(const Detail& detail) {
     scene_->draw(detail);
     vtkSmartPointer<vtkRenderPass> pass;
     if (detail.pixel > 1) {
-        coarse_pixels_->set_size(detail.pixel);
+        coarse_pixels_->set(detail.pixel, detail.smooth);
         pass = coarse_pixels_;
     }
     if (detail.occlusion) {

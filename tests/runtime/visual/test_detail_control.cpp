@@ -99,6 +99,15 @@ TEST(DetailLevels, end_with_everything_and_leave_lines_enough_to_see) {
               visual::detail_levels(720, true).front().pixel);
 }
 
+TEST(DetailLevels, least_of_all_has_no_pixels_blended) {
+    const auto levels = visual::detail_levels(720, false);
+    EXPECT_FALSE(levels.front().smooth);
+    EXPECT_EQ(levels[1].pixel, levels.front().pixel);
+    EXPECT_TRUE(
+        std::all_of(levels.begin() + 1, levels.end(), [](const auto& level) { return level.smooth; }));
+    EXPECT_TRUE(visual::detail_levels(240, false).front().smooth);  // nothing lies between its pixels
+}
+
 TEST(DetailLevels, of_a_machine_without_a_graphics_card_have_no_occlusion) {
     const auto levels = visual::detail_levels(720, false);
     EXPECT_EQ(levels.size() + 1, visual::detail_levels(720, true).size());
