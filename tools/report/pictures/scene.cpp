@@ -181,6 +181,7 @@ Picture grabbed(vtkRenderWindow* window) {
     grab->SetInput(window);
     grab->SetInputBufferTypeToRGB();
     grab->ReadFrontBufferOff();
+    grab->ShouldRerenderOff();  // it is drawn
     grab->Update();
     vtkImageData* image = grab->GetOutput();
     Picture picture{width, height, {}};
