@@ -449,7 +449,8 @@ void TrainWindow::draw(const VisualFrame& frame) {
     p.window->Render();
     if (const auto told = p.pictures.outcome()) p.overlay.tell(*told);
     if (std::exchange(p.picture_asked, false))
-        p.overlay.tell(p.pictures.write(p.window, free_path(".", p.case_name, ".png")));
+        p.detail.with_everything(
+            [&] { p.overlay.tell(p.pictures.write(p.window, free_path(".", p.case_name, ".png"))); });
     if (frame.lesson.page && p.pace.frames() > 0)  // the first frame is not to wait for them
         p.thumbnails.take_next(*frame.lesson.page, display_scale(size[0], size[1]));
     const double seconds = p.pace.frame_drawn();
@@ -504,7 +505,7 @@ ShownDetail TrainWindow::detail() const {
 }
 
 void TrainWindow::save_picture(const std::filesystem::path& path) {
-    write_picture(path, shown_pixels(parts_->window));
+    parts_->detail.with_everything([&] { write_picture(path, shown_pixels(parts_->window)); });
 }
 
 void TrainWindow::add_to(Film& film) {

@@ -13,6 +13,13 @@ void DrawnDetail::frame_took(double seconds) {
     if (control_->take(seconds)) draw(levels_[static_cast<std::size_t>(control_->level()) - 1]);
 }
 
+void DrawnDetail::with_everything(const std::function<void()>& work) {
+    if (!control_) return work();
+    draw(levels_.back());
+    work();
+    draw(levels_[static_cast<std::size_t>(control_->level()) - 1]);
+}
+
 void DrawnDetail::draw(const Detail& detail) {
     scene_->draw(detail);
     vtkSmartPointer<vtkRenderPass> pass;

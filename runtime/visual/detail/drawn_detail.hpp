@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <functional>
 #include <optional>
 #include <vector>
 #include <vtkNew.h>
@@ -23,6 +24,9 @@ class DrawnDetail {
 
     /// A frame has come `seconds` after the one before: the next has more, less or the same.
     void frame_took(double seconds);
+
+    /// Calls `work` while everything is drawn, for a picture that is kept.
+    void with_everything(const std::function<void()>& work);
 
     /// Level, levels and changes; nothing before the first frame.
     const std::optional<DetailControl>& control() const { return control_; }
