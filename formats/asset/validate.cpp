@@ -5,7 +5,6 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <future>
 #include <iterator>
 #include <span>
 #include <utility>
@@ -266,42 +265,6 @@ void check_box(const ObbNode& node, std::size_t index, const std::string& where)
         refuse(where, "box " + std::to_string(index) + " is not an oriented box");
 }
 
-// How far the triangles of leaves that begin at these entries of the order reach along the axes of the boxes
-// around them, mm.
-std::vector<Eigen::Vector3d> reach_of_leaves(const ObbTree& tree, const TriangleMesh& surface,
-                                             std::span<const std::int32_t> parent, std::size_t begin,
-                                             std::size_t end, const std::string& where) {
-    std::vector<Eigen::Vector3d> reach(tree.nodes.size(), Eigen::Vector3d::Zero());
-    const auto check_box_around = [&](std::int32_t index, std::span<const std::int32_t> vertices) {
-        const ObbNode& box = tree.nodes[static_cast<std::size_t>(index)];
-        const Eigen::Matrix3d axes = box.axes.cast<double>();
-        const Eigen::Vector3d center = box.center.cast<double>(), half = box.half_extents.cast<double>();
-        Eigen::Vector3d& farthest = reach[static_cast<std::size_t>(index)];
-        for (const std::int32_t v : vertices)
-            farthest = farthest.cwiseMax((axes * (surface.vertices[v] - center)).cwiseAbs());
-        const double escape = (farthest - half).maxCoeff();
-        if (escape > farthest_escape)
-            refuse(where,
-                   "box " + std::to_string(index) + " leaves a triangle " + std::to_string(escape) +
-                       " mm outside",
-                   "boxes that enclose their triangles");
-    };
-    const std::span<const std::int32_t> order = tree.triangle_order;
-    std::vector<std::int32_t> vertices;  // of a leaf, each once: a triangle's are its neighbours' too
-    for (std::size_t leaf = 0; leaf < tree.nodes.size(); ++leaf) {
-        const ObbNode& node = tree.nodes[leaf];
-        const auto first = static_cast<std::size_t>(node.first);
-        if (node.count == 0 || first < begin || first >= end) continue;
-        vertices.clear();
-        for (const std::int32_t t : order.subspan(first, static_cast<std::size_t>(node.count)))
-            vertices.insert(vertices.end(), surface.triangles[t].begin(), surface.triangles[t].end());
-        std::ranges::sort(vertices);
-        vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-        for (auto i = static_cast<std::int32_t>(leaf); i >= 0; i = parent[i]) check_box_around(i, vertices);
-    }
-    return reach;
-}
-
 }  // namespace
 
 void check_name(const std::string& name, const std::string& where) {
@@ -422,21 +385,43 @@ void check_obb_tree(const ObbTree& tree, std::size_t triangle_count, const std::
 }
 
 void check_enclosure(const ObbTree& tree, const TriangleMesh& surface, const std::string& where) {
-    const std::size_t count = tree.nodes.size();
-    std::vector<std::int32_t> parent(count, -1);
-    for (std::size_t i = 0; i < count; ++i)
+    std::vector<std::int32_t> parent(tree.nodes.size(), -1);
+    for (std::size_t i = 0; i < tree.nodes.size(); ++i)
         if (tree.nodes[i].count == 0) {
             const auto child = static_cast<std::size_t>(tree.nodes[i].first);
             parent[child] = parent[child + 1] = static_cast<std::int32_t>(i);
         }
-    const std::size_t triangles = tree.triangle_order.size(), half = triangles / 2;
-    auto second_half = std::async(
-        std::launch::async, [&] { return reach_of_leaves(tree, surface, parent, half, triangles, where); });
-    const std::vector<Eigen::Vector3d> reach = reach_of_leaves(tree, surface, parent, 0, half, where),
-                                       other = second_half.get();
-    for (std::size_t i = 0; i < count; ++i) {
-        const Eigen::Vector3d farthest = reach[i].cwiseMax(other[i]);
-        const double slack = (tree.nodes[i].half_extents.cast<double>() - farthest).maxCoeff();
+    // How far the triangles reach along each box's axes.
+    std::vector<Eigen::Vector3d> reach(tree.nodes.size(), Eigen::Vector3d::Zero());
+    const auto check_box_around = [&](std::int32_t index, std::span<const std::int32_t> vertices) {
+        const ObbNode& box = tree.nodes[static_cast<std::size_t>(index)];
+        const Eigen::Matrix3d axes = box.axes.cast<double>();
+        const Eigen::Vector3d center = box.center.cast<double>(), half = box.half_extents.cast<double>();
+        Eigen::Vector3d& farthest = reach[static_cast<std::size_t>(index)];
+        for (const std::int32_t v : vertices)
+            farthest = farthest.cwiseMax((axes * (surface.vertices[v] - center)).cwiseAbs());
+        const double escape = (farthest - half).maxCoeff();
+        if (escape > farthest_escape)
+            refuse(where,
+                   "box " + std::to_string(index) + " leaves a triangle " + std::to_string(escape) +
+                       " mm outside",
+                   "boxes that enclose their triangles");
+    };
+    const std::span<const std::int32_t> order = tree.triangle_order;
+    std::vector<std::int32_t> vertices;  // of a leaf, each once: a triangle's are its neighbours' too
+    for (std::size_t leaf = 0; leaf < tree.nodes.size(); ++leaf) {
+        const ObbNode& node = tree.nodes[leaf];
+        if (node.count == 0) continue;
+        vertices.clear();
+        for (const std::int32_t t :
+             order.subspan(static_cast<std::size_t>(node.first), static_cast<std::size_t>(node.count)))
+            vertices.insert(vertices.end(), surface.triangles[t].begin(), surface.triangles[t].end());
+        std::ranges::sort(vertices);
+        vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+        for (auto i = static_cast<std::int32_t>(leaf); i >= 0; i = parent[i]) check_box_around(i, vertices);
+    }
+    for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+        const double slack = (tree.nodes[i].half_extents.cast<double>() - reach[i]).maxCoeff();
         if (slack > farthest_slack)
             refuse(where, "box " + std::to_string(i) + " is " + std::to_string(slack) + " mm too large",
                    "boxes that fit their triangles");

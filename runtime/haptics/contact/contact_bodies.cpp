@@ -1,23 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/haptics/contact/contact_bodies.hpp"
 
-#include <future>
-
 namespace palpate::haptics {
 
 using namespace collision;
 
 ContactBodies::ContactBodies(const Case& patient_case, bool spreads_loads) {
-    // Bone takes as long as all else of a body that deforms, and goes on meanwhile.
-    std::vector<std::future<std::unique_ptr<CollisionSurface>>> rigid;
     for (const RigidBody& body : patient_case.rigid_bodies) {
         names.push_back(body.name);
+        surfaces.push_back(std::make_unique<CollisionSurface>(body.surface, body.obb_tree, body.name));
         triangles.push_back(body.surface.triangles);
-        rigid.push_back(std::async(std::launch::async, [&body] {
-            return std::make_unique<CollisionSurface>(body.surface, body.obb_tree, body.name);
-        }));
     }
-    surfaces.resize(rigid.size());
     for (const DeformableBody& body : patient_case.deformable_bodies) {
         const auto index = static_cast<std::int32_t>(names.size());
         names.push_back(body.name);
@@ -27,7 +20,6 @@ ContactBodies::ContactBodies(const Case& patient_case, bool spreads_loads) {
         deformable.emplace_back(body, *surfaces.back(), patient_case.haptics.tool_radius, index,
                                 spreads_loads);
     }
-    for (std::size_t body = 0; body < rigid.size(); ++body) surfaces[body] = rigid[body].get();
 }
 
 }  // namespace palpate::haptics

@@ -2,8 +2,6 @@
 // Which vertices may meet the body beside theirs: found before the first tick.
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <functional>
-#include <future>
 #include <limits>
 
 #include "runtime/haptics/contact/equilibrium/neighbour_contact.hpp"
@@ -89,9 +87,6 @@ void NeighbourContact::add_interface(std::size_t soft, std::size_t body, const A
     interface.body = static_cast<std::int32_t>(body);
     interface.other = body < rigid ? -1 : static_cast<std::int32_t>(body - rigid);
     interface.first = interface.next = probes_.size();
-    std::future<std::vector<std::array<std::int32_t, 3>>> neighbours;  // of bone, which has many
-    if (body < rigid)
-        neighbours = std::async(std::launch::async, triangle_neighbours, std::cref(bodies_.triangles[body]));
     const std::vector<Vector3d> normals = vertex_normals(owner);
     for (std::size_t v = 0; v < owner.vertex_count(); ++v) {
         Probe probe;
@@ -133,7 +128,7 @@ void NeighbourContact::add_interface(std::size_t soft, std::size_t body, const A
     interface.end = probes_.size();
     if (interface.first == interface.end) return;
     if (body < rigid) {
-        interface.neighbours = neighbours.get();
+        interface.neighbours = triangle_neighbours(bodies_.triangles[body]);
         interface.tree_slots.resize(bodies_.triangles[body].size());
         for (std::int32_t slot = 0; slot < surface.triangle_count(); ++slot)
             interface.tree_slots[static_cast<std::size_t>(surface.mesh_triangle(slot))] = slot;
