@@ -8,26 +8,16 @@
 
 #include "formats/model/errors.hpp"
 #include "runtime/texts/translated.hpp"
-#include "runtime/visual/controls/display.hpp"
 
 namespace palpate::visual {
-namespace {
 
-vtkSmartPointer<vtkImageData> grab_pixels(vtkRenderWindow* window) {
+vtkSmartPointer<vtkImageData> shown_pixels(vtkRenderWindow* window) {
     vtkNew<vtkWindowToImageFilter> grab;
     grab->SetInput(window);
     grab->ReadFrontBufferOff();
+    grab->ShouldRerenderOff();  // it is drawn
     grab->Update();
     return grab->GetOutput();
-}
-
-}  // namespace
-
-vtkSmartPointer<vtkImageData> shown_pixels(vtkRenderWindow* window) {
-    vtkSmartPointer<vtkImageData> pixels;
-    speak_to_display([&] { pixels = grab_pixels(window); });
-    require_display();
-    return pixels;
 }
 
 void write_picture(const std::filesystem::path& path, vtkImageData* pixels) {
@@ -42,7 +32,7 @@ void write_picture(const std::filesystem::path& path, vtkImageData* pixels) {
 
 std::string PictureWriter::write(vtkRenderWindow* window, const std::filesystem::path& path) {
     if (writing_.valid()) return texts::translated("the last picture is still being written");
-    writing_ = std::async(std::launch::async, [path, pixels = grab_pixels(window)]() -> std::string {
+    writing_ = std::async(std::launch::async, [path, pixels = shown_pixels(window)]() -> std::string {
         try {
             write_picture(path, pixels);
             return texts::translated("picture: {}", path.filename().string());

@@ -10,7 +10,7 @@
 
 namespace palpate::visual {
 
-/// What the window shows. In the thread that draws it. Throws SystemFailure if its display is lost.
+/// The picture that the window drew last. Where speak_to_display() runs.
 vtkSmartPointer<vtkImageData> shown_pixels(vtkRenderWindow* window);
 
 /// Writes pixels as PNG. Throws SystemFailure if that fails. In any thread; up to a second for 3840x2160.
@@ -20,7 +20,8 @@ void write_picture(const std::filesystem::path& path, vtkImageData* pixels);
 /// window must not stand still.
 class PictureWriter {
   public:
-    /// Begins to write what the window shows. What to say of it.
+    /// Begins to write the picture that the window drew last. What to say of it. Where speak_to_display()
+    /// runs.
     std::string write(vtkRenderWindow* window, const std::filesystem::path& path);
     /// Once, when a picture is there or has failed: what to say of it.
     std::optional<std::string> outcome();

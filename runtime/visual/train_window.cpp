@@ -29,6 +29,7 @@
 #include "runtime/visual/controls/layers.hpp"
 #include "runtime/visual/controls/opened_window.hpp"
 #include "runtime/visual/controls/view_history.hpp"
+#include "runtime/visual/cut/near_plane.hpp"
 #include "runtime/visual/detail/drawn_detail.hpp"
 #include "runtime/visual/detail/frame_pace.hpp"
 #include "runtime/visual/hand/pointed_scene.hpp"
@@ -57,8 +58,6 @@ constexpr double wheel_depth = 0.5;   // mm a notch
 constexpr double zoom_step = 1.15;    // a key press
 constexpr double zoom_pixels = 20;    // of a drag that zooms by one step
 constexpr double shadow_share = 0.3;  // of the field: how far the tool's shadow falls
-constexpr double clear_share = 0.04;  // of the field: what a cut leaves before the target
-constexpr double clear_radii = 3;     // tool radii that a cut leaves before the tool
 
 // What moving the pointer does while a button is held.
 enum class Drag { none, turn, shift, roll, zoom, carry };
@@ -110,14 +109,7 @@ struct TrainWindow::Parts {
     void reset() {
         hand.put(settings.start);
         endoscope.turn_off();
-        const Vector3d eye = settings.sight.eye();
-        vtkCamera* camera = renderer->GetActiveCamera();
-        camera->SetViewAngle(settings.sight.view_angle_deg);
-        camera->SetFocalPoint(settings.sight.focus.data());
-        camera->SetPosition(eye.data());
-        const Vector3d up = settings.sight.axes().col(1);
-        camera->SetViewUp(up.data());
-        camera->OrthogonalizeViewUp();
+        look_from(renderer->GetActiveCamera(), settings.sight);
     }
 
     void look(const VisualFrame& frame) {
@@ -146,11 +138,7 @@ struct TrainWindow::Parts {
         renderer->ResetCameraClippingRange();
         front->GetActiveCamera()->DeepCopy(renderer->GetActiveCamera());
         front->ResetCameraClippingRange();
-        if (!cut) return;
-        vtkCamera* camera = renderer->GetActiveCamera();
-        const Sight& sight = settings.sight;
-        clip_before(camera, std::min(depth_of(camera, sight.target) - clear_share * sight.field,
-                                     depth_of(camera, tool) - clear_radii * tool_radius));
+        if (cut) clip_before(renderer->GetActiveCamera(), settings.sight, tool, tool_radius);
     }
 
     void handle(unsigned long event) {
@@ -505,11 +493,17 @@ ShownDetail TrainWindow::detail() const {
 }
 
 void TrainWindow::save_picture(const std::filesystem::path& path) {
-    parts_->detail.with_everything([&] { write_picture(path, shown_pixels(parts_->window)); });
+    vtkSmartPointer<vtkImageData> pixels;
+    speak_to_display([&] { parts_->detail.with_everything([&] { pixels = shown_pixels(parts_->window); }); });
+    require_display();
+    write_picture(path, pixels);
 }
 
 void TrainWindow::add_to(Film& film) {
-    film.add(shown_pixels(parts_->window));
+    vtkSmartPointer<vtkImageData> pixels;
+    speak_to_display([&] { pixels = shown_pixels(parts_->window); });
+    require_display();
+    film.add(pixels);
 }
 
 }  // namespace palpate::visual

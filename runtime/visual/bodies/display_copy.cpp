@@ -39,7 +39,7 @@ double distance_to(const std::vector<Eigen::Vector3d>& line, const Eigen::Vector
 }
 
 // About how many cells hold a vertex: of as many bits as keys may hash to, those that stay unset tell (linear
-// counting; Whang, Vander-Zanden, Taylor 1990). A tenth of the time of merging.
+// counting; Whang, Vander-Zanden, Taylor 1990), which takes less time than merging.
 double cells_about(const std::vector<Eigen::Vector3d>& vertices, const std::vector<double>& distances,
                    double coarseness) {
     constexpr int log_bits = 22;

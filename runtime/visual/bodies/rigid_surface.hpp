@@ -7,7 +7,7 @@
 #include <vtkSmartPointer.h>
 
 #include "formats/model/body.hpp"
-#include "runtime/visual/bodies/section.hpp"
+#include "runtime/visual/cut/section.hpp"
 #include "runtime/visual/sight.hpp"
 
 namespace palpate::visual {

@@ -14,13 +14,14 @@ std::vector<Detail> detail_levels(int window_height, bool hardware) {
     } else {
         levels.push_back({});
     }
-    // Blending takes a sixth of a frame that software draws in its least detail.
-    Detail least = levels.front();
-    least.smooth = false;
-    if (least.pixel > 1) levels.insert(levels.begin(), least);
     levels.push_back({.fine_bodies = true});
     levels.push_back({.fine_bodies = true, .grain = true});
-    if (hardware) levels.push_back({.fine_bodies = true, .grain = true, .occlusion = true});
+    if (hardware) {
+        levels.push_back({.fine_bodies = true, .grain = true, .occlusion = true});
+    } else if (levels.front().pixel > 1) {
+        // Blending takes software a sixth of a frame of its least detail.
+        levels.insert(levels.begin(), {.pixel = levels.front().pixel, .smooth = false});
+    }
     return levels;
 }
 

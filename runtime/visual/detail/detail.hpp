@@ -23,8 +23,8 @@ struct ShownDetail {
 };
 
 /// The levels from the least to everything, what is missed least left out first, for a window of so many
-/// pixels' height, of which 300 lines are drawn at least. `hardware`: a graphics card draws; occlusion is too
-/// slow without one.
+/// pixels' height, of which 300 lines are drawn at least. `hardware`: a graphics card draws; without one
+/// occlusion is too slow, and pixels are not blended in the least.
 std::vector<Detail> detail_levels(int window_height, bool hardware);
 
 }  // namespace palpate::visual

@@ -7,20 +7,24 @@ void DrawnDetail::frame_took(double seconds) {
     if (!control_) {
         levels_ = detail_levels(window_->GetSize()[1], drawn_by_hardware(window_));
         control_.emplace(static_cast<int>(levels_.size()));
-        draw(levels_.back());
+        use(levels_.back());
         return;
     }
-    if (control_->take(seconds)) draw(levels_[static_cast<std::size_t>(control_->level()) - 1]);
+    if (control_->take(seconds)) use(affordable());
 }
 
 void DrawnDetail::with_everything(const std::function<void()>& work) {
-    if (!control_) return work();
-    draw(levels_.back());
+    if (control_) use(levels_.back());
+    window_->Render();
     work();
-    draw(levels_[static_cast<std::size_t>(control_->level()) - 1]);
+    if (control_) use(affordable());
 }
 
-void DrawnDetail::draw(const Detail& detail) {
+const Detail& DrawnDetail::affordable() const {
+    return levels_[static_cast<std::size_t>(control_->level()) - 1];
+}
+
+void DrawnDetail::use(const Detail& detail) {
     scene_->draw(detail);
     vtkSmartPointer<vtkRenderPass> pass;
     if (detail.pixel > 1) {

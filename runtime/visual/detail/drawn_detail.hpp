@@ -25,14 +25,15 @@ class DrawnDetail {
     /// A frame has come `seconds` after the one before: the next has more, less or the same.
     void frame_took(double seconds);
 
-    /// Calls `work` while everything is drawn, for a picture that is kept.
+    /// Draws everything and then calls `work`, for a picture that is kept. Where speak_to_display() runs.
     void with_everything(const std::function<void()>& work);
 
     /// Level, levels and changes; nothing before the first frame.
     const std::optional<DetailControl>& control() const { return control_; }
 
   private:
-    void draw(const Detail& detail);
+    void use(const Detail& detail);
+    const Detail& affordable() const;
 
     vtkRenderWindow* window_;
     vtkRenderer* renderer_;

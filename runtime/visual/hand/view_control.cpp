@@ -2,7 +2,6 @@
 #include "runtime/visual/hand/view_control.hpp"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -27,6 +26,15 @@ std::array<Vector3d, 3> view_axes(vtkCamera* camera) {
     const Vector3d eye = -Vector3d(camera->GetDirectionOfProjection());
     const Vector3d up = Vector3d(camera->GetViewUp());
     return {up.cross(eye), up, eye};
+}
+
+void look_from(vtkCamera* camera, const Sight& sight) {
+    const Vector3d eye = sight.eye(), up = sight.axes().col(1);
+    camera->SetViewAngle(sight.view_angle_deg);
+    camera->SetFocalPoint(sight.focus.data());
+    camera->SetPosition(eye.data());
+    camera->SetViewUp(up.data());
+    camera->OrthogonalizeViewUp();
 }
 
 std::array<Vector3d, 2> segment_under(vtkRenderer* renderer, double x, double y) {
@@ -60,11 +68,6 @@ Vector3d way_of_drag(vtkCamera* camera, double dx, double dy, double depth, int 
 
 double depth_of(vtkCamera* camera, const Vector3d& place) {
     return view_axes(camera)[2].dot(Vector3d(camera->GetPosition()) - place);
-}
-
-void clip_before(vtkCamera* camera, double depth) {
-    const double far = camera->GetClippingRange()[1];
-    camera->SetClippingRange(std::max(depth, 1e-3 * far), far);
 }
 
 }  // namespace palpate::visual

@@ -5,10 +5,15 @@
 #include <vtkCamera.h>
 #include <vtkRenderer.h>
 
+#include "runtime/visual/sight.hpp"
+
 namespace palpate::visual {
 
 /// Unit directions of the view, frame P: to the right, up, towards the eye.
 std::array<Eigen::Vector3d, 3> view_axes(vtkCamera* camera);
+
+/// Puts the eye where a sight has it, with its angle and its up.
+void look_from(vtkCamera* camera, const Sight& sight);
 
 /// What a pixel shows: from the near to the far end of what is drawn there, p_P, mm. `x` from the left, `y`
 /// from below, pixels.
@@ -26,8 +31,5 @@ Eigen::Vector3d way_of_drag(vtkCamera* camera, double dx, double dy, double dept
 
 /// How far before the eye a place (p_P, mm) lies, along the way it looks, mm.
 double depth_of(vtkCamera* camera, const Eigen::Vector3d& place);
-
-/// Leaves out what lies nearer before the eye than that, mm; never so near that depth loses its precision.
-void clip_before(vtkCamera* camera, double depth);
 
 }  // namespace palpate::visual

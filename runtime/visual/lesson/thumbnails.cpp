@@ -9,6 +9,7 @@
 #include <vtkRendererCollection.h>
 #include <vtkUnsignedCharArray.h>
 
+#include "runtime/visual/cut/near_plane.hpp"
 #include "runtime/visual/hand/view_control.hpp"
 
 namespace palpate::visual {
@@ -97,13 +98,8 @@ void Thumbnails::look_at(const LessonPicture& picture) {
         sight.field = std::max(least_field * sight_.field, room_about_marks * box.diagonal().norm());
     }
     if (near || picture.whole) sight.view_angle_deg = thumbnail_angle_deg;
-    const Vector3d up = sight.axes().col(1), eye = sight.eye();
     vtkCamera* camera = renderer_->GetActiveCamera();
-    camera->SetViewAngle(sight.view_angle_deg);
-    camera->SetFocalPoint(sight.focus.data());
-    camera->SetPosition(eye.data());
-    camera->SetViewUp(up.data());
-    camera->OrthogonalizeViewUp();
+    look_from(camera, sight);
     if (picture.whole) {
         renderer_->ResetCamera();
         camera->Zoom(whole_zoom);

@@ -7,8 +7,8 @@
 #include <vtkRenderer.h>
 #include <vtkTextActor.h>
 
+#include "runtime/visual/cut/cut_faces.hpp"
 #include "runtime/visual/readings/colour_scale.hpp"
-#include "runtime/visual/scan/cut_faces.hpp"
 #include "runtime/visual/scan/scan_slices.hpp"
 
 namespace palpate::visual {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "runtime/visual/bodies/mark_section.hpp"
+#include "runtime/visual/cut/mark_section.hpp"
 
 namespace palpate {
 namespace {

@@ -80,5 +80,13 @@ TEST(Cautions, what_is_made_up_or_without_a_source_is_said) {
     EXPECT_TRUE(one_holds(cautions_of(file), "names no source"));
 }
 
+TEST(Cautions, a_scale_to_HU_is_the_case_files_word) {
+    CaseFile file;
+    EXPECT_TRUE(cautions_of(file).empty());
+    file.volume_import.scale = 16.05;
+    file.volume_import.offset = -1025;
+    EXPECT_TRUE(one_holds(cautions_of(file), "HU = 16.05 x value - 1025 is the case file's"));
+}
+
 }  // namespace
 }  // namespace palpate::case_builder

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/visual/bodies/mark_section.hpp"
+#include "runtime/visual/cut/mark_section.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

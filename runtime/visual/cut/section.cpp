@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/visual/bodies/section.hpp"
+#include "runtime/visual/cut/section.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,9 +14,9 @@
 #include <vtkTexture.h>
 #include <vtkUniforms.h>
 
-#include "runtime/visual/bodies/mark_section.hpp"
 #include "runtime/visual/bodies/tissue_actor.hpp"
-#include "runtime/visual/scan/near_plane.hpp"
+#include "runtime/visual/cut/mark_section.hpp"
+#include "runtime/visual/cut/near_plane.hpp"
 
 namespace palpate::visual {
 namespace {

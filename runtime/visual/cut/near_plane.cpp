@@ -1,17 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/visual/scan/near_plane.hpp"
+#include "runtime/visual/cut/near_plane.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <vtkCamera.h>
 
 #include "runtime/visual/hand/view_control.hpp"
 
 namespace palpate::visual {
 
 using Eigen::Vector3d;
+
+namespace {
+
+constexpr double clear_share = 0.04;  // of the field: what is left before the target
+constexpr double clear_radii = 3;     // tool radii that are left before the tool
+
+}  // namespace
+
+void clip_before(vtkCamera* camera, double depth) {
+    const double far = camera->GetClippingRange()[1];
+    camera->SetClippingRange(std::max(depth, 1e-3 * far), far);
+}
+
+void clip_before(vtkCamera* camera, const Sight& sight, const Vector3d& tool, double tool_radius) {
+    clip_before(camera, std::min(depth_of(camera, sight.target) - clear_share * sight.field,
+                                 depth_of(camera, tool) - clear_radii * tool_radius));
+}
 
 Eigen::Vector2d near_reach(vtkRenderer* renderer) {
     const double up = std::tan(renderer->GetActiveCamera()->GetViewAngle() * std::numbers::pi / 180 / 2);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/visual/scan/cut_faces.hpp"
+#include "runtime/visual/cut/cut_faces.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <vtkShaderProperty.h>
 #include <vtkUniforms.h>
 
-#include "runtime/visual/scan/near_plane.hpp"
+#include "runtime/visual/cut/near_plane.hpp"
 
 namespace palpate::visual {
 namespace {
