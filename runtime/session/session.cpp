@@ -6,6 +6,7 @@
 #include <future>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <sys/resource.h>
 #include <utility>
 
 #include "formats/asset/asset.hpp"
@@ -43,6 +44,8 @@ Case case_of(const SessionRequest& request) {
 // Whether its compliances answer as its meshes do, beside all else that comes before the first tick.
 std::future<void> judged(const Case& patient_case, const std::filesystem::path& asset) {
     return std::async(std::launch::async, [&patient_case, asset] {
+        constexpr int lower = 10;
+        setpriority(PRIO_PROCESS, 0, lower);  // of this thread: who waits for a picture goes first
         for (const DeformableBody& body : patient_case.deformable_bodies)
             elasticity::require_answers_of_mesh(body, asset.string() + ": compliance of " + body.name,
                                                 std::random_device{}());
