@@ -14,8 +14,8 @@
 #include <vtkProperty.h>
 
 #include "runtime/visual/actors.hpp"
-#include "runtime/visual/bodies/tissue_colours.hpp"
 #include "runtime/visual/readings/force_colour.hpp"
+#include "runtime/visual/tissue/tissue_colours.hpp"
 #include "runtime/visual/tools/tool_shapes.hpp"
 
 namespace palpate::visual {

@@ -6,8 +6,8 @@
 #include <vtkProperty.h>
 
 #include "formats/model/regions.hpp"
-#include "runtime/visual/bodies/tissue_colours.hpp"
 #include "runtime/visual/readings/felt_text.hpp"
+#include "runtime/visual/tissue/tissue_colours.hpp"
 
 namespace palpate::visual {
 

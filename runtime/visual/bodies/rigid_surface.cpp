@@ -6,7 +6,7 @@
 #include <vtkProperty.h>
 
 #include "runtime/visual/bodies/display_copy.hpp"
-#include "runtime/visual/bodies/tissue_actor.hpp"
+#include "runtime/visual/tissue/tissue_actor.hpp"
 
 namespace palpate::visual {
 

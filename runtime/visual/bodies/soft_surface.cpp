@@ -3,7 +3,7 @@
 
 #include <vtkProperty.h>
 
-#include "runtime/visual/bodies/tissue_actor.hpp"
+#include "runtime/visual/tissue/tissue_actor.hpp"
 
 namespace palpate::visual {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "formats/model/body.hpp"
-#include "runtime/visual/scan/scan_view.hpp"
+#include "runtime/visual/controls/scan_view.hpp"
 #include "runtime/visual/scene.hpp"
 
 namespace palpate::visual {

@@ -14,9 +14,9 @@
 #include <vtkTexture.h>
 #include <vtkUniforms.h>
 
-#include "runtime/visual/bodies/tissue_actor.hpp"
 #include "runtime/visual/cut/mark_section.hpp"
 #include "runtime/visual/cut/near_plane.hpp"
+#include "runtime/visual/tissue/tissue_actor.hpp"
 
 namespace palpate::visual {
 namespace {

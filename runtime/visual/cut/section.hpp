@@ -8,8 +8,8 @@
 #include <vtkSmartPointer.h>
 
 #include "formats/model/triangle_mesh.hpp"
-#include "runtime/visual/bodies/tissue_colours.hpp"
 #include "runtime/visual/scan/scan_plane.hpp"
+#include "runtime/visual/tissue/tissue_colours.hpp"
 
 namespace palpate::visual {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/visual/bodies/tissue_colours.hpp"
+#include "runtime/visual/tissue/tissue_colours.hpp"
 #include "tests/formats/sample_case.hpp"
 #include "tests/runtime/visual/luminance.hpp"
 

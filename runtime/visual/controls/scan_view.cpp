@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/visual/scan/scan_view.hpp"
+#include "runtime/visual/controls/scan_view.hpp"
 
 #include <vtkTextProperty.h>
 

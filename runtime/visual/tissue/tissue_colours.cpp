@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/visual/bodies/tissue_colours.hpp"
+#include "runtime/visual/tissue/tissue_colours.hpp"
 
 #include <algorithm>
 #include <array>

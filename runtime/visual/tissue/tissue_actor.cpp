@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/visual/bodies/tissue_actor.hpp"
+#include "runtime/visual/tissue/tissue_actor.hpp"
 
 #include <fmt/format.h>
 #include <string>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "runtime/visual/actors.hpp"
-#include "runtime/visual/bodies/tissue_colours.hpp"
+#include "runtime/visual/tissue/tissue_colours.hpp"
 
 namespace palpate::visual {
 
