@@ -48,6 +48,8 @@ using namespace session;
 using namespace visual;
 
 using Clock = std::chrono::steady_clock;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
 using Json = nlohmann::ordered_json;
 
 struct Options {
@@ -112,6 +114,14 @@ Sight sight_of(const Case& patient_case, const HapticModel& model, const Grasp& 
     return sight;
 }
 
+// How a tool that turns is held first, R_PT; zero of others.
+Quaterniond first_orientation(const Options& options, const TouchPoint& place,
+                              const std::optional<GraspPlace>& grasp) {
+    if (grasp) return grasp->grasp.orientation;
+    return options.tool.tool.empty() ? Quaterniond(0, 0, 0, 0)
+                                     : Quaterniond::FromTwoVectors(Vector3d::UnitZ(), place.normal);
+}
+
 // `start`: where a hand that no script moves begins, p_P, mm; `R_PD`: how a device that a person's hand holds
 // is turned.
 DeviceRequest request_of(const Options& options, const DeviceKind& device, const HapticModel& model,
@@ -121,8 +131,9 @@ DeviceRequest request_of(const Options& options, const DeviceKind& device, const
     if (options.tool.has_jaws()) request.limits = limits_of_both(request.limits);
     const std::array<double, 3> shaft = array_of(place.normal);
     if (options.tool.has_jaws()) {
-        request.tools.push_back(
-            {.place = DevicePlace{start, device.simulated ? upright(place.normal) : R_PD}, .shaft = shaft});
+        request.tools.push_back({.place = DevicePlace{start, device.simulated ? upright(place.normal) : R_PD},
+                                 .shaft = shaft,
+                                 .orientation = first_orientation(options, place, grasp)});
         if (device.simulated && !options.script.empty())
             request.tools.back() = scripted_tool(grasp_or_recorded(options, *grasp), place.normal, shaft);
         return request;
@@ -130,7 +141,9 @@ DeviceRequest request_of(const Options& options, const DeviceKind& device, const
     if (!device.simulated)  // several at one place, so that all reach what one does
         request.tools.assign(model.tool_count(), HeldTool{.place = DevicePlace{start, R_PD}});
     else if (options.script.empty())
-        request.tools.push_back({.place = DevicePlace{start, upright(place.normal)}, .shaft = shaft});
+        request.tools.push_back({.place = DevicePlace{start, upright(place.normal)},
+                                 .shaft = shaft,
+                                 .orientation = first_orientation(options, place, grasp)});
     else
         request.tools.push_back(scripted_tool(scripted_path(options, place, model.contact_radius()),
                                               is_made_to_measure(options.script) ? place.normal : anterior,
@@ -203,7 +216,9 @@ Json train(const Options& options, cli::Session& session) {
                        : first_sight(patient_case, run.model(), place.point, place.normal),
         .cautions = provenance::cautions_in(patient_case.provenance),
         .surfaces = surfaces_of(run.model())};
-    if (grasp) window_settings.forceps = {place.normal, run.jaws()->jaw_length};
+    if (device.kind.simulated && options.script.empty() && !options.tool.tool.empty())
+        window_settings.orientation = first_orientation(options, place, grasp);
+    if (grasp) window_settings.jaw_length = run.jaws()->jaw_length;
     cli::end_softly_on_interrupt();
     run.hold(device.open(request_of(options, device.kind, run.model(), place, grasp, start,
                                     window_settings.sight.axes())),
@@ -323,7 +338,9 @@ int main(int argc, char** argv) {
              "the view back, R goes back to the start, H shows what the mouse does, Q or Escape closes; the "
              "buttons below do the same. A forceps is carried by a drag of the left button, W and S take it "
              "along its "
-             "shaft, J closes its jaws and opens them. The "
+             "shaft, J closes its jaws and opens them. Shift and the arrow keys, or a drag of the right "
+             "button, turn an instrument, rod or forceps about its tip, Shift with W and S about its shaft. "
+             "The "
              "window needs an X display; on a machine "
              "without one use 'xvfb-run'.\n"
              "With --device " +

@@ -149,7 +149,7 @@ TrainOutcome run_in_window(const TrainRun& run, VisualFrame& frame) {
         outcome.late_ns.record(static_cast<std::uint64_t>(1e9 * std::max(0.0, late)));
         run.keys.sound().follow(frame.force.norm());
         session.visual_beat();
-        session.guide(run.window.hand());
+        session.guide(run.window.hand(), run.window.held_orientation());
         frame.force_range.setConstant(frame.force.norm());
         session.pump(take);
         std::this_thread::sleep_until(frame_began + shortest_frame);

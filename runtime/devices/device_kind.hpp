@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <cstddef>
 #include <functional>
@@ -28,6 +28,8 @@ struct HeldTool {
     std::array<double, 3> shaft{0, 0,
                                 0};  ///< frame P, of simulated devices, which do not turn: see DeviceState
     std::optional<HandPath> path{};  ///< what a simulated hand does, frame P; none: it is guided
+    /// How a guided hand holds it first, R_PT; zero: nobody says.
+    Eigen::Quaterniond orientation{0, 0, 0, 0};
 };
 
 /// What is asked of devices of one kind.
@@ -41,8 +43,9 @@ struct OpenDevices {
     std::shared_ptr<void> driver{};  ///< what they stand on; ends after them
     std::vector<std::shared_ptr<realtime::Device>> devices;
     realtime::Servo* servo = nullptr;  ///< the driver's own; null: any will do
-    /// Says where mouse and keyboard want a guided hand (p_P, mm), from one thread; empty: nobody is guided.
-    std::function<void(const Eigen::Vector3d&)> guide{};
+    /// Says where mouse and keyboard want a guided hand (p_P, mm) and how it is to hold the tool (R_PT; zero:
+    /// as it does), from one thread; empty: nobody is guided.
+    std::function<void(const Eigen::Vector3d&, const Eigen::Quaterniond&)> guide{};
 };
 
 /// One line of the list of devices: what --device, help texts and errors know of it.

@@ -11,13 +11,13 @@ namespace palpate::devices {
 /// A device in a guided hand of infinite stiffness: it is where GuidedHand is, whatever the force.
 class GuidedDevice final : public realtime::Device {
   public:
-    /// `start`, `max_speed`: see GuidedHand. `shaft`: see DeviceState.
-    GuidedDevice(const std::array<double, 3>& start, DeviceLimits limits,
-                 double max_speed = GuidedHand::usual_speed, const std::array<double, 3>& shaft = {0, 0, 0})
+    /// `start`, `max_speed`: see GuidedHand. `shaft`: see DeviceState; of a tool that is turned, along z.
+    GuidedDevice(const HandTarget& start, DeviceLimits limits, double max_speed = GuidedHand::usual_speed,
+                 const std::array<double, 3>& shaft = {0, 0, 0})
         : hand_(start, max_speed), shaft_(shaft), limits_(limits) {}
 
     /// As GuidedHand's.
-    void set_target(const std::array<double, 3>& position) noexcept { hand_.set_target(position); }
+    void set_target(const HandTarget& target) noexcept { hand_.set_target(target); }
 
     std::string name() const override { return "simulated, " + hand_.name(); }
     DeviceLimits limits() const override { return limits_; }

@@ -39,25 +39,39 @@ class ScriptedHand final : public Hand {
     HandPath path_;
 };
 
-/// A hand that another thread guides, from mouse or keyboard: it goes straight to its target at no more than
-/// a given speed, so that sweeps stay as fast as a hand's. It never lets go.
+/// Where another thread wants a hand, in the frame of the device it holds.
+struct HandTarget {
+    std::array<double, 3> position;                 ///< mm
+    std::array<double, 4> orientation{0, 0, 0, 0};  ///< of the tool, x, y, z, w; zero: as it is
+};
+
+/// A hand that another thread guides, from mouse or keyboard: it goes straight to its target and turns there
+/// by the shortest way, no faster than a hand. It never lets go.
 class GuidedHand final : public Hand {
   public:
-    static constexpr double usual_speed = 200;  ///< mm/s
+    static constexpr double usual_speed = 200;    ///< mm/s
+    static constexpr double turning_speed = 1.5;  ///< rad/s; a choice
 
-    /// `start`: first position and target, mm. `max_speed`: mm/s.
-    explicit GuidedHand(const std::array<double, 3>& start, double max_speed = usual_speed)
-        : target_(start), position_(start.data()), max_speed_(max_speed) {}
+    /// `start`: where it is first, and wants to be; with a zero orientation nobody knows how the tool is
+    /// turned. `max_speed`: mm/s.
+    explicit GuidedHand(const HandTarget& start, double max_speed = usual_speed)
+        : target_(start),
+          position_(start.position.data()),
+          orientation_(start.orientation.data()),
+          max_speed_(max_speed) {}
 
-    /// Sets where to go (mm). Wait-free; from one thread, which may be another than at()'s.
-    void set_target(const std::array<double, 3>& position) noexcept { target_.write(position); }
+    /// Sets where to go. Wait-free; from one thread, which may be another than at()'s.
+    void set_target(const HandTarget& target) noexcept { target_.write(target); }
 
     std::string name() const override { return "guided by mouse and keyboard"; }
     HandWish at(double time) noexcept override;
 
   private:
-    realtime::TripleBuffer<std::array<double, 3>> target_;
+    void turn(const Eigen::Quaterniond& target, double seconds) noexcept;
+
+    realtime::TripleBuffer<HandTarget> target_;
     Eigen::Vector3d position_;
+    Eigen::Quaterniond orientation_;  // zero: not known
     double last_time_ = 0;
     double max_speed_;
 };

@@ -13,7 +13,12 @@
 namespace palpate::devices {
 namespace {
 
+using Eigen::Quaterniond;
 using Eigen::Vector3d;
+
+HandTarget target_of(const Vector3d& position, const Quaterniond& orientation) {
+    return {array_of(position), array_of(orientation)};
+}
 
 // Of several guided tools mouse and keyboard hold the last.
 OpenDevices open_stiff_hands(const DeviceRequest& request) {
@@ -24,10 +29,13 @@ OpenDevices open_stiff_hands(const DeviceRequest& request) {
             continue;
         }
         assert(tool.place);
-        const auto guided = std::make_shared<GuidedDevice>(array_of(tool.place->start), request.limits,
-                                                           GuidedHand::usual_speed, tool.shaft);
+        const auto guided =
+            std::make_shared<GuidedDevice>(target_of(tool.place->start, tool.orientation), request.limits,
+                                           GuidedHand::usual_speed, tool.shaft);
         open.devices.push_back(guided);
-        open.guide = [guided](const Vector3d& p) { guided->set_target(array_of(p)); };
+        open.guide = [guided](const Vector3d& p, const Quaterniond& R_PT) {
+            guided->set_target(target_of(p, R_PT));
+        };
     }
     return open;
 }
@@ -43,9 +51,14 @@ OpenDevices open_simulated(const DeviceModel& model, const DeviceRequest& reques
         if (tool.path) {
             hand = std::make_shared<ScriptedHand>(mapped_path(*tool.path, X_DP));
         } else {
-            const auto guided = std::make_shared<GuidedHand>(array_of(X_DP * tool.place->start));
+            const auto in_device = [X_DP](const Vector3d& p, const Quaterniond& R_PT) {
+                return target_of(X_DP * p, Quaterniond(X_DP.linear()) * R_PT);
+            };
+            const auto guided = std::make_shared<GuidedHand>(in_device(tool.place->start, tool.orientation));
             hand = guided;
-            open.guide = [guided, X_DP](const Vector3d& p) { guided->set_target(array_of(X_DP * p)); };
+            open.guide = [guided, in_device](const Vector3d& p, const Quaterniond& R_PT) {
+                guided->set_target(in_device(p, R_PT));
+            };
         }
         const Vector3d shaft = X_PD.linear().transpose() * vector_of(tool.shaft);
         auto device =

@@ -92,8 +92,8 @@ void Session::require_sound() {
     if (judged_.valid()) judged_.get();
 }
 
-void Session::guide(const Eigen::Vector3d& place) {
-    if (devices_.guide) devices_.guide(place);
+void Session::guide(const Eigen::Vector3d& place, const Eigen::Quaterniond& orientation) {
+    if (devices_.guide) devices_.guide(place, orientation);
 }
 
 recording::RecordingHead Session::recording_head(const std::string& version) const {

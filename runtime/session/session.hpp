@@ -77,8 +77,9 @@ class Session {
     const std::optional<JawSettings>& jaws() const noexcept { return request_.jaws; }
     /// Of the first device.
     std::string device_name() const { return devices_.devices.front()->name(); }
-    /// Says where mouse and keyboard want a guided hand (p_P, mm); nothing where no hand is guided.
-    void guide(const Eigen::Vector3d& place);
+    /// Says where mouse and keyboard want a guided hand (p_P, mm) and how it is to hold a tool that turns
+    /// (R_PT; zero: as it does); nothing where no hand is guided.
+    void guide(const Eigen::Vector3d& place, const Eigen::Quaterniond& orientation);
 
     /// What a recording of this session says of it. Throws as recording_head().
     recording::RecordingHead recording_head(const std::string& version) const;

@@ -39,6 +39,8 @@ constexpr auto help_text = shown_text(
 constexpr auto forceps_help_text = shown_text(
     "left drag  carry the forceps      W S  in, out      arrows  move it      J  close the jaws, open them\n"
     "right drag  turn      middle drag  move the view      wheel, + -  zoom");
+constexpr auto turning_help_text =
+    shown_text("Shift + arrows, right drag  turn the tool      Shift + W S  roll it");
 constexpr auto playback_help_text = shown_text(
     "Space  pause, go on      , .  slower, faster      arrows  step      Home, End      timeline  go there\n"
     "right drag  turn      middle drag  move the view      wheel, + -  zoom");
@@ -101,8 +103,12 @@ double display_scale(int width, int height) {
 }
 
 Overlay::Overlay(const std::string& case_name, double max_force, std::span<const std::string> cautions,
-                 vtkRenderer* renderer)
-    : case_name_(case_name), renderer_(renderer), max_force_(max_force), strip_(renderer) {
+                 bool turns_tool, vtkRenderer* renderer)
+    : case_name_(case_name),
+      renderer_(renderer),
+      max_force_(max_force),
+      turns_tool_(turns_tool),
+      strip_(renderer) {
     make_bar(bar_frame_, whole_bar_points_, 0.3, renderer);
     make_bar(bar_, bar_points_, 1, renderer);
     make_quads(light_, light_points_, health_colour(Health::good), 1, renderer);
@@ -196,7 +202,9 @@ void Overlay::update(const VisualFrame& frame, double frames_per_second, const S
     const auto hints = frame.timeline      ? playback_help_text
                        : frame.jaws_closed ? forceps_help_text
                                            : help_text;
-    help_->SetInput(looked_up(hints).data());
+    std::string help(looked_up(hints));
+    if (turns_tool_) help += "\n" + std::string(looked_up(turning_help_text));
+    help_->SetInput(help.c_str());
     notice_->SetPosition(0.5, frame.timeline ? notice_top_played : notice_top);
     const double low = frame.timeline ? above_timeline : button_rows_ > 1 ? above_both_rows : above_buttons;
     for (vtkTextActor* text : {help_.Get(), told_.Get()}) text->SetPosition(text->GetPosition()[0], low);

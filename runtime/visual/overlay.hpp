@@ -34,8 +34,9 @@ double display_scale(int width, int height);
 /// read, seldom enough to cost nothing.
 class Overlay {
   public:
+    /// `turns_tool`: mouse and keyboard turn what is held.
     Overlay(const std::string& case_name, double max_force, std::span<const std::string> cautions,
-            vtkRenderer* renderer);
+            bool turns_tool, vtkRenderer* renderer);
 
     void update(const VisualFrame& frame, double frames_per_second, const ShownDetail& detail);
     /// Shows what the mouse does, or hides it. It is shown from the start and fades by itself.
@@ -67,6 +68,7 @@ class Overlay {
     std::vector<SizedText> texts_;
     double scale_ = 0;
     double max_force_;  // N
+    bool turns_tool_;
     bool was_touched_ = false;
     bool help_shown_ = true, cautions_shown_ = false;
     bool help_fades_ = true;  // until it is asked for

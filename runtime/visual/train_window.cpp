@@ -60,7 +60,7 @@ constexpr double zoom_pixels = 20;    // of a drag that zooms by one step
 constexpr double shadow_share = 0.3;  // of the field: how far the tool's shadow falls
 
 // What moving the pointer does while a button is held.
-enum class Drag { none, turn, shift, roll, zoom, carry };
+enum class Drag { none, turn, shift, roll, zoom, carry, tilt };
 
 }  // namespace
 
@@ -72,13 +72,12 @@ struct TrainWindow::Parts {
           hand(window_settings.start, tip_reach(patient_case)),
           rigid_count(patient_case.rigid_bodies.size()),
           case_name(patient_case.name),
-          scene(patient_case, window_settings.sight, window_settings.rigid_budget,
-                window_settings.forceps ? std::optional(window_settings.forceps->jaw_length) : std::nullopt,
+          scene(patient_case, window_settings.sight, window_settings.rigid_budget, window_settings.jaw_length,
                 renderer, front),
           layers(patient_case, scene, window_settings.rendered, renderer, front),
           shadow(renderer),
-          overlay(patient_case.name, (window_settings.forceps ? 2 : 1) * patient_case.haptics.max_force,
-                  window_settings.cautions, front),
+          overlay(patient_case.name, (window_settings.jaw_length ? 2 : 1) * patient_case.haptics.max_force,
+                  window_settings.cautions, window_settings.orientation.has_value(), front),
           lesson_scene(renderer),
           thumbnails(window, window_settings.sight),
           panel(front),
@@ -87,7 +86,7 @@ struct TrainWindow::Parts {
           timeline(front, interactor),
           tool_radius(patient_case.haptics.tool_radius),
           cut(window_settings.sight.blocked) {
-        buttons.set(window_buttons(window_settings.forceps.has_value()));
+        buttons.set(window_buttons(window_settings.jaw_length.has_value()));
         renderer->SetNearClippingPlaneTolerance(
             0.002);  // of the far one: an eye in a passage is near its walls
         window->SetWindowName(("Palpate: " + patient_case.name).c_str());
@@ -108,6 +107,7 @@ struct TrainWindow::Parts {
 
     void reset() {
         hand.put(settings.start);
+        orientation = settings.orientation;
         endoscope.turn_off();
         look_from(renderer->GetActiveCamera(), settings.sight);
     }
@@ -150,7 +150,9 @@ struct TrainWindow::Parts {
                 begin(Drag::shift);
                 break;
             case vtkCommand::RightButtonPressEvent:
-                begin(interactor->GetControlKey() ? Drag::zoom : Drag::turn);
+                begin(interactor->GetControlKey()                ? Drag::zoom
+                      : orientation && interactor->GetShiftKey() ? Drag::tilt
+                                                                 : Drag::turn);
                 break;
             case vtkCommand::LeftButtonReleaseEvent:
             case vtkCommand::MiddleButtonReleaseEvent:
@@ -196,7 +198,7 @@ struct TrainWindow::Parts {
         else if (endoscope.fills_window())
             begin(Drag::carry);
         else if (const int* now = interactor->GetEventPosition(); !endoscope.covers(now[0], now[1]))
-            settings.forceps ? begin(Drag::carry) : press(true);
+            settings.jaw_length ? begin(Drag::carry) : press(true);
     }
 
     void press(bool on) {
@@ -207,7 +209,7 @@ struct TrainWindow::Parts {
 
     void begin(Drag what) {
         drag = what;
-        if (what != Drag::none && what != Drag::carry) keep_view();
+        if (what != Drag::none && what != Drag::carry && what != Drag::tilt) keep_view();
         hand.press(false);
     }
 
@@ -219,13 +221,14 @@ struct TrainWindow::Parts {
         const int* before = interactor->GetLastEventPosition();
         const double dx = now[0] - before[0], dy = now[1] - before[1];
         if (drag == Drag::none) {
-            const bool leads = !settings.forceps && !endoscope.covers(now[0], now[1]);
+            const bool leads = !settings.jaw_length && !endoscope.covers(now[0], now[1]);
             if (leads && !covered(now[0], now[1])) hand.point({now[0], now[1]});
             return;
         }
         vtkCamera* camera = renderer->GetActiveCamera();
         const int height = window->GetSize()[1];
         if (drag == Drag::carry) return drag_hand(steering(), dx, dy);
+        if (drag == Drag::tilt) return tilt_tool(steering(), dx, dy);
         if (drag == Drag::turn) turn_view(camera, dx, dy);
         if (drag == Drag::shift) pan_view(camera, dx, dy, height);
         if (drag == Drag::roll) roll_view(camera, dx);
@@ -235,11 +238,12 @@ struct TrainWindow::Parts {
 
     Steering steering() {
         std::optional<Vector3d> shaft, seen_from;
-        if (settings.forceps)
-            shaft = settings.forceps->shaft;
+        if (settings.jaw_length && orientation)
+            shaft = *orientation * Vector3d::UnitZ();
         else if (endoscope.fills_window())
             seen_from = tip;
-        return {hand, renderer->GetActiveCamera(), window->GetSize()[1], shaft, seen_from};
+        return {hand,      renderer->GetActiveCamera(),          window->GetSize()[1], shaft,
+                seen_from, orientation ? &*orientation : nullptr};
     }
 
     // The key of the button there; empty: none.
@@ -287,6 +291,7 @@ struct TrainWindow::Parts {
     void lead_hand() { hand.advance(frame_seconds, pointed_scene(renderer, touchable(), tool_radius, cut)); }
 
     void move_by_key(const std::string& key) {
+        if (orientation && interactor->GetShiftKey()) return tilt_tool(steering(), key);
         if (hand.pressing()) {
             if (key == "w") hand.deepen(key_depth);
             if (key == "s") hand.deepen(-key_depth);
@@ -367,6 +372,7 @@ struct TrainWindow::Parts {
     vtkRenderWindowInteractor* interactor = opened->interactor;
     WindowSettings settings;
     PointerHand hand;
+    std::optional<Eigen::Quaterniond> orientation;  // as settings have it, of now
     std::size_t rigid_count;
     vtkNew<vtkCallbackCommand> events;
     std::string case_name;
@@ -461,6 +467,10 @@ void TrainWindow::require_display() const {
 
 Vector3d TrainWindow::hand() const {
     return parts_->hand.place();
+}
+
+Eigen::Quaterniond TrainWindow::held_orientation() const {
+    return parts_->orientation.value_or(Eigen::Quaterniond(0, 0, 0, 0));
 }
 
 void TrainWindow::place_hand(const Vector3d& place) {

@@ -16,19 +16,15 @@
 
 namespace palpate::visual {
 
-/// A forceps that mouse and keyboard hold.
-struct HeldForceps {
-    Eigen::Vector3d shaft;  ///< which way W, S and the wheel take it: unit, out of the tissue
-    double jaw_length = 0;  ///< mm
-};
-
 struct WindowSettings {
     std::int64_t rigid_budget = 60'000;               ///< triangles of all rigid bodies on the screen
     Eigen::Vector3d start = Eigen::Vector3d::Zero();  ///< where the hand is first, p_P, mm
     Sight sight{};                                    ///< where the eye is first
     std::vector<std::string> cautions{};              ///< what a certificate does not say of the case
-    /// Of a forceps, which a drag of the mouse carries where it would press a ball in; nothing: a ball.
-    std::optional<HeldForceps> forceps{};
+    /// How mouse and keyboard hold a tool that turns first, R_PT; nothing: they turn none.
+    std::optional<Eigen::Quaterniond> orientation{};
+    /// Of a forceps (mm), which a drag of the mouse carries where it would press another tool in.
+    std::optional<double> jaw_length{};
     std::optional<double> rendered{};  ///< as of felt_text()
     /// The bodies' rest surfaces, as in HapticModel: what the pointer touches. They outlive the window.
     std::vector<const collision::CollisionSurface*> surfaces{};
@@ -52,6 +48,8 @@ class TrainWindow {
     bool lost() const;             ///< its display went away, or another program took it
     void require_display() const;  ///< throws SystemFailure if it is lost
     Eigen::Vector3d hand() const;  ///< where the hand is meant to be, p_P, mm
+    /// How the hand is meant to hold a tool that mouse and keyboard turn, R_PT; zero of others.
+    Eigen::Quaterniond held_orientation() const;
     /// Moves the hand there (p_P, mm), as far as mouse and keyboard hold one.
     void place_hand(const Eigen::Vector3d& place);
     /// Says something on the screen for a few seconds.

@@ -231,8 +231,7 @@ Json play_recording(const PlaybackOptions& options, const PlaybackWindow& shown,
     const auto tool = static_cast<std::size_t>(options.tool);
     if (const auto* model = devices::model_of_device(recording.head.devices[tool].name))
         settings.rendered = model->coulomb_friction;
-    if (const auto& jaws = recording.head.jaws)
-        settings.forceps = {vector_of(scene.track().front()->shaft), jaws->jaw_length};
+    if (const auto& jaws = recording.head.jaws) settings.jaw_length = jaws->jaw_length;
     TrainWindow window(std::move(opened), patient_case, settings);
     session.progress.finish();
     tell_what_is_missing(recording, scene.track(), options);

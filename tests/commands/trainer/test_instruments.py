@@ -84,6 +84,50 @@ class Instruments(TrainerCase):
         cosine = before @ after / (np.linalg.norm(before) * np.linalg.norm(after))
         self.assertLess(cosine, math.cos(math.radians(20)))  # 36 degrees or more
 
+    def turned_by(self, *options, keys):
+        """How the device was turned before and after those keys, R_PT: matrices."""
+        recording = self.folder / "turned.h5"
+        recording.unlink(missing_ok=True)
+        process = self.launch(*options, "--record", recording)
+        self.find_window()
+        time.sleep(0.5)
+        self.x("xdotool", "key", "--delay", 60, *keys)
+        time.sleep(1)
+        self.x("xdotool", "key", "q")
+        self.finish(process)
+        turned = kept(recording, "ticks/orientation")
+        return [np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                          [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                          [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]]) for x, y, z, w in turned[[0, -1]]]
+
+    def test_keys_turn_what_mouse_and_keyboard_hold(self):
+        peg = "--instrument", self.folder / "peg.stl"
+        for device in (), ("--device", "premium-6dof"):
+            before, after = self.turned_by(*peg, *device, keys=["shift+Right"] * 6)
+            self.assertAlmostEqual(math.degrees(math.acos(before[:, 2] @ after[:, 2])), 30, delta=2)
+            rolled = [self.turned_by(*peg, *device, keys=[key] * 3)[1] for key in ("shift+w", "shift+s")]
+            self.assertLess(np.linalg.norm(rolled[0][:, 2] - rolled[1][:, 2]), 0.02)
+            self.assertAlmostEqual(math.degrees(math.acos(rolled[0][:, 0] @ rolled[1][:, 0])), 30, delta=2)
+        before, after = self.turned_by(*peg, keys=["shift+Up"] * 4 + ["r"])
+        self.assertLess(np.abs(after - before).max(), 0.01)
+        before, after = self.turned_by(keys=["shift+Right"] * 6)  # a ball does not turn
+        self.assertTrue((before == after).all())
+
+    def test_a_drag_turns_what_the_mouse_holds(self):
+        recording = self.folder / "dragged.h5"
+        process = self.launch("--instrument", self.folder / "peg.stl", "--record", recording)
+        self.find_window()
+        self.x("xdotool", "mousemove", "--window", self.window, 600, 400, "keydown", "shift", "mousedown", 3)
+        for x in range(610, 701, 10):
+            self.x("xdotool", "mousemove", "--window", self.window, x, 400)
+            time.sleep(0.05)
+        self.x("xdotool", "mouseup", 3, "keyup", "shift")
+        time.sleep(1)
+        self.x("xdotool", "key", "q")
+        self.finish(process)
+        first, last = kept(recording, "ticks/orientation")[[0, -1]]
+        self.assertAlmostEqual(math.degrees(2 * math.acos(min(1, abs(first @ last)))), 35, delta=5)
+
     def test_what_is_felt_in_the_window_is_recorded_and_replays(self):
         recording = self.folder / "peg.h5"
         rows = [f"0 36 10 30 {UPRIGHT}", f"0.5 36 10 23 {UPRIGHT}", f"1 36 10 23 {UPRIGHT}", f"1.5 36 10 30 {UPRIGHT}"]

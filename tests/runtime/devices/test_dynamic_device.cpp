@@ -230,7 +230,7 @@ TEST(DynamicDevice, reading_and_writing_never_allocate) {
     DeviceModel model = find_device_model("touch");
     model.delay_ticks = 2;
     DynamicDevice device(model, {}, letting_go());
-    const auto hand = std::make_shared<GuidedHand>(std::array<double, 3>{1, 2, 3});
+    const auto hand = std::make_shared<GuidedHand>(HandTarget{{1, 2, 3}, {0, 0, 0, 1}});
     DynamicDevice guided(model, {}, hand);
     const AllocationTrap trap;
     for (int tick = 0; tick < 700; ++tick) {
@@ -238,7 +238,7 @@ TEST(DynamicDevice, reading_and_writing_never_allocate) {
             each->read(1e-3 * tick);
             each->write({{-0.1, 0, 0.3}});
         }
-        hand->set_target({1, 2, 0.01 * tick});
+        hand->set_target({{1, 2, 0.01 * tick}, {0, 0.6, 0, 0.8}});
     }
     EXPECT_EQ(trap.count(), 0U);
 }
@@ -324,10 +324,10 @@ TEST(DynamicDevice, taking_hold_again_makes_no_jump_and_ends_at_the_wish) {
 }
 
 TEST(DynamicDevice, a_guided_hand_draws_it_to_its_target) {
-    const auto hand = std::make_shared<GuidedHand>(std::array<double, 3>{1, 2, 3}, 200);
+    const auto hand = std::make_shared<GuidedHand>(HandTarget{{1, 2, 3}}, 200);
     DynamicDevice device(plain(), {}, hand);
     EXPECT_EQ(position_read(device, 0), Vector3d(1, 2, 3));
-    hand->set_target({101, 2, 3});
+    hand->set_target({{101, 2, 3}});
     position_read(device, 450);
     EXPECT_NEAR(device.velocity().x(), 200, 0.1);  // the hand's speed, when the spring has stopped swinging
     EXPECT_LT((position_read(device, 1500) - Vector3d(101, 2, 3)).norm(), 1e-6);

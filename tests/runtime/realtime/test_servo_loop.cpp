@@ -32,10 +32,10 @@ class RecordingDevice final : public Device {
 
 TEST(ServoLoop, every_tick_reaches_the_logger_and_the_latest_the_screen) {
     HapticModel model(sample::sample_case());
-    devices::GuidedDevice device({40, 10, 32}, {}, 200);
+    devices::GuidedDevice device({{40, 10, 32}}, {}, 200);
     ServoLoop loop(model, device, 1024);
     loop.start();
-    device.set_target({40, 10, 25});
+    device.set_target({{40, 10, 25}});
     std::int64_t logged = 0, last_seen = -1;
     double strongest = 0;
     TickResult record{};
@@ -77,10 +77,10 @@ TEST(ServoLoop, published_schemes_detect_beside_the_ticks) {
 
 TEST(ServoLoop, changes_its_model_with_the_force_at_zero_and_counts_on) {
     HapticModel first(sample::sample_case()), second(sample::sample_case(), "twice");
-    devices::GuidedDevice device({40, 10, 32}, {}, 200);
+    devices::GuidedDevice device({{40, 10, 32}}, {}, 200);
     ServoLoop loop(first, device, 8192);
     const auto go = [&](double z) {
-        device.set_target({40, 10, z});
+        device.set_target({{40, 10, z}});
         std::this_thread::sleep_for(std::chrono::milliseconds(300));
     };
     loop.start();
@@ -140,7 +140,7 @@ TEST(TickOutlet, hands_over_a_tick_with_the_contacts_that_count_and_copies_no_ot
 TEST(ServoLoop, each_tool_has_its_device_and_its_results) {
     HapticModel model(sample::sample_case(), "continuous", 2);
     RecordingDevice pressing;
-    devices::GuidedDevice away({0, 0, 60}, {}, 200);
+    devices::GuidedDevice away({{0, 0, 60}}, {}, 200);
     const std::array<Device*, 2> devices{&pressing, &away};
     ServoLoop loop(model, devices);
     std::array<double, 2> strongest{0, 0};

@@ -104,15 +104,19 @@ TEST(DeviceList, every_simulated_device_starts_where_its_script_does_and_says_so
 TEST(DeviceList, every_simulated_device_without_a_script_goes_where_it_is_guided) {
     for (const DeviceKind& kind : device_kinds()) {
         if (!kind.simulated) continue;
-        const OpenDevices open =
-            kind.open("", {.tools = {{.place = DevicePlace{start, upright(up)}}}, .limits = {}});
+        const Eigen::Quaterniond first(Eigen::AngleAxisd(0.4, Vector3d::UnitX())),
+            turned(Eigen::AngleAxisd(0.7, Vector3d::UnitY()));
+        const OpenDevices open = kind.open(
+            "", {.tools = {{.place = DevicePlace{start, upright(up)}, .orientation = first}}, .limits = {}});
         ASSERT_TRUE(open.guide) << kind.name;
+        EXPECT_LT(quaternion_of(open.devices[0]->read(0).orientation).angularDistance(first), 1e-3);
         const Vector3d there = start + Vector3d(3, -2, 4);
-        open.guide(there);
+        open.guide(there, turned);
         realtime::DeviceState state;
         for (int tick = 0; tick < 3000; ++tick) state = open.devices[0]->read(1e-3 * tick);
         EXPECT_NEAR((vector_of(state.position) - there).norm(), 0, 1.2) << kind.name;  // backdrive friction
         EXPECT_GT((vector_of(state.position) - start).norm(), 4) << kind.name;
+        EXPECT_LT(quaternion_of(state.orientation).angularDistance(turned), 0.05) << kind.name;
     }
 }
 

@@ -234,7 +234,7 @@ TEST(Session, guides_the_hand_that_nothing_else_moves) {
     Session session({.asset = sample_asset(scratch), .virtual_clock = true});
     const Eigen::Vector3d start{0, 0, 60}, there{1, 2, 62};
     session.hold(choose_device("").open({.tools = {{.place = DevicePlace{.start = start}}}, .limits = {}}));
-    session.guide(there);
+    session.guide(there, {0, 0, 0, 0});
     TickResult last{};
     session.run_virtual(0.5, [&](const TickResult& result) { last = result; });
     for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(last.device_position[axis], there[axis], 1e-9);
