@@ -6,7 +6,6 @@
 #include <future>
 #include <nlohmann/json.hpp>
 #include <random>
-#include <sys/resource.h>
 #include <utility>
 
 #include "formats/asset/asset.hpp"
@@ -41,11 +40,9 @@ Case case_of(const SessionRequest& request) {
     return patient_case;
 }
 
-// Whether its compliances answer as its meshes do, beside all else that comes before the first tick.
+// Whether its compliances answer as its meshes do, beside what still comes before the first tick.
 std::future<void> judged(const Case& patient_case, const std::filesystem::path& asset) {
     return std::async(std::launch::async, [&patient_case, asset] {
-        constexpr int lower = 10;
-        setpriority(PRIO_PROCESS, 0, lower);  // of this thread: who waits for a picture goes first
         for (const DeformableBody& body : patient_case.deformable_bodies)
             elasticity::require_answers_of_mesh(body, asset.string() + ": compliance of " + body.name,
                                                 std::random_device{}());
@@ -58,11 +55,11 @@ Session::Session(SessionRequest request, std::function<void(const std::string&)>
     : request_(std::move(request)),
       tell_(std::move(tell)),
       case_(case_of(request_)),
-      judged_(judged(case_, request_.asset)),
       model_(models_
                  .emplace_back(
                      std::make_unique<haptics::HapticModel>(case_, request_.method, request_.tool_count))
-                 .get()) {}
+                 .get()),
+      judged_(judged(case_, request_.asset)) {}
 
 Session::~Session() {
     stop();

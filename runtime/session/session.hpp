@@ -48,7 +48,7 @@ class Session {
   public:
     using Sink = std::function<void(const TickResult&)>;
 
-    /// Reads the asset, prepares its model, and begins to judge its compliances by its meshes: nothing ticks
+    /// Reads the asset, prepares its model, then begins to judge its compliances by its meshes: nothing ticks
     /// before that is done. `tell` gets a sentence for each fault when it begins. Throws as load_asset() and
     /// HapticModel.
     explicit Session(SessionRequest request, std::function<void(const std::string&)> tell = {});
@@ -126,9 +126,9 @@ class Session {
     SessionRequest request_;
     std::function<void(const std::string&)> tell_;
     Case case_;
-    std::future<void> judged_;
     std::vector<std::unique_ptr<haptics::HapticModel>> models_;  // one for each method so far
     haptics::HapticModel* model_;                                // that ticks
+    std::future<void> judged_;                                   // begun when the model is there
     devices::OpenDevices devices_;
     std::shared_ptr<std::atomic<bool>> jaws_closed_ = std::make_shared<std::atomic<bool>>(false);
     std::optional<haptics::ServoLoop> loop_;
