@@ -20,8 +20,8 @@ HELD = [(0, 40, 10, 31.5), (0.5, 40, 10, 31.5), (1, 40, 10, 22.5), (100, 40, 10,
 # A driver's device at rest in free space, which is pulled out for a second.
 PULLED_OUT = {"path": [[0, 0, 0, 0], [100, 0, 0, 0]], "faults": [{"fault": "disconnect", "from": 2, "until": 3}]}
 # One that presses on the skull, towards which the first view looks, and is pulled out for good.
-PULLED_OUT_OF_A_PRESS = {"path": [[0, 0, 0, 0], [2, 0, 0, 0], [2.5, 0, 0, -12], [1000, 0, 0, -12]],
-                         "faults": [{"fault": "disconnect", "from": 20, "until": 1000}]}
+PULLED_OUT_OF_A_PRESS = {"path": [[0, 0, 0, 0], [6, 0, 0, 0], [6.5, 0, 0, -12], [1000, 0, 0, -12]],
+                         "faults": [{"fault": "disconnect", "from": 24, "until": 1000}]}
 
 
 def ask_to_close(display, window):
