@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "runtime/session/playback/recorded_track.hpp"
@@ -9,8 +10,8 @@
 
 namespace palpate::apps {
 
-/// A recorded run of an expert, whose first tool is shown as a ghost beside one's own. Its time zero is the
-/// beginning of its session::Demonstration: a second before its first contact.
+/// A recorded run of an expert, whose first tool, or both jaws of a forceps, is shown as a ghost beside one's
+/// own. Its time zero is the beginning of its session::Demonstration: a second before its first contact.
 class ExpertGhost {
   public:
     /// Reads the recording in `file` of a run on `asset`. Throws as read_recording() and check_asset().
@@ -20,7 +21,7 @@ class ExpertGhost {
 
     /// The ghost `time` s after its zero; before that it waits, after its end it stays. Logarithmic in the
     /// recording.
-    visual::OtherTool at(double time) const;
+    std::vector<visual::OtherTool> at(double time) const;
     /// Beside a trainee: with the attempt's own time while one runs, so that it pauses with it; waiting while
     /// one counts down; round and round in free exploration, `time` s after the run's start. None while a
     /// page asks for a choice or shows a result.
@@ -29,10 +30,11 @@ class ExpertGhost {
     const session::Demonstration& demonstration() const { return demonstration_; }
 
   private:
-    visual::OtherTool ghost_at(double moment) const;  // s, of the recording
+    std::vector<visual::OtherTool> ghost_at(double moment) const;  // s, of the recording
 
     recording::Recording recording_;
     session::RecordedTrack track_;
+    std::optional<session::RecordedTrack> other_jaw_;
     session::Demonstration demonstration_;
 };
 

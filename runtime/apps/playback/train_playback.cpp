@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <fmt/format.h>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <spdlog/spdlog.h>
@@ -131,7 +132,9 @@ class RecordingPlayer {
         const Tick& tick = scene_.fill(frame_, clock_.time());
         frame_.audible = sound_.on();
         sound_.follow(clock_.runs() ? frame_.force.norm() : 0);
-        if (ghost_) frame_.other_tools.push_back(ghost_->at(clock_.time() - demonstration_.begins));
+        if (ghost_)
+            std::ranges::move(ghost_->at(clock_.time() - demonstration_.begins),
+                              std::back_inserter(frame_.other_tools));
         frame_.timeline->share = clock_.share();
         frame_.timeline->text = timeline_text(clock_, filmed);
         window_.show(frame_);

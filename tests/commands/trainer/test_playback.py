@@ -192,6 +192,22 @@ class Playback(TrainerCase):
         for name in ("freely", "in an exercise"):
             self.assertGreater(pictures[name], pictures["without"] + 200, name)
 
+    def test_a_ghost_of_a_forceps_has_both_jaws(self):
+        far, wide = self.folder / "far.txt", {}
+        far.write_text("0 60 60 60\n10 60 60 60\n")
+        x, y, z = self.pressed
+        for name, degrees in (("open", 20), ("closed", 0)):
+            hand, held, picture = (self.folder / f"{name}{ending}" for ending in (".txt", ".h5", ".png"))
+            hand.write_text("".join(f"{time} {x} {y} {z + 4} 0 0 0 1 {degrees}\n" for time in (0, 10)))
+            self.touch("--instrument", "forceps", "--jaw-length", 16, "--jaw-radius", 1, "--jaw-opening", 120, "--script", hand,
+                       "--seconds", 1, "--virtual-clock", "--record", held)
+            self.train("--script", far, "--ghost", held, "--seconds", 1, "--screenshot", picture)
+            dump = subprocess.run(["convert", picture, "-depth", "8", "rgb:-"], capture_output=True, check=True).stdout
+            columns = [i % 1280 for i in pixels_like(dump, is_ghost)]
+            wide[name] = max(columns) - min(columns)
+        # Closed jaws lie beside each other, open ones apart: by 2 x 16 mm x sin 10 degrees.
+        self.assertGreater(wide["open"], wide["closed"] + 200)
+
     def test_a_ghost_is_played_back_too(self):
         result = self.train("--play", self.run_file, "--ghost", self.run_file, "--speed", 4, "--seconds", 1)
         first = self.contacts.index(next(count for count in self.contacts if count > 0))
