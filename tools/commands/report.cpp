@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <fstream>
+#include <future>
 #include <iterator>
 
 #include "formats/asset/asset.hpp"
@@ -120,10 +121,11 @@ std::string page_of(const stages::ReportRequest& request, const Case& patient_ca
                         .labels = labels ? &*labels : nullptr};
     if (!request.rigid.empty() && !labels)
         throw UsageError({"--rigid", "needs --labels", "the label map that the body was made from", ""});
-    if (labels && !failed) {
-        session.progress.step("measuring distances", 0.1);
-        inputs.comparisons = comparisons_of(request, patient_case, *labels, volume);
-    }
+    if (labels && !failed)
+        inputs.comparisons =
+            std::async(session.threads > 1 ? std::launch::async : std::launch::deferred, [&] {
+                return comparisons_of(request, patient_case, *labels, volume);
+            }).share();
     if (!request.touch.empty()) inputs.touch = json_of(request.touch);
     if (!request.curve.empty()) inputs.force_curve_svg = svg_of(request.curve);
     if (!request.stages.empty())
@@ -134,7 +136,7 @@ std::string page_of(const stages::ReportRequest& request, const Case& patient_ca
                                     fem::certificate_loads, fem::certificate_seed);
         inputs.allowed_load_errors.push_back({allowed.surface, allowed.contact});
     }
-    session.progress.step("drawing", 0.3);
+    session.progress.step("measuring and drawing", 0.1);
     return failed ? html_failure(inputs, text_of(request.failed_with)) : html_report(inputs);
 }
 

@@ -107,7 +107,8 @@ std::string distances_section(const ReportPage& page) {
     const ReportInputs& inputs = page.inputs;
     std::string content;
     std::vector<std::vector<std::string>> rows;
-    for (const SurfaceComparison& comparison : inputs.comparisons) {
+    const std::vector<SurfaceComparison> none;
+    for (const SurfaceComparison& comparison : inputs.comparisons.valid() ? inputs.comparisons.get() : none) {
         const TriangleMesh* surface = surface_of(inputs.patient_case, comparison.body);
         if (surface == nullptr || surface->triangles.size() != comparison.triangle_distances.size()) continue;
         rows.push_back({html::escaped(comparison.body), html::escaped(comparison.against),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <future>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -29,7 +30,7 @@ struct ReportInputs {
     std::optional<nlohmann::json> touch{};  ///< result of `palpate touch --json`
     std::string force_curve_svg{};          ///< picture made by `palpate touch --curve`; empty if none
     std::vector<StageRecord> stages{};
-    std::vector<SurfaceComparison> comparisons{};
+    std::shared_future<std::vector<SurfaceComparison>> comparisons{};  ///< may go on beside drawing; or none
     std::vector<AllowedLoadError> allowed_load_errors{};  ///< of each deformable body, or none of any
 };
 
@@ -46,7 +47,7 @@ std::string html_failure(const ReportInputs& inputs, const std::string& message)
 std::string thumbnail_png(const Case& patient_case);
 
 /// Makes one self-contained HTML page: no script, no link, pictures within. Draws in 3-D, so it needs an X
-/// display or Xvfb (VirtualDisplay); throws SystemFailure where there is neither.
+/// display or Xvfb (VirtualDisplay); throws SystemFailure where there is neither, and what comparisons throw.
 std::string html_report(const ReportInputs& inputs);
 
 }  // namespace palpate::report

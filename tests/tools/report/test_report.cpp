@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cctype>
+#include <future>
 #include <gtest/gtest.h>
 #include <set>
 #include <unistd.h>
@@ -61,9 +62,11 @@ std::string full_page() {
         inputs.force_curve_svg = "<svg xmlns=\"http://www.w3.org/2000/svg\"><script>1</script></svg>";
         inputs.stages = {{"mesh <wall>", 3.25, 123'000'000, "run"}, {"pack", 0.5, 7'000'000, "up to date"}};
         const DeformableBody& body = patient_case.deformable_bodies.front();
-        inputs.comparisons = {{body.name, "label <a>",
-                               std::vector<double>(body.boundary.surface.triangles.size(), 0.25), 0.125, 0.25,
-                               0.375, body.boundary.surface.vertices.front()}};
+        std::promise<std::vector<SurfaceComparison>> compared;
+        compared.set_value(
+            {{body.name, "label <a>", std::vector<double>(body.boundary.surface.triangles.size(), 0.25),
+              0.125, 0.25, 0.375, body.boundary.surface.vertices.front()}});
+        inputs.comparisons = compared.get_future().share();
         return html_report(inputs);
     }();
     return page;
