@@ -28,6 +28,7 @@
 #include "runtime/devices/jaws/jaws.hpp"
 #include "runtime/devices/mounted_device.hpp"
 #include "runtime/devices/simulation.hpp"
+#include "runtime/session/clear_hold.hpp"
 #include "runtime/session/device_list.hpp"
 #include "runtime/session/hand_script.hpp"
 #include "runtime/session/jaws/grasp_place.hpp"
@@ -114,26 +115,31 @@ Sight sight_of(const Case& patient_case, const HapticModel& model, const Grasp& 
     return sight;
 }
 
-// How a tool that turns is held first, R_PT; zero of others.
-Quaterniond first_orientation(const Options& options, const TouchPoint& place,
-                              const std::optional<GraspPlace>& grasp) {
+// How mouse and keyboard hold a tool that turns first, R_PT; nothing where none do.
+std::optional<Quaterniond> first_orientation(const Options& options, const DeviceKind& device,
+                                             const Session& run, const TouchPoint& place,
+                                             const std::optional<GraspPlace>& grasp, const Vector3d& start,
+                                             const Sight& sight) {
+    if (!device.simulated || !options.script.empty() || options.tool.tool.empty()) return std::nullopt;
     if (grasp) return grasp->grasp.orientation;
-    return options.tool.tool.empty() ? Quaterniond(0, 0, 0, 0)
-                                     : Quaterniond::FromTwoVectors(Vector3d::UnitZ(), place.normal);
+    return clear_hold(run.patient_case(), run.model(), start, place.normal,
+                      sight.inside ? std::optional(sight.eye()) : std::nullopt);
 }
 
-// `start`: where a hand that no script moves begins, p_P, mm; `R_PD`: how a device that a person's hand holds
-// is turned.
+// `start`: where a hand that no script moves begins, p_P, mm; `orientation`: of first_orientation(); `R_PD`:
+// how a device that a person's hand holds is turned.
 DeviceRequest request_of(const Options& options, const DeviceKind& device, const HapticModel& model,
                          const TouchPoint& place, const std::optional<GraspPlace>& grasp,
-                         const Eigen::Vector3d& start, const Eigen::Matrix3d& R_PD) {
+                         const Vector3d& start, const std::optional<Quaterniond>& orientation,
+                         const Eigen::Matrix3d& R_PD) {
     DeviceRequest request{.tools = {}, .limits = limits_asked_by(model.settings())};
     if (options.tool.has_jaws()) request.limits = limits_of_both(request.limits);
     const std::array<double, 3> shaft = array_of(place.normal);
+    const Quaterniond held = orientation.value_or(Quaterniond(0, 0, 0, 0));
     if (options.tool.has_jaws()) {
         request.tools.push_back({.place = DevicePlace{start, device.simulated ? upright(place.normal) : R_PD},
                                  .shaft = shaft,
-                                 .orientation = first_orientation(options, place, grasp)});
+                                 .orientation = held});
         if (device.simulated && !options.script.empty())
             request.tools.back() = scripted_tool(grasp_or_recorded(options, *grasp), place.normal, shaft);
         return request;
@@ -141,9 +147,8 @@ DeviceRequest request_of(const Options& options, const DeviceKind& device, const
     if (!device.simulated)  // several at one place, so that all reach what one does
         request.tools.assign(model.tool_count(), HeldTool{.place = DevicePlace{start, R_PD}});
     else if (options.script.empty())
-        request.tools.push_back({.place = DevicePlace{start, upright(place.normal)},
-                                 .shaft = shaft,
-                                 .orientation = first_orientation(options, place, grasp)});
+        request.tools.push_back(
+            {.place = DevicePlace{start, upright(place.normal)}, .shaft = shaft, .orientation = held});
     else
         request.tools.push_back(scripted_tool(scripted_path(options, place, model.contact_radius()),
                                               is_made_to_measure(options.script) ? place.normal : anterior,
@@ -216,12 +221,12 @@ Json train(const Options& options, cli::Session& session) {
                        : first_sight(patient_case, run.model(), place.point, place.normal),
         .cautions = provenance::cautions_in(patient_case.provenance),
         .surfaces = surfaces_of(run.model())};
-    if (device.kind.simulated && options.script.empty() && !options.tool.tool.empty())
-        window_settings.orientation = first_orientation(options, place, grasp);
+    window_settings.orientation =
+        first_orientation(options, device.kind, run, place, grasp, start, window_settings.sight);
     if (grasp) window_settings.jaw_length = run.jaws()->jaw_length;
     cli::end_softly_on_interrupt();
     run.hold(device.open(request_of(options, device.kind, run.model(), place, grasp, start,
-                                    window_settings.sight.axes())),
+                                    window_settings.orientation, window_settings.sight.axes())),
              grasp ? grasp->grasp.orientation : Eigen::Quaterniond::Identity());
     if (!options.device.empty()) tell_torque(run.model(), run.device_name());
     tell_too_weak(patient_case, run.device_name());

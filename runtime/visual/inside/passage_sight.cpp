@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "formats/model/geometry/spiral_direction.hpp"
+
 namespace palpate::visual {
 namespace {
 
@@ -19,14 +21,6 @@ constexpr double shortest = 15, farthest = 45;  // mm, of the way from the targe
 constexpr double grazing_weight = 0.4;          // what a way along the wall counts of one straight off it
 constexpr double wide_angle_deg = 70;
 constexpr double close_up_radius = 8;  // mm: half a nasal passage
-
-// The i-th of evenly spread directions with a positive third coordinate: a spiral by the golden angle.
-Vector3d spiral_direction(int i) {
-    const double height = 1 - (i + 0.5) / directions;
-    const double across = std::sqrt(1 - height * height);
-    const double turn = i * std::numbers::pi * (3 - std::sqrt(5.0));
-    return {across * std::cos(turn), across * std::sin(turn), height};
-}
 
 double free_way(Surfaces surfaces, const Vector3d& start, const Vector3d& way) {
     double fraction = 1;
@@ -51,7 +45,7 @@ std::optional<Sight> choose_passage_sight(Surfaces surfaces, const Vector3d& poi
     double most = 0, longest = 0;
     Vector3d toward_eye = normal;
     for (int i = 0; i < directions; ++i) {
-        const Vector3d local = spiral_direction(i);
+        const Vector3d local = spiral_direction(i, directions);
         const double weight = grazing_weight + (1 - grazing_weight) * local.z();
         if (farthest * weight <= most) break;  // those that follow are more grazing still
         const Vector3d way = turn * local;

@@ -18,6 +18,7 @@ from x_server import NEEDED, XServer  # noqa: E402
 
 TRAIN = pathlib.Path(os.environ["PALPATE_BIN"]) / "palpate-train"
 CASES = pathlib.Path(os.environ["PALPATE_BUILD"]) / "tests" / "demo_cases"  # of commands.demo_cases
+TOOLS = pathlib.Path(os.environ["PALPATE_SOURCE"]) / "sample_data" / "tools.py"
 EXERCISES = pathlib.Path(os.environ["PALPATE_SOURCE"]) / "pipelines" / "exercises"
 GOOD, BAD = 80, 60  # of 100: a good hand has more, a clumsy one less
 
@@ -134,6 +135,13 @@ class Nasopharynx(DemoExercises):
 
     def test_the_hidden_tumour(self):
         self.find((2, -200, 0))
+
+    def test_a_whole_scope_begins_in_free_space(self):
+        subprocess.run([sys.executable, TOOLS, self.folder], check=True, stdout=subprocess.DEVNULL)
+        run = subprocess.run([TRAIN, self.asset, "--instrument", self.folder / "endoscope.stl", "--seconds", "2", "--quiet", "--json", "-"],
+                             capture_output=True, text=True, env=self.server.environment)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertNotIn("starts_inside", json.loads(run.stdout)["statuses"])
 
     def test_the_scope_by_its_own_picture(self):
         for waits in (False, True):
