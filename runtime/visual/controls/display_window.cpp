@@ -12,6 +12,10 @@ vtkStandardNewMacro(DisplayWindow);
 
 void DisplayWindow::TextureDepthBlit(vtkTextureObject* /*depth*/) {}
 
+void DisplayWindow::SetSize(int width, int height) {
+    if (!display_lost()) Superclass::SetSize(width, height);
+}
+
 void DisplayWindow::BlitDisplayFramebuffersToHardware() {
     XWindowAttributes attributes;  // asking for them notes the loss
     XGetWindowAttributes(static_cast<Display*>(GetGenericDisplayId()),
