@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 
 from trainer_case import TRAIN, TrainerCase
-from device_run import DEVICE_LOST, FELT, RAMP, SERVO_STOPPING, SLEW, VISUAL_STOPPED, DeviceRun
+from device_run import DEVICE_LOST, FELT, RAMP, SERVO_STOPPING, SLEW, TESTS, VISUAL_STOPPED, DeviceRun
 from x_server import XServer
 
 # The sample's skull is a ball of 15 mm about (40, 10, 10) mm, its tool one of 1.5 mm: 5 mm above it, then 4 mm deep to stay.
@@ -140,6 +140,10 @@ class Ends(DeviceRun, TrainerCase):
                 err = self.assert_ended_in_order(process, recording, 1)
                 self.assertIn("display or window went away", err)
                 self.assertIn("the force has gone to zero", err)
+
+    def test_nothing_is_waited_for_in_a_window_that_is_gone(self):
+        run = subprocess.run([TESTS / "lose_window"], env=self.server.environment, capture_output=True, text=True, timeout=30)
+        self.assertEqual((run.returncode, run.stdout), (0, "lost\n"), run.stderr)
 
     def test_a_window_that_another_program_took_away(self):
         for how in ("windowclose", "windowkill"):
