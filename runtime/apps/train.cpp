@@ -117,13 +117,13 @@ Sight sight_of(const Case& patient_case, const HapticModel& model, const Grasp& 
 
 // How mouse and keyboard hold a tool that turns first, R_PT; nothing where none do.
 std::optional<Quaterniond> first_orientation(const Options& options, const DeviceKind& device,
-                                             const Session& run, const TouchPoint& place,
-                                             const std::optional<GraspPlace>& grasp, const Vector3d& start,
-                                             const Sight& sight) {
+                                             const Case& patient_case, const TouchPoint& place,
+                                             const std::optional<GraspPlace>& grasp,
+                                             const WindowSettings& window) {
     if (!device.simulated || !options.script.empty() || options.tool.tool.empty()) return std::nullopt;
     if (grasp) return grasp->grasp.orientation;
-    return clear_hold(run.patient_case(), run.model(), start, place.normal,
-                      sight.inside ? std::optional(sight.eye()) : std::nullopt);
+    return clear_hold(patient_case, window.surfaces, window.start, place.normal,
+                      window.sight.inside ? std::optional(window.sight.eye()) : std::nullopt);
 }
 
 // `start`: where a hand that no script moves begins, p_P, mm; `orientation`: of first_orientation(); `R_PD`:
@@ -222,7 +222,7 @@ Json train(const Options& options, cli::Session& session) {
         .cautions = provenance::cautions_in(patient_case.provenance),
         .surfaces = surfaces_of(run.model())};
     window_settings.orientation =
-        first_orientation(options, device.kind, run, place, grasp, start, window_settings.sight);
+        first_orientation(options, device.kind, patient_case, place, grasp, window_settings);
     if (grasp) window_settings.jaw_length = run.jaws()->jaw_length;
     cli::end_softly_on_interrupt();
     run.hold(device.open(request_of(options, device.kind, run.model(), place, grasp, start,
@@ -343,8 +343,9 @@ int main(int argc, char** argv) {
              "the view back, R goes back to the start, H shows what the mouse does, Q or Escape closes; the "
              "buttons below do the same. A forceps is carried by a drag of the left button, W and S take it "
              "along its "
-             "shaft, J closes its jaws and opens them. Shift and the arrow keys, or a drag of the right "
-             "button, turn an instrument, rod or forceps about its tip, Shift with W and S about its shaft. "
+             "shaft, J closes its jaws and opens them. Shift with the arrow keys, or with a drag of "
+             "the right button, turns an instrument, rod or forceps about its tip, with W and S about its "
+             "shaft. "
              "The "
              "window needs an X display; on a machine "
              "without one use 'xvfb-run'.\n"

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "formats/model/geometry/spiral_direction.hpp"
+#include "runtime/collision/free_part.hpp"
 
 namespace palpate::session {
 namespace {
@@ -30,23 +31,16 @@ double distance_to_ray(const Vector3d& p, const Vector3d& from, const Vector3d& 
 
 }  // namespace
 
-Quaterniond clear_hold(const Case& patient_case, const haptics::HapticModel& model, const Vector3d& tip,
-                       const Vector3d& normal, const std::optional<Vector3d>& eye) {
+Quaterniond clear_hold(const Case& patient_case, std::span<const collision::CollisionSurface* const> bodies,
+                       const Vector3d& tip, const Vector3d& normal, const std::optional<Vector3d>& eye) {
     const double length = tool_length(patient_case), radius = thickness(patient_case);
-    const auto free_part = [&](const Vector3d& way) {
-        double part = 1;
-        for (std::size_t body = 0; body < model.body_count(); ++body)
-            if (const auto met = model.surface(body).sweep_sphere(tip, tip + length * way, radius))
-                part = std::min(part, met->fraction);
-        return part;
-    };
     const Quaterniond along_normal = Quaterniond::FromTwoVectors(Vector3d::UnitZ(), normal);
     Quaterniond best = along_normal;
     double most = -1;
     for (int i = -1; i < directions && most < 1; ++i) {
         const Vector3d way = i < 0 ? normal : along_normal * spiral_direction(i, directions);
         if (eye && distance_to_ray(*eye, tip, way) < radius + room_of_eye) continue;
-        if (const double part = free_part(way); part > most) {
+        if (const double part = collision::free_part(bodies, tip, tip + length * way, radius); part > most) {
             most = part;
             best = Quaterniond::FromTwoVectors(Vector3d::UnitZ(), way);
         }

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "formats/model/geometry/spiral_direction.hpp"
+#include "runtime/collision/free_part.hpp"
 
 namespace palpate::visual {
 namespace {
@@ -21,14 +22,6 @@ constexpr double shortest = 15, farthest = 45;  // mm, of the way from the targe
 constexpr double grazing_weight = 0.4;          // what a way along the wall counts of one straight off it
 constexpr double wide_angle_deg = 70;
 constexpr double close_up_radius = 8;  // mm: half a nasal passage
-
-double free_way(Surfaces surfaces, const Vector3d& start, const Vector3d& way) {
-    double fraction = 1;
-    for (const CollisionSurface* surface : surfaces)
-        if (const auto contact = surface->sweep_sphere(start, start + farthest * way, lens_radius))
-            fraction = std::min(fraction, contact->fraction);
-    return fraction * farthest;
-}
 
 double room_at(Surfaces surfaces, const Vector3d& place) {
     double room = farthest;
@@ -49,7 +42,8 @@ std::optional<Sight> choose_passage_sight(Surfaces surfaces, const Vector3d& poi
         const double weight = grazing_weight + (1 - grazing_weight) * local.z();
         if (farthest * weight <= most) break;  // those that follow are more grazing still
         const Vector3d way = turn * local;
-        const double length = free_way(surfaces, start, way);
+        const double length =
+            farthest * collision::free_part(surfaces, start, start + farthest * way, lens_radius);
         const double worth = length * weight;
         if (length < shortest || worth <= most) continue;
         most = worth;
