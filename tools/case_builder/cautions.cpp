@@ -70,8 +70,8 @@ std::vector<std::string> cautions_of(const CaseFile& case_file) {
     const imaging::HounsfieldScale scale{case_file.volume_import.scale, case_file.volume_import.offset};
     if (scale != imaging::HounsfieldScale{})
         cautions.push_back(
-            fmt::format("{} is the case file's, which names no source; by air and soft tissue, as 'init' "
-                        "finds it, it is some 4 % off.",
+            fmt::format("{} is the case file's, which names no source; where 'init' found it by air and "
+                        "soft tissue, it is some 4 % off.",
                         imaging::text_of(scale)));
     for (const StructureSpec& structure : case_file.structures)
         if (const imaging::Recipe* recipe = imaging::find_recipe(structure.recipe);

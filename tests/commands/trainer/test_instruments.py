@@ -130,7 +130,7 @@ class Instruments(TrainerCase):
         self.x("xdotool", "key", "q")
         self.finish(process)
         first, last = kept(recording, "ticks/orientation")[[0, -1]]
-        self.assertAlmostEqual(math.degrees(2 * math.acos(min(1, abs(first @ last)))), 35, delta=5)
+        self.assertAlmostEqual(math.degrees(2 * math.acos(min(1, abs(first @ last)))), 35, delta=1)
 
     def test_what_is_felt_in_the_window_is_recorded_and_replays(self):
         recording = self.folder / "peg.h5"

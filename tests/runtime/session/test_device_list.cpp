@@ -116,7 +116,7 @@ TEST(DeviceList, every_simulated_device_without_a_script_goes_where_it_is_guided
         for (int tick = 0; tick < 3000; ++tick) state = open.devices[0]->read(1e-3 * tick);
         EXPECT_NEAR((vector_of(state.position) - there).norm(), 0, 1.2) << kind.name;  // backdrive friction
         EXPECT_GT((vector_of(state.position) - start).norm(), 4) << kind.name;
-        EXPECT_LT(quaternion_of(state.orientation).angularDistance(turned), 0.05) << kind.name;
+        EXPECT_LT(quaternion_of(state.orientation).angularDistance(turned), 1e-3) << kind.name;
     }
 }
 
