@@ -20,6 +20,14 @@ inline double reach_of(const Twist& motion, double arm) noexcept {
     return motion.head<3>().norm() + arm * motion.tail<3>().norm();
 }
 
+/// X_PT of a pose. Realtime-safe.
+inline Eigen::Isometry3d placement_of(const ToolPose& pose) noexcept {
+    Eigen::Isometry3d X_PT = Eigen::Isometry3d::Identity();
+    X_PT.linear() = pose.orientation.toRotationMatrix();
+    X_PT.translation() = pose.position;
+    return X_PT;
+}
+
 /// The pose after a motion. Realtime-safe.
 inline ToolPose moved(const ToolPose& pose, const Twist& motion) noexcept {
     return {pose.position + motion.head<3>(), turned(pose.orientation, motion.tail<3>())};

@@ -38,7 +38,7 @@ from recorded import kept  # noqa: E402
 from tools import TOOLS, lathe, stl  # noqa: E402
 
 PROGRAMS = pathlib.Path(os.environ.get("PALPATE_BIN", "build/release/bin"))
-SCHEMES = {"continuous": "#3d84d6", "shell": "#d8732a", "cones": "#9a59b5", "solid": "#2f9e77"}
+SCHEMES = {"continuous": "#3d84d6", "shell": "#d8732a", "cones": "#9a59b5", "features": "#c4a000", "solid": "#2f9e77"}
 BEVEL, DEEP = 1.0, 25.0  # of the pocket, mm
 POINTS = 300  # of a curve
 UNSOLVED, UNSETTLED = 1 << 3, 1 << 7  # of a tick's status

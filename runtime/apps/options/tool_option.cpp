@@ -50,13 +50,15 @@ void declare(cli::Command& command, ToolOption& option) {
 }
 
 void check(const cli::Command& command, const ToolOption& option, const std::string& scheme) {
-    const haptics::ContactCapabilities& can = haptics::find_contact_method(scheme, "--scheme").can;
+    using namespace haptics;
+    const ContactCapabilities& can = find_contact_method(scheme, "--scheme").can;
     if (option.has_jaws() && !(can.turns && can.feels_tissue))
         throw UsageError({"--instrument", "forceps with --scheme " + scheme, "--scheme continuous",
                           "no other feels jaws"});
     if (!option.tool.empty() && !option.has_jaws() && !can.turns)
         throw UsageError({"--instrument", "with --scheme " + scheme,
-                          "--scheme continuous, shell, cones or solid", "with no other do tools turn"});
+                          "--scheme " + contact_method_names(&ContactCapabilities::turns),
+                          "with no other do tools turn"});
     if (option.has_surface() && !can.samples_surface)
         for (const std::string name : {"--shell-points", "--voxel"})
             if (is_asked_for(command, name))
@@ -64,7 +66,8 @@ void check(const cli::Command& command, const ToolOption& option, const std::str
                     {name, "with --scheme " + scheme, "--scheme shell beside it", "no other samples a tool"});
     if (option.has_surface() && !can.gives_way && is_asked_for(command, "--contact-stiffness"))
         throw UsageError({"--contact-stiffness", "with --scheme " + scheme,
-                          "--scheme shell or cones beside it", "with no other do touches give way"});
+                          "--scheme " + contact_method_names(&ContactCapabilities::gives_way) + " beside it",
+                          "with no other do touches give way"});
     if (option.tool.empty() || option.has_jaws())
         refuse_settings(command, tool_fields,
                         option.has_jaws() ? "with --instrument forceps" : "without --instrument",

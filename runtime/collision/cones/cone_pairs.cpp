@@ -35,12 +35,6 @@ bool is_within(const Vector3d& unit, const Vector3d& other, double length, const
 
 }  // namespace
 
-bool may_be_near(const ConeNode& a, const Eigen::Isometry3d& X_BA, const ConeNode& b,
-                 double within) noexcept {
-    const double radii = static_cast<double>(a.radius) + static_cast<double>(b.radius);
-    return (X_BA * vector(a.centre) - vector(b.centre)).norm() - radii <= within;
-}
-
 bool may_be_nearest(const ConeNode& a, const Eigen::Isometry3d& X_BA, const ConeNode& b,
                     const ConeReach& reach) noexcept {
     const Vector3d way = X_BA * vector(a.centre) - vector(b.centre);

@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
 #include <span>
-#include <utility>
 
 #include "formats/model/errors.hpp"
 
@@ -17,8 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// What float32 and sums of unit normals may be off by, upwards: mm, of a radius, and rad.
-constexpr double place_rounding = 1e-4, radius_rounding = 1e-6, angle_rounding = 1e-4;
+constexpr double angle_rounding = 1e-4;  // rad: what float32 and sums of unit normals may be off by, upwards
 
 double angle_between(const Vector3d& a, const Vector3d& b) {
     return std::acos(std::clamp(a.dot(b), -1.0, 1.0));
@@ -27,36 +24,31 @@ double angle_between(const Vector3d& a, const Vector3d& b) {
 class Builder {
   public:
     Builder(const SurfaceFeatures& features, std::vector<ConeNode>& nodes)
-        : features_(features), nodes_(nodes), order_(features.triangle_count()) {
+        : features_(features),
+          nodes_(nodes),
+          order_(features.triangle_count()),
+          centroids_(centroids_of(features)) {
         std::iota(order_.begin(), order_.end(), 0);
-        for (std::size_t t = 0; t < order_.size(); ++t) {
-            const TriangleCorners corners = features.corners(t);
-            normals_.push_back(unit_normal(corners));
-            centroids_.push_back((corners[0] + corners[1] + corners[2]) / 3);
-        }
+        for (std::size_t t = 0; t < order_.size(); ++t) normals_.push_back(unit_normal(features.corners(t)));
         spread_to_features();
         nodes_.reserve(2 * order_.size());
         nodes_.emplace_back();
     }
 
     void split(std::size_t index, std::span<std::int32_t> part) {
-        set_ball(nodes_[index], part);
+        static_cast<BallNode&>(nodes_[index]) = ball_about(features_, part);
         set_cone(nodes_[index], part);
         if (part.size() == 1) {
             nodes_[index].triangle = part.front();
             return;
         }
-        const std::size_t half = part.size() / 2;
-        const Eigen::Index axis = longest_axis(part);
-        std::ranges::nth_element(
-            part, part.begin() + static_cast<std::ptrdiff_t>(half), {},
-            [&](std::int32_t t) { return std::pair(centroids_[static_cast<std::size_t>(t)][axis], t); });
+        const auto [first, second] = halve(part, centroids_);
         const std::size_t left = nodes_.size();
         nodes_[index].left = static_cast<std::int32_t>(left);
         nodes_.emplace_back();
         nodes_.emplace_back();
-        split(left, part.first(half));
-        split(left + 1, part.subspan(half));
+        split(left, first);
+        split(left + 1, second);
     }
 
     std::span<std::int32_t> all() { return order_; }
@@ -105,33 +97,6 @@ class Builder {
                 rings_[static_cast<std::size_t>(v)].push_back(t);
     }
 
-    Eigen::Index longest_axis(std::span<const std::int32_t> part) const {
-        Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
-        for (const std::int32_t t : part) {
-            low = low.cwiseMin(centroids_[static_cast<std::size_t>(t)]);
-            high = high.cwiseMax(centroids_[static_cast<std::size_t>(t)]);
-        }
-        Eigen::Index axis = 0;
-        (high - low).maxCoeff(&axis);
-        return axis;
-    }
-
-    void set_ball(ConeNode& node, std::span<const std::int32_t> part) const {
-        Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
-        for (const std::int32_t t : part)
-            for (const Vector3d& corner : features_.corners(static_cast<std::size_t>(t))) {
-                low = low.cwiseMin(corner);
-                high = high.cwiseMax(corner);
-            }
-        const Vector3d centre = (low + high) / 2;
-        double radius = 0;
-        for (const std::int32_t t : part)
-            for (const Vector3d& corner : features_.corners(static_cast<std::size_t>(t)))
-                radius = std::max(radius, (corner - centre).norm());
-        Eigen::Map<Eigen::Vector3f>(node.centre.data()) = centre.cast<float>();
-        node.radius = static_cast<float>(radius * (1 + radius_rounding) + place_rounding);
-    }
-
     void set_cone(ConeNode& node, std::span<const std::int32_t> part) const {
         Vector3d axis = Vector3d::Zero();
         for (const std::int32_t t : part) axis += normals_[static_cast<std::size_t>(t)];
@@ -154,7 +119,7 @@ class Builder {
     const SurfaceFeatures& features_;
     std::vector<ConeNode>& nodes_;
     std::vector<std::int32_t> order_;
-    std::vector<Vector3d> normals_, centroids_;
+    std::vector<Vector3d> centroids_, normals_;
     std::vector<double> spreads_;
     std::vector<std::vector<std::int32_t>> rings_;
 };
@@ -166,9 +131,7 @@ NormalConeTree::NormalConeTree(const SurfaceFeatures& features) : features_(feat
         throw InvalidInput({"normal cones", "a surface without triangles", "one at least", ""});
     Builder builder(features, nodes_);
     builder.split(0, builder.all());
-    for (std::size_t t = 0; t < features.triangle_count(); ++t)
-        for (const Vector3d& corner : features.corners(t))
-            longest_arm_ = std::max(longest_arm_, corner.norm());
+    longest_arm_ = longest_arm_of(features);
 }
 
 }  // namespace palpate::collision

@@ -6,19 +6,16 @@
 #include <cstdint>
 #include <vector>
 
+#include "runtime/collision/balls/ball_node.hpp"
 #include "runtime/collision/features/surface_features.hpp"
 
 namespace palpate::collision {
 
 /// A part of a surface: a ball about its triangles, and a cone about all directions in which one of its
 /// points can be the surface's locally nearest. In float32, rounded up.
-struct ConeNode {
-    std::array<float, 3> centre{0, 0, 0};  ///< mm
-    float radius = 0;                      ///< mm
-    std::array<float, 3> axis{0, 0, 1};    ///< unit
-    float cosine = -1, sine = 0;  ///< of the cone's half angle, at most 90 degrees; -1: any direction
-    std::int32_t left = -1;       ///< its first child, the second follows; -1: a triangle
-    std::int32_t triangle = -1;   ///< of a leaf
+struct ConeNode : BallNode {
+    std::array<float, 3> axis{0, 0, 1};  ///< unit
+    float cosine = -1, sine = 0;         ///< of the cone's half angle, at most 90 degrees; -1: any direction
 };
 
 /// A hierarchy of balls and normal cones over a surface (Johnson, Cohen 2001, "Spatialized normal cone

@@ -18,9 +18,10 @@ struct TriangleFeatures {
     std::array<std::int32_t, 3> vertices{};  ///< of the mesh
     /// The corner across each edge, of the triangle beyond it; -1 at a border.
     std::array<std::int32_t, 3> across{-1, -1, -1};
-    std::uint8_t own_vertices = 0;     ///< bit i: corner i belongs to this triangle
-    std::uint8_t own_edges = 0;        ///< bit i: edge i belongs to it
-    std::uint8_t own_sharp_edges = 0;  ///< bit i: and is convex or a border
+    std::array<std::int32_t, 3> beyond{-1, -1, -1};  ///< the triangle across each edge; -1 at a border
+    std::uint8_t own_vertices = 0;                   ///< bit i: corner i belongs to this triangle
+    std::uint8_t own_edges = 0;                      ///< bit i: edge i belongs to it
+    std::uint8_t own_sharp_edges = 0;                ///< bit i: and is convex or a border
 };
 
 /// The faces, edges and vertices of a surface, and to which of them a point or an edge outside can be locally

@@ -66,9 +66,12 @@ SurfaceFeatures::SurfaceFeatures(std::span<const Vector3d> vertices, std::span<c
         if (last - first == 2 && first[0].upwards != first[1].upwards) {
             const std::int32_t across = corner_across(first[1]);
             const auto triangle = static_cast<std::size_t>(first[0].triangle);
-            features_[triangle].across[first[0].edge] = across;
-            features_[static_cast<std::size_t>(first[1].triangle)].across[first[1].edge] =
-                corner_across(first[0]);
+            TriangleFeatures &one = features_[triangle],
+                             &other = features_[static_cast<std::size_t>(first[1].triangle)];
+            one.across[first[0].edge] = across;
+            other.across[first[1].edge] = corner_across(first[0]);
+            one.beyond[first[0].edge] = first[1].triangle;
+            other.beyond[first[1].edge] = first[0].triangle;
             own(first[0], &TriangleFeatures::own_edges);
             if (is_convex(corners(triangle), first[0].edge, vertex(across)))
                 own(first[0], &TriangleFeatures::own_sharp_edges);

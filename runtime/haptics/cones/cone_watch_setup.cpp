@@ -6,12 +6,12 @@ namespace palpate::haptics {
 
 ConeWatch::ConeWatch(const collision::NormalConeTree& tool, std::span<const collision::NormalConeTree> bodies,
                      double reach)
-    : tool_(tool),
+    : GapWatch(reach, most_touches, tool.longest_arm()),
+      tool_(tool),
       bodies_(bodies),
-      reach_(reach),
-      within_((1 + ahead) * reach),
       around_{.slack = 0.3, .turn = 0.02, .pairs = std::vector<Kept>(most_kept)},
-      closer_{.slack = 0.05, .turn = 0.003, .pairs = std::vector<Kept>(most_kept)},
-      touches_(most_touches) {}
+      closer_{.slack = 0.05, .turn = 0.003, .pairs = std::vector<Kept>(most_kept)} {}
+
+ConeWatch::~ConeWatch() = default;
 
 }  // namespace palpate::haptics

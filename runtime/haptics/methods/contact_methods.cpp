@@ -7,8 +7,8 @@
 
 #include "formats/model/errors.hpp"
 #include "formats/records/shown_text.hpp"
-#include "runtime/haptics/methods/cone_contact.hpp"
 #include "runtime/haptics/methods/continuous_contact.hpp"
+#include "runtime/haptics/methods/gap_contact.hpp"
 #include "runtime/haptics/methods/published_contact.hpp"
 #include "runtime/haptics/methods/shell_contact.hpp"
 #include "runtime/haptics/methods/solid_contact.hpp"
@@ -61,11 +61,29 @@ constexpr std::array table{
         {.has_radius = true, .feels_tissue = false, .turns = true, .always_turns = true, .gives_way = true},
         make_cones},
     ContactMethodEntry{
+        "features",
+        shown_text("is published: a whole tool that turns, pushed off by the closest features of its convex "
+                   "pieces and those of rigid bodies"),
+        {.has_radius = true, .feels_tissue = false, .turns = true, .always_turns = true, .gives_way = true},
+        make_features},
+    ContactMethodEntry{
         "solid",
         shown_text("is ours: a whole tool that turns, its triangles never through those of rigid bodies"),
         {.has_radius = true, .feels_tissue = false, .turns = true, .always_turns = true},
         make_solid},
 };
+
+// "one, two or three": of those whose capabilities serve.
+template <typename Serves>
+std::string names_of(const Serves& serves) {
+    std::vector<std::string> names;
+    for (const ContactMethodEntry& method : table)
+        if (serves(method.can)) names.emplace_back(method.name);
+    std::string text;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        text += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
+    return text;
+}
 
 }  // namespace
 
@@ -80,13 +98,11 @@ const ContactMethodEntry& find_contact_method(std::string_view name, const std::
 }
 
 std::string contact_method_names(std::size_t tool_count) {
-    std::vector<std::string> names;
-    for (const ContactMethodEntry& method : table)
-        if (method.can.most_tools >= tool_count) names.emplace_back(method.name);
-    std::string text;
-    for (std::size_t i = 0; i < names.size(); ++i)
-        text += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
-    return text;
+    return names_of([&](const ContactCapabilities& can) { return can.most_tools >= tool_count; });
+}
+
+std::string contact_method_names(bool ContactCapabilities::*can) {
+    return names_of([&](const ContactCapabilities& of) { return of.*can; });
 }
 
 std::string contact_method_sentences() {

@@ -51,6 +51,8 @@ const ContactMethodEntry& find_contact_method(std::string_view name,
 
 /// "single, twice, ... or continuous": the names of the methods that take at least `tool_count` tools.
 std::string contact_method_names(std::size_t tool_count = 1);
+/// The names of those that can do one thing, likewise.
+std::string contact_method_names(bool ContactCapabilities::*can);
 /// "'single' is published: ...; 'twice' ...": the whole table in words.
 std::string contact_method_sentences();
 

@@ -116,16 +116,18 @@ class WholeTools(SampleAsset):
         self.assertGreater(on_wall["force_peak_n"], 0.005)
         self.assertEqual({contact["body"] for contact in on_wall["peak"]["contacts"]}, {"wall"})
 
-    def test_a_peg_is_pushed_off_by_the_minima_of_its_distance_before_it_meets_bone(self):
+    def test_a_peg_is_pushed_off_where_it_is_near_bone_before_it_meets_it(self):
         script = self.hand(BESIDE_THE_TOP.format("0 0 0 1"))
-        result, _ = self.logged("--instrument", self.peg, "--script", script, "--scheme", "cones", "--contact-stiffness", 20)
-        self.assertEqual(result["scheme"], "cones")
-        self.assertEqual(result["penetration"]["tool_mm"], 0)
-        force, torque = result["peak"]["force_n"], result["peak"]["torque_n_mm"]
-        # The sample's largest force, 3.3 N, on 20 N/mm: it is felt from 0.165 mm off on.
-        self.assertGreater(force[2], COUPLING * 2)
-        self.assertLess(force[2], COUPLING * (2 + 0.165 + SINKS))
-        self.assertAlmostEqual(torque[1] / force[2], -4, delta=0.4)
+        for scheme in ("cones", "features"):
+            with self.subTest(scheme=scheme):
+                result, _ = self.logged("--instrument", self.peg, "--script", script, "--scheme", scheme, "--contact-stiffness", 20)
+                self.assertEqual(result["scheme"], scheme)
+                self.assertEqual(result["penetration"]["tool_mm"], 0)
+                force, torque = result["peak"]["force_n"], result["peak"]["torque_n_mm"]
+                # The sample's largest force, 3.3 N, on 20 N/mm: it is felt from 0.165 mm off on.
+                self.assertGreater(force[2], COUPLING * 2)
+                self.assertLess(force[2], COUPLING * (2 + 0.165 + SINKS))
+                self.assertAlmostEqual(torque[1] / force[2], -4, delta=0.4)
 
     def test_a_solid_peg_is_turned_by_its_lever_and_stays_outside(self):
         script = self.hand(BESIDE_THE_TOP.format("0 0 0 1"))
@@ -226,8 +228,9 @@ class WholeTools(SampleAsset):
         rod = ("--instrument", "rod", "--rod-length", 20, "--scheme", "continuous", "--seconds", 1, "--max-torque", 50)
         solid = ("--instrument", self.peg, "--script", self.hand(BESIDE_THE_TOP.format("0.1 0.2 0.3 0.927362")), "--scheme", "solid")
         spheres = ("--instrument", self.peg, "--script", self.hand(BESIDE_THE_TOP.format("0.1 0.2 0.3 0.927362")))
-        cones = (*spheres, "--scheme", "cones")
-        for name, options in (("shell.h5", shell), ("rod.h5", rod), ("solid.h5", solid), ("spheres.h5", spheres), ("cones.h5", cones)):
+        cones, features = ((*spheres, "--scheme", scheme) for scheme in ("cones", "features"))
+        for name, options in (("shell.h5", shell), ("rod.h5", rod), ("solid.h5", solid), ("spheres.h5", spheres), ("cones.h5", cones),
+                              ("features.h5", features)):
             with self.subTest(tool=name):
                 path, run = self.recorded(name, *options)
                 again = self.result("--replay", path)
@@ -274,8 +277,8 @@ class WholeTools(SampleAsset):
             (["--instrument", self.folder / "none.stl"], 3, ["none.stl: cannot be read", "check the path"]),
             (["--instrument", open_surface], 3, ["open.stl", "edge"]),
             (["--instrument", self.asset], 3, ["sample.vtkhdf"]),
-            ([*peg, "--scheme", "twice"], 2, ["--instrument: with --scheme twice", "continuous, shell, cones or solid"]),
-            (["--instrument", "rod", "--rod-length", 20, "--scheme", "single"], 2, ["--instrument: with --scheme single", "continuous, shell, cones or solid"]),
+            ([*peg, "--scheme", "twice"], 2, ["--instrument: with --scheme twice", "continuous, shell, cones, features or solid"]),
+            (["--instrument", "rod", "--rod-length", 20, "--scheme", "single"], 2, ["--instrument: with --scheme single", "continuous, shell, cones, features or solid"]),
             ([*peg, "--voxel", 2], 2, ["--voxel: with --scheme continuous", "--scheme shell beside it"]),
             (["--instrument", "rod"], 3, ["its tool has no shaft", "--rod-length"]),
             (["--voxel", 2], 2, ["--voxel: without --instrument", "--instrument rod or a file beside it"]),
@@ -288,7 +291,7 @@ class WholeTools(SampleAsset):
             ([*peg, "--body", "skul"], 2, ["no body 'skul'", "'skull'"]),
             ([*peg, "--replay", path], 2, ["--replay", "--instrument"]),
             ([*peg, "--scheme", "solid", "--voxel", 0.5], 2, ["--voxel: with --scheme solid", "--scheme shell beside it"]),
-            ([*peg, "--scheme", "solid", "--contact-stiffness", 5], 2, ["--contact-stiffness: with --scheme solid", "--scheme shell or cones"]),
+            ([*peg, "--scheme", "solid", "--contact-stiffness", 5], 2, ["--contact-stiffness: with --scheme solid", "--scheme shell, cones or features"]),
             ([*peg, "--scheme", "solid", "--body", "wall"], 2, ["--body: 'wall' is not rigid", "'solid' feels no other"]),
         ]
         for options, code, messages in cases:
@@ -302,7 +305,7 @@ class WholeTools(SampleAsset):
     def test_a_case_without_rigid_bodies_is_not_for_shell(self):
         soft = self.folder / "soft.vtkhdf"
         subprocess.run([TESTS / "write_sample_asset", soft, "soft"], check=True)
-        for options in (["--instrument", self.peg, "--scheme", "shell"], ["--scheme", "shell"], ["--scheme", "cones"], ["--scheme", "solid"]):
+        for options in (["--instrument", self.peg, "--scheme", "shell"], ["--scheme", "shell"], ["--scheme", "cones"], ["--scheme", "features"], ["--scheme", "solid"]):
             run = self.touch("--virtual-clock", *options, asset=soft)
             self.assertEqual(run.returncode, 3, run.stderr)
             self.assertIn("no rigid body", run.stderr)

@@ -9,10 +9,11 @@
 #include <utility>
 #include <vector>
 
+#include "runtime/collision/balls/ball_pairs.hpp"
 #include "runtime/collision/cones/cone_pairs.hpp"
 #include "runtime/collision/cones/local_minima.hpp"
 #include "runtime/collision/tree_pairs.hpp"
-#include "tests/formats/sample_case.hpp"
+#include "tests/runtime/collision/bumpy_ball.hpp"
 #include "tests/runtime/samples.hpp"
 
 namespace palpate {
@@ -20,14 +21,6 @@ namespace {
 
 using namespace collision;
 using Eigen::Vector3d;
-
-// A ball with bumps and hollows, so that distances have minima in many places.
-TriangleMesh bumpy_ball(double radius, int refinements, double bump) {
-    TriangleMesh mesh = sample::sphere_surface({0, 0, 0}, radius, refinements);
-    for (Vector3d& v : mesh.vertices)
-        v *= 1 + bump * std::sin(0.9 * v.x()) * std::cos(1.1 * v.y()) * std::sin(0.7 * v.z() + 1);
-    return mesh;
-}
 
 class Pairs {
   public:
@@ -104,18 +97,6 @@ std::vector<double> distances_of(const std::vector<LocalMinimum>& minima) {
     for (const LocalMinimum& minimum : minima) distances.push_back(minimum.distance);
     std::ranges::sort(distances);
     return distances;
-}
-
-Eigen::Isometry3d any_pose(double away, std::mt19937& random) {
-    std::normal_distribution<double> component(0, 1);
-    Eigen::Isometry3d X_BA = Eigen::Isometry3d::Identity();
-    X_BA.linear() =
-        Eigen::Quaterniond(component(random), component(random), component(random), component(random))
-            .normalized()
-            .toRotationMatrix();
-    X_BA.translation() =
-        away * Vector3d(component(random), component(random), component(random)).normalized();
-    return X_BA;
 }
 
 TEST(NormalCones, find_every_local_minimum_that_all_pairs_of_triangles_have) {

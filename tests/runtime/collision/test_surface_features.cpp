@@ -50,8 +50,9 @@ TEST(SurfaceFeatures, each_vertex_and_each_edge_belongs_to_one_triangle) {
     for (std::size_t t = 0; t < dented.triangle_count(); ++t)
         for (std::size_t i = 0; i < 3; ++i) {
             const auto& v = dented.of(t).vertices;
-            if (v[i] == 7 || v[(i + 1) % 3] == 7)
+            if (v[i] == 7 || v[(i + 1) % 3] == 7) {
                 EXPECT_EQ(dented.of(t).own_sharp_edges >> i & 1, 0) << t << ' ' << i;
+            }
         }
 }
 

@@ -24,7 +24,7 @@ using Eigen::Vector3d;
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view method =
-    R"(# Whole tools on a bone, with `continuous`, `shell`, `cones` and `solid`
+    R"(# Whole tools on a bone, with `continuous`, `shell`, `cones`, `features` and `solid`
 
 Each tool visits random places of the bone's outside: it comes along the normal at 20 to 200 mm/s, tilted by up to 40
 degrees, its device goes 3 mm deep, slides 10 mm while it turns by up to 30 degrees, and leaves. Ticks: one core, wall
@@ -45,8 +45,12 @@ struct Way {
     std::string_view scheme;
     std::int32_t points;
 };
-constexpr std::array<Way, 5> ways{
-    {{"continuous", 5000}, {"shell", 5000}, {"shell", 50'000}, {"cones", 5000}, {"solid", 5000}}};
+constexpr std::array<Way, 6> ways{{{"continuous", 5000},
+                                   {"shell", 5000},
+                                   {"shell", 50'000},
+                                   {"cones", 5000},
+                                   {"features", 5000},
+                                   {"solid", 5000}}};
 constexpr std::size_t judging_points = 20'000;
 constexpr std::int64_t judged_every = 20;
 constexpr double stroke = 10, lost_depth = 5;  // mm

@@ -4,8 +4,8 @@
 
 namespace palpate::experiments {
 
-/// Whole tools on a bone with `continuous`, `shell`, `cones` and `solid`: what a tick takes, how deep the
-/// tool goes by exact distances and by FCL, and how many fast approaches it lets through.
+/// Whole tools on a bone with `continuous`, `shell`, `cones`, `features` and `solid`: what a tick takes, how
+/// deep the tool goes by exact distances and by FCL, and how many fast approaches it lets through.
 Findings sixdof(const Options& options, cli::Session& session);
 
 }  // namespace palpate::experiments
