@@ -15,6 +15,9 @@ namespace palpate::collision {
 /// Realtime-safe.
 bool may_be_near(const BallNode& a, const Eigen::Isometry3d& X_BA, const BallNode& b, double within) noexcept;
 
+/// How far apart their balls are, mm; below zero where they overlap. Realtime-safe.
+double least_apart(const BallNode& a, const Eigen::Isometry3d& X_BA, const BallNode& b) noexcept;
+
 /// Two nodes by their indices in two trees.
 using NodePair = std::array<std::int32_t, 2>;
 

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "runtime/collision/balls/ball_pairs.hpp"
 #include "runtime/collision/convex/piece_steps.hpp"
+#include "runtime/collision/segment_queries.hpp"
 
 namespace palpate::collision {
 namespace {
@@ -17,53 +19,114 @@ constexpr int most_steps = 64;
 constexpr double rounding = 1e-10;   // mm, by which a vertex may be nearer
 constexpr double no_nearer = 1e-12;  // of a squared distance: less is no step
 
+// A pair of triangles and their nearest points.
+struct Place {
+    std::int32_t of_a, of_b;
+    TrianglePair points;
+
+    double squared() const noexcept { return points.on_a.squared_distance; }  // distance
+    bool is_nearer_than(const Place& other) const noexcept {
+        return squared() < (1 - no_nearer) * other.squared();
+    }
+};
+
+TriangleFeature feature_of(std::int32_t triangle, const TrianglePoint& point) noexcept {
+    if (point.feature == Feature::face) return {triangle, Feature::face, 0};
+    const std::size_t which = point.feature == Feature::vertex ? corner_of(point) : edge_of(point);
+    return {triangle, point.feature, static_cast<std::uint8_t>(which)};
+}
+
 class Walk {
   public:
-    Walk(const ConvexPieces& a, const Isometry3d& X_BA, const ConvexPieces& b, PiecePair& pair) noexcept
-        : a_(a), b_(b), X_BA_(X_BA), X_AB_(X_BA.inverse()), pair_(pair) {}
+    Walk(const ConvexPieces& a, const Isometry3d& X_BA, const ConvexPieces& b, const PiecePair& pair) noexcept
+        : a_(a), b_(b), X_BA_(X_BA), X_AB_(X_BA.inverse()), pair_(pair), best_(where_it_was()) {}
 
-    TrianglePair find(double within) noexcept {
-        found_ = between(pair_.triangle_a, pair_.triangle_b);
-        for (int step = 0; step < most_steps && apart() > 0 && (step_on_a() || step_on_b());) ++step;
-        if (apart() > 0 && !is_least()) search(within);
-        return found_;
+    // What is found, and a distance than which nothing is nearer.
+    std::pair<Place, double> find(double within) noexcept {
+        const bool was_found = pair_.on_a.kind != Feature::face || pair_.on_b.kind != Feature::face;
+        if (was_found && best_.squared() > 0 && is_proved()) return {best_, distance()};
+        if (was_found) best_ = between(best_.of_a, best_.of_b);
+        for (int step = 0; step < most_steps && (step_on_a(best_) || step_on_b(best_));) ++step;
+        if (best_.squared() > 0 && is_proved()) return {best_, distance()};
+        search(within);
+        return {best_, std::min(distance(), within)};
     }
 
   private:
-    double apart() const noexcept { return found_.on_a.squared_distance; }
-
-    TrianglePair between(std::int32_t of_a, std::int32_t of_b) const noexcept {
-        return closest_points_of_triangles(
-            placed(X_BA_, a_.features().corners(static_cast<std::size_t>(of_a))),
-            b_.features().corners(static_cast<std::size_t>(of_b)));
+    double distance() const noexcept { return std::sqrt(best_.squared()); }
+    TriangleCorners corners_of_a(std::int32_t triangle) const noexcept {
+        return placed(X_BA_, a_.features().corners(static_cast<std::size_t>(triangle)));
+    }
+    TriangleCorners corners_of_b(std::int32_t triangle) const noexcept {
+        return b_.features().corners(static_cast<std::size_t>(triangle));
     }
 
-    bool improves(std::int32_t of_a, std::int32_t of_b) noexcept {
-        const TrianglePair pair = between(of_a, of_b);
-        if (!(pair.on_a.squared_distance < (1 - no_nearer) * apart())) return false;
-        found_ = pair;
-        pair_.triangle_a = of_a;
-        pair_.triangle_b = of_b;
+    // The nearest points of the features that had them last; of two faces, which had none, of the triangles.
+    Place where_it_was() const noexcept {
+        const TriangleFeature &of_a = pair_.on_a, &of_b = pair_.on_b;
+        const TriangleCorners a = corners_of_a(of_a.triangle), b = corners_of_b(of_b.triangle);
+        Place place{of_a.triangle, of_b.triangle, {}};
+        auto &on_a = place.points.on_a, &on_b = place.points.on_b;
+        if (of_a.kind == Feature::vertex) {
+            on_b = closest_point_on_triangle(a[of_a.which], b);
+            on_a = corner(a, of_a.which);
+        } else if (of_b.kind == Feature::vertex) {
+            on_a = closest_point_on_triangle(b[of_b.which], a);
+            on_b = corner(b, of_b.which);
+        } else if (of_a.kind == Feature::edge && of_b.kind == Feature::edge) {
+            const SegmentPair near = closest_points_of_segments(a[of_a.which], a[(of_a.which + 1U) % 3],
+                                                                b[of_b.which], b[(of_b.which + 1U) % 3]);
+            on_a = on_edge(of_a.which, near.s, near.first);
+            on_b = on_edge(of_b.which, near.t, near.second);
+        } else {
+            return between(of_a.triangle, of_b.triangle);
+        }
+        on_a.squared_distance = on_b.squared_distance = (on_a.point - on_b.point).squaredNorm();
+        return place;
+    }
+    static TrianglePoint corner(const TriangleCorners& of, std::size_t i) noexcept {
+        return {of[i], Vector3d::Unit(static_cast<Eigen::Index>(i)), 0, Feature::vertex};
+    }
+    static TrianglePoint on_edge(std::size_t i, double s, const Vector3d& p) noexcept {
+        TrianglePoint point{p, Vector3d::Zero(), 0, s > 0 && s < 1 ? Feature::edge : Feature::vertex};
+        point.barycentric[static_cast<Eigen::Index>(i)] = 1 - s;
+        point.barycentric[static_cast<Eigen::Index>((i + 1) % 3)] = s;
+        return point;
+    }
+
+    Place between(std::int32_t of_a, std::int32_t of_b) const noexcept {
+        return {of_a, of_b, closest_points_of_triangles(corners_of_a(of_a), corners_of_b(of_b))};
+    }
+    void take_if_nearer(const Place& place) noexcept {
+        if (place.is_nearer_than(best_)) best_ = place;
+    }
+
+    // Ways from one point to the other, and points, each in the frame of its surface.
+    Vector3d way_of_a(const Place& at) const noexcept {
+        return X_AB_.linear() * (at.points.on_b.point - at.points.on_a.point);
+    }
+    Vector3d point_of_a(const Place& at) const noexcept { return X_AB_ * at.points.on_a.point; }
+    static Vector3d way_of_b(const Place& at) noexcept { return at.points.on_a.point - at.points.on_b.point; }
+    static const Vector3d& point_of_b(const Place& at) noexcept { return at.points.on_b.point; }
+
+    // To a triangle of one piece beside the one that the point is on, if it is nearer.
+    bool step_on_a(Place& at) const noexcept {
+        const Vector3d way = way_of_a(at), from = point_of_a(at);
+        return any_beyond(a_, at.of_a, at.points.on_a, [&](std::int32_t t) {
+            return leads_on(a_, t, from, way) && step_to(between(t, at.of_b), at);
+        });
+    }
+    bool step_on_b(Place& at) const noexcept {
+        const Vector3d way = way_of_b(at), from = point_of_b(at);
+        return any_beyond(b_, at.of_b, at.points.on_b, [&](std::int32_t t) {
+            return leads_on(b_, t, from, way) && step_to(between(at.of_a, t), at);
+        });
+    }
+    static bool step_to(const Place& there, Place& at) noexcept {
+        if (!there.is_nearer_than(at)) return false;
+        at = there;
         return true;
     }
-
-    // From A's point to B's, in A's frame, and A's point there.
-    Vector3d way_in_a() const noexcept { return X_AB_.linear() * (found_.on_b.point - found_.on_a.point); }
-    Vector3d point_in_a() const noexcept { return X_AB_ * found_.on_a.point; }
-
-    bool step_on_a() noexcept {
-        const Vector3d way = way_in_a(), from = point_in_a();
-        return any_beyond(a_, pair_.triangle_a, found_.on_a, [&](std::int32_t t) {
-            return leads_on(a_, t, from, way) && improves(t, pair_.triangle_b);
-        });
-    }
-    bool step_on_b() noexcept {
-        const Vector3d way = found_.on_a.point - found_.on_b.point, from = found_.on_b.point;
-        return any_beyond(b_, pair_.triangle_b, found_.on_b, [&](std::int32_t t) {
-            return leads_on(b_, t, from, way) && improves(pair_.triangle_a, t);
-        });
-    }
-
     // Whether a corner of a triangle lies on along the way from a point.
     static bool leads_on(const ConvexPieces& of, std::int32_t triangle, const Vector3d& from,
                          const Vector3d& way) noexcept {
@@ -71,45 +134,98 @@ class Walk {
         return std::ranges::any_of(corners, [&](const Vector3d& p) { return way.dot(p - from) > 0; });
     }
 
-    // Whether all of both pieces lies beyond the planes through the two points, across the way between them:
-    // then nothing of their hulls is nearer.
-    bool is_least() const noexcept {
-        const double distance = std::sqrt(apart());
-        return lies_behind(a_, pair_.piece_a, point_in_a(), way_in_a() / distance) &&
-               lies_behind(b_, pair_.piece_b, found_.on_b.point,
-                           (found_.on_a.point - found_.on_b.point) / distance);
+    // Nothing is nearer of what lies beyond the planes through the two points, across the way between them.
+    // Where one of the pieces does not, for its rim is not convex, those of its triangles are asked that come
+    // nearer to the other's plane.
+    bool is_proved() noexcept {
+        const bool a_is_beyond = a_lies_beyond(best_), b_is_beyond = b_lies_beyond(best_);
+        if (a_is_beyond && b_is_beyond) return true;
+        if (b_is_beyond) return are_triangles_of_a_no_nearer();
+        return a_is_beyond && are_triangles_of_b_no_nearer();
     }
-    static bool lies_behind(const ConvexPieces& of, std::int32_t piece, const Vector3d& point,
+    bool a_lies_beyond(const Place& at) const noexcept {
+        return lies_beyond(a_, pair_.piece_a, point_of_a(at), way_of_a(at));
+    }
+    bool b_lies_beyond(const Place& at) const noexcept {
+        return lies_beyond(b_, pair_.piece_b, point_of_b(at), way_of_b(at));
+    }
+    static bool lies_beyond(const ConvexPieces& of, std::int32_t piece, const Vector3d& point,
                             const Vector3d& way) noexcept {
-        const double most = way.dot(point) + rounding;
+        const double most = way.dot(point) + rounding * way.norm();
         return std::ranges::all_of(of.piece(piece).vertices, [&](const PieceVertex& v) {
             return way.dot(of.features().vertex(v.vertex)) <= most;
         });
     }
 
+    // Takes what is nearer; false where that proves nothing.
+    bool are_triangles_of_a_no_nearer() noexcept {
+        const Vector3d unit = way_of_a(best_).normalized(), plane = X_AB_ * point_of_b(best_);
+        return std::ranges::all_of(a_.piece(pair_.piece_a).triangles, [&](std::int32_t t) {
+            if (!comes_nearer(a_, t, plane, unit)) return true;
+            Place at = between(t, best_.of_b);
+            while (at.squared() > 0 && step_on_b(at)) {
+            }
+            take_if_nearer(at);
+            return !(at.squared() > 0) || b_lies_beyond(at);
+        });
+    }
+    bool are_triangles_of_b_no_nearer() noexcept {
+        const Vector3d unit = way_of_b(best_).normalized(), plane = best_.points.on_a.point;
+        return std::ranges::all_of(b_.piece(pair_.piece_b).triangles, [&](std::int32_t t) {
+            if (!comes_nearer(b_, t, plane, unit)) return true;
+            Place at = between(best_.of_a, t);
+            while (at.squared() > 0 && step_on_a(at)) {
+            }
+            take_if_nearer(at);
+            return !(at.squared() > 0) || a_lies_beyond(at);
+        });
+    }
+    // Whether a corner of a triangle is nearer to a plane through `plane`, to which `unit` leads, than the
+    // two points are to each other.
+    bool comes_nearer(const ConvexPieces& of, std::int32_t triangle, const Vector3d& plane,
+                      const Vector3d& unit) const noexcept {
+        const double nearest = distance() - rounding;
+        const TriangleCorners corners = of.features().corners(static_cast<std::size_t>(triangle));
+        return std::ranges::any_of(corners, [&](const Vector3d& p) { return unit.dot(plane - p) < nearest; });
+    }
+
     void search(double within) noexcept {
-        double least = std::min(std::sqrt(apart()), within);
+        if (!(best_.squared() > 0)) return;
+        double least = std::min(distance(), within);
+        const Vector3d unit = -way_of_b(best_).normalized();  // from A's point to B's
         for_each_pair(
             a_, b_, [&](const PieceNode& a, const PieceNode& b) { return may_be_near(a, X_BA_, b, least); },
             [&](const PieceNode& a, const PieceNode& b) {
-                if (improves(a.triangle, b.triangle)) least = std::min(least, std::sqrt(apart()));
-                return apart() > 0;
+                if (are_apart_along(unit, a.triangle, b.triangle, least)) return true;
+                take_if_nearer(between(a.triangle, b.triangle));
+                least = std::min(least, distance());
+                return least > 0;
             },
             {a_.piece(pair_.piece_a).root, b_.piece(pair_.piece_b).root});
+    }
+    bool are_apart_along(const Vector3d& unit, std::int32_t of_a, std::int32_t of_b,
+                         double least) const noexcept {
+        const TriangleCorners a = corners_of_a(of_a), b = corners_of_b(of_b);
+        const double last = std::max({unit.dot(a[0]), unit.dot(a[1]), unit.dot(a[2])}),
+                     first = std::min({unit.dot(b[0]), unit.dot(b[1]), unit.dot(b[2])});
+        return first - last >= least;
     }
 
     const ConvexPieces &a_, &b_;
     const Isometry3d& X_BA_;
     const Isometry3d X_AB_;
-    PiecePair& pair_;
-    TrianglePair found_;
+    const PiecePair pair_;
+    Place best_;
 };
 
 }  // namespace
 
-TrianglePair closest_features(const ConvexPieces& a, const Isometry3d& X_BA, const ConvexPieces& b,
-                              double within, PiecePair& pair) noexcept {
-    return Walk(a, X_BA, b, pair).find(within);
+ClosestFeatures closest_features(const ConvexPieces& a, const Isometry3d& X_BA, const ConvexPieces& b,
+                                 double within, PiecePair& pair) noexcept {
+    const auto [found, at_least] = Walk(a, X_BA, b, pair).find(within);
+    pair.on_a = feature_of(found.of_a, found.points.on_a);
+    pair.on_b = feature_of(found.of_b, found.points.on_b);
+    return {found.points, at_least};
 }
 
 }  // namespace palpate::collision

@@ -8,10 +8,17 @@
 
 namespace palpate::collision {
 
-/// Two pieces, and the triangles on which their nearest points were found last: where the next search begins.
+/// A feature of a triangle: its face, or an edge or a corner by its number.
+struct TriangleFeature {
+    std::int32_t triangle = 0;
+    Feature kind = Feature::face;
+    std::uint8_t which = 0;
+};
+
+/// Two pieces, and the features on which their nearest points were found last: where the next search begins.
 struct PiecePair {
     std::int32_t piece_a = 0, piece_b = 0;
-    std::int32_t triangle_a = 0, triangle_b = 0;
+    TriangleFeature on_a, on_b;
 };
 
 /// A triangle of either piece, and points of them that are near each other.
@@ -20,14 +27,19 @@ struct NearTriangles {
     TrianglePair points;  ///< frame B, mm
 };
 
+/// The nearest points of two pieces.
+struct ClosestFeatures {
+    TrianglePair points;  ///< frame B, mm
+    double at_least = 0;  ///< mm: the pieces are no nearer to each other
+};
+
 /// Finds the nearest points of the triangles of two convex pieces, A's as `X_BA` has it, in frame B (mm), and
-/// leaves in `pair` the triangles that they are on. It walks from the pair's triangles to neighbours that are
-/// nearer (closest features that are followed: Lin, Canny 1991, "A fast algorithm for incremental distance
-/// calculation"), so that after a small motion it costs the same for pieces of any size but one pass over
-/// their vertices, which proves that no points of two convex bodies are nearer. Where that is not so, for the
-/// pieces' rims need not be convex, the trees below them are searched. Exact to 1e-9 mm where less than
-/// `within`; otherwise no less than that. Realtime-safe.
-TrianglePair closest_features(const ConvexPieces& a, const Eigen::Isometry3d& X_BA, const ConvexPieces& b,
-                              double within, PiecePair& pair) noexcept;
+/// leaves in `pair` the features that they are on. It looks at the pair's features first and walks from there
+/// to neighbours that are nearer (closest features that are followed: Lin, Canny 1991, "A fast algorithm for
+/// incremental distance calculation"); one pass over the vertices of both proves that no points of two convex
+/// bodies are nearer. Where that is not so, for the pieces' rims need not be convex, triangles at the rims,
+/// or the trees below the pieces, are asked. Exact to 1e-9 mm where less than `within`. Realtime-safe.
+ClosestFeatures closest_features(const ConvexPieces& a, const Eigen::Isometry3d& X_BA, const ConvexPieces& b,
+                                 double within, PiecePair& pair) noexcept;
 
 }  // namespace palpate::collision

@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "runtime/collision/balls/ball_pairs.hpp"
-#include "runtime/collision/convex/near_vertices.hpp"
+#include "runtime/collision/convex/equally_near_vertices.hpp"
 
 namespace palpate::haptics {
 
@@ -17,8 +18,9 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double most_slack = 1, least_slack = 0.03;  // mm
-constexpr double travel_rounding = 1e-9;              // mm
+constexpr double most_slack = 0.4, least_slack = 0.03;  // mm
+constexpr double beyond = 0.2;  // mm, up to which it is asked how far a pair is that is not within reach
+constexpr double travel_rounding = 1e-9;  // mm
 
 // Whether a point of a triangle is its surface's locally nearest in a direction, both in the surface's frame.
 bool is_locally_nearest(const collision::SurfaceFeatures& surface, std::int32_t triangle,
@@ -35,19 +37,28 @@ void FeatureWatch::Index::clear() noexcept {
     std::ranges::fill(slots_, Slot{});
 }
 
-bool FeatureWatch::Index::add(std::int32_t body, std::int32_t mine, std::int32_t its) noexcept {
+std::size_t FeatureWatch::Index::slot_of(std::int32_t body, std::int32_t mine,
+                                         std::int32_t its) const noexcept {
     const auto mixed = (static_cast<std::uint64_t>(mine) * 0x9E3779B97F4A7C15U) ^
                        (static_cast<std::uint64_t>(its) * 0xC2B2AE3D27D4EB4FU) ^
                        static_cast<std::uint64_t>(body);
-    for (std::size_t at = (mixed ^ mixed >> 32U) & (slots_.size() - 1);;
-         at = (at + 1) & (slots_.size() - 1)) {
-        Slot& slot = slots_[at];
-        if (slot.body < 0) {
-            slot = {body, mine, its};
-            return true;
-        }
-        if (slot.body == body && slot.mine == mine && slot.its == its) return false;
-    }
+    const std::size_t last = slots_.size() - 1;
+    std::size_t at = (mixed ^ mixed >> 32U) & last;
+    while (slots_[at].body != none &&
+           !(slots_[at].body == body && slots_[at].mine == mine && slots_[at].its == its))
+        at = (at + 1) & last;
+    return at;
+}
+
+std::int32_t FeatureWatch::Index::find(std::int32_t body, std::int32_t mine,
+                                       std::int32_t its) const noexcept {
+    return slots_[slot_of(body, mine, its)].kept;
+}
+
+std::int32_t& FeatureWatch::Index::at(std::int32_t body, std::int32_t mine, std::int32_t its) noexcept {
+    Slot& slot = slots_[slot_of(body, mine, its)];
+    if (slot.body == none) slot = {body, mine, its, none};
+    return slot.kept;
 }
 
 void FeatureWatch::reset() noexcept {
@@ -76,18 +87,19 @@ bool FeatureWatch::holds() const noexcept {
 
 // With as much slack as pairs find room.
 void FeatureWatch::gather(const Isometry3d& X_PT) noexcept {
+    std::swap(now_, before_);
+    if (!valid_) before_.clear();
     gathered_at_ = pose_;
-    valid_ = true;
-    keeps_ = true;
+    valid_ = keeps_ = true;
     for (slack_ = most_slack; slack_ >= least_slack; slack_ /= 2)
         if (gather(X_PT, slack_)) return;
+    now_.clear();
     keeps_ = false;
     slack_ = most_slack;
 }
 
 bool FeatureWatch::gather(const Isometry3d& X_PT, double slack) noexcept {
-    kept_count_ = 0;
-    index_.clear();
+    now_.clear();
     const double within = gaps_.within() + slack;
     for (std::size_t body = 0; body < bodies_.size(); ++body)
         if (!collision::for_each_pair(
@@ -96,31 +108,50 @@ bool FeatureWatch::gather(const Isometry3d& X_PT, double slack) noexcept {
                     return collision::may_be_near(a, X_PT, b, within);
                 },
                 [&](const PieceNode& mine, const PieceNode& its) {
-                    if (!index_.add(static_cast<std::int32_t>(body), mine.piece, its.piece)) return true;
-                    if (kept_count_ == kept_.size()) return false;
-                    kept_[kept_count_++] = {{mine.piece, its.piece, mine.triangle, its.triangle},
-                                            static_cast<std::int32_t>(body),
-                                            travel_};
-                    return true;
+                    return keep(static_cast<std::int32_t>(body), mine, its,
+                                collision::least_apart(mine, X_PT, its));
                 }))
             return false;
     return true;
 }
 
+// The pair of pieces of two triangles whose balls are so far apart; false if there is no room. What was known
+// of the pair before is known still.
+bool FeatureWatch::keep(std::int32_t body, const PieceNode& mine, const PieceNode& its,
+                        double apart) noexcept {
+    const double due = travel_ + apart - gaps_.within() - travel_rounding;
+    std::int32_t& at = now_.index.at(body, mine.piece, its.piece);
+    if (at != Index::none) {
+        Kept& kept = now_.kept[static_cast<std::size_t>(at)];
+        if (!kept.was_followed && due < kept.due)
+            kept = {{mine.piece, its.piece, {mine.triangle}, {its.triangle}}, body, due, false};
+        return true;
+    }
+    if (now_.count == now_.kept.size()) return false;
+    at = static_cast<std::int32_t>(now_.count++);
+    Kept& kept = now_.kept[static_cast<std::size_t>(at)];
+    kept = {{mine.piece, its.piece, {mine.triangle}, {its.triangle}}, body, due, false};
+    const std::int32_t was_at = before_.index.find(body, mine.piece, its.piece);
+    if (was_at != Index::none && before_.kept[static_cast<std::size_t>(was_at)].was_followed)
+        kept = before_.kept[static_cast<std::size_t>(was_at)];
+    return true;
+}
+
 void FeatureWatch::follow(const Isometry3d& X_PT) noexcept {
     const double within = gaps_.within();
-    for (Kept& kept : std::span(kept_).first(kept_count_)) {
+    for (Kept& kept : now_.all()) {
         if (kept.due > travel_) continue;
         const collision::ConvexPieces& body = bodies_[static_cast<std::size_t>(kept.body)];
-        const TrianglePair nearest =
-            collision::closest_features(tool_, X_PT, body, within + slack_, kept.features);
-        const double distance = std::min(std::sqrt(nearest.on_a.squared_distance), within + slack_);
-        kept.due = travel_ + distance - within - travel_rounding;
-        if (distance > within) continue;
-        consider(kept.body, {kept.features.triangle_a, kept.features.triangle_b, nearest}, X_PT);
-        const std::size_t beside =
-            met_ ? 0 : collision::near_vertices(tool_, X_PT, body, kept.features, nearest, within, beside_);
-        for (const collision::NearTriangles& near : std::span(beside_).first(beside))
+        const auto [nearest, at_least] =
+            collision::closest_features(tool_, X_PT, body, within + beyond, kept.features);
+        kept.was_followed = true;
+        kept.due = travel_ + at_least - within - travel_rounding;
+        if (at_least > within ||
+            !consider(kept.body, {kept.features.on_a.triangle, kept.features.on_b.triangle, nearest}, X_PT))
+            continue;
+        const std::size_t others =
+            collision::equally_near_vertices(tool_, X_PT, body, kept.features, nearest, beside_);
+        for (const collision::NearTriangles& near : std::span(beside_).first(others))
             consider(kept.body, near, X_PT);
     }
 }
@@ -144,30 +175,31 @@ void FeatureWatch::search(const Isometry3d& X_PT) noexcept {
 }
 
 // A place counts where the surfaces beside it are no nearer: else it is a neighbouring piece's.
-void FeatureWatch::consider(std::int32_t body, const collision::NearTriangles& near,
+bool FeatureWatch::consider(std::int32_t body, const collision::NearTriangles& near,
                             const Isometry3d& X_PT) noexcept {
     const TrianglePoint &on_tool = near.points.on_a, &on_body = near.points.on_b;
     const double distance = std::sqrt(on_tool.squared_distance);
     gaps_.saw(distance);
     if (!(distance > 0)) {
         met_ = true;
-        return;
+        return false;
     }
     const Vector3d way = on_tool.point - on_body.point;
     if (!is_locally_nearest(bodies_[static_cast<std::size_t>(body)].features(), near.triangle_b, on_body,
                             way))
-        return;
+        return false;
     TrianglePoint in_tool = on_tool;
     in_tool.point = X_PT.inverse() * on_tool.point;
     if (!is_locally_nearest(tool_.features(), near.triangle_a, in_tool, -(X_PT.linear().transpose() * way)))
-        return;
+        return false;
     const Gap gap{near.triangle_a, body, on_tool.point, on_body.point, distance};
     if (found_count_ < found_.size()) {
         found_[found_count_++] = gap;
-        return;
+        return true;
     }
     Gap& widest = *std::ranges::max_element(found_, {}, &Gap::distance);
     if (gap.distance < widest.distance) widest = gap;
+    return true;
 }
 
 // Of places that are near each other and push the same way, the nearest stands for all.

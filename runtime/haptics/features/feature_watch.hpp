@@ -48,29 +48,49 @@ class FeatureWatch final : public GapWatch {
     struct Kept {
         collision::PiecePair features;
         std::int32_t body = 0;
-        double due = 0;  // mm of the tool's travel, before which they are not within reach
+        double due = 0;             // mm of the tool's travel, before which they are not within reach
+        bool was_followed = false;  // by now: else where to begin is a guess
     };
-    // The pairs of pieces that are kept by now, by hash.
+    // Where a pair of pieces is kept, by hash.
     class Index {
       public:
+        static constexpr std::int32_t none = -1;
         explicit Index(std::size_t most) : slots_(most) {}
         void clear() noexcept;
-        // Whether the pair is new; then it is in.
-        bool add(std::int32_t body, std::int32_t mine, std::int32_t its) noexcept;
+        // What was written for the pair, or none; the second, to be written then.
+        std::int32_t find(std::int32_t body, std::int32_t mine, std::int32_t its) const noexcept;
+        std::int32_t& at(std::int32_t body, std::int32_t mine, std::int32_t its) noexcept;
 
       private:
         struct Slot {
-            std::int32_t body = -1, mine = 0, its = 0;
+            std::int32_t body = none, mine = 0, its = 0, kept = none;
         };
+        std::size_t slot_of(std::int32_t body, std::int32_t mine, std::int32_t its) const noexcept;
+
         std::vector<Slot> slots_;  // a power of two, at most half full
+    };
+
+    struct Pairs {
+        std::vector<Kept> kept;  // the first `count`
+        std::size_t count = 0;
+        Index index;
+
+        explicit Pairs(std::size_t most) : kept(most), index(2 * most) {}
+        std::span<Kept> all() noexcept { return {kept.data(), count}; }
+        void clear() noexcept {
+            count = 0;
+            index.clear();
+        }
     };
 
     bool holds() const noexcept;
     void gather(const Eigen::Isometry3d& X_PT) noexcept;
     bool gather(const Eigen::Isometry3d& X_PT, double slack) noexcept;
+    bool keep(std::int32_t body, const collision::PieceNode& mine, const collision::PieceNode& its,
+              double apart) noexcept;
     void follow(const Eigen::Isometry3d& X_PT) noexcept;
     void search(const Eigen::Isometry3d& X_PT) noexcept;
-    void consider(std::int32_t body, const collision::NearTriangles& near,
+    bool consider(std::int32_t body, const collision::NearTriangles& near,
                   const Eigen::Isometry3d& X_PT) noexcept;
     void cluster() noexcept;
 
@@ -79,9 +99,7 @@ class FeatureWatch final : public GapWatch {
     std::vector<collision::NearTriangles> beside_;  // the nearest place of a pair
     std::vector<Gap> found_;                        // the first found_count_
     std::size_t found_count_ = 0;
-    std::vector<Kept> kept_;  // the first kept_count_
-    std::size_t kept_count_ = 0;
-    Index index_;
+    Pairs now_, before_;  // the pairs that are near, and those that were before them
     ToolPose pose_, gathered_at_;
     double slack_ = 0;   // mm, by which the tool may move from there until others are near
     double travel_ = 0;  // mm, of all looks: no point of the tool has moved farther

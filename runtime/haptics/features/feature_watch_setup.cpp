@@ -11,8 +11,8 @@ FeatureWatch::FeatureWatch(const collision::ConvexPieces& tool,
       bodies_(bodies),
       beside_(most_beside),
       found_(most_found),
-      kept_(most_kept),
-      index_(2 * most_kept) {}
+      now_(most_kept),
+      before_(most_kept) {}
 
 FeatureWatch::~FeatureWatch() = default;
 

@@ -14,7 +14,7 @@
 #include "runtime/collision/balls/ball_pairs.hpp"
 #include "runtime/collision/convex/closest_features.hpp"
 #include "runtime/collision/convex/convex_pieces.hpp"
-#include "runtime/collision/convex/near_vertices.hpp"
+#include "runtime/collision/convex/equally_near_vertices.hpp"
 #include "tests/formats/sample_case.hpp"
 #include "tests/runtime/collision/bumpy_ball.hpp"
 #include "tests/runtime/samples.hpp"
@@ -151,17 +151,17 @@ TEST(ClosestFeatures, are_as_far_apart_as_the_nearest_of_all_pairs_of_triangles)
             return std::uniform_int_distribution<std::int32_t>(0,
                                                                static_cast<std::int32_t>(count) - 1)(random);
         };
-        PiecePair pair{any_of(mine.pieces.count()), any_of(its.pieces.count())};
+        PiecePair pair{any_of(mine.pieces.count()), any_of(its.pieces.count()), {}, {}};
         const auto start = [&](const ConvexPiece& piece) {
             return piece.triangles[static_cast<std::size_t>(any_of(piece.triangles.size()))];
         };
-        pair.triangle_a = start(mine.pieces.piece(pair.piece_a));
-        pair.triangle_b = start(its.pieces.piece(pair.piece_b));
+        pair.on_a.triangle = start(mine.pieces.piece(pair.piece_a));
+        pair.on_b.triangle = start(its.pieces.piece(pair.piece_b));
         const double least = apart(mine, X, its, pair);
-        const TrianglePair found = closest_features(mine.pieces, X, its.pieces, 100, pair);
+        const TrianglePair found = closest_features(mine.pieces, X, its.pieces, 100, pair).points;
         ASSERT_NEAR(std::sqrt(found.on_a.squared_distance), least, 1e-9) << pose;
-        EXPECT_EQ(mine.pieces.piece_of(pair.triangle_a), pair.piece_a);
-        EXPECT_EQ(its.pieces.piece_of(pair.triangle_b), pair.piece_b);
+        EXPECT_EQ(mine.pieces.piece_of(pair.on_a.triangle), pair.piece_a);
+        EXPECT_EQ(its.pieces.piece_of(pair.on_b.triangle), pair.piece_b);
         ASSERT_NEAR((found.on_a.point - found.on_b.point).norm(), least, 1e-9) << pose;
         met += least == 0;
     }
@@ -169,29 +169,49 @@ TEST(ClosestFeatures, are_as_far_apart_as_the_nearest_of_all_pairs_of_triangles)
     EXPECT_LT(met, static_cast<std::size_t>(poses) / 2);
 }
 
-TEST(ClosestFeatures, beyond_what_is_asked_are_no_nearer_than_that) {
+TEST(ClosestFeatures, beyond_what_is_asked_are_known_to_be_no_nearer_than_is_said) {
     const Surface a(ring(10, 3, 24, 12)), b(ring(9, 2, 20, 10));
     std::mt19937 random(12);
+    std::size_t beyond = 0;
     for (int pose = 0; pose < samples_of(40); ++pose) {
         const Isometry3d X = any_pose(9, random);
         for (std::int32_t p = 0; p < 5; ++p) {
-            PiecePair pair{p, 0, a.pieces.piece(p).triangles[0], b.pieces.piece(0).triangles[0]};
+            PiecePair pair{p, 0, {a.pieces.piece(p).triangles[0]}, {b.pieces.piece(0).triangles[0]}};
             const double least = apart(a, X, b, pair);
-            const double found =
-                std::sqrt(closest_features(a.pieces, X, b.pieces, 1, pair).on_a.squared_distance);
-            ASSERT_NEAR(std::min(found, 1.0), std::min(least, 1.0), 1e-9);
+            const ClosestFeatures found = closest_features(a.pieces, X, b.pieces, 1, pair);
+            ASSERT_LE(found.at_least, least + 1e-9);
+            ASSERT_GE(found.at_least, std::min(least, 1.0) - 1e-9);
+            beyond += least > 1;
         }
+    }
+    EXPECT_GT(beyond, 10U);
+}
+
+// A tool that moves and turns a little from pose to pose: the search goes on where it was.
+TEST(ClosestFeatures, that_are_followed_along_a_way_are_those_of_all_triangles) {
+    const Surface tool(bumpy_ball(4, 2, 0.2)), bone(bumpy_ball(10, 2, 0.15));
+    std::mt19937 random(13);
+    Isometry3d X = any_pose(15, random);
+    PiecePair pair{0, 0, {tool.pieces.piece(0).triangles[0]}, {bone.pieces.piece(0).triangles[0]}};
+    std::normal_distribution<double> component(0, 1);
+    const auto vector = [&] { return Vector3d(component(random), component(random), component(random)); };
+    for (int step = 0; step < samples_of(2000); ++step) {
+        X.linear() = Eigen::AngleAxisd(0.02 * component(random), vector().normalized()) * X.linear();
+        X.translation() += 0.1 * vector();
+        const double found =
+            std::sqrt(closest_features(tool.pieces, X, bone.pieces, 100, pair).points.on_a.squared_distance);
+        ASSERT_NEAR(found, apart(tool, X, bone, pair), 1e-9) << step;
     }
 }
 
-TEST(NearVertices, of_a_box_over_a_plate_are_its_four_corners) {
+TEST(EquallyNearVertices, of_a_box_over_a_plate_are_its_four_corners) {
     const Surface tool(box({-1, -1, 0}, {1, 1, 40})), plate(box({-20, -20, -10}, {20, 20, 0}));
     Isometry3d X = Isometry3d::Identity();
     X.translation() = Vector3d(3, 4, 0.2);
     PiecePair pair;
-    const TrianglePair nearest = closest_features(tool.pieces, X, plate.pieces, 1, pair);
+    const TrianglePair nearest = closest_features(tool.pieces, X, plate.pieces, 1, pair).points;
     std::vector<NearTriangles> found(64);
-    const std::size_t count = near_vertices(tool.pieces, X, plate.pieces, pair, nearest, 0.5, found);
+    const std::size_t count = equally_near_vertices(tool.pieces, X, plate.pieces, pair, nearest, found);
     std::set<std::pair<double, double>> corners;
     for (const NearTriangles& near : std::span(found).first(count)) {
         EXPECT_NEAR(near.points.on_a.point.z(), 0.2, 1e-12);
@@ -201,7 +221,8 @@ TEST(NearVertices, of_a_box_over_a_plate_are_its_four_corners) {
     EXPECT_EQ(count, 4U);
     EXPECT_EQ(corners, (std::set<std::pair<double, double>>{{2, 3}, {2, 5}, {4, 3}, {4, 5}}));
     // Beside the plate's face lie none; and no more are written than there is room for.
-    EXPECT_EQ(near_vertices(tool.pieces, X, plate.pieces, pair, nearest, 0.5, std::span(found).first(2)), 2U);
+    EXPECT_EQ(equally_near_vertices(tool.pieces, X, plate.pieces, pair, nearest, std::span(found).first(2)),
+              2U);
 }
 
 }  // namespace

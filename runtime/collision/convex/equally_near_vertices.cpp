@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/collision/convex/near_vertices.hpp"
+#include "runtime/collision/convex/equally_near_vertices.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -11,6 +11,8 @@ namespace {
 
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
+
+constexpr double as_near = 1e-7;  // mm
 
 // The point of a piece nearest to p (its surface's frame, mm), walked to from one of its triangles, which
 // becomes the one that it is on; where the piece's rim is not convex, one that is locally nearest.
@@ -45,8 +47,8 @@ struct Side {
 
 // Calls tell(vertex of the piece, its place in the other's frame, foot, triangle of the foot).
 template <typename Tell>
-void look_from(const Side& side, double distance, double within, const Tell& tell) noexcept {
-    const double least = side.way.dot(side.point) - (within - distance);
+void look_from(const Side& side, double distance, const Tell& tell) noexcept {
+    const double least = side.way.dot(side.point) - as_near, within = distance + as_near;
     for (const PieceVertex& v : side.of.piece(side.piece).vertices) {
         if (!v.is_pointed) continue;
         const Vector3d vertex = side.of.features().vertex(v.vertex);
@@ -64,25 +66,25 @@ TrianglePoint at_corner(const PieceVertex& v, const Vector3d& p, double squared_
 
 }  // namespace
 
-std::size_t near_vertices(const ConvexPieces& a, const Isometry3d& X_BA, const ConvexPieces& b,
-                          const PiecePair& pair, const TrianglePair& nearest, double within,
-                          std::span<NearTriangles> found) noexcept {
+std::size_t equally_near_vertices(const ConvexPieces& a, const Isometry3d& X_BA, const ConvexPieces& b,
+                                  const PiecePair& pair, const TrianglePair& nearest,
+                                  std::span<NearTriangles> found) noexcept {
     const double distance = std::sqrt(nearest.on_a.squared_distance);
     const Vector3d way = (nearest.on_b.point - nearest.on_a.point) / distance;  // from a to b
     const Isometry3d X_AB = X_BA.inverse();
     std::size_t count = 0;
     const Side from_a{
-        a, b, X_BA, pair.piece_a, pair.triangle_b, X_AB * nearest.on_a.point, X_AB.linear() * way};
+        a, b, X_BA, pair.piece_a, pair.on_b.triangle, X_AB * nearest.on_a.point, X_AB.linear() * way};
     look_from(
-        from_a, distance, within,
+        from_a, distance,
         [&](const PieceVertex& v, const Vector3d&, const Vector3d& p, const TrianglePoint& foot,
             std::int32_t triangle) {
             if (count == found.size()) return;
             found[count++] = {v.triangle, triangle, {at_corner(v, p, foot.squared_distance), foot, way}};
         });
-    const Side from_b{b, a, X_AB, pair.piece_b, pair.triangle_a, nearest.on_b.point, -way};
+    const Side from_b{b, a, X_AB, pair.piece_b, pair.on_a.triangle, nearest.on_b.point, -way};
     look_from(
-        from_b, distance, within,
+        from_b, distance,
         [&](const PieceVertex& v, const Vector3d& vertex, const Vector3d&, TrianglePoint foot,
             std::int32_t triangle) {
             if (count == found.size()) return;
