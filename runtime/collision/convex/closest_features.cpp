@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "runtime/collision/balls/ball_pairs.hpp"
@@ -16,6 +17,7 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
 constexpr int most_steps = 64;
+constexpr double ahead = 0.2;        // mm, beyond `within`, up to which is searched
 constexpr double rounding = 1e-10;   // mm, by which a vertex may be nearer
 constexpr double no_nearer = 1e-12;  // of a squared distance: less is no step
 
@@ -44,12 +46,13 @@ class Walk {
     // What is found, and a distance than which nothing is nearer.
     std::pair<Place, double> find(double within) noexcept {
         const bool was_found = pair_.on_a.kind != Feature::face || pair_.on_b.kind != Feature::face;
-        if (was_found && best_.squared() > 0 && is_proved()) return {best_, distance()};
+        if (was_found)
+            if (const auto at_least = prove(within)) return {best_, *at_least};
         if (was_found) best_ = between(best_.of_a, best_.of_b);
         for (int step = 0; step < most_steps && (step_on_a(best_) || step_on_b(best_));) ++step;
-        if (best_.squared() > 0 && is_proved()) return {best_, distance()};
-        search(within);
-        return {best_, std::min(distance(), within)};
+        if (const auto at_least = prove(within)) return {best_, *at_least};
+        search(within + ahead);
+        return {best_, std::min(distance(), within + ahead)};
     }
 
   private:
@@ -134,39 +137,48 @@ class Walk {
         return std::ranges::any_of(corners, [&](const Vector3d& p) { return way.dot(p - from) > 0; });
     }
 
-    // Nothing is nearer of what lies beyond the planes through the two points, across the way between them.
-    // Where one of the pieces does not, for its rim is not convex, those of its triangles are asked that come
-    // nearer to the other's plane.
-    bool is_proved() noexcept {
-        const bool a_is_beyond = a_lies_beyond(best_), b_is_beyond = b_lies_beyond(best_);
-        if (a_is_beyond && b_is_beyond) return true;
-        if (b_is_beyond) return are_triangles_of_a_no_nearer();
-        return a_is_beyond && are_triangles_of_b_no_nearer();
+    // A distance than which nothing is nearer, if it can be told: the planes through the two points, across
+    // the way between them, part the pieces but for what stands out of them. Where that is not beyond
+    // `within`, and one of the pieces lies all behind its plane, those triangles of the other are asked that
+    // do not.
+    std::optional<double> prove(double within) noexcept {
+        if (!(best_.squared() > 0)) return 0;
+        const double of_a = stands_out_of_a(best_), of_b = stands_out_of_b(best_);
+        const double at_least = distance() - of_a - of_b;
+        if (at_least > within) return at_least;
+        const bool a_lies_behind = of_a <= rounding, b_lies_behind = of_b <= rounding;
+        if ((a_lies_behind && b_lies_behind) || (b_lies_behind && are_triangles_of_a_no_nearer()) ||
+            (a_lies_behind && are_triangles_of_b_no_nearer()))
+            return distance();
+        return std::nullopt;
     }
-    bool a_lies_beyond(const Place& at) const noexcept {
-        return lies_beyond(a_, pair_.piece_a, point_of_a(at), way_of_a(at));
+    // How far a vertex of a piece is before the plane through its point, mm.
+    double stands_out_of_a(const Place& at) const noexcept {
+        return stands_out(a_, pair_.piece_a, point_of_a(at), way_of_a(at));
     }
-    bool b_lies_beyond(const Place& at) const noexcept {
-        return lies_beyond(b_, pair_.piece_b, point_of_b(at), way_of_b(at));
+    double stands_out_of_b(const Place& at) const noexcept {
+        return stands_out(b_, pair_.piece_b, point_of_b(at), way_of_b(at));
     }
-    static bool lies_beyond(const ConvexPieces& of, std::int32_t piece, const Vector3d& point,
-                            const Vector3d& way) noexcept {
-        const double most = way.dot(point) + rounding * way.norm();
-        return std::ranges::all_of(of.piece(piece).vertices, [&](const PieceVertex& v) {
-            return way.dot(of.features().vertex(v.vertex)) <= most;
-        });
+    static double stands_out(const ConvexPieces& of, std::int32_t piece, const Vector3d& point,
+                             const Vector3d& way) noexcept {
+        double most = way.dot(point);
+        const double plane = most;
+        for (const PieceVertex& v : of.piece(piece).vertices)
+            most = std::max(most, way.dot(of.features().vertex(v.vertex)));
+        return (most - plane) / way.norm();
     }
 
     // Takes what is nearer; false where that proves nothing.
     bool are_triangles_of_a_no_nearer() noexcept {
         const Vector3d unit = way_of_a(best_).normalized(), plane = X_AB_ * point_of_b(best_);
+        const PieceNode& ball = b_.node(b_.piece(pair_.piece_b).root);
         return std::ranges::all_of(a_.piece(pair_.piece_a).triangles, [&](std::int32_t t) {
-            if (!comes_nearer(a_, t, plane, unit)) return true;
+            if (!comes_nearer(a_, t, plane, unit) || !comes_near(corners_of_a(t), ball)) return true;
             Place at = between(t, best_.of_b);
             while (at.squared() > 0 && step_on_b(at)) {
             }
             take_if_nearer(at);
-            return !(at.squared() > 0) || b_lies_beyond(at);
+            return !(at.squared() > 0) || stands_out_of_b(at) <= rounding;
         });
     }
     bool are_triangles_of_b_no_nearer() noexcept {
@@ -177,7 +189,7 @@ class Walk {
             while (at.squared() > 0 && step_on_a(at)) {
             }
             take_if_nearer(at);
-            return !(at.squared() > 0) || a_lies_beyond(at);
+            return !(at.squared() > 0) || stands_out_of_a(at) <= rounding;
         });
     }
     // Whether a corner of a triangle is nearer to a plane through `plane`, to which `unit` leads, than the
@@ -187,6 +199,13 @@ class Walk {
         const double nearest = distance() - rounding;
         const TriangleCorners corners = of.features().corners(static_cast<std::size_t>(triangle));
         return std::ranges::any_of(corners, [&](const Vector3d& p) { return unit.dot(plane - p) < nearest; });
+    }
+
+    // The same of a ball.
+    bool comes_near(const TriangleCorners& corners, const PieceNode& ball) const noexcept {
+        const Vector3d centre(ball.centre[0], ball.centre[1], ball.centre[2]);
+        const double most = distance() + static_cast<double>(ball.radius);
+        return closest_point_on_triangle(centre, corners).squared_distance < most * most;
     }
 
     void search(double within) noexcept {

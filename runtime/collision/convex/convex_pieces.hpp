@@ -40,7 +40,7 @@ class ConvexPieces {
     /// A piece grows to so many triangles at most, so that what is asked of all its vertices stays short.
     static constexpr std::size_t most_triangles = 256;
     /// How far before a triangle's plane a vertex of its piece may be, mm: what float32 makes of a flat face.
-    static constexpr double flat_within = 1e-5;
+    static constexpr double flat_within = 1e-3;
 
     /// `features` must outlive this. Pieces grow from the first triangle that is in none, breadth first.
     /// Throws InvalidInput if there is no triangle. O(n (most_triangles + log n)).

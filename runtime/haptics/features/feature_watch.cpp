@@ -19,8 +19,7 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double most_slack = 0.4, least_slack = 0.03;  // mm
-constexpr double beyond = 0.2;  // mm, up to which it is asked how far a pair is that is not within reach
-constexpr double travel_rounding = 1e-9;  // mm
+constexpr double travel_rounding = 1e-9;                // mm
 
 // Whether a point of a triangle is its surface's locally nearest in a direction, both in the surface's frame.
 bool is_locally_nearest(const collision::SurfaceFeatures& surface, std::int32_t triangle,
@@ -143,7 +142,7 @@ void FeatureWatch::follow(const Isometry3d& X_PT) noexcept {
         if (kept.due > travel_) continue;
         const collision::ConvexPieces& body = bodies_[static_cast<std::size_t>(kept.body)];
         const auto [nearest, at_least] =
-            collision::closest_features(tool_, X_PT, body, within + beyond, kept.features);
+            collision::closest_features(tool_, X_PT, body, within, kept.features);
         kept.was_followed = true;
         kept.due = travel_ + at_least - within - travel_rounding;
         if (at_least > within ||
