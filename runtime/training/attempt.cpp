@@ -77,7 +77,8 @@ void Attempt::add(const TickResult& tick) {
            {.duration = duration,
             .force = force,
             .tool = Eigen::Map<const Vector3d>(tick.tool_position.data()),
-            .touched = touched_place(case_, tick)},
+            .touched = touched_place(case_, tick),
+            .force_is_the_tissues = tick.faults == no_fault && !(tick.status & coming_back)},
            goals_);
     if (goals_.reached_all)
         end(Ending::all_reached);

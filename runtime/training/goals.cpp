@@ -114,6 +114,7 @@ void follow_retraction(const Exercise& exercise, const Moment& moment, bool touc
 
 void follow(const Exercise& exercise, const Moment& moment, Goals& goals) {
     if (goals.reached_all) return;
+    if (!moment.force_is_the_tissues && exercise.task != Task::guide) return;
     const bool touching = moment.force >= exercise.least_force;
     if (touching && moment.touched) goals.last_touched = moment.touched;
     switch (exercise.task) {

@@ -15,6 +15,7 @@ struct Moment {
     double force = 0;                                ///< N
     Eigen::Vector3d tool = Eigen::Vector3d::Zero();  ///< p_P, mm
     std::optional<Eigen::Vector3d> touched = {};     ///< of the tissue at rest, p_P, mm
+    bool force_is_the_tissues = true;  ///< no fault has taken some of it away, which is no letting go
 };
 
 /// How far a trainee has come with the goals of an exercise.
@@ -37,7 +38,8 @@ struct Goals {
     std::vector<Eigen::Vector3d> border{};  ///< find: where the trainee says that it ends, p_P, mm
 };
 
-/// Follows what the tool did for one moment: see Task, and Metrics for errors and misses.
+/// Follows what the tool did for one moment: see Task, and Metrics for errors and misses. Goals that ask for a
+/// force wait while a fault takes it away.
 void follow(const Exercise& exercise, const Moment& moment, Goals& goals);
 
 /// find: the trainee says that it lies below what he last touched; true within the tolerance, a share that

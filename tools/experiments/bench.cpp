@@ -28,7 +28,7 @@ const std::vector<Experiment> experiments{
      puncture},
     {"realtime", "ten minutes against the clock beside four busy processes, with and without priority",
      realtime},
-    {"sixdof", "whole tools that turn, four ways: ticks, depth judged by FCL, fast approaches", sixdof},
+    {"sixdof", "whole tools that turn, five ways: ticks, depth judged by FCL, fast approaches", sixdof},
     {"split", "two deformable bodies: the published split by force ratio against exact contact", split},
     {"stability", "jumps, pulls, roughness and energy of force by scheme, and 10 minutes at random",
      stability},

@@ -35,6 +35,7 @@ BallNode ball_about(const SurfaceFeatures& surface, std::span<const std::int32_t
     BallNode node;
     Eigen::Map<Eigen::Vector3f>(node.centre.data()) = centre.cast<float>();
     node.radius = static_cast<float>(radius * (1 + radius_rounding) + place_rounding);
+    node.arm = static_cast<float>((centre.norm() + radius) * (1 + radius_rounding) + place_rounding);
     return node;
 }
 

@@ -16,6 +16,7 @@ namespace palpate::collision {
 struct BallNode {
     std::array<float, 3> centre{0, 0, 0};  ///< mm
     float radius = 0;                      ///< mm
+    float arm = 0;                         ///< mm: no point of it is farther from the origin
     std::int32_t left = -1;                ///< its first child, the second follows; -1: a triangle
     std::int32_t triangle = -1;            ///< of a leaf
 };

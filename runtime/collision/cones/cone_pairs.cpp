@@ -39,7 +39,8 @@ bool may_be_nearest(const ConeNode& a, const Eigen::Isometry3d& X_BA, const Cone
                     const ConeReach& reach) noexcept {
     const Vector3d way = X_BA * vector(a.centre) - vector(b.centre);
     const double apart = way.norm();
-    const double radii = static_cast<double>(a.radius) + static_cast<double>(b.radius) + reach.slack;
+    const double radii = static_cast<double>(a.radius) + static_cast<double>(b.radius) + reach.slack +
+                         reach.turn * static_cast<double>(a.arm);
     if (apart - radii > reach.within) return false;
     const Vector3d axis_a = X_BA.linear() * vector(a.axis), axis_b = vector(b.axis);
     const Angle of_a = half_angle(a) + Angle{std::cos(reach.turn), std::sin(reach.turn)},

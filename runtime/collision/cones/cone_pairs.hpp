@@ -9,8 +9,8 @@ namespace palpate::collision {
 /// What two parts must hold to be looked into.
 struct ConeReach {
     double within = 0;  ///< mm, between the points of a pair
-    double slack = 0;   ///< mm, that the first surface may move meanwhile
-    double turn = 0;    ///< rad, that it may turn meanwhile
+    double slack = 0;   ///< mm, that the first surface's origin may move meanwhile
+    double turn = 0;    ///< rad, that it may turn about it meanwhile
 };
 
 /// Whether two parts, the first as `X_BA` has it, may hold points that are locally nearest to each other:

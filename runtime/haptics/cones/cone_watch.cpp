@@ -39,8 +39,8 @@ void ConeWatch::look_at_kept(const Eigen::Isometry3d& X_PT) noexcept {
 
 bool ConeWatch::holds(const Near& near) const noexcept {
     if (!near.valid) return false;
-    const double turned = rotation_between(near.at.orientation, pose_.orientation).norm();
-    return turned <= near.turn && reach_between(near.at, pose_) <= near.slack;
+    const Motion motion = motion_between(near.at, pose_);
+    return motion.turn <= near.turn && motion.way <= near.slack;
 }
 
 void ConeWatch::gather(const Eigen::Isometry3d& X_PT) noexcept {

@@ -18,7 +18,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double most_slack = 0.4, least_slack = 0.03;  // mm
+constexpr Motion most_slack{.way = 0.4, .turn = 0.01};  // mm, rad
+constexpr int halvings = 4;                             // of the slack, where pairs find no room
 constexpr double travel_rounding = 1e-9;                // mm
 
 // Whether a point of a triangle is its surface's locally nearest in a direction, both in the surface's frame.
@@ -66,7 +67,10 @@ void FeatureWatch::reset() noexcept {
 }
 
 void FeatureWatch::look(const ToolPose& pose) noexcept {
-    if (valid_) travel_ += reach_between(pose_, pose);
+    if (valid_) {
+        const Motion motion = motion_between(pose_, pose);
+        travel_ = {travel_.way + motion.way, travel_.turn + motion.turn};
+    }
     pose_ = pose;
     const Isometry3d X_PT = placement_of(pose);
     if (!holds()) gather(X_PT);
@@ -81,7 +85,8 @@ void FeatureWatch::look(const ToolPose& pose) noexcept {
 }
 
 bool FeatureWatch::holds() const noexcept {
-    return valid_ && reach_between(gathered_at_, pose_) <= slack_;
+    const Motion motion = motion_between(gathered_at_, pose_);
+    return valid_ && motion.way <= slack_.way && motion.turn <= slack_.turn;
 }
 
 // With as much slack as pairs find room.
@@ -90,21 +95,24 @@ void FeatureWatch::gather(const Isometry3d& X_PT) noexcept {
     if (!valid_) before_.clear();
     gathered_at_ = pose_;
     valid_ = keeps_ = true;
-    for (slack_ = most_slack; slack_ >= least_slack; slack_ /= 2)
+    slack_ = most_slack;
+    for (int halving = 0; halving <= halvings; ++halving) {
         if (gather(X_PT, slack_)) return;
+        slack_ = {slack_.way / 2, slack_.turn / 2};
+    }
     now_.clear();
     keeps_ = false;
     slack_ = most_slack;
 }
 
-bool FeatureWatch::gather(const Isometry3d& X_PT, double slack) noexcept {
+bool FeatureWatch::gather(const Isometry3d& X_PT, const Motion& slack) noexcept {
     now_.clear();
-    const double within = gaps_.within() + slack;
     for (std::size_t body = 0; body < bodies_.size(); ++body)
         if (!collision::for_each_pair(
                 tool_, bodies_[body],
                 [&](const PieceNode& a, const PieceNode& b) {
-                    return collision::may_be_near(a, X_PT, b, within);
+                    return collision::may_be_near(a, X_PT, b,
+                                                  gaps_.within() + slack.of(static_cast<double>(a.arm)));
                 },
                 [&](const PieceNode& mine, const PieceNode& its) {
                     return keep(static_cast<std::int32_t>(body), mine, its,
@@ -118,33 +126,35 @@ bool FeatureWatch::gather(const Isometry3d& X_PT, double slack) noexcept {
 // of the pair before is known still.
 bool FeatureWatch::keep(std::int32_t body, const PieceNode& mine, const PieceNode& its,
                         double apart) noexcept {
-    const double due = travel_ + apart - gaps_.within() - travel_rounding;
+    const auto arm = static_cast<double>(tool_.node(tool_.piece(mine.piece).root).arm);
+    const double due = travel_.of(arm) + apart - gaps_.within() - travel_rounding;
+    const Kept fresh{{mine.piece, its.piece, {mine.triangle}, {its.triangle}}, body, arm, due, false};
     std::int32_t& at = now_.index.at(body, mine.piece, its.piece);
     if (at != Index::none) {
         Kept& kept = now_.kept[static_cast<std::size_t>(at)];
-        if (!kept.was_followed && due < kept.due)
-            kept = {{mine.piece, its.piece, {mine.triangle}, {its.triangle}}, body, due, false};
+        if (!kept.was_followed && due < kept.due) kept = fresh;
         return true;
     }
     if (now_.count == now_.kept.size()) return false;
     at = static_cast<std::int32_t>(now_.count++);
-    Kept& kept = now_.kept[static_cast<std::size_t>(at)];
-    kept = {{mine.piece, its.piece, {mine.triangle}, {its.triangle}}, body, due, false};
     const std::int32_t was_at = before_.index.find(body, mine.piece, its.piece);
-    if (was_at != Index::none && before_.kept[static_cast<std::size_t>(was_at)].was_followed)
-        kept = before_.kept[static_cast<std::size_t>(was_at)];
+    const bool was_followed =
+        was_at != Index::none && before_.kept[static_cast<std::size_t>(was_at)].was_followed;
+    now_.kept[static_cast<std::size_t>(at)] =
+        was_followed ? before_.kept[static_cast<std::size_t>(was_at)] : fresh;
     return true;
 }
 
 void FeatureWatch::follow(const Isometry3d& X_PT) noexcept {
     const double within = gaps_.within();
     for (Kept& kept : now_.all()) {
-        if (kept.due > travel_) continue;
+        const double travel = travel_.of(kept.arm);
+        if (kept.due > travel) continue;
         const collision::ConvexPieces& body = bodies_[static_cast<std::size_t>(kept.body)];
         const auto [nearest, at_least] =
             collision::closest_features(tool_, X_PT, body, within, kept.features);
         kept.was_followed = true;
-        kept.due = travel_ + at_least - within - travel_rounding;
+        kept.due = travel + at_least - within - travel_rounding;
         if (at_least > within ||
             !consider(kept.body, {kept.features.on_a.triangle, kept.features.on_b.triangle, nearest}, X_PT))
             continue;

@@ -48,7 +48,8 @@ class FeatureWatch final : public GapWatch {
     struct Kept {
         collision::PiecePair features;
         std::int32_t body = 0;
-        double due = 0;             // mm of the tool's travel, before which they are not within reach
+        double arm = 0;             // mm, of the tool's piece
+        double due = 0;             // mm of the piece's travel, before which they are not within reach
         bool was_followed = false;  // by now: else where to begin is a guess
     };
     // Where a pair of pieces is kept, by hash.
@@ -85,7 +86,7 @@ class FeatureWatch final : public GapWatch {
 
     bool holds() const noexcept;
     void gather(const Eigen::Isometry3d& X_PT) noexcept;
-    bool gather(const Eigen::Isometry3d& X_PT, double slack) noexcept;
+    bool gather(const Eigen::Isometry3d& X_PT, const Motion& slack) noexcept;
     bool keep(std::int32_t body, const collision::PieceNode& mine, const collision::PieceNode& its,
               double apart) noexcept;
     void follow(const Eigen::Isometry3d& X_PT) noexcept;
@@ -101,8 +102,8 @@ class FeatureWatch final : public GapWatch {
     std::size_t found_count_ = 0;
     Pairs now_, before_;  // the pairs that are near, and those that were before them
     ToolPose pose_, gathered_at_;
-    double slack_ = 0;   // mm, by which the tool may move from there until others are near
-    double travel_ = 0;  // mm, of all looks: no point of the tool has moved farther
+    Motion slack_;   // by which the tool may move from there until others are near
+    Motion travel_;  // of all looks together
     bool valid_ = false, keeps_ = false;
 };
 

@@ -8,6 +8,17 @@
 
 namespace palpate::haptics {
 
+/// How far a tool moves and turns: its origin, mm, and about it, rad.
+struct Motion {
+    double way = 0, turn = 0;
+
+    /// How far a point moves at most that is no farther than `arm` from the origin, mm.
+    double of(double arm) const noexcept { return way + arm * turn; }
+};
+inline Motion motion_between(const ToolPose& from, const ToolPose& to) noexcept {
+    return {(to.position - from.position).norm(), rotation_between(from.orientation, to.orientation).norm()};
+}
+
 /// Finds where a tool is near bodies. Everything is allocated on construction; all but that is realtime-safe.
 /// A class that derives from this one defines its destructor, first of its virtual functions, beside its
 /// constructor, as a ContactMethod does.
@@ -29,11 +40,6 @@ class GapWatch {
     void press(double stiffness) noexcept { gaps_.press(stiffness); }
     /// How far a motion moves any point of the tool at most, mm.
     double reach_of(const Twist& motion) const noexcept { return haptics::reach_of(motion, longest_arm_); }
-    /// The same of a motion from one pose to another.
-    double reach_between(const ToolPose& from, const ToolPose& to) const noexcept {
-        return (to.position - from.position).norm() +
-               longest_arm_ * rotation_between(from.orientation, to.orientation).norm();
-    }
     /// How far any point may go from the pose last looked at, mm. Where that is hardly any the next look()
     /// sees whether it meets a body.
     double longest_step() const noexcept { return gaps_.longest_step(); }

@@ -4,44 +4,84 @@ import math
 import os
 import subprocess
 import sys
-import time
 import tomllib
 import unittest
 from pathlib import Path
 
 import h5py
+import numpy as np
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from trainer_case import TrainerCase  # noqa: E402
+from trainer_case import TrainerCase, is_whole, yellow_pixels  # noqa: E402
 
 TOUCH = Path(os.environ["PALPATE_BIN"]) / "palpate-touch"
 # About the sample's soft cube of 20 mm.
-FORCEPS = "--instrument", "forceps", "--jaw-length", 16, "--jaw-radius", 1, "--jaw-opening", 120
+JAW, OPEN = 16, 120  # mm, degrees
+FORCEPS = "--instrument", "forceps", "--jaw-length", JAW, "--jaw-radius", 1, "--jaw-opening", OPEN
 BUTTON_ROW = 690  # pixels from the window's top
-WAY_IN = 32  # steps of half a millimetre from the start, twice half a jaw's length outside
+WAY_IN, WAY_BACK = 32, 10  # steps of half a millimetre; the first from the start, twice half a jaw's length outside
+# Yellow pixels, at least: of a mark that is due, of the start page, of the page on which an exercise is made.
+DUE, PAGE, EDITOR = 100, 1500, 4500
 
 
 class ForcepsInTheWindow(TrainerCase):
     def open_forceps(self, *options):
-        return self.open_window(*FORCEPS, "--attempts", self.folder / self.id(), *options)
+        self.attempts, self.recording = self.folder / self.id(), self.folder / f"{self.id()}.h5"
+        opened = self.open_window(*FORCEPS, "--attempts", self.attempts, "--record", self.recording, "--record-seconds", 30,
+                                  "--force", *options)
+        self.wait_for(lambda: self.recording.exists() and self.jaws() is not None)
+        self.start, _, _ = self.jaws()
+        return opened
 
     def press(self, key, times=1):
         self.x("xdotool", "key", *([key] * times))
+
+    def jaws(self):
+        """The place of the hinge (mm), the way out along the handle and the angle between the jaws (degrees) of the last tick."""
+        with h5py.File(self.recording) as run:
+            written = run["count/ticks"][0]
+            if written < 16:
+                return None
+            rows = (written - 1 - np.arange(16)) % len(run["ticks/tool"])
+            tool, tips, shafts = (run[f"ticks/{column}"][:][rows] for column in ("tool", "device_position", "shaft"))
+        last = [np.argmax(tool == jaw) for jaw in (0, 1)]
+        one, other = shafts[last]
+        out = (one + other) / np.linalg.norm(one + other)
+        return (tips[last] + JAW * shafts[last]).mean(axis=0), out, math.degrees(math.acos(np.clip(one @ other, -1, 1)))
+
+    def wait_for_jaws(self, steps, opening):
+        """Until the hand is so many steps in from its start, and its jaws are open by so many degrees."""
+        def are_there():
+            hinge, out, angle = self.jaws()
+            return np.allclose(((self.start - hinge) @ out, angle), (steps / 2, opening), atol=0.1)
+
+        self.wait_for(are_there)
+
+    def wait_for_attempt(self):
+        """Until an attempt has ended: if its hand repeats what it does, not by the first time that a starved servo lets it go."""
+        self.wait_for(lambda: list(self.attempts.rglob("*.json")), 120)
+
+    def wait_for_yellow(self, window, least, most=math.inf):
+        self.wait_for(lambda: least <= yellow_pixels(self.screen(window)) < most)
+
+    def leave_start_page(self, window):
+        self.wait_for_yellow(window, PAGE)  # the first view is dark where others are bright beside the page
+        self.press("BackSpace")
+        self.wait_for_yellow(window, 0, DUE)
 
     def test_keys_take_hold_of_a_rim_hold_it_back_and_let_it_go(self):
         process, window = self.open_forceps("--exercise", "retract")
         self.press("Return")  # begin now
         self.press("w", WAY_IN)
-        self.come_to_rest()
+        self.wait_for_jaws(WAY_IN, OPEN)
         self.press("j")
-        time.sleep(2.5)  # from 120 degrees, a radian a second
-        self.press("s", 10)
-        time.sleep(2)
-        self.come_to_rest()
+        self.wait_for_jaws(WAY_IN, 0)
+        self.press("s", WAY_BACK)
+        self.wait_for_yellow(window, 0, DUE)  # it is drawn, and has been kept
         self.press("j")
-        time.sleep(2.5)
+        self.wait_for_jaws(WAY_IN - WAY_BACK, OPEN)
         self.press("s", WAY_IN)
-        self.come_to_rest()
+        self.wait_for_attempt()
         self.press("q")
         result = self.finish(process)
         (attempt,) = result["attempts"]
@@ -57,8 +97,9 @@ class ForcepsInTheWindow(TrainerCase):
         process, window = self.open_forceps("--exercise", "retract")
         self.press("Return")
         self.press("w", WAY_IN)
-        self.press("s", 10)
-        self.come_to_rest()
+        self.wait_for_jaws(WAY_IN, OPEN)
+        self.press("s", WAY_BACK)
+        self.wait_for_jaws(WAY_IN - WAY_BACK, OPEN)
         self.press("q")
         (attempt,) = self.finish(process)["attempts"]
         self.assertEqual(attempt["ending"], "cut short")
@@ -68,21 +109,28 @@ class ForcepsInTheWindow(TrainerCase):
         file = self.folder / "made.toml"
         file.write_text('schema = 1\n[[exercise]]\nname = "back"\ntask = "retract"\n')
         process, window = self.open_forceps("--exercises", file)
-        self.wait_for(lambda: self.shows_page(window))
-        for key in ("F2", "space"):  # a new one; to the organ
-            self.press(key)
-            time.sleep(0.5)
+        self.wait_for_yellow(window, PAGE)
+        self.press("F2")  # a new one
+        self.wait_for_yellow(window, EDITOR)
+        self.press("space")  # to the organ
+        self.wait_for_yellow(window, 0, DUE)
         self.press("m")  # nothing is held yet
         self.press("w", WAY_IN)
-        self.come_to_rest()
+        self.wait_for_jaws(WAY_IN, OPEN)
         self.press("j")
-        time.sleep(2.5)
+        self.wait_for_jaws(WAY_IN, 0)
         self.press("m")
-        self.press("s", 10)
-        self.come_to_rest()
-        for key in ("m", "space", "s", "BackSpace", "q"):
-            self.press(key)
-            time.sleep(0.5)
+        self.wait_for_yellow(window, DUE)  # else it would be where the next keys have led the hand in the same frame
+        self.press("s", WAY_BACK)
+        self.wait_for_jaws(WAY_IN - WAY_BACK, 0)
+        self.press("m")
+        self.press("space")
+        self.wait_for_yellow(window, EDITOR)
+        self.press("s")
+        self.wait_for(lambda: "retract-1" in file.read_text())
+        self.press("BackSpace")
+        self.wait_for_yellow(window, PAGE, EDITOR)
+        self.press("q")
         self.finish(process)
         usual, made = tomllib.loads(file.read_text())["exercise"]
         self.assertEqual((usual["name"], made["name"], made["task"]), ("back", "retract-1", "retract"))
@@ -90,22 +138,21 @@ class ForcepsInTheWindow(TrainerCase):
         self.assertAlmostEqual(math.dist(tips, there), 5, delta=1)  # ten steps, less what the tissue holds back
         self.assertAlmostEqual(math.dist(rim, tips), 8, delta=0.01)  # half a jaw
 
-        process, _ = self.open_forceps("--exercises", file, "--exercise", "retract-1", "--script", "grasp", "--seconds", 6)
+        process, _ = self.open_forceps("--exercises", file, "--exercise", "retract-1", "--script", "grasp")
+        self.wait_for_attempt()
+        self.press("q")
         (attempt,) = self.finish(process)["attempts"]
         self.assertEqual(attempt["ending"], "all reached")
 
     def test_a_drag_carries_it_and_the_pointer_alone_does_not(self):
         process, window = self.open_forceps()
-        self.wait_for(lambda: self.shows_page(window))
-        self.press("BackSpace")
-        time.sleep(1)
+        self.leave_start_page(window)
         self.x("xdotool", "mousemove", "--window", window, 640, 360)
         self.x("xdotool", "mousemove", "--window", window, 700, 300)
         self.come_to_rest()
         self.x("xdotool", "mousedown", 1)
         for _ in range(10):
             self.x("xdotool", "mousemove_relative", "--", 0, -12)
-            time.sleep(0.05)
         self.x("xdotool", "mouseup", 1)
         self.come_to_rest()
         self.press("q")
@@ -114,7 +161,9 @@ class ForcepsInTheWindow(TrainerCase):
         self.assertLess(travel, 100)
 
     def test_it_offers_the_exercises_that_it_serves_and_refuses_what_it_cannot_be(self):
-        process, window = self.open_forceps("--script", "grasp", "--exercise", "retract", "--seconds", 6)
+        process, _ = self.open_forceps("--script", "grasp", "--exercise", "retract")
+        self.wait_for_attempt()
+        self.press("q")
         (attempt,) = self.finish(process)["attempts"]
         self.assertEqual(attempt["ending"], "all reached")
         path = self.folder / "retract.toml"
@@ -140,7 +189,9 @@ class ForcepsInTheWindow(TrainerCase):
             written = file["count/ticks"][0]
             force, tool = file["ticks/force"][:written], file["ticks/tool"][:written]
         both = force[tool == 0] + force[tool == 1]
-        played = self.finish(self.launch("--play", run, "--speed", 4, "--seconds", 1))
+        # A film, which shows all of it however slowly it is drawn.
+        film = "--pictures", self.folder / "grasp", "--film-rate", 10, "--size", "640x480"
+        played = self.finish(self.launch("--play", run, *film))
         self.assertGreater(played["force_peak_n"], 0)
         self.assertLessEqual(played["force_peak_n"], max(math.hypot(*hand) for hand in both) + 1e-9)
         self.assertLess(played["force_peak_n"], 0.9 * max(math.hypot(*jaw) for jaw in force))  # they press against each other
@@ -149,19 +200,19 @@ class ForcepsInTheWindow(TrainerCase):
         german = {**self.server.environment, "LC_ALL": "C.UTF-8", "LANGUAGE": "de"}
         process = self.launch(*FORCEPS, "--size", "1280x720", environment=german)  # most buttons
         window = self.find_window()
-        self.wait_for(lambda: self.shows_page(window))
-        self.x("xdotool", "key", "BackSpace")
-        self.come_to_rest()
+        self.leave_start_page(window)
+        pictures = lambda: list(self.folder.glob("palpate-sample-*.png"))
         closed_at = None
         for x in range(1278, 1150, -8):  # from the edge until the last button, which closes the window, is hit
-            subprocess.run(["xdotool", "mousemove", "--window", window, str(x), str(BUTTON_ROW), "click", "1"],
+            subprocess.run(["xdotool", "mousemove", "--window", window, str(x), str(BUTTON_ROW), "click", "1", "key", "F12"],
                            env=self.server.environment, capture_output=True, timeout=60)
-            try:
-                process.wait(timeout=1)
+            # A window that has been closed draws no picture of what came after.
+            self.wait_for(lambda: process.poll() is not None or any(map(is_whole, pictures())))
+            if process.poll() is not None:
                 closed_at = x
                 break
-            except subprocess.TimeoutExpired:
-                continue
+            for picture in pictures():
+                picture.unlink()
         self.assertIsNotNone(closed_at, "the last button is not in the window")
         self.assertLess(closed_at, 1280 - 16, "it reaches to the window's edge, or beyond")
 

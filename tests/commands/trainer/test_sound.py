@@ -4,15 +4,15 @@
 import math
 import struct
 import subprocess
-import time
 import unittest
 
-import h5py
 import numpy as np
 
 from trainer_case import TRAIN, TrainerCase
+from recorded import kept  # found by trainer_case
 
-SECONDS = 6  # of a hand that holds the tool pressed from the first on
+FELT = 0.03  # N, at least, of the sample that is held pressed
+AUDIBLE = 0.001  # of the loudest
 
 
 def pitches(wav):
@@ -25,20 +25,39 @@ def pitches(wav):
     return [(int(np.argmax(np.abs(np.fft.rfft(one * np.hanning(rate))))), float(np.abs(one).max())) for one in seconds]
 
 
+def settled(wav):
+    """The pitch and loudness of the last whole second; nothing before three in a row are heard that are alike."""
+    heard = pitches(wav.read_bytes())[-3:] if wav.exists() and wav.stat().st_size > 100 else []
+    if len(heard) < 3 or min(loudness for _, loudness in heard) < AUDIBLE:
+        return None
+    return heard[-1] if max(pitch for pitch, _ in heard) - min(pitch for pitch, _ in heard) <= 1 else None
+
+
 class Sound(TrainerCase):
-    def press(self, keys, **variables):
-        """What a hand felt that held the sample pressed while `keys` were struck, N in each tick."""
-        hand, run = self.folder / "hold.txt", self.folder / f"{self.id()}.h5"
-        hand.write_text(f"0 10 10 30\n1 10 10 18\n{SECONDS + 1} 10 10 18\n")
-        process = self.launch("--script", hand, "--seconds", SECONDS, "--record", run, "--force",
+    def press(self, **variables):
+        """A trainer whose hand holds the sample pressed, and the force that it feels, N."""
+        hand, self.recording = self.folder / "hold.txt", self.folder / f"{self.id()}.h5"
+        hand.write_text("0 10 10 30\n1 10 10 18\n")
+        process = self.launch("--script", hand, "--record", self.recording, "--force",
                               environment=self.server.environment | variables)
         self.find_window()
-        for key in keys:
-            self.x("xdotool", "key", key)
-            time.sleep(0.5)
-        self.finish(process)
-        with h5py.File(run) as recorded:
-            return np.linalg.norm(recorded["ticks/force"][: recorded["count/ticks"][0]], axis=1)
+        return process, self.wait_for(lambda: self.recording.exists() and self.steady_force())
+
+    def forces(self):
+        """What the hand has felt, N in each tick."""
+        return np.linalg.norm(kept(self.recording, "ticks/force"), axis=1)
+
+    def steady_force(self):
+        """What it has felt for a second; nothing before: a starved servo takes the force away, which comes back by and by."""
+        last = self.forces()[-1000:]
+        return last[-1] if len(last) == 1000 and last[-1] > FELT and np.ptp(last) < 1e-3 else None
+
+    def strike(self, key):
+        self.x("xdotool", "key", key)
+
+    def close(self, process):
+        self.strike("q")
+        return self.finish(process)
 
     def loudspeaker(self):
         """The file that stands for one, and what makes it do so."""
@@ -46,23 +65,28 @@ class Sound(TrainerCase):
         settings.write_text(f"[general]\ndrivers = wave\n[wave]\nfile = {wav}\n")
         return wav, {"ALSOFT_CONF": str(settings), "ALSOFT_DRIVERS": "wave"}
 
-    def heard(self, keys):
-        wav, variables = self.loudspeaker()
-        forces = self.press(keys, **variables)
-        return (pitches(wav.read_bytes()) if wav.exists() else []), forces
-
     def test_the_force_is_heard_as_a_tone_an_octave_higher_for_four_times_as_much(self):
-        heard, forces = self.heard(["a"])
-        held = float(np.median(forces[forces > 0]))
-        self.assertGreater(held, 0.03)
-        pitch, loudness = heard[-1]
+        wav, variables = self.loudspeaker()
+        process, held = self.press(**variables)
+        self.strike("a")
+        pitch, loudness = self.wait_for(lambda: settled(wav))
+        self.close(process)
         self.assertAlmostEqual(pitch, 110 * math.sqrt(held / 0.02), delta=2)
         self.assertGreater(loudness, 0.2)
 
     def test_it_is_silent_until_asked_and_again_when_turned_off(self):
-        self.assertEqual(self.heard([])[0], [])
-        heard, _ = self.heard(["a", "a"])
-        self.assertLess(len(heard), 3)  # nothing is written once it is off
+        wav, variables = self.loudspeaker()
+        process, _ = self.press(**variables)
+        self.come_to_rest()
+        self.assertFalse(wav.exists())
+        self.strike("a")
+        self.wait_for(lambda: settled(wav))
+        self.strike("a")
+        self.come_to_rest()
+        written, ticks = wav.stat().st_size, len(self.forces())
+        self.wait_for(lambda: len(self.forces()) > ticks + 2000)
+        self.close(process)
+        self.assertEqual(wav.stat().st_size, written)
 
     def test_a_recording_is_heard_while_it_runs_and_not_while_it_pauses(self):
         hand, run = self.folder / "held.txt", self.folder / "held.h5"
@@ -72,27 +96,28 @@ class Sound(TrainerCase):
         wav, variables = self.loudspeaker()
         process = self.launch("--play", run, "--speed", 0.25, environment=self.server.environment | variables)
         self.find_window()
-        self.x("xdotool", "key", "a")
-        whole_seconds = lambda: len(pitches(wav.read_bytes())) if wav.exists() and wav.stat().st_size > 100 else 0
-        self.wait_for(lambda: whole_seconds() >= 2)
-        self.x("xdotool", "key", "space")
-        self.picture()
+        self.strike("a")
+        pitch, loudness = self.wait_for(lambda: settled(wav))
+        self.strike("space")
+        self.come_to_rest()
+        whole_seconds = lambda: len(pitches(wav.read_bytes()))
         paused = whole_seconds()
         self.wait_for(lambda: whole_seconds() >= paused + 2)
-        self.x("xdotool", "key", "q")
-        held = math.hypot(*self.finish(process)["last"]["force_n"])
-        self.assertGreater(held, 0.03)
-        heard = pitches(wav.read_bytes())
-        pitch, loudness = heard[1]
+        held = math.hypot(*self.close(process)["last"]["force_n"])
+        self.assertGreater(held, FELT)
         self.assertAlmostEqual(pitch, 110 * math.sqrt(held / 0.02), delta=2)
         self.assertGreater(loudness, 0.2)
-        self.assertLess(heard[-1][1], 0.001)
+        self.assertLess(pitches(wav.read_bytes())[-1][1], AUDIBLE)
 
     def test_without_a_sound_device_all_else_goes_on(self):
         settings = self.folder / "none.conf"
         settings.write_text("[general]\ndrivers = -all\n")
-        forces = self.press(["a"], ALSOFT_CONF=str(settings), ALSOFT_DRIVERS="nothing")
-        self.assertGreater(forces.max(), 0.03)
+        process, _ = self.press(ALSOFT_CONF=str(settings), ALSOFT_DRIVERS="nothing")
+        self.strike("a")
+        self.come_to_rest()
+        ticks = len(self.forces())
+        self.wait_for(lambda: (self.forces()[ticks:] > FELT).any())
+        self.close(process)
 
 
 if __name__ == "__main__":

@@ -78,12 +78,13 @@ class TrainerCase(SampleAsset):
         time.sleep(0.5)
         return process, window
 
-    def wait_for(self, condition):
-        """A busy machine draws late."""
-        deadline = time.monotonic() + 30
-        while not condition():
-            self.assertLess(time.monotonic(), deadline, "what was waited for did not come within thirty seconds")
+    def wait_for(self, condition, seconds=30):
+        """What the condition gives once that is true: a busy machine draws late."""
+        deadline = time.monotonic() + seconds
+        while not (met := condition()):
+            self.assertLess(time.monotonic(), deadline, f"what was waited for did not come within {seconds} seconds")
             time.sleep(0.2)
+        return met
 
     def shows_page(self, window):
         """Whether the dark sheet of the start page lies over the organ."""
@@ -127,7 +128,7 @@ class TrainerCase(SampleAsset):
 
     def finish(self, process):
         """What the trainer printed, once it has ended in order."""
-        out, err = process.communicate(timeout=30)
+        out, err = process.communicate(timeout=90)
         self.assertEqual(process.returncode, 0, err)
         return json.loads(out)
 

@@ -81,6 +81,22 @@ TEST_F(AttemptTest, a_good_hand_gets_all_points_and_the_attempt_ends_by_itself) 
     EXPECT_NEAR(m.economy_of_motion, 1, 1e-6);
 }
 
+TEST_F(AttemptTest, what_a_fault_takes_away_is_not_the_trainees_doing) {
+    Attempt attempt(exercise(Task::touch), case_);
+    press(attempt, 0.3, 0.5, 0);
+    TickResult late = next_tick(0, 0);
+    late.faults = tick_late;
+    attempt.add(late);
+    TickResult returning = next_tick(0.05, 0);
+    returning.status = coming_back;
+    attempt.add(returning);
+    press(attempt, 0.3, 0.5, 0);
+    press(attempt, 0.3, 0, 0);
+    press(attempt, 0.6, 0.5, 1);
+    EXPECT_EQ(attempt.ending(), Ending::all_reached);
+    EXPECT_EQ(attempt.metrics().misses, 0);
+}
+
 TEST_F(AttemptTest, a_rough_hand_loses_the_share_of_time_in_which_it_hurt) {
     Attempt attempt(exercise(Task::touch), case_);
     press(attempt, 0.3, 0.5, 0);

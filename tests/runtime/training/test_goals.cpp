@@ -81,6 +81,28 @@ TEST(Goals, tissue_that_slips_out_while_it_is_drawn_is_a_miss) {
     EXPECT_EQ(goals.misses, 2U);
 }
 
+// A fault takes the force away though the jaws are closed.
+TEST(Goals, tissue_is_not_let_go_of_while_a_fault_takes_the_force_away) {
+    const Exercise exercise = exercise_of(Task::retract, {{0, 0, 4}, {0, 0, 0}, {0, 0, 5}});
+    Goals goals;
+    const auto lose_force = [&] {
+        for (int tick = 0; tick < 600; ++tick)
+            follow(exercise, {.duration = 0.001, .tool = {0, 0, 4}, .force_is_the_tissues = false}, goals);
+    };
+    hold(exercise, goals, 0.1, {0, 0, 1}, Vector3d(0, 0, 1));
+    hold(exercise, goals, 0.3, {0, 0, 4}, Vector3d(0, 0, 1));
+    lose_force();
+    EXPECT_EQ(goals.misses, 0U);
+    EXPECT_EQ(goals.reached, 0U);
+    hold(exercise, goals, 0.3, {0, 0, 4}, Vector3d(0, 0, 1));
+    EXPECT_EQ(goals.reached, 1U);  // what was kept before counts
+    lose_force();
+    EXPECT_FALSE(goals.reached_all);
+    hold(exercise, goals, 0.01, {0, 0, 4}, std::nullopt);
+    EXPECT_TRUE(goals.reached_all);
+    EXPECT_EQ(goals.misses, 0U);
+}
+
 TEST(Goals, marks_are_reached_in_their_order_after_being_held) {
     const Exercise exercise = exercise_of(Task::touch, {{0, 0, 0}, {20, 0, 0}});
     Goals goals;
@@ -97,6 +119,20 @@ TEST(Goals, marks_are_reached_in_their_order_after_being_held) {
     stay(exercise, goals, 0.6, 0.5, {20, 1.9, 0});
     EXPECT_TRUE(goals.reached_all);
     EXPECT_EQ(goals.misses, 0U);
+}
+
+TEST(Goals, a_fault_while_a_mark_is_held_is_waited_for_and_gates_are_passed_in_it) {
+    const Exercise touch = exercise_of(Task::touch, {{0, 0, 0}, {20, 0, 0}});
+    Goals goals;
+    stay(touch, goals, 0.3, 0.5, {1, 0, 0});
+    follow(touch, {.duration = 0.001, .tool = {1, 0, 0}, .force_is_the_tissues = false}, goals);
+    stay(touch, goals, 0.3, 0.5, {1, 0, 0});
+    EXPECT_EQ(goals.reached, 1U);
+    EXPECT_EQ(goals.misses, 0U);
+    const Exercise guide = exercise_of(Task::guide, {{0, 0, 0}, {20, 0, 0}});
+    Goals passed;
+    follow(guide, {.duration = 0.001, .tool = {0, 0, 0}, .force_is_the_tissues = false}, passed);
+    EXPECT_EQ(passed.reached, 1U);
 }
 
 TEST(Goals, a_press_beside_the_mark_is_one_miss) {
