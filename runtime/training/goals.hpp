@@ -38,8 +38,8 @@ struct Goals {
     std::vector<Eigen::Vector3d> border{};  ///< find: where the trainee says that it ends, p_P, mm
 };
 
-/// Follows what the tool did for one moment: see Task, and Metrics for errors and misses. Goals that ask for a
-/// force wait while a fault takes it away.
+/// Follows what the tool did for one moment: see Task, and Metrics for errors and misses. Goals that ask for
+/// a force wait while a fault takes it away.
 void follow(const Exercise& exercise, const Moment& moment, Goals& goals);
 
 /// find: the trainee says that it lies below what he last touched; true within the tolerance, a share that

@@ -23,7 +23,7 @@ bool GapContact::is_clear(std::size_t tool, const ToolPose& pose) noexcept {
 }
 
 ToolRest GapContact::bring_to_rest(std::size_t tool, const TurningCoupling& coupling,
-                                          ToolPose& pose) noexcept {
+                                   ToolPose& pose) noexcept {
     GapWatch& watch = *watches_[tool];
     const ToolRest rest = rest_of_penalties(
         watch, coupling, settings_.contact_stiffness, [&] { return watch.longest_step(); }, effort, pose);

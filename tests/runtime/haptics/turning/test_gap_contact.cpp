@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A whole tool that turns, pushed off where it is near rigid bodies: by local minima of its distance from them,
-// and by the closest features of convex pieces.
+// A whole tool that turns, pushed off where it is near rigid bodies: by local minima of its distance from
+// them, and by the closest features of convex pieces.
 #include <algorithm>
 #include <cmath>
 #include <gmock/gmock.h>
@@ -106,7 +106,7 @@ TEST_P(NearPlaces, forces_and_moments_are_those_of_springs_there) {
 
 TEST_P(NearPlaces, that_are_followed_while_the_tool_moves_a_little_are_all_there_are) {
     const Watchers watched(GetParam(), collision::split_long_edges(bar().surface, 2, 5000),
-                          sample::sphere_surface({0, 0, 0}, 15, 3), 2);
+                           sample::sphere_surface({0, 0, 0}, 15, 3), 2);
     const auto kept = watched.watch();
     std::mt19937 random(3);
     std::normal_distribution<double> step(0, 1);
