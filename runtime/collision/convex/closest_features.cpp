@@ -147,9 +147,11 @@ class Walk {
         const double at_least = distance() - of_a - of_b;
         if (at_least > within) return at_least;
         const bool a_lies_behind = of_a <= rounding, b_lies_behind = of_b <= rounding;
-        if ((a_lies_behind && b_lies_behind) || (b_lies_behind && are_triangles_of_a_no_nearer()) ||
-            (a_lies_behind && are_triangles_of_b_no_nearer()))
-            return distance();
+        if (a_lies_behind && b_lies_behind) return distance();
+        const double beyond = within + ahead;
+        if ((b_lies_behind && are_triangles_of_a_no_nearer(beyond)) ||
+            (a_lies_behind && are_triangles_of_b_no_nearer(beyond)))
+            return std::min(distance(), beyond);
         return std::nullopt;
     }
     // How far a vertex of a piece is before the plane through its point, mm.
@@ -168,12 +170,17 @@ class Walk {
         return (most - plane) / way.norm();
     }
 
-    // Takes what is nearer; false where that proves nothing.
-    bool are_triangles_of_a_no_nearer() noexcept {
+    // Asks triangles that may be nearer than the two points, and than `beyond`; takes what is nearer. False
+    // where that proves nothing.
+    bool are_triangles_of_a_no_nearer(double beyond) noexcept {
         const Vector3d unit = way_of_a(best_).normalized(), plane = X_AB_ * point_of_b(best_);
         const PieceNode& ball = b_.node(b_.piece(pair_.piece_b).root);
         return std::ranges::all_of(a_.piece(pair_.piece_a).triangles, [&](std::int32_t t) {
-            if (!comes_nearer(a_, t, plane, unit) || !comes_near(corners_of_a(t), ball)) return true;
+            const double least = std::min(distance(), beyond);
+            const TriangleCorners corners = a_.features().corners(static_cast<std::size_t>(t));
+            if (!comes_nearer(corners, plane, unit, least) ||
+                !comes_near(corners, X_AB_ * centre_of(ball), radius_of(ball) + least))
+                return true;
             Place at = between(t, best_.of_b);
             while (at.squared() > 0 && step_on_b(at)) {
             }
@@ -181,10 +188,15 @@ class Walk {
             return !(at.squared() > 0) || stands_out_of_b(at) <= rounding;
         });
     }
-    bool are_triangles_of_b_no_nearer() noexcept {
+    bool are_triangles_of_b_no_nearer(double beyond) noexcept {
         const Vector3d unit = way_of_b(best_).normalized(), plane = best_.points.on_a.point;
+        const PieceNode& ball = a_.node(a_.piece(pair_.piece_a).root);
         return std::ranges::all_of(b_.piece(pair_.piece_b).triangles, [&](std::int32_t t) {
-            if (!comes_nearer(b_, t, plane, unit)) return true;
+            const double least = std::min(distance(), beyond);
+            const TriangleCorners corners = corners_of_b(t);
+            if (!comes_nearer(corners, plane, unit, least) ||
+                !comes_near(corners, X_BA_ * centre_of(ball), radius_of(ball) + least))
+                return true;
             Place at = between(best_.of_a, t);
             while (at.squared() > 0 && step_on_a(at)) {
             }
@@ -192,21 +204,19 @@ class Walk {
             return !(at.squared() > 0) || stands_out_of_a(at) <= rounding;
         });
     }
-    // Whether a corner of a triangle is nearer to a plane through `plane`, to which `unit` leads, than the
-    // two points are to each other.
-    bool comes_nearer(const ConvexPieces& of, std::int32_t triangle, const Vector3d& plane,
-                      const Vector3d& unit) const noexcept {
-        const double nearest = distance() - rounding;
-        const TriangleCorners corners = of.features().corners(static_cast<std::size_t>(triangle));
-        return std::ranges::any_of(corners, [&](const Vector3d& p) { return unit.dot(plane - p) < nearest; });
+    // Whether a corner is nearer than `least` to a plane through `plane` to which `unit` leads.
+    static bool comes_nearer(const TriangleCorners& corners, const Vector3d& plane, const Vector3d& unit,
+                             double least) noexcept {
+        return std::ranges::any_of(corners,
+                                   [&](const Vector3d& p) { return unit.dot(plane - p) < least - rounding; });
     }
-
-    // The same of a ball.
-    bool comes_near(const TriangleCorners& corners, const PieceNode& ball) const noexcept {
-        const Vector3d centre(ball.centre[0], ball.centre[1], ball.centre[2]);
-        const double most = distance() + static_cast<double>(ball.radius);
-        return closest_point_on_triangle(centre, corners).squared_distance < most * most;
+    static bool comes_near(const TriangleCorners& corners, const Vector3d& to, double within) noexcept {
+        return closest_point_on_triangle(to, corners).squared_distance < within * within;
     }
+    static Vector3d centre_of(const PieceNode& ball) noexcept {
+        return {ball.centre[0], ball.centre[1], ball.centre[2]};
+    }
+    static double radius_of(const PieceNode& ball) noexcept { return static_cast<double>(ball.radius); }
 
     void search(double within) noexcept {
         if (!(best_.squared() > 0)) return;
