@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -148,10 +149,8 @@ class Walk {
         if (at_least > within) return at_least;
         const bool a_lies_behind = of_a <= rounding, b_lies_behind = of_b <= rounding;
         if (a_lies_behind && b_lies_behind) return distance();
-        const double beyond = within + ahead;
-        if ((b_lies_behind && are_triangles_of_a_no_nearer(beyond)) ||
-            (a_lies_behind && are_triangles_of_b_no_nearer(beyond)))
-            return std::min(distance(), beyond);
+        if (b_lies_behind) return ask_triangles_of_a(within + ahead);
+        if (a_lies_behind) return ask_triangles_of_b(within + ahead);
         return std::nullopt;
     }
     // How far a vertex of a piece is before the plane through its point, mm.
@@ -170,48 +169,59 @@ class Walk {
         return (most - plane) / way.norm();
     }
 
-    // Asks triangles that may be nearer than the two points, and than `beyond`; takes what is nearer. False
-    // where that proves nothing.
-    bool are_triangles_of_a_no_nearer(double beyond) noexcept {
+    // Of A's, or B's, triangles asks those that may be nearer than the two points, and than `beyond`, and
+    // takes what is nearer. Returns a distance than which none is nearer, if that can be told.
+    std::optional<double> ask_triangles_of_a(double beyond) noexcept {
         const Vector3d unit = way_of_a(best_).normalized(), plane = X_AB_ * point_of_b(best_);
         const PieceNode& ball = b_.node(b_.piece(pair_.piece_b).root);
-        return std::ranges::all_of(a_.piece(pair_.piece_a).triangles, [&](std::int32_t t) {
-            const double least = std::min(distance(), beyond);
+        const Vector3d centre = X_AB_ * centre_of(ball);
+        double least_left = std::numeric_limits<double>::infinity();
+        for (const std::int32_t t : a_.piece(pair_.piece_a).triangles) {
             const TriangleCorners corners = a_.features().corners(static_cast<std::size_t>(t));
-            if (!comes_nearer(corners, plane, unit, least) ||
-                !comes_near(corners, X_AB_ * centre_of(ball), radius_of(ball) + least))
-                return true;
+            const double enough = std::min(distance(), beyond) - rounding;
+            const double least = at_least(corners, plane, unit, centre, radius_of(ball), enough);
+            if (least >= enough) {
+                least_left = std::min(least_left, least);
+                continue;
+            }
             Place at = between(t, best_.of_b);
             while (at.squared() > 0 && step_on_b(at)) {
             }
             take_if_nearer(at);
-            return !(at.squared() > 0) || stands_out_of_b(at) <= rounding;
-        });
+            if (at.squared() > 0 && stands_out_of_b(at) > rounding) return std::nullopt;
+        }
+        return std::min(distance(), least_left);
     }
-    bool are_triangles_of_b_no_nearer(double beyond) noexcept {
+    std::optional<double> ask_triangles_of_b(double beyond) noexcept {
         const Vector3d unit = way_of_b(best_).normalized(), plane = best_.points.on_a.point;
         const PieceNode& ball = a_.node(a_.piece(pair_.piece_a).root);
-        return std::ranges::all_of(b_.piece(pair_.piece_b).triangles, [&](std::int32_t t) {
-            const double least = std::min(distance(), beyond);
+        const Vector3d centre = X_BA_ * centre_of(ball);
+        double least_left = std::numeric_limits<double>::infinity();
+        for (const std::int32_t t : b_.piece(pair_.piece_b).triangles) {
             const TriangleCorners corners = corners_of_b(t);
-            if (!comes_nearer(corners, plane, unit, least) ||
-                !comes_near(corners, X_BA_ * centre_of(ball), radius_of(ball) + least))
-                return true;
+            const double enough = std::min(distance(), beyond) - rounding;
+            const double least = at_least(corners, plane, unit, centre, radius_of(ball), enough);
+            if (least >= enough) {
+                least_left = std::min(least_left, least);
+                continue;
+            }
             Place at = between(best_.of_a, t);
             while (at.squared() > 0 && step_on_a(at)) {
             }
             take_if_nearer(at);
-            return !(at.squared() > 0) || stands_out_of_a(at) <= rounding;
-        });
+            if (at.squared() > 0 && stands_out_of_a(at) > rounding) return std::nullopt;
+        }
+        return std::min(distance(), least_left);
     }
-    // Whether a corner is nearer than `least` to a plane through `plane` to which `unit` leads.
-    static bool comes_nearer(const TriangleCorners& corners, const Vector3d& plane, const Vector3d& unit,
-                             double least) noexcept {
-        return std::ranges::any_of(corners,
-                                   [&](const Vector3d& p) { return unit.dot(plane - p) < least - rounding; });
-    }
-    static bool comes_near(const TriangleCorners& corners, const Vector3d& to, double within) noexcept {
-        return closest_point_on_triangle(to, corners).squared_distance < within * within;
+    // How far a triangle is at least from what lies behind a plane through `plane`, to which `unit` leads,
+    // or, where that is less than `enough`, and in a ball.
+    static double at_least(const TriangleCorners& corners, const Vector3d& plane, const Vector3d& unit,
+                           const Vector3d& centre, double radius, double enough) noexcept {
+        const double above = std::min(
+            {unit.dot(plane - corners[0]), unit.dot(plane - corners[1]), unit.dot(plane - corners[2])});
+        if (above >= enough) return above;
+        return std::max(above,
+                        std::sqrt(closest_point_on_triangle(centre, corners).squared_distance) - radius);
     }
     static Vector3d centre_of(const PieceNode& ball) noexcept {
         return {ball.centre[0], ball.centre[1], ball.centre[2]};
