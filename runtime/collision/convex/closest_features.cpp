@@ -185,8 +185,7 @@ class Walk {
                 continue;
             }
             Place at = between(t, best_.of_b);
-            while (at.squared() > 0 && step_on_b(at)) {
-            }
+            for (int step = 0; step < most_steps && step_on_b(at);) ++step;
             take_if_nearer(at);
             if (at.squared() > 0 && stands_out_of_b(at) > rounding) return std::nullopt;
         }
@@ -206,8 +205,7 @@ class Walk {
                 continue;
             }
             Place at = between(best_.of_a, t);
-            while (at.squared() > 0 && step_on_a(at)) {
-            }
+            for (int step = 0; step < most_steps && step_on_a(at);) ++step;
             take_if_nearer(at);
             if (at.squared() > 0 && stands_out_of_a(at) > rounding) return std::nullopt;
         }

@@ -17,23 +17,25 @@ struct Plane {
     double before(const Vector3d& p) const { return normal.dot(p) - offset; }  // mm
 };
 
-// Of each vertex whether triangles of three different normals meet in it.
+// Of each vertex whether triangles of three different normals meet in it, or it is at a border.
 std::vector<bool> pointed_vertices(const SurfaceFeatures& features) {
-    constexpr double same = 1 - 5e-9;  // cosine of a ten-thousandth of a right angle and less
+    constexpr double same = 1 - 5e-9;  // cosine of 1e-4 rad
+    std::int32_t last = -1;
+    for (std::size_t t = 0; t < features.triangle_count(); ++t)
+        last = std::max(last, std::ranges::max(features.of(t).vertices));
     struct Met {
         Vector3d first{0, 0, 0}, second{0, 0, 0};
     };
-    std::vector<Met> met;
-    std::vector<bool> pointed;
+    std::vector<Met> met(static_cast<std::size_t>(last + 1));
+    std::vector<bool> pointed(met.size());
     for (std::size_t t = 0; t < features.triangle_count(); ++t) {
         const Vector3d normal = unit_normal(features.corners(t));
-        if (normal.isZero(0)) continue;
-        for (const std::int32_t vertex : features.of(t).vertices) {
-            const auto v = static_cast<std::size_t>(vertex);
-            if (v >= met.size()) {
-                met.resize(v + 1);
-                pointed.resize(v + 1);
-            }
+        const TriangleFeatures& of = features.of(t);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const auto v = static_cast<std::size_t>(of.vertices[i]);
+            if (of.beyond[i] < 0)
+                pointed[v] = pointed[static_cast<std::size_t>(of.vertices[(i + 1) % 3])] = true;
+            if (normal.isZero(0)) continue;
             if (met[v].first.isZero(0) || met[v].first.dot(normal) > same)
                 met[v].first = normal;
             else if (met[v].second.isZero(0) || met[v].second.dot(normal) > same)

@@ -20,8 +20,7 @@ struct PieceNode : BallNode {
 struct PieceVertex {
     std::int32_t vertex = 0, triangle = 0;
     std::int16_t corner = 0;
-    bool is_pointed =
-        false;  ///< three faces or more meet in it; else it is inside a flat one or a straight edge
+    bool is_pointed = false;  ///< three faces or more meet in it, or it is at a border
 };
 
 /// One convex piece of a surface.

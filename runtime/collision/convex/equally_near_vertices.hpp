@@ -10,9 +10,10 @@
 namespace palpate::collision {
 
 /// Of two pieces whose nearest points are `nearest`, not zero apart, finds the pointed vertices of either
-/// that are as near, to 1e-7 mm, with their feet on the other piece: where face lies on face, the corners of
-/// both; nowhere else, for two convex bodies have no other places that are nearer than all beside them.
-/// Writes them to `found` as far as there is room, and returns how many. Realtime-safe.
+/// that are as near, to 1e-7 mm, with their feet on the other piece: where face lies on face, those corners
+/// of either that lie over the other (where edges cross is not found). Two convex bodies have no other places
+/// that are nearer than all beside them. Writes them to `found` as far as there is room, and returns how
+/// many. Realtime-safe.
 std::size_t equally_near_vertices(const ConvexPieces& a, const Eigen::Isometry3d& X_BA, const ConvexPieces& b,
                                   const PiecePair& pair, const TrianglePair& nearest,
                                   std::span<NearTriangles> found) noexcept;

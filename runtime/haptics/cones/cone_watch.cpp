@@ -10,7 +10,6 @@ namespace palpate::haptics {
 
 using collision::ConeNode;
 using collision::ConeReach;
-using Eigen::Vector3d;
 
 void ConeWatch::reset() noexcept {
     around_.valid = closer_.valid = met_ = false;

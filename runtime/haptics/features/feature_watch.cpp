@@ -63,6 +63,7 @@ std::int32_t& FeatureWatch::Index::at(std::int32_t body, std::int32_t mine, std:
 
 void FeatureWatch::reset() noexcept {
     valid_ = met_ = false;
+    travel_ = {};
     gaps_.forget();
 }
 

@@ -19,13 +19,14 @@ namespace palpate::haptics {
 ///
 /// Where it is not as there, and why: pieces that overlap have a depth there, found from what they were
 /// before; here none ever do. Of a pair of pieces the nearest place counts there; here, where face lies on
-/// face, its corners as well, or it would hop from one to the other; and only where the surface beside it is
-/// no nearer, or the rims of all pieces around would push, too. The place of a cluster is that of its nearest
-/// gap and no mean, so that what pushes is a distance. A pair is asked again only once the tool has come as
-/// far as the two were apart.
+/// face, corners of either that lie over the other as well, or it would hop from one to the other; and only
+/// where the surface beside it is no nearer, or the rims of all pieces around would push, too. The place of a
+/// cluster is that of its nearest gap and no mean, so that what pushes is a distance. A pair is asked again
+/// only once the tool has come as far as the two were apart.
 class FeatureWatch final : public GapWatch {
   public:
-    /// Pairs of pieces that are followed; where more are near, triangles are searched anew in every look.
+    /// Pairs of pieces that are followed; where more are near, triangles are searched anew in every look, and
+    /// each that is near is a place.
     static constexpr std::size_t most_kept = 8192;
     /// Places before clusters are made; beyond, the nearest ones.
     static constexpr std::size_t most_found = 512;
@@ -41,6 +42,7 @@ class FeatureWatch final : public GapWatch {
     ~FeatureWatch() override;
 
     void reset() noexcept override;
+    bool depends_on_the_way() const noexcept override { return true; }  // where a search begins
     void look(const ToolPose& pose) noexcept override;
     bool meets(const ToolPose& pose) const noexcept override;
 
@@ -79,8 +81,8 @@ class FeatureWatch final : public GapWatch {
         explicit Pairs(std::size_t most) : kept(most), index(2 * most) {}
         std::span<Kept> all() noexcept { return {kept.data(), count}; }
         void clear() noexcept {
+            if (count > 0) index.clear();  // else there is nothing in it
             count = 0;
-            index.clear();
         }
     };
 

@@ -42,6 +42,7 @@ class GapContact : public WholeToolContact {
 
   private:
     void forget(std::size_t tool) noexcept override;
+    void set_free(std::size_t tool) noexcept override;
     bool is_clear(std::size_t tool, const ToolPose& pose) noexcept override;
     ToolRest bring_to_rest(std::size_t tool, const TurningCoupling& coupling,
                            ToolPose& pose) noexcept override;

@@ -40,8 +40,6 @@ class WatchedContact final : public GapContact {
 
 }  // namespace
 
-GapWatch::~GapWatch() = default;
-
 GapContact::GapContact(const Case& patient_case, const ContactBodies& bodies, std::size_t tool_count,
                        const std::string& method)
     : WholeToolContact(bodies, whole_tool_settings(patient_case, method), tool_count),

@@ -16,6 +16,10 @@ void GapContact::forget(std::size_t tool) noexcept {
     watches_[tool]->reset();
 }
 
+void GapContact::set_free(std::size_t tool) noexcept {
+    if (watches_[tool]->depends_on_the_way()) watches_[tool]->reset();
+}
+
 bool GapContact::is_clear(std::size_t tool, const ToolPose& pose) noexcept {
     if (watches_[tool]->meets(pose)) return false;
     // No surface cuts another: one point of the tool tells whether it is in a body.

@@ -37,6 +37,8 @@ class WholeToolContact : public ContactMethod {
 
     /// Forgets where a tool was.
     virtual void forget(std::size_t tool) noexcept = 0;
+    /// A tool is free: nothing of where it was may change what comes, so that a replay may begin there.
+    virtual void set_free(std::size_t /*tool*/) noexcept {}
     /// Whether a tool at a pose is clear of every body.
     virtual bool is_clear(std::size_t tool, const ToolPose& pose) noexcept = 0;
     /// Moves a tool from its pose towards where it rests; what it touches there is in touches() after.

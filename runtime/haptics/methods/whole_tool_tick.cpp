@@ -45,6 +45,7 @@ void WholeToolContact::tick(std::span<const ContactPose> poses, const VirtualCou
             std::ranges::any_of(touches(t), [](const ToolTouch& it) { return it.press > 0; });
         if (!presses && has_arrived(pose, device)) {
             pose = device;  // to the bit, so that a replay may begin in any free tick
+            set_free(t);
         } else {
             forces[t] = coupling.stiffness * (pose.position - device.position);
             results[t].torque = array_of(Vector3d(coupling.torsional_stiffness *

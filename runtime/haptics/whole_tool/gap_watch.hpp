@@ -28,6 +28,8 @@ class GapWatch {
 
     /// Forgets where the tool was.
     virtual void reset() noexcept = 0;
+    /// Whether the last digits of what is found depend on the poses looked at before.
+    virtual bool depends_on_the_way() const noexcept = 0;
     /// Finds what is within reach, or not far beyond, at `pose`.
     virtual void look(const ToolPose& pose) noexcept = 0;
     /// Whether a triangle of the tool meets one of a body at a pose.

@@ -69,8 +69,6 @@ class NearGaps {
         for (ToolTouch& touch : std::span(touches_).first(count_))
             touch.press = std::max(0.0, -stiffness * touch.distance);
     }
-    /// The least distance that was seen, mm, within() at most.
-    double least() const noexcept { return least_; }
     /// How far any point may go from here, mm, so that nothing is met (conservative advancement, Mirtich
     /// 1996). Where that is hardly any, a little nevertheless, or nothing would come away again.
     double longest_step() const noexcept {

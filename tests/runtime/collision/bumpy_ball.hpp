@@ -17,7 +17,7 @@ inline TriangleMesh bumpy_ball(double radius, int refinements, double bump) {
 }
 
 /// Turned at random, and so far away in a direction at random.
-inline Eigen::Isometry3d any_pose(double away, std::mt19937& random) {
+inline Eigen::Isometry3d any_placement(double away, std::mt19937& random) {
     std::normal_distribution<double> component(0, 1);
     Eigen::Isometry3d X_BA = Eigen::Isometry3d::Identity();
     X_BA.linear() =

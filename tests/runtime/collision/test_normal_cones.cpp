@@ -106,7 +106,7 @@ TEST(NormalCones, find_every_local_minimum_that_all_pairs_of_triangles_have) {
     std::size_t found = 0, looked_at = 0;
     const int poses = samples_of(200);
     for (int pose = 0; pose < poses; ++pose) {
-        const Eigen::Isometry3d X_BA = any_pose(away(random), random);
+        const Eigen::Isometry3d X_BA = any_placement(away(random), random);
         const std::vector<double> all = distances_of(pairs.by_all(X_BA, 6));
         EXPECT_EQ(distances_of(pairs.by_cones(X_BA, 6)), all) << pose;
         found += all.size();
@@ -146,7 +146,7 @@ TEST(NormalCones, the_points_of_a_minimum_are_nearest_to_each_other_along_all_tr
     std::mt19937 random(6);
     std::size_t found = 0;
     for (int pose = 0; pose < 20; ++pose) {
-        const Eigen::Isometry3d X_BA = any_pose(15.5, random);
+        const Eigen::Isometry3d X_BA = any_placement(15.5, random);
         for (const LocalMinimum& minimum : pairs.by_all(X_BA, 6)) {
             ++found;
             EXPECT_NEAR((minimum.on_a - minimum.on_b).norm(), minimum.distance, 1e-12);
@@ -193,7 +193,7 @@ TEST(NormalCones, a_surface_moved_within_its_slack_has_no_minimum_that_was_left_
     const ConeReach wide{.within = 3, .slack = 0.5, .turn = 0.05};
     std::size_t found = 0;
     for (int pose = 0; pose < 50; ++pose) {
-        const Eigen::Isometry3d X_BA = any_pose(15.5, random);
+        const Eigen::Isometry3d X_BA = any_placement(15.5, random);
         std::set<std::pair<std::int32_t, std::int32_t>> kept;
         for_each_pair(
             pairs.tree_a(), pairs.tree_b(),

@@ -279,6 +279,13 @@ Case with_bar() {
     return c;
 }
 
+// A round tool, whose search has many places to begin at.
+Case with_ball() {
+    Case c = with_bar();
+    c.tool->surface = sample::sphere_surface({0, 0, 0}, 3, 3);
+    return c;
+}
+
 Case with_instrument() {
     Case c = ball_and_cube();
     c.tool = ToolBody{.surface = box({-2, -2, 0}, {2, 2, 30}), .settings = {}};
@@ -296,7 +303,10 @@ constexpr std::array runs{Trial{"shaft", ball_and_cube, "continuous", 1, 6000},
                           Trial{"turning_rod", with_rod, "continuous", 1, 6000, true},
                           Trial{"two_turning_rods", with_rod, "continuous", 2, 3000, true},
                           Trial{"instrument", with_instrument, "continuous", 1, 6000, true},
-                          Trial{"shell", with_bar, "shell", 1, 6000, true}};
+                          Trial{"shell", with_bar, "shell", 1, 6000, true},
+                          Trial{"cones", with_bar, "cones", 1, 6000, true},
+                          Trial{"features", with_bar, "features", 1, 6000, true},
+                          Trial{"features_of_a_ball", with_ball, "features", 1, 6000, true}};
 
 INSTANTIATE_TEST_SUITE_P(Runs, Replay, testing::ValuesIn(runs),
                          [](const auto& info) { return std::string(info.param.name); });

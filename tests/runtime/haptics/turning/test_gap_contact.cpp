@@ -14,7 +14,9 @@
 
 #include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
+#include "runtime/collision/balls/ball_pairs.hpp"
 #include "runtime/collision/features/split_edges.hpp"
+#include "runtime/collision/tree_pairs.hpp"
 #include "runtime/haptics/cones/cone_watch.hpp"
 #include "runtime/haptics/features/feature_watch.hpp"
 #include "runtime/haptics/methods/gap_contact.hpp"
@@ -132,6 +134,56 @@ TEST_P(NearPlaces, that_are_followed_while_the_tool_moves_a_little_are_all_there
         found += kept->close().size();
     }
     EXPECT_GT(found, static_cast<std::size_t>(samples_of(1000)));
+}
+
+// Bumps and hollows, little steps, leaps, and now and then a tool that is found anew.
+TEST_P(NearPlaces, the_narrowest_is_as_wide_as_the_surfaces_are_apart) {
+    TriangleMesh tool = sample::sphere_surface({0, 0, 0}, 4, 2),
+                 body = sample::sphere_surface({0, 0, 0}, 10, 2);
+    for (TriangleMesh* mesh : {&tool, &body})
+        for (Vector3d& v : mesh->vertices)
+            v *= 1 + 0.2 * std::sin(0.9 * v.x()) * std::cos(1.1 * v.y()) * std::sin(0.7 * v.z() + 1);
+    const collision::SurfaceFeatures of_tool(tool.vertices, tool.triangles),
+        of_body(body.vertices, body.triangles);
+    const auto apart = [&](const ToolPose& pose) {
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t a = 0; a < of_tool.triangle_count(); ++a) {
+            const auto corners = collision::placed(placement_of(pose), of_tool.corners(a));
+            for (std::size_t b = 0; b < of_body.triangle_count(); ++b)
+                least = std::min(least, collision::closest_points_of_triangles(corners, of_body.corners(b))
+                                            .on_a.squared_distance);
+        }
+        return std::sqrt(least);
+    };
+    constexpr double within = 0.5;
+    const Watchers watched(GetParam(), tool, body, within);
+    const auto watch = watched.watch();
+    std::mt19937 random(4);
+    std::normal_distribution<double> step(0, 1);
+    ToolPose pose{{15, 0, 0}, Quaterniond::Identity()};
+    int near = 0;
+    for (int k = 0; k < samples_of(600); ++k) {
+        Twist motion;
+        for (double& x : motion) x = step(random);
+        motion *= k % 50 == 49 ? 2 : 0.04;
+        pose = moved(pose, motion);
+        pose.position *= 1 - 0.1 * (apart(pose) - 0.3) / pose.position.norm();
+        if (k % 70 == 69) watch->reset();
+        watch->look(pose);
+        const double exact = apart(pose);
+        if (exact == 0) {
+            watch->reset();
+            pose.position += 0.5 * pose.position.normalized();
+            continue;
+        }
+        if (exact >= within) continue;
+        double narrowest = std::numeric_limits<double>::infinity();
+        for (const ToolTouch& touch : watch->close())
+            narrowest = std::min(narrowest, touch.distance + within);
+        ASSERT_NEAR(narrowest, exact, 1e-9) << k;
+        ++near;
+    }
+    EXPECT_GT(near, samples_of(200));
 }
 
 TEST_P(NearPlaces, a_bar_that_is_held_over_a_rim_turns_and_gives_the_torque_of_its_lever) {
