@@ -111,15 +111,6 @@ bool near(const TriangleCorners& a, const TriangleCorners& b, double margin, Tri
 TrianglePair closest_points_of_triangles(const TriangleCorners& a, const TriangleCorners& b) noexcept {
     TrianglePair best;
     best.on_a.squared_distance = std::numeric_limits<double>::infinity();
-    const auto corner = [](const TriangleCorners& t, std::size_t i) {
-        return TrianglePoint{t[i], Vector3d::Unit(static_cast<Index>(i)), 0, Feature::vertex};
-    };
-    const auto on_edge = [](std::size_t i, double s, const Vector3d& p) {
-        TrianglePoint point{p, Vector3d::Zero(), 0, s > 0 && s < 1 ? Feature::edge : Feature::vertex};
-        point.barycentric[static_cast<Index>(i)] = 1 - s;
-        point.barycentric[static_cast<Index>((i + 1) % 3)] = s;
-        return point;
-    };
     const auto consider = [&](const TrianglePoint& on_a, const TrianglePoint& on_b, double squared) {
         if (!(squared < best.on_a.squared_distance)) return;
         best = {on_a, on_b, Vector3d::Zero()};
@@ -129,24 +120,24 @@ TrianglePair closest_points_of_triangles(const TriangleCorners& a, const Triangl
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t next = (i + 1) % 3;
         if (const auto through = pierce(b[i], b[next], a)) {
-            consider(through->foot, on_edge(i, through->fraction, through->segment_point), 0);
+            consider(through->foot, edge_point(i, through->fraction, through->segment_point), 0);
             best.normal = normal_a;
             return best;
         }
         if (const auto through = pierce(a[i], a[next], b)) {
-            consider(on_edge(i, through->fraction, through->segment_point), through->foot, 0);
+            consider(edge_point(i, through->fraction, through->segment_point), through->foot, 0);
             best.normal = -normal_b;
             return best;
         }
     }
     for (std::size_t i = 0; i < 3; ++i) {
         const TrianglePoint under_b = closest_point_on_triangle(b[i], a);
-        consider(under_b, corner(b, i), under_b.squared_distance);
+        consider(under_b, corner_point(b, i), under_b.squared_distance);
         const TrianglePoint under_a = closest_point_on_triangle(a[i], b);
-        consider(corner(a, i), under_a, under_a.squared_distance);
+        consider(corner_point(a, i), under_a, under_a.squared_distance);
         for (std::size_t j = 0; j < 3; ++j) {
             const SegmentPair edges = closest_points_of_segments(a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3]);
-            consider(on_edge(i, edges.s, edges.first), on_edge(j, edges.t, edges.second),
+            consider(edge_point(i, edges.s, edges.first), edge_point(j, edges.t, edges.second),
                      edges.squared_distance);
         }
     }

@@ -37,6 +37,18 @@ struct TrianglePoint {
     Feature feature = Feature::face;
 };
 
+/// Corner i of a triangle as a point of it. Realtime-safe.
+inline TrianglePoint corner_point(const TriangleCorners& t, std::size_t i) noexcept {
+    return {t[i], Eigen::Vector3d::Unit(static_cast<Eigen::Index>(i)), 0, Feature::vertex};
+}
+/// The point p of edge i, from corner i to the next, that is at fraction s of it. Realtime-safe.
+inline TrianglePoint edge_point(std::size_t i, double s, const Eigen::Vector3d& p) noexcept {
+    TrianglePoint point{p, Eigen::Vector3d::Zero(), 0, s > 0 && s < 1 ? Feature::edge : Feature::vertex};
+    point.barycentric[static_cast<Eigen::Index>(i)] = 1 - s;
+    point.barycentric[static_cast<Eigen::Index>((i + 1) % 3)] = s;
+    return point;
+}
+
 /// Finds the point of triangle `t` nearest to p (Ericson, Real-Time Collision Detection, 2005, 5.1.5);
 /// triangles without area count as their edges. Realtime-safe.
 TrianglePoint closest_point_on_triangle(const Eigen::Vector3d& p, const TriangleCorners& t) noexcept;

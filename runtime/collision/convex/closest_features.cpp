@@ -2,13 +2,14 @@
 #include "runtime/collision/convex/closest_features.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
 
 #include "runtime/collision/balls/ball_pairs.hpp"
-#include "runtime/collision/convex/piece_steps.hpp"
+#include "runtime/collision/convex/placed_piece.hpp"
 #include "runtime/collision/segment_queries.hpp"
 
 namespace palpate::collision {
@@ -22,12 +23,13 @@ constexpr double ahead = 0.2;        // mm, beyond `within`, up to which is sear
 constexpr double rounding = 1e-10;   // mm, by which a vertex may be nearer
 constexpr double no_nearer = 1e-12;  // of a squared distance: less is no step
 
-// A pair of triangles and their nearest points.
+// A pair of triangles, of A and of B, and their nearest points.
 struct Place {
-    std::int32_t of_a, of_b;
+    std::array<std::int32_t, 2> triangles;
     TrianglePair points;
 
     double squared() const noexcept { return points.on_a.squared_distance; }  // distance
+    const TrianglePoint& on(std::size_t side) const noexcept { return side == 0 ? points.on_a : points.on_b; }
     bool is_nearer_than(const Place& other) const noexcept {
         return squared() < (1 - no_nearer) * other.squared();
     }
@@ -42,15 +44,17 @@ TriangleFeature feature_of(std::int32_t triangle, const TrianglePoint& point) no
 class Walk {
   public:
     Walk(const ConvexPieces& a, const Isometry3d& X_BA, const ConvexPieces& b, const PiecePair& pair) noexcept
-        : a_(a), b_(b), X_BA_(X_BA), X_AB_(X_BA.inverse()), pair_(pair), best_(where_it_was()) {}
+        : sides_(placed_pieces(a, X_BA, b, pair)),
+          best_(where_it_was(pair.on_a, pair.on_b)),
+          was_found_(pair.on_a.kind != Feature::face || pair.on_b.kind != Feature::face) {}
 
     // What is found, and a distance than which nothing is nearer.
     std::pair<Place, double> find(double within) noexcept {
-        const bool was_found = pair_.on_a.kind != Feature::face || pair_.on_b.kind != Feature::face;
-        if (was_found)
+        if (was_found_) {
             if (const auto at_least = prove(within)) return {best_, *at_least};
-        if (was_found) best_ = between(best_.of_a, best_.of_b);
-        for (int step = 0; step < most_steps && (step_on_a(best_) || step_on_b(best_));) ++step;
+            best_ = between(best_.triangles);
+        }
+        for (int step = 0; step < most_steps && (step_on(0, best_) || step_on(1, best_));) ++step;
         if (const auto at_least = prove(within)) return {best_, *at_least};
         search(within + ahead);
         return {best_, std::min(distance(), within + ahead)};
@@ -58,84 +62,66 @@ class Walk {
 
   private:
     double distance() const noexcept { return std::sqrt(best_.squared()); }
-    TriangleCorners corners_of_a(std::int32_t triangle) const noexcept {
-        return placed(X_BA_, a_.features().corners(static_cast<std::size_t>(triangle)));
-    }
-    TriangleCorners corners_of_b(std::int32_t triangle) const noexcept {
-        return b_.features().corners(static_cast<std::size_t>(triangle));
-    }
 
     // The nearest points of the features that had them last; of two faces, which had none, of the triangles.
-    Place where_it_was() const noexcept {
-        const TriangleFeature &of_a = pair_.on_a, &of_b = pair_.on_b;
-        const TriangleCorners a = corners_of_a(of_a.triangle), b = corners_of_b(of_b.triangle);
-        Place place{of_a.triangle, of_b.triangle, {}};
+    Place where_it_was(const TriangleFeature& of_a, const TriangleFeature& of_b) const noexcept {
+        const TriangleCorners a = sides_[0].corners(of_a.triangle), b = sides_[1].corners(of_b.triangle);
+        Place place{{of_a.triangle, of_b.triangle}, {}};
         auto &on_a = place.points.on_a, &on_b = place.points.on_b;
         if (of_a.kind == Feature::vertex) {
             on_b = closest_point_on_triangle(a[of_a.which], b);
-            on_a = corner(a, of_a.which);
+            on_a = corner_point(a, of_a.which);
         } else if (of_b.kind == Feature::vertex) {
             on_a = closest_point_on_triangle(b[of_b.which], a);
-            on_b = corner(b, of_b.which);
+            on_b = corner_point(b, of_b.which);
         } else if (of_a.kind == Feature::edge && of_b.kind == Feature::edge) {
             const SegmentPair near = closest_points_of_segments(a[of_a.which], a[(of_a.which + 1U) % 3],
                                                                 b[of_b.which], b[(of_b.which + 1U) % 3]);
-            on_a = on_edge(of_a.which, near.s, near.first);
-            on_b = on_edge(of_b.which, near.t, near.second);
+            on_a = edge_point(of_a.which, near.s, near.first);
+            on_b = edge_point(of_b.which, near.t, near.second);
         } else {
-            return between(of_a.triangle, of_b.triangle);
+            return between(place.triangles);
         }
         on_a.squared_distance = on_b.squared_distance = (on_a.point - on_b.point).squaredNorm();
+        place.points.normal = (on_b.point - on_a.point).normalized();
         return place;
     }
-    static TrianglePoint corner(const TriangleCorners& of, std::size_t i) noexcept {
-        return {of[i], Vector3d::Unit(static_cast<Eigen::Index>(i)), 0, Feature::vertex};
-    }
-    static TrianglePoint on_edge(std::size_t i, double s, const Vector3d& p) noexcept {
-        TrianglePoint point{p, Vector3d::Zero(), 0, s > 0 && s < 1 ? Feature::edge : Feature::vertex};
-        point.barycentric[static_cast<Eigen::Index>(i)] = 1 - s;
-        point.barycentric[static_cast<Eigen::Index>((i + 1) % 3)] = s;
-        return point;
-    }
 
-    Place between(std::int32_t of_a, std::int32_t of_b) const noexcept {
-        return {of_a, of_b, closest_points_of_triangles(corners_of_a(of_a), corners_of_b(of_b))};
+    Place between(const std::array<std::int32_t, 2>& triangles) const noexcept {
+        return {triangles, closest_points_of_triangles(sides_[0].corners(triangles[0]),
+                                                       sides_[1].corners(triangles[1]))};
+    }
+    // The same with another triangle on one side.
+    Place between(const Place& at, std::size_t side, std::int32_t triangle) const noexcept {
+        std::array<std::int32_t, 2> triangles = at.triangles;
+        triangles[side] = triangle;
+        return between(triangles);
     }
     void take_if_nearer(const Place& place) noexcept {
         if (place.is_nearer_than(best_)) best_ = place;
     }
 
-    // Ways from one point to the other, and points, each in the frame of its surface.
-    Vector3d way_of_a(const Place& at) const noexcept {
-        return X_AB_.linear() * (at.points.on_b.point - at.points.on_a.point);
+    // The way from a side's point to the other's, and the point, in the side's own frame.
+    Vector3d way(std::size_t side, const Place& at) const noexcept {
+        return sides_[side].X_own.linear() * (at.on(1 - side).point - at.on(side).point);
     }
-    Vector3d point_of_a(const Place& at) const noexcept { return X_AB_ * at.points.on_a.point; }
-    static Vector3d way_of_b(const Place& at) noexcept { return at.points.on_a.point - at.points.on_b.point; }
-    static const Vector3d& point_of_b(const Place& at) noexcept { return at.points.on_b.point; }
+    Vector3d point(std::size_t side, const Place& at) const noexcept {
+        return sides_[side].X_own * at.on(side).point;
+    }
 
     // To a triangle of one piece beside the one that the point is on, if it is nearer.
-    bool step_on_a(Place& at) const noexcept {
-        const Vector3d way = way_of_a(at), from = point_of_a(at);
-        return any_beyond(a_, at.of_a, at.points.on_a, [&](std::int32_t t) {
-            return leads_on(a_, t, from, way) && step_to(between(t, at.of_b), at);
+    bool step_on(std::size_t side, Place& at) const noexcept {
+        const PlacedPiece& of = sides_[side];
+        const Vector3d on = way(side, at), from = point(side, at);
+        const Place start = at;
+        return any_beyond(of.surface, start.triangles[side], start.on(side), [&](std::int32_t t) {
+            const auto leads_on = [&](const Vector3d& p) { return on.dot(p - from) > 0; };
+            if (std::ranges::none_of(of.own_corners(t), leads_on)) return false;
+            const Place there = between(start, side, t);
+            if (!there.is_nearer_than(start)) return false;
+            at = there;
+            return true;
         });
-    }
-    bool step_on_b(Place& at) const noexcept {
-        const Vector3d way = way_of_b(at), from = point_of_b(at);
-        return any_beyond(b_, at.of_b, at.points.on_b, [&](std::int32_t t) {
-            return leads_on(b_, t, from, way) && step_to(between(at.of_a, t), at);
-        });
-    }
-    static bool step_to(const Place& there, Place& at) noexcept {
-        if (!there.is_nearer_than(at)) return false;
-        at = there;
-        return true;
-    }
-    // Whether a corner of a triangle lies on along the way from a point.
-    static bool leads_on(const ConvexPieces& of, std::int32_t triangle, const Vector3d& from,
-                         const Vector3d& way) noexcept {
-        const TriangleCorners corners = of.features().corners(static_cast<std::size_t>(triangle));
-        return std::ranges::any_of(corners, [&](const Vector3d& p) { return way.dot(p - from) > 0; });
     }
 
     // A distance than which nothing is nearer, if it can be told: the planes through the two points, across
@@ -144,70 +130,46 @@ class Walk {
     // do not.
     std::optional<double> prove(double within) noexcept {
         if (!(best_.squared() > 0)) return 0;
-        const double of_a = stands_out_of_a(best_), of_b = stands_out_of_b(best_);
-        const double at_least = distance() - of_a - of_b;
+        const std::array<double, 2> out{stands_out(0, best_), stands_out(1, best_)};
+        const double at_least = distance() - out[0] - out[1];
         if (at_least > within) return at_least;
-        const bool a_lies_behind = of_a <= rounding, b_lies_behind = of_b <= rounding;
-        if (a_lies_behind && b_lies_behind) return distance();
-        if (b_lies_behind) return ask_triangles_of_a(within + ahead);
-        if (a_lies_behind) return ask_triangles_of_b(within + ahead);
-        return std::nullopt;
+        const std::array<bool, 2> is_behind{out[0] <= rounding, out[1] <= rounding};
+        if (is_behind[0] && is_behind[1]) return distance();
+        if (!is_behind[0] && !is_behind[1]) return std::nullopt;
+        return ask_triangles(is_behind[0] ? 1 : 0, within + ahead);
     }
     // How far a vertex of a piece is before the plane through its point, mm.
-    double stands_out_of_a(const Place& at) const noexcept {
-        return stands_out(a_, pair_.piece_a, point_of_a(at), way_of_a(at));
-    }
-    double stands_out_of_b(const Place& at) const noexcept {
-        return stands_out(b_, pair_.piece_b, point_of_b(at), way_of_b(at));
-    }
-    static double stands_out(const ConvexPieces& of, std::int32_t piece, const Vector3d& point,
-                             const Vector3d& way) noexcept {
-        double most = way.dot(point);
-        const double plane = most;
-        for (const PieceVertex& v : of.piece(piece).vertices)
-            most = std::max(most, way.dot(of.features().vertex(v.vertex)));
-        return (most - plane) / way.norm();
+    double stands_out(std::size_t side, const Place& at) const noexcept {
+        const PlacedPiece& of = sides_[side];
+        const Vector3d on = way(side, at);
+        const double plane = on.dot(point(side, at));
+        double most = plane;
+        for (const PieceVertex& v : of.surface.piece(of.piece).vertices)
+            most = std::max(most, on.dot(of.surface.features().vertex(v.vertex)));
+        return (most - plane) / on.norm();
     }
 
-    // Of A's, or B's, triangles asks those that may be nearer than the two points, and than `beyond`, and
-    // takes what is nearer. Returns a distance than which none is nearer, if that can be told.
-    std::optional<double> ask_triangles_of_a(double beyond) noexcept {
-        const Vector3d unit = way_of_a(best_).normalized(), plane = X_AB_ * point_of_b(best_);
-        const PieceNode& ball = b_.node(b_.piece(pair_.piece_b).root);
-        const Vector3d centre = X_AB_ * centre_of(ball);
+    // Of a side's triangles asks those that may be nearer than the two points, and than `beyond`, and takes
+    // what is nearer. Returns a distance than which none is nearer, if that can be told.
+    std::optional<double> ask_triangles(std::size_t side, double beyond) noexcept {
+        const PlacedPiece &of = sides_[side], &other = sides_[1 - side];
+        const Vector3d unit = way(side, best_).normalized(), plane = of.X_own * best_.on(1 - side).point;
+        const PieceNode& ball = other.ball();
+        const Vector3d centre =
+            of.X_own * (other.X_B * Vector3d(ball.centre[0], ball.centre[1], ball.centre[2]));
         double least_left = std::numeric_limits<double>::infinity();
-        for (const std::int32_t t : a_.piece(pair_.piece_a).triangles) {
-            const TriangleCorners corners = a_.features().corners(static_cast<std::size_t>(t));
+        for (const std::int32_t t : of.surface.piece(of.piece).triangles) {
             const double enough = std::min(distance(), beyond) - rounding;
-            const double least = at_least(corners, plane, unit, centre, radius_of(ball), enough);
+            const double least =
+                at_least(of.own_corners(t), plane, unit, centre, static_cast<double>(ball.radius), enough);
             if (least >= enough) {
                 least_left = std::min(least_left, least);
                 continue;
             }
-            Place at = between(t, best_.of_b);
-            for (int step = 0; step < most_steps && step_on_b(at);) ++step;
+            Place at = between(best_, side, t);
+            for (int step = 0; step < most_steps && step_on(1 - side, at);) ++step;
             take_if_nearer(at);
-            if (at.squared() > 0 && stands_out_of_b(at) > rounding) return std::nullopt;
-        }
-        return std::min(distance(), least_left);
-    }
-    std::optional<double> ask_triangles_of_b(double beyond) noexcept {
-        const Vector3d unit = way_of_b(best_).normalized(), plane = best_.points.on_a.point;
-        const PieceNode& ball = a_.node(a_.piece(pair_.piece_a).root);
-        const Vector3d centre = X_BA_ * centre_of(ball);
-        double least_left = std::numeric_limits<double>::infinity();
-        for (const std::int32_t t : b_.piece(pair_.piece_b).triangles) {
-            const TriangleCorners corners = corners_of_b(t);
-            const double enough = std::min(distance(), beyond) - rounding;
-            const double least = at_least(corners, plane, unit, centre, radius_of(ball), enough);
-            if (least >= enough) {
-                least_left = std::min(least_left, least);
-                continue;
-            }
-            Place at = between(best_.of_a, t);
-            for (int step = 0; step < most_steps && step_on_a(at);) ++step;
-            take_if_nearer(at);
-            if (at.squared() > 0 && stands_out_of_a(at) > rounding) return std::nullopt;
+            if (at.squared() > 0 && stands_out(1 - side, at) > rounding) return std::nullopt;
         }
         return std::min(distance(), least_left);
     }
@@ -221,38 +183,35 @@ class Walk {
         return std::max(above,
                         std::sqrt(closest_point_on_triangle(centre, corners).squared_distance) - radius);
     }
-    static Vector3d centre_of(const PieceNode& ball) noexcept {
-        return {ball.centre[0], ball.centre[1], ball.centre[2]};
-    }
-    static double radius_of(const PieceNode& ball) noexcept { return static_cast<double>(ball.radius); }
 
     void search(double within) noexcept {
-        if (!(best_.squared() > 0)) return;
         double least = std::min(distance(), within);
-        const Vector3d unit = -way_of_b(best_).normalized();  // from A's point to B's
+        const Vector3d unit = way(1, best_).normalized();  // from B's point to A's
+        const auto& [a, b] = sides_;
         for_each_pair(
-            a_, b_, [&](const PieceNode& a, const PieceNode& b) { return may_be_near(a, X_BA_, b, least); },
-            [&](const PieceNode& a, const PieceNode& b) {
-                if (are_apart_along(unit, a.triangle, b.triangle, least)) return true;
-                take_if_nearer(between(a.triangle, b.triangle));
+            a.surface, b.surface,
+            [&](const PieceNode& of_a, const PieceNode& of_b) {
+                return may_be_near(of_a, a.X_B, of_b, least);
+            },
+            [&](const PieceNode& of_a, const PieceNode& of_b) {
+                if (are_apart_along(unit, a.corners(of_a.triangle), b.corners(of_b.triangle), least))
+                    return true;
+                take_if_nearer(between({of_a.triangle, of_b.triangle}));
                 least = std::min(least, distance());
                 return least > 0;
             },
-            {a_.piece(pair_.piece_a).root, b_.piece(pair_.piece_b).root});
+            {a.surface.piece(a.piece).root, b.surface.piece(b.piece).root});
     }
-    bool are_apart_along(const Vector3d& unit, std::int32_t of_a, std::int32_t of_b,
-                         double least) const noexcept {
-        const TriangleCorners a = corners_of_a(of_a), b = corners_of_b(of_b);
-        const double last = std::max({unit.dot(a[0]), unit.dot(a[1]), unit.dot(a[2])}),
-                     first = std::min({unit.dot(b[0]), unit.dot(b[1]), unit.dot(b[2])});
+    static bool are_apart_along(const Vector3d& unit, const TriangleCorners& a, const TriangleCorners& b,
+                                double least) noexcept {
+        const double first = std::min({unit.dot(a[0]), unit.dot(a[1]), unit.dot(a[2])}),
+                     last = std::max({unit.dot(b[0]), unit.dot(b[1]), unit.dot(b[2])});
         return first - last >= least;
     }
 
-    const ConvexPieces &a_, &b_;
-    const Isometry3d& X_BA_;
-    const Isometry3d X_AB_;
-    const PiecePair pair_;
+    const std::array<PlacedPiece, 2> sides_;  // A and B
     Place best_;
+    const bool was_found_;
 };
 
 }  // namespace
@@ -260,8 +219,8 @@ class Walk {
 ClosestFeatures closest_features(const ConvexPieces& a, const Isometry3d& X_BA, const ConvexPieces& b,
                                  double within, PiecePair& pair) noexcept {
     const auto [found, at_least] = Walk(a, X_BA, b, pair).find(within);
-    pair.on_a = feature_of(found.of_a, found.points.on_a);
-    pair.on_b = feature_of(found.of_b, found.points.on_b);
+    pair.on_a = feature_of(found.triangles[0], found.points.on_a);
+    pair.on_b = feature_of(found.triangles[1], found.points.on_b);
     return {found.points, at_least};
 }
 

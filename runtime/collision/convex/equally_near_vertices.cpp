@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/collision/convex/equally_near_vertices.hpp"
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 
-#include "runtime/collision/convex/piece_steps.hpp"
+#include "runtime/collision/convex/placed_piece.hpp"
 
 namespace palpate::collision {
 namespace {
@@ -36,61 +37,36 @@ TrianglePoint foot_on_piece(const ConvexPieces& surface, const Vector3d& p, std:
     return foot;
 }
 
-// Vertices of piece `piece` of one surface against the other, on which the search begins at `start`. `point`
-// is the piece's nearest point and `way` the unit vector from there to the other, both in the piece's frame.
-struct Side {
-    const ConvexPieces &of, &other;
-    const Isometry3d& X;  // from the piece's frame to the other's
-    std::int32_t piece, start;
-    Vector3d point, way;
-};
-
-// Calls tell(vertex of the piece, its place in the other's frame, foot, triangle of the foot).
-template <typename Tell>
-void look_from(const Side& side, double distance, const Tell& tell) noexcept {
-    const double least = side.way.dot(side.point) - as_near, within = distance + as_near;
-    for (const PieceVertex& v : side.of.piece(side.piece).vertices) {
-        if (!v.is_pointed) continue;
-        const Vector3d vertex = side.of.features().vertex(v.vertex);
-        if (side.way.dot(vertex) < least) continue;
-        std::int32_t triangle = side.start;
-        const Vector3d p = side.X * vertex;
-        const TrianglePoint foot = foot_on_piece(side.other, p, triangle);
-        if (foot.squared_distance <= within * within) tell(v, vertex, p, foot, triangle);
-    }
-}
-
-TrianglePoint at_corner(const PieceVertex& v, const Vector3d& p, double squared_distance) noexcept {
-    return {p, Vector3d::Unit(v.corner), squared_distance, Feature::vertex};
-}
-
 }  // namespace
 
 std::size_t equally_near_vertices(const ConvexPieces& a, const Isometry3d& X_BA, const ConvexPieces& b,
                                   const PiecePair& pair, const TrianglePair& nearest,
                                   std::span<NearTriangles> found) noexcept {
-    const double distance = std::sqrt(nearest.on_a.squared_distance);
-    const Vector3d way = (nearest.on_b.point - nearest.on_a.point) / distance;  // from a to b
-    const Isometry3d X_AB = X_BA.inverse();
+    const auto sides = placed_pieces(a, X_BA, b, pair);
+    const std::array points{nearest.on_a.point, nearest.on_b.point};
+    const std::array starts{pair.on_a.triangle, pair.on_b.triangle};
+    const double distance = std::sqrt(nearest.on_a.squared_distance), within = distance + as_near;
     std::size_t count = 0;
-    const Side from_a{
-        a, b, X_BA, pair.piece_a, pair.on_b.triangle, X_AB * nearest.on_a.point, X_AB.linear() * way};
-    look_from(
-        from_a, distance,
-        [&](const PieceVertex& v, const Vector3d&, const Vector3d& p, const TrianglePoint& foot,
-            std::int32_t triangle) {
-            if (count == found.size()) return;
-            found[count++] = {v.triangle, triangle, {at_corner(v, p, foot.squared_distance), foot, way}};
-        });
-    const Side from_b{b, a, X_AB, pair.piece_b, pair.on_a.triangle, nearest.on_b.point, -way};
-    look_from(
-        from_b, distance,
-        [&](const PieceVertex& v, const Vector3d& vertex, const Vector3d&, TrianglePoint foot,
-            std::int32_t triangle) {
-            if (count == found.size()) return;
-            foot.point = X_BA * foot.point;
-            found[count++] = {triangle, v.triangle, {foot, at_corner(v, vertex, foot.squared_distance), way}};
-        });
+    for (const std::size_t side : {0, 1}) {
+        const PlacedPiece &of = sides[side], &other = sides[1 - side];
+        const Vector3d way = of.X_own.linear() * (points[1 - side] - points[side]) / distance;
+        const double least = way.dot(of.X_own * points[side]) - as_near;
+        for (const PieceVertex& v : of.surface.piece(of.piece).vertices) {
+            const Vector3d vertex = of.surface.features().vertex(v.vertex);
+            if (!v.is_pointed || way.dot(vertex) < least) continue;
+            std::int32_t triangle = starts[1 - side];
+            const Vector3d p = of.X_B * vertex;
+            TrianglePoint foot = foot_on_piece(other.surface, other.X_own * p, triangle);
+            if (foot.squared_distance > within * within) continue;
+            if (count == found.size()) return count;
+            foot.point = other.X_B * foot.point;
+            const TrianglePoint corner{p, Vector3d::Unit(v.corner), foot.squared_distance, Feature::vertex};
+            if (side == 0)
+                found[count++] = {v.triangle, triangle, {corner, foot, nearest.normal}};
+            else
+                found[count++] = {triangle, v.triangle, {foot, corner, nearest.normal}};
+        }
+    }
     return count;
 }
 

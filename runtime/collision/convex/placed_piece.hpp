@@ -1,13 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
+#include "runtime/collision/balls/ball_pairs.hpp"
+#include "runtime/collision/convex/closest_features.hpp"
 #include "runtime/collision/convex/convex_pieces.hpp"
 #include "runtime/collision/triangle_queries.hpp"
 
 namespace palpate::collision {
+
+/// One of two pieces. Realtime-safe.
+struct PlacedPiece {
+    const ConvexPieces& surface;
+    std::int32_t piece;
+    Eigen::Isometry3d X_B, X_own;  ///< from its own frame to B's, and back
+
+    TriangleCorners own_corners(std::int32_t triangle) const noexcept {
+        return surface.features().corners(static_cast<std::size_t>(triangle));
+    }
+    TriangleCorners corners(std::int32_t triangle) const noexcept {  ///< frame B
+        return placed(X_B, own_corners(triangle));
+    }
+    const PieceNode& ball() const noexcept { return surface.node(surface.piece(piece).root); }
+};
+
+/// The pieces of a pair, A's as `X_BA` has it.
+inline std::array<PlacedPiece, 2> placed_pieces(const ConvexPieces& a, const Eigen::Isometry3d& X_BA,
+                                                const ConvexPieces& b, const PiecePair& pair) noexcept {
+    const Eigen::Isometry3d identity = Eigen::Isometry3d::Identity();
+    return {{{a, pair.piece_a, X_BA, X_BA.inverse()}, {b, pair.piece_b, identity, identity}}};
+}
 
 /// Calls visit(triangle) for the other triangles of a piece that share a corner, until it returns true.
 template <typename Visit>
