@@ -182,6 +182,11 @@ struct TickResult : Tick {
 };
 static_assert(std::is_trivially_copyable_v<TickResult>);
 
+/// Whether no fault takes of a tick's force, nor has it yet to come back after one.
+inline bool has_its_force(const Tick& tick) noexcept {
+    return tick.faults == no_fault && (tick.status & coming_back) == 0;
+}
+
 /// Copies a tick and the contacts that count; `to` keeps what it has beyond them. A twentieth of the bytes
 /// where few points touch.
 inline void copy_active(const TickResult& from, TickResult& to) noexcept {

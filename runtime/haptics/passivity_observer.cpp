@@ -83,7 +83,7 @@ void PassivityObserver::hold(std::span<const TickResult> results) noexcept {
         for (const Contact& contact : result.active_contacts())
             tools_[t].pressed += force_on_tool(contact).norm();
         touching = touching || result.contact_count > 0 || !tools_[t].force.isZero(0);
-        if (result.faults != no_fault || (result.status & coming_back)) watching_ = false;
+        if (!has_its_force(result)) watching_ = false;
     }
     if (touching) return;
     excess_ = 0;

@@ -28,6 +28,18 @@ inline Eigen::Isometry3d placement_of(const ToolPose& pose) noexcept {
     return X_PT;
 }
 
+/// How far a tool moves and turns: its origin, mm, and about it, rad.
+struct Motion {
+    double way = 0, turn = 0;
+
+    /// How far a point moves at most that is no farther than `arm` from the origin, mm.
+    double of(double arm) const noexcept { return way + arm * turn; }
+};
+/// From one pose to another, the shorter way. Realtime-safe.
+inline Motion motion_between(const ToolPose& from, const ToolPose& to) noexcept {
+    return {(to.position - from.position).norm(), rotation_between(from.orientation, to.orientation).norm()};
+}
+
 /// The pose after a motion. Realtime-safe.
 inline ToolPose moved(const ToolPose& pose, const Twist& motion) noexcept {
     return {pose.position + motion.head<3>(), turned(pose.orientation, motion.tail<3>())};

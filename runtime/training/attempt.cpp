@@ -67,8 +67,7 @@ void Attempt::add(const TickResult& tick) {
     time_ += duration;
     const double force = Eigen::Map<const Vector3d>(tick.force.data()).norm();
     peak_force_ = std::max(peak_force_, force);
-    const bool force_is_the_tissues = tick.faults == no_fault && !(tick.status & coming_back);
-    if (force_is_the_tissues && force > 0 && force >= exercise_.least_force) {
+    if (has_its_force(tick) && force > 0 && force >= exercise_.least_force) {
         in_contact_ += duration;
         impulse_ += force * duration;
     }
@@ -79,7 +78,7 @@ void Attempt::add(const TickResult& tick) {
             .force = force,
             .tool = Eigen::Map<const Vector3d>(tick.tool_position.data()),
             .touched = touched_place(case_, tick),
-            .force_is_the_tissues = force_is_the_tissues},
+            .force_is_the_tissues = has_its_force(tick)},
            goals_);
     if (goals_.reached_all)
         end(Ending::all_reached);

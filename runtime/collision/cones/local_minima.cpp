@@ -13,11 +13,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Out of a triangle's face, or from an edge or a corner of it.
-bool is_outside_of(const TriangleCorners& triangle, const TrianglePoint& foot, const Vector3d& d) noexcept {
-    return foot.feature != Feature::face || unit_normal(triangle).dot(d) > 0;
-}
-
 class Finder {
   public:
     Finder(const FeaturePair& pair, double within, PairMinima& found) noexcept
@@ -46,7 +41,7 @@ class Finder {
         const TrianglePoint foot = closest_point_on_triangle(p, pair_.corners_b);
         const Vector3d d = p - foot.point;
         if (is_far(foot.squared_distance) || !belongs_to(of_b, foot) ||
-            !is_outside_of(pair_.corners_b, foot, d) || !pair_.b.is_nearest(pair_.triangle_b, foot, d) ||
+            !pair_.b.is_nearest_outside(pair_.triangle_b, foot, d) ||
             !pair_.a.is_nearest_at_vertex(of_a.vertices[i], direction_in_a(-d)))
             return;
         add(p, foot.point);
@@ -58,10 +53,10 @@ class Finder {
         TrianglePoint foot = closest_point_on_triangle(p, pair_.corners_a);
         const Vector3d on_a = foot.point, d = p - on_a;
         if (is_far(foot.squared_distance) || foot.feature == Feature::vertex || !belongs_to(of_a, foot) ||
-            !is_outside_of(pair_.corners_a, foot, d) || !pair_.b.is_nearest_at_vertex(of_b.vertices[i], -d))
+            !pair_.b.is_nearest_at_vertex(of_b.vertices[i], -d))
             return;
         foot.point = point_in_a(on_a);
-        if (pair_.a.is_nearest(pair_.triangle_a, foot, direction_in_a(d))) add(on_a, p);
+        if (pair_.a.is_nearest_outside(pair_.triangle_a, foot, direction_in_a(d))) add(on_a, p);
     }
 
     // Where an end is nearest it is a vertex' pair.

@@ -52,6 +52,12 @@ class SurfaceFeatures {
     /// The same for any point of a triangle as a query found it.
     bool is_nearest(std::size_t triangle, const TrianglePoint& found,
                     const Eigen::Vector3d& d) const noexcept;
+    /// The same, and of a face only out of it.
+    bool is_nearest_outside(std::size_t triangle, const TrianglePoint& found,
+                            const Eigen::Vector3d& d) const noexcept {
+        return (found.feature != Feature::face || unit_normal(corners(triangle)).dot(d) > 0) &&
+               is_nearest(triangle, found, d);
+    }
 
   private:
     std::vector<Eigen::Vector3f> vertices_;  // mm

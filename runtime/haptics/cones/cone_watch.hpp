@@ -32,7 +32,6 @@ class ConeWatch final : public GapWatch {
     ~ConeWatch() override;
 
     void reset() noexcept override;
-    bool depends_on_the_way() const noexcept override { return false; }
     void look(const ToolPose& pose) noexcept override;
     bool meets(const ToolPose& pose) const noexcept override;
 

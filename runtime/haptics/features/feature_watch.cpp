@@ -22,44 +22,7 @@ constexpr Motion most_slack{.way = 0.4, .turn = 0.01};  // mm, rad
 constexpr int halvings = 4;                             // of the slack, where pairs find no room
 constexpr double travel_rounding = 1e-9;                // mm
 
-// Whether a point of a triangle is its surface's locally nearest in a direction, both in the surface's frame.
-bool is_locally_nearest(const collision::SurfaceFeatures& surface, std::int32_t triangle,
-                        const TrianglePoint& found, const Vector3d& direction) noexcept {
-    const auto t = static_cast<std::size_t>(triangle);
-    if (found.feature == collision::Feature::face)
-        return collision::unit_normal(surface.corners(t)).dot(direction) > 0;
-    return surface.is_nearest(t, found, direction);
-}
-
 }  // namespace
-
-void FeatureWatch::Index::clear() noexcept {
-    std::ranges::fill(slots_, Slot{});
-}
-
-std::size_t FeatureWatch::Index::slot_of(std::int32_t body, std::int32_t mine,
-                                         std::int32_t its) const noexcept {
-    const auto mixed = (static_cast<std::uint64_t>(mine) * 0x9E3779B97F4A7C15U) ^
-                       (static_cast<std::uint64_t>(its) * 0xC2B2AE3D27D4EB4FU) ^
-                       static_cast<std::uint64_t>(body);
-    const std::size_t last = slots_.size() - 1;
-    std::size_t at = (mixed ^ mixed >> 32U) & last;
-    while (slots_[at].body != none &&
-           !(slots_[at].body == body && slots_[at].mine == mine && slots_[at].its == its))
-        at = (at + 1) & last;
-    return at;
-}
-
-std::int32_t FeatureWatch::Index::find(std::int32_t body, std::int32_t mine,
-                                       std::int32_t its) const noexcept {
-    return slots_[slot_of(body, mine, its)].kept;
-}
-
-std::int32_t& FeatureWatch::Index::at(std::int32_t body, std::int32_t mine, std::int32_t its) noexcept {
-    Slot& slot = slots_[slot_of(body, mine, its)];
-    if (slot.body == none) slot = {body, mine, its, none};
-    return slot.kept;
-}
 
 void FeatureWatch::reset() noexcept {
     valid_ = met_ = false;
@@ -131,7 +94,7 @@ bool FeatureWatch::keep(std::int32_t body, const PieceNode& mine, const PieceNod
     const double due = travel_.of(arm) + apart - gaps_.within() - travel_rounding;
     const Kept fresh{{mine.piece, its.piece, {mine.triangle}, {its.triangle}}, body, arm, due, false};
     std::int32_t& at = now_.index.at(body, mine.piece, its.piece);
-    if (at != Index::none) {
+    if (at != PairIndex::none) {
         Kept& kept = now_.kept[static_cast<std::size_t>(at)];
         if (!kept.was_followed && due < kept.due) kept = fresh;
         return true;
@@ -140,7 +103,7 @@ bool FeatureWatch::keep(std::int32_t body, const PieceNode& mine, const PieceNod
     at = static_cast<std::int32_t>(now_.count++);
     const std::int32_t was_at = before_.index.find(body, mine.piece, its.piece);
     const bool was_followed =
-        was_at != Index::none && before_.kept[static_cast<std::size_t>(was_at)].was_followed;
+        was_at != PairIndex::none && before_.kept[static_cast<std::size_t>(was_at)].was_followed;
     now_.kept[static_cast<std::size_t>(at)] =
         was_followed ? before_.kept[static_cast<std::size_t>(was_at)] : fresh;
     return true;
@@ -195,12 +158,13 @@ bool FeatureWatch::consider(std::int32_t body, const collision::NearTriangles& n
         return false;
     }
     const Vector3d way = on_tool.point - on_body.point;
-    if (!is_locally_nearest(bodies_[static_cast<std::size_t>(body)].features(), near.triangle_b, on_body,
-                            way))
+    if (!bodies_[static_cast<std::size_t>(body)].features().is_nearest_outside(
+            static_cast<std::size_t>(near.triangle_b), on_body, way))
         return false;
     TrianglePoint in_tool = on_tool;
     in_tool.point = X_PT.inverse() * on_tool.point;
-    if (!is_locally_nearest(tool_.features(), near.triangle_a, in_tool, -(X_PT.linear().transpose() * way)))
+    if (!tool_.features().is_nearest_outside(static_cast<std::size_t>(near.triangle_a), in_tool,
+                                             -(X_PT.linear().transpose() * way)))
         return false;
     const Gap gap{near.triangle_a, body, on_tool.point, on_body.point, distance};
     if (found_count_ < found_.size()) {

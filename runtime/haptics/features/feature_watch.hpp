@@ -8,6 +8,7 @@
 
 #include "runtime/collision/convex/closest_features.hpp"
 #include "runtime/collision/convex/convex_pieces.hpp"
+#include "runtime/haptics/features/pair_index.hpp"
 #include "runtime/haptics/tool_pose.hpp"
 #include "runtime/haptics/whole_tool/gap_watch.hpp"
 
@@ -42,7 +43,7 @@ class FeatureWatch final : public GapWatch {
     ~FeatureWatch() override;
 
     void reset() noexcept override;
-    bool depends_on_the_way() const noexcept override { return true; }  // where a search begins
+    void set_free() noexcept override { reset(); }  // where a search begins decides between places as near
     void look(const ToolPose& pose) noexcept override;
     bool meets(const ToolPose& pose) const noexcept override;
 
@@ -54,29 +55,10 @@ class FeatureWatch final : public GapWatch {
         double due = 0;             // mm of the piece's travel, before which they are not within reach
         bool was_followed = false;  // by now: else where to begin is a guess
     };
-    // Where a pair of pieces is kept, by hash.
-    class Index {
-      public:
-        static constexpr std::int32_t none = -1;
-        explicit Index(std::size_t most) : slots_(most) {}
-        void clear() noexcept;
-        // What was written for the pair, or none; the second, to be written then.
-        std::int32_t find(std::int32_t body, std::int32_t mine, std::int32_t its) const noexcept;
-        std::int32_t& at(std::int32_t body, std::int32_t mine, std::int32_t its) noexcept;
-
-      private:
-        struct Slot {
-            std::int32_t body = none, mine = 0, its = 0, kept = none;
-        };
-        std::size_t slot_of(std::int32_t body, std::int32_t mine, std::int32_t its) const noexcept;
-
-        std::vector<Slot> slots_;  // a power of two, at most half full
-    };
-
     struct Pairs {
         std::vector<Kept> kept;  // the first `count`
         std::size_t count = 0;
-        Index index;
+        PairIndex index;
 
         explicit Pairs(std::size_t most) : kept(most), index(2 * most) {}
         std::span<Kept> all() noexcept { return {kept.data(), count}; }

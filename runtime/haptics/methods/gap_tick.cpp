@@ -17,7 +17,7 @@ void GapContact::forget(std::size_t tool) noexcept {
 }
 
 void GapContact::set_free(std::size_t tool) noexcept {
-    if (watches_[tool]->depends_on_the_way()) watches_[tool]->reset();
+    watches_[tool]->set_free();
 }
 
 bool GapContact::is_clear(std::size_t tool, const ToolPose& pose) noexcept {

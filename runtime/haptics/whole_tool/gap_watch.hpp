@@ -8,17 +8,6 @@
 
 namespace palpate::haptics {
 
-/// How far a tool moves and turns: its origin, mm, and about it, rad.
-struct Motion {
-    double way = 0, turn = 0;
-
-    /// How far a point moves at most that is no farther than `arm` from the origin, mm.
-    double of(double arm) const noexcept { return way + arm * turn; }
-};
-inline Motion motion_between(const ToolPose& from, const ToolPose& to) noexcept {
-    return {(to.position - from.position).norm(), rotation_between(from.orientation, to.orientation).norm()};
-}
-
 /// Finds where a tool is near bodies. Everything is allocated on construction; all but that is realtime-safe.
 /// A class that derives from this one defines its destructor, first of its virtual functions, beside its
 /// constructor, as a ContactMethod does.
@@ -28,8 +17,9 @@ class GapWatch {
 
     /// Forgets where the tool was.
     virtual void reset() noexcept = 0;
-    /// Whether the last digits of what is found depend on the poses looked at before.
-    virtual bool depends_on_the_way() const noexcept = 0;
+    /// The tool is free: from here on nothing that is found, to its last digit, may depend on the poses
+    /// looked at before, so that a replay may begin here.
+    virtual void set_free() noexcept {}
     /// Finds what is within reach, or not far beyond, at `pose`.
     virtual void look(const ToolPose& pose) noexcept = 0;
     /// Whether a triangle of the tool meets one of a body at a pose.

@@ -253,6 +253,44 @@ TEST_P(NearPlaces, without_a_body_of_its_own_the_tool_is_the_cases_ball) {
     EXPECT_NEAR(force_of(result).z(), coupling * (1 + gap), 1e-6);
 }
 
+// Two tools come to a free place by different ways and are pressed alike from there: forces to the last bit.
+TEST_P(NearPlaces, what_follows_a_free_tick_does_not_depend_on_how_it_was_come_to) {
+    Case c = plate();
+    c.haptics.max_force = 30;  // on 100 N/mm: a reach of 0.3 mm
+    c.rigid_bodies[0] = rigid("ball", sample::sphere_surface({0, 0, 0}, 15, 4));
+    c.tool = bar();
+    c.tool->surface = sample::sphere_surface({0, 0, 0}, 3, 3);
+    HapticModel one(c, GetParam()), other(c, GetParam());
+    std::mt19937 random(8);
+    std::normal_distribution<double> component(0, 1);
+    const auto direction = [&] {
+        return Vector3d(component(random), component(random), component(random)).normalized();
+    };
+    std::size_t pressed = 0;
+    for (int place = 0; place < samples_of(80); ++place) {
+        const Vector3d out = direction(), free = 18.6 * out;
+        const Quaterniond turn(Eigen::AngleAxisd(0.4, direction()));
+        TickResult a{}, b{};
+        const auto go = [&](HapticModel& model, const Vector3d& from, TickResult& result) {
+            model.reset();
+            for (int tick = 0; tick <= 30; ++tick)
+                model.tick(turned_at(free + (30 - tick) / 30.0 * (from - free), turn), result);
+        };
+        go(one, free + 2 * out.unitOrthogonal(), a);
+        go(other, free + out - out.unitOrthogonal(), b);
+        ASSERT_EQ(a.contact_count + b.contact_count, 0);
+        for (int tick = 0; tick < 60; ++tick) {
+            const auto state = turned_at(free - 0.03 * tick * out, turn);
+            one.tick(state, a);
+            other.tick(state, b);
+            ASSERT_EQ(a.force, b.force) << place << ' ' << tick;
+            ASSERT_EQ(a.torque, b.torque) << place << ' ' << tick;
+            pressed += a.contact_count > 0;
+        }
+    }
+    EXPECT_GT(pressed, static_cast<std::size_t>(samples_of(500)));
+}
+
 TEST_P(NearPlaces, ticks_without_allocation) {
     HapticModel model(plate_and_bar(), GetParam());
     TickResult result{};
