@@ -18,9 +18,10 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr Motion most_slack{.way = 0.4, .turn = 0.01};  // mm, rad
-constexpr int halvings = 4;                             // of the slack, where pairs find no room
-constexpr double travel_rounding = 1e-9;                // mm
+// mm, rad; a choice: with more, pairs are gathered less often and there are more of them.
+constexpr Motion most_slack{.way = 0.4, .turn = 0.01};
+constexpr int halvings = 4;               // of the slack, where pairs find no room
+constexpr double travel_rounding = 1e-9;  // mm
 
 }  // namespace
 

@@ -18,12 +18,12 @@ namespace palpate::haptics {
 /// closest features that are followed from look to look, and clusters of contacts, after Gregory,
 /// Mascarenhas, Ehmann, Lin, Manocha 2000, "Six degree-of-freedom haptic display of polygonal models".
 ///
-/// Where it is not as there, and why: pieces that overlap have a depth there, found from what they were
-/// before; here none ever do. Of a pair of pieces the nearest place counts there; here, where face lies on
-/// face, corners of either that lie over the other as well, or it would hop from one to the other; and only
-/// where the surface beside it is no nearer, or the rims of all pieces around would push, too. The place of a
-/// cluster is that of its nearest gap and no mean, so that what pushes is a distance. A pair is asked again
-/// only once the tool has come as far as the two were apart.
+/// Where it is not as there, so far as its abstract and later papers tell, and why: pieces that overlap have
+/// a depth there; here none ever do. Of a pair of pieces the nearest place counts; where face lies on face,
+/// corners of either that lie over the other as well, or it would hop from one to the other; and only where
+/// the surface beside it is no nearer, or the rims of all pieces around would push, too. The place of a
+/// cluster is that of its narrowest gap, so that what pushes is a distance. A pair is asked again only once
+/// the tool has come as far as the two were apart.
 class FeatureWatch final : public GapWatch {
   public:
     /// Pairs of pieces that are followed; where more are near, triangles are searched anew in every look, and

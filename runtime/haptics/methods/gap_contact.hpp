@@ -15,10 +15,10 @@ namespace palpate::haptics {
 /// device (rest_of_penalties()). A GapWatch finds them: what is published of that, and what differs here, is
 /// where it is declared.
 ///
-/// What is not as in any of them: there the tool has a mass and its motion is integrated; here it is at rest
-/// (Wan, McNeely 2003) and moves no farther at a time than its least distance; where that is hardly any it
-/// moves by 0.005 mm if that meets nothing, so that it goes through nothing. A place that comes or goes takes
-/// its force along at once, as there.
+/// In each the tool has no mass: it is at rest (Wan, McNeely 2003) and moves no farther at a time than its
+/// least distance; where that is hardly any it moves by 0.005 mm if that meets nothing, so that it goes
+/// through nothing. A place that comes or goes takes its force along at once, as in Johnson, Willemsen, Cohen
+/// 2005.
 ///
 /// A tool without a body of its own (Case::tool) is a ball of the settings' radius with their shaft, of 24
 /// corners around.
