@@ -135,6 +135,8 @@ double ContactLcp::solve_filling(std::size_t rows, std::span<const std::size_t> 
 
 double ContactLcp::solve_tangents(std::size_t rows, std::size_t tangents) noexcept {
     first_tangent_ = rows;
+    for (std::size_t i = count_; i-- > 0;)  // those of an earlier call
+        if (order_[i] >= rows) remove(i);
     for (std::size_t row = rows; row < rows + tangents; ++row) {
         known_[row] = true;
         f_[static_cast<Index>(row)] = 0;

@@ -41,8 +41,8 @@ class ContactLcp {
     double solve(std::size_t n, std::span<const std::size_t> active) noexcept {
         return solve(n, active, [](std::size_t) {});
     }
-    /// Solves on from there with `tangents` rows more, from row n on, that pull as well as press: their
-    /// columns and rows of matrix() have been written. `fill` as before.
+    /// Solves on from there, or from another call of this, with `tangents` rows more, from row n on, that
+    /// pull as well as press: their columns and rows of matrix() have been written. `fill` as before.
     template <typename Fill>
     double solve_with(std::size_t n, std::size_t tangents, Fill fill) noexcept {
         fill_by(fill);

@@ -141,8 +141,8 @@ Vector3d ContinuousContact::friction_of(std::size_t t, std::size_t p,
     return wanted > most ? most / wanted * drag : drag;
 }
 
-// The same of all parts of a tool on which `force` (N) acts besides, but for what would drag it into a wall
-// that it does not touch yet.
+// The same of all parts of a tool that does not turn by itself, on which `force` (N) acts besides, but for
+// what would drag it into a wall that it does not touch yet.
 Vector3d ContinuousContact::wall_friction(std::size_t t, const Vector3d& force, TickResult& result) noexcept {
     Tool& tool = tools_[t];
     constexpr int most_walls = 4;
@@ -153,9 +153,8 @@ Vector3d ContinuousContact::wall_friction(std::size_t t, const Vector3d& force, 
     for (int wall = 0;; ++wall) {
         std::optional<GodObject::Touch> touch;
         for (std::size_t p = 0; p < parts.size() && !touch; ++p) {
-            const Vector3d turned = equilibrium_.turned_off(t, p);
             touch = parts[p].on_rigid.touch_on_the_way(rigid_surfaces_,
-                                                       parts[p].device + (force + drag) / coupling_ + turned);
+                                                       parts[p].device + (force + drag) / coupling_);
         }
         if (!touch) break;
         const double inwards = touch->normal.dot(drag);

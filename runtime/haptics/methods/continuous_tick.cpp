@@ -102,10 +102,10 @@ Vector3d ContinuousContact::force_of(std::size_t t, TickResult& result) noexcept
     const auto walls = result.contact_count;
     equilibrium_.write_contacts(t, result);
     const bool found = equilibrium_.solved(t);
-    const TickStatus unrest =
-        equilibrium_.touches_tissue(t) && equilibrium_.change() > ContactEquilibrium::unsettled
-            ? contact_unsettled
-            : tick_ok;
+    const TickStatus unrest = (equilibrium_.touches_tissue(t) || torsion_ > 0) &&
+                                      equilibrium_.change() > ContactEquilibrium::unsettled
+                                  ? contact_unsettled
+                                  : tick_ok;
     if (result.contact_count == 0 && (found || !equilibrium_.touches_tissue(t))) {
         result.status |= unrest;
         return rigid_force(tool.parts[0].on_rigid, tool.parts[0].device, result);
@@ -118,7 +118,7 @@ Vector3d ContinuousContact::force_of(std::size_t t, TickResult& result) noexcept
         result.residual = equilibrium_.residual();
         if (result.contact_count > walls) depth_in_tissue(tool, result);
         Vector3d force = press + equilibrium_.drag(t);
-        if (friction_.at_rest > 0) force += wall_friction(t, force, result);
+        if (friction_.at_rest > 0 && torsion_ == 0) force += wall_friction(t, force, result);
         return force;
     }
     // The contacts contradict each other: nothing gives way, and the part that is held most decides.
@@ -154,10 +154,11 @@ void ContinuousContact::place(std::size_t t, const ContactPose& pose, TickResult
         return;
     }
     if (pose.jumped) forget(t);
+    tool.orientation = orientation_of(pose).toRotationMatrix();
     // A rod's spheres lie along its shaft, so that no other axis is asked for.
     Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();
     if (is_instrument_)
-        axes = orientation_of(pose).toRotationMatrix();
+        axes = tool.orientation;
     else
         axes.col(2) = pose.shaft;
     tool.tip = pose.tip;
@@ -250,9 +251,11 @@ void ContinuousContact::note_clearances(Tool& tool) noexcept {
 void ContinuousContact::follow(std::size_t t, TickResult& result) noexcept {
     Tool& tool = tools_[t];
     placed_.clear();
+    // Of a tool that turns by itself all spheres are held together, in the equilibrium.
+    const Friction friction = torsion_ > 0 ? Friction{} : friction_;
     for (std::size_t p = 0; p < tool.parts_felt; ++p) {
         Part& part = tool.parts[p];
-        if (!part.on_rigid.move(rigid_surfaces_, aim_of(tool, part), friction_))
+        if (!part.on_rigid.move(rigid_surfaces_, aim_of(tool, part), friction))
             result.status |= starts_inside;
         // A lone sphere on rigid bodies needs no second one.
         if (!bodies_.deformable.empty() || tool.parts.size() > 1)
@@ -266,7 +269,8 @@ void ContinuousContact::follow(std::size_t t, TickResult& result) noexcept {
         result.body = static_cast<std::int32_t>(part.on_rigid.touches().front().surface);
     }
     note_clearances(tool);
-    if (tool.parts_felt > 0) equilibrium_.pull(t, tool.tip, {placed_.data(), placed_.size()});
+    if (tool.parts_felt > 0)
+        equilibrium_.pull(t, tool.tip, tool.orientation, {placed_.data(), placed_.size()});
 }
 
 }  // namespace palpate::haptics

@@ -57,9 +57,8 @@ constexpr std::size_t few_rows = 16;
 // iterations nevertheless, or it would say nothing.
 constexpr std::size_t spare_spent = 20'000, most_spent = 60'000;
 constexpr int least_iterations = 2;
-constexpr double far_off = 10;          // times the change before it
-constexpr double helped = 0.5;          // times the change before it
-constexpr std::size_t most_walls = 48;  // leaves room for tissue
+constexpr double far_off = 10;  // times the change before it
+constexpr double helped = 0.5;  // times the change before it
 
 }  // namespace
 
@@ -77,28 +76,41 @@ void ContactEquilibrium::reset() noexcept {
 }
 
 void ContactEquilibrium::forget(std::size_t t) noexcept {
+    leave_tissue(t);
+    for (Part& part : tools_[t].parts) {
+        Hold& of_walls = part.holds.back();
+        of_walls.slip.setZero();
+        of_walls.slid = of_walls.pressed = false;
+    }
+}
+
+// Lets go of the tissue, but not of walls.
+void ContactEquilibrium::leave_tissue(std::size_t t) noexcept {
     Tool& tool = tools_[t];
     bank_ = in_row_ = carried_ = states_known_ = 0;
-    tool.touching = tool.at_rest = false;
+    tool.touching = tool.at_rest = tool.walled = false;
     tool.off.setZero();
     tool.turn.setZero();
     tool.unpressed_turn = tool.kept_turn;
     if (turns()) swing(tool);
     tool.press.setZero();
     tool.drag.setZero();
-    for (Part& part : tool.parts)
+    for (Part& part : tool.parts) {
+        for (Hold& hold : part.holds) hold.drag.setZero();
         for (std::size_t soft = 0; soft < patches_.size(); ++soft) {
             Touch& touch = part.touches[soft];
+            Hold& hold = part.holds[soft];
             touch.near.clear();
             touch.gathered_in = -1;
             touch.sunk = local_dent(part.radius, touch, patches_[soft]);
             touch.push.setZero();
             touch.shared.setZero();
             touch.righting = 0;
-            touch.drag.setZero();
-            touch.slip.setZero();
-            touch.slid = touch.pressed = touch.outside = false;
+            touch.outside = false;
+            hold.slip.setZero();
+            hold.slid = hold.pressed = false;
         }
+    }
 }
 
 void ContactEquilibrium::begin_tick(double stiffness, double torsion) noexcept {
@@ -109,6 +121,8 @@ void ContactEquilibrium::begin_tick(double stiffness, double torsion) noexcept {
     if (std::exchange(begins_, true)) states_known_ = 0;
     rows_.clear();
     groups_.clear();
+    wall_groups_.clear();
+    rubbing_.clear();
     residual_ = change_ = 0;
     for (Tool& tool : tools_) {
         tool.was_felt = std::exchange(tool.felt, 0);
@@ -116,6 +130,9 @@ void ContactEquilibrium::begin_tick(double stiffness, double torsion) noexcept {
         tool.at_rest = false;
         tool.unpressed_turn -= tool.kept_turn;
         tool.kept_turn.setZero();
+        each_hold(tool, [](Hold& hold) { hold.press = 0; });
+        // What slid on a wall may be held in this tick.
+        for (Part& part : tool.parts) part.holds.back().slides = false;
     }
     for (DeformedPatch& patch : patches_) patch.begin_tick();
     // What tissue has forgotten, spheres forget too.
@@ -126,8 +143,10 @@ void ContactEquilibrium::begin_tick(double stiffness, double torsion) noexcept {
     neighbours_.look(patches_);
 }
 
-void ContactEquilibrium::pull(std::size_t t, const Vector3d& tip, std::span<const Sphere> spheres) noexcept {
+void ContactEquilibrium::pull(std::size_t t, const Vector3d& tip, const Eigen::Matrix3d& orientation,
+                              std::span<const Sphere> spheres) noexcept {
     Tool& tool = tools_[t];
+    tool.on_device = orientation;
     tool.last_device_tip = std::exchange(tool.tip, tip);
     tool.last_way = std::exchange(tool.way, tip - tool.last_device_tip);
     double moved = 0;
@@ -154,7 +173,9 @@ void ContactEquilibrium::pull(std::size_t t, const Vector3d& tip, std::span<cons
     tool.reach = tool.cold ? cold_reach : first_reach + 2 * moved;
     tool.near = tool.farthest_near = tool.cold ? first_reach : 2 * moved;
     tool.held_reach = tool.cold && !turns() ? 0 : (tool.last_tip - tool.last_device_tip).norm() + moved;
-    tool.off = tool.cold ? Vector3d::Zero() : Vector3d(tool.last_tip - tip);
+    const bool begins = tool.cold && (meets || !tool.walled);
+    tool.off = begins ? Vector3d::Zero() : Vector3d(tool.last_tip - tip);
+    if (begins) tool.turn.setZero();
     if (turns()) pull_arms(tool);
 }
 
@@ -174,17 +195,25 @@ void ContactEquilibrium::add_wall(std::size_t tool, Contact& contact) noexcept {
     row.wall = &contact;
     rows_.cut(walls);
     rows_.push_back(row);
+    // Those of one sphere lie together.
+    const auto of_sphere = [&](const Row& other) { return other.tool == row.tool && other.part == row.part; };
+    const auto behind = std::find_if(std::make_reverse_iterator(rows_.end() - 1),
+                                     std::make_reverse_iterator(rows_.begin()), of_sphere)
+                            .base();
+    if (behind != rows_.begin()) std::rotate(behind, rows_.end() - 1, rows_.end());
 }
 
 std::size_t ContactEquilibrium::drop_idle_walls(std::size_t t, std::span<Contact> contacts) noexcept {
+    std::array<Contact, most_walls> pressing;
     std::size_t kept = 0;
     rows_.erase_if([&](Row& row) {
         if (row.wall == nullptr || row.tool != static_cast<std::int32_t>(t)) return false;
         if (!(row.force > 0)) return true;
-        contacts[kept] = *row.wall;
+        pressing[kept] = *row.wall;
         row.wall = &contacts[kept++];
         return false;
     });
+    std::copy_n(pressing.begin(), kept, contacts.begin());
     return kept;
 }
 
@@ -229,7 +258,7 @@ bool ContactEquilibrium::start_anew() noexcept {
         if (tool.felt == 0 || !tool.touching || found(t)) continue;
         any = true;
         const bool at_rest = tool.at_rest;
-        forget(t);
+        leave_tissue(t);
         tool.touching = tool.cold = true;
         tool.at_rest = at_rest;
     }
@@ -254,6 +283,7 @@ void ContactEquilibrium::iterate(int most) noexcept {
         bool predicts = false;
         ++round_;
         if (iteration == foreseen_rounds) look_widely();
+        may_change_grip_ = iteration < grip_rounds;
         for (DeformedPatch& patch : patches_) patch.measure_step();
         for (std::size_t t = 0; t < tools_.size(); ++t) {
             Tool& tool = tools_[t];
@@ -326,11 +356,20 @@ bool ContactEquilibrium::found(std::size_t t) const noexcept {
     return true;
 }
 
+// Its part in the drag of its sphere, N.
+std::array<float, 3> ContactEquilibrium::friction_of(const Row& row) const noexcept {
+    const Hold& hold = hold_of(row);
+    if (!(hold.press > 0)) return {0, 0, 0};
+    const Vector3f drag = (row.force / hold.press * hold.drag).cast<float>();
+    return {drag.x(), drag.y(), drag.z()};
+}
+
 void ContactEquilibrium::write_contacts(std::size_t t, TickResult& result) const noexcept {
     for (const Row& row : rows_) {
         if (row.wall) {
             row.wall->force = static_cast<float>(row.force);
             row.wall->gap = static_cast<float>(gap_of_wall(row));
+            if (turns()) row.wall->friction = friction_of(row);
             continue;
         }
         const auto used = static_cast<std::size_t>(result.contact_count);
@@ -349,9 +388,7 @@ void ContactEquilibrium::write_contacts(std::size_t t, TickResult& result) const
         contact.gap = static_cast<float>(row.gap + row.part_giving_way * row.normal.dot(touch.sunk_free));
         contact.force = static_cast<float>(row.force);
         contact.series_compliance = static_cast<float>(sunk / row.force);
-        if (touch.press > 0)
-            Eigen::Map<Vector3f>(contact.friction.data()) =
-                (row.force / touch.press * touch.drag).cast<float>();
+        contact.friction = friction_of(row);
         result.contacts[used] = contact;
         ++result.contact_count;
     }
@@ -362,11 +399,17 @@ void ContactEquilibrium::end_tick() noexcept {
     for (Tool& tool : tools_) {
         tool.turn_before = tool.felt > 0 ? tool.turn : Vector3d::Zero();
         if (turns()) tool.last_tip = tool.tip + (tool.felt > 0 ? tool.off : Vector3d::Zero());
+        tool.walled = false;
     }
+    if (turns())
+        for (const Row& row : rows_)
+            if (row.wall != nullptr && row.force > 0)
+                tools_[static_cast<std::size_t>(row.tool)].walled = true;
     last_motion_ = 0;
     for (const DeformedPatch& patch : patches_) last_motion_ = std::max(last_motion_, patch.motion());
     remember_pushes();
     neighbours_.end_tick(patches_);
+    if (friction_.any()) keep_hold_of_walls();
     for (std::size_t t = 0; t < tools_.size(); ++t) {
         Tool& tool = tools_[t];
         const bool pressed = std::ranges::any_of(rows_, [&](const Row& row) {
@@ -382,11 +425,11 @@ void ContactEquilibrium::end_tick() noexcept {
                     touch.outside_sunk = touch.sunk;
                 }
         } else if (tool.touching) {
-            forget(t);
+            leave_tissue(t);
         }
     }
     if (any) {
-        if (friction_.any()) keep_hold();
+        if (friction_.any()) keep_hold_of_tissue();
     } else {
         forget_tissue();
     }

@@ -57,17 +57,17 @@ class ContactEquilibrium {
     /// Starts a tick behind virtual couplings of `stiffness` (N/mm), without tools or walls. `torsion`: by
     /// how much a tool turns against its device under a torque, rad / (N mm); 0: as the device says.
     void begin_tick(double stiffness, double torsion) noexcept;
-    /// Places a tool whose tip is at `tip` on its device, p_P, mm: its spheres that are felt, the first ones
-    /// of all.
-    void pull(std::size_t tool, const Eigen::Vector3d& tip, std::span<const Sphere> spheres) noexcept;
+    /// Places a tool whose tip is at `tip` on its device, p_P, mm, turned by R_PT there: its spheres that are
+    /// felt, the first ones of all.
+    void pull(std::size_t tool, const Eigen::Vector3d& tip, const Eigen::Matrix3d& orientation,
+              std::span<const Sphere> spheres) noexcept;
     /// Adds a half-space of a rigid body that holds part contact.part of a tool: contact.gap says how far the
     /// device is beyond it along -normal. The contact must outlive solve(). Only where there is room
     /// (asserted).
     void add_wall(std::size_t tool, Contact& contact) noexcept;
     bool walls_are_full() const noexcept;
     /// Drops the walls that do not press a tool in the last solution, which stays as it is; those that do are
-    /// moved to the front of `contacts`, where all of them lie in the order in which they were added. Returns
-    /// their number.
+    /// moved to the front of `contacts`, where all of them lie. Returns their number.
     std::size_t drop_idle_walls(std::size_t tool, std::span<Contact> contacts) noexcept;
     /// Whether a tool touches a deformable body, or is about to.
     bool touches_tissue(std::size_t tool) const noexcept {
@@ -81,7 +81,7 @@ class ContactEquilibrium {
     /// Whether a tool's equilibrium was found; if not, what the other members say of it is what the surface
     /// at rest answers.
     bool solved(std::size_t tool) const noexcept { return !tools_[tool].at_rest; }
-    /// What presses the tool, and what friction on tissue adds, N.
+    /// What presses the tool, and what friction on tissue adds, and on walls where tools turn, N.
     const Eigen::Vector3d& press(std::size_t tool) const noexcept { return tools_[tool].press; }
     const Eigen::Vector3d& drag(std::size_t tool) const noexcept { return tools_[tool].drag; }
     /// How a tool is turned against its device, a rotation vector, rad.
@@ -112,6 +112,7 @@ class ContactEquilibrium {
 
   private:
     static constexpr std::size_t most_rows = 512;  // before they are cut
+    static constexpr std::size_t most_walls = 48;  // leaves room for tissue
     static constexpr std::size_t most_near = 256;  // triangles beside a sphere
     static constexpr double settled = 1e-4;        // mm: changes smaller than this end the search
     // How far a combination of answers may go ahead of the newest, in changes that this made; and what both
@@ -123,6 +124,8 @@ class ContactEquilibrium {
     // rounds.
     static constexpr double foreseen = 0.1;
     static constexpr int foreseen_rounds = 2;
+    // For so many rounds it is looked for what slides on walls.
+    static constexpr int grip_rounds = 4;
 
     // Of the answers to states: the first ones of a tick, of this one and of one before it, and later ones.
     // After them the states in which this tick and the one before it began.
@@ -152,7 +155,7 @@ class ContactEquilibrium {
         std::int32_t place = 0, rank = 0;  // among all rows; by distance among its sphere's, then its tool's
         Contact* wall = nullptr;
     };
-    // The rows of one sphere on one body: rows_[first] ... rows_[end - 1].
+    // The rows of one sphere on one body, or on all rigid ones: rows_[first] ... rows_[end - 1].
     struct Group {
         std::int32_t tool = 0, part = 0, patch = 0;
         std::size_t first = 0, end = 0;
@@ -162,18 +165,20 @@ class ContactEquilibrium {
         double share = 0;  // of the press
     };
     using Bearings = FixedList<Bearing, 3 * max_contacts>;
-    // Friction of one group of rows: what bears it, the drag (N), and whether that was solved with all
-    // others.
+    // Friction of one group of rows: what bears it, the drag (N), and whether that is solved with all others;
+    // or was, and let go since nothing pressed any more.
     struct Rubbing {
         const Group* group = nullptr;
         Bearings bearings;
         Eigen::Vector3d drag = Eigen::Vector3d::Zero();
-        bool held = false;
+        bool held = false, let_go = false;
+        int regrips = 0;
     };
-    // A direction along which it is held.
+    // A direction along which it is held, and by how much it gives way there, mm/N.
     struct Tangent {
         Rubbing* rubbing = nullptr;
         Eigen::Vector3d along = Eigen::Vector3d::Zero();
+        double gives = 0;
     };
     struct Surrounding {
         std::int32_t tree_slot = 0, triangle = 0;
@@ -205,20 +210,10 @@ class ContactEquilibrium {
         const TickCreep* creep = nullptr;
         CreepHistory left_push;
         Eigen::Vector3d lasting_push = Eigen::Vector3d::Zero();
-        // Friction. It holds until more than it can is asked for, and what could not be held in one tick is
-        // made good in the next.
-        Eigen::Vector3d drag = Eigen::Vector3d::Zero();  // on the tool, N; and as answers have it
-        Offsets next_drag = no_offsets(), drag_difference = no_offsets();
-        Eigen::Vector3d slip = Eigen::Vector3d::Zero();  // mm, that the drag stands for, after the last tick,
-        double sheared = 0;                              // at so many mm/N
-        bool slides = false, slid = false, pressed = false;  // now; before, or in the last tick
-        double press = 0;                                    // N, all rows together
-        Eigen::Vector3d axis = Eigen::Vector3d::Zero();      // of the press
         // What else is around, looked at again once the ways that sphere and tissue went could make it near.
         FixedList<Surrounding, most_rows> around;
         Eigen::Vector3d looked_from = Eigen::Vector3d::Zero(), looked_to = Eigen::Vector3d::Zero();
         Eigen::Vector3d looked_sunk = Eigen::Vector3d::Zero(), last_sunk = Eigen::Vector3d::Zero();
-        Eigen::Vector3d rubbed_centre = Eigen::Vector3d::Zero();
         double way = -1;  // mm, that sphere and tissue went since; negative: nothing was looked at
         Eigen::Vector3d last_centre = Eigen::Vector3d::Zero();
         // Whether it was outside at the end of the last tick, and where.
@@ -236,6 +231,21 @@ class ContactEquilibrium {
             righting = 0;
         }
     };
+    // Friction of one sphere on one body, or on all rigid ones. It holds until more than it can is asked for,
+    // and what could not be held in one tick is made good in the next.
+    struct Hold {
+        Eigen::Vector3d drag = Eigen::Vector3d::Zero();  // on the tool, N; and as answers have it
+        Offsets next_drag = no_offsets(), drag_difference = no_offsets();
+        Eigen::Vector3d slip = Eigen::Vector3d::Zero();  // mm, that the drag stands for, after the last tick,
+        double sheared = 0;                              // at so many mm/N
+        bool slides = false, slid = false, pressed = false;  // now; before, or in the last tick
+        double slipping = 0;  // mm: how far past a wall, against the drag, where it slides
+        double press = 0;     // N, all rows together
+        Eigen::Vector3d axis = Eigen::Vector3d::Zero();  // of the press
+        // Where the point of the sphere was that rubbed at the end of the last tick, and from the sphere's
+        // centre to it, as the tool's frame has it.
+        Eigen::Vector3d rubbed_at = Eigen::Vector3d::Zero(), rubbed_arm = Eigen::Vector3d::Zero();
+    };
     struct Part {
         double radius = 0;  // mm
         Sphere sphere;
@@ -243,6 +253,7 @@ class ContactEquilibrium {
         // Where tools turn: from the tip as the device has it, and turned as the tool is, mm.
         Eigen::Vector3d arm = Eigen::Vector3d::Zero(), swung = Eigen::Vector3d::Zero();
         std::vector<Touch> touches;  // by deformable body
+        std::vector<Hold> holds;     // the same; the last on rigid bodies
     };
     struct Tool {
         std::vector<Part> parts;
@@ -254,6 +265,7 @@ class ContactEquilibrium {
         Eigen::Vector3d unpressed_turn = Eigen::Vector3d::Zero();  // of it what presses does not do
         // How it was turned at the end of the last tick, and what it keeps of that; equilibrium_turning.cpp.
         Eigen::Vector3d turn_before = Eigen::Vector3d::Zero(), kept_turn = Eigen::Vector3d::Zero();
+        Eigen::Matrix3d on_device = Eigen::Matrix3d::Identity(), R_PT = on_device;  // held so; turned
         double longest_arm = 0;                         // mm, of the parts that are felt
         Eigen::Vector3d tip = Eigen::Vector3d::Zero();  // as the device has it, mm
         Eigen::Vector3d last_device_tip = Eigen::Vector3d::Zero(), last_tip = Eigen::Vector3d::Zero();
@@ -262,6 +274,7 @@ class ContactEquilibrium {
         double held_reach = 0;
         bool touching = false;  // tissue, at the end of the last tick
         bool cold = false;      // starts from what its god-objects say
+        bool walled = false;    // walls pressed it in the last tick, and it turns by itself
         bool outside = true;    // of the tissue
         bool at_rest = false;   // no equilibrium was found
         bool cut = false;
@@ -279,6 +292,7 @@ class ContactEquilibrium {
     static std::int64_t key_of(const Row& row) noexcept;
     std::size_t wall_count() const noexcept;
     double gap_of_wall(const Row& row) const noexcept;
+    std::array<float, 3> friction_of(const Row& row) const noexcept;
     void gather_at_rest(std::size_t tool, std::size_t part) noexcept;
     // N: up to which a sphere sinks in as it does under that, in proportion.
     static double slight_press(double radius, const LoadSpread& spread) noexcept {
@@ -327,11 +341,13 @@ class ContactEquilibrium {
     bool found(std::size_t tool) const noexcept;
     bool start_anew() noexcept;
     void forget_tissue() noexcept;
+    void leave_tissue(std::size_t tool) noexcept;
     void iterate(int most) noexcept;
     bool is_active(std::int64_t key) const noexcept;
     bool watched_are_clear() const noexcept;
     void cut_rows() noexcept;
     void group_rows() noexcept;
+    void group_rows(std::size_t first, std::size_t end, FixedList<Group, max_contacts>& groups) noexcept;
     void find_slots_of_rows() noexcept;
     void solve_rows() noexcept;
     // By how much a force of a row sinks in another sphere of its tool, mm/N.
@@ -352,6 +368,10 @@ class ContactEquilibrium {
         return part_of(of).touches[static_cast<std::size_t>(of.patch)];
     }
     Touch& touch_of(const auto& of) noexcept { return const_cast<Touch&>(std::as_const(*this).touch_of(of)); }
+    const Hold& hold_of(const auto& of) const noexcept {
+        return part_of(of).holds[of.patch < 0 ? patches_.size() : static_cast<std::size_t>(of.patch)];
+    }
+    Hold& hold_of(const auto& of) noexcept { return const_cast<Hold&>(std::as_const(*this).hold_of(of)); }
     const DeformedPatch& patch_of(const auto& of) const noexcept {
         return patches_[static_cast<std::size_t>(of.patch)];
     }
@@ -362,21 +382,44 @@ class ContactEquilibrium {
     double sink(std::size_t iterate) noexcept;
     double answer(std::size_t iterate) noexcept;
     void rub(std::size_t iterate) noexcept;
-    void keep_hold() noexcept;
+    void keep_hold_of_walls() noexcept;
+    void keep_hold_of_tissue() noexcept;
+    void keep_hold(const Rubbing& rubbing) noexcept;
     void find_bearings(const Group& group, Bearings& bearings) const noexcept;
     Eigen::Vector3d free_slip_of(const Rubbing& rubbing) const noexcept;
     void find_rubbing() noexcept;
     bool measure_press(const Group& group) noexcept;
     double most_drag(const Group& group, double coefficient) const noexcept;
     void hold_alone(Rubbing& rubbing) noexcept;
-    // How far a drag moves the sphere past the tissue that holds it, mm/N: about as far as a press lets it
-    // sink in (Mindlin 1949: by (1 - nu/2) / (1 - nu) as far, on a half-space).
-    static double shearing(const Touch& touch) noexcept { return touch.axis.dot(touch.sinking * touch.axis); }
+    void begin_hold(Rubbing& rubbing) const noexcept;
+    void add_tangents(Rubbing& rubbing) noexcept;
+    void add_known_drag(const Rubbing& rubbing) noexcept;
+    bool regrip(Rubbing& rubbing) noexcept;
+    bool go_on_sliding(Rubbing& rubbing) noexcept;
+    bool change_grip() noexcept;
+    bool cut_drags() noexcept;
+    void solve_held(const ContactLcp::Vector& gaps, bool walls) noexcept;
+    Eigen::Vector3d slip_after(const Rubbing& rubbing) const noexcept;
+    template <typename Take>
+    void each_opening(const Rubbing& rubbing, const Eigen::Vector3d& drag, const Take& take) noexcept;
+    double shearing(const Group& group) const noexcept;
     // What is left of it from before: a harder press adds nothing to the drag, or it would give energy.
-    static Eigen::Vector3d slip_before(const Touch& touch) noexcept {
-        const double now = shearing(touch);
-        return now < touch.sheared ? Eigen::Vector3d(now / touch.sheared * touch.slip) : touch.slip;
+    Eigen::Vector3d slip_before(const Group& group) const noexcept {
+        const Hold& hold = hold_of(group);
+        const double now = shearing(group);
+        return now < hold.sheared ? Eigen::Vector3d(now / hold.sheared * hold.slip) : hold.slip;
     }
+    // From the tip to the point of a sphere that rubs: of a tool that does not turn, the sphere's centre.
+    Eigen::Vector3d rubbing_arm(const Part& part, const Hold& hold) const noexcept {
+        return turns() ? Eigen::Vector3d(part.swung - part.radius * hold.axis) : part.swung;
+    }
+    // Where there is friction, calls `take` with each hold of a tool's spheres.
+    void each_hold(auto& tool, const auto& take) const noexcept {
+        if (!friction_.any()) return;
+        for (auto& part : tool.parts)
+            for (auto& hold : part.holds) take(hold);
+    }
+    Eigen::Vector3d way_past(const Group& group) const noexcept;
     void hold_together() noexcept;
     void fill_tangent(std::size_t tangent) noexcept;
     void take_forces() noexcept;
@@ -419,7 +462,8 @@ class ContactEquilibrium {
     Friction friction_;
     double coupling_ = 0, torsion_ = 0;
     bool resists_turning_ = false;
-    double turn_change_ = 0;  // of change_ what turning is
+    bool may_change_grip_ = true;  // on walls
+    double turn_change_ = 0;       // of change_ what turning is
     std::vector<DeformedPatch> patches_;
     NeighbourContact neighbours_;
     std::vector<Tool> tools_;
@@ -429,8 +473,8 @@ class ContactEquilibrium {
     FixedList<Row, most_rows> rows_;                    // of this iteration, walls first
     std::array<Eigen::Vector3d, max_contacts> levers_;  // r x n about the tip of each, mm, where tools turn
     FixedList<Row, most_rows> watched_;                 // near, but hardly pressing: looked after, not solved
-    FixedList<Group, max_contacts> groups_;             // of those on tissue
-    FixedList<Rubbing, max_contacts> rubbing_;          // of the groups that press
+    FixedList<Group, max_contacts> wall_groups_, groups_;  // of those on walls, on tissue
+    FixedList<Rubbing, max_contacts> rubbing_;             // of the groups that press
     FixedList<Tangent, ContactLcp::most_tangents> tangents_;
     std::vector<std::vector<std::uint32_t>> visited_;  // by patch and triangle: the search that saw it last
     std::uint32_t search_ = 0;

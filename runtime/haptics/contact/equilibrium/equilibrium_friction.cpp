@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Friction between tools and tissue; part of the tick.
+// Friction between tools and tissue, and between walls and tools that turn by themselves; part of the tick.
 //
 // Where a sphere presses, friction holds it and the tissue together: the drag d on the tool is what undoes
 // the way s that they have gone past each other, along with the coupling and the tissue's own compliance,
 // until that is more than there can be: most_drag(). Until then s + c d = 0, c what a drag shears:
-// shearing().
+// shearing(). A wall is tissue that does not give way. Where a tool turns, its surface goes past what it
+// touches as it rolls and spins, too: d acts, and s is measured, at the point of the sphere that touches.
 //
-// Of one sphere d follows from s. Of several, d and what presses are unknown together:
-//     w = A f - gaps >= 0, f >= 0, f . w = 0    for what presses, as without friction,
-//     s + c d = 0                               for two directions d of each sphere that does not slide,
-// with s and gaps linear in f and d by one symmetric matrix: a ContactLcp some of whose rows may pull.
+// Of one sphere d follows from s; of several, equilibrium_grip.cpp has what holds them together.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -22,12 +20,21 @@ namespace palpate::haptics {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-// The vertices that bear a sphere, with their shares of the press.
+namespace {
+
+// Of what the coupling gives way to a drag, what a wall does: enough that each of many spheres that it holds
+// has its part in that, and none depends on the others.
+constexpr double given_by_wall = 1e-3;
+
+}  // namespace
+
+// The vertices that bear a sphere, with their shares of the press; a wall has none.
 void ContactEquilibrium::find_bearings(const Group& group, Bearings& bearings) const noexcept {
     bearings.clear();
+    if (group.patch < 0) return;
     for (const Row& row : rows_of(group))
         for (std::size_t i = 0; i < 3 && row.force > 0; ++i) {
-            const double share = row.weights[static_cast<Index>(i)] * row.force / touch_of(group).press;
+            const double share = row.weights[static_cast<Index>(i)] * row.force / hold_of(group).press;
             if (!(share > 0)) continue;
             const auto known = std::ranges::find(bearings, row.slots[i], &Bearing::slot);
             if (known != bearings.end())
@@ -37,141 +44,70 @@ void ContactEquilibrium::find_bearings(const Group& group, Bearings& bearings) c
         }
 }
 
-// How far a sphere has gone past the tissue that bears it and was not held, mm.
-Vector3d ContactEquilibrium::slip_of(const Group& group, const Bearings& bearings) const noexcept {
-    const Touch& touch = touch_of(group);
-    Vector3d slip = slip_before(touch);
-    if (touch.pressed) {
-        const Tool& tool = tools_[static_cast<std::size_t>(group.tool)];
-        const Part& part = part_of(group);
-        slip += part.sphere.device + off_of(tool, part) - touch.rubbed_centre;
-        const DeformedPatch& patch = patch_of(group);
-        for (const auto& [slot, share] : bearings)
-            slip -= share * (patch.displacement(slot) - patch.displacement_before(slot));
-    }
-    return slip - touch.axis.dot(slip) * touch.axis;
+// How far a drag moves the sphere past the tissue that holds it, mm/N: about as far as a press lets it sink
+// in (Mindlin 1949: by (1 - nu/2) / (1 - nu) as far, on a half-space). Past a wall hardly.
+double ContactEquilibrium::shearing(const Group& group) const noexcept {
+    const Hold& hold = hold_of(group);
+    if (group.patch >= 0) return hold.axis.dot(touch_of(group).sinking * hold.axis);
+    return given_by_wall * (1 / coupling_ + torsion_ * rubbing_arm(part_of(group), hold).squaredNorm());
 }
 
-// The same if nothing pressed, with friction as it is.
-Vector3d ContactEquilibrium::free_slip_of(const Rubbing& rubbing) const noexcept {
-    const Touch& touch = touch_of(*rubbing.group);
-    const Part& part = part_of(*rubbing.group);
-    const Tool& tool = tools_[static_cast<std::size_t>(rubbing.group->tool)];
-    Vector3d slip =
-        slip_before(touch) + part.sphere.device + dragged_off_of(tool, part) - touch.rubbed_centre;
-    // What turning moves the sphere beyond what is in proportion to what turns it.
-    if (turns()) slip += off_of(tool, part) - tool.off - tool.turn.cross(part.swung);
-    const DeformedPatch& patch = patch_of(*rubbing.group);
-    for (const auto& [slot, share] : rubbing.bearings)
-        slip -= share * (patch.held_displacement(slot) - patch.displacement_before(slot));
-    return slip;
+// How far the point of a sphere that rubbed in the last tick has gone since, mm.
+Vector3d ContactEquilibrium::way_past(const Group& group) const noexcept {
+    const Tool& tool = tools_[static_cast<std::size_t>(group.tool)];
+    const Part& part = part_of(group);
+    const Hold& hold = hold_of(group);
+    return part.sphere.device + off_of(tool, part) + tool.R_PT * hold.rubbed_arm - hold.rubbed_at;
+}
+
+// How far a sphere has gone past the tissue that bears it and was not held, mm; or past a wall.
+Vector3d ContactEquilibrium::slip_of(const Group& group, const Bearings& bearings) const noexcept {
+    const Hold& hold = hold_of(group);
+    Vector3d slip = slip_before(group);
+    if (hold.pressed) slip += way_past(group);
+    for (const auto& [slot, share] : bearings)
+        if (hold.pressed)
+            slip -= share * (patch_of(group).displacement(slot) - patch_of(group).displacement_before(slot));
+    return slip - hold.axis.dot(slip) * hold.axis;
 }
 
 // What rubs, by what the rows press now.
 void ContactEquilibrium::find_rubbing() noexcept {
-    for (Tool& tool : tools_)
-        for (Part& part : tool.parts)
-            for (Touch& touch : part.touches) touch.press = 0;
+    for (Tool& tool : tools_) each_hold(tool, [](Hold& hold) { hold.press = 0; });
     rubbing_.clear();
     tangents_.clear();
-    for (const Group& group : groups_) {
-        if (!measure_press(group)) continue;
+    const auto add = [&](const Group& group) {
+        if (!measure_press(group)) return;
         Rubbing& rubbing = rubbing_.push_back();
         rubbing.group = &group;
         find_bearings(group, rubbing.bearings);
-        rubbing.held = false;
-    }
+        rubbing.held = rubbing.let_go = false;
+        rubbing.regrips = 0;
+    };
+    std::ranges::for_each(wall_groups_, add);
+    std::ranges::for_each(groups_, add);
 }
 
 // What presses a sphere, and which way; false where nothing does.
 bool ContactEquilibrium::measure_press(const Group& group) noexcept {
-    Touch& touch = touch_of(group);
-    touch.press = 0;
+    Hold& hold = hold_of(group);
+    hold.press = 0;
     Vector3d push = Vector3d::Zero();
     for (const Row& row : rows_of(group)) {
-        touch.press += row.force;
+        hold.press += row.force;
         push += row.force * row.normal;
     }
-    if (!(touch.press > 0) || !(push.norm() > 0)) return false;
-    touch.axis = push.normalized();
+    if (!(hold.press > 0) || !(push.norm() > 0)) return false;
+    hold.axis = push.normalized();
     return true;
-}
-
-// Where several spheres hold the same tissue or hang on the same tool, what presses them and what holds them
-// is one problem: solves it again, each sphere that does not slide with two rows that hold it along the
-// surface.
-void ContactEquilibrium::hold_together() noexcept {
-    for (Rubbing& rubbing : rubbing_) {
-        const Touch& touch = touch_of(*rubbing.group);
-        if (!touch.pressed || touch.slides || tangents_.size() + 2 > ContactLcp::most_tangents) continue;
-        rubbing.held = true;
-        rubbing.drag = touch.drag;
-        const Vector3d along = touch.axis.unitOrthogonal();
-        tangents_.push_back({&rubbing, along});
-        tangents_.push_back({&rubbing, touch.axis.cross(along)});
-    }
-    if (tangents_.empty()) return;
-    const std::size_t first = rows_.size() + neighbours_.row_count();
-    for (std::size_t t = 0; t < tangents_.size(); ++t) {
-        fill_tangent(t);
-        const Rubbing& rubbing = *tangents_[t].rubbing;
-        const auto row = static_cast<Index>(first + t);
-        const double shear = shearing(touch_of(*rubbing.group));
-        lcp_.matrix()(row, row) += shear;
-        lcp_.gaps()[row] = -tangents_[t].along.dot(free_slip_of(rubbing) + shear * rubbing.drag);
-    }
-    residual_ = lcp_.solve_with(first, tangents_.size(), [&](std::size_t row) { fill_any_column(row); });
-    for (std::size_t t = 0; t < tangents_.size(); ++t)
-        tangents_[t].rubbing->drag += lcp_.forces()[static_cast<Index>(first + t)] * tangents_[t].along;
-    take_forces();
-    for (Rubbing& rubbing : rubbing_)
-        if (measure_press(*rubbing.group)) find_bearings(*rubbing.group, rubbing.bearings);
-}
-
-// How far a drag along one tangent, and its opposite on the tissue, opens the rows and moves spheres past
-// their tissue.
-void ContactEquilibrium::fill_tangent(std::size_t t) noexcept {
-    const Tangent& dragged = tangents_[t];
-    const Group& group = *dragged.rubbing->group;
-    patch_of(group).yield(dragged.rubbing->bearings, dragged.along, field_);
-    const Vector3d lever = part_of(group).swung.cross(dragged.along);
-    const auto way_of = [&](const auto& other, const Vector3d& along) {
-        if (other.tool != group.tool) return 0.0;
-        const double turning = turns() ? torsion_ * lever.dot(part_of(other).swung.cross(along)) : 0;
-        return along.dot(dragged.along) / coupling_ + turning;
-    };
-    const auto column = static_cast<Index>(rows_.size() + neighbours_.row_count() + t);
-    Index at = 0;
-    const auto write = [&](double value) {
-        lcp_.matrix()(at, column) = lcp_.matrix()(column, at) = value;
-        ++at;
-    };
-    for (const Row& row : rows_) {
-        double opens = way_of(row, row.normal);
-        if (row.patch == group.patch)
-            opens += row.normal.dot(DeformedPatch::mean(field_, row.slots, row.weights));
-        write(opens);
-    }
-    for (std::size_t k = 0; k < neighbours_.row_count(); ++k)
-        write(neighbours_.closing(k, group.patch, field_));
-    for (const Tangent& tangent : tangents_) {
-        const Group& other = *tangent.rubbing->group;
-        double slips = way_of(other, tangent.along);
-        if (other.patch == group.patch)
-            for (const auto& [slot, share] : tangent.rubbing->bearings) {
-                const Vector3d moved = field_[static_cast<std::size_t>(slot)].head<3>().cast<double>();
-                slips += share * tangent.along.dot(moved);
-            }
-        write(slips);
-    }
 }
 
 // The most that friction can be, N: Coulomb's, and by a profile that grips what the tissue bears over the
 // area that is pressed (Bowden, Tabor 1950, The friction and lubrication of solids): a disc of Hertz's
 // radius; of a sphere in a row, the part of it that is nearer to it than to the next ones.
 double ContactEquilibrium::most_drag(const Group& group, double coefficient) const noexcept {
-    const double press = touch_of(group).press;
-    const LoadSpread* spread = patch_of(group).body().spread();
+    const double press = hold_of(group).press;
+    const LoadSpread* spread = group.patch < 0 ? nullptr : patch_of(group).body().spread();
     if (spread == nullptr || !(friction_.grip > 0)) return coefficient * press;
     const double sphere = part_of(group).radius,
                  slight = slight_press(sphere, *spread);  // below it, in proportion
@@ -186,67 +122,80 @@ double ContactEquilibrium::most_drag(const Group& group, double coefficient) con
 
 // What undoes the slip of one sphere as if it were alone.
 void ContactEquilibrium::hold_alone(Rubbing& rubbing) noexcept {
-    const Touch& touch = touch_of(*rubbing.group);
-    rubbing.drag = touch.drag - touch.axis.dot(touch.drag) * touch.axis;
-    const Vector3d slip = slip_of(*rubbing.group, rubbing.bearings) + shearing(touch) * rubbing.drag;
+    const Group& group = *rubbing.group;
+    const Hold& hold = hold_of(group);
+    const double shear = shearing(group);
+    rubbing.drag = hold.drag - hold.axis.dot(hold.drag) * hold.axis;
+    const Vector3d slip = slip_of(group, rubbing.bearings) + shear * rubbing.drag;
     const double way = slip.norm();
     if (!(way > 0)) return;
     const Vector3d along = slip / way;
-    const DeformedPatch& patch = patch_of(*rubbing.group);
-    double compliance = 1 / coupling_ + shearing(touch);
-    if (turns()) compliance += torsion_ * part_of(*rubbing.group).swung.cross(along).squaredNorm();
+    double compliance = 1 / coupling_ + shear;
+    if (turns()) compliance += torsion_ * rubbing_arm(part_of(group), hold).cross(along).squaredNorm();
     for (const auto& [slot, share] : rubbing.bearings)
         for (const auto& [loaded, other] : rubbing.bearings)
-            compliance += share * other * along.dot(patch.response(slot, loaded, along));
+            compliance += share * other * along.dot(patch_of(group).response(slot, loaded, along));
     rubbing.drag -= slip / compliance;
 }
 
 // Friction, for what the present forces press with.
 void ContactEquilibrium::rub(std::size_t iterate) noexcept {
     for (DeformedPatch& patch : patches_) patch.begin_hold(iterate);
-    for (Tool& tool : tools_)
-        for (Part& part : tool.parts)
-            for (Touch& touch : part.touches) touch.next_drag[iterate].setZero();
+    for (Tool& tool : tools_) each_hold(tool, [&](Hold& hold) { hold.next_drag[iterate].setZero(); });
     for (Rubbing& rubbing : rubbing_) {
-        Touch& touch = touch_of(*rubbing.group);
-        if (!(touch.press > 0)) continue;
+        const Group& group = *rubbing.group;
+        Hold& hold = hold_of(group);
+        if (!(hold.press > 0)) continue;
         if (rubbing.held)
-            rubbing.drag -= touch.axis.dot(rubbing.drag) * touch.axis;
+            rubbing.drag -= hold.axis.dot(rubbing.drag) * hold.axis;
         else
             hold_alone(rubbing);
-        DeformedPatch& patch = patch_of(*rubbing.group);
         const double wanted = rubbing.drag.norm();
-        touch.slides = wanted > most_drag(*rubbing.group, touch.slid ? friction_.sliding : friction_.at_rest);
-        touch.slid = touch.slid || touch.slides;
-        if (touch.slides) rubbing.drag *= most_drag(*rubbing.group, friction_.sliding) / wanted;
-        touch.next_drag[iterate] = rubbing.drag;
-        for (const auto& [slot, share] : rubbing.bearings) patch.hold(iterate, slot, -share * rubbing.drag);
+        if (!rubbing.held || group.patch >= 0)
+            hold.slides = wanted > most_drag(group, hold.slid ? friction_.sliding : friction_.at_rest);
+        hold.slid = hold.slid || hold.slides;
+        const double most = most_drag(group, friction_.sliding);
+        if (hold.slides && wanted > most) rubbing.drag *= most / wanted;
+        hold.next_drag[iterate] = rubbing.drag;
+        for (const auto& [slot, share] : rubbing.bearings)
+            patch_of(group).hold(iterate, slot, -share * rubbing.drag);
     }
     for (DeformedPatch& patch : patches_) patch.end_hold(iterate);
 }
 
-// Where tools and tissue hold on to each other in the next tick.
-void ContactEquilibrium::keep_hold() noexcept {
+// Where tools and walls hold on to each other in the next tick; what does not press any more lets go.
+void ContactEquilibrium::keep_hold_of_walls() noexcept {
     for (Tool& tool : tools_)
-        for (Part& part : tool.parts)
-            for (Touch& touch : part.touches) {
-                if (touch.press > 0) continue;
-                touch.pressed = touch.slid = false;
-                touch.slip.setZero();
-            }
-    for (const Rubbing& rubbing : rubbing_) {
-        const Group& group = *rubbing.group;
-        const Tool& tool = tools_[static_cast<std::size_t>(group.tool)];
-        Touch& touch = touch_of(group);
-        if (!(touch.press > 0) || !tool.touching) continue;
-        touch.slip =
-            touch.slides ? Vector3d(-shearing(touch) * touch.drag) : slip_of(group, rubbing.bearings);
-        touch.sheared = shearing(touch);
-        touch.slid = touch.slides;
-        touch.pressed = true;
-        const Part& part = part_of(group);
-        touch.rubbed_centre = part.sphere.device + off_of(tool, part);
-    }
+        each_hold(tool, [](Hold& hold) {
+            if (hold.press > 0) return;
+            hold.pressed = hold.slid = false;
+            hold.slip.setZero();
+        });
+    for (const Rubbing& rubbing : rubbing_)
+        if (rubbing.group->patch < 0) keep_hold(rubbing);
+}
+
+// The same of tools and tissue.
+void ContactEquilibrium::keep_hold_of_tissue() noexcept {
+    for (const Rubbing& rubbing : rubbing_)
+        if (rubbing.group->patch >= 0 && tools_[static_cast<std::size_t>(rubbing.group->tool)].touching)
+            keep_hold(rubbing);
+}
+
+void ContactEquilibrium::keep_hold(const Rubbing& rubbing) noexcept {
+    const Group& group = *rubbing.group;
+    Hold& hold = hold_of(group);
+    if (!(hold.press > 0)) return;
+    const double shear = shearing(group);
+    hold.slip = hold.slides ? Vector3d(-shear * hold.drag) : slip_of(group, rubbing.bearings);
+    hold.sheared = shear;
+    hold.slid = hold.slides;
+    hold.pressed = true;
+    const Tool& tool = tools_[static_cast<std::size_t>(group.tool)];
+    const Part& part = part_of(group);
+    const Vector3d arm = rubbing_arm(part, hold) - part.swung;
+    hold.rubbed_arm = tool.R_PT.transpose() * arm;
+    hold.rubbed_at = part.sphere.device + off_of(tool, part) + arm;
 }
 
 }  // namespace palpate::haptics

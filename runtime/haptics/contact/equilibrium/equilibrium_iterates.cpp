@@ -37,16 +37,16 @@ double ContactEquilibrium::answer(std::size_t iterate) noexcept {
     double change = sink(iterate);
     for (Tool& tool : tools_) {
         tool.press = coupling_ * tool.next_off[iterate];
-        for (const Part& part : tool.parts)
-            for (const Touch& touch : part.touches)
-                tool.next_off[iterate] += touch.next_drag[iterate] / coupling_;
+        each_hold(tool, [&](Hold& hold) {
+            tool.next_off[iterate] += hold.next_drag[iterate] / coupling_;
+            hold.drag_difference[iterate] = (hold.next_drag[iterate] - hold.drag) / coupling_;
+        });
         if (tool.felt == 0) tool.off = tool.next_off[iterate];
         tool.difference[iterate] = tool.next_off[iterate] - tool.off;
         change = std::max(change, tool.difference[iterate].lpNorm<Eigen::Infinity>());
         for (Part& part : std::span(tool.parts).first(tool.felt))
             for (Touch& touch : part.touches) {
                 touch.sunk_difference[iterate] = touch.next_sunk[iterate] - touch.sunk;
-                touch.drag_difference[iterate] = (touch.next_drag[iterate] - touch.drag) / coupling_;
                 change = std::max(change, touch.sunk_difference[iterate].lpNorm<Eigen::Infinity>());
             }
     }
@@ -68,10 +68,8 @@ void ContactEquilibrium::go_on() noexcept {
         tool.next_off[state_] = tool.off;
         tool.next_off[before] = tool.touching ? Vector3d(tool.next_off[before] - tool.way) : tool.off;
         for (Part& part : tool.parts)
-            for (Touch& touch : part.touches) {
-                touch.next_sunk[state_] = touch.sunk;
-                touch.next_drag[state_] = touch.drag;
-            }
+            for (Touch& touch : part.touches) touch.next_sunk[state_] = touch.sunk;
+        each_hold(tool, [&](Hold& hold) { hold.next_drag[state_] = hold.drag; });
     }
     for (DeformedPatch& patch : patches_) patch.keep_state(state_);
     if (++states_known_ < 2) return;
@@ -132,8 +130,10 @@ void ContactEquilibrium::compare(std::size_t iteration) noexcept {
                        tool.turn_difference[newest].dot(tool.turn_difference[other]);
             for (const Part& part : std::span(tool.parts).first(tool.felt))
                 for (const Touch& touch : part.touches)
-                    sum += touch.sunk_difference[newest].dot(touch.sunk_difference[other]) +
-                           touch.drag_difference[newest].dot(touch.drag_difference[other]);
+                    sum += touch.sunk_difference[newest].dot(touch.sunk_difference[other]);
+            each_hold(tool, [&](const Hold& hold) {
+                sum += hold.drag_difference[newest].dot(hold.drag_difference[other]);
+            });
         }
         for (const DeformedPatch& patch : patches_) sum += patch.product_of_differences(newest, other);
         const auto i = static_cast<Index>(newest), j = static_cast<Index>(other);
@@ -224,8 +224,8 @@ double ContactEquilibrium::departure(const Weights& weights, std::size_t from) c
         if (turns()) most = std::max(most, tool.longest_arm * depart(tool.next_turn));
         for (const Part& part : std::span(tool.parts).first(tool.felt))
             for (const Touch& touch : part.touches)
-                if (!touch.is_far())
-                    most = std::max({most, depart(touch.next_sunk), depart(touch.next_drag) / coupling_});
+                if (!touch.is_far()) most = std::max(most, depart(touch.next_sunk));
+        each_hold(tool, [&](const Hold& hold) { most = std::max(most, depart(hold.next_drag) / coupling_); });
     }
     for (const DeformedPatch& patch : patches_) most = std::max(most, patch.departure(weights, from));
     return most;
@@ -265,11 +265,10 @@ void ContactEquilibrium::relax_to(const Weights& weights, double longest) noexce
             for (Touch& touch : part.touches)
                 touch.sunk += step * (combined(weights, touch.next_sunk) - touch.sunk);
         tool.drag.setZero();
-        for (Part& part : tool.parts)
-            for (Touch& touch : part.touches) {
-                touch.drag += step * (combined(weights, touch.next_drag) - touch.drag);
-                tool.drag += touch.drag;
-            }
+        each_hold(tool, [&](Hold& hold) {
+            hold.drag += step * (combined(weights, hold.next_drag) - hold.drag);
+            tool.drag += hold.drag;
+        });
         if (turns()) relax_turn(tool, weights, step);
     }
     for (DeformedPatch& patch : patches_) patch.relax_to(weights, step);

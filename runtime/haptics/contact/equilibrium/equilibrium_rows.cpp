@@ -346,14 +346,22 @@ void ContactEquilibrium::cut_rows() noexcept {
 
 // Those of one sphere on one body lie together.
 void ContactEquilibrium::group_rows() noexcept {
-    groups_.clear();
-    for (std::size_t first = wall_count(), end = first; first < rows_.size(); first = end) {
+    const std::size_t walls = wall_count();
+    // Of a tool that does not turn, its god-objects know what friction on walls does.
+    group_rows(0, turns() ? walls : 0, wall_groups_);
+    group_rows(walls, rows_.size(), groups_);
+}
+
+void ContactEquilibrium::group_rows(std::size_t first, std::size_t end,
+                                    FixedList<Group, max_contacts>& groups) noexcept {
+    groups.clear();
+    for (std::size_t next = first; first < end; first = next) {
         const Row& row = rows_[first];
         const auto together = [&](const Row& other) {
             return std::tie(row.tool, row.part, row.patch) == std::tie(other.tool, other.part, other.patch);
         };
-        while (end < rows_.size() && together(rows_[end])) ++end;
-        groups_.push_back({row.tool, row.part, row.patch, first, end});
+        while (next < end && together(rows_[next])) ++next;
+        groups.push_back({row.tool, row.part, row.patch, first, next});
     }
 }
 
@@ -405,7 +413,7 @@ void ContactEquilibrium::solve_rows() noexcept {
     take_forces();
     if (friction_.any()) {
         find_rubbing();
-        if (rubbing_.size() > 1) hold_together();
+        if (rubbing_.size() > 1 || turns()) hold_together();
     }
     neighbours_.take({lcp_.forces().data() + n, neighbours_.row_count()});
 }

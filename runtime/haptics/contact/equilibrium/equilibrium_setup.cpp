@@ -63,6 +63,7 @@ ContactEquilibrium::ContactEquilibrium(const ContactBodies& bodies, std::span<co
     for (const ToolSphere& sphere : spheres) {
         tool.parts.emplace_back().radius = sphere.radius;
         tool.parts.back().touches.resize(patches_.size());
+        tool.parts.back().holds.resize(patches_.size() + 1);
     }
     for (const DeformedPatch& patch : patches_) {
         const LoadSpread* spread = are_one_surface ? patch.body().spread() : nullptr;

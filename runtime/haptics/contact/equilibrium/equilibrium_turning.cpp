@@ -11,11 +11,12 @@ namespace palpate::haptics {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-// Turns the spheres' arms as the tool is turned.
+// Turns the tool's frame and the spheres' arms as the tool is turned.
 void ContactEquilibrium::swing(Tool& tool) noexcept {
     const double angle = tool.turn.norm();
     Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
     if (angle > 0) R = Eigen::AngleAxisd(angle, tool.turn / angle).toRotationMatrix();
+    tool.R_PT = R * tool.on_device;
     for (Part& part : tool.parts) part.swung = R * part.arm;
 }
 
@@ -26,7 +27,6 @@ void ContactEquilibrium::pull_arms(Tool& tool) noexcept {
         part.arm = part.sphere.device - tool.tip;
         tool.longest_arm = std::max(tool.longest_arm, part.arm.norm());
     }
-    if (tool.cold) tool.turn.setZero();
     swing(tool);
 }
 
@@ -52,9 +52,11 @@ double ContactEquilibrium::answer_turns(std::size_t iterate) noexcept {
             torsion_ * rows_[k].force * levers_[k];
     double change = 0;
     for (Tool& tool : tools_) {
-        for (const Part& part : tool.parts)
-            for (const Touch& touch : part.touches)
-                tool.next_turn[iterate] += torsion_ * part.swung.cross(touch.next_drag[iterate]);
+        if (friction_.any())
+            for (const Part& part : tool.parts)
+                for (const Hold& hold : part.holds)
+                    tool.next_turn[iterate] +=
+                        torsion_ * rubbing_arm(part, hold).cross(hold.next_drag[iterate]);
         if (tool.felt == 0) tool.turn = tool.next_turn[iterate];
         tool.turn_difference[iterate] = tool.next_turn[iterate] - tool.turn;
         change = std::max(change, tool.longest_arm * tool.turn_difference[iterate].lpNorm<Eigen::Infinity>());
@@ -87,9 +89,10 @@ void ContactEquilibrium::relax_turn(Tool& tool, const Weights& weights, double s
     tool.turn += step * (combined(weights, tool.next_turn) - tool.turn);
     swing(tool);
     tool.unpressed_turn = tool.kept_turn;
-    for (const Part& part : tool.parts)
-        for (const Touch& touch : part.touches)
-            tool.unpressed_turn += torsion_ * part.swung.cross(touch.drag);
+    if (friction_.any())
+        for (const Part& part : tool.parts)
+            for (const Hold& hold : part.holds)
+                tool.unpressed_turn += torsion_ * rubbing_arm(part, hold).cross(hold.drag);
 }
 
 }  // namespace palpate::haptics

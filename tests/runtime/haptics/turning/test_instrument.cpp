@@ -43,16 +43,6 @@ Case soft_block_and(const TriangleMesh& surface, double friction = 0) {
     return c;
 }
 
-// What contacts do to the tool about its tip, N mm.
-Vector3d moment_of_spheres(const HapticModel& model, const TickResult& result) {
-    Vector3d moment = Vector3d::Zero();
-    for (const Contact& contact : result.active_contacts()) {
-        const Vector3d place = model.tool_spheres()[static_cast<std::size_t>(contact.part)].centre;
-        moment += (quaternion_of(result.tool_orientation) * place).cross(force_on_tool(contact));
-    }
-    return moment;
-}
-
 // How far a sphere of the tool is in a rigid body, mm; of depths up to 5 mm.
 double deepest_sphere(const HapticModel& model, const TickResult& result) {
     double deepest = 0;
@@ -89,7 +79,7 @@ TEST(Instrument, its_torque_is_the_moment_of_its_contacts_and_what_the_spring_is
         ASSERT_GT(result.contact_count, 0);
         const Vector3d torque = torque_of(result);
         EXPECT_GT(torque.norm(), 0.1);
-        EXPECT_LT((torque - moment_of_spheres(model, result)).norm(), told_rounding * torque.norm())
+        EXPECT_LT((torque - moment_on_spheres(model, result)).norm(), told_rounding * torque.norm())
             << friction;
         const Vector3d turn = rotation_between(held, quaternion_of(result.tool_orientation));
         EXPECT_LT((torque - twist * turn).norm(), 1e-6);

@@ -7,7 +7,7 @@
 #include "formats/model/arrays.hpp"
 #include "formats/model/errors.hpp"
 #include "runtime/haptics/tool_pose.hpp"
-#include "tests/runtime/haptics/held_tool.hpp"
+#include "tests/runtime/haptics/turning/turned_tool.hpp"
 
 namespace palpate {
 namespace {
@@ -45,16 +45,6 @@ TickResult rest_at(HapticModel& model, const Vector3d& tip, const Vector3d& shaf
     return result;
 }
 
-// What contacts do to the tool about its tip, N mm: of each sphere, whose centre is at r from the tip.
-Vector3d moment_of(const TickResult& result, const Vector3d& shaft) {
-    const Quaterniond device = Quaterniond::FromTwoVectors(Vector3d::UnitZ(), shaft.normalized());
-    const Vector3d along = quaternion_of(result.tool_orientation) * device.conjugate() * shaft.normalized();
-    Vector3d moment = Vector3d::Zero();
-    for (const Contact& contact : result.active_contacts())
-        moment += (contact.part * along).cross(force_on_tool(contact));  // spheres are 1 mm apart
-    return moment;
-}
-
 TEST(TurningRod, its_torque_is_the_moment_of_its_contacts_and_what_the_spring_is_turned_by) {
     for (const double friction : {0.0, 0.3}) {
         HapticModel model(cube_and_rod(true, friction));
@@ -65,7 +55,8 @@ TEST(TurningRod, its_torque_is_the_moment_of_its_contacts_and_what_the_spring_is
         ASSERT_GT(result.contact_count, 0);
         const Vector3d torque = vector_of(result.torque);
         EXPECT_GT(torque.norm(), 0.3);
-        EXPECT_LT((torque - moment_of(result, shaft)).norm(), float_rounding * torque.norm()) << friction;
+        EXPECT_LT((torque - moment_on_spheres(model, result)).norm(), float_rounding * torque.norm())
+            << friction;
         const Quaterniond device = Quaterniond::FromTwoVectors(Vector3d::UnitZ(), shaft);
         const Vector3d turn = rotation_between(device, quaternion_of(result.tool_orientation));
         EXPECT_LT((torque - torsion * turn).norm(), 1e-6);
@@ -132,7 +123,7 @@ TEST(TurningRod, walls_turn_it_too) {
     EXPECT_EQ(result.status, tick_ok);
     const Vector3d torque = vector_of(result.torque);
     EXPECT_GT(torque.y(), 1);
-    EXPECT_LT((torque - moment_of(result, {-1, 0, 0})).norm(), float_rounding * torque.norm());
+    EXPECT_LT((torque - moment_on_spheres(model, result)).norm(), float_rounding * torque.norm());
 }
 
 TEST(TurningRod, walls_turn_it_far_as_its_spring_says) {
@@ -145,7 +136,7 @@ TEST(TurningRod, walls_turn_it_far_as_its_spring_says) {
     EXPECT_EQ(result.status, tick_ok);
     const Vector3d torque = vector_of(result.torque);
     EXPECT_GT(torque.norm() / 40, 0.3);  // rad
-    EXPECT_LT((torque - moment_of(result, {-1, 0, 0})).norm(), float_rounding * torque.norm());
+    EXPECT_LT((torque - moment_on_spheres(model, result)).norm(), float_rounding * torque.norm());
 }
 
 TEST(TurningRod, without_a_shaft_there_is_nothing_to_turn) {

@@ -58,6 +58,31 @@ inline Eigen::Vector3d torque_of(const TickResult& result) {
     return vector_of(result.torque);
 }
 
+/// What contacts do to a tool of spheres about its tip, N mm: what presses a sphere acts through its centre,
+/// what rubs it where all that presses it on one body, or on the rigid ones, would meet its surface.
+inline Eigen::Vector3d moment_on_spheres(const haptics::HapticModel& model, const TickResult& result) {
+    using Eigen::Vector3d;
+    const auto contacts = result.active_contacts();
+    const auto bodies_of = [&](const Contact& contact) {
+        return contact.body < static_cast<std::int32_t>(model.rigid_count()) ? -1 : contact.body;
+    };
+    Vector3d moment = Vector3d::Zero();
+    for (const Contact& contact : contacts) {
+        if (is_of_neighbour(contact)) continue;
+        Vector3d push = Vector3d::Zero();
+        for (const Contact& other : contacts)
+            if (other.part == contact.part && bodies_of(other) == bodies_of(contact))
+                push += static_cast<double>(other.force) * normal_of(other);
+        const auto& [centre, radius] = model.tool_spheres()[static_cast<std::size_t>(contact.part)];
+        const Vector3d arm = quaternion_of(result.tool_orientation) * centre,
+                       press = static_cast<double>(contact.force) * normal_of(contact);
+        moment += arm.cross(press);
+        if (contact.force > 0)
+            moment += (arm - radius * push.normalized()).cross(force_on_tool(contact) - press);
+    }
+    return moment;
+}
+
 /// Of a closed way of position and orientation through contact with what is about the origin, from above and
 /// back.
 struct Loop {
