@@ -63,6 +63,9 @@ if(PALPATE_TOOLS)
     find_package(CGAL 5.5 REQUIRED)
     # FCL: distance and overlap of meshes by other people's code, a judge in `palpate bench sixdof`.
     find_package(fcl 0.7 REQUIRED)
+    # Bullet: depth of one mesh in another, another judge there. In double precision, of which Debian has the libraries but no
+    # CMake package that finds them; collision alone.
+    pkg_check_modules(PALPATE_BULLET REQUIRED IMPORTED_TARGET bullet-float64)
     # CHOLMOD (supernodal Cholesky), METIS (ordering), LAPACK (dpotri): condensation at the machine's limit.
     find_path(PALPATE_CHOLMOD_INCLUDE cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
     find_library(PALPATE_CHOLMOD_LIBRARY cholmod REQUIRED)

@@ -28,7 +28,9 @@ const std::vector<Experiment> experiments{
      puncture},
     {"realtime", "ten minutes against the clock beside four busy processes, with and without priority",
      realtime},
-    {"sixdof", "whole tools that turn, five ways: ticks, depth judged by FCL, fast approaches", sixdof},
+    {"sixdof",
+     "whole tools that turn, five ways: ticks, depth judged by FCL and Bullet, drift, fast approaches",
+     sixdof},
     {"split", "two deformable bodies: the published split by force ratio against exact contact", split},
     {"stability", "jumps, pulls, roughness and energy of force by scheme, and 10 minutes at random",
      stability},
@@ -93,6 +95,8 @@ int main(int argc, char** argv) {
     command.output("-o,--output", options.output, "folder for the table (.md) and the pictures (.svg)");
     command.option("--seed", options.seed, "of everything random");
     command.option("--seconds", options.seconds, "how long; 0 is the experiment's own", "s");
+    command.option("--scheme", options.schemes,
+                   "ways to feel an instrument, for sixdof; all where none is given");
     command.option("--approaches", options.approaches, "how many to each surface; 0 is the experiment's own");
     return command.run(argc, argv,
                        [&](cli::Session& session) { return experiments::run(name, options, session); });

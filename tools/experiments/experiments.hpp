@@ -19,8 +19,9 @@ struct Options {
     std::filesystem::path path;                   ///< recorded hand path
     std::filesystem::path output = "bench";       ///< folder for the table (.md) and the pictures (.svg)
     std::uint64_t seed = 1;
-    double seconds = 0;           ///< 0: the experiment's own
-    std::int64_t approaches = 0;  ///< of each surface; 0: the experiment's own
+    double seconds = 0;                ///< 0: the experiment's own
+    std::int64_t approaches = 0;       ///< of each surface; 0: the experiment's own
+    std::vector<std::string> schemes;  ///< ways to feel a tool; none: all of the experiment's
 };
 
 /// What an experiment found: `result` is its JSON, `table` GitHub Markdown, `pictures` SVG by name.

@@ -32,15 +32,17 @@ FclJudge::FclJudge(const TriangleMesh& surface, const TriangleMesh& tool)
 
 FclJudge::~FclJudge() = default;
 
-double FclJudge::distance(const Eigen::Isometry3d& X_PT) const {
-    const auto identity = fcl::Transform3d::Identity();
+bool FclJudge::meet(const Eigen::Isometry3d& X_PT) const {
     fcl::CollisionResultd met;
-    if (fcl::collide(models_->surface.get(), identity, models_->tool.get(), X_PT, fcl::CollisionRequestd(),
-                     met) > 0)
-        return 0;
+    return fcl::collide(models_->surface.get(), fcl::Transform3d::Identity(), models_->tool.get(), X_PT,
+                        fcl::CollisionRequestd(), met) > 0;
+}
+
+double FclJudge::distance(const Eigen::Isometry3d& X_PT) const {
+    if (meet(X_PT)) return 0;
     fcl::DistanceResultd result;
-    return fcl::distance(models_->surface.get(), identity, models_->tool.get(), X_PT, fcl::DistanceRequestd(),
-                         result);
+    return fcl::distance(models_->surface.get(), fcl::Transform3d::Identity(), models_->tool.get(), X_PT,
+                         fcl::DistanceRequestd(), result);
 }
 
 }  // namespace palpate::experiments

@@ -17,6 +17,8 @@ class FclJudge {
 
     /// The distance of the two with the tool at X_PT, mm; 0 where a triangle of one meets one of the other.
     double distance(const Eigen::Isometry3d& X_PT) const;
+    /// Whether a triangle of one meets one of the other.
+    bool meet(const Eigen::Isometry3d& X_PT) const;
 
   private:
     struct Models;

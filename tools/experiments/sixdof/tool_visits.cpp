@@ -44,7 +44,7 @@ ToolVisit pressing_visit(const Place& place, double reach, std::mt19937_64& rand
     const Vector3d along = 10 * any_direction(random).cross(outward).normalized();
     const Vector3d outside = place.entry + (reach + visit_start) * outward;
     const Vector3d pressed = place.entry + (reach - visit_depth) * outward;
-    const double in = (visit_start + visit_depth) / speed, slide = 10 / std::min(speed, 50.0);
+    const double in = (visit_start + visit_depth) / speed, slide = 10 / std::min(speed, 50.0), rest = 0.3;
     std::vector<HandPath::Key> keys;
     const auto be_at = [&](double time, const Vector3d& p, const Quaterniond& q) {
         keys.push_back({.time = time, .position = p, .holds = true, .orientation = q});
@@ -52,8 +52,9 @@ ToolVisit pressing_visit(const Place& place, double reach, std::mt19937_64& rand
     be_at(0, outside, first);
     be_at(in, pressed, first);
     be_at(in + slide, pressed + along, second);
-    be_at(2 * in + slide, outside + along, second);
-    return {place, HandPath(std::move(keys))};
+    be_at(in + slide + rest, pressed + along, second);
+    be_at(2 * in + slide + rest, outside + along, second);
+    return {place, HandPath(std::move(keys)), in + slide, in + slide + rest};
 }
 
 ToolVisit fast_visit(const Place& place, double reach, double stroke, std::mt19937_64& random) {
@@ -69,8 +70,8 @@ ToolVisit fast_visit(const Place& place, double reach, double stroke, std::mt199
                     .holds = true,
                     .orientation = first});
     keys.push_back({.time = seconds, .position = end, .holds = true, .orientation = last});
-    keys.push_back({.time = seconds + 0.1, .position = end, .holds = true, .orientation = last});
-    return {place, HandPath(std::move(keys))};
+    keys.push_back({.time = seconds + 0.02, .position = end, .holds = true, .orientation = last});
+    return {place, HandPath(std::move(keys)), seconds, seconds + 0.02};
 }
 
 }  // namespace palpate::experiments
