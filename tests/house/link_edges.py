@@ -59,7 +59,7 @@ ROOMS = {
     "session": {"model", "asset", "elasticity", "recording", "drawing", "json", "realtime", "collision", "haptics", "devices", "openigtlink"},
     "training": {"model", "asset", "session", "toml_file", "json"},
 }
-ROOMS["experiments"] = {"asset", "drawing", "cli", "session", "stl_file", "fem", "meshing", "obb", "cgal_peer", "fcl"}  # measures both sides
+ROOMS["experiments"] = {"asset", "drawing", "cli", "session", "stl_file", "fem", "meshing", "obb", "cgal_peer", "fcl", "bullet"}  # measures both sides
 COMMANDS = {"model", "archive", "asset", "elasticity", "imaging", "meshing", "obb", "fem", "report", "cli", "case_builder", "cohort", "draft", "inspection", "requests", "stage_images", "stage_shapes",
             "stage_bodies", "stage_cases", "seeds", "tissue", "toml_file", "json"}
 APPS = {"model", "asset", "recording", "stl_file", "cli", "realtime", "collision", "haptics", "devices", "openigtlink", "session", "json"}
@@ -81,7 +81,7 @@ FAMILIES = {
     "dcmtk": r"/libdcm|/libof(?:log|std)", "igtl": r"OpenIGTLink::",
     "itk": r"ITK|itk|gdcm", "cgal": r"CGAL", "vtk": r"VTK::|X11::", "cholmod": r"cholmod", "metis": r"libmetis",
     "lapack": r"lapacke|openblas", "cli11": r"CLI11::", "spdlog": r"spdlog", "fmt": r"fmt::", "json": r"nlohmann_json",
-    "openal": r"OpenAL::", "toml": r"tomlplusplus", "threads": r"Threads::", "zlib": r"ZLIB::", "house": r"palpate_house",
+    "bullet": r"PALPATE_BULLET", "openal": r"OpenAL::", "toml": r"tomlplusplus", "threads": r"Threads::", "zlib": r"ZLIB::", "house": r"palpate_house",
 }
 FORBIDDEN_SONAMES = {"palpate-touch": r"libITK|libitk|libCGAL|libcholmod|libmetis|libvtk",
                      "palpate-doctor": r"libITK|libitk|libCGAL|libcholmod|libmetis|libvtk",

@@ -8,7 +8,8 @@
 // that slides on a wall has its drag opposite to its slip, and as large as Coulomb has it: with a slip v and
 // a drag d there, a slip s across turns the drag by -d s / v across, which is a row like those of what is
 // held. Spheres of one tool hold each other much more stiffly than its coupling holds each, so that each by
-// itself would not find its direction. One that slides on tissue is left to the search (rub()).
+// itself would not find its direction. On tissue all that is left to the search: what slides, and what lets
+// go (rub()).
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -91,9 +92,11 @@ void ContactEquilibrium::begin_hold(Rubbing& rubbing) const noexcept {
     rubbing.drag = hold.drag - hold.axis.dot(hold.drag) * hold.axis;
 }
 
-// The directions in which a sphere is held.
+// The directions in which a sphere is held. One that finds no room is left to itself.
 void ContactEquilibrium::add_tangents(Rubbing& rubbing) noexcept {
-    if (!rubbing.held || rubbing.let_go || tangents_.size() + 2 > ContactLcp::most_tangents) return;
+    if (!rubbing.held || rubbing.let_go) return;
+    rubbing.held = tangents_.size() + 2 <= ContactLcp::most_tangents;
+    if (!rubbing.held) return;
     const Group& group = *rubbing.group;
     const Hold& hold = hold_of(group);
     const double shear = shearing(group), drag = rubbing.drag.norm();
@@ -153,10 +156,10 @@ void ContactEquilibrium::fill_tangent(std::size_t t) noexcept {
     lcp_.gaps()[column] = -along.dot(free_slip_of(*rubbing) + gives * rubbing->drag);
 }
 
-// What of a drag is known, and differs from what the state has.
+// What of a drag on a wall is known, and differs from what the state has.
 void ContactEquilibrium::add_known_drag(const Rubbing& rubbing) noexcept {
     const Vector3d known = rubbing.drag - hold_of(*rubbing.group).drag;
-    if (!rubbing.held || (rubbing.group->patch >= 0 && !rubbing.let_go) || known.isZero(0)) return;
+    if (!rubbing.held || rubbing.group->patch >= 0 || known.isZero(0)) return;
     Index at = 0;
     each_opening(rubbing, known, [&](double opens) { lcp_.gaps()[at++] -= opens; });
 }
@@ -194,9 +197,9 @@ bool ContactEquilibrium::change_grip() noexcept {
     double most = 1;
     bool changed = false;
     for (Rubbing& rubbing : rubbing_) {
-        if (!rubbing.held) continue;
+        if (!rubbing.held || rubbing.group->patch >= 0) continue;
         changed = regrip(rubbing) || changed;
-        if (rubbing.let_go || rubbing.group->patch >= 0 || rubbing.drag.isZero(0)) continue;
+        if (rubbing.let_go || rubbing.drag.isZero(0)) continue;
         const Hold& hold = hold_of(*rubbing.group);
         if (hold.slides) {
             changed = go_on_sliding(rubbing) || changed;
