@@ -18,18 +18,25 @@ std::unique_ptr<OpenDevices> open_simulated(const std::vector<DeviceWish>& wishe
     return with_periodic_servo(std::move(devices));
 }
 
-std::unique_ptr<OpenDevices> open_dynamic(const std::vector<DeviceWish>& wishes) {
-    std::vector<std::unique_ptr<realtime::Device>> devices;
-    for (const DeviceWish& wish : wishes)
-        devices.push_back(
-            std::make_unique<DynamicDevice>(find_device_model("touch"), HandImpedance{}, wish.path));
-    return with_periodic_servo(std::move(devices));
+// A model with mass, in a hand that gives way.
+Backend dynamic(const std::string& name, const std::string& model) {
+    return {name, [model](const std::vector<DeviceWish>& wishes) {
+                std::vector<std::unique_ptr<realtime::Device>> devices;
+                for (const DeviceWish& wish : wishes)
+                    devices.push_back(std::make_unique<DynamicDevice>(find_device_model(model),
+                                                                      HandImpedance{}, wish.path));
+                return with_periodic_servo(std::move(devices));
+            }};
 }
 
-const Backend simulated{"simulated", open_simulated}, dynamic{"dynamic", open_dynamic};
+const Backend simulated{"simulated", open_simulated},
+    touch = dynamic("touch", "touch"), desktop = dynamic("desktop", "desktop"),
+    premium = dynamic("premium", "premium"), premium_6dof = dynamic("premium_6dof", "premium-6dof");
 
-INSTANTIATE_TEST_SUITE_P(InProcess, DeviceConformance, testing::Values(simulated, dynamic), backend_name);
-INSTANTIATE_TEST_SUITE_P(InProcess, ForceConformance, testing::Values(dynamic), backend_name);
+INSTANTIATE_TEST_SUITE_P(InProcess, DeviceConformance,
+                         testing::Values(simulated, touch, desktop, premium, premium_6dof), backend_name);
+INSTANTIATE_TEST_SUITE_P(InProcess, ForceConformance, testing::Values(touch, desktop, premium, premium_6dof),
+                         backend_name);
 
 }  // namespace
 }  // namespace palpate::conformance
