@@ -59,13 +59,14 @@ class ContinuousContact final : public ContactMethod {
         std::vector<Part> parts;     // as spheres_
         std::size_t parts_felt = 0;  // in this tick: none without a trusted position, the tip alone
                                      // where a rod's direction is not known
-        Eigen::Vector3d tip = Eigen::Vector3d::Zero();  // on its device, mm; and how it is turned there
-        Eigen::Matrix3d orientation = Eigen::Matrix3d::Identity();
-        bool held_beside_tip = false;   // by a sphere that is not about its tip
-        std::size_t measured_last = 0;  // of the parts: how far from all bodies
-        bool was_off_device = false;    // at the end of the tick before, where it turns by itself
-        bool waits = false;             // to be clear of every body
-        std::size_t stuck = 0;          // the part that was not
+        Eigen::Vector3d tip = Eigen::Vector3d::Zero();  // on its device, mm; and a frame that is turned as
+        Eigen::Matrix3d orientation = Eigen::Matrix3d::Identity();  // it is there, its z along the shaft
+        Eigen::Vector3d rested_at = Eigen::Vector3d::Zero();  // its tip, at the end of the tick before, mm
+        bool held_beside_tip = false;                         // by a sphere that is not about its tip
+        std::size_t measured_last = 0;                        // of the parts: how far from all bodies
+        bool was_off_device = false;  // at the end of the tick before, where it turns by itself
+        bool waits = false;           // to be clear of every body
+        std::size_t stuck = 0;        // the part that was not
     };
 
     // That a sphere would meet between its rest on rigid bodies and where the solution has it: how far its

@@ -47,7 +47,8 @@ void ContinuousContact::tick(std::span<const ContactPose> poses, const VirtualCo
     for (std::size_t t = 0; t < tools_.size(); ++t) {
         if (tools_[t].parts_felt == 0) continue;
         forces[t] = force_of(t, results[t]);
-        results[t].tool_position = array_of(tools_[t].tip + forces[t] / coupling_);
+        tools_[t].rested_at = tools_[t].tip + forces[t] / coupling_;
+        results[t].tool_position = array_of(tools_[t].rested_at);
         if (torsion_ > 0) tell_turn(t, poses[t], results[t]);
         if (torsion_ > 0) settle(t, forces[t], results[t]);
     }
@@ -102,18 +103,21 @@ Vector3d ContinuousContact::force_of(std::size_t t, TickResult& result) noexcept
     const auto walls = result.contact_count;
     equilibrium_.write_contacts(t, result);
     const bool found = equilibrium_.solved(t);
-    const TickStatus unrest = (equilibrium_.touches_tissue(t) || torsion_ > 0) &&
+    const TickStatus unrest = (equilibrium_.touches_tissue(t) || (torsion_ > 0 && is_held(tool))) &&
                                       equilibrium_.change() > ContactEquilibrium::unsettled
                                   ? contact_unsettled
                                   : tick_ok;
-    if (result.contact_count == 0 && (found || !equilibrium_.touches_tissue(t))) {
+    // Of a tool that turns a wall is in its way all the same.
+    const bool blocked = torsion_ > 0 && (result.status & contact_unsolved) != 0;
+    if (!blocked && result.contact_count == 0 && (found || !equilibrium_.touches_tissue(t))) {
         result.status |= unrest;
         return rigid_force(tool.parts[0].on_rigid, tool.parts[0].device, result);
     }
     const Vector3d press = equilibrium_.press(t);
     if (equilibrium_.was_cut(t)) result.status |= contacts_cut;
     if (!found) result.status |= contact_unsolved;
-    if (result.contact_count > 0 && equilibrium_.residual() <= unsolved && within_reach(t, press)) {
+    if (!blocked && result.contact_count > 0 && equilibrium_.residual() <= unsolved &&
+        within_reach(t, press)) {
         result.status |= unrest;
         result.residual = equilibrium_.residual();
         if (result.contact_count > walls) depth_in_tissue(tool, result);
@@ -121,9 +125,11 @@ Vector3d ContinuousContact::force_of(std::size_t t, TickResult& result) noexcept
         if (friction_.at_rest > 0 && torsion_ == 0) force += wall_friction(t, force, result);
         return force;
     }
-    // The contacts contradict each other: nothing gives way, and the part that is held most decides.
+    // The contacts contradict each other. A tool that turns stays where it was, outside of all bodies; of
+    // another nothing gives way, and the part that is held most decides.
     result.status |= contact_unsolved;
     result.contact_count = 0;
+    if (torsion_ > 0 && equilibrium_.stay(t, tool.rested_at)) return coupling_ * equilibrium_.off(t);
     equilibrium_.forget(t);
     const Part& held = *std::ranges::max_element(
         std::span(tool.parts).first(tool.parts_felt), {},
@@ -154,7 +160,12 @@ void ContinuousContact::place(std::size_t t, const ContactPose& pose, TickResult
         return;
     }
     if (pose.jumped) forget(t);
-    tool.orientation = orientation_of(pose).toRotationMatrix();
+    // A shaft that is all that is known of a rod does not roll it.
+    if (pose.orientation.coeffs().isZero(0) && !pose.shaft.isZero(0) && tool.was_off_device)
+        tool.orientation = Eigen::Quaterniond::FromTwoVectors(tool.orientation.col(2), pose.shaft) *
+                           Eigen::Matrix3d(tool.orientation);
+    else
+        tool.orientation = orientation_of(pose).toRotationMatrix();
     // A rod's spheres lie along its shaft, so that no other axis is asked for.
     Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();
     if (is_instrument_)

@@ -9,7 +9,7 @@ namespace palpate::experiments {
 
 /// Bullet's answer to how deep a tool is in a surface: a judge that shares no code with ours, nor with FCL.
 /// Triangles that meet are as deep as one has to be moved along the other's normal; so what is deeper than
-/// triangles are large is told as less.
+/// triangles are large is told as less. One thread.
 class BulletJudge {
   public:
     BulletJudge(const TriangleMesh& surface, const TriangleMesh& tool);

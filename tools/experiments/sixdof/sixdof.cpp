@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fmt/format.h>
 #include <ranges>
 
@@ -29,10 +30,10 @@ using Json = nlohmann::ordered_json;
 constexpr std::string_view method =
     R"(# Whole tools on a bone, with `continuous`, `shell`, `cones`, `features` and `solid`
 
-Each tool visits random places of the bone's outside: it comes along the normal at 20 to 200 mm/s, tilted by up to 40
+Each tool visits random places of the bone's outside, one for each of `--seconds`: it comes along the normal at 20 to 200 mm/s, tilted by up to 40
 degrees, its device goes 3 mm deep, slides 10 mm while it turns by up to 30 degrees, rests for 0.3 s, and leaves. Ticks: one
-core, wall clock, us, of each tick but a visit's first the shortest of {} passes; `touching` are those with force. `drift` is the
-farthest that any point of the tool goes from 0.1 s after the device came to rest on. Every 20th tick the tool's pose is
+core, wall clock, us, of each tick but a visit's first the shortest of {} passes; `touching` are those with force. `drift` is how
+far any point of the tool goes at most from 0.1 s after the device came to rest on. Every 20th tick the tool's pose is
 judged: `deepest` is the greatest depth of 20 000 other points of the tool below the bone by exact distances, `by Bullet` that of
 its triangles, `told` what the tick said of its own touches; `unfelt` counts poses that overlap the bone by FCL's triangles and
 have no force, with the greatest depth of any of them, and `met` all that overlap; `apart` is the largest difference between the
@@ -46,7 +47,7 @@ whose search for rest ended on its way. `gap` is the farthest of the surface's p
 
 constexpr std::string_view approaches_method = R"(
 Fast approaches: at 50 to 1 000 mm/s, turning at up to 20 rad/s, to 10 mm below the surface. In every tick `met` asks FCL whether a triangle of
-the tool meets one of the bone, and `through` whether the tool's core, the centres of the {} spheres that fill it best, went
+the tool meets one of the bone, and `through` whether the tool's core, the centres of {} spheres at most that fill it best, went
 through the bone's surface since the tick before, straight. `beyond` ends more than 5 mm below the surface: beside the bone,
 through a gap or through bone. `began inside` is a tool that another part of the bone was in at the start; it is not in the other
 columns.
@@ -204,7 +205,8 @@ Row measure(const Case& bone, const std::string& tool_name, const Way& way, cons
         row.gap = shell.covering_radius;
     }
     std::mt19937_64 random(options.seed);
-    const auto visits_wanted = static_cast<std::size_t>(options.seconds > 0 ? options.seconds : 60);
+    const auto visits_wanted =
+        static_cast<std::size_t>(options.seconds > 0 ? std::ceil(options.seconds) : 60);
     const auto places = draw_places(surface, model.surface(0), place_radius, visits_wanted, random);
     std::vector<ToolVisit> visits;
     for (const Place& place : places) visits.push_back(pressing_visit(place, model.contact_radius(), random));

@@ -78,6 +78,7 @@ void ContactEquilibrium::reset() noexcept {
 void ContactEquilibrium::forget(std::size_t t) noexcept {
     leave_tissue(t);
     for (Part& part : tools_[t].parts) {
+        for (Hold& hold : part.holds) hold.press = 0;
         Hold& of_walls = part.holds.back();
         of_walls.slip.setZero();
         of_walls.slid = of_walls.pressed = false;
@@ -120,9 +121,7 @@ void ContactEquilibrium::begin_tick(double stiffness, double torsion) noexcept {
     spare_iterations_ = spare_iterations;
     if (std::exchange(begins_, true)) states_known_ = 0;
     rows_.clear();
-    groups_.clear();
-    wall_groups_.clear();
-    rubbing_.clear();
+    forget_groups();
     residual_ = change_ = 0;
     for (Tool& tool : tools_) {
         tool.was_felt = std::exchange(tool.felt, 0);
@@ -132,7 +131,10 @@ void ContactEquilibrium::begin_tick(double stiffness, double torsion) noexcept {
         tool.kept_turn.setZero();
         each_hold(tool, [](Hold& hold) { hold.press = 0; });
         // What slid on a wall may be held in this tick.
-        for (Part& part : tool.parts) part.holds.back().slides = false;
+        for (Part& part : tool.parts) {
+            part.holds.back().slides = false;
+            part.holds.back().slipping = 0;
+        }
     }
     for (DeformedPatch& patch : patches_) patch.begin_tick();
     // What tissue has forgotten, spheres forget too.
@@ -195,6 +197,7 @@ void ContactEquilibrium::add_wall(std::size_t tool, Contact& contact) noexcept {
     row.wall = &contact;
     rows_.cut(walls);
     rows_.push_back(row);
+    forget_groups();
     // Those of one sphere lie together.
     const auto of_sphere = [&](const Row& other) { return other.tool == row.tool && other.part == row.part; };
     const auto behind = std::find_if(std::make_reverse_iterator(rows_.end() - 1),
@@ -214,7 +217,15 @@ std::size_t ContactEquilibrium::drop_idle_walls(std::size_t t, std::span<Contact
         return false;
     });
     std::copy_n(pressing.begin(), kept, contacts.begin());
+    forget_groups();
     return kept;
+}
+
+// Rows lie elsewhere from now on.
+void ContactEquilibrium::forget_groups() noexcept {
+    groups_.clear();
+    wall_groups_.clear();
+    rubbing_.clear();
 }
 
 std::size_t ContactEquilibrium::wall_count() const noexcept {
@@ -271,7 +282,8 @@ void ContactEquilibrium::iterate(int most) noexcept {
     std::size_t spent = 0;
     const auto may_go_on = [&](int iteration) {
         const std::size_t rows = rows_.size() + neighbours_.row_count() + tangents_.size();
-        if (iteration > 0) spent += rows * rows;
+        // What friction on tissue alone takes, a second one, is no more than usual.
+        if (iteration > 0) spent += rows * rows * std::max<std::size_t>(solves_, 2) / 2;
         if (iteration >= least_iterations && spent > most_spent) return false;
         return iteration < most ||
                ((rows <= few_rows || change_ > unsettled) && spent <= spare_spent && spare_iterations_-- > 0);
@@ -366,6 +378,7 @@ std::array<float, 3> ContactEquilibrium::friction_of(const Row& row) const noexc
 
 void ContactEquilibrium::write_contacts(std::size_t t, TickResult& result) const noexcept {
     for (const Row& row : rows_) {
+        if (row.tool != static_cast<std::int32_t>(t)) continue;
         if (row.wall) {
             row.wall->force = static_cast<float>(row.force);
             row.wall->gap = static_cast<float>(gap_of_wall(row));
@@ -373,7 +386,7 @@ void ContactEquilibrium::write_contacts(std::size_t t, TickResult& result) const
             continue;
         }
         const auto used = static_cast<std::size_t>(result.contact_count);
-        if (row.tool != static_cast<std::int32_t>(t) || !(row.force > 0) || used == max_contacts) continue;
+        if (!(row.force > 0) || used == max_contacts) continue;
         const DeformableContact& body = patch_of(row).body();
         Contact contact;
         contact.body = body.body_index();
@@ -399,12 +412,14 @@ void ContactEquilibrium::end_tick() noexcept {
     for (Tool& tool : tools_) {
         tool.turn_before = tool.felt > 0 ? tool.turn : Vector3d::Zero();
         if (turns()) tool.last_tip = tool.tip + (tool.felt > 0 ? tool.off : Vector3d::Zero());
+        tool.last_R_PT = tool.R_PT;
         tool.walled = false;
     }
     if (turns())
         for (const Row& row : rows_)
-            if (row.wall != nullptr && row.force > 0)
-                tools_[static_cast<std::size_t>(row.tool)].walled = true;
+            if (Tool& tool = tools_[static_cast<std::size_t>(row.tool)];
+                row.wall != nullptr && row.force > 0 && !tool.press.isZero(0))
+                tool.walled = true;
     last_motion_ = 0;
     for (const DeformedPatch& patch : patches_) last_motion_ = std::max(last_motion_, patch.motion());
     remember_pushes();
@@ -425,7 +440,11 @@ void ContactEquilibrium::end_tick() noexcept {
                     touch.outside_sunk = touch.sunk;
                 }
         } else if (tool.touching) {
+            const bool walled = tool.walled;
+            const Vector3d turn = tool.turn;
             leave_tissue(t);
+            tool.walled = walled;
+            if (walled) tool.turn = turn;
         }
     }
     if (any) {

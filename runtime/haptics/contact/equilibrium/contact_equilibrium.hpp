@@ -46,6 +46,10 @@ class ContactEquilibrium {
     void reset() noexcept;
     void forget(std::size_t tool) noexcept;
 
+    /// Leaves a tool that turns as it was turned at the end of the last tick, its tip at `tip` (p_P, mm),
+    /// with all contact forgotten; false where it was not felt then.
+    bool stay(std::size_t tool, const Eigen::Vector3d& tip) noexcept;
+
     /// From now on deformable body `soft` leans on a shape of large deformation, which must outlive that.
     void take_shape(std::size_t soft, const LargeShape* shape) noexcept { patches_[soft].take_shape(shape); }
     /// Calls `take` with each vertex of deformable body `soft` and what presses it, N; some may come twice.
@@ -81,6 +85,8 @@ class ContactEquilibrium {
     /// Whether a tool's equilibrium was found; if not, what the other members say of it is what the surface
     /// at rest answers.
     bool solved(std::size_t tool) const noexcept { return !tools_[tool].at_rest; }
+    /// How far it is off its device, mm.
+    const Eigen::Vector3d& off(std::size_t tool) const noexcept { return tools_[tool].off; }
     /// What presses the tool, and what friction on tissue adds, and on walls where tools turn, N.
     const Eigen::Vector3d& press(std::size_t tool) const noexcept { return tools_[tool].press; }
     const Eigen::Vector3d& drag(std::size_t tool) const noexcept { return tools_[tool].drag; }
@@ -265,9 +271,11 @@ class ContactEquilibrium {
         Eigen::Vector3d unpressed_turn = Eigen::Vector3d::Zero();  // of it what presses does not do
         // How it was turned at the end of the last tick, and what it keeps of that; equilibrium_turning.cpp.
         Eigen::Vector3d turn_before = Eigen::Vector3d::Zero(), kept_turn = Eigen::Vector3d::Zero();
-        Eigen::Matrix3d on_device = Eigen::Matrix3d::Identity(), R_PT = on_device;  // held so; turned
-        double longest_arm = 0;                         // mm, of the parts that are felt
-        Eigen::Vector3d tip = Eigen::Vector3d::Zero();  // as the device has it, mm
+        Eigen::Matrix3d on_device =
+                            Eigen::Matrix3d::Identity(),  // as it is held; as it is turned, also at the
+            R_PT = on_device, last_R_PT = on_device;      // end of the last tick
+        double longest_arm = 0;                           // mm, of the parts that are felt
+        Eigen::Vector3d tip = Eigen::Vector3d::Zero();    // as the device has it, mm
         Eigen::Vector3d last_device_tip = Eigen::Vector3d::Zero(), last_tip = Eigen::Vector3d::Zero();
         Eigen::Vector3d way = Eigen::Vector3d::Zero(), last_way = Eigen::Vector3d::Zero();  // of the device
         Eigen::Vector3d press = Eigen::Vector3d::Zero(), drag = Eigen::Vector3d::Zero();    // N
@@ -329,6 +337,7 @@ class ContactEquilibrium {
     void add_levers(std::size_t column) noexcept;
     double answer_turns(std::size_t iterate) noexcept;
     void resist_turning() noexcept;
+    Eigen::Vector3d turn_by_drags(const Tool& tool) const noexcept;
     void relax_turn(Tool& tool, const Weights& weights, double step) const noexcept;
     Eigen::Vector3d centre_of(const Tool& tool, const Part& part, const Touch& touch) const noexcept {
         return part.sphere.device + off_of(tool, part) + touch.sunk;
@@ -342,6 +351,7 @@ class ContactEquilibrium {
     bool start_anew() noexcept;
     void forget_tissue() noexcept;
     void leave_tissue(std::size_t tool) noexcept;
+    void forget_groups() noexcept;
     void iterate(int most) noexcept;
     bool is_active(std::int64_t key) const noexcept;
     bool watched_are_clear() const noexcept;
@@ -463,6 +473,7 @@ class ContactEquilibrium {
     double coupling_ = 0, torsion_ = 0;
     bool resists_turning_ = false;
     bool may_change_grip_ = true;  // on walls
+    std::size_t solves_ = 0;       // of the problem of this iteration's rows
     double turn_change_ = 0;       // of change_ what turning is
     std::vector<DeformedPatch> patches_;
     NeighbourContact neighbours_;

@@ -97,7 +97,8 @@ bool ContactEquilibrium::measure_press(const Group& group) noexcept {
         hold.press += row.force;
         push += row.force * row.normal;
     }
-    if (!(hold.press > 0) || !(push.norm() > 0)) return false;
+    if (!(push.norm() > 0)) hold.press = 0;
+    if (!(hold.press > 0)) return false;
     hold.axis = push.normalized();
     return true;
 }

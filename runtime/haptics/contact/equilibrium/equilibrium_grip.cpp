@@ -45,9 +45,13 @@ void ContactEquilibrium::hold_together() noexcept {
 // walls.
 void ContactEquilibrium::solve_held(const ContactLcp::Vector& gaps, bool walls) noexcept {
     const auto n = static_cast<Index>(rows_.size() + neighbours_.row_count());
+    ++solves_;
     tangents_.clear();
-    for (Rubbing& rubbing : rubbing_)
-        if (walls || rubbing.group->patch >= 0) add_tangents(rubbing);
+    for (Rubbing& rubbing : rubbing_) {
+        const bool on_tissue = rubbing.group->patch >= 0;
+        if (on_tissue && rubbing.held) begin_hold(rubbing);
+        if (walls || on_tissue) add_tangents(rubbing);
+    }
     lcp_.gaps().head(n) = gaps.head(n);
     for (std::size_t t = 0; t < tangents_.size(); ++t) fill_tangent(t);
     for (const Rubbing& rubbing : rubbing_) add_known_drag(rubbing);
@@ -65,9 +69,14 @@ bool ContactEquilibrium::cut_drags() noexcept {
     bool any = false;
     for (Rubbing& rubbing : rubbing_) {
         if (!rubbing.held || rubbing.group->patch >= 0) continue;
-        const double drag = rubbing.drag.norm(), most = most_drag(*rubbing.group, friction_.sliding);
+        Hold& hold = hold_of(*rubbing.group);
+        const double drag = rubbing.drag.norm();
+        if (!(drag > most_drag(*rubbing.group, hold.slid ? friction_.sliding : friction_.at_rest))) continue;
+        const double most = most_drag(*rubbing.group, friction_.sliding);
         any = any || drag > most + coupling_ * settled;
-        if (drag > most) rubbing.drag *= most / drag;
+        rubbing.drag *= most / drag;
+        hold.slides = hold.slid = true;
+        hold.slipping = 0;
     }
     return any;
 }
@@ -100,7 +109,8 @@ void ContactEquilibrium::add_tangents(Rubbing& rubbing) noexcept {
     const Group& group = *rubbing.group;
     const Hold& hold = hold_of(group);
     const double shear = shearing(group), drag = rubbing.drag.norm();
-    if (hold.slides && drag > 0) {
+    if (hold.slides) {
+        if (!(drag > 0)) return;  // friction bears nothing there
         tangents_.push_back({&rubbing, hold.axis.cross(rubbing.drag / drag), shear + hold.slipping / drag});
         return;
     }
@@ -170,7 +180,8 @@ bool ContactEquilibrium::regrip(Rubbing& rubbing) noexcept {
     constexpr int most_regrips = 2;
     Hold& hold = hold_of(*rubbing.group);
     const bool presses = hold.press > 0;
-    if (presses != rubbing.let_go || (presses && rubbing.regrips++ == most_regrips)) return false;
+    if (presses != rubbing.let_go || (presses && rubbing.regrips == most_regrips)) return false;
+    if (presses) ++rubbing.regrips;
     rubbing.let_go = !presses;
     rubbing.drag.setZero();
     hold.slides = false;

@@ -396,6 +396,7 @@ void ContactEquilibrium::find_slots_of_rows() noexcept {
 
 void ContactEquilibrium::solve_rows() noexcept {
     const std::size_t n = rows_.size();
+    solves_ = 1;
     if (turns()) find_levers();
     find_slots_of_rows();
     std::array<std::size_t, max_contacts> warm;

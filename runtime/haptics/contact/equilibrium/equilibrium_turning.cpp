@@ -20,6 +20,17 @@ void ContactEquilibrium::swing(Tool& tool) noexcept {
     for (Part& part : tool.parts) part.swung = R * part.arm;
 }
 
+bool ContactEquilibrium::stay(std::size_t t, const Vector3d& tip) noexcept {
+    Tool& tool = tools_[t];
+    if (tool.was_felt == 0) return false;
+    forget(t);
+    tool.off = tip - tool.tip;
+    const Eigen::AngleAxisd turned(Eigen::Matrix3d(tool.last_R_PT * tool.on_device.transpose()));
+    tool.turn = turned.angle() * turned.axis();
+    swing(tool);
+    return true;
+}
+
 // Takes the arms as a tool's device has them.
 void ContactEquilibrium::pull_arms(Tool& tool) noexcept {
     tool.longest_arm = 0;
@@ -79,20 +90,25 @@ void ContactEquilibrium::resist_turning() noexcept {
     for (Tool& tool : tools_) {
         tool.kept_turn = (1 - torsion_ / freely) * tool.turn_before;
         tool.turn = tool.turn_before;
-        tool.unpressed_turn = tool.kept_turn;
         swing(tool);
+        tool.unpressed_turn = turn_by_drags(tool);
     }
+}
+
+// How a tool is turned by what it keeps and by friction.
+Vector3d ContactEquilibrium::turn_by_drags(const Tool& tool) const noexcept {
+    Vector3d turn = tool.kept_turn;
+    if (friction_.any())
+        for (const Part& part : tool.parts)
+            for (const Hold& hold : part.holds) turn += torsion_ * rubbing_arm(part, hold).cross(hold.drag);
+    return turn;
 }
 
 // Goes to a combination of answers, after the drags have.
 void ContactEquilibrium::relax_turn(Tool& tool, const Weights& weights, double step) const noexcept {
     tool.turn += step * (combined(weights, tool.next_turn) - tool.turn);
     swing(tool);
-    tool.unpressed_turn = tool.kept_turn;
-    if (friction_.any())
-        for (const Part& part : tool.parts)
-            for (const Hold& hold : part.holds)
-                tool.unpressed_turn += torsion_ * rubbing_arm(part, hold).cross(hold.drag);
+    tool.unpressed_turn = turn_by_drags(tool);
 }
 
 }  // namespace palpate::haptics

@@ -145,12 +145,83 @@ TEST(TurningFriction, gives_no_energy_over_closed_ways) {
     }
 }
 
+// A coefficient for tools at rest alone: what slides is not held at all.
+TEST(TurningFriction, lets_go_of_what_slides_where_only_what_rests_is_held) {
+    HapticModel model(on_plate({0.4, 0}));
+    TickResult result = rest_at(model, turned_at({0, 0, -2}, Quaterniond::Identity()));
+    double most = 0;
+    for (int tick = 1; tick <= 400; ++tick) {
+        model.tick(turned_at({0.01 * tick, 0, -2}, Quaterniond::Identity()), result);
+        ASSERT_EQ(result.status, tick_ok) << tick;
+        most = std::max(most, drag_of(result).norm());
+    }
+    EXPECT_NEAR(most, 0.4 * pressed, 0.06);
+    EXPECT_LT(drag_of(result).norm(), 0.8 * most);
+}
+
+// A soft block beside a plate of bone, both tops at z = 0; a bar lies across.
+TEST(TurningFriction, of_tissue_and_of_bone_hold_a_tool_together) {
+    Case c = soft_cube(4);
+    c.deformable_bodies[0] = moved(c.deformable_bodies[0], {-22, -10, -20});
+    c.rigid_bodies.push_back(rigid("bone", box({0, -20, -20}, {40, 20, 0})));
+    c.tool = bar();
+    c.haptics.friction_at_rest = on_bone.at_rest;
+    c.haptics.friction_sliding = on_bone.sliding;
+    HapticModel model(c);
+    const auto at = [](double aside, double turn) {
+        return turned_at({-15, aside, -1.5}, about(Vector3d::UnitZ(), turn) * about(Vector3d::UnitY(), 90));
+    };
+    TickResult result = rest_at(model, at(0, 0), 5);
+    int soft = 0, hard = 0, unsettled = 0;
+    for (int tick = 1; tick <= 1500; ++tick) {
+        model.tick(at(0.002 * tick, 3 * std::sin(0.004 * tick)), result);
+        ASSERT_EQ(result.status & ~std::uint32_t{contact_unsettled}, 0U) << tick;
+        unsettled += result.status != tick_ok;
+        Vector3d told = Vector3d::Zero();
+        for (const Contact& contact : result.active_contacts()) {
+            told += force_on_tool(contact);
+            (contact.body == 0 ? hard : soft) += contact.force > 0;
+            const Vector3d drag = Eigen::Map<const Eigen::Vector3f>(contact.friction.data()).cast<double>();
+            EXPECT_LE(drag.norm(), on_bone.at_rest * static_cast<double>(contact.force) + 2e-3) << tick;
+        }
+        EXPECT_LT((told - force_of(result)).norm(), 5e-3) << tick;
+        EXPECT_LT((torque_of(result) - moment_on_spheres(model, result)).norm(), 0.2) << tick;
+    }
+    EXPECT_GT(soft, 1000);
+    EXPECT_GT(hard, 1000);
+    EXPECT_LT(unsettled, 15);
+    EXPECT_GT(drag_of(result).norm(), 0.05);
+}
+
 // Pushed about, over the plate's rim too.
 realtime::DeviceState pushed_about(int tick) {
     const double s = 0.004 * tick;
     return turned_at(
         {24 * std::sin(s), 11 * std::sin(0.7 * s), 3 * std::cos(s)},
         about(Vector3d::UnitX(), 50 * std::sin(1.3 * s)) * about(Vector3d::UnitZ(), 90 * std::sin(0.9 * s)));
+}
+
+TEST(TurningFriction, what_follows_a_free_tick_does_not_depend_on_how_it_was_come_to) {
+    HapticModel model(on_plate(on_bone)), other(on_plate(on_bone));
+    TickResult result{}, same{};
+    model.tick(pushed_about(0), result);
+    other.tick(pushed_about(0), same);
+    for (int tick = 600; tick < 900; ++tick) model.tick(pushed_about(tick), result);  // through contact
+    for (haptics::HapticModel* each : {&model, &other})
+        for (int tick = 0; tick < 2; ++tick)
+            each->tick(turned_at({0, 0, 9}, Quaterniond::Identity()), each == &model ? result : same);
+    ASSERT_EQ(result.contact_count, 0);
+    int touching = 0;
+    for (int tick = 0; tick < 600; ++tick) {
+        const auto state =
+            turned_at({0.01 * tick, 0, 1 - 0.005 * tick}, about(Vector3d::UnitZ(), 0.02 * tick));
+        model.tick(state, result);
+        other.tick(state, same);
+        touching += drag_of(result).norm() > 0;
+        ASSERT_EQ(result.force, same.force) << tick;
+        ASSERT_EQ(result.torque, same.torque) << tick;
+    }
+    EXPECT_GT(touching, 200);
 }
 
 TEST(TurningFriction, does_not_remember_what_was_before_a_reset) {
