@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Friction of bone on tools that turn by themselves, in continuous contact.
+#include <array>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
@@ -222,6 +223,29 @@ TEST(TurningFriction, what_follows_a_free_tick_does_not_depend_on_how_it_was_com
         ASSERT_EQ(result.torque, same.torque) << tick;
     }
     EXPECT_GT(touching, 200);
+}
+
+TEST(TurningFriction, keeps_to_its_law_on_each_of_two_tools) {
+    HapticModel model(on_plate(on_bone), "continuous", 2);
+    std::array<TickResult, 2> results{};
+    int touching = 0, unsettled = 0;
+    for (int tick = 0; tick < 3000; ++tick) {
+        model.tick(std::array{pushed_about(tick), pushed_about(tick + 1500)}, results);
+        touching += drag_of(results[0]).norm() > 0 && drag_of(results[1]).norm() > 0;
+        for (const TickResult& result : results) {
+            ASSERT_EQ(result.status & ~std::uint32_t{contact_unsettled}, 0U) << tick;
+            unsettled += result.status != tick_ok;
+            for (const Contact& contact : result.active_contacts()) {
+                const auto drag = Eigen::Map<const Eigen::Vector3f>(contact.friction.data());
+                EXPECT_LE(drag.norm(), on_bone.at_rest * contact.force + 2e-3) << tick;
+            }
+            if (result.status == tick_ok && result.contact_count > 1) {
+                EXPECT_LT((torque_of(result) - moment_on_spheres(model, result)).norm(), 0.2) << tick;
+            }
+        }
+    }
+    EXPECT_GT(touching, 300);
+    EXPECT_LT(unsettled, 60);
 }
 
 TEST(TurningFriction, does_not_remember_what_was_before_a_reset) {
