@@ -47,8 +47,8 @@ SPRINGS = (("coupling_stiffness", "haptics"), ("torsional_stiffness", "tool"))  
 ROWS = """| task | scheme | force at most, N | its largest step in a tick | torque at most, N mm | its largest step | deepest, mm | unsolved / unsettled, of ticks in contact | p50 / p99 / p99.9 in contact, µs |
 |---|---|--:|--:|--:|--:|--:|--:|--:|"""
 
-RANDOM_ROWS = """| tool | visits | force at most, N | its largest step in a tick | torque at most, N mm | a visit's gain, of what it held | of the most held | unsolved / unsettled |
-|---|--:|--:|--:|--:|--:|--:|--:|"""
+RANDOM_ROWS = """| tool | visits | force at most, N | its largest step in a tick | torque at most, N mm | a visit's gain, of what it held | of the most held | unsolved / unsettled | p50 / p99 / p99.9 in contact, µs |
+|---|--:|--:|--:|--:|--:|--:|--:|--:|"""
 
 FELT_ROWS = """| task | scheme | device | force at most, N | torque at most, N mm | its largest step in a tick | rough, N mm | turned at most, degrees | gain, of what was held |
 |---|---|---|--:|--:|--:|--:|--:|--:|"""
@@ -149,12 +149,17 @@ def deepest_in_block(ticks, points, half_x, half_y, every=10):
                for at, q in zip(ticks["tool_position"][::every], ticks["tool_orientation"][::every]))
 
 
+def spent_in(ticks, which):
+    """What some ticks took, µs: p50 / p99 / p99.9."""
+    return " / ".join(f"{value / 1000:.0f}" for value in np.percentile(ticks["tick_ns"][which], [50, 99, 99.9]))
+
+
 def row(task, scheme, ticks, deepest):
     force, torque = (np.linalg.norm(ticks[name], axis=1) for name in ("force", "torque"))
     step = [np.linalg.norm(np.diff(ticks[name], axis=0), axis=1).max() for name in ("force", "torque")]
     touches = ticks["contact_count"] > 0
     told = " / ".join(str(np.count_nonzero(ticks["status"][touches] & bit)) for bit in (UNSOLVED, UNSETTLED))
-    spent = " / ".join(f"{value / 1000:.0f}" for value in np.percentile(ticks["tick_ns"][touches], [50, 99, 99.9]))
+    spent = spent_in(ticks, touches)
     return (f"| {task} | `{scheme}` | {force.max():.2f} | {step[0] / force.max():.1%} | {torque.max():.1f} | {step[1] / torque.max():.1%} | "
             f"{deepest} | {told} of {np.count_nonzero(touches)} | {spent} |")
 
@@ -194,7 +199,7 @@ def at_random(head, seconds):
             force, step = (np.linalg.norm(of, axis=1).max() for of in (ticks["force"], np.diff(ticks["force"], axis=0)))
             print(f"| {tool} | {len(visits)} | {force:.2f} | {step:.2f} | {np.linalg.norm(ticks['torque'], axis=1).max():.2f} | "
                   f"{np.max(telling[:, 0] / telling[:, 1]):.2%} | {visits[:, 0].max() / visits[:, 1].max():.2%} | "
-                  f"{np.count_nonzero(ticks['status'] & UNSOLVED)} / {np.count_nonzero(ticks['status'] & UNSETTLED)} |", flush=True)
+                  f"{np.count_nonzero(ticks['status'] & UNSOLVED)} / {np.count_nonzero(ticks['status'] & UNSETTLED)} | {spent_in(ticks, ticks['contact_count'] > 0)} |", flush=True)
 
 
 def block(folder, of, half_x, half_y):

@@ -161,10 +161,11 @@ void ContinuousContact::place(std::size_t t, const ContactPose& pose, TickResult
     }
     if (pose.jumped) forget(t);
     // A shaft that is all that is known of a rod does not roll it.
-    if (pose.orientation.coeffs().isZero(0) && !pose.shaft.isZero(0) && tool.was_off_device)
+    const bool has_frame = is_instrument_ || torsion_ > 0;
+    if (has_frame && pose.orientation.coeffs().isZero(0) && !pose.shaft.isZero(0) && tool.was_off_device)
         tool.orientation = Eigen::Quaterniond::FromTwoVectors(tool.orientation.col(2), pose.shaft) *
                            Eigen::Matrix3d(tool.orientation);
-    else
+    else if (has_frame)
         tool.orientation = orientation_of(pose).toRotationMatrix();
     // A rod's spheres lie along its shaft, so that no other axis is asked for.
     Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();

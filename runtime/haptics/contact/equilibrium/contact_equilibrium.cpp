@@ -129,12 +129,13 @@ void ContactEquilibrium::begin_tick(double stiffness, double torsion) noexcept {
         tool.at_rest = false;
         tool.unpressed_turn -= tool.kept_turn;
         tool.kept_turn.setZero();
-        each_hold(tool, [](Hold& hold) { hold.press = 0; });
-        // What slid on a wall may be held in this tick.
-        for (Part& part : tool.parts) {
-            part.holds.back().slides = false;
-            part.holds.back().slipping = 0;
-        }
+        if (friction_.any())
+            for (Part& part : tool.parts) {
+                for (Hold& hold : part.holds) hold.press = 0;
+                // What slid on a wall may be held in this tick.
+                part.holds.back().slides = false;
+                part.holds.back().slipping = 0;
+            }
     }
     for (DeformedPatch& patch : patches_) patch.begin_tick();
     // What tissue has forgotten, spheres forget too.

@@ -64,10 +64,11 @@ Vector3d ContactEquilibrium::way_past(const Group& group) const noexcept {
 Vector3d ContactEquilibrium::slip_of(const Group& group, const Bearings& bearings) const noexcept {
     const Hold& hold = hold_of(group);
     Vector3d slip = slip_before(group);
-    if (hold.pressed) slip += way_past(group);
-    for (const auto& [slot, share] : bearings)
-        if (hold.pressed)
+    if (hold.pressed) {
+        slip += way_past(group);
+        for (const auto& [slot, share] : bearings)
             slip -= share * (patch_of(group).displacement(slot) - patch_of(group).displacement_before(slot));
+    }
     return slip - hold.axis.dot(slip) * hold.axis;
 }
 
