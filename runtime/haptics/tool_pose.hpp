@@ -34,6 +34,11 @@ struct Motion {
 
     /// How far a point moves at most that is no farther than `arm` from the origin, mm.
     double of(double arm) const noexcept { return way + arm * turn; }
+    Motion& operator+=(const Motion& more) noexcept {
+        way += more.way;
+        turn += more.turn;
+        return *this;
+    }
 };
 /// From one pose to another, the shorter way. Realtime-safe.
 inline Motion motion_between(const ToolPose& from, const ToolPose& to) noexcept {

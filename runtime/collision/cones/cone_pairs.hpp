@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Geometry>
+#include <cmath>
 
 #include "runtime/collision/cones/normal_cone_tree.hpp"
 
 namespace palpate::collision {
 
-/// What two parts must hold to be looked into.
+/// What two parts must hold to be looked into: points so near to each other, mm, while the first surface's
+/// origin may move by `slack` (mm) and the surface turn about it by `turn` (rad).
 struct ConeReach {
-    double within = 0;  ///< mm, between the points of a pair
-    double slack = 0;   ///< mm, that the first surface's origin may move meanwhile
-    double turn = 0;    ///< rad, that it may turn about it meanwhile
+    explicit ConeReach(double within, double slack = 0, double turn = 0) noexcept
+        : within(within), slack(slack), turn(turn), cosine(std::cos(turn)), sine(std::sin(turn)) {}
+
+    double within, slack, turn;
+    double cosine, sine;  ///< of the turn
 };
 
 /// Whether two parts, the first as `X_BA` has it, may hold points that are locally nearest to each other:

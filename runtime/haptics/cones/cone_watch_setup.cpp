@@ -9,8 +9,8 @@ ConeWatch::ConeWatch(const collision::NormalConeTree& tool, std::span<const coll
     : GapWatch(reach, most_touches, tool.longest_arm()),
       tool_(tool),
       bodies_(bodies),
-      around_{.slack = 0.3, .turn = 0.02, .pairs = std::vector<Kept>(most_kept)},
-      closer_{.slack = 0.05, .turn = 0.003, .pairs = std::vector<Kept>(most_kept)} {}
+      around_{.slack = {.way = 0.3, .turn = 0.006}, .items = std::vector<Kept>(most_kept)},
+      closer_{.slack = {.way = 0.05, .turn = 0.003}, .items = std::vector<std::size_t>(most_kept)} {}
 
 ConeWatch::~ConeWatch() = default;
 

@@ -14,6 +14,7 @@ using Eigen::Vector3d;
 constexpr double tiny = 1e-7;          // mm: shorter moves are none
 constexpr double settled = 0.01;       // mm: after a shorter round the next tick goes on (5 mN at 0.5 N/mm)
 constexpr int max_sweeps = 15;         // per tick; smooth places take 3
+constexpr int most_slips = 8;            // past what is in a way
 constexpr double parallel = 1e-9;      // determinant of normals' products: a smaller set does
 constexpr double same_normal = 0.999;  // cosine; feet closer than 2.5 degrees are one
 
@@ -78,30 +79,41 @@ bool GodObject::follow_what_is_clear(Surfaces surfaces) noexcept {
     return all_followed_;
 }
 
-std::optional<GodObject::Hit> GodObject::sweep(Surfaces surfaces, const Vector3d& to) noexcept {
+std::optional<GodObject::Hit> GodObject::sweep(Surfaces surfaces, const Vector3d& from,
+                                               const Vector3d& to) noexcept {
     std::optional<Hit> first;
     for (std::size_t i = 0; i < obstacles_.size(); ++i) {
         if (!obstacles_[i].followed) continue;
-        const auto contact = obstacles_[i].near.sweep_sphere(*surfaces[i], position_, to, radius_);
+        const auto contact = obstacles_[i].near.sweep_sphere(*surfaces[i], from, to, radius_);
         if (contact && !(first && first->contact.fraction <= contact->fraction)) first = {*contact, i};
     }
     return first;
 }
 
-std::optional<GodObject::Touch> GodObject::touch_on_the_way(Surfaces surfaces, const Vector3d& to) noexcept {
+std::optional<GodObject::Touch> GodObject::touch_on_the_way(Surfaces surfaces, const Vector3d& to,
+                                                            double slight) noexcept {
     if (is_known_clear() && is_known_clear_at(to)) return std::nullopt;
-    const auto hit = sweep(surfaces, to);
-    if (!hit) return std::nullopt;
-    const SweepContact& contact = hit->contact;
-    const TrianglePoint foot =
-        closest_point_on_triangle(contact.point, surfaces[hit->surface]->corners(contact.slot));
-    return Touch{{contact.point, foot.barycentric, radius_, contact.triangle, contact.slot, foot.feature},
-                 contact.normal,
-                 hit->surface};
+    Vector3d from = position_, aside = Vector3d::Zero();
+    for (int slip = 0;; ++slip) {
+        const auto hit = sweep(surfaces, from, to + aside);
+        if (!hit) return std::nullopt;
+        const SweepContact& contact = hit->contact;
+        if (slip == most_slips || contact.normal.dot(contact.point - to) + radius_ > slight) {
+            const TrianglePoint foot =
+                closest_point_on_triangle(contact.point, surfaces[hit->surface]->corners(contact.slot));
+            return Touch{
+                {contact.point, foot.barycentric, radius_, contact.triangle, contact.slot, foot.feature},
+                contact.normal,
+                hit->surface};
+        }
+        const Vector3d more = (skin + std::max(0.0, slight)) * contact.normal;
+        from += contact.fraction * (to + aside - from) + more;
+        aside += more;
+    }
 }
 
 void GodObject::settle_at(Surfaces surfaces, const Vector3d& to) noexcept {
-    if (position_ != to && !touch_on_the_way(surfaces, to)) position_ = to;
+    if (position_ != to && !touch_on_the_way(surfaces, to, -skin)) position_ = to;
 }
 
 // One round goes towards the device until nothing is in the way within the half-spaces touched in that round.
@@ -129,7 +141,7 @@ void GodObject::slide(Surfaces surfaces, const Vector3d& device, const Friction&
                 goal = position_ + way;
             }
             const Vector3d start = position_;
-            const auto hit = sweep(surfaces, goal);
+            const auto hit = sweep(surfaces, position_, goal);
             ++sweeps;
             blocked = hit.has_value();
             if (blocked)

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -34,6 +35,7 @@ class GodObject {
     static constexpr double skin = 1e-4;         ///< mm: above rounding (1e-12), below any edge (0.05)
     static constexpr double slide_slack = 0.05;  ///< mm per move
     static constexpr std::size_t max_touches = 4;
+    static constexpr double nothing = std::numeric_limits<double>::lowest();  ///< is slipped past
 
     /// One place where the sphere rests on a surface.
     struct Touch {
@@ -58,11 +60,13 @@ class GodObject {
               const Friction& friction = {}) noexcept;
 
     /// Where the sphere, on a straight way from its position to `to` (mm), would first touch a surface; it
-    /// stays where it is.
+    /// stays where it is. Not counted, and gone round by as little as it takes, is what it only slips past:
+    /// there its end is beyond the plane of the touch by no more than `slight`, mm.
     std::optional<Touch> touch_on_the_way(std::span<const collision::CollisionSurface* const> surfaces,
-                                          const Eigen::Vector3d& to) noexcept;
+                                          const Eigen::Vector3d& to, double slight = nothing) noexcept;
 
-    /// Goes straight to `to` (mm), or stays where it is if a surface is in the way.
+    /// Goes to `to` (mm), straight but for what it slips past, or stays where it is if a surface is in the
+    /// way.
     void settle_at(std::span<const collision::CollisionSurface* const> surfaces,
                    const Eigen::Vector3d& to) noexcept;
 
@@ -105,7 +109,8 @@ class GodObject {
     }
     void let_go() noexcept;
     void slide(Surfaces surfaces, const Eigen::Vector3d& device, const Friction& friction) noexcept;
-    std::optional<Hit> sweep(Surfaces surfaces, const Eigen::Vector3d& to) noexcept;
+    std::optional<Hit> sweep(Surfaces surfaces, const Eigen::Vector3d& from,
+                             const Eigen::Vector3d& to) noexcept;
     void touch(const Hit& hit, const Eigen::Vector3d& way) noexcept;
     void find_touches(Surfaces surfaces, const Eigen::Vector3d& device) noexcept;
     bool follow_what_is_clear(Surfaces surfaces) noexcept;

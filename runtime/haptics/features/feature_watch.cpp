@@ -20,8 +20,7 @@ namespace {
 
 // mm, rad; a choice: with more, pairs are gathered less often and there are more of them.
 constexpr Motion most_slack{.way = 0.4, .turn = 0.01};
-constexpr int halvings = 4;               // of the slack, where pairs find no room
-constexpr double travel_rounding = 1e-9;  // mm
+constexpr int halvings = 4;  // of the slack, where pairs find no room
 
 }  // namespace
 
@@ -32,10 +31,7 @@ void FeatureWatch::reset() noexcept {
 }
 
 void FeatureWatch::look(const ToolPose& pose) noexcept {
-    if (valid_) {
-        const Motion motion = motion_between(pose_, pose);
-        travel_ = {travel_.way + motion.way, travel_.turn + motion.turn};
-    }
+    if (valid_) travel_ += motion_between(pose_, pose);
     pose_ = pose;
     const Isometry3d X_PT = placement_of(pose);
     if (!holds()) gather(X_PT);

@@ -11,7 +11,8 @@ using Eigen::Vector3d;
 
 constexpr double room_for_rounding = 1e-3;  // mm
 constexpr double room_to_follow = 0.1;      // mm that a tool that turns is behind where it would come to rest
-constexpr double slightly_beyond = 2e-3;    // mm: of a plane that a tool that turns passes by
+// mm of a plane that a tool that turns slips past: turning bends planes, and the next tick finds so little.
+constexpr double slightly_beyond = 2e-3;
 
 }  // namespace
 
@@ -55,12 +56,11 @@ bool ContinuousContact::hold_off_rigid(std::span<TickResult> results) noexcept {
         for (std::size_t p = 0; p < tools_[t].parts_felt; ++p) {
             Part& part = tools_[t].parts[p];
             const Vector3d push = pushed + equilibrium_.turned_off(t, p);
-            const auto touch = part.on_rigid.touch_on_the_way(rigid_surfaces_, part.device + push);
+            const auto touch = part.on_rigid.touch_on_the_way(
+                rigid_surfaces_, part.device + push, torsion_ > 0 ? slightly_beyond : GodObject::nothing);
             if (!touch) continue;
             const double gap = touch->normal.dot(touch->foot.point - part.device) + part.on_rigid.radius();
             const double beyond = gap - touch->normal.dot(push);
-            // Turning bends planes; where one is passed by so little, the next tick finds it.
-            if (torsion_ > 0 && beyond < slightly_beyond) continue;
             if (met_.full() && beyond <= met_[met_.size() - 1].beyond) continue;
             if (met_.full()) met_.cut(met_.size() - 1);
             met_.push_back({t, p, *touch, gap, beyond});

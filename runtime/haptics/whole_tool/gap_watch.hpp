@@ -8,6 +8,8 @@
 
 namespace palpate::haptics {
 
+inline constexpr double travel_rounding = 1e-9;  ///< mm, of a sum of motions
+
 /// Finds where a tool is near bodies. Everything is allocated on construction; all but that is realtime-safe.
 /// A class that derives from this one defines its destructor, first of its virtual functions, beside its
 /// constructor, as a ContactMethod does.

@@ -33,7 +33,7 @@ class Pairs {
     std::vector<LocalMinimum> by_cones(const Eigen::Isometry3d& X_BA, double within) {
         std::vector<LocalMinimum> minima;
         looked_at_ = 0;
-        const ConeReach reach{.within = within};
+        const ConeReach reach{within};
         for_each_pair(
             tree_a_, tree_b_,
             [&](const ConeNode& a, const ConeNode& b) { return may_be_nearest(a, X_BA, b, reach); },
@@ -190,7 +190,7 @@ TEST(NormalCones, a_surface_moved_within_its_slack_has_no_minimum_that_was_left_
     std::mt19937 random(7);
     std::uniform_real_distribution<double> part(-1, 1);
     const auto direction = [&] { return Vector3d(part(random), part(random), part(random)).normalized(); };
-    const ConeReach wide{.within = 3, .slack = 0.5, .turn = 0.05};
+    const ConeReach wide{3, 0.5, 0.05};
     std::size_t found = 0;
     for (int pose = 0; pose < 50; ++pose) {
         const Eigen::Isometry3d X_BA = any_placement(15.5, random);
