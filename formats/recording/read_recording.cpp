@@ -70,6 +70,9 @@ RecordingHead read_head(const Hdf5File& file) {
     head.clock = file.text_attribute("/", "clock");
     head.coupling_stiffness = file.attribute<double>("/", "coupling_stiffness");
     check_name(head.case_name, file.name());
+    if (file.has_attribute("/", "every")) head.every = file.attribute<std::int32_t>("/", "every");
+    if (head.every < 1 || head.every > longest_every)
+        file.refuse("/", "every " + std::to_string(head.every), "1 to " + std::to_string(longest_every));
     read_fields(file, "/haptics", haptic_fields, head.haptics);
     check_haptics(head.haptics, file.name() + ": /haptics");
     if (file.contains("/tool")) head.tool = read_tool(file);

@@ -18,6 +18,8 @@ namespace palpate::recording {
 
 /// Most tools of one run.
 inline constexpr std::int32_t most_recorded_tools = 64;
+/// Most ticks from one of its rows to the next.
+inline constexpr std::int32_t longest_every = 1'000'000;
 /// Most bodies that it says to be hyperelastic.
 inline constexpr std::int32_t most_hyperelastic = 1024;
 
@@ -40,6 +42,7 @@ struct RecordingHead {
     std::optional<ToolBody> tool{};       ///< what was held, if it had a body of its own
     std::optional<JawSettings> jaws{};    ///< of a forceps, whose jaws are tools 0 and 1
     std::vector<std::string> hyperelastic{};  ///< deformable bodies whose tissue was neo-Hookean
+    std::int32_t every = 1;                   ///< it keeps one tick of so many: 1: all, as a replay needs
 };
 
 /// What a recording still holds of a run, oldest first.

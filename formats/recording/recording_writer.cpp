@@ -55,6 +55,7 @@ void write_head(Hdf5Writer& writer, const RecordingHead& head) {
     writer.attribute("/", "clock", head.clock);
     writer.attribute("/", "tools", static_cast<std::int32_t>(head.devices.size()));
     writer.attribute("/", "coupling_stiffness", head.coupling_stiffness);
+    if (head.every > 1) writer.attribute("/", "every", head.every);
     writer.group("/haptics");
     write_fields(writer, "/haptics", haptic_fields, head.haptics);
     if (head.tool) write_tool(writer, *head.tool);

@@ -35,6 +35,7 @@ nlohmann::ordered_json replay_recording(const std::filesystem::path& file, const
                                         std::span<const std::string> trusted_keys, TouchOutputs& outputs,
                                         cli::Session& session) {
     const recording::Recording recording = recording::read_recording(file);
+    require_all_ticks(recording, file);
     const Case patient_case = recorded_case(recording, file, asset, trusted_keys);
     const auto model = model_of(recording, file, patient_case);
     std::vector<RunRecord> records = outputs.records_of(*model);

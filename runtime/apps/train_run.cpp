@@ -113,9 +113,11 @@ TrainOutcome run_in_window(const TrainRun& run, VisualFrame& frame) {
     const auto take_one = [&](const TickResult& tick) {
         outcome.felt.add(tick);
         run.lesson.take(tick);
-        if (tick.tool == 0) widen(frame.force_range, vector_of(tick.force).norm());
+        if (tick.tool == 0 && run.lesson.review() == nullptr)
+            widen(frame.force_range, vector_of(tick.force).norm());
     };
     const session::Session::Sink take = [&](const TickResult& tick) {
+        run.lesson.record(tick);
         if (!session.jaws()) return take_one(tick);
         // Of a forceps the exercise sees what the hand that holds both jaws does.
         if (tick.tool == 0)
@@ -130,6 +132,7 @@ TrainOutcome run_in_window(const TrainRun& run, VisualFrame& frame) {
     session.start();
     const auto began = Clock::now();
     auto frame_began = began;
+    double frame_seconds = 0;  // that the last one took
     const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - began).count(); };
     while (!run.window.closed() && !run.window.lost() && !cli::interrupt_asked() &&
            (run.seconds <= 0 || elapsed() < run.seconds)) {
@@ -138,9 +141,18 @@ TrainOutcome run_in_window(const TrainRun& run, VisualFrame& frame) {
         const TickResult& tick = *ticks.front();
         pulse.see(tick.tick);
         const auto led_hand = run.lesson.hand(run.window.hand());
-        frame.tick_rate_hz = rate.update(tick.tick);
-        shape.follow(session.model(), tick.time, ticks, frame.displacements);
-        fill_frame(run, ticks, frame);
+        const double tick_rate = rate.update(tick.tick);
+        AttemptReview* const review = run.lesson.review();
+        if (review != nullptr) {
+            if (const auto share = run.window.take_sought()) review->seek(*share);
+            review->show(frame_seconds, frame);
+            frame.lesson = run.lesson.view(0, frame.tool_position);
+        } else {
+            frame.timeline.reset();
+            frame.tick_rate_hz = tick_rate;
+            shape.follow(session.model(), tick.time, ticks, frame.displacements);
+            fill_frame(run, ticks, frame);
+        }
         const double drawn = tick.time;
         run.window.show(frame);
         // Mouse and keys do not take it off its way: it would come back through what lies between.
@@ -149,13 +161,17 @@ TrainOutcome run_in_window(const TrainRun& run, VisualFrame& frame) {
         outcome.late_ns.record(static_cast<std::uint64_t>(1e9 * std::max(0.0, late)));
         run.keys.sound().follow(frame.force.norm());
         session.visual_beat();
-        session.guide(run.window.hand(), run.window.held_orientation());
+        if (review != nullptr)
+            run.window.place_hand(vector_of(tick.device_position));
+        else
+            session.guide(run.window.hand(), run.window.held_orientation());
         frame.force_range.setConstant(frame.force.norm());
         session.pump(take);
         std::this_thread::sleep_until(frame_began + shortest_frame);
         const auto now = Clock::now();
         outcome.frame_ns.record(
             static_cast<std::uint64_t>(std::chrono::nanoseconds(now - frame_began).count()));
+        frame_seconds = std::chrono::duration<double>(now - frame_began).count();
         frame_began = now;
     }
     outcome.seconds = elapsed();

@@ -205,6 +205,13 @@ std::unique_ptr<HapticModel> model_of(const Recording& recording, const std::fil
     return model;
 }
 
+void require_all_ticks(const Recording& recording, const std::filesystem::path& file) {
+    if (recording.head.every > 1)
+        throw InvalidInput(
+            {file.string(), "keeps one tick of " + std::to_string(recording.head.every) + " alone",
+             "a recording of --record, with every tick", "look at it with 'palpate train CASE --play FILE'"});
+}
+
 ReplayOutcome replay(const Recording& recording, HapticModel& model,
                      const std::function<void(const TickResult&)>& sink) {
     return Player(recording, model, sink).play();

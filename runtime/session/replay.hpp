@@ -51,13 +51,16 @@ Case recorded_case(const recording::Recording& recording, const std::filesystem:
 std::unique_ptr<haptics::HapticModel> model_of(const recording::Recording& recording,
                                                const std::filesystem::path& file, const Case& patient_case);
 
+/// Throws InvalidInput naming `file` if the recording keeps one tick of many alone.
+void require_all_ticks(const recording::Recording& recording, const std::filesystem::path& file);
+
 /// Feeds what the recorded devices said, and every fault of the run, to a fresh model and compares the
 /// forces and torques; a method that needs detection detects what it detected in the run. `sink` gets each
 /// tool's result of each tick, with the run's own timing. Where ticks are missing, the model is reset and
 /// taken up again at the third tick in a row that is free: no contact, no force, no torque, no fault and none
 /// of its after-effects; a method that needs detection needs one in it besides. What went before such a tick
 /// has no influence on the forces after it; where tissue creeps, that takes HapticModel::memory_ticks() more
-/// of them.
+/// of them. A recording that keeps one tick of many has no tick from which to go on: require_all_ticks().
 ReplayOutcome replay(const recording::Recording& recording, haptics::HapticModel& model,
                      const std::function<void(const TickResult&)>& sink);
 

@@ -354,11 +354,14 @@ struct TrainWindow::Parts {
         buttons.light("h", overlay.help_shown());
     }
 
-    void show_lesson_buttons(const std::vector<LessonChoice>& actions, bool shown) {
-        std::vector<ButtonText> texts;
-        for (const LessonChoice& action : actions) texts.push_back({action.key, action.text});
-        lesson_buttons.set(texts);
+    // Above the window's own buttons, or in their place where the exercise takes all keys.
+    void show_buttons(const LessonView& lesson, bool shown) {
         const int* size = window->GetSize();
+        buttons.update(shown && !lesson.takes_keys, size[0], size[1]);
+        lesson_buttons.move_to(lesson.takes_keys ? 0 : 1);
+        std::vector<ButtonText> texts;
+        for (const LessonChoice& action : lesson.actions) texts.push_back({action.key, action.text});
+        lesson_buttons.set(texts);
         lesson_buttons.update(shown, size[0], size[1]);
     }
 
@@ -436,9 +439,7 @@ void TrainWindow::draw(const VisualFrame& frame) {
     const int* size = p.window->GetSize();
     p.panel.update(frame.lesson, p.thumbnails, frame.force.norm(), size[0], size[1]);
     p.light_buttons(frame);
-    const bool no_page = !frame.lesson.page && !frame.film_rate_hz;
-    p.buttons.update(no_page, size[0], size[1]);
-    p.show_lesson_buttons(frame.lesson.actions, no_page);
+    p.show_buttons(frame.lesson, !frame.lesson.page && !frame.film_rate_hz);
     p.timeline.update(frame.timeline);
     p.window->Render();
     if (const auto told = p.pictures.outcome()) p.overlay.tell(*told);

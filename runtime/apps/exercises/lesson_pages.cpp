@@ -165,6 +165,7 @@ LessonPage result_page(const Attempt& attempt, std::span<const PastAttempt> hist
     }
     page.choices = {{"return", translated("Enter") + "   " + translated("Once more")},
                     {"space", translated("Space") + "   " + translated("Look at the way that the hand took")},
+                    {"f4", "F4   " + translated("Watch it again")},
                     {"f2", "F2   " + translated("Change this exercise")},
                     {"backspace", translated("Backspace") + "   " + translated("Other exercises")}};
     return page;
@@ -180,6 +181,12 @@ LessonView trainee_view(const std::string& typed, const LessonSetting& setting) 
     view.page->choices = {{"Return", translated("Enter") + "   " + translated("Take it")},
                           {"Escape", translated("Esc") + "   " + translated("Stay {}", setting.trainee)}};
     return view;
+}
+
+void show_review(LessonView& view) {
+    view.page.reset();
+    view.takes_keys = true;
+    view.actions = {action("F4", "F4", translated("Back to the figures"))};
 }
 
 LessonView lesson_view(const Lesson& lesson, const LessonSetting& setting, double force,

@@ -25,6 +25,9 @@ visual::LessonPage result_page(const training::Attempt& attempt,
 /// The page on which another pseudonym is typed; `typed`: so far.
 visual::LessonView trainee_view(const std::string& typed, const LessonSetting& setting);
 
+/// Has an attempt that is looked back at shown again in place of its page.
+void show_review(visual::LessonView& view);
+
 /// What the window shows of a lesson. `force`: N, on the device; `tip`: of the tool, p_P, mm; `result`: of
 /// the attempt that is looked back at.
 visual::LessonView lesson_view(const training::Lesson& lesson, const LessonSetting& setting, double force,

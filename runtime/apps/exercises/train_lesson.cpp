@@ -154,11 +154,20 @@ TrainLesson::TrainLesson(const LessonOptions& options, const std::vector<LaidOut
 
 void TrainLesson::press(const std::string& key, const TickResult& tick) {
     if (typed_trainee_) return type_trainee(key);
+    if (review_) {
+        if (key == "F4" || key == "BackSpace" || key == "Escape")
+            review_.reset();
+        else
+            review_->press(key);
+        return;
+    }
     if (!editor_) {
         if (key == "f2")
             begin_to_edit();
         else if (key == "f3" && lesson_.phase() == Phase::choosing)
             typed_trainee_.emplace();
+        else if (key == "f4" && lesson_.phase() == Phase::looking_back && !last_.ticks.empty())
+            review_.emplace(last_, run_);
         else
             lesson_.press(key);
         return;
@@ -241,8 +250,16 @@ void TrainLesson::grant(Wish wish) {
     lesson_.choose(index);
 }
 
+void TrainLesson::record(const TickResult& tick) {
+    if (lesson_.phase() != Phase::doing) return;
+    if (!began_) {
+        began_ = std::time(nullptr);
+        excerpt_.begin();
+    }
+    excerpt_.add(tick);
+}
+
 void TrainLesson::take(const TickResult& tick) {
-    if (lesson_.phase() == Phase::doing && !began_) began_ = std::time(nullptr);
     lesson_.take(tick);
     if (tick.tool != 0) return;
     const bool pressed = (tick.buttons & 1U) != 0;
@@ -253,7 +270,9 @@ void TrainLesson::take(const TickResult& tick) {
 visual::LessonView TrainLesson::view(double force, const Eigen::Vector3d& tip) const {
     if (typed_trainee_) return trainee_view(*typed_trainee_, setting_);
     if (editor_) return editor_view(*editor_, draft_, exercise_file_.filename().string());
-    return lesson_view(lesson_, setting_, force, tip, result_);
+    visual::LessonView view = lesson_view(lesson_, setting_, force, tip, result_);
+    if (review_) show_review(view);
+    return view;
 }
 
 std::optional<Eigen::Vector3d> TrainLesson::hand(const Eigen::Vector3d& now) {
@@ -275,6 +294,18 @@ std::optional<Eigen::Vector3d> TrainLesson::hand(const Eigen::Vector3d& now) {
     return point_along(way_back_, std::clamp(share, 0.0, 1.0) * length_of(way_back_));
 }
 
+// To be looked at: 50 ticks a second of all tools.
+void TrainLesson::keep_recording(const std::filesystem::path& path) {
+    recording::Recording recording = excerpt_.recording();
+    const std::int32_t every = recording.head.every;
+    recording.head = run_.recording_head(cli::version());
+    recording.head.every = every;
+    cli::StagedFile file(path, false);
+    session::write_recording(recording, file.path());
+    file.commit();
+    last_ = std::move(recording);
+}
+
 void TrainLesson::keep(const Attempt& attempt) {
     const std::time_t now = std::time(nullptr);
     const auto begun = std::exchange(began_, std::nullopt);
@@ -286,11 +317,16 @@ void TrainLesson::keep(const Attempt& attempt) {
                            .scheme = std::string(run_.model().method().name),
                            .version = cli::version()};
     attempts_.push_back(attempt_json(head, attempt));
+    last_ = {};
     const std::filesystem::path folder = attempts_folder_ / head.trainee;
     try {
         std::filesystem::create_directories(folder);
         const std::filesystem::path path = free_name(folder, head.when, attempt.exercise().name);
         cli::write_text_file(path.string() + ".csv", attempt_csv(attempt), false);
+        if (!excerpt_.recording().ticks.empty()) {
+            keep_recording(path.string() + ".h5");
+            attempts_.back()["recording"] = path.filename().string() + ".h5";
+        }
         cli::write_text_file(path.string() + ".json", attempts_.back().dump(2) + "\n", false);
         std::ofstream statements(folder / "statements.jsonl", std::ios::app);
         for (const nlohmann::ordered_json& statement : statements_of(head, attempt))

@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "runtime/apps/exercises/attempt_review.hpp"
 #include "runtime/apps/exercises/lesson_pages.hpp"
+#include "runtime/session/playback/run_excerpt.hpp"
 #include "runtime/session/session.hpp"
 #include "runtime/session/touch_target.hpp"
 #include "runtime/training/lay_out.hpp"
@@ -55,11 +57,16 @@ class TrainLesson {
 
     /// A key, or a page's choice, while `tick` is felt: "f2" begins to make an exercise on the start page,
     /// and to change the chosen one while it counts down or is looked back at, see ExerciseEditor then; "f3"
-    /// there begins to type another pseudonym; see Lesson for all others.
+    /// there begins to type another pseudonym; "f4" has an attempt that is looked back at shown again, see
+    /// AttemptReview then, until "F4", "BackSpace" or "Escape"; see Lesson for all others.
     void press(const std::string& key, const TickResult& tick);
+    /// Takes a tick of any tool as its device felt it, before take() gets what the hand felt.
+    void record(const TickResult& tick);
     /// Takes a tick of any tool, see Lesson; while marks are set, a press of the lowest button sets one.
     void take(const TickResult& tick);
     const training::Lesson& lesson() const { return lesson_; }
+    /// An attempt that is shown again, in place of what is felt; null: none.
+    AttemptReview* review() { return review_ ? &*review_ : nullptr; }
     /// Cuts an attempt short and keeps it.
     void close() { lesson_.close(); }
     /// `force`: N, on the device; `tip`: of the tool, p_P, mm.
@@ -72,6 +79,7 @@ class TrainLesson {
 
   private:
     void keep(const training::Attempt& attempt);
+    void keep_recording(const std::filesystem::path& path);
     void begin_to_edit();
     void type_trainee(const std::string& key);
     void grant(training::Wish wish);
@@ -91,9 +99,12 @@ class TrainLesson {
     std::filesystem::path exercise_file_;            // keeps what a teacher makes
     std::vector<std::string> written_;               // names in it at first, also of what found no room here
     std::optional<training::ExerciseEditor> editor_;
-    training::Exercise draft_;          // as the editor has it
-    bool button_ = false;               // at the last tick
-    std::optional<std::time_t> began_;  // of the attempt that goes on
+    training::Exercise draft_;             // as the editor has it
+    bool button_ = false;                  // at the last tick
+    std::optional<std::time_t> began_;     // of the attempt that goes on
+    session::RunExcerpt excerpt_;          // of that
+    recording::Recording last_;            // of the last one; empty: none that could be kept
+    std::optional<AttemptReview> review_;  // of that
 };
 
 }  // namespace palpate::apps

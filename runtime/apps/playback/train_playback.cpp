@@ -20,6 +20,7 @@
 #include "runtime/apps/playback/expert_ghost.hpp"
 #include "runtime/apps/playback/film_output.hpp"
 #include "runtime/apps/playback/recorded_scene.hpp"
+#include "runtime/apps/playback/recorded_timeline.hpp"
 #include "runtime/devices/device_model.hpp"
 #include "runtime/session/playback/playback_clock.hpp"
 #include "runtime/session/replay.hpp"
@@ -37,19 +38,6 @@ using namespace visual;
 using Clock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t timeline_columns = 600;
-
-// "1/4" for 0.25.
-std::string speed_text(double speed) {
-    return speed < 1 ? fmt::format("1/{:g}", 1 / speed) : fmt::format("{:g}", speed);
-}
-
-std::string timeline_text(const PlaybackClock& clock, bool filmed) {
-    return texts::translated("{:.2f} of {:.2f} s    {} x{}", clock.time() - clock.begins(),
-                             clock.ends() - clock.begins(), speed_text(clock.speed()),
-                             clock.runs() || filmed ? "" : "    " + texts::translated("paused"));
-}
-
 // A recording in its window, frame by frame.
 class RecordingPlayer {
   public:
@@ -61,9 +49,7 @@ class RecordingPlayer {
           frame_(frame),
           demonstration_(demonstration_of(scene.track())),
           clock_(scene.track().front()->time, scene.track().back()->time, options.speed) {
-        frame_.timeline =
-            TimelineView{.forces = force_columns(scene.track(), timeline_columns,
-                                                 [&](const Tick& tick) { return scene.felt(tick); })};
+        frame_.timeline = timeline_of(scene);
     }
 
     // Until the user or the time ends it.
@@ -135,8 +121,7 @@ class RecordingPlayer {
         if (ghost_)
             std::ranges::move(ghost_->at(clock_.time() - demonstration_.begins),
                               std::back_inserter(frame_.other_tools));
-        frame_.timeline->share = clock_.share();
-        frame_.timeline->text = timeline_text(clock_, filmed);
+        show_time(clock_, filmed, *frame_.timeline);
         window_.show(frame_);
         window_.require_display();
         ++frames_;
@@ -161,7 +146,7 @@ class RecordingPlayer {
 void tell_what_is_missing(const recording::Recording& recording, const RecordedTrack& track,
                           const PlaybackOptions& options) {
     const std::string file = options.play.string();
-    if (const std::int64_t missing = missing_ticks(track))
+    if (const std::int64_t missing = missing_ticks(track, recording.head.every))
         spdlog::warn("{}: {} ticks are missing; the one before them is shown for as long", file, missing);
     if (recording.rows_unreadable > 0)
         spdlog::warn("{}: {} rows at the end never reached the disk", file, recording.rows_unreadable);
@@ -264,7 +249,7 @@ Json play_recording(const PlaybackOptions& options, const PlaybackWindow& shown,
                 {"device", recording.head.devices[options.tool].name},
                 {"tool", options.tool},
                 {"ticks", track.size()},
-                {"missing_ticks", missing_ticks(track)},
+                {"missing_ticks", missing_ticks(track, recording.head.every)},
                 {"begins_s", track.front()->time},
                 {"ends_s", track.back()->time},
                 {"speed", player.speed()},

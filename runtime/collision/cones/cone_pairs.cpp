@@ -43,8 +43,7 @@ bool may_be_nearest(const ConeNode& a, const Eigen::Isometry3d& X_BA, const Cone
                          reach.turn * static_cast<double>(a.arm);
     if (apart - radii > reach.within) return false;
     const Vector3d axis_a = X_BA.linear() * vector(a.axis), axis_b = vector(b.axis);
-    const Angle of_a = half_angle(a) + Angle{reach.cosine, reach.sine},
-                of_b = half_angle(b);
+    const Angle of_a = half_angle(a) + Angle{reach.cosine, reach.sine}, of_b = half_angle(b);
     if (!is_within(axis_b, -axis_a, 1, of_a + of_b)) return false;
     if (!(apart > radii)) return true;
     // The way from a point of b to one of a goes along that of the centres up to so much.

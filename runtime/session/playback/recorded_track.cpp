@@ -42,8 +42,8 @@ TickResult with_contacts(const Recording& recording, const Tick& tick) {
     return result;
 }
 
-std::int64_t missing_ticks(const RecordedTrack& track) {
-    return track.back()->tick - track.front()->tick + 1 - std::ssize(track);
+std::int64_t missing_ticks(const RecordedTrack& track, std::int32_t every) {
+    return (track.back()->tick - track.front()->tick) / every + 1 - std::ssize(track);
 }
 
 double tick_rate_at(const RecordedTrack& track, double time) {

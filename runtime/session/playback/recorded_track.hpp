@@ -28,8 +28,9 @@ const Tick& tick_at(const RecordedTrack& track, double time);
 /// A recorded tick with its contacts; without any where they have been overwritten.
 TickResult with_contacts(const recording::Recording& recording, const Tick& tick);
 
-/// How many ticks are missing between the first and the last.
-std::int64_t missing_ticks(const RecordedTrack& track);
+/// How many ticks are missing between the first and the last, of those that a recording of one tick of
+/// `every` keeps.
+std::int64_t missing_ticks(const RecordedTrack& track, std::int32_t every = 1);
 
 /// Ticks per second of the half second that ends at `time`, as the run had them; 0 at its start.
 double tick_rate_at(const RecordedTrack& track, double time);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <fmt/format.h>
+#include <utility>
 #include <vtkTextProperty.h>
 
 #include "runtime/texts/translated.hpp"
@@ -41,6 +42,10 @@ std::vector<ButtonText> window_buttons(bool has_jaws) {
 
 ButtonBar::ButtonBar(vtkRenderer* renderer, int row) : renderer_(renderer), row_(row) {
     make_button(tip_, 0.95, renderer);
+}
+
+void ButtonBar::move_to(int row) {
+    if (std::exchange(row_, row) != row) width_ = 0;  // to be made anew
 }
 
 void ButtonBar::set(const std::vector<ButtonText>& buttons) {

@@ -30,6 +30,8 @@ class ButtonBar {
     /// `row`: counted from the window's edge, from 0 on.
     ButtonBar(vtkRenderer* renderer, int row);
 
+    /// Is that row from the next update() on.
+    void move_to(int row);
     /// What is in the row from now on; nothing is on.
     void set(const std::vector<ButtonText>& buttons);
     /// Shows the row, or nothing while a page lies over the scene. `width` and `height`: pixels.

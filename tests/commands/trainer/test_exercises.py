@@ -9,7 +9,7 @@ import unittest
 
 import numpy as np
 
-from trainer_case import TRAIN, TrainerCase, yellow_pixels
+from trainer_case import TIMELINE, TRAIN, TrainerCase, yellow_pixels
 from recorded import kept  # found by trainer_case
 
 RADIUS = 1.5  # mm, of the sample's tool; the cube's free top is at z = 20 mm
@@ -268,6 +268,35 @@ class Exercises(TrainerCase):
         statements = [json.loads(row) for row in (self.attempts / "T-1" / "statements.jsonl").read_text().splitlines()]
         self.assertEqual({statement["actor"]["account"]["name"] for statement in statements}, {"T-1"})
         self.assertEqual([statement["verb"]["display"]["en"] for statement in statements], ["initialized", "terminated"])
+
+    def test_an_attempt_is_watched_again_with_its_own_forces(self):
+        path, _ = self.hand([(0, 10, 10, 26), (1, 10, 10, 26), (1.5, 10, 10, 20), (2.5, 10, 10, 20), (3, 10, 10, 26), (60, 10, 10, 26)])
+        process, window = self.open_window("--exercise", "free", "--script", path)
+        time.sleep(5)
+        self.x("xdotool", "key", "e")
+        self.wait_for(lambda: self.shows_page(window))
+        self.assertIsNone(self.head(window))
+        self.x("xdotool", "key", "F4")
+        self.wait_for(lambda: self.head(window))
+        self.x("xdotool", "key", "space")  # stops it, and sits well before its end
+        self.x("xdotool", "mousemove", "--window", window, round(self.on_timeline(0.1)), TIMELINE)
+        self.x("xdotool", "click", 1)
+        self.wait_for(lambda: abs(self.head(window) - self.on_timeline(0.1)) < 4)
+        self.x("xdotool", "key", "F4")
+        self.wait_for(lambda: self.shows_page(window))
+        self.x("xdotool", "key", "q")
+        (attempt,) = self.finish(process)
+
+        kept = self.attempts / "T-1" / attempt["recording"]
+        self.assertEqual(json.loads((self.attempts / "T-1" / attempt["file"]).read_text())["recording"], kept.name)
+        shown = json.loads(subprocess.run([TRAIN, self.asset, "--json", "-", "--play", kept, "--speed", "4", "--seconds", "3"],
+                                          capture_output=True, text=True, check=True, env=self.server.environment).stdout)
+        self.assertEqual(shown["missing_ticks"], 0)
+        self.assertAlmostEqual(shown["ticks"] / 50, attempt["metrics"]["time_s"], delta=0.2)
+        self.assertAlmostEqual(shown["force_peak_n"], attempt["metrics"]["peak_force_n"], delta=0.1 * attempt["metrics"]["peak_force_n"])
+        replayed = subprocess.run([TRAIN.with_name("palpate-touch"), self.asset, "--replay", kept], capture_output=True, text=True)
+        self.assertEqual(replayed.returncode, 3)
+        self.assertIn("keeps one tick of 20", replayed.stderr)
 
     def test_another_trainee_types_a_pseudonym_and_goes_on_under_it(self):
         process, window = self.open_window()

@@ -12,25 +12,14 @@ import unittest
 
 import h5py
 from ogg_theora import packets_of, read_theora
-from trainer_case import TRAIN, TrainerCase
+from trainer_case import SIZE, TIMELINE, TRAIN, TrainerCase, pixels_like
 
 from x_server import XServer  # found by trainer_case
 
 sys.path.insert(0, "../trust")
 from forge import rehash  # noqa: E402
 
-SIZE = 1280, 720
-MARGIN = 0.017  # of the window's width, to either side of the timeline
-TIMELINE = 720 - 80  # a place within it, pixels from above
 SECONDS = 3
-
-
-def pixels_like(rgb, is_like):
-    return [i for i, pixel in enumerate(zip(rgb[0::3], rgb[1::3], rgb[2::3])) if is_like(*pixel)]
-
-
-def is_head(r, g, b):  # (1, 0.85, 0.3)
-    return r > 240 and 200 < g < 230 and 60 < b < 95
 
 
 def is_ghost(r, g, b):
@@ -71,16 +60,9 @@ class Playback(TrainerCase):
         self.assertEqual(last["force_n"], self.forces[last["tick"]])
         self.assertEqual(last["contacts"], self.contacts[last["tick"]])
 
-    def head(self, window):
-        """Where the timeline's head is, pixels from the left."""
-        rgb = subprocess.run(["convert", "xwd:-", "-depth", "8", "rgb:-"], input=self.screen(window), capture_output=True, check=True).stdout
-        columns = [i % SIZE[0] for i in pixels_like(rgb, is_head)]
-        self.assertTrue(columns)
-        return sum(columns) / len(columns)
-
     def place_of(self, tick):
         """Where a tick of the run lies on the timeline, pixels from the left."""
-        return SIZE[0] * (MARGIN + (1 - 2 * MARGIN) * tick / (len(self.forces) - 1))
+        return self.on_timeline(tick / (len(self.forces) - 1))
 
     def test_it_pauses_where_one_clicks_and_shows_the_recorded_force_of_that_moment(self):
         # So slow that it is not over before the first key comes, however slow the machine.

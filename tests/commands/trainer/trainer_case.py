@@ -16,6 +16,9 @@ from sample_asset import SampleAsset  # noqa: E402
 from x_server import NEEDED, XServer  # noqa: E402
 
 BESIDE_THE_ORGAN = 50, 300  # pixels of the sample's first view, and of its start page
+SIZE = 1280, 720
+TIMELINE_MARGIN = 0.017  # of the window's width, to either side of the timeline
+TIMELINE = 720 - 80  # a place within it, pixels from above
 STILL = 0.05  # of a channel's 255 on average: nothing moves
 TRAIN = pathlib.Path(os.environ["PALPATE_BIN"]) / "palpate-train"
 
@@ -23,6 +26,14 @@ TRAIN = pathlib.Path(os.environ["PALPATE_BIN"]) / "palpate-train"
 def pixels(dump):
     """Of an X window's dump: red, green, blue, red, ..."""
     return subprocess.run(["convert", "xwd:-", "-depth", "8", "rgb:-"], input=dump, capture_output=True, check=True).stdout
+
+
+def pixels_like(rgb, is_like):
+    return [i for i, pixel in enumerate(zip(rgb[0::3], rgb[1::3], rgb[2::3])) if is_like(*pixel)]
+
+
+def is_head(r, g, b):  # (1, 0.85, 0.3)
+    return r > 240 and 200 < g < 230 and 60 < b < 95
 
 
 def is_whole(picture):
@@ -77,6 +88,16 @@ class TrainerCase(SampleAsset):
         window = self.find_window()
         time.sleep(0.5)
         return process, window
+
+    def head(self, window):
+        """Where the timeline's head is, pixels from the left; nothing where there is none."""
+        heads = pixels_like(pixels(self.screen(window)), is_head)
+        columns = [i % SIZE[0] for i in heads if abs(i // SIZE[0] - TIMELINE + 7) < 4]  # between a page's lines
+        return sum(columns) / len(columns) if columns else None
+
+    def on_timeline(self, share):
+        """Where a share of a recording's time lies on the timeline, pixels from the left."""
+        return SIZE[0] * (TIMELINE_MARGIN + (1 - 2 * TIMELINE_MARGIN) * share)
 
     def wait_for(self, condition, seconds=30):
         """What the condition gives once that is true: a busy machine draws late."""

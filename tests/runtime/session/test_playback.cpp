@@ -14,6 +14,8 @@
 #include "runtime/session/playback/playback_clock.hpp"
 #include "runtime/session/playback/recorded_surfaces.hpp"
 #include "runtime/session/playback/recorded_track.hpp"
+#include "runtime/session/playback/run_excerpt.hpp"
+#include "runtime/session/replay.hpp"
 #include "runtime/session/run_recorder.hpp"
 #include "tests/formats/scratch.hpp"
 #include "tests/runtime/haptics/held_tool.hpp"
@@ -57,6 +59,74 @@ TEST(RecordedTrack, shows_the_last_tick_by_then_and_holds_it_where_ticks_are_mis
     EXPECT_EQ(tick_at(track, recording.ticks[40].time).tick, 60);
     EXPECT_EQ(tick_at(track, 1e9).tick, 99);
     EXPECT_EQ(missing_ticks(track), 20);
+}
+
+// Tick `number` of a tool, with so many contacts, numbered too.
+TickResult touching(std::int64_t number, std::int32_t tool, std::int32_t contacts) {
+    TickResult tick{};
+    tick.tick = number;
+    tick.tool = tool;
+    tick.time = 1e-3 * static_cast<double>(number + 1);
+    tick.contact_count = contacts;
+    for (std::int32_t k = 0; k < contacts; ++k) {
+        tick.contacts[static_cast<std::size_t>(k)].triangle = k;
+        tick.contacts[static_cast<std::size_t>(k)].force = static_cast<float>(number + tool);
+    }
+    return tick;
+}
+
+TEST(RunExcerpt, comes_back_from_its_file_with_fifty_ticks_a_second_of_every_tool) {
+    RunExcerpt excerpt;
+    excerpt.begin();
+    for (std::int64_t number = 1007; number < 1407; ++number)
+        for (const std::int32_t tool : {0, 1})
+            excerpt.add(touching(number, tool, static_cast<std::int32_t>(number / 20 % 60)));
+    Recording kept = excerpt.recording();
+    kept.head = {.palpate_version = "1",
+                 .case_name = "block",
+                 .asset_digest = "digest",
+                 .scheme = "continuous",
+                 .clock = "virtual",
+                 .coupling_stiffness = 0.5,
+                 .haptics = {},
+                 .devices = {{"first", {}}, {"second", {}}},
+                 .every = kept.head.every};
+    const sample::Scratch scratch;
+    write_recording(kept, scratch / "excerpt.h5");
+    const Recording read = read_recording(scratch / "excerpt.h5");
+    EXPECT_EQ(read.head.every, 20);
+    ASSERT_EQ(read.ticks.size(), 40U);
+    for (std::size_t row = 0; row < read.ticks.size(); ++row) {
+        const Tick& tick = read.ticks[row];
+        EXPECT_EQ(tick.tick, 1020 + 20 * static_cast<std::int64_t>(row / 2));
+        EXPECT_EQ(tick.tool, static_cast<std::int32_t>(row % 2));
+        const auto contacts = read.contacts_of(tick);
+        ASSERT_EQ(std::ssize(contacts), tick.tick / 20 % 60);
+        for (std::size_t k = 0; k < contacts.size(); ++k) {
+            EXPECT_EQ(contacts[k].triangle, static_cast<std::int32_t>(k));
+            EXPECT_EQ(contacts[k].force, static_cast<float>(tick.tick + tick.tool));
+        }
+    }
+    EXPECT_EQ(missing_ticks(track_of(read, 1, "excerpt.h5"), read.head.every), 0);
+    EXPECT_THROW(require_all_ticks(read, "excerpt.h5"), InvalidInput);
+}
+
+TEST(RunExcerpt, that_becomes_long_keeps_fewer_ticks_of_all_of_it) {
+    for (const std::int32_t contacts : {0, 64}) {
+        RunExcerpt excerpt;
+        excerpt.begin();
+        constexpr std::int64_t last = 40'000;
+        for (std::int64_t k = 0; k <= last; ++k) excerpt.add(touching(20 * k, 0, contacts));
+        const Recording& kept = excerpt.recording();
+        EXPECT_LE(kept.ticks.size(), RunExcerpt::most_rows);
+        EXPECT_LE(kept.contacts.size(), RunExcerpt::most_contacts);
+        EXPECT_GT(kept.ticks.size() + kept.contacts.size() / 10, RunExcerpt::most_rows / 2);
+        for (std::size_t row = 0; row < kept.ticks.size(); ++row) {
+            ASSERT_EQ(kept.ticks[row].tick, static_cast<std::int64_t>(row) * kept.head.every);
+            ASSERT_EQ(std::ssize(kept.contacts_of(kept.ticks[row])), contacts);
+        }
+        EXPECT_GT(kept.ticks.back().tick + kept.head.every, 20 * last);
+    }
 }
 
 TEST(RecordedTrack, is_of_one_tool_and_refuses_one_without_ticks) {
