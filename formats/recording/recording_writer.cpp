@@ -110,6 +110,8 @@ void make_recording(const std::filesystem::path& path, const RecordingHead& head
     if (head.devices.empty() || head.devices.size() > most_recorded_tools)
         refuse(std::to_string(head.devices.size()) + " tools", "1 to " + std::to_string(most_recorded_tools));
     if (ticks < 2 || ticks > most_ticks) refuse(std::to_string(ticks) + " rows", "2 or more");
+    if (head.every < 1 || head.every > longest_every)
+        refuse("one tick of " + std::to_string(head.every), "1 to " + std::to_string(longest_every));
     for (const std::string* text : {&head.palpate_version, &head.asset_digest, &head.scheme, &head.clock})
         if (text->empty()) refuse("an empty text in the head", "");
     {

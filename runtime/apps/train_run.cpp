@@ -70,6 +70,15 @@ void fill_frame(const TrainRun& run, std::span<const TickResult* const> ticks, V
                           std::back_inserter(frame.other_tools));
 }
 
+// An attempt in place of what is felt now, `seconds` later than in the last frame.
+void show_again(const TrainRun& run, AttemptReview& review, double seconds, VisualFrame& frame) {
+    if (const auto share = run.window.take_sought()) review.seek(*share);
+    review.show(seconds, frame);
+    if (!run.shows_shaft) frame.shaft.setZero();
+    frame.force_range.setConstant(frame.force.norm());
+    frame.lesson = run.lesson.view(0, frame.tool_position);
+}
+
 // What the hand did in the last tick.
 TickResult hand_tick(session::Session& session) {
     if (session.jaws())
@@ -113,8 +122,7 @@ TrainOutcome run_in_window(const TrainRun& run, VisualFrame& frame) {
     const auto take_one = [&](const TickResult& tick) {
         outcome.felt.add(tick);
         run.lesson.take(tick);
-        if (tick.tool == 0 && run.lesson.review() == nullptr)
-            widen(frame.force_range, vector_of(tick.force).norm());
+        if (tick.tool == 0) widen(frame.force_range, vector_of(tick.force).norm());
     };
     const session::Session::Sink take = [&](const TickResult& tick) {
         run.lesson.record(tick);
@@ -132,39 +140,37 @@ TrainOutcome run_in_window(const TrainRun& run, VisualFrame& frame) {
     session.start();
     const auto began = Clock::now();
     auto frame_began = began;
-    double frame_seconds = 0;  // that the last one took
+    double frame_seconds = 0;   // that the last one took
+    VisualFrame again = frame;  // of an attempt that is shown again
+    bool page_takes_keys = false;
     const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - began).count(); };
     while (!run.window.closed() && !run.window.lost() && !cli::interrupt_asked() &&
            (run.seconds <= 0 || elapsed() < run.seconds)) {
-        take_keys(run, frame.lesson.takes_keys);
+        take_keys(run, page_takes_keys);
         for (std::size_t tool = 0; tool < ticks.size(); ++tool) ticks[tool] = &session.latest(tool);
         const TickResult& tick = *ticks.front();
         pulse.see(tick.tick);
         const auto led_hand = run.lesson.hand(run.window.hand());
         const double tick_rate = rate.update(tick.tick);
         AttemptReview* const review = run.lesson.review();
+        VisualFrame& shown = review != nullptr ? again : frame;
         if (review != nullptr) {
-            if (const auto share = run.window.take_sought()) review->seek(*share);
-            review->show(frame_seconds, frame);
-            frame.lesson = run.lesson.view(0, frame.tool_position);
+            show_again(run, *review, frame_seconds, again);
         } else {
-            frame.timeline.reset();
             frame.tick_rate_hz = tick_rate;
             shape.follow(session.model(), tick.time, ticks, frame.displacements);
             fill_frame(run, ticks, frame);
         }
         const double drawn = tick.time;
-        run.window.show(frame);
+        run.window.show(shown);
+        page_takes_keys = shown.lesson.takes_keys;
         // Mouse and keys do not take it off its way: it would come back through what lies between.
         if (led_hand) run.window.place_hand(*led_hand);
         const double late = session.latest().time - drawn;
         outcome.late_ns.record(static_cast<std::uint64_t>(1e9 * std::max(0.0, late)));
-        run.keys.sound().follow(frame.force.norm());
+        run.keys.sound().follow(review == nullptr || review->runs() ? shown.force.norm() : 0);
         session.visual_beat();
-        if (review != nullptr)
-            run.window.place_hand(vector_of(tick.device_position));
-        else
-            session.guide(run.window.hand(), run.window.held_orientation());
+        if (review == nullptr) session.guide(run.window.hand(), run.window.held_orientation());
         frame.force_range.setConstant(frame.force.norm());
         session.pump(take);
         std::this_thread::sleep_until(frame_began + shortest_frame);

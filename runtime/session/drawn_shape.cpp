@@ -5,7 +5,7 @@
 
 namespace palpate::session {
 
-DrawnShape::DrawnShape(const Case& patient_case) {
+DrawnShape::DrawnShape(const Case& patient_case, bool deforms_far) : deforms_far_(deforms_far) {
     for (const DeformableBody& body : patient_case.deformable_bodies) creep_.emplace_back(body);
 }
 
@@ -21,7 +21,7 @@ void DrawnShape::follow(const haptics::HapticModel& model, double time,
             for (std::size_t v = 0; v < of_one_tool_.size(); ++v) displacements[i][v] += of_one_tool_[v];
         }
         if (model.method().can.creeps) creep_[i].follow(time, displacements[i]);
-        model.add_beyond(model.rigid_count() + i, ticks, displacements[i]);
+        if (deforms_far_) model.add_beyond(model.rigid_count() + i, ticks, displacements[i]);
     }
 }
 

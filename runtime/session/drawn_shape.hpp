@@ -13,7 +13,9 @@ namespace palpate::session {
 /// The shape of a case's deformable bodies as a picture of a run shows it. For one thread.
 class DrawnShape {
   public:
-    explicit DrawnShape(const Case& patient_case);
+    /// `deforms_far`: with the shape of large deformation that the model has just then; a recording does not
+    /// have it.
+    explicit DrawnShape(const Case& patient_case, bool deforms_far = true);
 
     /// Writes where the contacts of all tools' ticks take each body at `time` (s), one displacement (mm) for
     /// each surface vertex: HapticModel::surface_displacement(), and where the model's method lets tissue
@@ -23,6 +25,7 @@ class DrawnShape {
                 std::span<std::vector<Eigen::Vector3f>> displacements);
 
   private:
+    bool deforms_far_;
     std::vector<haptics::DrawnCreep> creep_;  // by body
     std::vector<Eigen::Vector3f> of_one_tool_;
 };

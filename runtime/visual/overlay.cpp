@@ -203,7 +203,7 @@ void Overlay::update(const VisualFrame& frame, double frames_per_second, const S
                        : frame.jaws_closed ? forceps_help_text
                                            : help_text;
     std::string help(looked_up(hints));
-    if (turns_tool_) help += "\n" + std::string(looked_up(turning_help_text));
+    if (turns_tool_ && !frame.timeline) help += "\n" + std::string(looked_up(turning_help_text));
     help_->SetInput(help.c_str());
     notice_->SetPosition(0.5, frame.timeline ? notice_top_played : notice_top);
     const double low = frame.timeline ? above_timeline : button_rows_ > 1 ? above_both_rows : above_buttons;

@@ -202,6 +202,7 @@ struct TrainWindow::Parts {
     }
 
     void press(bool on) {
+        if (on && hand_stays) return;
         const int* now = interactor->GetEventPosition();
         if (on) hand.point({now[0], now[1]});
         hand.press(on);
@@ -221,12 +222,13 @@ struct TrainWindow::Parts {
         const int* before = interactor->GetLastEventPosition();
         const double dx = now[0] - before[0], dy = now[1] - before[1];
         if (drag == Drag::none) {
-            const bool leads = !settings.jaw_length && !endoscope.covers(now[0], now[1]);
+            const bool leads = !hand_stays && !settings.jaw_length && !endoscope.covers(now[0], now[1]);
             if (leads && !covered(now[0], now[1])) hand.point({now[0], now[1]});
             return;
         }
         vtkCamera* camera = renderer->GetActiveCamera();
         const int height = window->GetSize()[1];
+        if (hand_stays && (drag == Drag::carry || drag == Drag::tilt)) return;
         if (drag == Drag::carry) return drag_hand(steering(), dx, dy);
         if (drag == Drag::tilt) return tilt_tool(steering(), dx, dy);
         if (drag == Drag::turn) turn_view(camera, dx, dy);
@@ -274,7 +276,7 @@ struct TrainWindow::Parts {
 
     void wheel_turned(double notches) {
         const Steering now = steering();
-        if (now.tip || (now.shaft && drag == Drag::carry))
+        if (!hand_stays && (now.tip || (now.shaft && drag == Drag::carry)))
             roll_hand(now, notches);
         else if (hand.pressing())
             hand.deepen(wheel_depth * notches);
@@ -397,6 +399,7 @@ struct TrainWindow::Parts {
     bool cut;
     bool rigid_shown = true;
     bool page_takes_keys = false;
+    bool hand_stays = false;  // while a recording is looked at
     bool picture_asked = false;
     PictureWriter pictures;
     Drag drag = Drag::none;
@@ -433,6 +436,8 @@ void TrainWindow::draw(const VisualFrame& frame) {
     p.look(frame);
     p.overlay.update(frame, frame.film_rate_hz.value_or(frames_per_second()), detail());
     p.page_takes_keys = frame.lesson.takes_keys;
+    p.hand_stays = frame.timeline.has_value();
+    if (p.hand_stays) p.hand.press(false);
     p.overlay.make_room(frame.lesson.page.has_value(), !frame.lesson.instruction.empty(),
                         frame.lesson.actions.empty() ? 1 : 2);
     p.lesson_scene.update(frame.lesson);

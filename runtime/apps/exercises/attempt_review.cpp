@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/apps/exercises/attempt_review.hpp"
 
-#include <algorithm>
-#include <cctype>
-
 #include "runtime/apps/playback/recorded_timeline.hpp"
 
 namespace palpate::apps {
@@ -12,11 +9,6 @@ AttemptReview::AttemptReview(const recording::Recording& recording, const sessio
     : scene_(recording, "attempt", 0, run.model(), run.patient_case()),
       clock_(scene_.track().front()->time, scene_.track().back()->time, 1),
       timeline_(timeline_of(scene_)) {}
-
-void AttemptReview::press(std::string key) {
-    std::ranges::transform(key, key.begin(), [](unsigned char letter) { return std::tolower(letter); });
-    clock_.press(key);
-}
 
 void AttemptReview::show(double seconds, visual::VisualFrame& frame) {
     clock_.advance(seconds);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <string>
+#include <string_view>
 
 #include "runtime/apps/playback/recorded_scene.hpp"
 #include "runtime/session/playback/playback_clock.hpp"
@@ -15,8 +15,10 @@ class AttemptReview {
     /// `recording`: of ticks of `run`, with its head; both must outlive it.
     AttemptReview(const recording::Recording& recording, const session::Session& run);
 
-    /// As X11 names it: see PlaybackClock::press(), and others do nothing.
-    void press(std::string key);
+    /// See PlaybackClock::press().
+    void press(std::string_view key) { clock_.press(key); }
+    /// Whether its time goes on.
+    bool runs() const { return clock_.runs(); }
     /// Jumps to a share of its time, 0 ... 1.
     void seek(double share) { clock_.seek_share(share); }
     /// Lets so many seconds pass and fills all of a frame that is not of an exercise.

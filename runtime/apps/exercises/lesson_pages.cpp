@@ -125,7 +125,7 @@ void show_doing(const Attempt& attempt, double force, const Eigen::Vector3d& tip
 
 }  // namespace
 
-LessonPage result_page(const Attempt& attempt, std::span<const PastAttempt> history) {
+LessonPage result_page(const Attempt& attempt, bool watchable, std::span<const PastAttempt> history) {
     LessonPage page;
     page.title = std::string(looked_up(attempt.exercise().title.c_str())) + ": " +
                  std::string(looked_up(words_of(attempt.ending()).data()));
@@ -165,9 +165,10 @@ LessonPage result_page(const Attempt& attempt, std::span<const PastAttempt> hist
     }
     page.choices = {{"return", translated("Enter") + "   " + translated("Once more")},
                     {"space", translated("Space") + "   " + translated("Look at the way that the hand took")},
-                    {"f4", "F4   " + translated("Watch it again")},
                     {"f2", "F2   " + translated("Change this exercise")},
                     {"backspace", translated("Backspace") + "   " + translated("Other exercises")}};
+    if (watchable)
+        page.choices.insert(page.choices.begin() + 2, {"f4", "F4   " + translated("Watch it again")});
     return page;
 }
 
@@ -186,7 +187,7 @@ LessonView trainee_view(const std::string& typed, const LessonSetting& setting) 
 void show_review(LessonView& view) {
     view.page.reset();
     view.takes_keys = true;
-    view.actions = {action("F4", "F4", translated("Back to the figures"))};
+    view.actions = {action("f4", "F4", translated("Back to the figures"))};
 }
 
 LessonView lesson_view(const Lesson& lesson, const LessonSetting& setting, double force,

@@ -17,9 +17,9 @@ struct LessonSetting {
     std::vector<std::string> cautions;  ///< of the case
 };
 
-/// The page after an attempt: metrics, force and the scores of `history`, its own included. Costs the
-/// attempt's metrics: once an attempt, not once a frame.
-visual::LessonPage result_page(const training::Attempt& attempt,
+/// The page after an attempt: metrics, force and the scores of `history`, its own included. `watchable`: it
+/// was recorded. Costs the attempt's metrics: once an attempt, not once a frame.
+visual::LessonPage result_page(const training::Attempt& attempt, bool watchable,
                                std::span<const training::PastAttempt> history);
 
 /// The page on which another pseudonym is typed; `typed`: so far.

@@ -2,6 +2,7 @@
 #include "runtime/apps/exercises/train_lesson.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdlib>
 #include <fmt/chrono.h>
 #include <fstream>
@@ -154,13 +155,7 @@ TrainLesson::TrainLesson(const LessonOptions& options, const std::vector<LaidOut
 
 void TrainLesson::press(const std::string& key, const TickResult& tick) {
     if (typed_trainee_) return type_trainee(key);
-    if (review_) {
-        if (key == "F4" || key == "BackSpace" || key == "Escape")
-            review_.reset();
-        else
-            review_->press(key);
-        return;
-    }
+    if (review_) return look_again(key);
     if (!editor_) {
         if (key == "f2")
             begin_to_edit();
@@ -178,6 +173,15 @@ void TrainLesson::press(const std::string& key, const TickResult& tick) {
                        .rim = held_rim(run_, tick)};
     grant(editor_->press(key, hand));
     if (editor_) draft_ = lay_out_draft().value_or(Exercise{});
+}
+
+// As X11 names keys, in any case.
+void TrainLesson::look_again(std::string key) {
+    std::ranges::transform(key, key.begin(), [](unsigned char letter) { return std::tolower(letter); });
+    if (key == "f4" || key == "backspace" || key == "escape")
+        review_.reset();
+    else
+        review_->press(key);
 }
 
 // As X11 names keys. What would make no pseudonym is not taken.
@@ -294,16 +298,23 @@ std::optional<Eigen::Vector3d> TrainLesson::hand(const Eigen::Vector3d& now) {
     return point_along(way_back_, std::clamp(share, 0.0, 1.0) * length_of(way_back_));
 }
 
-// To be looked at: 50 ticks a second of all tools.
+// What there is of the attempt to be looked at; `path` keeps it, if it can.
 void TrainLesson::keep_recording(const std::filesystem::path& path) {
-    recording::Recording recording = excerpt_.recording();
+    recording::Recording recording = excerpt_.take();
+    const auto is_shown = [](const Tick& tick) { return tick.tool == 0; };
+    if (std::ranges::none_of(recording.ticks, is_shown)) return;
     const std::int32_t every = recording.head.every;
-    recording.head = run_.recording_head(cli::version());
-    recording.head.every = every;
-    cli::StagedFile file(path, false);
-    session::write_recording(recording, file.path());
-    file.commit();
-    last_ = std::move(recording);
+    try {
+        recording.head = run_.recording_head(cli::version());
+        recording.head.every = every;
+        last_ = std::move(recording);
+        cli::StagedFile file(path, false);
+        session::write_recording(last_, file.path());
+        file.commit();
+        attempts_.back()["recording"] = path.filename().string();
+    } catch (const std::exception& error) {
+        spdlog::warn("the attempt's recording is not kept: {}", cli::with_final_names(error.what()));
+    }
 }
 
 void TrainLesson::keep(const Attempt& attempt) {
@@ -323,10 +334,7 @@ void TrainLesson::keep(const Attempt& attempt) {
         std::filesystem::create_directories(folder);
         const std::filesystem::path path = free_name(folder, head.when, attempt.exercise().name);
         cli::write_text_file(path.string() + ".csv", attempt_csv(attempt), false);
-        if (!excerpt_.recording().ticks.empty()) {
-            keep_recording(path.string() + ".h5");
-            attempts_.back()["recording"] = path.filename().string() + ".h5";
-        }
+        keep_recording(path.string() + ".h5");
         cli::write_text_file(path.string() + ".json", attempts_.back().dump(2) + "\n", false);
         std::ofstream statements(folder / "statements.jsonl", std::ios::app);
         for (const nlohmann::ordered_json& statement : statements_of(head, attempt))
@@ -335,9 +343,9 @@ void TrainLesson::keep(const Attempt& attempt) {
     } catch (const std::exception& error) {
         spdlog::warn("the attempt is not kept: {}", error.what());
     }
-    result_ =
-        result_page(attempt, read_history(folder, head.case_name, attempt.exercise().name,
-                                          [](const std::string& sentence) { spdlog::warn("{}", sentence); }));
+    result_ = result_page(attempt, !last_.ticks.empty(),
+                          read_history(folder, head.case_name, attempt.exercise().name,
+                                       [](const std::string& sentence) { spdlog::warn("{}", sentence); }));
 }
 
 }  // namespace palpate::apps

@@ -82,6 +82,7 @@ class TrainLesson {
     void keep_recording(const std::filesystem::path& path);
     void begin_to_edit();
     void type_trainee(const std::string& key);
+    void look_again(std::string key);
     void grant(training::Wish wish);
     std::optional<training::Exercise> lay_out_draft();
 

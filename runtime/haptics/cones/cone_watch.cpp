@@ -50,6 +50,7 @@ void ConeWatch::gather(const Eigen::Isometry3d& X_PT) noexcept {
     around_.begin(pose_);
     keeps_ = true;
     closer_.valid = false;
+    travel_ = {};
     const ConeReach reach = reach_with(around_.slack);
     for (std::size_t body = 0; body < bodies_.size() && keeps_; ++body)
         keeps_ = collision::for_each_pair(

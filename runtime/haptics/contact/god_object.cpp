@@ -98,7 +98,7 @@ std::optional<GodObject::Touch> GodObject::touch_on_the_way(Surfaces surfaces, c
         const auto hit = sweep(surfaces, from, to + aside);
         if (!hit) return std::nullopt;
         const SweepContact& contact = hit->contact;
-        if (slip == most_slips || contact.normal.dot(contact.point - to) + radius_ > slight) {
+        if (contact.normal.dot(contact.point - to) + radius_ > slight) {
             const TrianglePoint foot =
                 closest_point_on_triangle(contact.point, surfaces[hit->surface]->corners(contact.slot));
             return Touch{
@@ -106,6 +106,7 @@ std::optional<GodObject::Touch> GodObject::touch_on_the_way(Surfaces surfaces, c
                 contact.normal,
                 hit->surface};
         }
+        if (slip == most_slips) return std::nullopt;
         const Vector3d more = (skin + std::max(0.0, slight)) * contact.normal;
         from += contact.fraction * (to + aside - from) + more;
         aside += more;
@@ -113,7 +114,7 @@ std::optional<GodObject::Touch> GodObject::touch_on_the_way(Surfaces surfaces, c
 }
 
 void GodObject::settle_at(Surfaces surfaces, const Vector3d& to) noexcept {
-    if (position_ != to && !touch_on_the_way(surfaces, to, -skin)) position_ = to;
+    if (position_ != to && !touch_on_the_way(surfaces, to)) position_ = to;
 }
 
 // One round goes towards the device until nothing is in the way within the half-spaces touched in that round.

@@ -60,13 +60,12 @@ class GodObject {
               const Friction& friction = {}) noexcept;
 
     /// Where the sphere, on a straight way from its position to `to` (mm), would first touch a surface; it
-    /// stays where it is. Not counted, and gone round by as little as it takes, is what it only slips past:
-    /// there its end is beyond the plane of the touch by no more than `slight`, mm.
+    /// stays where it is. Not counted is what it only slips past, its end beyond the plane of the touch by no
+    /// more than `slight` (mm): the way goes on beside that, by as little as it takes, up to eight times.
     std::optional<Touch> touch_on_the_way(std::span<const collision::CollisionSurface* const> surfaces,
                                           const Eigen::Vector3d& to, double slight = nothing) noexcept;
 
-    /// Goes to `to` (mm), straight but for what it slips past, or stays where it is if a surface is in the
-    /// way.
+    /// Goes straight to `to` (mm), or stays where it is if a surface is in the way.
     void settle_at(std::span<const collision::CollisionSurface* const> surfaces,
                    const Eigen::Vector3d& to) noexcept;
 

@@ -13,7 +13,7 @@ RecordedSurfaces::RecordedSurfaces(const recording::Recording& recording, const 
     : recording_(recording),
       model_(model),
       tracks_(recording.head.devices.size()),
-      fresh_(patient_case),
+      fresh_(patient_case, false),
       shape_(fresh_),
       memory_(1e-3 * static_cast<double>(model.memory_ticks())) {
     for (const Tick& row : recording.ticks) tracks_[row.tool].push_back(&row);

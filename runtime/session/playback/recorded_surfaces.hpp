@@ -15,7 +15,7 @@ namespace palpate::session {
 /// must be the case's own: check_contacts().
 class RecordedSurfaces {
   public:
-    /// `model` as model_of() makes it.
+    /// `model` as model_of() makes it, or that of the run, which may go on ticking.
     RecordedSurfaces(const recording::Recording& recording, const haptics::HapticModel& model,
                      const Case& patient_case);
 

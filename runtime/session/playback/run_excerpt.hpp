@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <utility>
 
 #include "formats/recording/recording.hpp"
 #include "formats/records/tick_result.hpp"
@@ -24,6 +25,8 @@ class RunExcerpt {
     void add(const TickResult& tick);
     /// What was taken since begin(); its head says nothing but how many ticks lie between two rows.
     const recording::Recording& recording() const { return recording_; }
+    /// The same, of which nothing stays here.
+    recording::Recording take() { return std::exchange(recording_, {}); }
 
   private:
     void thin();

@@ -130,6 +130,26 @@ TEST(Recording, names_the_hyperelastic_bodies_and_refuses_names_that_no_body_has
     EXPECT_THAT(refusal([&] { read_recording(path); }), HasSubstr("run.h5: /hyperelastic"));
 }
 
+TEST(Recording, says_how_many_ticks_lie_between_two_rows) {
+    const Scratch scratch;
+    const auto path = scratch / "run.h5";
+    RecordingHead head = two_tools();
+    for (const std::int32_t every : {1, 20, longest_every}) {
+        head.every = every;
+        make_recording(path, head, 50);
+        {
+            RecordingWriter writer(path);
+            add_rows(writer, 20, 5);
+        }
+        EXPECT_EQ(read_recording(path).head.every, every);
+    }
+    for (const std::int32_t every : {-1, 0, longest_every + 1}) {
+        head.every = every;
+        EXPECT_THAT(refusal([&] { make_recording(path, head, 50); }),
+                    HasSubstr("one tick of " + std::to_string(every)));
+    }
+}
+
 TEST(Recording, of_a_tool_without_a_triangle_is_refused) {
     const Scratch scratch;
     const auto path = scratch / "run.h5";

@@ -7,6 +7,7 @@
 
 #include "runtime/haptics/contact/god_object.hpp"
 #include "tests/formats/sample_case.hpp"
+#include "tests/runtime/haptics/held_tool.hpp"
 
 namespace palpate {
 namespace {
@@ -59,6 +60,27 @@ TEST(GodObject, goes_the_same_way_where_its_clearance_is_known) {
     }
     EXPECT_GT(known, 4000);
     EXPECT_GT(held, 800);
+}
+
+// A table's top, half a micrometre beyond which the way ends, and a wall behind it.
+TEST(GodObject, that_slips_past_a_surface_meets_what_lies_behind) {
+    const CollisionSurface table = collision_surface(box({-2, -5, -2}, {2, 5, 0})),
+                           wall = collision_surface(box({4, -5, -2}, {6, 5, 5}));
+    const std::array<const CollisionSurface*, 2> surfaces{&table, &wall};
+    GodObject tool(1, 2);
+    tool.start_clear_at({-1.5, 0, 1.0005});
+    const Vector3d to(4.5, 0, 0.9965), before_the_wall(1.5, 0, 0.9995);
+    const auto first = tool.touch_on_the_way(surfaces, to);
+    ASSERT_TRUE(first);
+    EXPECT_EQ(first->surface, 0U);
+    EXPECT_EQ(tool.touch_on_the_way(surfaces, to, 2e-3)->surface, 0U);  // 3.5 um beyond
+    EXPECT_TRUE(tool.touch_on_the_way(surfaces, before_the_wall));
+    EXPECT_FALSE(tool.touch_on_the_way(surfaces, before_the_wall, 2e-3));
+    const auto behind = tool.touch_on_the_way(surfaces, to + Vector3d(0, 0, 0.003), 2e-3);
+    ASSERT_TRUE(behind);
+    EXPECT_EQ(behind->surface, 1U);
+    EXPECT_LT((behind->normal - Vector3d(-1, 0, 0)).norm(), 1e-6);
+    EXPECT_EQ(tool.position(), Vector3d(-1.5, 0, 1.0005));
 }
 
 TEST(GodObject, that_starts_where_it_is_clear_holds_from_the_first_move_on) {

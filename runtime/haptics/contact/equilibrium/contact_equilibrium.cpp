@@ -76,6 +76,7 @@ void ContactEquilibrium::reset() noexcept {
 }
 
 void ContactEquilibrium::forget(std::size_t t) noexcept {
+    tools_[t].walled = false;
     leave_tissue(t);
     for (Part& part : tools_[t].parts) {
         for (Hold& hold : part.holds) hold.press = 0;
@@ -85,13 +86,13 @@ void ContactEquilibrium::forget(std::size_t t) noexcept {
     }
 }
 
-// Lets go of the tissue, but not of walls.
+// Lets go of the tissue, but not of walls: what they hold stays as it is turned.
 void ContactEquilibrium::leave_tissue(std::size_t t) noexcept {
     Tool& tool = tools_[t];
     bank_ = in_row_ = carried_ = states_known_ = 0;
-    tool.touching = tool.at_rest = tool.walled = false;
+    tool.touching = tool.at_rest = false;
     tool.off.setZero();
-    tool.turn.setZero();
+    if (!tool.walled) tool.turn.setZero();
     tool.unpressed_turn = tool.kept_turn;
     if (turns()) swing(tool);
     tool.press.setZero();
@@ -270,6 +271,7 @@ bool ContactEquilibrium::start_anew() noexcept {
         if (tool.felt == 0 || !tool.touching || found(t)) continue;
         any = true;
         const bool at_rest = tool.at_rest;
+        tool.walled = false;
         leave_tissue(t);
         tool.touching = tool.cold = true;
         tool.at_rest = at_rest;
@@ -441,11 +443,7 @@ void ContactEquilibrium::end_tick() noexcept {
                     touch.outside_sunk = touch.sunk;
                 }
         } else if (tool.touching) {
-            const bool walled = tool.walled;
-            const Vector3d turn = tool.turn;
             leave_tissue(t);
-            tool.walled = walled;
-            if (walled) tool.turn = turn;
         }
     }
     if (any) {
