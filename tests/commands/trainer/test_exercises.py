@@ -3,6 +3,7 @@
 
 import json
 import math
+import shutil
 import subprocess
 import time
 import unittest
@@ -298,6 +299,23 @@ class Exercises(TrainerCase):
         replayed = subprocess.run([TRAIN.with_name("palpate-touch"), self.asset, "--replay", kept], capture_output=True, text=True)
         self.assertEqual(replayed.returncode, 3)
         self.assertIn("keeps one tick of 20", replayed.stderr)
+
+    def test_figures_are_kept_where_the_recording_cannot_be(self):
+        self.asset = shutil.copy(self.asset, self.folder / "removed.vtkhdf")
+        process, window = self.open_window("--exercise", "free")
+        self.x("xdotool", "key", "Return")  # begins at once
+        time.sleep(1)
+        self.asset.unlink()  # which a recording names by its digest
+        self.x("xdotool", "key", "e")
+        self.wait_for(lambda: self.shows_page(window))
+        self.x("xdotool", "key", "F4")  # nothing to be shown
+        time.sleep(0.5)
+        self.x("xdotool", "key", "q")
+        out, err = process.communicate(timeout=30)
+        (attempt,) = json.loads(out)["attempts"]
+        self.assertNotIn("recording", attempt)
+        self.assertTrue((self.attempts / "T-1" / attempt["file"]).exists())
+        self.assertIn("the attempt's recording is not kept", err)
 
     def test_another_trainee_types_a_pseudonym_and_goes_on_under_it(self):
         process, window = self.open_window()
