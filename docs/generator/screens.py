@@ -107,6 +107,14 @@ def way(server, folder):
     return trainer
 
 
+def again(server, folder):
+    trainer = result(server, folder)
+    trainer.keys("F4")
+    trainer.wait(3)
+    trainer.keys("space")
+    return trainer
+
+
 def found(server, folder):
     trainer = after("liver", "2", seconds=COUNTDOWN)(server, folder)
     trainer.press(*ON_THE_ORGAN)
@@ -146,6 +154,7 @@ SCREENS = {
     "paused": after("liver", "1", "Return", "space"),
     "result": result,
     "way": way,
+    "again": again,
     "found": found,
     "trace": after("liver", "3", seconds=COUNTDOWN),
     "scope": after("nasopharynx", "1", "v", seconds=COUNTDOWN),

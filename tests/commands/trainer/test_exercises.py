@@ -300,6 +300,26 @@ class Exercises(TrainerCase):
         self.assertEqual(replayed.returncode, 3)
         self.assertIn("keeps one tick of 20", replayed.stderr)
 
+    def test_the_hand_stays_where_it_is_while_an_attempt_is_watched(self):
+        for watched in (True, False):
+            process, window = self.open_window("--exercise", "free")
+            for key in ("Return", "e"):  # begins at once
+                self.x("xdotool", "key", key)
+                time.sleep(0.5)
+            self.wait_for(lambda: self.shows_page(window))
+            self.x("xdotool", "key", "F4" if watched else "BackSpace", *([] if watched else ["BackSpace"]))  # away from all pages
+            self.wait_for(lambda: self.head(window) if watched else not self.shows_page(window))
+            self.x("xdotool", "mousemove", "--window", window, 640, 360)
+            self.x("xdotool", "mousedown", 1)
+            time.sleep(1)
+            self.x("xdotool", "mouseup", 1)
+            if watched:
+                self.x("xdotool", "key", "F4")
+                self.wait_for(lambda: self.shows_page(window))
+            self.x("xdotool", "key", "q")
+            travel = super().finish(process)["device_travel_mm"]
+            self.assertLess(travel, 0.1) if watched else self.assertGreater(travel, 1)
+
     def test_figures_are_kept_where_the_recording_cannot_be(self):
         self.asset = shutil.copy(self.asset, self.folder / "removed.vtkhdf")
         process, window = self.open_window("--exercise", "free")
