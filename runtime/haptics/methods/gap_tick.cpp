@@ -8,7 +8,7 @@ namespace palpate::haptics {
 namespace {
 
 // A look costs some tens of microseconds, and what is left of a way the next tick goes on with.
-constexpr PenaltyEffort effort{.rounds = 4, .halvings = 2, .crosses_kinks = true};
+constexpr PenaltyEffort effort{.rounds = 4, .halvings = 2, .looks = 7, .crosses_kinks = true};
 
 }  // namespace
 

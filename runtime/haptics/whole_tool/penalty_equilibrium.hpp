@@ -15,6 +15,7 @@ namespace palpate::haptics {
 struct PenaltyEffort {
     int rounds = 16;
     int halvings = 8;            ///< of a round's step
+    int looks = 16;              ///< at poses, of all rounds together: no round begins after so many
     bool crosses_kinks = false;  ///< takes the last of them though the energy rises, unless something is met
 };
 inline constexpr int penalty_turns = 20, penalty_halvings = 8;  // of the search in a round's model
@@ -122,7 +123,8 @@ ToolRest rest_of_penalties(Watch& watch, const TurningCoupling& coupling, double
     double energy = energy_of(situation);
     double left = 0;  // of the last step, before it was shortened
     bool shortened = false;
-    for (int round = 0; round < effort.rounds; ++round) {
+    int looks = 1;
+    for (int round = 0; round < effort.rounds && looks < effort.looks; ++round) {
         Twist step = PenaltyModel<Watch>(situation).least();
         left = watch.reach_of(step);
         if (left <= settled_step) return ToolRest::settled;
@@ -133,6 +135,7 @@ ToolRest rest_of_penalties(Watch& watch, const TurningCoupling& coupling, double
         for (int halving = 0;; ++halving) {
             pose = moved(from, step);
             watch.look(pose);
+            ++looks;
             const double lower = energy_of(situation);
             if (lower <= energy * (1 + energy_round_off)) {
                 energy = lower;
