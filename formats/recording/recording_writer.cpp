@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/recording/recording_writer.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <cassert>
 #include <cerrno>
@@ -210,6 +211,14 @@ void RecordingWriter::add(Tick tick, std::span<const Contact> contacts) noexcept
 
 void RecordingWriter::set_lost(std::int64_t rows) noexcept {
     *ticks_lost_ = rows;
+}
+
+void write_recording(const std::filesystem::path& path, const Recording& recording) {
+    const std::int64_t rows =
+        std::max(std::ssize(recording.ticks), std::ssize(recording.contacts) / contacts_per_tick + 1);
+    make_recording(path, recording.head, rows + 1);  // of a full ring the oldest row does not count
+    RecordingWriter writer(path);
+    for (const Tick& tick : recording.ticks) writer.add(tick, recording.contacts_of(tick));
 }
 
 }  // namespace palpate::recording

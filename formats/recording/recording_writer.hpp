@@ -50,4 +50,8 @@ class RecordingWriter {
     std::int64_t rows_per_second_ = 1000;
 };
 
+/// Writes a recording that is in memory, in a file as long as it needs. Throws as make_recording() and
+/// RecordingWriter.
+void write_recording(const std::filesystem::path& path, const Recording& recording);
+
 }  // namespace palpate::recording

@@ -256,10 +256,7 @@ void TrainLesson::grant(Wish wish) {
 
 void TrainLesson::record(const TickResult& tick) {
     if (lesson_.phase() != Phase::doing) return;
-    if (!began_) {
-        began_ = std::time(nullptr);
-        excerpt_.begin();
-    }
+    if (!began_) began_ = std::time(nullptr);
     excerpt_.add(tick);
 }
 
@@ -309,7 +306,7 @@ void TrainLesson::keep_recording(const std::filesystem::path& path) {
         recording.head.every = every;
         last_ = std::move(recording);
         cli::StagedFile file(path, false);
-        session::write_recording(last_, file.path());
+        recording::write_recording(file.path(), last_);
         file.commit();
         attempts_.back()["recording"] = path.filename().string();
     } catch (const std::exception& error) {

@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 constexpr double tiny = 1e-7;          // mm: shorter moves are none
 constexpr double settled = 0.01;       // mm: after a shorter round the next tick goes on (5 mN at 0.5 N/mm)
 constexpr int max_sweeps = 15;         // per tick; smooth places take 3
-constexpr int most_slips = 8;          // past what is in a way
+constexpr int most_slips = 8;          // past what is in a way; more are not looked behind
 constexpr double parallel = 1e-9;      // determinant of normals' products: a smaller set does
 constexpr double same_normal = 0.999;  // cosine; feet closer than 2.5 degrees are one
 

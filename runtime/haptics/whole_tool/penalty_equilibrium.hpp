@@ -15,7 +15,7 @@ namespace palpate::haptics {
 struct PenaltyEffort {
     int rounds = 16;
     int halvings = 8;            ///< of a round's step
-    int looks = 16;              ///< at poses, of all rounds together: no round begins after so many
+    int looks = 16;              ///< at poses, after which no round begins: the next tick goes on from there
     bool crosses_kinks = false;  ///< takes the last of them though the energy rises, unless something is met
 };
 inline constexpr int penalty_turns = 20, penalty_halvings = 8;  // of the search in a round's model

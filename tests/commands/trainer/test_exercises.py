@@ -295,6 +295,7 @@ class Exercises(TrainerCase):
         self.assertEqual(shown["missing_ticks"], 0)
         self.assertGreater(shown["ticks"], 50 * 0.5 * attempt["metrics"]["time_s"])  # however late the servo was
         self.assertAlmostEqual(shown["ends_s"] - shown["begins_s"], attempt["metrics"]["time_s"], delta=0.2)
+        # Held for a second, so that one tick of 20 sees it.
         self.assertAlmostEqual(shown["force_peak_n"], attempt["metrics"]["peak_force_n"], delta=0.1 * attempt["metrics"]["peak_force_n"])
         replayed = subprocess.run([TRAIN.with_name("palpate-touch"), self.asset, "--replay", kept], capture_output=True, text=True)
         self.assertEqual(replayed.returncode, 3)

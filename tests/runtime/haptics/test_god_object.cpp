@@ -62,7 +62,7 @@ TEST(GodObject, goes_the_same_way_where_its_clearance_is_known) {
     EXPECT_GT(held, 800);
 }
 
-// A table's top, half a micrometre beyond which the way ends, and a wall behind it.
+// Over a table's top, which it is to be slightly beyond in the end, to a wall behind it.
 TEST(GodObject, that_slips_past_a_surface_meets_what_lies_behind) {
     const CollisionSurface table = collision_surface(box({-2, -5, -2}, {2, 5, 0})),
                            wall = collision_surface(box({4, -5, -2}, {6, 5, 5}));

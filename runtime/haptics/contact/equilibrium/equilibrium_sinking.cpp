@@ -139,4 +139,32 @@ void ContactEquilibrium::share_sinking(std::size_t iterate) noexcept {
             }
 }
 
+// What a sphere sinks in locally creeps too: s follows now F and what is left of earlier presses, as a sphere
+// on a half-space that creeps does while its contact grows (Lee, Radok 1960). That is kept with the sphere,
+// as the tissue under it when it began to press creeps, until it is clear of the body.
+void ContactEquilibrium::remember_pushes() noexcept {
+    for (const Group& group : groups_) {
+        Touch& touch = touch_of(group);
+        const DeformableContact& body = patch_of(group).body();
+        if (touch.creep != nullptr || !body.creeps() || body.spread() == nullptr) continue;
+        // The vertex that gives way and bears most.
+        double most = 0;
+        for (const Row& row : rows_of(group))
+            for (std::size_t i = 0; i < 3; ++i) {
+                const std::int32_t vertex = body.triangle(row.triangle)[i];
+                const double borne = row.force * row.weights[static_cast<Index>(i)];
+                if (borne <= most || !body.gives_way(vertex)) continue;
+                most = borne;
+                touch.creep = body.creep_of(vertex);
+            }
+    }
+    for (Tool& tool : tools_)
+        for (Part& part : tool.parts)
+            for (Touch& touch : part.touches) {
+                if (touch.creep == nullptr) continue;
+                touch.left_push.take(*touch.creep, touch.push);
+                touch.lasting_push = touch.left_push.lasting(*touch.creep);
+            }
+}
+
 }  // namespace palpate::haptics

@@ -2,8 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
-#include <utility>
+#include <span>
 
 #include "formats/recording/recording.hpp"
 #include "formats/records/tick_result.hpp"
@@ -19,22 +18,18 @@ class RunExcerpt {
     static constexpr std::size_t most_rows = 30'000;  ///< of all tools together
     static constexpr std::size_t most_contacts = 300'000;
 
-    /// Forgets what it has.
-    void begin();
     /// Takes a tick of any tool; in ascending order of tick, then tool.
     void add(const TickResult& tick);
-    /// What was taken since begin(); its head says nothing but how many ticks lie between two rows.
-    const recording::Recording& recording() const { return recording_; }
-    /// The same, of which nothing stays here.
-    recording::Recording take() { return std::exchange(recording_, {}); }
+    /// Hands out what was added since the last call; its head says nothing but how many ticks lie between two
+    /// rows.
+    recording::Recording take();
 
   private:
+    void append(const Tick& tick, std::span<const Contact> contacts);
     void thin();
 
-    recording::Recording recording_;
+    std::int32_t every_ = first_every;
+    recording::Recording kept_;  // but for its head
 };
-
-/// Writes a recording that is in memory to `path`, over what is there. Throws as make_recording().
-void write_recording(const recording::Recording& recording, const std::filesystem::path& path);
 
 }  // namespace palpate::session
