@@ -9,7 +9,7 @@
 
 #include "runtime/apps/exercises/attempt_review.hpp"
 #include "runtime/apps/exercises/lesson_pages.hpp"
-#include "runtime/session/run_excerpt.hpp"
+#include "runtime/session/playback/run_excerpt.hpp"
 #include "runtime/session/session.hpp"
 #include "runtime/session/touch_target.hpp"
 #include "runtime/training/lay_out.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/session/run_excerpt.hpp"
+#include "runtime/session/playback/run_excerpt.hpp"
 
 #include <utility>
 
