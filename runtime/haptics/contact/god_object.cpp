@@ -37,6 +37,17 @@ void GodObject::start_clear_at(const Vector3d& position) noexcept {
     position_ = last_device_ = position;
 }
 
+void GodObject::start_at(const GodObject& other) noexcept {
+    reset();
+    for (std::size_t i = 0; i < obstacles_.size(); ++i) obstacles_[i].followed = other.obstacles_[i].followed;
+    all_followed_ = other.all_followed_;
+    any_followed_ = other.any_followed_;
+    position_ = last_device_ = other.position_;
+    held_back_.setZero();
+    touches_ = other.touches_;
+    touch_count_ = other.touch_count_;
+}
+
 // What touches next does so at rest, and as if nothing had been touched before.
 void GodObject::let_go() noexcept {
     at_rest_ = true;

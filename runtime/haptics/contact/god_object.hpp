@@ -54,6 +54,10 @@ class GodObject {
     /// Is at `position` (mm) from now on, where somebody knows that it is clear of all surfaces.
     void start_clear_at(const Eigen::Vector3d& position) noexcept;
 
+    /// Is where another of the same radius and surfaces is, touches what that touches, and has been clear of
+    /// the same.
+    void start_at(const GodObject& other) noexcept;
+
     /// Moves towards `device` (mm). Returns false while there are surfaces that the tool has not been clear
     /// of yet; these are not felt.
     bool move(std::span<const collision::CollisionSurface* const> surfaces, const Eigen::Vector3d& device,

@@ -47,13 +47,24 @@ class ContinuousContact final : public ContactMethod {
     static constexpr std::size_t most_of_rod = 49;
 
   private:
+    static constexpr std::size_t most_met = 12;
+    struct MetTriangle {
+        std::size_t surface = 0;  // rigid
+        std::int32_t slot = 0;    // of its tree
+        double distance = 0;      // from the sphere's centre, mm
+    };
+    using Walls = FixedList<GodObject::Touch, most_met>;
     // One of the tool's spheres.
     struct Part {
         GodObject on_rigid;
         GodObject
             on_all;  // as if nothing gave way: without friction, no equilibrium is farther from the device
+        // Of a tool that does not turn by itself: where it is among rigid bodies, and what it has met there.
+        GodObject with_tool;
+        bool goes_with_tool = false, led_elsewhere = false;
+        FixedList<MetTriangle, most_met> met;
         Eigen::Vector3d device = Eigen::Vector3d::Zero();      // where the coupling pulls it, mm
-        Eigen::Vector3d wall_press = Eigen::Vector3d::Zero();  // of the tick before, of a tool that turns, N
+        Eigen::Vector3d wall_press = Eigen::Vector3d::Zero();  // of the tick before, N
     };
     struct Tool {
         std::vector<Part> parts;     // as spheres_
@@ -62,11 +73,13 @@ class ContinuousContact final : public ContactMethod {
         Eigen::Vector3d tip = Eigen::Vector3d::Zero();  // on its device, mm; and a frame that is turned as
         Eigen::Matrix3d orientation = Eigen::Matrix3d::Identity();  // it is there, its z along the shaft
         Eigen::Vector3d rested_at = Eigen::Vector3d::Zero();  // its tip, at the end of the tick before, mm
-        bool held_beside_tip = false;                         // by a sphere that is not about its tip
-        std::size_t measured_last = 0;                        // of the parts: how far from all bodies
-        bool was_off_device = false;  // at the end of the tick before, where it turns by itself
-        bool waits = false;           // to be clear of every body
-        std::size_t stuck = 0;        // the part that was not
+        Eigen::Vector3d was_off = Eigen::Vector3d::Zero();    // its device then, mm; and by friction of walls
+        Eigen::Vector3d dragged_off = Eigen::Vector3d::Zero();
+        bool held_beside_tip = false;   // by a sphere that is not about its tip
+        std::size_t measured_last = 0;  // of the parts: how far from all bodies
+        bool was_off_device = false;    // at the end of the tick before, where it turns by itself
+        bool waits = false;             // to be clear of every body
+        std::size_t stuck = 0;          // the part that was not
     };
 
     // That a sphere would meet between its rest on rigid bodies and where the solution has it: how far its
@@ -76,7 +89,6 @@ class ContinuousContact final : public ContactMethod {
         GodObject::Touch touch;
         double gap = 0, beyond = 0;
     };
-    static constexpr std::size_t most_met = 8;  // that are added at once
 
     void place(std::size_t tool, const ContactPose& pose, TickResult& result) noexcept;
     bool is_clear(Tool& tool) const noexcept;
@@ -85,6 +97,8 @@ class ContinuousContact final : public ContactMethod {
     static bool is_held(const Tool& tool) noexcept { return tool.held_beside_tip || tool.was_off_device; }
     Eigen::Vector3d aim_of(const Tool& tool, const Part& part) const noexcept;
     void settle(std::size_t tool, const Eigen::Vector3d& force, const TickResult& result) noexcept;
+    void keep_with_tool(std::size_t tool, const Eigen::Vector3d& force, const TickResult& result) noexcept;
+    void add_up_wall_presses(Tool& tool, const TickResult& result) const noexcept;
     void follow(std::size_t tool, TickResult& result) noexcept;
     void note_clearances(Tool& tool) noexcept;
     void write_neighbours(std::span<TickResult> results) const noexcept;
@@ -96,10 +110,6 @@ class ContinuousContact final : public ContactMethod {
                           double gap) const noexcept;
     Eigen::Vector3d rigid_force(const GodObject& tip, const Eigen::Vector3d& device,
                                 TickResult& result) const noexcept;
-    bool hold_off_rigid(std::span<TickResult> results) noexcept;
-    bool hold_by(std::size_t tool, std::size_t part, const Contact& wall, TickResult& result) noexcept;
-    void drop_idle_walls(std::span<TickResult> results) noexcept;
-    void add_rigid_contacts(std::size_t tool, TickResult& result) noexcept;
     bool within_reach(std::size_t tool, const Eigen::Vector3d& force) const noexcept;
     bool is_wall(const Contact& contact) const noexcept {
         return contact.part >= 0 && contact.body < static_cast<std::int32_t>(bodies_.rigid_count());
@@ -109,6 +119,18 @@ class ContinuousContact final : public ContactMethod {
     void tell_turn(std::size_t tool, const ContactPose& pose, TickResult& result) const noexcept;
     Eigen::Vector3d wall_friction(std::size_t tool, const Eigen::Vector3d& force,
                                   TickResult& result) noexcept;
+
+    // In continuous_walls.cpp.
+    void go_with_tool(Tool& tool) noexcept;
+    void add_walls(std::size_t tool, TickResult& result) noexcept;
+    bool find_other_walls(std::span<TickResult> results) noexcept;
+    bool leads_elsewhere(Tool& tool, const Eigen::Vector3d& off, const TickResult& result) noexcept;
+    void note_met(Part& part) const noexcept;
+    Walls walls_of(const Part& part) const noexcept;
+    static double gap_at(const GodObject::Touch& wall, const Part& part) noexcept;
+    bool hold_off_rigid(std::span<TickResult> results) noexcept;
+    bool hold_by(std::size_t tool, std::size_t part, const Contact& wall, TickResult& result) noexcept;
+    void drop_idle_walls(std::span<TickResult> results) noexcept;
 
     const ContactBodies& bodies_;
     const std::vector<ToolSphere> spheres_;  // of every tool; a rod's tip first

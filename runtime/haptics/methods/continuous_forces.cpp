@@ -11,8 +11,6 @@ using Eigen::Vector3d;
 
 constexpr double room_for_rounding = 1e-3;  // mm
 constexpr double room_to_follow = 0.1;      // mm that a tool that turns is behind where it would come to rest
-// mm of a plane that a tool that turns slips past: turning bends planes, and the next tick finds so little.
-constexpr double slightly_beyond = 2e-3;
 
 }  // namespace
 
@@ -43,70 +41,6 @@ Vector3d ContinuousContact::rigid_force(const GodObject& tip, const Vector3d& de
     contact.force = static_cast<float>(press.norm());
     Eigen::Map<Eigen::Vector3f>(contact.friction.data()) = drag.cast<float>();
     return force;
-}
-
-// Soft bodies push the tool away from where the rigid ones were asked, and so does what turns it: adds the
-// contacts that it would meet on the way, those that it would go through farthest. Tells whether there are
-// any.
-bool ContinuousContact::hold_off_rigid(std::span<TickResult> results) noexcept {
-    met_.clear();
-    for (std::size_t t = 0; t < tools_.size(); ++t) {
-        if (!equilibrium_.touches_tissue(t) && !is_held(tools_[t])) continue;
-        const Vector3d pushed = (equilibrium_.press(t) + equilibrium_.drag(t)) / coupling_;
-        for (std::size_t p = 0; p < tools_[t].parts_felt; ++p) {
-            Part& part = tools_[t].parts[p];
-            const Vector3d push = pushed + equilibrium_.turned_off(t, p);
-            const auto touch = part.on_rigid.touch_on_the_way(
-                rigid_surfaces_, part.device + push, torsion_ > 0 ? slightly_beyond : GodObject::nothing);
-            if (!touch) continue;
-            const double gap = touch->normal.dot(touch->foot.point - part.device) + part.on_rigid.radius();
-            const double beyond = gap - touch->normal.dot(push);
-            if (met_.full() && beyond <= met_[met_.size() - 1].beyond) continue;
-            if (met_.full()) met_.cut(met_.size() - 1);
-            met_.push_back({t, p, *touch, gap, beyond});
-            for (std::size_t k = met_.size() - 1; k > 0 && met_[k - 1].beyond < beyond; --k)
-                std::swap(met_[k - 1], met_[k]);
-        }
-    }
-    if (met_.empty()) return false;
-    if (equilibrium_.walls_are_full()) drop_idle_walls(results);
-    const bool all_press = equilibrium_.walls_are_full();
-    for (const MetWall& met : met_) {
-        TickResult& result = results[met.tool];
-        if (all_press) result.status |= contacts_cut;
-        hold_by(met.tool, met.part, rigid_contact(met.touch, met.touch.normal, met.gap), result);
-    }
-    return true;
-}
-
-// Adds a wall that holds part `p` of a tool; false where there is no more room.
-bool ContinuousContact::hold_by(std::size_t t, std::size_t p, const Contact& wall,
-                                TickResult& result) noexcept {
-    if (equilibrium_.walls_are_full()) return false;
-    Contact& contact = result.contacts[static_cast<std::size_t>(result.contact_count++)];
-    contact = wall;
-    contact.part = static_cast<std::int32_t>(p);
-    equilibrium_.add_wall(t, contact);
-    return true;
-}
-
-// Makes room for walls that press: the answer is the same without those that do not.
-void ContinuousContact::drop_idle_walls(std::span<TickResult> results) noexcept {
-    for (std::size_t t = 0; t < tools_.size(); ++t)
-        results[t].contact_count =
-            static_cast<std::int32_t>(equilibrium_.drop_idle_walls(t, results[t].contacts));
-}
-
-// The rigid bodies' hold on a tool that is held by more. What finds no room here and is missed in the
-// solution is found as what that meets.
-void ContinuousContact::add_rigid_contacts(std::size_t t, TickResult& result) noexcept {
-    Tool& tool = tools_[t];
-    for (std::size_t p = 0; p < tool.parts_felt; ++p) {
-        const Part& part = tool.parts[p];
-        const Vector3d lifted = part.on_rigid.position() + part.on_rigid.held_back() - part.device;
-        for (const GodObject::Touch& touch : part.on_rigid.touches())
-            if (!hold_by(t, p, rigid_contact(touch, touch.normal, touch.normal.dot(lifted)), result)) return;
-    }
 }
 
 // What is in equilibrium is no farther from the device than a tool would be if nothing gave way, for there
@@ -153,8 +87,8 @@ Vector3d ContinuousContact::wall_friction(std::size_t t, const Vector3d& force, 
     for (int wall = 0;; ++wall) {
         std::optional<GodObject::Touch> touch;
         for (std::size_t p = 0; p < parts.size() && !touch; ++p) {
-            touch = parts[p].on_rigid.touch_on_the_way(rigid_surfaces_,
-                                                       parts[p].device + (force + drag) / coupling_);
+            touch = parts[p].with_tool.touch_on_the_way(rigid_surfaces_,
+                                                        parts[p].device + (force + drag) / coupling_);
         }
         if (!touch) break;
         const double inwards = touch->normal.dot(drag);

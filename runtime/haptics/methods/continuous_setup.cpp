@@ -45,7 +45,8 @@ ContinuousContact::ContinuousContact(const Case& patient_case, const ContactBodi
         tool.waits = torsion_ > 0;
         for (const ToolSphere& sphere : spheres_)
             tool.parts.emplace_back(GodObject(sphere.radius, rigid_surfaces_.size()),
-                                    GodObject(sphere.radius, all_surfaces_.size()));
+                                    GodObject(sphere.radius, all_surfaces_.size()),
+                                    GodObject(sphere.radius, torsion_ > 0 ? 0 : rigid_surfaces_.size()));
     }
 }
 

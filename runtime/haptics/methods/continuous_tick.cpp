@@ -34,15 +34,19 @@ void ContinuousContact::tick(std::span<const ContactPose> poses, const VirtualCo
     bool solve = false;
     for (std::size_t t = 0; t < tools_.size(); ++t) {
         if (!is_held(tools_[t]) && !equilibrium_.touches_tissue(t)) continue;
-        add_rigid_contacts(t, results[t]);
+        if (torsion_ == 0) go_with_tool(tools_[t]);
+        add_walls(t, results[t]);
         solve = true;
     }
     if (solve) {
         equilibrium_.solve();
         int round = 0;
-        for (; round < most_hold_offs && hold_off_rigid(results); ++round) equilibrium_.solve();
-        if (round == most_hold_offs && hold_off_rigid(results))
-            for (TickResult& result : results) result.status |= contact_unsolved;
+        for (; round < most_hold_offs && find_other_walls(results); ++round) equilibrium_.solve();
+        // Another tool keeps clear of bone on its way, as where it slips off a ridge, and goes on in the next
+        // tick.
+        if (round == most_hold_offs && find_other_walls(results))
+            for (TickResult& result : results)
+                result.status |= torsion_ > 0 ? contact_unsolved : contact_unsettled;
     }
     for (std::size_t t = 0; t < tools_.size(); ++t) {
         if (tools_[t].parts_felt == 0) continue;
@@ -50,11 +54,22 @@ void ContinuousContact::tick(std::span<const ContactPose> poses, const VirtualCo
         tools_[t].rested_at = tools_[t].tip + forces[t] / coupling_;
         results[t].tool_position = array_of(tools_[t].rested_at);
         if (torsion_ > 0) tell_turn(t, poses[t], results[t]);
-        if (torsion_ > 0) settle(t, forces[t], results[t]);
+        if (torsion_ > 0)
+            settle(t, forces[t], results[t]);
+        else
+            keep_with_tool(t, forces[t], results[t]);
     }
     write_neighbours(results);
     equilibrium_.end_tick();
     if (large_.any()) large_.tell(equilibrium_, results);
+}
+
+void ContinuousContact::add_up_wall_presses(Tool& tool, const TickResult& result) const noexcept {
+    for (Part& part : tool.parts) part.wall_press.setZero();
+    for (const Contact& contact : result.active_contacts())
+        if (is_wall(contact))
+            tool.parts[static_cast<std::size_t>(contact.part)].wall_press +=
+                static_cast<double>(contact.force) * normal_of(contact);
 }
 
 // A tool that turns by itself is held by what is around where it is, and not by what is where its device has
@@ -62,17 +77,29 @@ void ContinuousContact::tick(std::span<const ContactPose> poses, const VirtualCo
 void ContinuousContact::settle(std::size_t t, const Vector3d& force, const TickResult& result) noexcept {
     Tool& tool = tools_[t];
     tool.was_off_device = !force.isZero(0) || !equilibrium_.turn(t).isZero(0);
-    for (Part& part : tool.parts) part.wall_press.setZero();
+    add_up_wall_presses(tool, result);
     if (!tool.was_off_device) return;
-    for (const Contact& contact : result.active_contacts())
-        if (is_wall(contact))
-            tool.parts[static_cast<std::size_t>(contact.part)].wall_press +=
-                static_cast<double>(contact.force) * normal_of(contact);
     for (std::size_t p = 0; p < tool.parts_felt; ++p) {
         Part& part = tool.parts[p];
         part.on_rigid.settle_at(rigid_surfaces_,
                                 part.device + force / coupling_ + equilibrium_.turned_off(t, p));
     }
+}
+
+// The spheres that go with a tool go on from where it is now.
+void ContinuousContact::keep_with_tool(std::size_t t, const Vector3d& force,
+                                       const TickResult& result) noexcept {
+    Tool& tool = tools_[t];
+    const bool goes =
+        (is_held(tool) || equilibrium_.touches_tissue(t)) && (result.status & contact_unsolved) == 0;
+    for (std::size_t p = 0; p < tool.parts.size(); ++p)
+        tool.parts[p].goes_with_tool = goes && p < tool.parts_felt;
+    if (!goes) {
+        tool.dragged_off.setZero();
+        return;
+    }
+    tool.was_off = force / coupling_;
+    add_up_wall_presses(tool, result);
 }
 
 // Where a sphere is about to go: to its device, but no farther than where the tool may soon be; and against
@@ -122,7 +149,11 @@ Vector3d ContinuousContact::force_of(std::size_t t, TickResult& result) noexcept
         result.residual = equilibrium_.residual();
         if (result.contact_count > walls) depth_in_tissue(tool, result);
         Vector3d force = press + equilibrium_.drag(t);
-        if (friction_.at_rest > 0 && torsion_ == 0) force += wall_friction(t, force, result);
+        if (friction_.at_rest > 0 && torsion_ == 0) {
+            const Vector3d drag = wall_friction(t, force, result);
+            tool.dragged_off = drag / coupling_;
+            force += drag;
+        }
         return force;
     }
     // The contacts contradict each other. A tool that turns stays where it was, outside of all bodies; of
@@ -224,6 +255,7 @@ void ContinuousContact::forget(std::size_t t) noexcept {
     for (Part& part : tools_[t].parts) {
         part.on_rigid.reset();
         part.on_all.reset();
+        part.goes_with_tool = false;
     }
     equilibrium_.forget(t);
 }

@@ -101,5 +101,43 @@ TEST(Wedge, between_bone_and_tissue_that_rub_keeps_the_tool_out_of_bone) {
     }
 }
 
+// A bone bent like a coarse ball hangs over soft tissue; a tool that is pressed into the tissue goes round in
+// circles under its flank, there and back. Bone and tissue give back what the hand put in.
+TEST(Wedge, between_bent_bone_and_tissue_gives_back_what_a_closed_way_took) {
+    Case c = soft_cube(6);
+    c.rigid_bodies.push_back(rigid("knob", sample::sphere_surface({10, 12, 26}, 6, 1)));
+    constexpr double speed = 0.01, pi = 3.14159265358979;  // mm a tick
+    for (const auto& [x, z] : {std::pair(11.0, 19.5), std::pair(12.0, 20.0)}) {
+        HapticModel model(c);
+        TickResult result{};
+        Vector3d device(x, 3, 24), force = Vector3d::Zero();
+        double work = 0, stored = 0;
+        const auto go = [&](const Vector3d& to) {
+            const Vector3d from = device;
+            const int ticks = static_cast<int>(std::ceil((to - from).norm() / speed));
+            for (int tick = 1; tick <= ticks; ++tick) {
+                const Vector3d last = device, last_force = force;
+                device = from + (to - from) * tick / ticks;
+                model.tick(held_at(device), result);
+                EXPECT_EQ(result.status, tick_ok) << device.transpose();
+                force = force_of(result);
+                work += (force + last_force).dot(device - last) / 2;
+                stored = std::max(stored, -work);
+            }
+        };
+        model.tick(held_at(device), result);
+        go({x, 3, z});
+        go({x, 6, z});
+        for (const double turns : {1.0, -1.0}) {
+            const double before = work;
+            for (int k = 1; k <= 72; ++k) {
+                const double angle = turns * 2 * pi * k / 72;
+                go({x - 3 * std::sin(angle), 9 - 3 * std::cos(angle), z});
+            }
+            EXPECT_LT(std::abs(work - before), 0.005 * stored) << x;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace palpate

@@ -208,6 +208,12 @@ void ContactEquilibrium::add_wall(std::size_t tool, Contact& contact) noexcept {
     if (behind != rows_.begin()) std::rotate(behind, rows_.end() - 1, rows_.end());
 }
 
+void ContactEquilibrium::drop_walls(std::size_t t) noexcept {
+    rows_.erase_if(
+        [&](const Row& row) { return row.wall != nullptr && row.tool == static_cast<std::int32_t>(t); });
+    forget_groups();
+}
+
 std::size_t ContactEquilibrium::drop_idle_walls(std::size_t t, std::span<Contact> contacts) noexcept {
     std::array<Contact, most_walls> pressing;
     std::size_t kept = 0;
