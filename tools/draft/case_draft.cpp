@@ -178,6 +178,11 @@ std::string quality_lines(double cell_size, const ImageGrid& grid) {
         std::max(0.25, cell_size / 25 / coarseness), std::max(0.5, cell_size / 10 / coarseness));
 }
 
+// A tool that is about as wide as the mesh's edges does not feel them.
+double tool_radius_for(double edge) {
+    return std::clamp(std::round(edge), 1.0, 5.0);
+}
+
 }  // namespace
 
 std::vector<OrganChoice> organs_in(const LabelMap& map, const Eigen::Vector3d& approach) {
@@ -223,7 +228,7 @@ CaseDraft draft_case(LabelMap map, const Wishes& wishes, const std::string& culp
     draft.why_held = anatomy.why_held;
     draft.held_along =
         is_too_long(outside.points, draft.held_at, draft.held_towards, draft.volume_ml, outside.area);
-    draft.tool_radius = std::clamp(std::round(edge), 1.0, 5.0);
+    draft.tool_radius = tool_radius_for(std::max(edge, map.grid.spacing.maxCoeff()));
     add_lesions(draft, map, organ, wishes, volumes);
     draft.structures.push_back(
         {organ.name, fmt::format("{:.0f} ml, {:.0f} cm² of surface", draft.volume_ml, draft.area_cm2), ""});
@@ -255,7 +260,7 @@ CaseDraft draft_case(const TetMesh& mesh, const Wishes& wishes, const std::strin
     const double edge = edges / static_cast<double>(boundary.surface.triangles.size());
     for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) draft.volume_ml += six_volume(mesh, t) / 6000;
     draft.cell_size = edge / edge_over_cell;
-    draft.tool_radius = std::clamp(std::round(edge), 1.0, 5.0);
+    draft.tool_radius = tool_radius_for(edge);
     draft.held_towards = whole.held_towards;
     draft.held_at = plane_point(boundary.surface.vertices, whole.held_towards);
     draft.why_held = whole.why_held;

@@ -89,7 +89,9 @@ TEST(CaseDraft, cells_follow_from_the_surface_and_the_nodes_that_are_wanted) {
                     fine = draft_case(map, {.organ = "", .contact_nodes = 800}, "x");
     EXPECT_NEAR(coarse.area_cm2, 4 * std::numbers::pi * 9, 0.05 * 4 * std::numbers::pi * 9);
     EXPECT_NEAR(coarse.cell_size, 2 * fine.cell_size, 0.35);  // to a quarter, and twice 0.05 mm
-    EXPECT_EQ(draft_case(map, {.organ = "", .contact_nodes = 1e6}, "x").cell_size, 2);  // the voxels'
+    const CaseDraft finest = draft_case(map, {.organ = "", .contact_nodes = 1e6}, "x");
+    EXPECT_EQ(finest.cell_size, 2);    // the voxels'
+    EXPECT_EQ(finest.tool_radius, 2);  // and so the tool, which would feel them if it were smaller
 }
 
 TEST(CaseDraft, holds_an_eighth_of_the_surface_on_the_side_away_from_the_approach) {
