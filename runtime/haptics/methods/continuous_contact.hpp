@@ -73,13 +73,12 @@ class ContinuousContact final : public ContactMethod {
         Eigen::Vector3d tip = Eigen::Vector3d::Zero();  // on its device, mm; and a frame that is turned as
         Eigen::Matrix3d orientation = Eigen::Matrix3d::Identity();  // it is there, its z along the shaft
         Eigen::Vector3d rested_at = Eigen::Vector3d::Zero();  // its tip, at the end of the tick before, mm
-        Eigen::Vector3d was_off = Eigen::Vector3d::Zero();    // its device then, mm; and by friction of walls
-        Eigen::Vector3d dragged_off = Eigen::Vector3d::Zero();
-        bool held_beside_tip = false;   // by a sphere that is not about its tip
-        std::size_t measured_last = 0;  // of the parts: how far from all bodies
-        bool was_off_device = false;    // at the end of the tick before, where it turns by itself
-        bool waits = false;             // to be clear of every body
-        std::size_t stuck = 0;          // the part that was not
+        Eigen::Vector3d was_off = Eigen::Vector3d::Zero();    // its device then, but for walls' friction, mm
+        bool held_beside_tip = false;                         // by a sphere that is not about its tip
+        std::size_t measured_last = 0;                        // of the parts: how far from all bodies
+        bool was_off_device = false;  // at the end of the tick before, where it turns by itself
+        bool waits = false;           // to be clear of every body
+        std::size_t stuck = 0;        // the part that was not
     };
 
     // That a sphere would meet between its rest on rigid bodies and where the solution has it: how far its
@@ -97,7 +96,7 @@ class ContinuousContact final : public ContactMethod {
     static bool is_held(const Tool& tool) noexcept { return tool.held_beside_tip || tool.was_off_device; }
     Eigen::Vector3d aim_of(const Tool& tool, const Part& part) const noexcept;
     void settle(std::size_t tool, const Eigen::Vector3d& force, const TickResult& result) noexcept;
-    void keep_with_tool(std::size_t tool, const Eigen::Vector3d& force, const TickResult& result) noexcept;
+    void keep_with_tool(std::size_t tool, const TickResult& result) noexcept;
     void add_up_wall_presses(Tool& tool, const TickResult& result) const noexcept;
     void follow(std::size_t tool, TickResult& result) noexcept;
     void note_clearances(Tool& tool) noexcept;
@@ -123,8 +122,9 @@ class ContinuousContact final : public ContactMethod {
     // In continuous_walls.cpp.
     void go_with_tool(Tool& tool) noexcept;
     void add_walls(std::size_t tool, TickResult& result) noexcept;
-    bool find_other_walls(std::span<TickResult> results) noexcept;
-    bool leads_elsewhere(Tool& tool, const Eigen::Vector3d& off, const TickResult& result) noexcept;
+    bool find_other_walls(std::span<TickResult> results, int round) noexcept;
+    bool leads_elsewhere(Tool& tool, const Eigen::Vector3d& off, const TickResult& result,
+                         bool renews) noexcept;
     void note_met(Part& part) const noexcept;
     Walls walls_of(const Part& part) const noexcept;
     static double gap_at(const GodObject::Touch& wall, const Part& part) noexcept;

@@ -11,8 +11,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double unsolved = 1e-3;  // mm of residual that is reported
-constexpr int most_hold_offs = 8;  // of contacts that only the solution of the others meets
+constexpr double unsolved = 1e-3;   // mm of residual that is reported
+constexpr int most_hold_offs = 12;  // of contacts that only the solution of the others meets
 // Of a tool of so many spheres or more, how far they are from all bodies is measured: of so many in a tick,
 // up to so many mm.
 constexpr std::size_t many_parts = 8, measured_at_once = 4;
@@ -41,10 +41,10 @@ void ContinuousContact::tick(std::span<const ContactPose> poses, const VirtualCo
     if (solve) {
         equilibrium_.solve();
         int round = 0;
-        for (; round < most_hold_offs && find_other_walls(results); ++round) equilibrium_.solve();
+        for (; round < most_hold_offs && find_other_walls(results, round); ++round) equilibrium_.solve();
         // Another tool keeps clear of bone on its way, as where it slips off a ridge, and goes on in the next
         // tick.
-        if (round == most_hold_offs && find_other_walls(results))
+        if (round == most_hold_offs && find_other_walls(results, round))
             for (TickResult& result : results)
                 result.status |= torsion_ > 0 ? contact_unsolved : contact_unsettled;
     }
@@ -57,7 +57,7 @@ void ContinuousContact::tick(std::span<const ContactPose> poses, const VirtualCo
         if (torsion_ > 0)
             settle(t, forces[t], results[t]);
         else
-            keep_with_tool(t, forces[t], results[t]);
+            keep_with_tool(t, results[t]);
     }
     write_neighbours(results);
     equilibrium_.end_tick();
@@ -87,18 +87,15 @@ void ContinuousContact::settle(std::size_t t, const Vector3d& force, const TickR
 }
 
 // The spheres that go with a tool go on from where it is now.
-void ContinuousContact::keep_with_tool(std::size_t t, const Vector3d& force,
-                                       const TickResult& result) noexcept {
+void ContinuousContact::keep_with_tool(std::size_t t, const TickResult& result) noexcept {
     Tool& tool = tools_[t];
     const bool goes =
         (is_held(tool) || equilibrium_.touches_tissue(t)) && (result.status & contact_unsolved) == 0;
     for (std::size_t p = 0; p < tool.parts.size(); ++p)
         tool.parts[p].goes_with_tool = goes && p < tool.parts_felt;
-    if (!goes) {
-        tool.dragged_off.setZero();
-        return;
-    }
-    tool.was_off = force / coupling_;
+    if (!goes) return;
+    // Walls' friction is left out: what it does is asked for once they are known.
+    tool.was_off = (equilibrium_.press(t) + equilibrium_.drag(t)) / coupling_;
     add_up_wall_presses(tool, result);
 }
 
@@ -149,11 +146,7 @@ Vector3d ContinuousContact::force_of(std::size_t t, TickResult& result) noexcept
         result.residual = equilibrium_.residual();
         if (result.contact_count > walls) depth_in_tissue(tool, result);
         Vector3d force = press + equilibrium_.drag(t);
-        if (friction_.at_rest > 0 && torsion_ == 0) {
-            const Vector3d drag = wall_friction(t, force, result);
-            tool.dragged_off = drag / coupling_;
-            force += drag;
-        }
+        if (friction_.at_rest > 0 && torsion_ == 0) force += wall_friction(t, force, result);
         return force;
     }
     // The contacts contradict each other. A tool that turns stays where it was, outside of all bodies; of

@@ -21,6 +21,8 @@ using Eigen::Vector3d;
 
 // mm of a plane that a tool that turns slips past: turning bends planes, and the next tick finds so little.
 constexpr double slightly_beyond = 2e-3;
+// Rounds in which walls are renewed; in later ones they are added to those there are, which comes to an end.
+constexpr int renewing_rounds = 5;
 constexpr double same_wall = 1e-4;             // mm, and
 constexpr double same_wall_normal = 1 - 1e-6;  // cosine: walls that differ by less are one
 constexpr double parallel = 1 - 1e-12;         // cosine
@@ -134,25 +136,29 @@ double ContinuousContact::gap_at(const GodObject::Touch& wall, const Part& part)
 
 // Tells whether walls other than those that were solved for hold a tool where the solution has it; these are
 // there to be solved for then.
-bool ContinuousContact::find_other_walls(std::span<TickResult> results) noexcept {
+bool ContinuousContact::find_other_walls(std::span<TickResult> results, int round) noexcept {
     if (torsion_ > 0) return hold_off_rigid(results);
     bool any = false;
     for (std::size_t t = 0; t < tools_.size(); ++t) {
         Tool& tool = tools_[t];
         if (!equilibrium_.touches_tissue(t) && !is_held(tool)) continue;
-        const Vector3d off = (equilibrium_.press(t) + equilibrium_.drag(t)) / coupling_ + tool.dragged_off;
-        if (!leads_elsewhere(tool, off, results[t])) continue;
+        const Vector3d off = (equilibrium_.press(t) + equilibrium_.drag(t)) / coupling_;
+        const bool renews = round < renewing_rounds;
+        if (!leads_elsewhere(tool, off, results[t], renews)) continue;
         any = true;
-        equilibrium_.drop_walls(t);
-        results[t].contact_count = 0;
+        if (renews) {
+            equilibrium_.drop_walls(t);
+            results[t].contact_count = 0;
+        }
         add_walls(t, results[t]);
     }
     return any;
 }
 
 // Lets each sphere go on to where a solution has it, `off` (mm) its device. Tells whether other walls than
-// those that hold it do so there.
-bool ContinuousContact::leads_elsewhere(Tool& tool, const Vector3d& off, const TickResult& result) noexcept {
+// those that hold it do so there; or, where they are not renewed, besides those.
+bool ContinuousContact::leads_elsewhere(Tool& tool, const Vector3d& off, const TickResult& result,
+                                        bool renews) noexcept {
     bool any = false;
     for (std::size_t p = 0; p < tool.parts_felt; ++p) {
         Part& part = tool.parts[p];
@@ -178,8 +184,9 @@ bool ContinuousContact::leads_elsewhere(Tool& tool, const Vector3d& off, const T
         };
         const bool elsewhere =
             std::ranges::any_of(walls, [&](const auto& wall) { return beyond(wall) > same_wall; }) ||
-            std::ranges::any_of(result.active_contacts(),
-                                [&](const Contact& wall) { return presses(wall) && !is_among_walls(wall); });
+            (renews && std::ranges::any_of(result.active_contacts(), [&](const Contact& wall) {
+                 return presses(wall) && !is_among_walls(wall);
+             }));
         part.led_elsewhere = part.led_elsewhere || elsewhere;
         any = any || elsewhere;
     }
