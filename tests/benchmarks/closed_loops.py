@@ -2,13 +2,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a hand gets back that goes round on frictionless tissue: the work of a closed loop, of what was stored by pressing.
 
-    closed_loops.py ASSET [--depth MM] [--radius MM] [--places N] [--held] [--edges] [--large-deformation]
+    closed_loops.py ASSET [--depth MM] [--radius MM] [--places N] [--held] [--edges] [--beside] [--large-deformation]
                                                                                          (PALPATE_BIN has the programs)
 
 At places drawn evenly over the surface, where all of it gives way or, with --held, triangles under the circle have held corners, where
 it is no edge (normals within 70 degrees) and nothing stands opposite or beside, an infinitely stiff hand goes straight in, then twice
 round a circle in the plane of the surface there, in steps of 0.02 mm. The work of the second round should be nothing. Loops that leave
-the tissue are left out. With --edges, places on edges and with something opposite or beside count too.
+the tissue are left out. With --edges, places on edges and with something opposite or beside count too; with --beside, only places beside a
+rigid body, where the tool is between both for part of the round.
 """
 import argparse
 import os
@@ -25,7 +26,7 @@ HEAD = """| case | circle, mm | tool, mm | deep, mm | loops in contact | work of
 |---|--:|--:|--:|--:|--:|--:|"""
 
 
-def places(asset, count, circle, held, edges):
+def places(asset, count, circle, held, edges, beside_bone):
     """Points and inward normals (mm) where the surface around is free and no edge, and the tool's radius."""
     with h5py.File(asset) as file:
         body, radius = file["palpate/bodies/deformable/0"], float(file["palpate/haptics"].attrs["tool_radius"])
@@ -40,11 +41,15 @@ def places(asset, count, circle, held, edges):
     for t in np.random.default_rng(3).choice(len(area), len(area), replace=False, p=area / area.sum()):
         away = np.linalg.norm(middle - middle[t], axis=1)
         around, under = away < circle + radius, abs(away - circle) < radius / 2
-        beside = np.linalg.norm(rigid - middle[t], axis=1) < 2 * (circle + radius)
+        to_rigid = np.linalg.norm(rigid - middle[t], axis=1)
+        beside = to_rigid < 2 * (circle + radius)
+        starts = middle[t] + outward[t] * (radius + 2)
+        if beside_bone and (not (to_rigid < circle + radius).any() or np.linalg.norm(rigid - starts, axis=1).min() < circle + radius):
+            continue
         ahead = middle[t] + outward[t] * np.linspace(2 * radius + 1, 2 * radius + 6, 6)[:, None]
         facing = min(np.linalg.norm(middle - place, axis=1).min() for place in ahead) < radius
         suits = part_held[under].any() if held else not corners_held[around].any()
-        open_there = (outward[around] @ outward[t]).min() > 0.3 and not beside.any() and not facing
+        open_there = (outward[around] @ outward[t]).min() > 0.3 and (beside_bone or not beside.any()) and not facing
         if suits and (edges or open_there):
             found.append((middle[t], -outward[t]))
             if len(found) == count:
@@ -98,14 +103,15 @@ def main():
     parser.add_argument("--places", type=int, default=24)
     parser.add_argument("--held", action="store_true", help="where triangles under the circle are held by some of their corners")
     parser.add_argument("--edges", action="store_true", help="on edges and beside others as well")
+    parser.add_argument("--beside", action="store_true", help="beside a rigid body")
     parser.add_argument("--large-deformation", action="store_true", help="of neo-Hookean tissue")
     arguments = parser.parse_args()
     options = ["--large-deformation", "all"] if arguments.large_deformation else []
-    chosen, tool = places(arguments.asset, arguments.places, arguments.radius, arguments.held, arguments.edges)
+    chosen, tool = places(arguments.asset, arguments.places, arguments.radius, arguments.held, arguments.edges, arguments.beside)
     with tempfile.TemporaryDirectory() as folder:
         loops = [loop(arguments.asset, pathlib.Path(folder), options, *path(*place, tool, arguments.depth, arguments.radius)) for place in chosen]
     work, step = np.array([result for result in loops if result]).T * 100
-    case = arguments.asset.stem + ", part held" * arguments.held + ", edges too" * arguments.edges + ", large deformation" * arguments.large_deformation
+    case = arguments.asset.stem + ", part held" * arguments.held + ", edges too" * arguments.edges + ", beside bone" * arguments.beside + ", large deformation" * arguments.large_deformation
     print(HEAD)
     print(f"| {case} | {arguments.radius:g} | {tool:g} | {arguments.depth:g} | {len(work)} of {len(loops)} | "
           f"{' / '.join(map(two_digits, (np.median(work), np.percentile(work, 90), work.max())))} % | "
