@@ -38,10 +38,13 @@ void GodObject::start_clear_at(const Vector3d& position) noexcept {
 }
 
 void GodObject::start_at(const GodObject& other) noexcept {
-    reset();
+    // What is known of the neighbourhood holds wherever it is.
+    let_go();
     for (std::size_t i = 0; i < obstacles_.size(); ++i) obstacles_[i].followed = other.obstacles_[i].followed;
     all_followed_ = other.all_followed_;
     any_followed_ = other.any_followed_;
+    clear_about_ = other.clear_about_;
+    clear_within_ = other.clear_within_;
     position_ = last_device_ = other.position_;
     held_back_.setZero();
     touches_ = other.touches_;

@@ -18,13 +18,14 @@
 namespace palpate::haptics {
 
 /// Contact found in every tick: a tool is a sphere, a row of spheres where it has a shaft, or what spheres an
-/// instrument with a surface of its own is filled with. Each holds a god-object on the rigid bodies and one
-/// on all bodies as if they were rigid; where only the tip touches, and only rigid bodies, the force is that
-/// of the virtual coupling, stiffness * (proxy - device), otherwise tools and tissue are brought to rest
-/// together (ContactEquilibrium). A shaft turns as the device says, and the torque that would turn it back is
-/// not rendered; a tool that turns by itself, Case::tool, hangs on a spring of torsion besides, which has its
-/// rest among the others, and gives torque. A tool that jumped does not feel a body that it is in until it
-/// has been clear of it; one that turns by itself feels nothing until all of it has been clear of every body.
+/// instrument with a surface of its own is filled with. Each holds a god-object on the rigid bodies, one on
+/// all bodies as if they were rigid, and one that goes with the tool where tissue pushes it; where only the
+/// tip touches, and only rigid bodies, the force is that of the virtual coupling, stiffness * (proxy -
+/// device), otherwise tools and tissue are brought to rest together (ContactEquilibrium). A shaft turns as
+/// the device says, and the torque that would turn it back is not rendered; a tool that turns by itself,
+/// Case::tool, hangs on a spring of torsion besides, which has its rest among the others, and gives torque. A
+/// tool that jumped does not feel a body that it is in until it has been clear of it; one that turns by
+/// itself feels nothing until all of it has been clear of every body.
 class ContinuousContact final : public ContactMethod {
   public:
     /// `bodies` must outlive this. Of the case it reads what is held, friction, and which bodies are
@@ -47,7 +48,8 @@ class ContinuousContact final : public ContactMethod {
     static constexpr std::size_t most_of_rod = 49;
 
   private:
-    static constexpr std::size_t most_met = 12;
+    static constexpr std::size_t most_met = 12;         // triangles that one of a tool's spheres remembers
+    static constexpr std::size_t most_met_at_once = 8;  // walls on the ways of tools that turn
     struct MetTriangle {
         std::size_t surface = 0;  // rigid
         std::int32_t slot = 0;    // of its tree
@@ -61,7 +63,8 @@ class ContinuousContact final : public ContactMethod {
             on_all;  // as if nothing gave way: without friction, no equilibrium is farther from the device
         // Of a tool that does not turn by itself: where it is among rigid bodies, and what it has met there.
         GodObject with_tool;
-        bool goes_with_tool = false, led_elsewhere = false;
+        bool goes_with_tool = false;  // since the last tick
+        bool led_elsewhere = false;   // in this tick, than what it touched
         FixedList<MetTriangle, most_met> met;
         Eigen::Vector3d device = Eigen::Vector3d::Zero();      // where the coupling pulls it, mm
         Eigen::Vector3d wall_press = Eigen::Vector3d::Zero();  // of the tick before, N
@@ -73,12 +76,15 @@ class ContinuousContact final : public ContactMethod {
         Eigen::Vector3d tip = Eigen::Vector3d::Zero();  // on its device, mm; and a frame that is turned as
         Eigen::Matrix3d orientation = Eigen::Matrix3d::Identity();  // it is there, its z along the shaft
         Eigen::Vector3d rested_at = Eigen::Vector3d::Zero();  // its tip, at the end of the tick before, mm
-        Eigen::Vector3d was_off = Eigen::Vector3d::Zero();    // its device then, but for walls' friction, mm
-        bool held_beside_tip = false;                         // by a sphere that is not about its tip
-        std::size_t measured_last = 0;                        // of the parts: how far from all bodies
-        bool was_off_device = false;  // at the end of the tick before, where it turns by itself
-        bool waits = false;           // to be clear of every body
-        std::size_t stuck = 0;        // the part that was not
+        // How far it was off its device then, without what walls' friction does, mm.
+        Eigen::Vector3d was_off = Eigen::Vector3d::Zero();
+        bool led_elsewhere = false;     // by the last solution, than where its walls hold it
+        bool lacks_walls = false;       // for want of room
+        bool held_beside_tip = false;   // by a sphere that is not about its tip
+        std::size_t measured_last = 0;  // of the parts: how far from all bodies
+        bool was_off_device = false;    // at the end of the tick before, where it turns by itself
+        bool waits = false;             // to be clear of every body
+        std::size_t stuck = 0;          // the part that was not
     };
 
     // That a sphere would meet between its rest on rigid bodies and where the solution has it: how far its
@@ -97,6 +103,8 @@ class ContinuousContact final : public ContactMethod {
     Eigen::Vector3d aim_of(const Tool& tool, const Part& part) const noexcept;
     void settle(std::size_t tool, const Eigen::Vector3d& force, const TickResult& result) noexcept;
     void keep_with_tool(std::size_t tool, const TickResult& result) noexcept;
+    void hand_over_to_rigid() noexcept;
+    void say_led_elsewhere(std::span<TickResult> results) const noexcept;
     void add_up_wall_presses(Tool& tool, const TickResult& result) const noexcept;
     void follow(std::size_t tool, TickResult& result) noexcept;
     void note_clearances(Tool& tool) noexcept;
@@ -122,13 +130,18 @@ class ContinuousContact final : public ContactMethod {
     // In continuous_walls.cpp.
     void go_with_tool(Tool& tool) noexcept;
     void add_walls(std::size_t tool, TickResult& result) noexcept;
+    Eigen::Vector3d off_of(std::size_t tool) const noexcept {
+        return (equilibrium_.press(tool) + equilibrium_.drag(tool)) / coupling_;
+    }
     bool find_other_walls(std::span<TickResult> results, int round) noexcept;
+    void hold_by_other_walls(std::span<TickResult> results, int round) noexcept;
     bool leads_elsewhere(Tool& tool, const Eigen::Vector3d& off, const TickResult& result,
                          bool renews) noexcept;
     void note_met(Part& part) const noexcept;
     Walls walls_of(const Part& part) const noexcept;
     static double gap_at(const GodObject::Touch& wall, const Part& part) noexcept;
-    bool hold_off_rigid(std::span<TickResult> results) noexcept;
+    bool meets_others_on_the_way() noexcept;
+    void hold_by_met(std::span<TickResult> results) noexcept;
     bool hold_by(std::size_t tool, std::size_t part, const Contact& wall, TickResult& result) noexcept;
     void drop_idle_walls(std::span<TickResult> results) noexcept;
 
@@ -143,7 +156,7 @@ class ContinuousContact final : public ContactMethod {
     ContactEquilibrium equilibrium_;
     LargeDeformation large_;
     FixedList<ContactEquilibrium::Sphere, most_spheres> placed_;  // of the tool that is being placed
-    FixedList<MetWall, most_met> met_;                            // the farthest gone through first
+    FixedList<MetWall, most_met_at_once> met_;                    // the farthest gone through first
 };
 
 /// A ContinuousContact, as the table of contact methods makes it.

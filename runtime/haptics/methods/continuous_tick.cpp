@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One tick of the continuous contact: nothing here allocates, locks, waits or throws.
 #include <algorithm>
+#include <utility>
 
 #include "formats/model/arrays.hpp"
 #include "runtime/haptics/methods/continuous_contact.hpp"
@@ -11,14 +12,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double unsolved = 1e-3;   // mm of residual that is reported
-constexpr int most_hold_offs = 12;  // of contacts that only the solution of the others meets
+constexpr double unsolved = 1e-3;  // mm of residual that is reported
+// In which walls are added that only the solution of the others meets.
+constexpr int most_rounds = 12, most_turning_rounds = 8;
 // Of a tool of so many spheres or more, how far they are from all bodies is measured: of so many in a tick,
 // up to so many mm.
 constexpr std::size_t many_parts = 8, measured_at_once = 4;
 constexpr double farthest_measured = 20;
 // mm that a sphere of a tool that turns by itself looks ahead, from where the tool is towards its device.
 constexpr double farthest_aim = 0.2;
+constexpr double elsewhere = 0.1;      // mm, of two spheres that rest on bone
 constexpr double farthest_return = 5;  // mm: a sphere of a shaft found again farther off starts anew
 
 }  // namespace
@@ -40,13 +43,16 @@ void ContinuousContact::tick(std::span<const ContactPose> poses, const VirtualCo
     }
     if (solve) {
         equilibrium_.solve();
-        int round = 0;
-        for (; round < most_hold_offs && find_other_walls(results, round); ++round) equilibrium_.solve();
-        // Another tool keeps clear of bone on its way, as where it slips off a ridge, and goes on in the next
-        // tick.
-        if (round == most_hold_offs && find_other_walls(results, round))
-            for (TickResult& result : results)
-                result.status |= torsion_ > 0 ? contact_unsolved : contact_unsettled;
+        const int most = torsion_ > 0 ? most_turning_rounds : most_rounds;
+        bool led_elsewhere = find_other_walls(results, 0);
+        for (int round = 0; led_elsewhere && round < most;) {
+            hold_by_other_walls(results, round);
+            equilibrium_.solve();
+            led_elsewhere = find_other_walls(results, ++round);
+        }
+        if (led_elsewhere) say_led_elsewhere(results);
+        for (std::size_t t = 0; t < tools_.size(); ++t)
+            if (tools_[t].lacks_walls) results[t].status |= contacts_cut;
     }
     for (std::size_t t = 0; t < tools_.size(); ++t) {
         if (tools_[t].parts_felt == 0) continue;
@@ -61,6 +67,7 @@ void ContinuousContact::tick(std::span<const ContactPose> poses, const VirtualCo
     }
     write_neighbours(results);
     equilibrium_.end_tick();
+    hand_over_to_rigid();
     if (large_.any()) large_.tell(equilibrium_, results);
 }
 
@@ -89,14 +96,37 @@ void ContinuousContact::settle(std::size_t t, const Vector3d& force, const TickR
 // The spheres that go with a tool go on from where it is now.
 void ContinuousContact::keep_with_tool(std::size_t t, const TickResult& result) noexcept {
     Tool& tool = tools_[t];
-    const bool goes =
-        (is_held(tool) || equilibrium_.touches_tissue(t)) && (result.status & contact_unsolved) == 0;
+    const bool goes = is_held(tool) || equilibrium_.touches_tissue(t);
     for (std::size_t p = 0; p < tool.parts.size(); ++p)
         tool.parts[p].goes_with_tool = goes && p < tool.parts_felt;
     if (!goes) return;
     // Walls' friction is left out: what it does is asked for once they are known.
-    tool.was_off = (equilibrium_.press(t) + equilibrium_.drag(t)) / coupling_;
+    tool.was_off = off_of(t);
     add_up_wall_presses(tool, result);
+}
+
+// Once tissue has let go of a tool, bone alone holds it where it is, which may not be where its device would
+// have brought it, as behind a ridge.
+void ContinuousContact::hand_over_to_rigid() noexcept {
+    if (torsion_ > 0) return;
+    for (std::size_t t = 0; t < tools_.size(); ++t) {
+        Tool& tool = tools_[t];
+        if (is_held(tool) || equilibrium_.touches_tissue(t)) continue;
+        for (Part& part : tool.parts)
+            if (std::exchange(part.goes_with_tool, false) &&
+                (part.with_tool.position() - part.on_rigid.position()).norm() > elsewhere)
+                part.on_rigid.start_at(part.with_tool);
+    }
+}
+
+// A tool that turns by itself cannot be solved then; another is on its way, as where it slips off a ridge of
+// bone, and goes on in the next tick.
+void ContinuousContact::say_led_elsewhere(std::span<TickResult> results) const noexcept {
+    for (std::size_t t = 0; t < tools_.size(); ++t)
+        if (torsion_ > 0)
+            results[t].status |= contact_unsolved;
+        else if (tools_[t].led_elsewhere)
+            results[t].status |= contact_unsettled;
 }
 
 // Where a sphere is about to go: to its device, but no farther than where the tool may soon be; and against
@@ -178,9 +208,10 @@ void ContinuousContact::depth_in_tissue(const Tool& tool, TickResult& result) co
 
 void ContinuousContact::place(std::size_t t, const ContactPose& pose, TickResult& result) noexcept {
     Tool& tool = tools_[t];
-    tool.held_beside_tip = false;
+    tool.held_beside_tip = tool.lacks_walls = false;
     if (!pose.trusted) {
         tool.parts_felt = 0;
+        for (Part& part : tool.parts) part.goes_with_tool = false;
         return;
     }
     if (pose.jumped) forget(t);
@@ -206,6 +237,7 @@ void ContinuousContact::place(std::size_t t, const ContactPose& pose, TickResult
         if (p > 0 && p >= tool.parts_felt && (to - part.device).norm() > farthest_return) {
             part.on_rigid.reset();
             part.on_all.reset();
+            part.goes_with_tool = false;
             tool.waits = tool.waits || is_instrument_;
         }
         part.device = to;

@@ -5,8 +5,9 @@
 // Walls are half-spaces, and tool and tissue come to rest among them: so they have to be those that the tool
 // meets where it comes to rest, not where its device has it. Of a tool that turns as its device does, a
 // sphere goes along with each of its own, as far as rigid bodies let it; its touches are the walls, and are
-// renewed until the solution leads nowhere else. What else was met on the way does not count: half-spaces of
-// a bent surface would keep the tool from where it gets to round the edge.
+// renewed until the solution leads nowhere else. What was met on the way counts only where that has not ended
+// after some rounds: half-spaces of a bent surface would keep the tool from where it gets to round the edge.
+// Tools that turn by themselves are held by what they meet on the way.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -25,11 +26,13 @@ constexpr double slightly_beyond = 2e-3;
 constexpr int renewing_rounds = 5;
 constexpr double same_wall = 1e-4;             // mm, and
 constexpr double same_wall_normal = 1 - 1e-6;  // cosine: walls that differ by less are one
-constexpr double parallel = 1 - 1e-12;         // cosine
+constexpr double same_plane_normal = 1e-6;     // between unit normals, of which one is rounded to floats
 constexpr double pressing_gap = 1e-5;          // mm from a wall that presses
 constexpr double looked_behind = 0.02;         // mm behind walls that press it is looked for what is there
 constexpr double beside = 0.2;                 // mm from a sphere within which what it met stays a wall
 constexpr double touched = 0.02;               // mm from it, of what comes first
+constexpr double least_press = 1e-4;           // N, likewise
+constexpr double least_sum = 0.1;              // of unit normals: walls opposite each other have no side
 
 }  // namespace
 
@@ -38,7 +41,7 @@ void ContinuousContact::go_with_tool(Tool& tool) noexcept {
     for (Part& part : std::span(tool.parts).first(tool.parts_felt)) {
         if (part.goes_with_tool) {
             Vector3d to = part.device + tool.was_off;
-            if (!part.wall_press.isZero(0)) to -= looked_behind * part.wall_press.normalized();
+            if (part.wall_press.norm() > least_press) to -= looked_behind * part.wall_press.normalized();
             part.with_tool.move(rigid_surfaces_, to);
         } else {
             part.with_tool.start_at(part.on_rigid);
@@ -66,10 +69,12 @@ void ContinuousContact::note_met(Part& part) const noexcept {
         };
         if (std::ranges::any_of(part.met, is_it)) continue;
         const MetTriangle met{touch.surface, touch.foot.slot, touch.foot.distance};
-        if (part.met.full())
-            *std::ranges::max_element(part.met, {}, &MetTriangle::distance) = met;
-        else
+        if (!part.met.full()) {
             part.met.push_back(met);
+            continue;
+        }
+        MetTriangle& farthest = *std::ranges::max_element(part.met, {}, &MetTriangle::distance);
+        if (farthest.distance > met.distance) farthest = met;
     }
 }
 
@@ -94,9 +99,11 @@ ContinuousContact::Walls ContinuousContact::walls_of(const Part& part) const noe
     return walls;
 }
 
+// The walls that a tool has at the start of a tick, or instead of or besides others.
 void ContinuousContact::add_walls(std::size_t t, TickResult& result) noexcept {
     Tool& tool = tools_[t];
     const auto parts = std::span(tool.parts).first(tool.parts_felt);
+    tool.lacks_walls = false;
     if (torsion_ > 0) {
         // What finds no room here and is missed in the solution is found as what that meets.
         for (std::size_t p = 0; p < parts.size(); ++p) {
@@ -117,13 +124,15 @@ void ContinuousContact::add_walls(std::size_t t, TickResult& result) noexcept {
                 const double gap = gap_at(wall, parts[p]);
                 // All spheres are off their devices alike: of parallel walls the nearest holds them.
                 const auto does_as_well = [&](const Contact& other) {
-                    return normal_of(other).dot(wall.normal) > parallel &&
-                           static_cast<double>(other.gap) > gap - pressing_gap;
+                    return (normal_of(other) - wall.normal)
+                               .norm()<same_plane_normal&& static_cast<double>(other.gap)>
+                                   gap -
+                           pressing_gap;
                 };
                 if (std::ranges::any_of(result.active_contacts(), does_as_well) ||
                     hold_by(t, p, rigid_contact(wall, wall.normal, gap), result))
                     continue;
-                if (touching) result.status |= contacts_cut;
+                tool.lacks_walls = touching;
                 return;
             }
         }
@@ -134,25 +143,31 @@ double ContinuousContact::gap_at(const GodObject::Touch& wall, const Part& part)
     return wall.normal.dot(wall.foot.point - part.device) + part.with_tool.radius() + GodObject::skin;
 }
 
-// Tells whether walls other than those that were solved for hold a tool where the solution has it; these are
-// there to be solved for then.
+// Tells whether the solution has a tool where walls other than those that it was solved for hold it.
 bool ContinuousContact::find_other_walls(std::span<TickResult> results, int round) noexcept {
-    if (torsion_ > 0) return hold_off_rigid(results);
+    if (torsion_ > 0) return meets_others_on_the_way();
     bool any = false;
     for (std::size_t t = 0; t < tools_.size(); ++t) {
         Tool& tool = tools_[t];
-        if (!equilibrium_.touches_tissue(t) && !is_held(tool)) continue;
-        const Vector3d off = (equilibrium_.press(t) + equilibrium_.drag(t)) / coupling_;
-        const bool renews = round < renewing_rounds;
-        if (!leads_elsewhere(tool, off, results[t], renews)) continue;
-        any = true;
-        if (renews) {
+        tool.led_elsewhere = (equilibrium_.touches_tissue(t) || is_held(tool)) &&
+                             leads_elsewhere(tool, off_of(t), results[t], round < renewing_rounds);
+        any = any || tool.led_elsewhere;
+    }
+    return any;
+}
+
+// Has those hold it.
+void ContinuousContact::hold_by_other_walls(std::span<TickResult> results, int round) noexcept {
+    if (torsion_ > 0) return hold_by_met(results);
+    if (round >= renewing_rounds && equilibrium_.walls_are_full()) drop_idle_walls(results);
+    for (std::size_t t = 0; t < tools_.size(); ++t) {
+        if (!tools_[t].led_elsewhere) continue;
+        if (round < renewing_rounds) {
             equilibrium_.drop_walls(t);
             results[t].contact_count = 0;
         }
         add_walls(t, results[t]);
     }
-    return any;
 }
 
 // Lets each sphere go on to where a solution has it, `off` (mm) its device. Tells whether other walls than
@@ -169,7 +184,7 @@ bool ContinuousContact::leads_elsewhere(Tool& tool, const Vector3d& off, const T
         Vector3d behind = Vector3d::Zero();
         for (const Contact& wall : result.active_contacts())
             if (presses(wall)) behind -= normal_of(wall);
-        if (!behind.isZero(0)) behind = looked_behind * behind.normalized();
+        behind = behind.norm() > least_sum ? Vector3d(looked_behind * behind.normalized()) : Vector3d::Zero();
         part.with_tool.move(rigid_surfaces_, part.device + off + behind);
         note_met(part);
         const Walls walls = walls_of(part);
@@ -193,19 +208,17 @@ bool ContinuousContact::leads_elsewhere(Tool& tool, const Vector3d& off, const T
     return any;
 }
 
-// Soft bodies push the tool away from where the rigid ones were asked, and so does what turns it: adds the
-// contacts that it would meet on the way, those that it would go through farthest. Tells whether there are
-// any.
-bool ContinuousContact::hold_off_rigid(std::span<TickResult> results) noexcept {
+// Of tools that turn by themselves: what they would meet between where rigid bodies let them rest and where
+// the solution has them, what they would go through farthest first.
+bool ContinuousContact::meets_others_on_the_way() noexcept {
     met_.clear();
     for (std::size_t t = 0; t < tools_.size(); ++t) {
         if (!equilibrium_.touches_tissue(t) && !is_held(tools_[t])) continue;
-        const Vector3d pushed = (equilibrium_.press(t) + equilibrium_.drag(t)) / coupling_;
         for (std::size_t p = 0; p < tools_[t].parts_felt; ++p) {
             Part& part = tools_[t].parts[p];
-            const Vector3d push = pushed + equilibrium_.turned_off(t, p);
-            const auto touch = part.on_rigid.touch_on_the_way(
-                rigid_surfaces_, part.device + push, torsion_ > 0 ? slightly_beyond : GodObject::nothing);
+            const Vector3d push = off_of(t) + equilibrium_.turned_off(t, p);
+            const auto touch =
+                part.on_rigid.touch_on_the_way(rigid_surfaces_, part.device + push, slightly_beyond);
             if (!touch) continue;
             const double gap = touch->normal.dot(touch->foot.point - part.device) + part.on_rigid.radius();
             const double beyond = gap - touch->normal.dot(push);
@@ -216,7 +229,10 @@ bool ContinuousContact::hold_off_rigid(std::span<TickResult> results) noexcept {
                 std::swap(met_[k - 1], met_[k]);
         }
     }
-    if (met_.empty()) return false;
+    return !met_.empty();
+}
+
+void ContinuousContact::hold_by_met(std::span<TickResult> results) noexcept {
     if (equilibrium_.walls_are_full()) drop_idle_walls(results);
     const bool all_press = equilibrium_.walls_are_full();
     for (const MetWall& met : met_) {
@@ -224,7 +240,6 @@ bool ContinuousContact::hold_off_rigid(std::span<TickResult> results) noexcept {
         if (all_press) result.status |= contacts_cut;
         hold_by(met.tool, met.part, rigid_contact(met.touch, met.touch.normal, met.gap), result);
     }
-    return true;
 }
 
 // Adds a wall that holds part `p` of a tool; false where there is no more room.

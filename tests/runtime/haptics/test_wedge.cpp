@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -101,6 +102,32 @@ TEST(Wedge, between_bone_and_tissue_that_rub_keeps_the_tool_out_of_bone) {
     }
 }
 
+// A shaft lies on a plate that is oblique to all axes, and on tissue beside it: one wall holds all of it.
+TEST(Wedge, of_a_shaft_flat_on_an_oblique_plate_is_held_by_few_walls) {
+    Case c = soft_cube(4);
+    c.haptics.tool_radius = 0.4;
+    c.haptics.shaft_length = 12;
+    TriangleMesh slope = box({-10, -12, -10}, {30, -4, 40});
+    const Eigen::Matrix3d turned =
+        (Eigen::AngleAxisd(0.31, Vector3d::UnitX()) * Eigen::AngleAxisd(0.13, Vector3d::UnitZ()))
+            .toRotationMatrix();
+    for (Vector3d& v : slope.vertices) v = turned * (v - Vector3d(10, -4, 20)) + Vector3d(10, 1, 21);
+    c.rigid_bodies.push_back(rigid("slope", slope));
+    HapticModel model(c);
+    TickResult result{};
+    const Vector3d along = turned.col(0), outward = turned.col(1);
+    const Vector3d rests(10, 1, 21);
+    for (double off = 4; off > -0.2; off -= 0.02)
+        model.tick(held_at(rests + (0.4 + off) * outward - Vector3d(0, 0, 0.5 * (4 - off)), along), result);
+    for (int tick = 0; tick < 50; ++tick)
+        model.tick(held_at(rests + 0.2 * outward - Vector3d(0, 0, 2.1), along), result);
+    EXPECT_EQ(result.status, tick_ok);
+    const auto of_bone = std::ranges::count(result.active_contacts(), 0, &Contact::body);
+    EXPECT_GT(of_bone, 0);
+    EXPECT_LT(of_bone, 6);
+    EXPECT_LT(of_bone, result.contact_count);
+}
+
 // A bone bent like a coarse ball hangs over soft tissue; a tool that is pressed into the tissue goes round in
 // circles under its flank, there and back. Bone and tissue give back what the hand put in.
 TEST(Wedge, between_bent_bone_and_tissue_gives_back_what_a_closed_way_took) {
@@ -112,6 +139,7 @@ TEST(Wedge, between_bent_bone_and_tissue_gives_back_what_a_closed_way_took) {
         TickResult result{};
         Vector3d device(x, 3, 24), force = Vector3d::Zero();
         double work = 0, stored = 0;
+        int between = 0;  // ticks
         const auto go = [&](const Vector3d& to) {
             const Vector3d from = device;
             const int ticks = static_cast<int>(std::ceil((to - from).norm() / speed));
@@ -121,6 +149,14 @@ TEST(Wedge, between_bent_bone_and_tissue_gives_back_what_a_closed_way_took) {
                 model.tick(held_at(device), result);
                 EXPECT_EQ(result.status, tick_ok) << device.transpose();
                 force = force_of(result);
+                const auto presses = [&](std::int32_t body) {
+                    return std::ranges::any_of(result.active_contacts(), [&](const Contact& contact) {
+                        return contact.body == body && contact.force > 0;
+                    });
+                };
+                between += presses(0) && presses(1);
+                const auto bone = model.surface(0).closest_point(tool_of(result), 50);
+                EXPECT_TRUE(bone && bone->distance >= c.haptics.tool_radius - 0.01) << tick;
                 work += (force + last_force).dot(device - last) / 2;
                 stored = std::max(stored, -work);
             }
@@ -136,6 +172,7 @@ TEST(Wedge, between_bent_bone_and_tissue_gives_back_what_a_closed_way_took) {
             }
             EXPECT_LT(std::abs(work - before), 0.005 * stored) << x;
         }
+        EXPECT_GT(between, 100);
     }
 }
 

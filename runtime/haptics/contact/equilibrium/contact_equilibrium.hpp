@@ -65,6 +65,7 @@ class ContactEquilibrium : private EquilibriumParts {
     /// (asserted).
     void add_wall(std::size_t tool, Contact& contact) noexcept;
     bool walls_are_full() const noexcept;
+    /// Drops all walls of a tool, whose contacts may go then; the last solution stays as it is.
     void drop_walls(std::size_t tool) noexcept;
     /// Drops the walls that do not press a tool in the last solution, which stays as it is; those that do are
     /// moved to the front of `contacts`, where all of them lie. Returns their number.
