@@ -61,7 +61,7 @@ class ContinuousContact final : public ContactMethod {
         GodObject on_rigid;
         GodObject
             on_all;  // as if nothing gave way: without friction, no equilibrium is farther from the device
-        // Of a tool that does not turn by itself: where it is among rigid bodies, and what it has met there.
+        // Of a tool of one sphere: where it is among rigid bodies, and what it has met there.
         GodObject with_tool;
         bool goes_with_tool = false;  // since the last tick
         bool led_elsewhere = false;   // in this tick, than what it touched
@@ -148,6 +148,7 @@ class ContinuousContact final : public ContactMethod {
     const ContactBodies& bodies_;
     const std::vector<ToolSphere> spheres_;  // of every tool; a rod's tip first
     const bool is_instrument_;
+    const bool goes_along_;  // Part::with_tool, with tools of one sphere
     Friction friction_;
     double coupling_ = 0;  // of this tick, N/mm
     double torsion_;       // rad / (N mm) that a tool turns by against its device; 0: it does not

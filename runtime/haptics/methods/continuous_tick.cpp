@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 constexpr double unsolved = 1e-3;  // mm of residual that is reported
 // In which walls are added that only the solution of the others meets.
-constexpr int most_rounds = 12, most_turning_rounds = 8;
+constexpr int most_rounds = 12, most_rounds_of_several = 8;  // where the tool is of several spheres
 // Of a tool of so many spheres or more, how far they are from all bodies is measured: of so many in a tick,
 // up to so many mm.
 constexpr std::size_t many_parts = 8, measured_at_once = 4;
@@ -37,13 +37,13 @@ void ContinuousContact::tick(std::span<const ContactPose> poses, const VirtualCo
     bool solve = false;
     for (std::size_t t = 0; t < tools_.size(); ++t) {
         if (!is_held(tools_[t]) && !equilibrium_.touches_tissue(t)) continue;
-        if (torsion_ == 0) go_with_tool(tools_[t]);
+        if (goes_along_) go_with_tool(tools_[t]);
         add_walls(t, results[t]);
         solve = true;
     }
     if (solve) {
         equilibrium_.solve();
-        const int most = torsion_ > 0 ? most_turning_rounds : most_rounds;
+        const int most = goes_along_ ? most_rounds : most_rounds_of_several;
         bool led_elsewhere = find_other_walls(results, 0);
         for (int round = 0; led_elsewhere && round < most;) {
             hold_by_other_walls(results, round);
@@ -60,10 +60,8 @@ void ContinuousContact::tick(std::span<const ContactPose> poses, const VirtualCo
         tools_[t].rested_at = tools_[t].tip + forces[t] / coupling_;
         results[t].tool_position = array_of(tools_[t].rested_at);
         if (torsion_ > 0) tell_turn(t, poses[t], results[t]);
-        if (torsion_ > 0)
-            settle(t, forces[t], results[t]);
-        else
-            keep_with_tool(t, results[t]);
+        if (torsion_ > 0) settle(t, forces[t], results[t]);
+        if (goes_along_) keep_with_tool(t, results[t]);
     }
     write_neighbours(results);
     equilibrium_.end_tick();
@@ -108,7 +106,7 @@ void ContinuousContact::keep_with_tool(std::size_t t, const TickResult& result) 
 // Once tissue has let go of a tool, bone alone holds it where it is, which may not be where its device would
 // have brought it, as behind a ridge.
 void ContinuousContact::hand_over_to_rigid() noexcept {
-    if (torsion_ > 0) return;
+    if (!goes_along_) return;
     for (std::size_t t = 0; t < tools_.size(); ++t) {
         Tool& tool = tools_[t];
         if (is_held(tool) || equilibrium_.touches_tissue(t)) continue;
@@ -119,11 +117,11 @@ void ContinuousContact::hand_over_to_rigid() noexcept {
     }
 }
 
-// A tool that turns by itself cannot be solved then; another is on its way, as where it slips off a ridge of
-// bone, and goes on in the next tick.
+// A lone sphere is on its way then, as where it slips off a ridge of bone, and goes on in the next tick; what
+// holds several contradicts itself.
 void ContinuousContact::say_led_elsewhere(std::span<TickResult> results) const noexcept {
     for (std::size_t t = 0; t < tools_.size(); ++t)
-        if (torsion_ > 0)
+        if (!goes_along_)
             results[t].status |= contact_unsolved;
         else if (tools_[t].led_elsewhere)
             results[t].status |= contact_unsettled;

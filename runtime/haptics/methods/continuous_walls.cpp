@@ -3,11 +3,11 @@
 // contact's tick.
 //
 // Walls are half-spaces, and tool and tissue come to rest among them: so they have to be those that the tool
-// meets where it comes to rest, not where its device has it. Of a tool that turns as its device does, a
-// sphere goes along with each of its own, as far as rigid bodies let it; its touches are the walls, and are
-// renewed until the solution leads nowhere else. What was met on the way counts only where that has not ended
-// after some rounds: half-spaces of a bent surface would keep the tool from where it gets to round the edge.
-// Tools that turn by themselves are held by what they meet on the way.
+// meets where it comes to rest, not where its device has it. With a lone sphere another goes along, as far as
+// rigid bodies let it; its touches are the walls, and are renewed until the solution leads nowhere else. What
+// was met on the way counts only where that has not ended after some rounds: half-spaces of a bent surface
+// would keep the tool from where it gets to round the edge. Tools of several spheres are held by what these
+// meet on the way.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -104,7 +104,7 @@ void ContinuousContact::add_walls(std::size_t t, TickResult& result) noexcept {
     Tool& tool = tools_[t];
     const auto parts = std::span(tool.parts).first(tool.parts_felt);
     tool.lacks_walls = false;
-    if (torsion_ > 0) {
+    if (!goes_along_) {
         // What finds no room here and is missed in the solution is found as what that meets.
         for (std::size_t p = 0; p < parts.size(); ++p) {
             const GodObject& sphere = parts[p].on_rigid;
@@ -122,7 +122,7 @@ void ContinuousContact::add_walls(std::size_t t, TickResult& result) noexcept {
             for (const GodObject::Touch& wall : walls_of(parts[p])) {
                 if ((wall.foot.distance < parts[p].with_tool.radius() + touched) != touching) continue;
                 const double gap = gap_at(wall, parts[p]);
-                // All spheres are off their devices alike: of parallel walls the nearest holds them.
+                // One behind a parallel one holds nothing; in later rounds it is there already.
                 const auto does_as_well = [&](const Contact& other) {
                     return (normal_of(other) - wall.normal)
                                .norm()<same_plane_normal&& static_cast<double>(other.gap)>
@@ -145,7 +145,7 @@ double ContinuousContact::gap_at(const GodObject::Touch& wall, const Part& part)
 
 // Tells whether the solution has a tool where walls other than those that it was solved for hold it.
 bool ContinuousContact::find_other_walls(std::span<TickResult> results, int round) noexcept {
-    if (torsion_ > 0) return meets_others_on_the_way();
+    if (!goes_along_) return meets_others_on_the_way();
     bool any = false;
     for (std::size_t t = 0; t < tools_.size(); ++t) {
         Tool& tool = tools_[t];
@@ -158,7 +158,7 @@ bool ContinuousContact::find_other_walls(std::span<TickResult> results, int roun
 
 // Has those hold it.
 void ContinuousContact::hold_by_other_walls(std::span<TickResult> results, int round) noexcept {
-    if (torsion_ > 0) return hold_by_met(results);
+    if (!goes_along_) return hold_by_met(results);
     if (round >= renewing_rounds && equilibrium_.walls_are_full()) drop_idle_walls(results);
     for (std::size_t t = 0; t < tools_.size(); ++t) {
         if (!tools_[t].led_elsewhere) continue;
@@ -208,7 +208,7 @@ bool ContinuousContact::leads_elsewhere(Tool& tool, const Vector3d& off, const T
     return any;
 }
 
-// Of tools that turn by themselves: what they would meet between where rigid bodies let them rest and where
+// Of tools of several spheres: what they would meet between where rigid bodies let them rest and where
 // the solution has them, what they would go through farthest first.
 bool ContinuousContact::meets_others_on_the_way() noexcept {
     met_.clear();
@@ -217,8 +217,8 @@ bool ContinuousContact::meets_others_on_the_way() noexcept {
         for (std::size_t p = 0; p < tools_[t].parts_felt; ++p) {
             Part& part = tools_[t].parts[p];
             const Vector3d push = off_of(t) + equilibrium_.turned_off(t, p);
-            const auto touch =
-                part.on_rigid.touch_on_the_way(rigid_surfaces_, part.device + push, slightly_beyond);
+            const auto touch = part.on_rigid.touch_on_the_way(
+                rigid_surfaces_, part.device + push, torsion_ > 0 ? slightly_beyond : GodObject::nothing);
             if (!touch) continue;
             const double gap = touch->normal.dot(touch->foot.point - part.device) + part.on_rigid.radius();
             const double beyond = gap - touch->normal.dot(push);

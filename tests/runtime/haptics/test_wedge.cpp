@@ -102,32 +102,6 @@ TEST(Wedge, between_bone_and_tissue_that_rub_keeps_the_tool_out_of_bone) {
     }
 }
 
-// A shaft lies on a plate that is oblique to all axes, and on tissue beside it: one wall holds all of it.
-TEST(Wedge, of_a_shaft_flat_on_an_oblique_plate_is_held_by_few_walls) {
-    Case c = soft_cube(4);
-    c.haptics.tool_radius = 0.4;
-    c.haptics.shaft_length = 12;
-    TriangleMesh slope = box({-10, -12, -10}, {30, -4, 40});
-    const Eigen::Matrix3d turned =
-        (Eigen::AngleAxisd(0.31, Vector3d::UnitX()) * Eigen::AngleAxisd(0.13, Vector3d::UnitZ()))
-            .toRotationMatrix();
-    for (Vector3d& v : slope.vertices) v = turned * (v - Vector3d(10, -4, 20)) + Vector3d(10, 1, 21);
-    c.rigid_bodies.push_back(rigid("slope", slope));
-    HapticModel model(c);
-    TickResult result{};
-    const Vector3d along = turned.col(0), outward = turned.col(1);
-    const Vector3d rests(10, 1, 21);
-    for (double off = 4; off > -0.2; off -= 0.02)
-        model.tick(held_at(rests + (0.4 + off) * outward - Vector3d(0, 0, 0.5 * (4 - off)), along), result);
-    for (int tick = 0; tick < 50; ++tick)
-        model.tick(held_at(rests + 0.2 * outward - Vector3d(0, 0, 2.1), along), result);
-    EXPECT_EQ(result.status, tick_ok);
-    const auto of_bone = std::ranges::count(result.active_contacts(), 0, &Contact::body);
-    EXPECT_GT(of_bone, 0);
-    EXPECT_LT(of_bone, 6);
-    EXPECT_LT(of_bone, result.contact_count);
-}
-
 // A bone bent like a coarse ball hangs over soft tissue; a tool that is pressed into the tissue goes round in
 // circles under its flank, there and back. Bone and tissue give back what the hand put in.
 TEST(Wedge, between_bent_bone_and_tissue_gives_back_what_a_closed_way_took) {
