@@ -111,7 +111,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         loops = [loop(arguments.asset, pathlib.Path(folder), options, *path(*place, tool, arguments.depth, arguments.radius)) for place in chosen]
     work, step = np.array([result for result in loops if result]).T * 100
-    case = arguments.asset.stem + ", part held" * arguments.held + ", edges too" * arguments.edges + ", beside bone" * arguments.beside + ", large deformation" * arguments.large_deformation
+    case = arguments.asset.stem + ", part held" * arguments.held + ", edges too" * arguments.edges + ", beside bone" * arguments.beside
+    case += ", large deformation" * arguments.large_deformation
     print(HEAD)
     print(f"| {case} | {arguments.radius:g} | {tool:g} | {arguments.depth:g} | {len(work)} of {len(loops)} | "
           f"{' / '.join(map(two_digits, (np.median(work), np.percentile(work, 90), work.max())))} % | "

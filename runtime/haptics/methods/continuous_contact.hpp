@@ -12,20 +12,21 @@
 #include "runtime/haptics/contact/equilibrium/contact_equilibrium.hpp"
 #include "runtime/haptics/contact/god_object.hpp"
 #include "runtime/haptics/contact/large/large_deformation.hpp"
+#include "runtime/haptics/contact/wall_follower.hpp"
 #include "runtime/haptics/methods/contact_method.hpp"
 #include "runtime/haptics/whole_tool/tool_spheres.hpp"
 
 namespace palpate::haptics {
 
 /// Contact found in every tick: a tool is a sphere, a row of spheres where it has a shaft, or what spheres an
-/// instrument with a surface of its own is filled with. Each holds a god-object on the rigid bodies, one on
-/// all bodies as if they were rigid, and one that goes with the tool where tissue pushes it; where only the
-/// tip touches, and only rigid bodies, the force is that of the virtual coupling, stiffness * (proxy -
-/// device), otherwise tools and tissue are brought to rest together (ContactEquilibrium). A shaft turns as
-/// the device says, and the torque that would turn it back is not rendered; a tool that turns by itself,
-/// Case::tool, hangs on a spring of torsion besides, which has its rest among the others, and gives torque. A
-/// tool that jumped does not feel a body that it is in until it has been clear of it; one that turns by
-/// itself feels nothing until all of it has been clear of every body.
+/// instrument with a surface of its own is filled with. Each holds a god-object on the rigid bodies and one
+/// on all bodies as if they were rigid, and a lone one goes along where tissue pushes it; where only the tip
+/// touches, and only rigid bodies, the force is that of the virtual coupling, stiffness * (proxy - device),
+/// otherwise tools and tissue are brought to rest together (ContactEquilibrium). A shaft turns as the device
+/// says, and the torque that would turn it back is not rendered; a tool that turns by itself, Case::tool,
+/// hangs on a spring of torsion besides, which has its rest among the others, and gives torque. A tool that
+/// jumped does not feel a body that it is in until it has been clear of it; one that turns by itself feels
+/// nothing until all of it has been clear of every body.
 class ContinuousContact final : public ContactMethod {
   public:
     /// `bodies` must outlive this. Of the case it reads what is held, friction, and which bodies are
@@ -48,26 +49,13 @@ class ContinuousContact final : public ContactMethod {
     static constexpr std::size_t most_of_rod = 49;
 
   private:
-    static constexpr std::size_t most_met = 12;         // triangles that one of a tool's spheres remembers
-    static constexpr std::size_t most_met_at_once = 8;  // walls on the ways of tools that turn
-    struct MetTriangle {
-        std::size_t surface = 0;  // rigid
-        std::int32_t slot = 0;    // of its tree
-        double distance = 0;      // from the sphere's centre, mm
-    };
-    using Walls = FixedList<GodObject::Touch, most_met>;
     // One of the tool's spheres.
     struct Part {
         GodObject on_rigid;
         GodObject
             on_all;  // as if nothing gave way: without friction, no equilibrium is farther from the device
-        // Of a tool of one sphere: where it is among rigid bodies, and what it has met there.
-        GodObject with_tool;
-        bool goes_with_tool = false;  // since the last tick
-        bool led_elsewhere = false;   // in this tick, than what it touched
-        FixedList<MetTriangle, most_met> met;
         Eigen::Vector3d device = Eigen::Vector3d::Zero();      // where the coupling pulls it, mm
-        Eigen::Vector3d wall_press = Eigen::Vector3d::Zero();  // of the tick before, N
+        Eigen::Vector3d wall_press = Eigen::Vector3d::Zero();  // of the tick before, of a tool that turns, N
     };
     struct Tool {
         std::vector<Part> parts;     // as spheres_
@@ -76,15 +64,19 @@ class ContinuousContact final : public ContactMethod {
         Eigen::Vector3d tip = Eigen::Vector3d::Zero();  // on its device, mm; and a frame that is turned as
         Eigen::Matrix3d orientation = Eigen::Matrix3d::Identity();  // it is there, its z along the shaft
         Eigen::Vector3d rested_at = Eigen::Vector3d::Zero();  // its tip, at the end of the tick before, mm
-        // How far it was off its device then, without what walls' friction does, mm.
-        Eigen::Vector3d was_off = Eigen::Vector3d::Zero();
-        bool led_elsewhere = false;     // by the last solution, than where its walls hold it
-        bool lacks_walls = false;       // for want of room
-        bool held_beside_tip = false;   // by a sphere that is not about its tip
-        std::size_t measured_last = 0;  // of the parts: how far from all bodies
-        bool was_off_device = false;    // at the end of the tick before, where it turns by itself
-        bool waits = false;             // to be clear of every body
-        std::size_t stuck = 0;          // the part that was not
+        bool held_beside_tip = false;                         // by a sphere that is not about its tip
+        std::size_t measured_last = 0;                        // of the parts: how far from all bodies
+        bool was_off_device = false;  // at the end of the tick before, where it turns by itself
+        bool waits = false;           // to be clear of every body
+        std::size_t stuck = 0;        // the part that was not
+    };
+
+    // A tool of one sphere, among rigid bodies.
+    struct Along {
+        WallFollower follower;
+        bool goes_on = false;                          // from the tick before, where tissue pushed it
+        Eigen::Vector3d to = Eigen::Vector3d::Zero();  // then, off its device, mm
+        bool led_elsewhere = false;                    // by the last solution, than where its walls hold it
     };
 
     // That a sphere would meet between its rest on rigid bodies and where the solution has it: how far its
@@ -94,6 +86,7 @@ class ContinuousContact final : public ContactMethod {
         GodObject::Touch touch;
         double gap = 0, beyond = 0;
     };
+    static constexpr std::size_t most_met = 8;  // that are added at once
 
     void place(std::size_t tool, const ContactPose& pose, TickResult& result) noexcept;
     bool is_clear(Tool& tool) const noexcept;
@@ -102,10 +95,6 @@ class ContinuousContact final : public ContactMethod {
     static bool is_held(const Tool& tool) noexcept { return tool.held_beside_tip || tool.was_off_device; }
     Eigen::Vector3d aim_of(const Tool& tool, const Part& part) const noexcept;
     void settle(std::size_t tool, const Eigen::Vector3d& force, const TickResult& result) noexcept;
-    void keep_with_tool(std::size_t tool, const TickResult& result) noexcept;
-    void hand_over_to_rigid() noexcept;
-    void say_led_elsewhere(std::span<TickResult> results) const noexcept;
-    void add_up_wall_presses(Tool& tool, const TickResult& result) const noexcept;
     void follow(std::size_t tool, TickResult& result) noexcept;
     void note_clearances(Tool& tool) noexcept;
     void write_neighbours(std::span<TickResult> results) const noexcept;
@@ -128,18 +117,18 @@ class ContinuousContact final : public ContactMethod {
                                   TickResult& result) noexcept;
 
     // In continuous_walls.cpp.
-    void go_with_tool(Tool& tool) noexcept;
-    void add_walls(std::size_t tool, TickResult& result) noexcept;
+    bool goes_along() const noexcept { return !along_.empty(); }
     Eigen::Vector3d off_of(std::size_t tool) const noexcept {
         return (equilibrium_.press(tool) + equilibrium_.drag(tool)) / coupling_;
     }
+    void begin_walls(std::size_t tool, TickResult& result) noexcept;
+    void add_walls_along(std::size_t tool, TickResult& result) noexcept;
     bool find_other_walls(std::span<TickResult> results, int round) noexcept;
     void hold_by_other_walls(std::span<TickResult> results, int round) noexcept;
-    bool leads_elsewhere(Tool& tool, const Eigen::Vector3d& off, const TickResult& result,
-                         bool renews) noexcept;
-    void note_met(Part& part) const noexcept;
-    Walls walls_of(const Part& part) const noexcept;
-    static double gap_at(const GodObject::Touch& wall, const Part& part) noexcept;
+    Eigen::Vector3d behind_walls(std::size_t tool, const TickResult& result) const noexcept;
+    bool leads_elsewhere(std::size_t tool, const TickResult& result, bool renews) noexcept;
+    void say_led_elsewhere(std::span<TickResult> results) const noexcept;
+    void keep_along(std::size_t tool, const TickResult& result) noexcept;
     bool meets_others_on_the_way() noexcept;
     void hold_by_met(std::span<TickResult> results) noexcept;
     bool hold_by(std::size_t tool, std::size_t part, const Contact& wall, TickResult& result) noexcept;
@@ -148,16 +137,16 @@ class ContinuousContact final : public ContactMethod {
     const ContactBodies& bodies_;
     const std::vector<ToolSphere> spheres_;  // of every tool; a rod's tip first
     const bool is_instrument_;
-    const bool goes_along_;  // Part::with_tool, with tools of one sphere
     Friction friction_;
     double coupling_ = 0;  // of this tick, N/mm
     double torsion_;       // rad / (N mm) that a tool turns by against its device; 0: it does not
     std::vector<const collision::CollisionSurface*> rigid_surfaces_, all_surfaces_;
     std::vector<Tool> tools_;
+    std::vector<Along> along_;  // by tool; none where these are of several spheres
     ContactEquilibrium equilibrium_;
     LargeDeformation large_;
     FixedList<ContactEquilibrium::Sphere, most_spheres> placed_;  // of the tool that is being placed
-    FixedList<MetWall, most_met_at_once> met_;                    // the farthest gone through first
+    FixedList<MetWall, most_met> met_;                            // the farthest gone through first
 };
 
 /// A ContinuousContact, as the table of contact methods makes it.

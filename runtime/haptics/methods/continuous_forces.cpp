@@ -87,7 +87,7 @@ Vector3d ContinuousContact::wall_friction(std::size_t t, const Vector3d& force, 
     for (int wall = 0;; ++wall) {
         std::optional<GodObject::Touch> touch;
         for (std::size_t p = 0; p < parts.size() && !touch; ++p) {
-            GodObject& sphere = goes_along_ ? parts[p].with_tool : parts[p].on_rigid;
+            GodObject& sphere = goes_along() ? along_[t].follower.sphere() : parts[p].on_rigid;
             touch = sphere.touch_on_the_way(rigid_surfaces_, parts[p].device + (force + drag) / coupling_);
         }
         if (!touch) break;

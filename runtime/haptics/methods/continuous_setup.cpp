@@ -28,7 +28,6 @@ ContinuousContact::ContinuousContact(const Case& patient_case, const ContactBodi
     : bodies_(bodies),
       spheres_(spheres_of(patient_case)),
       is_instrument_(has_instrument(patient_case)),
-      goes_along_(spheres_.size() == 1 && !patient_case.tool),
       friction_{patient_case.haptics.friction_at_rest, patient_case.haptics.friction_sliding,
                 patient_case.haptics.grip},
       torsion_(torsion_of(patient_case)),
@@ -46,8 +45,9 @@ ContinuousContact::ContinuousContact(const Case& patient_case, const ContactBodi
         tool.waits = torsion_ > 0;
         for (const ToolSphere& sphere : spheres_)
             tool.parts.emplace_back(GodObject(sphere.radius, rigid_surfaces_.size()),
-                                    GodObject(sphere.radius, all_surfaces_.size()),
-                                    GodObject(sphere.radius, goes_along_ ? rigid_surfaces_.size() : 0));
+                                    GodObject(sphere.radius, all_surfaces_.size()));
+        if (spheres_.size() == 1 && torsion_ == 0)
+            along_.push_back({WallFollower(spheres_[0].radius, rigid_surfaces_.size())});
     }
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One tick of the continuous contact: nothing here allocates, locks, waits or throws.
 #include <algorithm>
-#include <utility>
 
 #include "formats/model/arrays.hpp"
 #include "runtime/haptics/methods/continuous_contact.hpp"
@@ -21,7 +20,6 @@ constexpr std::size_t many_parts = 8, measured_at_once = 4;
 constexpr double farthest_measured = 20;
 // mm that a sphere of a tool that turns by itself looks ahead, from where the tool is towards its device.
 constexpr double farthest_aim = 0.2;
-constexpr double elsewhere = 0.1;      // mm, of two spheres that rest on bone
 constexpr double farthest_return = 5;  // mm: a sphere of a shaft found again farther off starts anew
 
 }  // namespace
@@ -37,22 +35,20 @@ void ContinuousContact::tick(std::span<const ContactPose> poses, const VirtualCo
     bool solve = false;
     for (std::size_t t = 0; t < tools_.size(); ++t) {
         if (!is_held(tools_[t]) && !equilibrium_.touches_tissue(t)) continue;
-        if (goes_along_) go_with_tool(tools_[t]);
-        add_walls(t, results[t]);
+        begin_walls(t, results[t]);
         solve = true;
     }
     if (solve) {
         equilibrium_.solve();
-        const int most = goes_along_ ? most_rounds : most_rounds_of_several;
-        bool led_elsewhere = find_other_walls(results, 0);
-        for (int round = 0; led_elsewhere && round < most;) {
+        const int most = goes_along() ? most_rounds : most_rounds_of_several;
+        for (int round = 0; find_other_walls(results, round); ++round) {
+            if (round == most) {
+                say_led_elsewhere(results);
+                break;
+            }
             hold_by_other_walls(results, round);
             equilibrium_.solve();
-            led_elsewhere = find_other_walls(results, ++round);
         }
-        if (led_elsewhere) say_led_elsewhere(results);
-        for (std::size_t t = 0; t < tools_.size(); ++t)
-            if (tools_[t].lacks_walls) results[t].status |= contacts_cut;
     }
     for (std::size_t t = 0; t < tools_.size(); ++t) {
         if (tools_[t].parts_felt == 0) continue;
@@ -61,20 +57,11 @@ void ContinuousContact::tick(std::span<const ContactPose> poses, const VirtualCo
         results[t].tool_position = array_of(tools_[t].rested_at);
         if (torsion_ > 0) tell_turn(t, poses[t], results[t]);
         if (torsion_ > 0) settle(t, forces[t], results[t]);
-        if (goes_along_) keep_with_tool(t, results[t]);
+        if (goes_along()) keep_along(t, results[t]);
     }
     write_neighbours(results);
     equilibrium_.end_tick();
-    hand_over_to_rigid();
     if (large_.any()) large_.tell(equilibrium_, results);
-}
-
-void ContinuousContact::add_up_wall_presses(Tool& tool, const TickResult& result) const noexcept {
-    for (Part& part : tool.parts) part.wall_press.setZero();
-    for (const Contact& contact : result.active_contacts())
-        if (is_wall(contact))
-            tool.parts[static_cast<std::size_t>(contact.part)].wall_press +=
-                static_cast<double>(contact.force) * normal_of(contact);
 }
 
 // A tool that turns by itself is held by what is around where it is, and not by what is where its device has
@@ -82,49 +69,17 @@ void ContinuousContact::add_up_wall_presses(Tool& tool, const TickResult& result
 void ContinuousContact::settle(std::size_t t, const Vector3d& force, const TickResult& result) noexcept {
     Tool& tool = tools_[t];
     tool.was_off_device = !force.isZero(0) || !equilibrium_.turn(t).isZero(0);
-    add_up_wall_presses(tool, result);
+    for (Part& part : tool.parts) part.wall_press.setZero();
     if (!tool.was_off_device) return;
+    for (const Contact& contact : result.active_contacts())
+        if (is_wall(contact))
+            tool.parts[static_cast<std::size_t>(contact.part)].wall_press +=
+                static_cast<double>(contact.force) * normal_of(contact);
     for (std::size_t p = 0; p < tool.parts_felt; ++p) {
         Part& part = tool.parts[p];
         part.on_rigid.settle_at(rigid_surfaces_,
                                 part.device + force / coupling_ + equilibrium_.turned_off(t, p));
     }
-}
-
-// The spheres that go with a tool go on from where it is now.
-void ContinuousContact::keep_with_tool(std::size_t t, const TickResult& result) noexcept {
-    Tool& tool = tools_[t];
-    const bool goes = is_held(tool) || equilibrium_.touches_tissue(t);
-    for (std::size_t p = 0; p < tool.parts.size(); ++p)
-        tool.parts[p].goes_with_tool = goes && p < tool.parts_felt;
-    if (!goes) return;
-    // Walls' friction is left out: what it does is asked for once they are known.
-    tool.was_off = off_of(t);
-    add_up_wall_presses(tool, result);
-}
-
-// Once tissue has let go of a tool, bone alone holds it where it is, which may not be where its device would
-// have brought it, as behind a ridge.
-void ContinuousContact::hand_over_to_rigid() noexcept {
-    if (!goes_along_) return;
-    for (std::size_t t = 0; t < tools_.size(); ++t) {
-        Tool& tool = tools_[t];
-        if (is_held(tool) || equilibrium_.touches_tissue(t)) continue;
-        for (Part& part : tool.parts)
-            if (std::exchange(part.goes_with_tool, false) &&
-                (part.with_tool.position() - part.on_rigid.position()).norm() > elsewhere)
-                part.on_rigid.start_at(part.with_tool);
-    }
-}
-
-// A lone sphere is on its way then, as where it slips off a ridge of bone, and goes on in the next tick; what
-// holds several contradicts itself.
-void ContinuousContact::say_led_elsewhere(std::span<TickResult> results) const noexcept {
-    for (std::size_t t = 0; t < tools_.size(); ++t)
-        if (!goes_along_)
-            results[t].status |= contact_unsolved;
-        else if (tools_[t].led_elsewhere)
-            results[t].status |= contact_unsettled;
 }
 
 // Where a sphere is about to go: to its device, but no farther than where the tool may soon be; and against
@@ -206,10 +161,10 @@ void ContinuousContact::depth_in_tissue(const Tool& tool, TickResult& result) co
 
 void ContinuousContact::place(std::size_t t, const ContactPose& pose, TickResult& result) noexcept {
     Tool& tool = tools_[t];
-    tool.held_beside_tip = tool.lacks_walls = false;
+    tool.held_beside_tip = false;
     if (!pose.trusted) {
         tool.parts_felt = 0;
-        for (Part& part : tool.parts) part.goes_with_tool = false;
+        if (goes_along()) along_[t].goes_on = false;
         return;
     }
     if (pose.jumped) forget(t);
@@ -235,7 +190,6 @@ void ContinuousContact::place(std::size_t t, const ContactPose& pose, TickResult
         if (p > 0 && p >= tool.parts_felt && (to - part.device).norm() > farthest_return) {
             part.on_rigid.reset();
             part.on_all.reset();
-            part.goes_with_tool = false;
             tool.waits = tool.waits || is_instrument_;
         }
         part.device = to;
@@ -278,8 +232,8 @@ void ContinuousContact::forget(std::size_t t) noexcept {
     for (Part& part : tools_[t].parts) {
         part.on_rigid.reset();
         part.on_all.reset();
-        part.goes_with_tool = false;
     }
+    if (goes_along()) along_[t].goes_on = false;
     equilibrium_.forget(t);
 }
 

@@ -17,195 +17,132 @@
 namespace palpate::haptics {
 namespace {
 
-using namespace collision;
 using Eigen::Vector3d;
 
 // mm of a plane that a tool that turns slips past: turning bends planes, and the next tick finds so little.
 constexpr double slightly_beyond = 2e-3;
 // Rounds in which walls are renewed; in later ones they are added to those there are, which comes to an end.
 constexpr int renewing_rounds = 5;
-constexpr double same_wall = 1e-4;             // mm, and
-constexpr double same_wall_normal = 1 - 1e-6;  // cosine: walls that differ by less are one
-constexpr double same_plane_normal = 1e-6;     // between unit normals, of which one is rounded to floats
-constexpr double pressing_gap = 1e-5;          // mm from a wall that presses
-constexpr double looked_behind = 0.02;         // mm behind walls that press it is looked for what is there
-constexpr double beside = 0.2;                 // mm from a sphere within which what it met stays a wall
-constexpr double touched = 0.02;               // mm from it, of what comes first
-constexpr double least_press = 1e-4;           // N, likewise
-constexpr double least_sum = 0.1;              // of unit normals: walls opposite each other have no side
+constexpr double same_wall = 1e-4;      // mm, which move a force by 0.05 mN behind the usual coupling
+constexpr double same_normal = 1e-6;    // between unit normals, of which one is rounded to floats
+constexpr double turned_normal = 1e-3;  // likewise: turned by more it is another wall
+constexpr double pressing = 1e-5;       // mm from a wall that presses
+// mm behind walls that press, where it is looked for what is there: as much as a sphere that slid hovers.
+constexpr double looked_behind = 0.02;
+constexpr double least_sum = 0.1;  // of unit normals: walls opposite each other have no side
+
+bool is_behind(const Contact& wall, const Vector3d& off) noexcept {
+    return normal_of(wall).dot(off) - static_cast<double>(wall.gap) < pressing;
+}
 
 }  // namespace
 
-// Where each sphere is at the start of a tick: as far off its device as at the end of the one before.
-void ContinuousContact::go_with_tool(Tool& tool) noexcept {
-    for (Part& part : std::span(tool.parts).first(tool.parts_felt)) {
-        if (part.goes_with_tool) {
-            Vector3d to = part.device + tool.was_off;
-            if (part.wall_press.norm() > least_press) to -= looked_behind * part.wall_press.normalized();
-            part.with_tool.move(rigid_surfaces_, to);
-        } else {
-            part.with_tool.start_at(part.on_rigid);
-            part.met.clear();
-        }
-        part.led_elsewhere = false;
-        note_met(part);
-    }
-}
-
-// Keeps the triangles that a sphere has met, as long as they are beside it; where there are too many, the
-// nearest.
-void ContinuousContact::note_met(Part& part) const noexcept {
-    const GodObject& sphere = part.with_tool;
-    const auto distance = [&](const MetTriangle& met) {
-        const CollisionSurface& surface = *rigid_surfaces_[met.surface];
-        return std::sqrt(
-            closest_point_on_triangle(sphere.position(), surface.corners(met.slot)).squared_distance);
-    };
-    for (MetTriangle& met : part.met) met.distance = distance(met);
-    part.met.erase_if([&](const MetTriangle& met) { return met.distance > sphere.radius() + beside; });
-    for (const GodObject::Touch& touch : sphere.touches()) {
-        const auto is_it = [&](const MetTriangle& met) {
-            return met.surface == touch.surface && met.slot == touch.foot.slot;
-        };
-        if (std::ranges::any_of(part.met, is_it)) continue;
-        const MetTriangle met{touch.surface, touch.foot.slot, touch.foot.distance};
-        if (!part.met.full()) {
-            part.met.push_back(met);
-            continue;
-        }
-        MetTriangle& farthest = *std::ranges::max_element(part.met, {}, &MetTriangle::distance);
-        if (farthest.distance > met.distance) farthest = met;
-    }
-}
-
-// What it touches, or might, of these.
-ContinuousContact::Walls ContinuousContact::walls_of(const Part& part) const noexcept {
-    Walls walls;
-    const Vector3d& centre = part.with_tool.position();
-    for (const MetTriangle& met : part.met) {
-        const CollisionSurface& surface = *rigid_surfaces_[met.surface];
-        const TrianglePoint foot = closest_point_on_triangle(centre, surface.corners(met.slot));
-        const double distance = std::sqrt(foot.squared_distance);
-        // Triangles have edges and corners in common.
-        const auto is_same = [&](const GodObject::Touch& wall) {
-            return (wall.foot.point - foot.point).squaredNorm() < same_place * same_place;
-        };
-        if (!(distance > 0) || std::ranges::any_of(walls, is_same)) continue;
-        walls.push_back({{foot.point, foot.barycentric, distance, surface.mesh_triangle(met.slot), met.slot,
-                          foot.feature},
-                         (centre - foot.point) / distance,
-                         met.surface});
-    }
-    return walls;
-}
-
-// The walls that a tool has at the start of a tick, or instead of or besides others.
-void ContinuousContact::add_walls(std::size_t t, TickResult& result) noexcept {
+// The walls that hold a tool at the start of a tick: of a lone sphere those where it is, if it is as far off
+// its device as at the end of the one before.
+void ContinuousContact::begin_walls(std::size_t t, TickResult& result) noexcept {
     Tool& tool = tools_[t];
-    const auto parts = std::span(tool.parts).first(tool.parts_felt);
-    tool.lacks_walls = false;
-    if (!goes_along_) {
-        // What finds no room here and is missed in the solution is found as what that meets.
-        for (std::size_t p = 0; p < parts.size(); ++p) {
-            const GodObject& sphere = parts[p].on_rigid;
-            const Vector3d lifted = sphere.position() + sphere.held_back() - parts[p].device;
-            for (const GodObject::Touch& touch : sphere.touches())
-                if (!hold_by(t, p, rigid_contact(touch, touch.normal, touch.normal.dot(lifted)), result))
-                    return;
-        }
-        return;
+    if (goes_along()) {
+        Along& along = along_[t];
+        if (along.goes_on)
+            along.follower.go(rigid_surfaces_, tool.parts[0].device + along.to);
+        else
+            along.follower.start_at(tool.parts[0].on_rigid);
+        along.led_elsewhere = false;
+        return add_walls_along(t, result);
     }
-    // What a sphere is beside comes last, and only where what it touches led elsewhere.
-    for (const bool touching : {true, false})
-        for (std::size_t p = 0; p < parts.size(); ++p) {
-            if (!touching && !parts[p].led_elsewhere) continue;
-            for (const GodObject::Touch& wall : walls_of(parts[p])) {
-                if ((wall.foot.distance < parts[p].with_tool.radius() + touched) != touching) continue;
-                const double gap = gap_at(wall, parts[p]);
-                // One behind a parallel one holds nothing; in later rounds it is there already.
-                const auto does_as_well = [&](const Contact& other) {
-                    return (normal_of(other) - wall.normal)
-                               .norm()<same_plane_normal&& static_cast<double>(other.gap)>
-                                   gap -
-                           pressing_gap;
-                };
-                if (std::ranges::any_of(result.active_contacts(), does_as_well) ||
-                    hold_by(t, p, rigid_contact(wall, wall.normal, gap), result))
-                    continue;
-                tool.lacks_walls = touching;
-                return;
-            }
-        }
+    // What finds no room here and is missed in the solution is found as what that meets.
+    for (std::size_t p = 0; p < tool.parts_felt; ++p) {
+        const GodObject& sphere = tool.parts[p].on_rigid;
+        const Vector3d lifted = sphere.position() + sphere.held_back() - tool.parts[p].device;
+        for (const GodObject::Touch& touch : sphere.touches())
+            if (!hold_by(t, p, rigid_contact(touch, touch.normal, touch.normal.dot(lifted)), result)) return;
+    }
 }
 
-// How far a sphere's device is beyond the plane of a wall.
-double ContinuousContact::gap_at(const GodObject::Touch& wall, const Part& part) noexcept {
-    return wall.normal.dot(wall.foot.point - part.device) + part.with_tool.radius() + GodObject::skin;
+// What a lone sphere touches, and what it is beside if that led elsewhere; of parallel walls the nearest.
+void ContinuousContact::add_walls_along(std::size_t t, TickResult& result) noexcept {
+    const Along& along = along_[t];
+    for (const GodObject::Touch& wall : along.follower.walls()) {
+        if (!along.led_elsewhere && !along.follower.touches(wall)) continue;
+        const double gap = along.follower.beyond(wall, tools_[t].parts[0].device);
+        const auto does_as_well = [&](const Contact& other) {
+            const double off = (normal_of(other) - wall.normal).norm();
+            return off<same_normal&& static_cast<double>(other.gap)> gap - pressing;
+        };
+        if (std::ranges::any_of(result.active_contacts(), does_as_well)) continue;
+        if (!hold_by(t, 0, rigid_contact(wall, wall.normal, gap), result)) result.status |= contacts_cut;
+    }
 }
 
 // Tells whether the solution has a tool where walls other than those that it was solved for hold it.
 bool ContinuousContact::find_other_walls(std::span<TickResult> results, int round) noexcept {
-    if (!goes_along_) return meets_others_on_the_way();
+    if (!goes_along()) return meets_others_on_the_way();
     bool any = false;
     for (std::size_t t = 0; t < tools_.size(); ++t) {
-        Tool& tool = tools_[t];
-        tool.led_elsewhere = (equilibrium_.touches_tissue(t) || is_held(tool)) &&
-                             leads_elsewhere(tool, off_of(t), results[t], round < renewing_rounds);
-        any = any || tool.led_elsewhere;
+        along_[t].led_elsewhere =
+            equilibrium_.touches_tissue(t) && leads_elsewhere(t, results[t], round < renewing_rounds);
+        any = any || along_[t].led_elsewhere;
     }
     return any;
 }
 
 // Has those hold it.
 void ContinuousContact::hold_by_other_walls(std::span<TickResult> results, int round) noexcept {
-    if (!goes_along_) return hold_by_met(results);
-    if (round >= renewing_rounds && equilibrium_.walls_are_full()) drop_idle_walls(results);
+    if (!goes_along()) return hold_by_met(results);
+    const bool renews = round < renewing_rounds;
+    if (!renews && equilibrium_.walls_are_full()) drop_idle_walls(results);
     for (std::size_t t = 0; t < tools_.size(); ++t) {
-        if (!tools_[t].led_elsewhere) continue;
-        if (round < renewing_rounds) {
+        if (!along_[t].led_elsewhere) continue;
+        if (renews) {
             equilibrium_.drop_walls(t);
             results[t].contact_count = 0;
         }
-        add_walls(t, results[t]);
+        add_walls_along(t, results[t]);
     }
 }
 
-// Lets each sphere go on to where a solution has it, `off` (mm) its device. Tells whether other walls than
+// Where the solution has a lone sphere off its device, and a little behind the walls that press it there, mm.
+Vector3d ContinuousContact::behind_walls(std::size_t t, const TickResult& result) const noexcept {
+    const Vector3d off = off_of(t);
+    Vector3d sum = Vector3d::Zero();
+    for (const Contact& contact : result.active_contacts())
+        if (is_wall(contact) && is_behind(contact, off)) sum += normal_of(contact);
+    return sum.norm() > least_sum ? Vector3d(off - looked_behind * sum.normalized()) : off;
+}
+
+// Lets the sphere that goes along go on to where a solution has the tool. Tells whether other walls than
 // those that hold it do so there; or, where they are not renewed, besides those.
-bool ContinuousContact::leads_elsewhere(Tool& tool, const Vector3d& off, const TickResult& result,
-                                        bool renews) noexcept {
-    bool any = false;
-    for (std::size_t p = 0; p < tool.parts_felt; ++p) {
-        Part& part = tool.parts[p];
-        const auto presses = [&](const Contact& wall) {
-            return is_wall(wall) && wall.part == static_cast<std::int32_t>(p) &&
-                   normal_of(wall).dot(off) - static_cast<double>(wall.gap) < pressing_gap;
-        };
-        Vector3d behind = Vector3d::Zero();
-        for (const Contact& wall : result.active_contacts())
-            if (presses(wall)) behind -= normal_of(wall);
-        behind = behind.norm() > least_sum ? Vector3d(looked_behind * behind.normalized()) : Vector3d::Zero();
-        part.with_tool.move(rigid_surfaces_, part.device + off + behind);
-        note_met(part);
-        const Walls walls = walls_of(part);
-        const auto beyond = [&](const GodObject::Touch& wall) {
-            return gap_at(wall, part) - wall.normal.dot(off);
-        };
-        const auto is_among_walls = [&](const Contact& held) {
-            return std::ranges::any_of(walls, [&](const GodObject::Touch& wall) {
-                return wall.normal.dot(normal_of(held)) > same_wall_normal &&
-                       std::abs(beyond(wall)) < same_wall;
-            });
-        };
-        const bool elsewhere =
-            std::ranges::any_of(walls, [&](const auto& wall) { return beyond(wall) > same_wall; }) ||
-            (renews && std::ranges::any_of(result.active_contacts(), [&](const Contact& wall) {
-                 return presses(wall) && !is_among_walls(wall);
-             }));
-        part.led_elsewhere = part.led_elsewhere || elsewhere;
-        any = any || elsewhere;
-    }
-    return any;
+bool ContinuousContact::leads_elsewhere(std::size_t t, const TickResult& result, bool renews) noexcept {
+    WallFollower& follower = along_[t].follower;
+    const Vector3d &device = tools_[t].parts[0].device, off = off_of(t);
+    follower.go(rigid_surfaces_, device + behind_walls(t, result));
+    const auto beyond = [&](const GodObject::Touch& wall) { return follower.beyond(wall, device + off); };
+    const auto is_gone = [&](const Contact& held) {
+        return is_behind(held, off) && std::ranges::none_of(follower.walls(), [&](const auto& wall) {
+                   return (wall.normal - normal_of(held)).norm() < turned_normal &&
+                          std::abs(beyond(wall)) < same_wall;
+               });
+    };
+    return std::ranges::any_of(follower.walls(),
+                               [&](const auto& wall) { return beyond(wall) > same_wall; }) ||
+           (renews && std::ranges::any_of(result.active_contacts(), is_gone));
+}
+
+// A lone sphere is on its way then, as where it slips off a ridge of bone, and goes on in the next tick; what
+// holds several contradicts itself.
+void ContinuousContact::say_led_elsewhere(std::span<TickResult> results) const noexcept {
+    for (std::size_t t = 0; t < tools_.size(); ++t)
+        if (!goes_along())
+            results[t].status |= contact_unsolved;
+        else if (along_[t].led_elsewhere)
+            results[t].status |= contact_unsettled;
+}
+
+// A lone sphere that tissue pushes goes on from where it is now. What walls' friction does to it is left out:
+// that is asked for once they are known.
+void ContinuousContact::keep_along(std::size_t t, const TickResult& result) noexcept {
+    along_[t].goes_on = equilibrium_.touches_tissue(t);
+    if (along_[t].goes_on) along_[t].to = behind_walls(t, result);
 }
 
 // Of tools of several spheres: what they would meet between where rigid bodies let them rest and where

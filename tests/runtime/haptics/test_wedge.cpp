@@ -4,6 +4,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "tests/runtime/haptics/held_tool.hpp"
@@ -148,6 +149,32 @@ TEST(Wedge, between_bent_bone_and_tissue_gives_back_what_a_closed_way_took) {
         }
         EXPECT_GT(between, 100);
     }
+}
+
+// A bar lies over tissue that keeps a tool on a weak coupling in front of it, while its device goes beneath
+// and comes up behind. Once tissue lets go, the bar still holds the tool where it is.
+TEST(Wedge, what_tissue_lets_go_of_stays_on_its_side_of_bone) {
+    Case c = soft_cube(4);
+    c.haptics.coupling_stiffness = 0.002;
+    c.rigid_bodies.push_back(rigid("bar", box({9, -10, 20.3}, {11, 30, 40})));
+    HapticModel model(c);
+    TickResult result{};
+    int pressed = 0;
+    Vector3d device(5, 10, 24);
+    const auto go = [&](const Vector3d& to) {
+        for (; (to - device).norm() > 0.02; device += 0.02 * (to - device).normalized()) {
+            model.tick(held_at(device), result);
+            pressed += std::ranges::any_of(result.active_contacts(),
+                                           [](const Contact& contact) { return contact.body == 1; });
+            EXPECT_LT(tool_of(result).x(), 8.01) << device.transpose();
+        }
+    };
+    go({5, 10, 18});
+    go({15, 10, 18});
+    EXPECT_GT(pressed, 100);
+    go({15, 10, 26});
+    EXPECT_EQ(result.contact_count, 1);
+    EXPECT_LT(force_of(result).x(), -0.9 * 0.002 * 7);
 }
 
 }  // namespace
