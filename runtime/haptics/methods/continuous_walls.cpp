@@ -31,7 +31,7 @@ constexpr double pressing = 1e-5;       // mm from a wall that presses
 constexpr double looked_behind = 0.02;
 constexpr double least_sum = 0.1;  // of unit normals: walls opposite each other have no side
 
-bool is_behind(const Contact& wall, const Vector3d& off) noexcept {
+bool presses(const Contact& wall, const Vector3d& off) noexcept {
     return normal_of(wall).dot(off) - static_cast<double>(wall.gap) < pressing;
 }
 
@@ -66,8 +66,8 @@ void ContinuousContact::add_walls_along(std::size_t t, TickResult& result) noexc
         if (!along.led_elsewhere && !along.follower.touches(wall)) continue;
         const double gap = along.follower.beyond(wall, tools_[t].parts[0].device);
         const auto does_as_well = [&](const Contact& other) {
-            const double off = (normal_of(other) - wall.normal).norm();
-            return off<same_normal&& static_cast<double>(other.gap)> gap - pressing;
+            const double farther = gap - static_cast<double>(other.gap);
+            return farther < pressing && (normal_of(other) - wall.normal).norm() < same_normal;
         };
         if (std::ranges::any_of(result.active_contacts(), does_as_well)) continue;
         if (!hold_by(t, 0, rigid_contact(wall, wall.normal, gap), result)) result.status |= contacts_cut;
@@ -106,7 +106,7 @@ Vector3d ContinuousContact::behind_walls(std::size_t t, const TickResult& result
     const Vector3d off = off_of(t);
     Vector3d sum = Vector3d::Zero();
     for (const Contact& contact : result.active_contacts())
-        if (is_wall(contact) && is_behind(contact, off)) sum += normal_of(contact);
+        if (is_wall(contact) && presses(contact, off)) sum += normal_of(contact);
     return sum.norm() > least_sum ? Vector3d(off - looked_behind * sum.normalized()) : off;
 }
 
@@ -118,7 +118,7 @@ bool ContinuousContact::leads_elsewhere(std::size_t t, const TickResult& result,
     follower.go(rigid_surfaces_, device + behind_walls(t, result));
     const auto beyond = [&](const GodObject::Touch& wall) { return follower.beyond(wall, device + off); };
     const auto is_gone = [&](const Contact& held) {
-        return is_behind(held, off) && std::ranges::none_of(follower.walls(), [&](const auto& wall) {
+        return presses(held, off) && std::ranges::none_of(follower.walls(), [&](const auto& wall) {
                    return (wall.normal - normal_of(held)).norm() < turned_normal &&
                           std::abs(beyond(wall)) < same_wall;
                });
