@@ -114,9 +114,13 @@ class Train(OpenedTrainer):
         self.assertEqual((alone.returncode, both.returncode), (0, 0), both.stderr)
         alone, both = json.loads(alone.stdout), json.loads(both.stdout)
         self.assertGreater(both["force_peak_n"], 2 * alone["force_peak_n"], "bone is harder")
-        self.assertAlmostEqual(both["device_travel_mm"], alone["device_travel_mm"], delta=1)
         self.assertEqual(both["recording"]["rows"] + both["recording"]["lost_rows"], 2 * both["ticks"])
         self.assertNotEqual(pictures[0].read_bytes(), pictures[1].read_bytes())
+        with h5py.File(recording) as recorded:
+            count = recorded["count/ticks"][0]
+            depth = recorded["ticks/depth"][:count][recorded["ticks/tool"][:count] == 0]
+        # Where the script holds the first tool for half a second, which a servo that starves does not miss.
+        self.assertAlmostEqual(depth.max(), alone["penetration"]["device_mm"], places=2)
 
     def test_what_the_hand_did_is_recorded_and_replays(self):
         recording = self.folder / "trained.h5"
