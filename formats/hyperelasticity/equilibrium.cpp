@@ -8,7 +8,6 @@
 #include <numbers>
 #include <string>
 
-#include "formats/elasticity/stiffness.hpp"
 #include "formats/model/errors.hpp"
 
 namespace palpate::hyperelasticity {
@@ -28,12 +27,20 @@ double mean_edge(const TetMesh& mesh) {
     return std::cbrt(std::numbers::sqrt2 * six_volumes / static_cast<double>(mesh.tetrahedra.size()));
 }
 
+// The body. Left to turn, it may have a factor all the same, by rounding.
+const DeformableBody& held(const DeformableBody& body) {
+    if (body.fixed_nodes.size() < 3)
+        throw InvalidInput({body.name, "holds " + std::to_string(body.fixed_nodes.size()) + " nodes",
+                            "at least 3, not in a line", "fix more of its nodes"});
+    return body;
+}
+
 }  // namespace
 
 Equilibrium::Equilibrium(const DeformableBody& body)
     : mesh_(body),
       edge_(mean_edge(body.mesh)),
-      permuted_(mesh_.dofs()),
+      factor_(held(body), mesh_),
       displacements_(VectorXd::Zero(mesh_.dofs())),
       internal_(VectorXd::Zero(mesh_.dofs())),
       residual_(mesh_.dofs()),
@@ -41,33 +48,13 @@ Equilibrium::Equilibrium(const DeformableBody& body)
       tried_(mesh_.dofs()),
       tried_internal_(mesh_.dofs()),
       steps_(mesh_.dofs(), remembered),
-      changes_(mesh_.dofs(), remembered) {
-    // Left to turn, it may have a factor all the same, by rounding.
-    if (body.fixed_nodes.size() < 3)
-        throw InvalidInput({body.name, "holds " + std::to_string(body.fixed_nodes.size()) + " nodes",
-                            "at least 3, not in a line", "fix more of its nodes"});
-    factor_.compute(
-        elasticity::assemble_stiffness(body.mesh, body.materials, mesh_.discretisation(), mesh_.positions())
-            .cast<float>());
-    if (factor_.info() != Eigen::Success)
-        throw InvalidInput({body.name, "its stiffness is not positive definite in single precision", "",
-                            "hold more nodes, or take Poisson's ratio further from 0.5"});
-}
+      changes_(mesh_.dofs(), remembered) {}
 
 void Equilibrium::reset() noexcept {
     displacements_.setZero();
     internal_.setZero();
     energy_ = 0;
     known_ = 0;
-}
-
-// What a force displaces tissue at rest by.
-void Equilibrium::soften(const VectorXd& force, VectorXd& moved) noexcept {
-    permuted_.noalias() = factor_.permutationP() * force.cast<float>();
-    factor_.matrixL().solveInPlace(permuted_);
-    factor_.matrixU().solveInPlace(permuted_);
-    const auto& place = factor_.permutationP().indices();
-    for (Index i = 0; i < moved.size(); ++i) moved[i] = static_cast<double>(permuted_[place[i]]);
 }
 
 // H residual, H the inverse tangent as rest and the last steps have it.
@@ -79,7 +66,7 @@ void Equilibrium::set_direction() noexcept {
         along[static_cast<std::size_t>(i)] = inverse_[i] * steps_.col(i).dot(tried_);
         tried_ -= along[static_cast<std::size_t>(i)] * changes_.col(i);
     }
-    soften(tried_, direction_);
+    factor_.solve(tried_, direction_);
     for (Index k = known_; k-- > 0;) {
         const Index i = (newest_ + remembered - k) % remembered;
         const double back = inverse_[i] * changes_.col(i).dot(direction_);

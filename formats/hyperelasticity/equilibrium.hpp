@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
-#include <Eigen/SparseCholesky>
 #include <cstddef>
 
 #include "formats/hyperelasticity/hyperelastic_mesh.hpp"
+#include "formats/hyperelasticity/stiffness_factor.hpp"
 #include "formats/model/body.hpp"
 
 namespace palpate::hyperelasticity {
@@ -40,13 +40,10 @@ class Equilibrium {
 
     void set_direction() noexcept;
     bool descend(const Eigen::VectorXd& loads, double slope) noexcept;
-    void soften(const Eigen::VectorXd& force, Eigen::VectorXd& moved) noexcept;
 
     HyperelasticMesh mesh_;
     double edge_;  // of a tetrahedron, mm
-    // Of the stiffness at rest, as a preconditioner has it: float halves what a solve has to read.
-    Eigen::SimplicialLLT<Eigen::SparseMatrix<float>> factor_;
-    Eigen::VectorXf permuted_;
+    StiffnessFactor factor_;
     Eigen::VectorXd displacements_, internal_, residual_;  // mm, N, N
     Eigen::VectorXd direction_, tried_, tried_internal_;
     // The last steps (mm), what they changed internal forces by (N), and 1 / (step . change), in a ring.
