@@ -17,7 +17,7 @@ class CollisionLoop {
     /// named in published_contact.hpp).
     static constexpr std::int64_t published_period_ns = 1'000'000'000 / 30;
     /// Of what answers forces: the older an answer, the less a hand that moves can trust it.
-    static constexpr std::int64_t force_period_ns = 10'000'000;
+    static constexpr std::int64_t force_period_ns = 5'000'000;
 
     static constexpr std::int64_t period_of(Detects detects) noexcept {
         return detects == Detects::forces ? force_period_ns : published_period_ns;
