@@ -69,6 +69,21 @@ TEST(RealSegmentation, liver_without_contrast_from_five_seeds) {
                  mask_of(read_label_map(folder / "seg_totalseg.nii.gz"), "5"), plain_dice);
 }
 
+// Of the scan above, which has 16 HU within the liver: what noise makes there is as steep as its border to
+// muscle then, and with the usual smoothing alone the overlap is 0.91.
+constexpr double added_noise_hu = 10, noisy_dice = 0.925;
+
+TEST(RealSegmentation, liver_without_contrast_in_more_noise_from_one_seed) {
+    REQUIRE_REAL_DATA(folder, "abdomen_ct_totalseg3mm");
+    Volume volume = read_volume(folder / "ct.nii.gz");
+    std::mt19937 random(1);
+    std::normal_distribution<float> noise(0, added_noise_hu);
+    for (float& value : volume.values) value += noise(random);
+    const LabelMap map = run(&volume, nullptr, {"liver: recipe=liver seeds=-80,-152,390"});
+    EXPECT_GE(dice(mask_of(map, "liver"), mask_of(read_label_map(folder / "seg_totalseg.nii.gz"), "5")),
+              noisy_dice);
+}
+
 TEST(RealSegmentation, bone_of_a_head_is_the_threshold_mask_without_its_head_rest) {
     REQUIRE_REAL_DATA(folder, "head_ct_cranium");
     const Volume volume = read_volume(folder / "head_ct_cranium.nrrd");

@@ -22,6 +22,8 @@ constexpr double block_mm = 2;           // fine enough for the shape, coarse en
 constexpr double reach_mm = 200;         // further from the seeds no liver reaches
 constexpr double seed_reach_mm = 10;     // a seed may lie in a vessel or a lesion
 constexpr double smoothing_steps = 8;    // of the curvature flow, on blocks of block_mm
+constexpr double muscle_hu = 50;         // and other organs without contrast
+constexpr double faint_contrast = 10;    // HU: what ends an organ that is as grey as muscle differs so much
 constexpr double bone_hu = 250;          // above vessels and kidneys in most contrast phases
 constexpr double rib_gap = 20;           // mm: balls of this radius do not pass between two ribs
 constexpr double first_edge_factor = 4;  // an edge is so much steeper than the surroundings of the seeds
@@ -71,14 +73,26 @@ double inner_gradient(const Volume& steepness, Points seeds) {
     return robust_statistics(gradients).mean;
 }
 
-Blocks prepare(Volume grey, const OrganSeeds& seeds, double wall_mm) {
-    Mask wall = wall_of(grey, wall_mm);
+// HU per mm: where the organ meets muscle, or is as grey. What noise makes an edge should not be steeper.
+double edge_to_muscle(const OrganSeeds& seeds) {
+    return std::max(faint_contrast, std::abs(seeds.center - muscle_hu)) / edge_mm;
+}
+
+Blocks prepare(Volume grey, const OrganSeeds& seeds, const OrganParameters& p) {
+    Mask wall = wall_of(grey, p.wall_mm);
     for (float& value : grey.values)
         value =
             std::clamp(value, static_cast<float>(seeds.center - 200), static_cast<float>(seeds.center + 200));
-    Volume smooth = curvature_flow(grey, steps_on(grey.grid));
-    Volume steepness = gradient_length(smooth, block_mm * 0.75);
-    const double edge = std::max(least_edge, first_edge_factor * inner_gradient(steepness, seeds.points));
+    const int steps = steps_on(grey.grid);
+    Volume smooth = grey, steepness = grey;
+    double edge = INFINITY;
+    for (int done = 0; edge > edge_to_muscle(seeds) && done < p.most_smoothings * steps;) {
+        const int more = done == 0 ? steps : std::max(1, steps / 2);
+        smooth = curvature_flow(smooth, more);
+        steepness = gradient_length(smooth, block_mm * 0.75);
+        edge = std::max(least_edge, first_edge_factor * inner_gradient(steepness, seeds.points));
+        done += more;
+    }
     std::vector<float> local(smooth.values.size());
     for_each_voxel(smooth.grid, [&](std::int32_t i, std::int32_t j, std::int32_t k, std::size_t offset) {
         local[offset] =
@@ -206,7 +220,7 @@ Mask with_border(const Mask& found, const Blocks& blocks) {
 }
 
 Mask organ_of_blocks(Volume grey, const OrganSeeds& seeds, const OrganParameters& p) {
-    Blocks blocks = prepare(std::move(grey), seeds, p.wall_mm);
+    Blocks blocks = prepare(std::move(grey), seeds, p);
     Mask found = found_in(blocks, seeds, p);
     follow(blocks, found, seeds, p.drift_hu);
     for (int round = 1; round < most_rounds; ++round) {

@@ -17,13 +17,15 @@ struct OrganParameters {
     double darkest_hu = -50;    ///< a seed darker than this is a mistake
     double brightest_hu = 300;  ///< so is one brighter than this
     double wall_mm = 3;         ///< pleura and diaphragm between bone and organ are at least as thick
+    int most_smoothings = 4;    ///< so many times as much against noise at most; 1 for what is small
     double per_hu = 1;          ///< how much of the file's grey one HU is, where values are scaled
     std::string unit = " HU";   ///< of the file's grey, for notes
 };
 
 /// Finds a solid organ, such as the liver in CT with contrast or without, from points inside it (p_P, mm).
-/// On blocks of about 2 mm: noise is smoothed along level sets; the candidates are voxels within tolerance of
-/// a local mean, which starts from the seeds and then follows what was found, without those on an edge (a
+/// On blocks of about 2 mm: noise is smoothed along level sets, longer as long as what it makes around the
+/// seeds would be as steep as the organ's border to muscle; the candidates are voxels within tolerance of a
+/// local mean, which starts from the seeds and then follows what was found, without those on an edge (a
 /// gradient of three times the median in what was found) and without the chest wall (bone, closed over
 /// the gaps between ribs, and wall_mm around it); the candidates are cut at their necks and what holds no
 /// seed is dropped, until that changes little (8 rounds at most); gaps are filled; a random walker finds the
