@@ -17,7 +17,7 @@ namespace palpate::hyperelasticity {
 /// than what is missing. Allocates on construction only; for one thread.
 class Equilibrium {
   public:
-    /// Assembles and factorises the stiffness: some 0.4 s for 3 500 nodes of linear tetrahedra. Throws
+    /// Assembles and factorises the stiffness: some 0.3 s for 3 500 nodes of linear tetrahedra. Throws
     /// InvalidInput as HyperelasticMesh does, for fewer than 3 fixed nodes, and if the stiffness has no
     /// Cholesky factor in single precision. Unchecked: that each piece of the mesh is held.
     explicit Equilibrium(const DeformableBody& body);

@@ -20,7 +20,8 @@ std::span<const StatusText, status_count> status_texts() {
         {energy_injected, "energy_injected",
          shown_text("contact gave a hand more energy than it got: a damper takes it back"), true},
         {contact_unsettled, "contact_unsettled",
-         shown_text("tissue was not at rest when the tick ended, as where it snaps over an edge"), true},
+         shown_text("tissue or tool was not at rest when the tick ended, as where one snaps over an edge"),
+         true},
         {large_unsettled, "large_unsettled",
          shown_text("the answer of tissue that is deformed far came late, or was not settled: its force is "
                     "nearer to that of linear tissue"),

@@ -26,7 +26,7 @@ HEAD = """| case | circle, mm | tool, mm | deep, mm | loops in contact | work of
 |---|--:|--:|--:|--:|--:|--:|"""
 
 
-def places(asset, count, circle, held, edges, beside_bone):
+def places(asset, count, circle, held, edges, beside_bone=False):
     """Points and inward normals (mm) where the surface around is free and no edge, and the tool's radius."""
     with h5py.File(asset) as file:
         body, radius = file["palpate/bodies/deformable/0"], float(file["palpate/haptics"].attrs["tool_radius"])

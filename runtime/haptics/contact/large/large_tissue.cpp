@@ -14,7 +14,7 @@ constexpr double settled = 1e-4;  // mm: a step shorter than this ends the searc
 // displacement, which is what a surface may be off by a third of a second after the hand rests, or by so many
 // mm.
 constexpr double most_missing = 0.05, least_missing = 0.01;
-constexpr int most_steps = 2;  // for an organ of 3 500 nodes three quarters of a period: rest_search.cpp
+constexpr int most_steps = 2;  // for an organ of 3 500 nodes most of a period: rest_search.cpp
 // How much of a change of forces is taken, and how that changes where they swing and where they do not.
 constexpr double least_taken = 0.2, most_taken = 0.7, slower = 0.5, faster = 1.25;
 // Of its linear compliance, what a body keeps against a small force more: where it stiffens beyond that,
