@@ -22,6 +22,7 @@ constexpr double block_mm = 2;           // fine enough for the shape, coarse en
 constexpr double reach_mm = 200;         // further from the seeds no liver reaches
 constexpr double seed_reach_mm = 10;     // a seed may lie in a vessel or a lesion
 constexpr double smoothing_steps = 8;    // of the curvature flow, on blocks of block_mm
+constexpr int most_smoothings = 4;       // so many times as many where noise asks for it
 constexpr double muscle_hu = 50;         // and other organs without contrast
 constexpr double faint_contrast = 10;    // HU: what ends an organ that is as grey as muscle differs so much
 constexpr double bone_hu = 250;          // above vessels and kidneys in most contrast phases
@@ -78,15 +79,15 @@ double edge_to_muscle(const OrganSeeds& seeds) {
     return std::max(faint_contrast, std::abs(seeds.center - muscle_hu)) / edge_mm;
 }
 
-Blocks prepare(Volume grey, const OrganSeeds& seeds, const OrganParameters& p) {
-    Mask wall = wall_of(grey, p.wall_mm);
+Blocks prepare(Volume grey, const OrganSeeds& seeds, double wall_mm, int smoothings) {
+    Mask wall = wall_of(grey, wall_mm);
     for (float& value : grey.values)
         value =
             std::clamp(value, static_cast<float>(seeds.center - 200), static_cast<float>(seeds.center + 200));
     const int steps = steps_on(grey.grid);
     Volume smooth = grey, steepness = grey;
     double edge = INFINITY;
-    for (int done = 0; edge > edge_to_muscle(seeds) && done < p.most_smoothings * steps;) {
+    for (int done = 0; edge > edge_to_muscle(seeds) && done < smoothings * steps;) {
         const int more = done == 0 ? steps : std::max(1, steps / 2);
         smooth = curvature_flow(smooth, more);
         steepness = gradient_length(smooth, block_mm * 0.75);
@@ -219,8 +220,8 @@ Mask with_border(const Mask& found, const Blocks& blocks) {
                                      .trust_mm = trust_mm});
 }
 
-Mask organ_of_blocks(Volume grey, const OrganSeeds& seeds, const OrganParameters& p) {
-    Blocks blocks = prepare(std::move(grey), seeds, p);
+Mask organ_of_blocks(Volume grey, const OrganSeeds& seeds, const OrganParameters& p, int smoothings) {
+    Blocks blocks = prepare(std::move(grey), seeds, p.wall_mm, smoothings);
     Mask found = found_in(blocks, seeds, p);
     follow(blocks, found, seeds, p.drift_hu);
     for (int round = 1; round < most_rounds; ++round) {
@@ -270,7 +271,9 @@ Mask organ(const Volume& volume, Points seeds, const OrganParameters& parameters
     const OrganSeeds looked_at = look_at_seeds(whole, seeds, parameters, culprit, note);
     const Box box = box_around(whole, seeds);
     whole = crop(whole, box);
-    const Mask found = organ_of_blocks(std::move(whole), looked_at, parameters);
+    Mask found = organ_of_blocks(whole, looked_at, parameters, most_smoothings);
+    // What is small is smoothed away.
+    if (found.count() == 0) found = organ_of_blocks(std::move(whole), looked_at, parameters, 1);
     if (found.count() == 0)
         throw InvalidInput(
             {culprit, fmt::format("no piece as thick as {} mm holds a seed", 2 * parameters.neck_mm), "",

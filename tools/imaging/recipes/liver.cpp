@@ -16,8 +16,6 @@ constexpr double apart_mm = 10;  // capsule and rim between a lesion and the tis
 // The liver with the lesions around `seeds` (p_P, mm), each found as an organ of its own grey value.
 Mask with_lesions(const Mask& liver, const Job& job, std::span<const Eigen::Vector3d> seeds,
                   const OrganParameters& parameters) {
-    OrganParameters small = parameters;
-    small.most_smoothings = 1;
     Mask all = liver;
     for (const Eigen::Vector3d& seed : seeds) {
         const auto refused = [&](const std::string& why, const std::string& expected) {
@@ -27,7 +25,7 @@ Mask with_lesions(const Mask& liver, const Job& job, std::span<const Eigen::Vect
                  expected, "move the point deeper into a lesion of the liver, or lower tolerance_hu"});
         };
         const Mask lesion =
-            organ(*job.volume, std::span(&seed, 1), small, job.culprit() + ", lesion", job.note);
+            organ(*job.volume, std::span(&seed, 1), parameters, job.culprit() + ", lesion", job.note);
         if (subtract(lesion, liver).count() > liver.count())
             throw refused("ran out of it into its neighbours", "less than the liver without it");
         if (intersect(dilate(lesion, apart_mm), liver).count() == 0)
