@@ -33,7 +33,7 @@ struct LinearLimits {
 /// errors. Neo-Hookean tissue of the same moduli on the body's own elements (hyperelasticity::Equilibrium) is
 /// the judge of the stored compliance. All -1 where that has no answer: for more than linear_limit_dofs,
 /// Poisson's ratios above 0.4999, bodies that Equilibrium refuses, and where no rest was found. Cost: a
-/// factorisation in single precision and some hundred solves; 4 s for 3500 nodes.
+/// factorisation in single precision and some hundred solves; 3 s for 3500 nodes.
 LinearLimits find_linear_limits(const DeformableBody& body, double strain = linear_limit_strain);
 
 /// Writes them into the certificate's fields.

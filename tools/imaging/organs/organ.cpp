@@ -75,6 +75,7 @@ double inner_gradient(const Volume& steepness, Points seeds) {
 }
 
 // HU per mm: where the organ meets muscle, or is as grey. What noise makes an edge should not be steeper.
+// Images that are not in HU come scaled to where it is steep.
 double edge_to_muscle(const OrganSeeds& seeds) {
     return std::max(faint_contrast, std::abs(seeds.center - muscle_hu)) / edge_mm;
 }
